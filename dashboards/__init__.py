@@ -1,0 +1,1 @@
+"""Who shows: figures and pages made from finished tables. Computes nothing new."""
