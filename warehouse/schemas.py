@@ -1,0 +1,297 @@
+"""The tables of the warehouse, each declared once: names, dtypes, units, ranges and meaning.
+
+Other programs rely on these names; a column may be added, none is renamed or dropped without a
+line in the changelog. Units stand in the names (SI); ratios are ratios. What a number means
+physically is explained in the module that computes it; how tables are stored is in
+`warehouse.store`.
+"""
+
+from typing import Any, Final
+
+import dataframely as dy
+import polars as pl
+
+STATUSES: Final = ("accepted", "flagged", "rejected")
+
+
+def _text(description: str, **rules: Any) -> dy.String:
+    return dy.String(description=description, **rules)
+
+
+def _number(unit: str, description: str, **rules: Any) -> dy.Float64:
+    return dy.Float64(description=description, metadata={"unit": unit}, **rules)
+
+
+def _tow_id(**rules: Any) -> dy.String:
+    return _text("tow, as named in the tow list", **rules)
+
+
+def _fsn_no(**rules: Any) -> dy.String:
+    return _text("boat: its number with the federation", **rules)
+
+
+def _method(**rules: Any) -> dy.String:
+    return _text("name of the method that made the row", **rules)
+
+
+def _season() -> dy.Int32:
+    return dy.Int32(description="year of the tow list", min=1990, max=2100)
+
+
+def _rowers(**rules: Any) -> dy.Int16:
+    return dy.Int16(description="rowers the curve is valid for", min=1, max=24, **rules)
+
+
+def _crew_class(**rules: Any) -> dy.String:
+    return _text("H men, D women", regex="^[HD]$", **rules)
+
+
+def _speed(description: str, **rules: Any) -> dy.Float64:
+    return _number("m/s", description, min=0.0, max=15.0, **rules)
+
+
+class Boats(dy.Schema):
+    """Boats of `sloependata.csv`, one row each."""
+
+    fsn_no = _fsn_no(primary_key=True)
+    ht_no = _text("number in the HT register", nullable=True)
+    name = _text("name of the boat")
+    boat_type = _text("type, empty where not known", nullable=True)
+    waterline_length_m = _number("m", "length on the waterline", min_exclusive=0, nullable=True)
+    beam_m = _number("m", "breadth", min_exclusive=0, nullable=True)
+    bow_height_m = _number("m", "height of the bow", min_exclusive=0, nullable=True)
+    weight_kg = _number("kg", "empty boat with oars", min_exclusive=0, nullable=True)
+
+
+class Tows(dy.Schema):
+    """Tows accepted into the warehouse, one row each."""
+
+    tow_id = _tow_id(primary_key=True)
+    season = _season()
+    tow_date = dy.Date(description="day of the tow")
+    fsn_no = _fsn_no()
+    rowers = _rowers()
+    crew_class = _crew_class()
+    declared_speed_m_s = _speed("speed v0 the crew declared")
+    waterline_length_m = _number("m", "length on the waterline that day", min_exclusive=0)
+    beam_m = _number("m", "breadth that day", min_exclusive=0)
+    bow_height_m = _number("m", "height of the bow that day", min_exclusive=0)
+    weight_kg = _number("kg", "empty boat with oars, before", nullable=True, min_exclusive=0)
+    weight_after_kg = _number("kg", "the same, after", nullable=True, min_exclusive=0)
+    crew_weight_kg = _number("kg", "crew and ballast on board", nullable=True, min=0)
+    water_temperature_c = _number("C", "water temperature", nullable=True, min=-2, max=35)
+    speed_correction_ratio = _number(
+        "1", "speed correction entered by hand, 0.06 for 6 %", nullable=True, min=-0.5, max=0.5
+    )
+    altered = dy.Bool(description="the boat was altered since its previous tow")
+    sample_rate_hz = _number("Hz", "samples a second", min_exclusive=0)
+    empty_thwart = _text("thwart left free", nullable=True)
+    freeboard_lowest_m = _number("m", "freeboard at its lowest", nullable=True)
+    freeboard_bow_m = _number("m", "freeboard at the bow", nullable=True)
+    freeboard_stern_m = _number("m", "freeboard at the stern", nullable=True)
+    remark = _text("remark in the tow list", nullable=True)
+    samples_path = _text("samples file in the archive")
+    samples_sha256 = _text("its content hash", regex="^[0-9a-f]{64}$")
+    second_path = _text("second samples file, if two tows were combined", nullable=True)
+    second_sha256 = _text("its content hash", nullable=True, regex="^[0-9a-f]{64}$")
+
+
+class TowRuns(dy.Schema):
+    """Runs of every tow; runs 11-16 are runs 1-6 of the second samples file."""
+
+    tow_id = _tow_id(primary_key=True)
+    run = dy.Int8(primary_key=True, description="run", min=1, max=16)
+    direction = dy.Int8(description="1 out, -1 back", min=-1, max=1)
+    target_speed_ratio = _number("1", "intended speed / declared speed", min_exclusive=0)
+    selected = dy.Bool(description="the tow list says to use it")
+
+
+class RunPoints(dy.Schema):
+    """One point per method, tow and run."""
+
+    method = _method(primary_key=True)
+    tow_id = _tow_id(primary_key=True)
+    run = dy.Int8(primary_key=True, description="run", min=1, max=16)
+    direction = dy.Int8(description="1 out, -1 back", min=-1, max=1)
+    target_speed_ratio = _number("1", "intended speed / declared speed", min_exclusive=0)
+    window_start_s = _number("s", "start of the window that counts", min=0, nullable=True)
+    window_end_s = _number("s", "end of the window that counts", min=0, nullable=True)
+    cut_reason = _text("why the rest was cut: codes, comma separated")
+    speed_factor = _number("1", "true speed / log speed", min_exclusive=0, nullable=True)
+    speed_m_s = _speed("mean true speed", nullable=True)
+    gross_cw_kg_m = _number("kg/m", "mean F/v^2 before the wind", nullable=True)
+    air_cw_kg_m = _number("kg/m", "air part taken off", nullable=True)
+    still_air_cw_kg_m = _number("kg/m", "still-air part put back", nullable=True)
+    cw_kg_m = _number("kg/m", "resistance coefficient in still air", nullable=True)
+    cw_sd = _number("kg/m", "standard deviation of the samples", nullable=True, min=0)
+    fitted_cw_kg_m = _number("kg/m", "coefficient of the curve at this speed", nullable=True)
+    wind_m_s = _number("m/s", "mean apparent wind speed", nullable=True)
+    wind_angle_deg = _number("deg", "circular mean of the apparent wind", nullable=True)
+    log2_ratio = _number("1", "log 2 / log 1", nullable=True)
+    gps_ratio = _number("1", "GPS / log 1; empty without GPS", nullable=True)
+    used = dy.Bool(description="the curve is fitted through it")
+    reason = _text("why it is not used; empty when it is")
+
+
+class Curves(dy.Schema):
+    """One curve Cw = A / (1 - (v/B)^2) per method and tow."""
+
+    method = _method(primary_key=True)
+    tow_id = _tow_id(primary_key=True)
+    fsn_no = _fsn_no()
+    season = _season()
+    rowers = _rowers()
+    crew_class = _crew_class()
+    declared_speed_m_s = _speed("speed v0 the crew declared")
+    a_kg_m = _number("kg/m", "A: coefficient at v = 0", nullable=True)
+    b_m_s = _number("m/s", "B; empty where it is not determined", nullable=True, min=0)
+    b_capped = dy.Bool(description="B was brought down to its cap and A fitted again")
+    cw_kg_m = _number("kg/m", "Cw at the declared speed", nullable=True)
+    cw_lo_kg_m = _number("kg/m", "lower end of its 95 % interval", nullable=True)
+    cw_hi_kg_m = _number("kg/m", "upper end", nullable=True)
+    b_lo_m_s = _number("m/s", "lower end of the 95 % interval of B", nullable=True)
+    b_hi_m_s = _number("m/s", "upper end; empty: no upper bound", nullable=True)
+    power_w = _number("W", "power a rower at the declared speed", nullable=True)
+    residual_sd_ratio = _number("1", "sd of the points about the curve / Cw", nullable=True)
+    calibration_factor = _number("1", "GPS speed / log speed", nullable=True)
+    runs_used = dy.Int8(description="points the curve is fitted through", min=0)
+    status = _text("accepted, flagged or rejected", regex=f"^({'|'.join(STATUSES)})$")
+    flags = dy.List(dy.String(), description="codes of what a person should look at")
+
+
+class LogFactors(dy.Schema):
+    """True speed = log speed x factor, per method and season."""
+
+    method = _method(primary_key=True)
+    season = dy.Int32(primary_key=True, description="year of the tow list")
+    factor = _number("1", "true speed / log speed", min_exclusive=0)
+    lo = _number("1", "lower end of the 95 % interval; empty where unknown", nullable=True)
+    hi = _number("1", "upper end", nullable=True)
+    source = _text("none, prescribed, estimated or gps", regex="^(none|prescribed|estimated|gps)$")
+
+
+class Register(dy.Schema):
+    """One line per edition, boat and crew."""
+
+    edition = _text("edition; a draft is called concept-<method>", primary_key=True)
+    method = _method()
+    fsn_no = _fsn_no(primary_key=True)
+    rowers = _rowers(primary_key=True)
+    crew_class = _crew_class(primary_key=True)
+    tow_id = _tow_id(nullable=True)
+    tow_date = dy.Date(description="day of the tow", nullable=True)
+    valid_until = dy.Date(description="last day the line counts", nullable=True)
+    declared_speed_m_s = _speed("speed v0 the crew declared", nullable=True)
+    a_kg_m = _number("kg/m", "A", nullable=True)
+    b_m_s = _number("m/s", "B; empty where it is not determined", nullable=True)
+    cw_kg_m = _number("kg/m", "Cw at the declared speed", nullable=True)
+    cw_lo_kg_m = _number("kg/m", "lower end of its 95 % interval", nullable=True)
+    cw_hi_kg_m = _number("kg/m", "upper end", nullable=True)
+    status = _text("valid, or why there is no valid curve")
+
+
+class RegisterChanges(dy.Schema):
+    """What differs between two editions, per boat and crew."""
+
+    from_edition = _text("old edition", primary_key=True)
+    to_edition = _text("new edition", primary_key=True)
+    fsn_no = _fsn_no(primary_key=True)
+    rowers = _rowers(primary_key=True)
+    crew_class = _crew_class(primary_key=True)
+    change = _text("added, removed, changed or same", regex="^(added|removed|changed|same)$")
+    cw_ratio = _number("1", "new / old Cw at the old declared speed", nullable=True)
+    power_ratio = _number("1", "new / old power at that speed", nullable=True)
+    time_ratio = _number("1", "new / old time at equal power", nullable=True)
+    causes = _text("what made the change, with its factor on Cw, as JSON")
+
+
+class TypeConsistency(dy.Schema):
+    """How a quantity follows weight or tow speed within a boat type: a straight line."""
+
+    method = _method(primary_key=True)
+    boat_type = _text("type of boat", primary_key=True)
+    quantity = _text("b_m_s, a_kg_m or cw_kg_m", primary_key=True)
+    explaining = _text("weight_kg or declared_speed_m_s", primary_key=True)
+    n = dy.Int32(description="tows", min=0)
+    slope = _number("quantity / explaining", "slope of the line", nullable=True)
+    slope_lo = _number("quantity / explaining", "lower end of its 95 % interval", nullable=True)
+    slope_hi = _number("quantity / explaining", "upper end", nullable=True)
+    r2 = _number("1", "share of the spread that is explained", nullable=True)
+    residual_sd_ratio = _number("1", "spread about the line / mean", nullable=True)
+
+
+class Reproducibility(dy.Schema):
+    """How well repeat tows of unaltered boats agree."""
+
+    method = _method(primary_key=True)
+    scope = _text("all pairs, or an era", primary_key=True)
+    n_pairs = dy.Int32(description="pairs of consecutive tows of one boat and crew", min=0)
+    sd_ratio = _number("1", "standard deviation of one tow", nullable=True, min=0)
+    lo = _number("1", "lower end of its 95 % interval", nullable=True, min=0)
+    hi = _number("1", "upper end", nullable=True, min=0)
+    share_within_1pct = _number("1", "share of pairs that differ under 1 %", nullable=True)
+    share_within_2pct = _number("1", "the same for 2 %", nullable=True)
+
+
+class Quarantine(dy.Schema):
+    """Files and tows set aside, each with the reason in a plain sentence."""
+
+    path = _text("file, relative to the archive")
+    tow_id = _tow_id(nullable=True)
+    line = dy.Int64(description="line in the file", nullable=True, min=1)
+    reason_code = _text("short stable code")
+    message = _text("what is wrong and what to do, in a sentence")
+    first_seen = dy.Date(description="day on which this fault was first found")
+
+
+class Methods(dy.Schema):
+    """The methods that made the tables."""
+
+    method = _method(primary_key=True)
+    title = _text("title for people")
+    content_hash = _text("SHA-256 of the definition", regex="^[0-9a-f]{64}$")
+    definition = _text("the options of every season, as canonical JSON")
+
+
+class Lineage(dy.Schema):
+    """What a register line was made from: one row per line and samples file."""
+
+    edition = _text("edition", primary_key=True)
+    fsn_no = _fsn_no(primary_key=True)
+    rowers = _rowers(primary_key=True)
+    crew_class = _crew_class(primary_key=True)
+    tow_id = _tow_id()
+    path = _text("file in the archive", primary_key=True)
+    sha256 = _text("its content hash", regex="^[0-9a-f]{64}$")
+    method = _method()
+    method_hash = _text("content hash of the method", regex="^[0-9a-f]{64}$")
+    code_version = _text("version of the code that made the line")
+
+
+TABLES: Final[dict[str, type[dy.Schema]]] = {
+    "boats": Boats,
+    "tows": Tows,
+    "tow_runs": TowRuns,
+    "run_points": RunPoints,
+    "curves": Curves,
+    "log_factors": LogFactors,
+    "register": Register,
+    "register_changes": RegisterChanges,
+    "type_consistency": TypeConsistency,
+    "reproducibility": Reproducibility,
+    "quarantine": Quarantine,
+    "methods": Methods,
+    "lineage": Lineage,
+}
+
+
+def conform(name: str, frame: pl.DataFrame) -> pl.DataFrame:
+    """The declared columns of a table, in order, sorted by its key and checked.
+
+    Raises:
+        dataframely.exc.ValidationError, SchemaError: the frame is not what was declared.
+    """
+    schema = TABLES[name]
+    key = schema.primary_key() or schema.column_names()
+    chosen = frame.select(schema.column_names()).sort(key)
+    return schema.validate(chosen)
