@@ -15,13 +15,18 @@ from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.blocks import RunBlocks
 from pipeline.calibration import gps_factor
 from pipeline.channels import BACK, OUT
-from pipeline.hull import front_area_m2, hull_speed_m_s, side_area_m2
+from pipeline.hull import (
+    front_area_m2,
+    hull_speed_m_s,
+    side_area_m2,
+    still_air_coefficient_kg_m,
+)
 from pipeline.method import Method, Steps
 from pipeline.race import power_per_rower_w
 from pipeline.resistance import RunPoints, run_points
 from pipeline.speed import prescribed_factor
 from pipeline.steady import Windows, choose_windows
-from pipeline.wind import air_part, air_weights, mean_wind_angle_deg, still_air_coefficient
+from pipeline.wind import air_part, air_weights, mean_wind_angle_deg
 
 NOT_SELECTED = "not_selected"
 NO_STEADY_WINDOW = "no_steady_window"
@@ -158,7 +163,7 @@ class _Batch:
         source = steps.speed.source
         weights = air_weights(steps.wind, front, side)
         air = air_part(self.blocks, window, source, weights)
-        still = still_air_coefficient(steps.wind, front)
+        still = still_air_coefficient_kg_m(front, steps.wind.ahead)
         return run_points(self.blocks, window, source, factor, air, still)
 
     def _fit(self, steps: Steps, points: RunPoints, used: BoolArray) -> "_Fitted":
@@ -193,13 +198,13 @@ class _Batch:
         mask, used = windows.mask, reasons == ""
         log1 = self.blocks.mean("log1_v", mask)
         curves = fitted.curves
-        on_curve = curve.cw(
-            curves.a_kg_m[self.tow], curves.s_s2_m2[self.tow], points.speed_m_s
-        )
+        on_curve = curve.cw(curves.a_kg_m[self.tow], curves.s_s2_m2[self.tow], points.speed_m_s)
         has_gps = windows.found & (self.blocks.total("gps_n", mask) > 0)
         found, fits = windows.found, windows.found & curves.converged[self.tow]
         fits &= np.isfinite(on_curve)
-        return self.blocks.runs.select("tow_id", "run", "direction", "target_speed_ratio").with_columns(
+        return self.blocks.runs.select(
+            "tow_id", "run", "direction", "target_speed_ratio"
+        ).with_columns(
             _column("window_start_s", windows.start_s, found),
             _column("window_end_s", windows.end_s, found),
             pl.Series("cut_reason", windows.reasons, pl.String),
@@ -213,7 +218,9 @@ class _Batch:
             _column("fitted_cw_kg_m", on_curve, fits),
             _column("wind_m_s", self.blocks.mean("wind_v", mask), found),
             _column("wind_angle_deg", mean_wind_angle_deg(self.blocks, mask), found),
-            _column("log2_ratio", self.blocks.mean("log2_v", mask) / np.where(found, log1, 1), found),
+            _column(
+                "log2_ratio", self.blocks.mean("log2_v", mask) / np.where(found, log1, 1), found
+            ),
             _column("gps_ratio", self._gps_mean(mask) / np.where(found, log1, 1), has_gps),
             pl.Series("used", used),
             pl.Series("reason", reasons, pl.String),
@@ -242,7 +249,8 @@ class _Batch:
                 tows=self.tows.height,
                 used=used,
                 speed_m_s=points.speed_m_s,
-                intended_m_s=self.run_column("target_speed_ratio") * self._of_run("declared_speed_m_s"),
+                intended_m_s=self.run_column("target_speed_ratio")
+                * self._of_run("declared_speed_m_s"),
                 cw_kg_m=points.cw_kg_m,
                 cw_sd_kg_m=points.cw_sd,
                 direction=self.run_column("direction"),
@@ -254,7 +262,9 @@ class _Batch:
             )
         )
         rejected = ~sound
-        status = np.where(rejected, "rejected", np.where([bool(f) for f in flags], "flagged", "accepted"))
+        status = np.where(
+            rejected, "rejected", np.where([bool(f) for f in flags], "flagged", "accepted")
+        )
         chosen = self.tows.select(
             "tow_id", "fsn_no", "season", "rowers", "crew_class", "declared_speed_m_s"
         )

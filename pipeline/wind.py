@@ -6,16 +6,12 @@ eq. 9). Divided by boat speed squared, the still-air part is a constant of the b
 formulas. Areas stand in `pipeline.hull`.
 """
 
-from typing import Final
-
 import numpy as np
 
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.blocks import RunBlocks
+from pipeline.hull import AIR_DENSITY_KG_M3
 from pipeline.method import Wind
-
-AIR_DENSITY_KG_M3: Final = 1.225
-"""Presentation 2015, "Windweerstand"."""
 
 
 def air_weights(
@@ -52,11 +48,6 @@ def air_part(
     """Mean of F_air / v^2 over each window, shape (runs,), kg/m; v as the log reads."""
     parts = [w * blocks.mean(f"{source}_{name}", window) for name, w in weights.items()]
     return np.asarray(np.sum(parts, axis=0), dtype=np.float64)
-
-
-def still_air_coefficient(wind: Wind, front_area_m2: FloatArray) -> FloatArray:
-    """Resistance in still air divided by boat speed squared: rho/2 front Cvt, kg/m."""
-    return 0.5 * AIR_DENSITY_KG_M3 * front_area_m2 * wind.ahead
 
 
 def mean_wind_angle_deg(blocks: RunBlocks, window: BoolArray) -> FloatArray:
