@@ -1,0 +1,69 @@
+"""From archive files to blocks: the heavy part, partitioned by season."""
+
+import dagster as dg
+import polars as pl
+
+from assets.partitions import seasons
+from assets.resources import Progress, Setup
+from warehouse import intake, lake
+
+
+@dg.asset(group_name="archive", kinds={"parquet"}, code_version="1")
+def archive_index(setup: Setup) -> dg.MaterializeResult:
+    """Boats, tow lists and files of the archive, with what is wrong in the lists."""
+    found = intake.index(setup.store, setup.archive_root)
+    return dg.MaterializeResult(
+        metadata={
+            "dagster/row_count": found.tows.height,
+            "boats": found.boats.height,
+            "files": found.files.height,
+            "faults": len(found.faults),
+            "simulated": found.profiles.simulated,
+        }
+    )
+
+
+@dg.asset(
+    deps=[archive_index],
+    partitions_def=seasons,
+    group_name="archive",
+    kinds={"parquet"},
+    code_version="1",
+    check_specs=[dg.AssetCheckSpec("most_tows_sound", asset="samples")],
+)
+def samples(
+    context: dg.AssetExecutionContext, setup: Setup, progress: dg.ResourceParam[Progress]
+) -> dg.MaterializeResult:
+    """The samples of one season's tows, in Parquet; faulty tows are set aside."""
+    season = int(context.partition_key)
+    found = intake.read_season(setup.store, setup.archive_root, season, progress.tow_read)
+    faulty = found.filter(pl.col("reason_code").is_not_null())
+    reasons = faulty["reason_code"].value_counts(sort=True).rows()
+    return dg.MaterializeResult(
+        metadata={
+            "dagster/row_count": int(found["samples"].sum()),
+            "tows": found.height - faulty.height,
+            "set_aside": dg.MetadataValue.json(dict(reasons)),
+        },
+        check_results=[
+            dg.AssetCheckResult(
+                check_name="most_tows_sound",
+                passed=2 * faulty.height <= found.height,
+                severity=dg.AssetCheckSeverity.WARN,
+                metadata={"set_aside": faulty.height, "listed": found.height},
+            )
+        ],
+    )
+
+
+@dg.asset(
+    deps=[samples],
+    partitions_def=seasons,
+    group_name="archive",
+    kinds={"parquet"},
+    code_version="1",
+)
+def blocks(context: dg.AssetExecutionContext, setup: Setup) -> dg.MaterializeResult:
+    """Sums over each second of each run of one season."""
+    found = intake.collect_blocks(setup.store, int(context.partition_key))
+    return dg.MaterializeResult(metadata={"dagster/row_count": found.height})

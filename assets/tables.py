@@ -1,0 +1,111 @@
+"""From blocks to the tables of the warehouse: light, all seasons at once, once per method."""
+
+import datetime as dt
+
+import dagster as dg
+import polars as pl
+
+from assets.archive import archive_index, blocks, samples
+from assets.partitions import methods
+from assets.resources import Setup
+from pipeline.method import shipped_method
+from warehouse import tables
+
+
+def _results(rows: dict[str, int]) -> list[dg.MaterializeResult]:
+    return [
+        dg.MaterializeResult(asset_key=name, metadata={"dagster/row_count": count})
+        for name, count in rows.items()
+    ]
+
+
+@dg.multi_asset(
+    specs=[
+        dg.AssetSpec(name, deps=[archive_index, samples], group_name="tables", kinds={"parquet"})
+        for name in tables.ARCHIVE_TABLES
+    ],
+    check_specs=[dg.AssetCheckSpec("every_listed_tow_accounted_for", asset="tows")],
+)
+def archive_tables(setup: Setup):  # noqa: ANN201 - Dagster wants no annotation with checks
+    """Boats, sound tows with their runs, and what was set aside."""
+    store = setup.store
+    yield from _results(tables.collect_archive(store, dt.date.today()))
+    lost = tables.unaccounted_tows(store)
+    yield dg.AssetCheckResult(
+        check_name="every_listed_tow_accounted_for",
+        asset_key="tows",
+        passed=not lost,
+        metadata={"lost": dg.MetadataValue.json(lost)},
+    )
+
+
+@dg.multi_asset(
+    specs=[
+        dg.AssetSpec(
+            name, deps=["tows", "tow_runs", blocks], group_name="method", kinds={"parquet"}
+        )
+        for name in tables.METHOD_TABLES
+    ],
+    partitions_def=methods,
+    check_specs=[dg.AssetCheckSpec("every_tow_has_a_curve_row", asset="curves")],
+)
+def method_tables(context: dg.AssetExecutionContext, setup: Setup):  # noqa: ANN201
+    """Run points, curves and log factors of all tows under one method."""
+    store = setup.store
+    method = shipped_method(context.partition_key)
+    found = tables.apply_method(store, method, tables.run_blocks(store))
+    statuses = found["curves"]["status"].value_counts().sort("status").rows()
+    for name, frame in found.items():
+        yield dg.MaterializeResult(
+            asset_key=name,
+            metadata={
+                "dagster/row_count": frame.height,
+                "method_hash": method.content_hash,
+                "statuses": dg.MetadataValue.json(dict(statuses)),
+            },
+        )
+    yield dg.AssetCheckResult(
+        check_name="every_tow_has_a_curve_row",
+        asset_key="curves",
+        passed=found["curves"].height == store.read("tows").height,
+    )
+
+
+@dg.multi_asset(
+    specs=[
+        dg.AssetSpec(
+            name, deps=["curves", "tows", "boats"], group_name="register", kinds={"parquet"}
+        )
+        for name in tables.REGISTER_TABLES
+    ],
+)
+def register_tables(setup: Setup):  # noqa: ANN201
+    """Draft registers, what changes between them, how equal boats are, and lineage."""
+    yield from _results(tables.make_registers(setup.store, setup.chosen_methods))
+
+
+@dg.asset(
+    deps=[*tables.REGISTER_TABLES, *tables.METHOD_TABLES, *tables.ARCHIVE_TABLES],
+    group_name="register",
+    kinds={"duckdb"},
+)
+def warehouse_database(setup: Setup) -> dg.MaterializeResult:
+    """All tables in one DuckDB file, swapped in whole."""
+    rows = tables.make_database(setup.store, setup.chosen_methods)
+    frame = pl.DataFrame({"table": list(rows), "rows": list(rows.values())}).sort("table")
+    return dg.MaterializeResult(
+        metadata={
+            "dagster/row_count": sum(rows.values()),
+            "tables": dg.MetadataValue.md(_markdown(frame)),
+        }
+    )
+
+
+def _markdown(frame: pl.DataFrame) -> str:
+    with pl.Config(
+        tbl_formatting="MARKDOWN",
+        tbl_hide_dataframe_shape=True,
+        tbl_hide_column_data_types=True,
+        tbl_rows=-1,
+    ):
+        return str(frame)

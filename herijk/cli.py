@@ -1,0 +1,131 @@
+"""The command `herijk`: arguments in, results out. Messages go to stderr, results to stdout.
+
+Exit status: 0 done (also with tows set aside: they are listed), 1 could not do it, 2 wrong
+arguments. What a command does stands in `assets`, `warehouse` and `pipeline`; how a result looks
+as text, in `herijk.text`.
+"""
+
+import json
+import re
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from herijk import text
+from herijk.progress import TerminalProgress
+from pipeline.errors import HerijkError
+from pipeline.method import shipped_method, shipped_methods, shipped_text
+from warehouse import reports
+from warehouse.store import Store
+
+app = typer.Typer(
+    help="Recomputes the history of the Dutch rowing-sloop register from its tow tests.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+methods_app = typer.Typer(help="The methods that ship with Herijk.", rich_markup_mode=None)
+app.add_typer(methods_app, name="methods", invoke_without_command=True)
+
+DataFolder = Annotated[
+    Path, typer.Option("--data", help="Folder with everything Herijk writes.", metavar="DIR")
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
+
+
+def main() -> None:
+    """Runs the command; an error that a user can act on becomes one sentence and status 1."""
+    try:
+        app()
+    except HerijkError as error:
+        typer.echo(f"herijk: {error}", err=True)
+        sys.exit(1)
+
+
+def _seasons(value: str) -> range:
+    match = re.fullmatch(r"(\d{4})(?::(\d{4}))?", value)
+    if match is None or int(match[2] or match[1]) < int(match[1]):
+        raise typer.BadParameter("write a season, 2014, or a range, 2009:2018")
+    return range(int(match[1]), int(match[2] or match[1]) + 1)
+
+
+Seasons = Annotated[
+    range,
+    typer.Option(parser=_seasons, metavar="A:B", help="Seasons, both ends included."),
+]
+
+
+@app.command()
+def rebuild(
+    archive: Annotated[Path, typer.Option(help="The archive folder.", metavar="DIR")],
+    data: DataFolder = Path("data"),
+    method: Annotated[
+        list[str] | None,
+        typer.Option(help="Method to apply; repeat for more. Default: all that ship."),
+    ] = None,
+    seasons: Annotated[
+        range | None,
+        typer.Option(parser=_seasons, metavar="A:B", help="Read these seasons only."),
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """From the archive to registers and tables; only what changed is done again."""
+    from assets.rebuild import rebuild as run  # noqa: PLC0415 - Dagster takes a second to import
+
+    chosen = method or list(shipped_methods())
+    for name in chosen:
+        shipped_text(name)
+    with TerminalProgress() as progress:
+        done = run(archive, data, chosen, progress, seasons)
+    report = reports.rebuild_report(Store(data)) | {"done": vars(done)}
+    _show(report, text.rebuild, as_json)
+
+
+@methods_app.callback()
+def methods(context: typer.Context, as_json: AsJson = False) -> None:
+    """List the methods."""
+    if context.invoked_subcommand is None:
+        known = [shipped_method(name) for name in shipped_methods()]
+        rows = [{"method": m.name, "title": m.title, "content_hash": m.content_hash} for m in known]
+        _show({"methods": rows}, text.methods, as_json)
+
+
+@methods_app.command("show")
+def show_method(name: Annotated[str, typer.Argument(help="Name of a method.")]) -> None:
+    """One method in full."""
+    typer.echo(text.method(shipped_method(name)))
+
+
+@app.command()
+def audit(
+    fsn_no: Annotated[str, typer.Argument(metavar="FSN_NO", help="Boat, for example FSN211.")],
+    data: DataFolder = Path("data"),
+    method: Annotated[str | None, typer.Option(help="Show this method only.")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Where a boat's numbers come from: every tow, each step from window to curve."""
+    report = reports.audit_boat(Store(data), fsn_no)
+    if method is not None:
+        shipped_text(method)
+        for tow in report["tows"]:
+            tow["curves"] = [c for c in tow["curves"] if c["method"] == method]
+    _show(report, text.audit, as_json)
+
+
+@app.command()
+def simulate(
+    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder to make.")],
+    seasons: Seasons = "2009:2018",  # type: ignore[assignment]
+    tows_per_season: Annotated[int, typer.Option(min=1, max=1000)] = 24,
+    rate: Annotated[int, typer.Option(min=5, max=1000, help="Samples a second.")] = 1000,
+    seed: Annotated[int, typer.Option(min=0)] = 1,
+) -> None:
+    """Write a simulated archive with known truth (the truth lies beside it, not in it)."""
+    raise NotImplementedError
+
+
+def _show(report: dict[str, Any], as_text: Any, as_json: bool) -> None:
+    typer.echo(json.dumps(report, default=str, indent=1) if as_json else as_text(report))

@@ -1,0 +1,192 @@
+"""Results as text for a person: one function per command, from plain data to lines."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from pipeline.method import LAST_SEASON, Method
+
+Report = dict[str, Any]
+SIMULATED = "SIMULATED archive: made by `herijk simulate`, not the federation's measurements."
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
+    """Columns lined up; numbers to the right."""
+    held = [list(row) for row in rows]
+    cells = [[_cell(value) for value in row] for row in held]
+    widths = [max(len(line[i]) for line in [list(head), *cells]) for i in range(len(head))]
+    right = [any(isinstance(row[i], int | float) for row in held) for i in range(len(head))]
+    lines = [
+        "  ".join(
+            c.rjust(w) if r else c.ljust(w) for c, w, r in zip(line, widths, right, strict=True)
+        )
+        for line in [list(head), *cells]
+    ]
+    return "\n".join(f"  {line.rstrip()}" for line in lines)
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return "-"
+    if isinstance(value, float):
+        return f"{value:.3f}"
+    return str(value)
+
+
+def _per_cent(ratio: float | None) -> str:
+    return "-" if ratio is None else f"{100 * (ratio - 1):+.1f} %"
+
+
+def rebuild(report: Report) -> str:
+    """The closing summary of a rebuild."""
+    done = report["done"]
+    parts = [SIMULATED] if report["simulated"] else []
+    parts.append(_work_done(done))
+    parts.append(
+        "Tows accepted: "
+        + ", ".join(f"{row['season']}: {row['tows']}" for row in report["seasons"])
+    )
+    if report["set_aside"]:
+        rows = [(r["reason_code"], r["number"]) for r in report["set_aside"]]
+        parts.append(
+            "Set aside (table quarantine says where and why):\n" + table(("reason", "number"), rows)
+        )
+    else:
+        parts.append("Set aside: nothing.")
+    rows = [(r["method"], r["status"], r["number"]) for r in report["curves"]]
+    parts.append("Curves:\n" + table(("method", "status", "number"), rows))
+    if report["by_season"]:
+        parts.append(_by_season(report["by_season"]))
+        parts.append(_biggest(report["biggest_changes"]))
+    parts.append(f"Tables: {report['database']}")
+    return "\n\n".join(parts)
+
+
+def _work_done(done: Report) -> str:
+    if not done["database"]:
+        return "Nothing changed: no file was read again, all tables are up to date."
+    seasons = ", ".join(str(s) for s in done["seasons"]) or "none"
+    methods = ", ".join(done["methods"]) or "none"
+    return f"Seasons read: {seasons}. Methods applied: {methods}."
+
+
+def _by_season(rows: list[Report]) -> str:
+    lines = [
+        (
+            r["method"],
+            r["season"],
+            r["tows"],
+            _per_cent(r["median_ratio"]),
+            _per_cent(r["lowest_ratio"]),
+            _per_cent(r["highest_ratio"]),
+        )
+        for r in rows
+    ]
+    head = ("method", "season", "tows", "median", "lowest", "highest")
+    return f"Change of Cw at the declared speed against {rows[0]['compared_with']}:\n" + table(
+        head, lines
+    )
+
+
+def _biggest(rows: list[Report]) -> str:
+    lines = [
+        (
+            r["to_edition"],
+            r["fsn_no"],
+            r["name"] or "-",
+            f"{r['rowers']}{r['crew_class']}",
+            _per_cent(r["cw_ratio"]),
+            f"{7200 * (r['time_ratio'] - 1):+.0f} s",
+        )
+        for r in rows
+    ]
+    head = ("register", "boat", "name", "crew", "Cw", "in 2 h at equal power")
+    return f"Biggest changes against {rows[0]['from_edition']}:\n" + table(head, lines)
+
+
+def methods(report: Report) -> str:
+    """The list of methods."""
+    rows = [(m["method"], m["title"], m["content_hash"][:12]) for m in report["methods"]]
+    return table(("method", "title", "hash"), rows)
+
+
+def method(shown: Method) -> str:
+    """One method in full: per range of seasons the option of every step."""
+    lines = [f"{shown.name}: {shown.title}", "", shown.description.strip(), ""]
+    for held in shown.ranges:
+        last = "the present" if held.last == LAST_SEASON else held.last
+        lines.append(f"Seasons {held.first} to {last}")
+        for step, options in held.steps.model_dump().items():
+            words = ", ".join(f"{key} = {value}" for key, value in options.items())
+            lines.append(f"  {step:12} {words}")
+        lines.append("")
+    lines.append(f"content hash {shown.content_hash}")
+    return "\n".join(lines)
+
+
+def audit(report: Report) -> str:
+    """A boat's tows with, per method, the numbers of each step."""
+    boat = report["boat"]
+    parts = [SIMULATED] if report["simulated"] else []
+    parts.append(f"{boat['fsn_no']} {boat['name']}, type {boat['boat_type'] or 'not known'}")
+    parts += [_tow(tow) for tow in report["tows"]]
+    if not report["tows"]:
+        parts.append("No tow of this boat was accepted.")
+    return "\n\n".join(parts)
+
+
+def _tow(tow: Report) -> str:
+    weight = "weight not known" if tow["weight_kg"] is None else f"{tow['weight_kg']:.0f} kg"
+    head = (
+        f"Tow {tow['tow_id']} of {tow['tow_date']}: {tow['rowers']}{tow['crew_class']}, declared "
+        f"{tow['declared_speed_m_s']:.2f} m/s, {tow['waterline_length_m']:.2f} x "
+        f"{tow['beam_m']:.2f} x {tow['bow_height_m']:.2f} m, {weight}, from {tow['samples_path']}"
+    )
+    return "\n".join([head, *(_curve(curve) for curve in tow["curves"])])
+
+
+def _curve(curve: Report) -> str:
+    head = (
+        "run",
+        "window s",
+        "cut because",
+        "factor",
+        "v m/s",
+        "gross",
+        "-air",
+        "+still",
+        "Cw",
+        "curve",
+        "",
+    )
+    rows = [
+        (
+            p["run"],
+            "-"
+            if p["window_start_s"] is None
+            else f"{p['window_start_s']:.0f}-{p['window_end_s']:.0f}",
+            p["cut_reason"],
+            p["speed_factor"],
+            p["speed_m_s"],
+            p["gross_cw_kg_m"],
+            p["air_cw_kg_m"],
+            p["still_air_cw_kg_m"],
+            p["cw_kg_m"],
+            p["fitted_cw_kg_m"],
+            p["reason"],
+        )
+        for p in curve["run_points"]
+    ]
+    return f"  {curve['method']}: {_result(curve)}\n{table(head, rows)}"
+
+
+def _result(curve: Report) -> str:
+    flags = f" ({', '.join(curve['flags'])})" if curve["flags"] else ""
+    if curve["cw_kg_m"] is None:
+        return f"no curve, {curve['status']}{flags}"
+    b = "B not determined" if curve["b_m_s"] is None else f"B {curve['b_m_s']:.2f} m/s"
+    upper = "no upper bound" if curve["b_hi_m_s"] is None else f"{curve['b_hi_m_s']:.2f}"
+    return (
+        f"A {curve['a_kg_m']:.2f} kg/m, {b} (95 %: {curve['b_lo_m_s']:.2f} to {upper}), Cw "
+        f"{curve['cw_kg_m']:.2f} kg/m (95 %: {curve['cw_lo_kg_m']:.2f} to "
+        f"{curve['cw_hi_kg_m']:.2f}), {curve['power_w']:.1f} W a rower, {curve['status']}{flags}"
+    )

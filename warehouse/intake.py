@@ -1,0 +1,116 @@
+"""Intake: what the archive holds today, and which of it the lake still has to read.
+
+The lists of the archive are indexed on every rebuild (they are small); samples only where a
+season's fingerprint says that something changed. Reading one season's files is `warehouse.lake`.
+"""
+
+from collections.abc import Collection
+from pathlib import Path
+from typing import Final
+
+import polars as pl
+
+from warehouse import lake
+from warehouse.archive.hashes import FileHashes
+from warehouse.archive.index import ArchiveIndex, index_archive
+from warehouse.archive.profile import Profiles, read_profiles
+from warehouse.store import Store, fingerprint
+
+LISTED: Final = ("boats", "tows", "runs")
+FAULT_SCHEMA: Final = {
+    "path": pl.String(),
+    "tow_id": pl.String(),
+    "line": pl.Int64(),
+    "reason_code": pl.String(),
+    "message": pl.String(),
+}
+
+
+def index(store: Store, root: Path) -> ArchiveIndex:
+    """Reads the lists of the archive and keeps them as tables `listed_*`.
+
+    Raises:
+        HerijkError: the folder is missing or holds nothing that looks like an archive.
+    """
+    hashes = FileHashes.load(store.file_hashes)
+    found = index_archive(root, hashes.hash_file)
+    hashes.save(store.file_hashes)
+    for name in LISTED:
+        store.write(f"listed_{name}", getattr(found, name), made_from="")
+    faults = pl.DataFrame([vars(f) for f in found.faults], schema=FAULT_SCHEMA)
+    store.write("list_faults", faults, made_from="")
+    store.write("about_archive", pl.DataFrame({"simulated": [found.profiles.simulated]}), "")
+    return found
+
+
+def listed_seasons(store: Store) -> list[int]:
+    """Seasons of which the archive lists tows, sorted."""
+    seasons: list[int] = store.read("listed_tows")["season"].unique().sort().to_list()
+    return seasons
+
+
+def stale_seasons(store: Store, root: Path, wanted: Collection[int] | None = None) -> list[int]:
+    """Listed seasons whose samples or blocks are not those of the archive of today."""
+    profiles = read_profiles(root)
+    return [
+        season
+        for season in listed_seasons(store)
+        if (wanted is None or season in wanted)
+        and store.made_from("blocks", str(season)) != _fingerprint(store, profiles, season)
+    ]
+
+
+def forget_unlisted_seasons(store: Store) -> list[int]:
+    """Removes the tables of seasons that the archive no longer lists."""
+    listed = set(listed_seasons(store))
+    gone = [int(s) for s in store.partitions("blocks") if int(s) not in listed]
+    for season in gone:
+        lake.forget_season(store, season)
+        for table in ("blocks", "season_index"):
+            store.remove(table, str(season))
+    return gone
+
+
+def read_season(store: Store, root: Path, season: int, report: lake.Report) -> pl.DataFrame:
+    """Brings one season's samples into the lake and keeps its index."""
+    tows, runs = _listed(store, season)
+    profile = read_profiles(root).for_season(season)
+    found = lake.read_season(store, root, tows, runs, profile, report)
+    made_from = lake.season_fingerprint(tows, runs, profile)
+    store.write("season_index", found, made_from, str(season))
+    return found
+
+
+def collect_blocks(store: Store, season: int) -> pl.DataFrame:
+    """Puts the blocks of a season's sound tows together in one table."""
+    made_from = store.made_from("season_index", str(season))
+    found = lake.season_blocks(store, season, store.read("season_index", str(season)))
+    store.write("blocks", found, made_from or "", str(season))
+    return found
+
+
+def all_blocks(store: Store) -> pl.DataFrame:
+    """Blocks of all seasons; those without a sound tow have none."""
+    frames = [store.read("blocks", season) for season in store.partitions("blocks")]
+    return pl.concat([f for f in frames if f.height])
+
+
+def blocks_made_from(store: Store) -> str:
+    """Fingerprint of all blocks together."""
+    return fingerprint({s: store.made_from("blocks", s) for s in store.partitions("blocks")})
+
+
+def _listed(store: Store, season: int) -> tuple[pl.DataFrame, pl.DataFrame]:
+    tows = store.read("listed_tows").filter(pl.col("season") == season).sort("tow_id")
+    runs = store.read("listed_runs").join(tows.select("tow_id"), on="tow_id", how="semi")
+    return tows, runs.sort("tow_id", "run")
+
+
+def _fingerprint(store: Store, profiles: Profiles, season: int) -> str:
+    tows, runs = _listed(store, season)
+    return lake.season_fingerprint(tows, runs, profiles.for_season(season))
+
+
+def count_listed(store: Store, seasons: Collection[int]) -> int:
+    """Tows listed in the given seasons."""
+    return store.read("listed_tows").filter(pl.col("season").is_in(list(seasons))).height

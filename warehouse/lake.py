@@ -1,0 +1,182 @@
+"""The lake: samples and blocks of every tow, written once and named by content.
+
+An archive file that did not change is not read again: a tow's samples are named by the hashes of
+its files, the way to read them and the code that reads; its blocks by the samples and the code
+that adds them up. A fault found in the samples is remembered the same way. What the files look
+like is known to `warehouse.archive`; which sums there are, to `pipeline.blocks`.
+"""
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from pathlib import Path
+from typing import Any, Final
+
+import polars as pl
+
+import pipeline.blocks
+import pipeline.channels
+from pipeline.blocks import block_sums
+from pipeline.errors import DefectiveInputError
+from warehouse import archive
+from warehouse.archive.plausibility import check_samples
+from warehouse.archive.profile import SeasonProfile
+from warehouse.archive.samples import read_tow_samples
+from warehouse.code import source_hash
+from warehouse.files import written_beside
+from warehouse.store import Store, fingerprint, write_parquet
+
+SEASON_INDEX_SCHEMA: Final = {
+    "tow_id": pl.String(),
+    "samples_key": pl.String(),
+    "blocks_key": pl.String(),
+    "samples": pl.Int64(),
+    "path": pl.String(),
+    "line": pl.Int64(),
+    "reason_code": pl.String(),
+    "message": pl.String(),
+}
+"""One row a listed tow: where its samples and blocks lie, or the fault that was found."""
+
+WORKERS: Final = 2
+
+Tow = Mapping[str, Any]
+Report = Callable[[str, bool], None]
+"""Called after each tow with its id and whether it was set aside."""
+
+
+def season_fingerprint(tows: pl.DataFrame, runs: pl.DataFrame, profile: SeasonProfile) -> str:
+    """What the samples and blocks of a season are made from."""
+    season_runs = runs.filter(pl.col("tow_id").is_in(tows["tow_id"].implode()))
+    rows = [tows.write_json(), season_runs.sort("tow_id", "run").write_json()]
+    return fingerprint(rows, dataclasses.asdict(profile), _reader_hash(), _blocks_hash())
+
+
+def read_season(
+    store: Store,
+    root: Path,
+    tows: pl.DataFrame,
+    runs: pl.DataFrame,
+    profile: SeasonProfile,
+    report: Report,
+) -> pl.DataFrame:
+    """Brings the samples and blocks of a season's tows into the lake.
+
+    Args:
+        store: the data folder.
+        root: the archive.
+        tows: listed tows of one season.
+        runs: their runs.
+        profile: how that season's files are written.
+        report: called after each tow.
+
+    Returns:
+        The season's index, `SEASON_INDEX_SCHEMA`, sorted by tow.
+    """
+    before = _known_faults(store, profile.season)
+    runs_of = dict(runs.partition_by("tow_id", as_dict=True))
+
+    def read(tow: Tow) -> dict[str, Any]:
+        key = _samples_key(tow, runs_of[tow["tow_id"],], profile)
+        row = before.get(key) or _bring_in(store, root, tow, runs_of[tow["tow_id"],], profile, key)
+        report(tow["tow_id"], row["reason_code"] is not None)
+        return row | {"tow_id": tow["tow_id"]}
+
+    with ThreadPoolExecutor(WORKERS) as pool:
+        rows = list(pool.map(read, tows.sort("tow_id").iter_rows(named=True)))
+    index = pl.DataFrame(rows, schema=SEASON_INDEX_SCHEMA)
+    _remove_unlisted(store, profile.season, index)
+    return index
+
+
+def season_blocks(store: Store, season: int, index: pl.DataFrame) -> pl.DataFrame:
+    """Blocks of all sound tows of a season, with `tow_id`, sorted by tow, run and second."""
+    sound = index.filter(pl.col("blocks_key").is_not_null()).sort("tow_id")
+    frames = [
+        pl.read_parquet(store.blocks_path(season, key), hive_partitioning=False).select(
+            pl.lit(tow_id).alias("tow_id"), pl.all()
+        )
+        for tow_id, key in sound.select("tow_id", "blocks_key").iter_rows()
+    ]
+    return pl.concat(frames) if frames else pl.DataFrame(schema={"tow_id": pl.String()})
+
+
+def _bring_in(
+    store: Store, root: Path, tow: Tow, runs: pl.DataFrame, profile: SeasonProfile, key: str
+) -> dict[str, Any]:
+    """Index row of a tow after its samples and blocks are in the lake, or with its fault."""
+    row = dict.fromkeys(SEASON_INDEX_SCHEMA) | {"samples_key": key}
+    path = store.samples_path(profile.season, key)
+    blocks_key = fingerprint(key, tow["sample_rate_hz"], _blocks_hash())
+    blocks_path = store.blocks_path(profile.season, blocks_key)
+    try:
+        if not path.exists():
+            samples = read_tow_samples(root, tow, profile)
+            check_samples(samples, tow, runs)
+            write_samples(samples, path)
+        if not blocks_path.exists():
+            blocks = block_sums(pl.read_parquet(path), tow["sample_rate_hz"])
+            write_parquet(blocks, blocks_path)
+    except DefectiveInputError as fault:
+        return row | {
+            "path": tow["samples_path"],
+            "line": fault.line,
+            "reason_code": fault.reason_code,
+            "message": fault.message,
+        }
+    count = pl.scan_parquet(path).select(pl.len()).collect().item()
+    return row | {"blocks_key": blocks_key, "samples": count}
+
+
+def write_samples(samples: pl.DataFrame, path: Path) -> None:
+    """Samples as float32 in Parquet; see docs/decisions for the measurement of formats."""
+    with written_beside(path) as beside:
+        samples.write_parquet(beside, compression="zstd", compression_level=1, statistics=False)
+
+
+def _known_faults(store: Store, season: int) -> dict[str, dict[str, Any]]:
+    """Faults of the season's last reading, by samples key."""
+    if str(season) not in store.partitions("season_index"):
+        return {}
+    index = store.read("season_index", str(season))
+    if index.schema != pl.Schema(SEASON_INDEX_SCHEMA):
+        return {}
+    faulty = index.filter(pl.col("reason_code").is_not_null())
+    return {row["samples_key"]: row for row in faulty.iter_rows(named=True)}
+
+
+def _samples_key(tow: Tow, runs: pl.DataFrame, profile: SeasonProfile) -> str:
+    names = ("samples_sha256", "second_sha256", "sample_rate_hz", "declared_speed_m_s")
+    used = runs.sort("run").rows()
+    return fingerprint([tow[n] for n in names], used, dataclasses.asdict(profile), _reader_hash())
+
+
+def _remove_unlisted(store: Store, season: int, index: pl.DataFrame) -> None:
+    """Removes samples and blocks of tows that are no longer listed or were mended."""
+    kept = {
+        *(store.samples_path(season, k) for k in index["samples_key"].drop_nulls()),
+        *(store.blocks_path(season, k) for k in index["blocks_key"].drop_nulls()),
+    }
+    for folder in (store.samples_path(season, "").parent, store.blocks_path(season, "").parent):
+        for file in folder.glob("[!.]*.parquet"):
+            if file not in kept:
+                file.unlink()
+
+
+@cache
+def _reader_hash() -> str:
+    """The code that turns a file into samples: when it changes, files are read again."""
+    folder = Path(str(archive.__file__)).parent
+    reading = [f for f in sorted(folder.glob("*.py")) if f.name != "write.py"]
+    return source_hash([*reading, _source(pipeline.channels)])
+
+
+@cache
+def _blocks_hash() -> str:
+    """The code that adds samples up: when it changes, the lake's samples are added up again."""
+    return source_hash([_source(pipeline.blocks)])
+
+
+def _source(module: Any) -> Path:
+    return Path(str(module.__file__))

@@ -1,0 +1,259 @@
+"""Making the tables of the contract from the lake, each with the fingerprint of what made it.
+
+A function here reads tables, calls one thing in `pipeline`, checks the result against its schema
+and writes it. `stale_*` and `*_made_from` say what has to be done again. Nothing is computed here.
+"""
+
+import datetime as dt
+from collections.abc import Sequence
+from typing import Final
+
+import polars as pl
+
+from pipeline.blocks import RunBlocks, stack_blocks
+from pipeline.changes import register_changes
+from pipeline.consistency import repeat_pairs, reproducibility, type_consistency
+from pipeline.errors import MissingKnowledgeError
+from pipeline.method import Method
+from pipeline.recompute import recompute
+from pipeline.register import LINE, draft_name, draft_register
+from warehouse import intake
+from warehouse.code import code_version
+from warehouse.database import build_database
+from warehouse.schemas import TABLES, Quarantine, conform
+from warehouse.store import Store, fingerprint, table_digest
+
+ARCHIVE_TABLES: Final = ("boats", "tows", "tow_runs", "quarantine")
+METHOD_TABLES: Final = ("run_points", "curves", "log_factors")
+REGISTER_TABLES: Final = (
+    "register",
+    "register_changes",
+    "type_consistency",
+    "reproducibility",
+    "lineage",
+    "methods",
+)
+
+
+def archive_made_from(store: Store) -> str:
+    """What the tables about the archive are made from."""
+    seasons = {s: store.made_from("season_index", s) for s in store.partitions("season_index")}
+    lists = [table_digest(store.read(t)) for t in ("listed_boats", "listed_tows", "list_faults")]
+    return fingerprint(seasons, lists, code_version())
+
+
+def archive_is_stale(store: Store) -> bool:
+    """Whether boats, tows or set-aside rows have to be collected again."""
+    made_from = archive_made_from(store)
+    return any(store.made_from(t) != made_from for t in ARCHIVE_TABLES)
+
+
+def collect_archive(store: Store, today: dt.date) -> dict[str, int]:
+    """Boats, sound tows with their runs, and everything that was set aside.
+
+    Returns:
+        Rows per table.
+    """
+    made_from = archive_made_from(store)
+    index = store.read_all("season_index")
+    sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
+    tows = store.read("listed_tows").join(sound, on="tow_id", how="semi")
+    runs = store.read("listed_runs").join(sound, on="tow_id", how="semi")
+    found = {
+        "boats": store.read("listed_boats"),
+        "tows": tows,
+        "tow_runs": runs,
+        "quarantine": _quarantine(store, index, today),
+    }
+    for name, frame in found.items():
+        store.write(name, conform(name, frame), made_from)
+    return {name: frame.height for name, frame in found.items()}
+
+
+def _quarantine(store: Store, index: pl.DataFrame, today: dt.date) -> pl.DataFrame:
+    """All faults; one that was there before keeps the day on which it was first seen."""
+    faults = pl.concat(
+        [
+            store.read("list_faults"),
+            index.filter(pl.col("reason_code").is_not_null()).select(list(intake.FAULT_SCHEMA)),
+        ]
+    )
+    key = ["path", "tow_id", "line", "reason_code"]
+    seen = (
+        store.read("quarantine")
+        if store.made_from("quarantine") is not None
+        else Quarantine.create_empty()
+    )
+    first = seen.group_by(key).agg(pl.col("first_seen").min())
+    return faults.join(first, on=key, how="left", nulls_equal=True).with_columns(
+        pl.col("first_seen").fill_null(today)
+    )
+
+
+def method_made_from(store: Store, method: Method) -> str:
+    """What the tables of a method are made from."""
+    return fingerprint(
+        method.name,
+        method.content_hash,
+        store.made_from("tows"),
+        intake.blocks_made_from(store),
+        code_version(),
+    )
+
+
+def method_is_stale(store: Store, method: Method) -> bool:
+    """Whether a method has to be applied again."""
+    made_from = method_made_from(store, method)
+    return any(store.made_from(t, method.name) != made_from for t in METHOD_TABLES)
+
+
+def run_blocks(store: Store) -> RunBlocks:
+    """The runs of all sound tows, as arrays.
+
+    Raises:
+        MissingKnowledgeError: there is no sound tow at all.
+    """
+    runs = store.read("tow_runs")
+    if runs.is_empty():
+        raise MissingKnowledgeError(
+            "no tow could be read: every one was set aside; the table quarantine says why"
+        )
+    return stack_blocks(intake.all_blocks(store), runs)
+
+
+def apply_method(store: Store, method: Method, blocks: RunBlocks) -> dict[str, pl.DataFrame]:
+    """Run points, curves and log factors of all tows under one method.
+
+    Returns:
+        The tables written, by name.
+    """
+    made_from = method_made_from(store, method)
+    result = recompute(method, store.read("tows"), blocks)
+    found = {name: conform(name, getattr(result, name)) for name in METHOD_TABLES}
+    for name, frame in found.items():
+        store.write(name, frame, made_from, method.name)
+    return found
+
+
+def register_made_from(store: Store, methods: Sequence[Method]) -> str:
+    """What the registers, and everything derived from curves, are made from."""
+    curves = {m.name: store.made_from("curves", m.name) for m in methods}
+    return fingerprint(curves, store.made_from("tows"), store.made_from("boats"), code_version())
+
+
+def register_is_stale(store: Store, methods: Sequence[Method]) -> bool:
+    """Whether registers and comparisons have to be made again."""
+    made_from = register_made_from(store, methods)
+    return any(store.made_from(t) != made_from for t in REGISTER_TABLES)
+
+
+def make_registers(store: Store, methods: Sequence[Method]) -> dict[str, int]:
+    """A draft register per method, what changes between them, and how equal boats are.
+
+    Validity is judged on the day of the archive's last tow, not today: so the same archive gives
+    the same tables. Drafts are compared with the first method's.
+
+    Returns:
+        Rows per table.
+    """
+    tows, boats = store.read("tows"), store.read("boats")
+    crews = store.read("listed_boats")
+    curves = pl.concat([store.read("curves", m.name) for m in methods])
+    on_date = max(tows["tow_date"])
+    drafts = [_as_edition(m, draft_register(_of(curves, m), tows, crews, on_date)) for m in methods]
+    register = pl.concat(drafts)
+    changes = [register_changes(drafts[0], draft) for draft in drafts[1:]]
+    found = {
+        "register": register,
+        "register_changes": pl.concat(changes) if changes else _empty("register_changes"),
+        "type_consistency": type_consistency(curves, tows, boats),
+        "reproducibility": reproducibility(repeat_pairs(curves, tows)),
+        "lineage": _lineage(register, tows, methods),
+        "methods": _methods(methods),
+    }
+    made_from = register_made_from(store, methods)
+    for name, frame in found.items():
+        store.write(name, conform(name, frame), made_from)
+    return {name: frame.height for name, frame in found.items()}
+
+
+def _empty(name: str) -> pl.DataFrame:
+    return TABLES[name].create_empty()
+
+
+def _of(curves: pl.DataFrame, method: Method) -> pl.DataFrame:
+    return curves.filter(pl.col("method") == method.name)
+
+
+def _as_edition(method: Method, register: pl.DataFrame) -> pl.DataFrame:
+    edition, name = pl.lit(draft_name(method.name)), pl.lit(method.name)
+    return register.select(edition.alias("edition"), name.alias("method"), pl.all())
+
+
+def _lineage(register: pl.DataFrame, tows: pl.DataFrame, methods: Sequence[Method]) -> pl.DataFrame:
+    """The files behind every line that has a tow."""
+    first = tows.select("tow_id", path="samples_path", sha256="samples_sha256")
+    second = tows.select("tow_id", path="second_path", sha256="second_sha256").drop_nulls()
+    hashes = pl.DataFrame(
+        {"method": [m.name for m in methods], "method_hash": [m.content_hash for m in methods]}
+    )
+    lines = register.drop_nulls("tow_id").select("edition", *LINE, "tow_id", "method")
+    return (
+        lines.join(pl.concat([first, second]), on="tow_id")
+        .join(hashes, on="method")
+        .with_columns(pl.lit(code_version()).alias("code_version"))
+    )
+
+
+def _methods(methods: Sequence[Method]) -> pl.DataFrame:
+    return pl.DataFrame(
+        {
+            "method": [m.name for m in methods],
+            "title": [m.title for m in methods],
+            "content_hash": [m.content_hash for m in methods],
+            "definition": [m.definition for m in methods],
+        }
+    )
+
+
+def database_made_from(store: Store, methods: Sequence[Method]) -> str:
+    """What the database is made from."""
+    return fingerprint(
+        {t: store.made_from(t) for t in (*ARCHIVE_TABLES, *REGISTER_TABLES)},
+        {m.name: [store.made_from(t, m.name) for t in METHOD_TABLES] for m in methods},
+    )
+
+
+def make_database(store: Store, methods: Sequence[Method]) -> dict[str, int]:
+    """Puts all tables in one database file and swaps it in.
+
+    Returns:
+        Rows per table.
+    """
+    found = {t: store.read(t) for t in (*ARCHIVE_TABLES, *REGISTER_TABLES)}
+    for table in METHOD_TABLES:
+        found[table] = conform(table, pl.concat([store.read(table, m.name) for m in methods]))
+    about = {
+        "simulated": str(store.read("about_archive")["simulated"][0]).lower(),
+        "code_version": code_version(),
+    }
+    found["about"] = pl.DataFrame({"key": list(about), "value": list(about.values())})
+    build_database(store.database, found)
+    store.write("database", pl.DataFrame(), database_made_from(store, methods))
+    return {name: frame.height for name, frame in found.items()}
+
+
+def database_is_stale(store: Store, methods: Sequence[Method]) -> bool:
+    """Whether the database has to be built again."""
+    if not store.database.exists():
+        return True
+    return store.made_from("database") != database_made_from(store, methods)
+
+
+def unaccounted_tows(store: Store) -> list[str]:
+    """Listed tows of the seasons read that are neither accepted nor set aside: there are none."""
+    seasons = [int(s) for s in store.partitions("season_index")]
+    listed = store.read("listed_tows").filter(pl.col("season").is_in(seasons))
+    known = pl.concat([store.read(t).select("tow_id") for t in ("tows", "quarantine")])
+    lost: list[str] = listed.join(known, on="tow_id", how="anti")["tow_id"].to_list()
+    return lost
