@@ -5,7 +5,7 @@ import polars as pl
 
 from assets.partitions import seasons
 from assets.resources import Progress, Setup
-from warehouse import intake, lake
+from warehouse import intake
 
 
 @dg.asset(group_name="archive", kinds={"parquet"}, code_version="1")

@@ -26,7 +26,7 @@ def _results(rows: dict[str, int]) -> list[dg.MaterializeResult]:
     ],
     check_specs=[dg.AssetCheckSpec("every_listed_tow_accounted_for", asset="tows")],
 )
-def archive_tables(setup: Setup):  # noqa: ANN201 - Dagster wants no annotation with checks
+def archive_tables(setup: Setup):
     """Boats, sound tows with their runs, and what was set aside."""
     store = setup.store
     yield from _results(tables.collect_archive(store, dt.date.today()))
@@ -49,7 +49,7 @@ def archive_tables(setup: Setup):  # noqa: ANN201 - Dagster wants no annotation 
     partitions_def=methods,
     check_specs=[dg.AssetCheckSpec("every_tow_has_a_curve_row", asset="curves")],
 )
-def method_tables(context: dg.AssetExecutionContext, setup: Setup):  # noqa: ANN201
+def method_tables(context: dg.AssetExecutionContext, setup: Setup):
     """Run points, curves and log factors of all tows under one method."""
     store = setup.store
     method = shipped_method(context.partition_key)
@@ -79,7 +79,7 @@ def method_tables(context: dg.AssetExecutionContext, setup: Setup):  # noqa: ANN
         for name in tables.REGISTER_TABLES
     ],
 )
-def register_tables(setup: Setup):  # noqa: ANN201
+def register_tables(setup: Setup):
     """Draft registers, what changes between them, how equal boats are, and lineage."""
     yield from _results(tables.make_registers(setup.store, setup.chosen_methods))
 

@@ -20,7 +20,7 @@ def code_version() -> str:
     equal inputs, method and code version are equal.
     """
     rooms = (Path(str(room.__file__)).parent for room in (pipeline, warehouse))
-    files = sorted((f for room in rooms for f in room.rglob("*") if _is_source(f)))
+    files = sorted(f for room in rooms for f in room.rglob("*") if _is_source(f))
     return f"{metadata.version('herijk')}+{source_hash(files)}"
 
 
