@@ -22,6 +22,7 @@ class Subject(IntEnum):
     DAY = 3
     ALTERATION = 4
     TOW = 5
+    RACE = 6
 
 
 class Component(IntEnum):
