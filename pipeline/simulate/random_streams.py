@@ -1,0 +1,100 @@
+"""Random numbers: one independent stream for every thing that is drawn.
+
+Every stream hangs from the seed by the address of what it is for (a boat, a season, a component
+of one tow). So tows can be simulated in any order, a season can be added and a defect switched
+off without any other number changing. No physics here.
+"""
+
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import lfilter
+
+Floats = NDArray[np.float64]
+
+
+class Subject(IntEnum):
+    """First part of an address. The numbers are part of every simulated world: never renumber."""
+
+    BOAT = 1
+    SEASON = 2
+    DAY = 3
+    ALTERATION = 4
+    TOW = 5
+    RACE = 6
+
+
+class Component(IntEnum):
+    """Last part of a tow's address. Never renumber."""
+
+    LOG_WANDER = 1
+    LOG2_RATIO = 2
+    ASKEW = 3
+    FAST_RUN = 4
+    SCALES = 5
+    SPEED = 10
+    RAMP = 11
+    GUST = 12
+    STEERING = 13
+    STREAM = 14
+    WIND = 15
+    LOG1_SLOW = 20
+    LOG1_NOISE = 21
+    LOG2_SLOW = 22
+    LOG2_NOISE = 23
+    GPS = 24
+    VANE = 25
+    FORCE_SURGE = 26
+    FORCE_WANDER = 27
+    FORCE_NOISE = 28
+
+
+def stream(seed: int, subject: Subject, *address: int) -> np.random.Generator:
+    """The generator that belongs to this address."""
+    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(subject, *address)))
+
+
+class TowStreams:
+    """The streams of one tow, by component; each goes on from run to run."""
+
+    def __init__(self, seed: int, season: int, number: int) -> None:
+        self._streams = {
+            component: stream(seed, Subject.TOW, season, number, component)
+            for component in Component
+        }
+
+    def __getitem__(self, component: Component) -> np.random.Generator:
+        return self._streams[component]
+
+
+def coloured_noise(
+    rng: np.random.Generator, count: int, step_s: float, correlation_s: float
+) -> NDArray[np.float32]:
+    """Stationary noise of unit variance with autocorrelation exp(-t / correlation_s).
+
+    The same process at every sampling rate. Shape (count,).
+    """
+    decay = np.exp(-step_s / correlation_s)
+    white = rng.standard_normal(count + 1, dtype=np.float32)
+    gain = np.float32(np.sqrt(1.0 - decay**2))
+    coefficients = (np.array([gain]), np.array([1.0, -decay], dtype=np.float32))
+    start = np.array([decay * white[0]], dtype=np.float32)
+    noise, _ = lfilter(*coefficients, white[1:], zi=start)
+    return np.asarray(noise, dtype=np.float32)
+
+
+def smooth_wander(
+    rng: np.random.Generator, count: int, step_s: float, correlation_s: float
+) -> Floats:
+    """Stationary noise of unit variance that also has a bounded rate of change.
+
+    Two first-order filters in a row, so its derivative exists (a speed needs that). Shape (count,).
+    """
+    settle = int(10 * correlation_s / step_s)
+    decay = np.exp(-step_s / correlation_s)
+    white = rng.standard_normal(settle + count)
+    wander = lfilter([1.0], [1.0, -2.0 * decay, decay**2], white)[settle:]
+    # Variance of white noise through a double pole at `decay`.
+    variance = (1.0 + decay**2) / (1.0 - decay**2) ** 3
+    return np.asarray(wander / np.sqrt(variance))
