@@ -44,7 +44,7 @@ class Speed(_Options):
 class Calibration(_Options):
     """The factor that brings the log to ground speed."""
 
-    rule: Literal["none", "gps_per_tow"]
+    rule: Literal["none", "gps_per_tow", "gps_per_season"]
 
 
 class Window(_Options):
@@ -60,10 +60,28 @@ class Window(_Options):
 class Wind(_Options):
     """How the resistance in air is taken off."""
 
-    model: Literal["head", "oblique"]
+    model: Literal["none", "head", "oblique"]
+    coefficients: Literal["fixed", "per_run", "per_tow", "archive"] = "fixed"
     ahead: float = Field(default=0.5, ge=0.0, le=2.0)
     behind: float = Field(default=0.5, ge=0.0, le=2.0)
     side: float = Field(default=0.2, ge=0.0, le=2.0)
+    averaging_s: int = Field(default=0, ge=0, le=15)
+    reading: Literal["as_felt", "cw_vac_2014"] = "as_felt"
+
+
+class RunPoint(_Options):
+    """How the samples of a window become one point."""
+
+    estimator: Literal["mean_of_ratios", "ratio_of_means"]
+    inertia: Literal["none", "end_speeds"] = "none"
+    added_mass_ratio: float = Field(default=0.08, ge=0.0, le=0.5)
+
+
+class Temperature(_Options):
+    """Whether resistance is brought to one water temperature."""
+
+    rule: Literal["none", "ittc57"]
+    reference_c: float = Field(default=15.0, ge=0.0, le=30.0)
 
 
 class Runs(_Options):
@@ -76,7 +94,7 @@ class Runs(_Options):
 class Curve(_Options):
     """How the hyperbola is fitted."""
 
-    b: Literal["free", "capped"]
+    b: Literal["free", "capped", "hull_speed"]
     cap_hull_speeds: float = Field(default=3.0, ge=1.0, le=10.0)
 
 
@@ -87,6 +105,8 @@ class Steps(_Options):
     calibration: Calibration
     window: Window
     wind: Wind
+    run_point: RunPoint
+    temperature: Temperature
     runs: Runs
     curve: Curve
 

@@ -3,51 +3,143 @@
 The air force is taken away as the wind was felt on the moving boom, and the force in still air
 at boat speed is added (Sleepproef, R. Pot 2017, "Wind"; the same structure as ITTC 7.5-04-01-01.1
 eq. 9). Divided by boat speed squared, the still-air part is a constant of the boat. Here: the two
-formulas. Areas stand in `pipeline.hull`.
+formulas and the coefficients that are searched. Areas stand in `pipeline.hull`.
 """
+
+from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from pipeline.arrays import BoolArray, FloatArray
-from pipeline.blocks import RunBlocks
+from pipeline.blocks import AIR_SUMS, RunBlocks
 from pipeline.hull import AIR_DENSITY_KG_M3
 from pipeline.method import Wind
 
+PER_RUN_BOUNDS: Final = (0.0, 1.0)
+"""Between which the old tool searched, run by run (presentation 2015, "Tegenwind en
+omstroom-coefficient")."""
 
-def air_weights(
-    wind: Wind, front_area_m2: FloatArray, side_area_m2: FloatArray
-) -> dict[str, FloatArray]:
-    """What each air sum of `pipeline.blocks` is multiplied by to become a force in N.
+PER_TOW_BOUNDS: Final = (0.3, 0.7)
+"""Between which a value shared by all runs may lie (same source, "Omstroom-coefficient")."""
+
+
+@dataclass(frozen=True)
+class AirParts:
+    """Air resistance / v^2 of each run for drag coefficients of 1, shape (runs,), kg/m.
+
+    v is the speed as the log reads.
+
+    Attributes:
+        ahead, behind: of the wind from ahead (positive) and from behind (negative) on the front.
+        side: of the oblique wind on the side; 0 for the head-wind model.
+    """
+
+    ahead: FloatArray
+    behind: FloatArray
+    side: FloatArray
+
+    def total(self, ahead: FloatArray, behind: FloatArray, side: float) -> FloatArray:
+        """The air part for given coefficients, shape (runs,), kg/m."""
+        return ahead * self.ahead + behind * self.behind + side * self.side
+
+
+def air_parts(
+    blocks: RunBlocks,
+    terms: dict[str, FloatArray],
+    wind: Wind,
+    front_area_m2: FloatArray,
+    side_area_m2: FloatArray,
+) -> AirParts:
+    """Air resistance of each run for drag coefficients of 1.
 
     - head: F = rho/2 front Cvt u|u| with u = w cos a (presentation 2015, "Windweerstand")
     - oblique: F = rho/2 (front |cos a| Cvt + side |sin a| Cvd) (w cos a)^2, with the sign of cos a
       ("Dwarse tegenwind")
 
-    Cvt may differ for wind from ahead and from behind.
-
     Args:
-        wind: model and coefficients.
+        blocks: the runs.
+        terms: mean over the window of each air term / v^2, by its name in `AIR_SUMS`.
+        wind: the model.
         front_area_m2: shape (runs,).
         side_area_m2: shape (runs,).
+    """
+    nothing = np.zeros(len(blocks.n))
+    if wind.model == "none":
+        return AirParts(nothing, nothing, nothing)
+    front = 0.5 * AIR_DENSITY_KG_M3 * front_area_m2
+    if wind.model == "head":
+        return AirParts(front * terms["head_ahead"], front * terms["head_behind"], nothing)
+    side = 0.5 * AIR_DENSITY_KG_M3 * side_area_m2
+    return AirParts(
+        front * terms["front_ahead"],
+        front * terms["front_behind"],
+        side * (terms["side_ahead"] + terms["side_behind"]),
+    )
+
+
+def averaged_terms(blocks: RunBlocks, averaging_s: int) -> dict[str, FloatArray]:
+    """Air terms of each block from the wind vector averaged over some seconds around it.
+
+    The vane jitters, and the square of a jittering wind is not the square of its mean: per
+    sample the force comes out -17 to +12 % wrong (research, method.md 6.8).
+
+    Args:
+        blocks: the runs.
+        averaging_s: length of the centred average, in blocks; shorter at the ends of a run.
 
     Returns:
-        Weight per name of an air sum, each of shape (runs,), in kg/m.
+        Means by name of `AIR_SUMS`, each of shape (runs, seconds), m2/s2.
     """
-    front = 0.5 * AIR_DENSITY_KG_M3 * front_area_m2
-    side = 0.5 * AIR_DENSITY_KG_M3 * side_area_m2
-    along = "head" if wind.model == "head" else "front"
-    weights = {f"{along}_ahead": front * wind.ahead, f"{along}_behind": front * wind.behind}
-    if wind.model == "oblique":
-        weights |= {"side_ahead": side * wind.side, "side_behind": side * wind.side}
-    return weights
+    count = _centred_sum(blocks.n, averaging_s)
+    safe = np.maximum(count, 1.0)
+    along = _centred_sum(blocks["wind_x"], averaging_s) / safe
+    across = _centred_sum(blocks["wind_y"], averaging_s) / safe
+    speed = np.maximum(np.hypot(along, across), 1e-9)
+    head = along * np.abs(along)
+    by_term = {"head": head, "front": head * np.abs(along) / speed, "side": head * np.abs(across) / speed}
+    clip = {"ahead": np.maximum, "behind": np.minimum}
+    return {
+        name: clip[name.split("_")[1]](by_term[name.split("_")[0]], 0.0) for name in AIR_SUMS
+    }
 
 
-def air_part(
-    blocks: RunBlocks, window: BoolArray, source: str, weights: dict[str, FloatArray]
-) -> FloatArray:
-    """Mean of F_air / v^2 over each window, shape (runs,), kg/m; v as the log reads."""
-    parts = [w * blocks.mean(f"{source}_{name}", window) for name, w in weights.items()]
-    return np.asarray(np.sum(parts, axis=0), dtype=np.float64)
+def _centred_sum(values: FloatArray, width: int) -> FloatArray:
+    """Sum over `width` neighbours along axis 1, centred, cut off at the ends."""
+    total = np.zeros_like(values)
+    seconds = values.shape[1]
+    for shift in range(-(width // 2), (width - 1) // 2 + 1):
+        low, high = max(0, -shift), min(seconds, seconds - shift)
+        total[:, low:high] += values[:, low + shift : high + shift]
+    return total
+
+
+def nearest_coefficients(
+    air: AirParts, excess_kg_m: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """The coefficients within `PER_RUN_BOUNDS` that bring each run nearest to a given value.
+
+    The wind that is felt most is searched first, the other takes what is left.
+
+    Args:
+        air: air parts of the runs.
+        excess_kg_m: what the air part should be, shape (runs,).
+
+    Returns:
+        Coefficients for wind from ahead and from behind, each of shape (runs,).
+    """
+    mostly_ahead = np.abs(air.ahead) >= np.abs(air.behind)
+    larger = np.where(mostly_ahead, air.ahead, air.behind)
+    smaller = np.where(mostly_ahead, air.behind, air.ahead)
+    first = _clipped_quotient(excess_kg_m, larger)
+    second = _clipped_quotient(excess_kg_m - first * larger, smaller)
+    return np.where(mostly_ahead, first, second), np.where(mostly_ahead, second, first)
+
+
+def _clipped_quotient(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
+    """Quotient within `PER_RUN_BOUNDS`; its lower bound where there is no wind at all."""
+    some = np.abs(denominator) > 1e-12
+    return np.clip(np.where(some, numerator, 0.0) / np.where(some, denominator, 1.0), *PER_RUN_BOUNDS)
 
 
 def mean_wind_angle_deg(blocks: RunBlocks, window: BoolArray) -> FloatArray:
