@@ -11,7 +11,7 @@ independent: Cw(v) = C0 / (1 - q ((v/v0)^2 - 1)).
 """
 
 from dataclasses import dataclass
-from typing import Final, NamedTuple
+from typing import Final, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -70,10 +70,8 @@ class Points:
                 raise BrokenPromiseError(message)
 
     @classmethod
-    def of(
-        cls, speed_m_s: ArrayLike, cw_kg_m: ArrayLike, used: ArrayLike | None = None
-    ) -> "Points":
-        """Points from anything array-like; one curve may be given as one row; all used if unsaid."""
+    def of(cls, speed_m_s: ArrayLike, cw_kg_m: ArrayLike, used: ArrayLike | None = None) -> Self:
+        """Points from anything array-like; one curve may be one row; all are used if unsaid."""
         speed = np.atleast_2d(np.asarray(speed_m_s, dtype=np.float64))
         cw = np.atleast_2d(np.asarray(cw_kg_m, dtype=np.float64))
         mask = np.ones(speed.shape, bool) if used is None else np.atleast_2d(np.asarray(used, bool))
@@ -307,7 +305,7 @@ def _profile(points: Points, s: FloatArray) -> tuple[FloatArray, FloatArray, Boo
     c = np.where(points.used, points.cw_kg_m, 0.0)
     v = np.where(points.used, points.speed_m_s, 0.0)
     denominator = 1.0 - s[:, None] * v * v
-    valid = (denominator > 0).all(axis=1)
+    valid = np.asarray((denominator > 0).all(axis=1))
     g = points.used / np.where(denominator > 0, denominator, 1.0)
     gg = (g * g).sum(axis=1)
     a = (g * c).sum(axis=1) / np.where(gg > 0, gg, 1.0)
@@ -372,16 +370,13 @@ def _gauss_newton(
         done = state.movement <= TOLERANCE * np.sqrt(cc)
         if done.any():
             rows = open_fits[done]
-            q_out[rows], c0_out[rows], rss_out[rows] = (
-                state.q[done],
-                state.c0[done],
-                state.rss[done],
-            )
-            converged[rows] = True
+            q_out[rows], c0_out[rows] = state.q[done], state.c0[done]
+            rss_out[rows], converged[rows] = state.rss[done], True
             going = ~done
             if not going.any():
                 break
-            open_fits, damping, upper, cc = (x[going] for x in (open_fits, damping, upper, cc))
+            open_fits, damping = open_fits[going], damping[going]
+            upper, cc = upper[going], cc[going]
             z, c, w = z[:, going], c[:, going], w[:, going]
             state = _State(*(x[going] for x in state))
         trial_q = state.q + damping * state.step
@@ -421,7 +416,7 @@ def _evaluate(q: FloatArray, z: FloatArray, c: FloatArray, w: FloatArray) -> _St
 
 def _sum(x: FloatArray) -> FloatArray:
     """Sum over points (axis 0), one after the other: the same to the bit in any batch."""
-    total = x[0].copy()
+    total: FloatArray = x[0].copy()
     for row in x[1:]:
         total += row
     return total
@@ -505,8 +500,8 @@ def b_interval(points: Points, curves: Curves, scatter: Scatter, level: float = 
     """Profile-likelihood interval of B [m/s]: every B whose best fit is not significantly worse.
 
     The set {s: RSS(s) - RSS_min <= t^2 variance}, the standard answer where a parameter may not be
-    identifiable (Raue et al. 2009). The upper bound is infinite ("none") where a flat curve
-    fits about as well; the lower bound too where even that falls too little. Without any
+    identifiable (Raue et al. 2009). The upper bound is infinite ("none") where a flat curve is
+    among them; the lower bound too where Cw falls so clearly that no finite B is. Without any
     knowledge of the scatter every B above the fastest point is possible.
 
     Args:
@@ -531,7 +526,7 @@ def b_interval(points: Points, curves: Curves, scatter: Scatter, level: float = 
 def b_interval_fieller(
     points: Points, curves: Curves, scatter: Scatter, level: float = 0.95
 ) -> Interval:
-    """Fieller's interval of B [m/s] from the straight line 1/Cw = a - b v^2; a check on the profile.
+    """Fieller's interval of B [m/s] from the line 1/Cw = a - b v^2; a check on the profile.
 
     The set {s: (b - s a)^2 <= t^2 (v_bb - 2 s v_ab + s^2 v_aa)}; the line is weighted with the
     fitted Cw^4, so that it is the linearised fit in Cw. From 0 to infinity where the intercept
