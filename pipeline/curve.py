@@ -33,6 +33,9 @@ TOLERANCE: Final = 1e-13
 MIN_SPREAD: Final = 1e-6
 """Relative spread of v^2 below which the speeds count as one speed and determine no bend."""
 
+WIDEST_LOG_INTERVAL: Final = 100.0
+"""A half width of a factor e^100 says nothing any more; its cut keeps the bounds finite."""
+
 BISECTIONS: Final = 55
 """Halvings of the search interval for a bound of B: to the last bit of a float64."""
 
@@ -490,7 +493,8 @@ def cw_interval(
     )
     safe_centre = np.where(known, centre, 1.0)
     sd_ratio = np.sqrt(np.maximum(variance, 0.0)) / safe_centre
-    factor = np.exp(np.where(known, _t_quantile(dof, level) * sd_ratio, 0.0))
+    half_width = np.where(known, _t_quantile(dof, level) * sd_ratio, 0.0)
+    factor = np.exp(np.minimum(half_width, WIDEST_LOG_INTERVAL))
     return Interval(
         np.where(known, safe_centre / factor, 0.0), np.where(known, safe_centre * factor, np.inf)
     )
