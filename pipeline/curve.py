@@ -59,7 +59,7 @@ class Points:
 
     def __post_init__(self) -> None:
         shapes = {self.speed_m_s.shape, self.cw_kg_m.shape, self.used.shape}
-        if len(shapes) != 1 or self.speed_m_s.ndim != 2:
+        if len(shapes) != 1 or self.speed_m_s.ndim != 2 or self.speed_m_s.shape[1] == 0:
             message = f"Points need three arrays of one shape (n_fits, n_points), not {shapes}."
             raise BrokenPromiseError(message)
         for name, values in (("speed_m_s", self.speed_m_s), ("cw_kg_m", self.cw_kg_m)):
@@ -291,7 +291,7 @@ def _flat(points: Points) -> Curves:
 
 def _fit_given_s(points: Points, s: FloatArray) -> Curves:
     flat = _flat(points)
-    rss, a, valid = _profile(points, s)
+    rss, a, valid = _profile(_arrange(points.speed_m_s, points.cw_kg_m, points.used), s)
     valid &= flat.n_points > 0
     return Curves(
         a_kg_m=np.where(valid, a, flat.a_kg_m),
@@ -303,30 +303,41 @@ def _fit_given_s(points: Points, s: FloatArray) -> Curves:
     )
 
 
-def _profile(points: Points, s: FloatArray) -> tuple[FloatArray, FloatArray, BoolArray]:
+class _Arranged(NamedTuple):
+    """Points turned to (n_points, n_fits), 0 where not used.
+
+    Sums over points then run along whole rows: fast, and always in the same order.
+    """
+
+    u: FloatArray  # v^2
+    c: FloatArray  # Cw
+    w: FloatArray  # 1 where used
+
+
+def _arrange(speed: FloatArray, cw_kg_m: FloatArray, used: BoolArray) -> _Arranged:
+    v = np.where(used, speed, 0.0)
+    c = np.where(used, cw_kg_m, 0.0)
+    u, c, w = (np.ascontiguousarray(x.T, dtype=np.float64) for x in (v * v, c, used))
+    return _Arranged(u, c, w)
+
+
+def _profile(arranged: _Arranged, s: FloatArray) -> tuple[FloatArray, FloatArray, BoolArray]:
     """Residual sum of squares and best A for a given s, and whether s leaves all points below B."""
-    c = np.where(points.used, points.cw_kg_m, 0.0)
-    v = np.where(points.used, points.speed_m_s, 0.0)
-    denominator = 1.0 - s[:, None] * v * v
-    valid = np.asarray((denominator > 0).all(axis=1))
-    g = points.used / np.where(denominator > 0, denominator, 1.0)
-    gg = (g * g).sum(axis=1)
-    a = (g * c).sum(axis=1) / np.where(gg > 0, gg, 1.0)
-    residual = c - a[:, None] * g
-    return (residual * residual).sum(axis=1), a, valid
+    u, c, w = arranged
+    denominator = 1.0 - s * u
+    below_b = denominator > 0
+    g = w / np.where(below_b, denominator, 1.0)
+    gg = _sum(g * g)
+    a = _sum(g * c) / np.where(gg > 0, gg, 1.0)
+    residual = c - a * g
+    return _sum(residual * residual), a, np.asarray(below_b.all(axis=0))
 
 
 def _fit_chunk(
     speed: FloatArray, cw_kg_m: FloatArray, used: BoolArray, curves: Curves, start: int
 ) -> None:
-    """Fit one chunk and write what was solved into `curves` from row `start` on.
-
-    Arrays are turned to (n_points, n_fits): sums over points then run along whole rows, fast and
-    always in the same order.
-    """
-    w = np.ascontiguousarray(used.T, dtype=np.float64)
-    u = np.ascontiguousarray(np.where(used, speed * speed, 0.0).T)
-    c = np.ascontiguousarray(np.where(used, cw_kg_m, 0.0).T)
+    """Fit one chunk and write what was solved into `curves` from row `start` on."""
+    u, c, w = _arrange(speed, cw_kg_m, used)
     n = _sum(w)
     u_mean = _sum(u) / np.maximum(n, 1.0)
     z = w * (u / np.where(u_mean > 0, u_mean, 1.0) - 1.0)
@@ -521,8 +532,10 @@ def b_interval(points: Points, curves: Curves, scatter: Scatter, level: float = 
     fastest = np.where(points.used, points.speed_m_s, 0.0).max(axis=1, initial=0.0)
     s_edge = np.where(fastest > 0, 1.0 / np.where(fastest > 0, fastest, 1.0) ** 2, np.inf)
     best = np.where(curves.converged, curves.s_s2_m2, 0.0)
-    s_hi = np.where(known, _last_below(points, best, np.where(known, s_edge, best), limit), s_edge)
-    s_lo = _last_below(points, best, np.minimum(best, 0.0), limit)
+    arranged = _arrange(points.speed_m_s, points.cw_kg_m, points.used)
+    s_hi = _last_below(arranged, best, np.where(known, s_edge, best), limit)
+    s_hi = np.where(known, s_hi, s_edge)
+    s_lo = _last_below(arranged, best, np.minimum(best, 0.0), limit)
     b_lo = np.where(fastest > 0, _b_of_s(s_hi), 0.0)
     return Interval(b_lo, np.where(known, _b_of_s(s_lo), np.inf))
 
@@ -591,18 +604,18 @@ def _t_quantile(dof: ArrayLike, level: float) -> FloatArray:
 
 
 def _last_below(
-    points: Points, inside: FloatArray, outside: FloatArray, limit: FloatArray
+    arranged: _Arranged, inside: FloatArray, outside: FloatArray, limit: FloatArray
 ) -> FloatArray:
     """The s farthest from `inside` towards `outside` with RSS(s) <= limit, by bisection.
 
     `outside` itself is the answer where its RSS is still below the limit.
     """
-    rss, _, valid = _profile(points, outside)
+    rss, _, valid = _profile(arranged, outside)
     reaches = valid & (rss <= limit)
     near, far = inside, outside
     for _ in range(BISECTIONS):
         middle = 0.5 * (near + far)
-        rss, _, valid = _profile(points, middle)
+        rss, _, valid = _profile(arranged, middle)
         below = valid & (rss <= limit)
         near, far = np.where(below, middle, near), np.where(below, far, middle)
     return np.where(reaches, outside, near)

@@ -257,6 +257,15 @@ def test_a_used_point_that_is_no_measurement_is_refused(bad):
     assert curve.fit(curve.Points.of(speed, cw, np.isin(cw, bad, invert=True) & (cw > 0)))
 
 
-def test_arrays_of_different_shape_are_refused():
+def test_arrays_of_different_shape_or_without_points_are_refused():
     with pytest.raises(BrokenPromiseError, match="one shape"):
         curve.Points.of([2.0, 2.5], [30.0, 31.0, 32.0])
+    with pytest.raises(BrokenPromiseError, match="one shape"):
+        curve.Points.of(np.empty((3, 0)), np.empty((3, 0)))
+
+
+def test_no_curves_are_no_error():
+    points = curve.Points.of(np.empty((0, 6)), np.empty((0, 6)))
+    fitted = curve.fit_capped(points, 10.0)
+    assert fitted.a_kg_m.shape == (0,)
+    assert curve.b_interval(points, fitted, curve.own_scatter(fitted)).hi.shape == (0,)

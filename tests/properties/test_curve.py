@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -147,7 +147,6 @@ def test_points_nearer_to_their_curve_never_widen_an_interval(v0, c0, r, error, 
         assert contains(outer, inner)
 
 
-@settings(max_examples=300)
 @given(
     arrays(np.float64, (4, 5), elements=st.floats(0.1, 10.0)),
     arrays(np.float64, (4, 5), elements=st.floats(0.01, 1000.0)),
@@ -172,7 +171,6 @@ def test_no_input_gives_nan_or_a_warning(speed, cw, used, cap):
         assert (interval.hi >= interval.lo).all()
 
 
-@settings(max_examples=300)
 @given(
     arrays(np.float64, 6, elements=st.floats(1.0, 4.0)),
     arrays(np.float64, 6, elements=st.floats(1.0, 200.0)),
