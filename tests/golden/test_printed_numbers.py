@@ -4,8 +4,7 @@ No tolerance is chosen: every printed input may be off by half a unit of its las
 the printed result. `attainable` gives the results that the inputs allow; the formulas are monotone
 in every input, so the corners are enough. Where the sources say that an input is exact, it is.
 
-Source: R. Pot, presentation of 24 January 2015 (and Sleepproef, 2017), as typed over in
-`tests/data`.
+Source: R. Pot, presentation of 24 January 2015; numbers in a tow: Sleepproef, 2017.
 """
 
 from itertools import product
