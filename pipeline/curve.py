@@ -11,7 +11,7 @@ independent: Cw(v) = C0 / (1 - q ((v/v0)^2 - 1)).
 """
 
 from dataclasses import dataclass
-from typing import Final, NamedTuple
+from typing import Final, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -32,6 +32,9 @@ TOLERANCE: Final = 1e-13
 
 MIN_SPREAD: Final = 1e-6
 """Relative spread of v^2 below which the speeds count as one speed and determine no bend."""
+
+WIDEST_LOG_INTERVAL: Final = 100.0
+"""A half width of a factor e^100 says nothing any more; its cut keeps the bounds finite."""
 
 BISECTIONS: Final = 55
 """Halvings of the search interval for a bound of B: to the last bit of a float64."""
@@ -56,7 +59,7 @@ class Points:
 
     def __post_init__(self) -> None:
         shapes = {self.speed_m_s.shape, self.cw_kg_m.shape, self.used.shape}
-        if len(shapes) != 1 or self.speed_m_s.ndim != 2:
+        if len(shapes) != 1 or self.speed_m_s.ndim != 2 or self.speed_m_s.shape[1] == 0:
             message = f"Points need three arrays of one shape (n_fits, n_points), not {shapes}."
             raise BrokenPromiseError(message)
         for name, values in (("speed_m_s", self.speed_m_s), ("cw_kg_m", self.cw_kg_m)):
@@ -70,10 +73,8 @@ class Points:
                 raise BrokenPromiseError(message)
 
     @classmethod
-    def of(
-        cls, speed_m_s: ArrayLike, cw_kg_m: ArrayLike, used: ArrayLike | None = None
-    ) -> "Points":
-        """Points from anything array-like; one curve may be given as one row; all used if unsaid."""
+    def of(cls, speed_m_s: ArrayLike, cw_kg_m: ArrayLike, used: ArrayLike | None = None) -> Self:
+        """Points from anything array-like; one curve may be one row; all are used if unsaid."""
         speed = np.atleast_2d(np.asarray(speed_m_s, dtype=np.float64))
         cw = np.atleast_2d(np.asarray(cw_kg_m, dtype=np.float64))
         mask = np.ones(speed.shape, bool) if used is None else np.atleast_2d(np.asarray(used, bool))
@@ -290,7 +291,7 @@ def _flat(points: Points) -> Curves:
 
 def _fit_given_s(points: Points, s: FloatArray) -> Curves:
     flat = _flat(points)
-    rss, a, valid = _profile(points, s)
+    rss, a, valid = _profile(_arrange(points.speed_m_s, points.cw_kg_m, points.used), s)
     valid &= flat.n_points > 0
     return Curves(
         a_kg_m=np.where(valid, a, flat.a_kg_m),
@@ -302,30 +303,41 @@ def _fit_given_s(points: Points, s: FloatArray) -> Curves:
     )
 
 
-def _profile(points: Points, s: FloatArray) -> tuple[FloatArray, FloatArray, BoolArray]:
+class _Arranged(NamedTuple):
+    """Points turned to (n_points, n_fits), 0 where not used.
+
+    Sums over points then run along whole rows: fast, and always in the same order.
+    """
+
+    u: FloatArray  # v^2
+    c: FloatArray  # Cw
+    w: FloatArray  # 1 where used
+
+
+def _arrange(speed: FloatArray, cw_kg_m: FloatArray, used: BoolArray) -> _Arranged:
+    v = np.where(used, speed, 0.0)
+    c = np.where(used, cw_kg_m, 0.0)
+    u, c, w = (np.ascontiguousarray(x.T, dtype=np.float64) for x in (v * v, c, used))
+    return _Arranged(u, c, w)
+
+
+def _profile(arranged: _Arranged, s: FloatArray) -> tuple[FloatArray, FloatArray, BoolArray]:
     """Residual sum of squares and best A for a given s, and whether s leaves all points below B."""
-    c = np.where(points.used, points.cw_kg_m, 0.0)
-    v = np.where(points.used, points.speed_m_s, 0.0)
-    denominator = 1.0 - s[:, None] * v * v
-    valid = (denominator > 0).all(axis=1)
-    g = points.used / np.where(denominator > 0, denominator, 1.0)
-    gg = (g * g).sum(axis=1)
-    a = (g * c).sum(axis=1) / np.where(gg > 0, gg, 1.0)
-    residual = c - a[:, None] * g
-    return (residual * residual).sum(axis=1), a, valid
+    u, c, w = arranged
+    denominator = 1.0 - s * u
+    below_b = denominator > 0
+    g = w / np.where(below_b, denominator, 1.0)
+    gg = _sum(g * g)
+    a = _sum(g * c) / np.where(gg > 0, gg, 1.0)
+    residual = c - a * g
+    return _sum(residual * residual), a, np.asarray(below_b.all(axis=0))
 
 
 def _fit_chunk(
     speed: FloatArray, cw_kg_m: FloatArray, used: BoolArray, curves: Curves, start: int
 ) -> None:
-    """Fit one chunk and write what was solved into `curves` from row `start` on.
-
-    Arrays are turned to (n_points, n_fits): sums over points then run along whole rows, fast and
-    always in the same order.
-    """
-    w = np.ascontiguousarray(used.T, dtype=np.float64)
-    u = np.ascontiguousarray(np.where(used, speed * speed, 0.0).T)
-    c = np.ascontiguousarray(np.where(used, cw_kg_m, 0.0).T)
+    """Fit one chunk and write what was solved into `curves` from row `start` on."""
+    u, c, w = _arrange(speed, cw_kg_m, used)
     n = _sum(w)
     u_mean = _sum(u) / np.maximum(n, 1.0)
     z = w * (u / np.where(u_mean > 0, u_mean, 1.0) - 1.0)
@@ -372,16 +384,13 @@ def _gauss_newton(
         done = state.movement <= TOLERANCE * np.sqrt(cc)
         if done.any():
             rows = open_fits[done]
-            q_out[rows], c0_out[rows], rss_out[rows] = (
-                state.q[done],
-                state.c0[done],
-                state.rss[done],
-            )
-            converged[rows] = True
+            q_out[rows], c0_out[rows] = state.q[done], state.c0[done]
+            rss_out[rows], converged[rows] = state.rss[done], True
             going = ~done
             if not going.any():
                 break
-            open_fits, damping, upper, cc = (x[going] for x in (open_fits, damping, upper, cc))
+            open_fits, damping = open_fits[going], damping[going]
+            upper, cc = upper[going], cc[going]
             z, c, w = z[:, going], c[:, going], w[:, going]
             state = _State(*(x[going] for x in state))
         trial_q = state.q + damping * state.step
@@ -421,7 +430,7 @@ def _evaluate(q: FloatArray, z: FloatArray, c: FloatArray, w: FloatArray) -> _St
 
 def _sum(x: FloatArray) -> FloatArray:
     """Sum over points (axis 0), one after the other: the same to the bit in any batch."""
-    total = x[0].copy()
+    total: FloatArray = x[0].copy()
     for row in x[1:]:
         total += row
     return total
@@ -495,7 +504,8 @@ def cw_interval(
     )
     safe_centre = np.where(known, centre, 1.0)
     sd_ratio = np.sqrt(np.maximum(variance, 0.0)) / safe_centre
-    factor = np.exp(np.where(known, _t_quantile(dof, level) * sd_ratio, 0.0))
+    half_width = np.where(known, _t_quantile(dof, level) * sd_ratio, 0.0)
+    factor = np.exp(np.minimum(half_width, WIDEST_LOG_INTERVAL))
     return Interval(
         np.where(known, safe_centre / factor, 0.0), np.where(known, safe_centre * factor, np.inf)
     )
@@ -505,8 +515,8 @@ def b_interval(points: Points, curves: Curves, scatter: Scatter, level: float = 
     """Profile-likelihood interval of B [m/s]: every B whose best fit is not significantly worse.
 
     The set {s: RSS(s) - RSS_min <= t^2 variance}, the standard answer where a parameter may not be
-    identifiable (Raue et al. 2009). The upper bound is infinite ("none") where a flat curve
-    fits about as well; the lower bound too where even that falls too little. Without any
+    identifiable (Raue et al. 2009). The upper bound is infinite ("none") where a flat curve is
+    among them; the lower bound too where Cw falls so clearly that no finite B is. Without any
     knowledge of the scatter every B above the fastest point is possible.
 
     Args:
@@ -522,8 +532,10 @@ def b_interval(points: Points, curves: Curves, scatter: Scatter, level: float = 
     fastest = np.where(points.used, points.speed_m_s, 0.0).max(axis=1, initial=0.0)
     s_edge = np.where(fastest > 0, 1.0 / np.where(fastest > 0, fastest, 1.0) ** 2, np.inf)
     best = np.where(curves.converged, curves.s_s2_m2, 0.0)
-    s_hi = np.where(known, _last_below(points, best, np.where(known, s_edge, best), limit), s_edge)
-    s_lo = _last_below(points, best, np.minimum(best, 0.0), limit)
+    arranged = _arrange(points.speed_m_s, points.cw_kg_m, points.used)
+    s_hi = _last_below(arranged, best, np.where(known, s_edge, best), limit)
+    s_hi = np.where(known, s_hi, s_edge)
+    s_lo = _last_below(arranged, best, np.minimum(best, 0.0), limit)
     b_lo = np.where(fastest > 0, _b_of_s(s_hi), 0.0)
     return Interval(b_lo, np.where(known, _b_of_s(s_lo), np.inf))
 
@@ -531,7 +543,7 @@ def b_interval(points: Points, curves: Curves, scatter: Scatter, level: float = 
 def b_interval_fieller(
     points: Points, curves: Curves, scatter: Scatter, level: float = 0.95
 ) -> Interval:
-    """Fieller's interval of B [m/s] from the straight line 1/Cw = a - b v^2; a check on the profile.
+    """Fieller's interval of B [m/s] from the line 1/Cw = a - b v^2; a check on the profile.
 
     The set {s: (b - s a)^2 <= t^2 (v_bb - 2 s v_ab + s^2 v_aa)}; the line is weighted with the
     fitted Cw^4, so that it is the linearised fit in Cw. From 0 to infinity where the intercept
@@ -592,18 +604,18 @@ def _t_quantile(dof: ArrayLike, level: float) -> FloatArray:
 
 
 def _last_below(
-    points: Points, inside: FloatArray, outside: FloatArray, limit: FloatArray
+    arranged: _Arranged, inside: FloatArray, outside: FloatArray, limit: FloatArray
 ) -> FloatArray:
     """The s farthest from `inside` towards `outside` with RSS(s) <= limit, by bisection.
 
     `outside` itself is the answer where its RSS is still below the limit.
     """
-    rss, _, valid = _profile(points, outside)
+    rss, _, valid = _profile(arranged, outside)
     reaches = valid & (rss <= limit)
     near, far = inside, outside
     for _ in range(BISECTIONS):
         middle = 0.5 * (near + far)
-        rss, _, valid = _profile(points, middle)
+        rss, _, valid = _profile(arranged, middle)
         below = valid & (rss <= limit)
         near, far = np.where(below, middle, near), np.where(below, far, middle)
     return np.where(reaches, outside, near)

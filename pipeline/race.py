@@ -50,7 +50,8 @@ def reference_power_share(time_s: ArrayLike) -> FloatArray:
             f"first is {time[outside].flat[0] / 3600:.2f} h. Leave these without correction."
         )
         raise MissingKnowledgeError(message)
-    return np.exp(np.interp(np.log(time), np.log(known_times), np.log(known_shares)))
+    log_share = np.interp(np.log(time), np.log(known_times), np.log(known_shares))
+    return np.asarray(np.exp(log_share), dtype=np.float64)
 
 
 def fatigue_factor(time_s: ArrayLike, winning_time_s: ArrayLike) -> FloatArray:
