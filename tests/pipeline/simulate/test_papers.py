@@ -31,8 +31,8 @@ def test_a_perfect_world_prints_nearly_true_curves(perfect):
     newest = {(t.boat.index, t.crew_class): t for t in perfect.tows}
     for line in printed_register(perfect, 2018):
         truth = newest[line.boat.index, line.crew_class].truth
-        # A hyperbola misses by some tenths of a per cent, and A, B have two decimals.
-        assert line.cw_kg_m == pytest.approx(truth.cw_at_15c_kg_m, rel=0.008)
+        # A misfit of 0.56 % rms over three speeds is 0.8 % at the middle one; A, B are rounded.
+        assert line.cw_kg_m == pytest.approx(truth.cw_at_15c_kg_m, rel=0.01)
 
 
 def test_worn_logs_printed_too_high_values_until_calibration(perfect):
@@ -47,11 +47,11 @@ def test_worn_logs_printed_too_high_values_until_calibration(perfect):
 
 def test_race_times_are_those_of_the_power_on_the_true_curve(perfect):
     day, lines = race(perfect, 2018)
-    assert (day.year, len(lines)) == (
-        2018,
-        len({line.tow.boat.fsn_no for line in lines})
-        + sum(len(line.tow.boat.crew_classes) == 2 for line in lines) // 2,
-    )
+    crews = [(line.tow.boat.index, line.tow.crew_class) for line in lines]
+    assert day.year == 2018
+    assert set(crews) == {(t.boat.index, t.crew_class) for t in perfect.tows}
+    assert len(crews) == len(set(crews))
+    assert {line.stream_km for line in lines} == {None, 0.35}
     for line in lines:
         speed_m_s = 1000 * (RACE_KM - (line.stream_km or 0.0)) / line.seconds
         assert speed_m_s == pytest.approx(line.tow.declared_speed_m_s, rel=0.04)
