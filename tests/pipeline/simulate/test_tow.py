@@ -112,6 +112,77 @@ def test_a_defect_changes_only_its_channels(clean, sizes, channels):
     assert changed_channels(samples_with(**sizes)[0], clean) == channels
 
 
+@pytest.mark.parametrize(
+    ("sizes", "column", "ratio"),
+    [
+        ({"log2_ratio": (0.95, 0.95)}, "log2_m_s", 0.95),
+        ({"log_season_factor": (1.06, 1.06)}, "log1_m_s", 1 / 1.06),
+    ],
+)
+def test_a_constant_defect_has_exactly_its_size(clean, sizes, column, ratio):
+    frame, _, _ = samples_with(**sizes)
+    np.testing.assert_allclose(frame[column] / clean[column], ratio, rtol=1e-6)
+
+
+def test_askew_pulling_raises_water_force_by_its_excess(clean):
+    frame, _, tow = samples_with(askew_share=1.0, askew_excess=(0.08, 0.08))
+    assert tow.truth.askew_ratio == 1.08
+    extra = (frame["force_n"] / clean["force_n"]).to_numpy() - 1.0
+    # The still-air part, some 3 %, is not pulled askew.
+    assert np.all((extra > 0.075) & (extra < 0.08))
+
+
+def test_fast_runs_are_at_120_per_cent(clean):
+    frame, runs, tow = samples_with(fast_run_share=1.0)
+    ratios = [run.target_speed_m_s / tow.declared_speed_m_s for run in runs]
+    np.testing.assert_allclose(ratios, [0.9, 1.0, 1.2] * 2)
+    assert frame["log1_m_s"].max() == pytest.approx(1.2 * tow.declared_speed_m_s)
+
+
+@pytest.mark.parametrize(
+    ("name", "size", "column", "relative"),
+    [
+        ("log_noise_m_s", 0.03, "log1_m_s", False),
+        ("log_noise_m_s", 0.03, "log2_m_s", False),
+        ("speed_wander_m_s", 0.02, "log1_m_s", False),
+        ("gps_noise_m_s", 0.05, "gps_m_s", False),
+        ("gps_wander_m_s", 0.08, "gps_m_s", False),
+        ("surge_force", 0.06, "force_n", True),
+        ("force_wander", 0.02, "force_n", True),
+        ("force_noise", 0.05, "force_n", True),
+    ],
+)
+def test_a_random_defect_has_its_size(name, size, column, relative):
+    """Root mean square over 60 runs; the slowest, with 20 s, has some 75 independent values."""
+    sizes = {name: size}
+    squares = []
+    calm_world, world = (
+        simulate_world(
+            WorldSettings(
+                seasons=(SEASON,),
+                tows_per_season=10,
+                rate_hz=10,
+                defects=lambda s, chosen=chosen: replace(Defects.none(), **chosen),
+            )
+        )
+        for chosen in ({}, sizes)
+    )
+    for tow, calm_tow in zip(world.tows, calm_world.tows, strict=True):
+        disturbed = simulate_tow(world, tow)[0][column].to_numpy().astype(float)
+        calm = simulate_tow(calm_world, calm_tow)[0][column].to_numpy()
+        error = disturbed / calm - 1.0 if relative else disturbed - calm
+        squares.append(np.mean(error**2))
+    # sd / sqrt(2 * 75) is 8 %; three of those. The rest is better known.
+    assert np.sqrt(np.mean(squares)) == pytest.approx(size, rel=0.25)
+
+
+def test_vane_swings_about_the_true_angle():
+    frame, _, _ = samples_with(vane_jitter_deg=13.0)
+    swing = (frame["wind_angle_deg"].to_numpy() + 180.0) % 360.0 - 180.0
+    assert abs(swing.mean()) < 3.0
+    assert swing.std() == pytest.approx(13.0, rel=0.15)
+
+
 @pytest.mark.parametrize("name", ["gps_lag_s", "gps_hold_s"])
 def test_gps_lag_and_hold_show_once_speed_varies(name):
     moving = {"speed_wander_m_s": 0.05}
