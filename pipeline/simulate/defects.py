@@ -72,9 +72,20 @@ class Defects:
         return _row(season).defects
 
     @classmethod
-    def season_factor_only(cls, season: int) -> "Defects":
-        """Perfect but for the log's season factor."""
-        return cls(log_season_factor=cls.history(season).log_season_factor)
+    def clean(cls, season: int) -> "Defects":
+        """That season's instruments in a world where only the season's log factor needs finding.
+
+        Noise, wind, stream and disturbed runs stay; what cannot be known from one tow (wander
+        between tows, boats that change, askew pulling) is gone.
+        """
+        return replace(
+            cls.history(season),
+            log_tow_wander=0.0,
+            askew_share=0.0,
+            fast_run_share=0.0,
+            alteration_share=0.0,
+            ageing_per_year=0.0,
+        )
 
 
 @dataclass(frozen=True)
@@ -98,8 +109,8 @@ _PROPELLER_LOGS = Defects(
     stream_drift_m_s=0.006,
     water_temperature_c=(3.0, 12.0),
     wind_m_s=2.5,
-    wind_turbulence=0.22,
-    vane_jitter_deg=10.0,
+    wind_turbulence=0.25,
+    vane_jitter_deg=13.0,
     gust_share=0.12,
     gust_m_s=2.5,
     speed_miss=0.008,

@@ -72,7 +72,7 @@ class Hull:
 def water_density_kg_m3(temperature_c: float) -> float:
     """Density of fresh water (Tilton & Taylor 1937), valid 0-20 C."""
     t = temperature_c
-    return 1000.0 * (1.0 - (t + 288.9414) / (508929.2 * (t + 68.12963)) * (t - 3.9863) ** 2)
+    return 999.972 * (1.0 - (t + 288.9414) / (508929.2 * (t + 68.12963)) * (t - 3.9863) ** 2)
 
 
 def kinematic_viscosity_m2_s(temperature_c: float) -> float:

@@ -49,7 +49,7 @@ class WorldSettings:
 
     seasons: tuple[int, ...] = tuple(range(FIRST_SEASON, 2019))
     tows_per_season: int = 24
-    rate_hz: float = 1000.0
+    rate_hz: int = 1000
     seed: int = 1
     defects: Callable[[int], Defects] = Defects.history
     air: AirCoefficients = field(default_factory=AirCoefficients)
@@ -60,8 +60,8 @@ class WorldSettings:
             raise HerijkError(f"seasons must ascend and be at least one; got {self.seasons}")
         if self.tows_per_season < 1:
             raise HerijkError(f"at least one tow a season is needed; got {self.tows_per_season}")
-        if not 4.0 <= self.rate_hz <= 10_000.0:
-            raise HerijkError(f"the rate must be 4 to 10000 Hz; got {self.rate_hz:g}")
+        if not 4 <= self.rate_hz <= 10_000:
+            raise HerijkError(f"the rate must be 4 to 10000 Hz; got {self.rate_hz}")
 
 
 @dataclass(frozen=True)
