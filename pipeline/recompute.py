@@ -1,46 +1,45 @@
 """Recompute: every tow under one method, from blocks to curves.
 
-Here the steps are put in their order and the tables are filled; each step's formulas stand in its
-own module. The order is: speed correction, steady window, run means, calibration, wind, run point,
-choice of runs, curve, assessment. Nothing here knows a season: the method says what holds when.
+Here the steps are put in their order; each step's formulas stand in its own module and the tables
+are filled in `pipeline.outcome`. The order is: steady window, means, speed correction, runs that
+count, calibration, corrections of the coefficient, wind coefficients, curve. What is searched over
+the whole archive is found first and applied after. Nothing here knows a season: the method says
+what holds when.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 import polars as pl
 
-from pipeline import assessment, curve
-from pipeline.arrays import BoolArray, FloatArray, IntArray
+from pipeline import curve
+from pipeline.arrays import BoolArray, FloatArray
+from pipeline.batch import Batch
 from pipeline.blocks import RunBlocks
 from pipeline.calibration import gps_factor
 from pipeline.channels import BACK, OUT
-from pipeline.hull import (
-    front_area_m2,
-    hull_speed_m_s,
-    side_area_m2,
-    still_air_coefficient_kg_m,
-)
+from pipeline.hull import front_area_m2, hull_speed_m_s, still_air_coefficient_kg_m
 from pipeline.method import Method, Steps
-from pipeline.race import power_per_rower_w
-from pipeline.resistance import RunPoints, run_points
+from pipeline.outcome import Outcome, Recomputed, as_tables
+from pipeline.resistance import RunMeans, run_means, temperature_change_kg_m
 from pipeline.speed import prescribed_factor
 from pipeline.steady import Windows, choose_windows
-from pipeline.wind import air_part, air_weights, mean_wind_angle_deg
+from pipeline.wind import PER_TOW_BOUNDS, nearest_coefficients
 
 NOT_SELECTED = "not_selected"
 NO_STEADY_WINDOW = "no_steady_window"
 ABOVE_TARGET = "above_target_speed"
 NOT_CALIBRATED = "not_calibrated"
 
+PER_RUN_ITERATIONS = 4
+"""The old tool printed "4 iteraties" (presentation 2015, screens of Razende Snol)."""
 
-@dataclass(frozen=True)
-class Recomputed:
-    """The tables of one method: `run_points`, `curves` and `log_factors` of the warehouse."""
+PER_TOW_GRID = np.linspace(*PER_TOW_BOUNDS, 41)
+ARCHIVE_GRID = np.linspace(0.0, 1.2, 13)
 
-    run_points: pl.DataFrame
-    curves: pl.DataFrame
-    log_factors: pl.DataFrame
+Texts: TypeAlias = np.ndarray[tuple[int, ...], np.dtype[np.str_]]
 
 
 def recompute(method: Method, tows: pl.DataFrame, blocks: RunBlocks) -> Recomputed:
@@ -49,283 +48,272 @@ def recompute(method: Method, tows: pl.DataFrame, blocks: RunBlocks) -> Recomput
     Args:
         method: the method.
         tows: rows of the warehouse's `tows`.
-        blocks: their runs; `blocks.runs` has `tow_id`, `run`, `direction`,
-            `target_speed_ratio` and `selected`.
+        blocks: their runs; `blocks.runs` has the columns of `tow_runs`.
 
     Raises:
         MissingKnowledgeError: the method says nothing about a season of `tows`.
     """
-    tows = tows.sort("tow_id")
-    seasons = tows["season"].unique().sort().to_list()
-    parts = []
-    for steps, held in _seasons_by_steps(method, seasons):
-        some = tows.filter(pl.col("season").is_in(held))
-        inside = blocks.runs["tow_id"].is_in(some["tow_id"].implode()).to_numpy()
-        parts.append(_Batch.of(some, blocks.take(inside)).recompute(steps))
-    name = pl.lit(method.name).alias("method")
-    return Recomputed(
-        run_points=pl.concat([p.run_points for p in parts]).select(name, pl.all()),
-        curves=pl.concat([p.curves for p in parts]).select(name, pl.all()),
-        log_factors=pl.concat([p.log_factors for p in parts]).select(name, pl.all()),
+    prepared = [_prepare(batch, steps) for batch, steps in _batches(method, tows, blocks)]
+    shared = _archive_coefficient([p for p in prepared if p.steps.wind.coefficients == "archive"])
+    return as_tables(method.name, [_finish(p, shared) for p in prepared])
+
+
+def _batches(
+    method: Method, tows: pl.DataFrame, blocks: RunBlocks
+) -> Iterator[tuple[Batch, Steps]]:
+    """Tows that share their steps, together, so that each step works on all of them at once."""
+    held: list[tuple[Steps, list[int]]] = []
+    for season in tows["season"].unique().sort():
+        steps = method.for_season(season)
+        seasons = next((seen for other, seen in held if other == steps), None)
+        if seasons is None:
+            held.append((steps, [season]))
+        else:
+            seasons.append(season)
+    for steps, seasons in held:
+        yield Batch.of(tows.filter(pl.col("season").is_in(seasons)), blocks), steps
+
+
+@dataclass(frozen=True)
+class _Prepared:
+    """A batch with everything that does not depend on the wind coefficients.
+
+    Attributes:
+        known: speed factor of the log's known error, shape (tows,).
+        y: calibration factor, shape (tows,).
+        reasons: why a run does not count, empty where it does, shape (runs,).
+        still_unit_kg_m: still-air coefficient for a drag coefficient of 1, shape (runs,).
+        temperature_kg_m: change to the reference temperature, shape (runs,).
+        temperature_known: shape (tows,).
+    """
+
+    batch: Batch
+    steps: Steps
+    windows: Windows
+    means: RunMeans
+    known: FloatArray
+    y: FloatArray
+    reasons: Texts
+    still_unit_kg_m: FloatArray
+    temperature_kg_m: FloatArray
+    temperature_known: BoolArray
+
+    @property
+    def factor(self) -> FloatArray:
+        """True speed / log speed of each run, shape (runs,)."""
+        return (self.known * self.y)[self.batch.tow]
+
+    @property
+    def used(self) -> BoolArray:
+        """Runs that count, shape (runs,)."""
+        return self.reasons == ""
+
+    @property
+    def speed_m_s(self) -> FloatArray:
+        """Mean true speed, shape (runs,)."""
+        return self.means.speed_m_s * self.factor
+
+    def air_kg_m(self, ahead: FloatArray, behind: FloatArray) -> FloatArray:
+        """The air part that is taken off, shape (runs,)."""
+        if self.steps.wind.reading == "cw_vac_2014":
+            return 2.0 * self.still_kg_m(ahead)
+        return self.means.air.total(ahead, behind, self.steps.wind.side) / self.factor**2
+
+    def still_kg_m(self, ahead: FloatArray) -> FloatArray:
+        """The still-air part that is put back, shape (runs,)."""
+        return self.still_unit_kg_m * ahead
+
+    def cw_kg_m(self, ahead: FloatArray, behind: FloatArray, still: FloatArray) -> FloatArray:
+        """Corrected coefficient of each run for given drag coefficients, shape (runs,)."""
+        water = (self.means.gross_kg_m - self.means.inertia_kg_m) / self.factor**2
+        return water - self.air_kg_m(ahead, behind) + self.still_kg_m(still) + self.temperature_kg_m
+
+    def points(self, cw_kg_m: FloatArray) -> curve.Points:
+        """Points of all tows that have enough runs, for a batch fit."""
+        batch = self.batch
+        sound = self.used & enough_runs(batch, self.used, self.steps.runs.minimum)[batch.tow]
+        return curve.Points(
+            batch.by_tow(self.speed_m_s),
+            batch.by_tow(cw_kg_m),
+            batch.by_tow(sound & (cw_kg_m > 0) & (self.speed_m_s > 0)).astype(bool),
+        )
+
+
+def enough_runs(batch: Batch, used: BoolArray, minimum: int) -> BoolArray:
+    """Tows with enough runs, and runs both ways so that wind and stream can be judged."""
+    out = batch.count(used & (batch.direction == OUT))
+    back = batch.count(used & (batch.direction == BACK))
+    return (out + back >= minimum) & (out > 0) & (back > 0)
+
+
+def _prepare(batch: Batch, steps: Steps) -> _Prepared:
+    windows = choose_windows(batch.blocks, steps.window)
+    means = run_means(batch, windows.mask, steps)
+    known = prescribed_factor(steps.speed, batch.of_tow("speed_correction_ratio"))
+    reasons = _reasons(batch, steps, windows, means.speed_m_s * known[batch.tow])
+    y, determined = _calibrate(batch, steps, windows, means.speed_m_s, reasons == "")
+    reasons = np.where((reasons == "") & ~determined[batch.tow], NOT_CALIBRATED, reasons)
+    speed = means.speed_m_s * (known * y)[batch.tow]
+    temperature, temperature_known = temperature_change_kg_m(batch, steps.temperature, speed)
+    front = front_area_m2(batch.of_run("beam_m"), batch.of_run("bow_height_m"))
+    has_wind = float(steps.wind.model != "none")
+    return _Prepared(
+        batch,
+        steps,
+        windows,
+        means,
+        known,
+        y,
+        reasons,
+        still_unit_kg_m=still_air_coefficient_kg_m(front, has_wind),
+        temperature_kg_m=temperature,
+        temperature_known=temperature_known,
     )
 
 
-def _seasons_by_steps(method: Method, seasons: list[int]) -> list[tuple[Steps, list[int]]]:
-    """Seasons that share their steps, together, so that each step works on all of them at once."""
-    groups: list[tuple[Steps, list[int]]] = []
-    for season in seasons:
-        steps = method.for_season(season)
-        held = next((seen for other, seen in groups if other == steps), None)
-        if held is None:
-            groups.append((steps, [season]))
-        else:
-            held.append(season)
-    return groups
+def _reasons(batch: Batch, steps: Steps, windows: Windows, speed_m_s: FloatArray) -> Texts:
+    """Why a run does not count, before calibration; empty where it does."""
+    too_fast = speed_m_s > steps.runs.highest_target_ratio * batch.of_run("declared_speed_m_s")
+    return np.select(
+        [~batch.selected, ~windows.found, too_fast],
+        [NOT_SELECTED, NO_STEADY_WINDOW, ABOVE_TARGET],
+        "",
+    )
 
 
-@dataclass(frozen=True)
-class _Batch:
-    """Tows with equal steps, and their runs; arrays are of shape (runs,) or (tows,)."""
-
-    tows: pl.DataFrame
-    blocks: RunBlocks
-    tow: IntArray
-    """Index of each run's tow."""
-
-    @classmethod
-    def of(cls, tows: pl.DataFrame, blocks: RunBlocks) -> "_Batch":
-        index = tows.select("tow_id").with_row_index("tow")
-        joined = blocks.runs.join(index, on="tow_id", how="left", maintain_order="left")
-        return cls(tows, blocks, joined["tow"].to_numpy().astype(np.int64))
-
-    def tow_column(self, name: str) -> FloatArray:
-        """A number of the tow; NaN where it is null."""
-        return self.tows[name].cast(pl.Float64).to_numpy()
-
-    def run_column(self, name: str) -> FloatArray:
-        return self.blocks.runs[name].cast(pl.Float64).to_numpy()
-
-    def recompute(self, steps: Steps) -> Recomputed:
-        windows = choose_windows(self.blocks, steps.window)
-        known = prescribed_factor(steps.speed, self.tow_column("speed_correction_ratio"))
-        reasons = self._reasons_before_calibration(steps, windows, known)
-        y, determined = self._calibrate(steps, windows, reasons == "")
-        reasons = np.where((reasons == "") & ~determined[self.tow], NOT_CALIBRATED, reasons)
-        factor = known * y
-        points = self._run_points(steps, windows.mask, factor[self.tow])
-        used = reasons == ""
-        curves = self._fit(steps, points, used)
-        return Recomputed(
-            self._run_points_table(windows, points, factor, reasons, curves),
-            self._curves_table(steps, points, used, curves, y),
-            self._log_factors_table(steps, known),
-        )
-
-    def _reasons_before_calibration(
-        self, steps: Steps, windows: Windows, known: FloatArray
-    ) -> np.ndarray[tuple[int], np.dtype[np.str_]]:
-        """Why a run does not count, empty where it does."""
-        speed = self.blocks.mean(f"{steps.speed.source}_v", windows.mask) * known[self.tow]
-        too_fast = speed > steps.runs.highest_target_ratio * self._of_run("declared_speed_m_s")
-        selected = self.blocks.runs["selected"].to_numpy()
-        return np.select(
-            [~selected, ~windows.found, too_fast],
-            [NOT_SELECTED, NO_STEADY_WINDOW, ABOVE_TARGET],
-            "",
-        )
-
-    def _of_run(self, tow_column: str) -> FloatArray:
-        return self.tow_column(tow_column)[self.tow]
-
-    def _calibrate(
-        self, steps: Steps, windows: Windows, used: BoolArray
-    ) -> tuple[FloatArray, BoolArray]:
-        tows = self.tows.height
-        if steps.calibration.rule == "none":
-            return np.ones(tows), np.ones(tows, dtype=bool)
-        has_gps = self.blocks.total("gps_n", windows.mask) > 0
-        return gps_factor(
-            gps_m_s=self._gps_mean(windows.mask),
-            log_m_s=self.blocks.mean(f"{steps.speed.source}_v", windows.mask),
-            direction=self.run_column("direction").astype(np.int64),
-            tow=self.tow,
-            used=used & has_gps,
-            tows=tows,
-        )
-
-    def _gps_mean(self, window: BoolArray) -> FloatArray:
-        samples = self.blocks.total("gps_n", window)
-        return self.blocks.total("gps", window) / np.maximum(samples, 1.0)
-
-    def _run_points(self, steps: Steps, window: BoolArray, factor: FloatArray) -> RunPoints:
-        front = front_area_m2(self._of_run("beam_m"), self._of_run("bow_height_m"))
-        side = side_area_m2(self._of_run("waterline_length_m"), self._of_run("bow_height_m"))
-        source = steps.speed.source
-        weights = air_weights(steps.wind, front, side)
-        air = air_part(self.blocks, window, source, weights)
-        still = still_air_coefficient_kg_m(front, steps.wind.ahead)
-        return run_points(self.blocks, window, source, factor, air, still)
-
-    def _fit(self, steps: Steps, points: RunPoints, used: BoolArray) -> "_Fitted":
-        held = used & self._enough_runs(steps, used)[self.tow]
-        place = _place_in_tow(self.tow)
-        shape = (self.tows.height, int(place.max(initial=0)) + 1)
-        speed, cw = np.zeros(shape), np.zeros(shape)
-        mask = np.zeros(shape, dtype=bool)
-        speed[self.tow, place], cw[self.tow, place] = points.speed_m_s, points.cw_kg_m
-        mask[self.tow, place] = held & (points.cw_kg_m > 0)
-        batch = curve.Points(speed, cw, mask)
-        free = curve.fit(batch)
-        hull = hull_speed_m_s(self.tow_column("waterline_length_m"))
-        capped = curve.fit_capped(batch, steps.curve.cap_hull_speeds * hull)
-        return _Fitted(batch, free, capped if steps.curve.b == "capped" else free)
-
-    def _enough_runs(self, steps: Steps, used: BoolArray) -> BoolArray:
-        """Tows with enough runs, and runs both ways so that wind and stream can be judged."""
-        direction = self.run_column("direction")
-        out = np.bincount(self.tow, used & (direction == OUT), self.tows.height)
-        back = np.bincount(self.tow, used & (direction == BACK), self.tows.height)
-        return (out + back >= steps.runs.minimum) & (out > 0) & (back > 0)
-
-    def _run_points_table(
-        self,
-        windows: Windows,
-        points: RunPoints,
-        factor: FloatArray,
-        reasons: np.ndarray[tuple[int], np.dtype[np.str_]],
-        fitted: "_Fitted",
-    ) -> pl.DataFrame:
-        mask, used = windows.mask, reasons == ""
-        log1 = self.blocks.mean("log1_v", mask)
-        curves = fitted.curves
-        on_curve = curve.cw(curves.a_kg_m[self.tow], curves.s_s2_m2[self.tow], points.speed_m_s)
-        has_gps = windows.found & (self.blocks.total("gps_n", mask) > 0)
-        found, fits = windows.found, windows.found & curves.converged[self.tow]
-        fits &= np.isfinite(on_curve)
-        return self.blocks.runs.select(
-            "tow_id", "run", "direction", "target_speed_ratio"
-        ).with_columns(
-            _column("window_start_s", windows.start_s, found),
-            _column("window_end_s", windows.end_s, found),
-            pl.Series("cut_reason", windows.reasons, pl.String),
-            _column("speed_factor", factor[self.tow], found),
-            _column("speed_m_s", points.speed_m_s, found),
-            _column("gross_cw_kg_m", points.gross_kg_m, found),
-            _column("air_cw_kg_m", points.air_kg_m, found),
-            _column("still_air_cw_kg_m", points.still_air_kg_m, found),
-            _column("cw_kg_m", points.cw_kg_m, found),
-            _column("cw_sd", points.cw_sd, found),
-            _column("fitted_cw_kg_m", on_curve, fits),
-            _column("wind_m_s", self.blocks.mean("wind_v", mask), found),
-            _column("wind_angle_deg", mean_wind_angle_deg(self.blocks, mask), found),
-            _column(
-                "log2_ratio", self.blocks.mean("log2_v", mask) / np.where(found, log1, 1), found
-            ),
-            _column("gps_ratio", self._gps_mean(mask) / np.where(found, log1, 1), has_gps),
-            pl.Series("used", used),
-            pl.Series("reason", reasons, pl.String),
-        )
-
-    def _curves_table(
-        self,
-        steps: Steps,
-        points: RunPoints,
-        used: BoolArray,
-        fitted: "_Fitted",
-        y: FloatArray,
-    ) -> pl.DataFrame:
-        declared = self.tow_column("declared_speed_m_s")
-        curves = fitted.curves
-        cw = curves.cw_at(declared)
-        sound = curves.converged & np.isfinite(cw)
-        cw_interval, b_interval = fitted.intervals(declared)
-        count = np.bincount(self.tow, used, self.tows.height).astype(np.int64)
-        rowers = self.tow_column("rowers")
-        residual = np.sqrt(curves.rss_kg2_m2 / np.maximum(curves.n_points - 2, 1))
-        safe = np.where(sound, cw, 1.0)
-        flags = assessment.flags(
-            assessment.Observed(
-                tow=self.tow,
-                tows=self.tows.height,
-                used=used,
-                speed_m_s=points.speed_m_s,
-                intended_m_s=self.run_column("target_speed_ratio")
-                * self._of_run("declared_speed_m_s"),
-                cw_kg_m=points.cw_kg_m,
-                cw_sd_kg_m=points.cw_sd,
-                direction=self.run_column("direction"),
-                runs_used=count,
-                curve_found=sound,
-                b_capped=curves.b_capped,
-                b_determined=curves.b_determined,
-                calibration_factor=y,
-            )
-        )
-        rejected = ~sound
-        status = np.where(
-            rejected, "rejected", np.where([bool(f) for f in flags], "flagged", "accepted")
-        )
-        chosen = self.tows.select(
-            "tow_id", "fsn_no", "season", "rowers", "crew_class", "declared_speed_m_s"
-        )
-        calibrated = np.full(self.tows.height, steps.calibration.rule != "none")
-        return chosen.with_columns(
-            _column("a_kg_m", curves.a_kg_m, sound),
-            _column("b_m_s", curves.b_m_s, sound & curves.b_determined),
-            pl.Series("b_capped", curves.b_capped),
-            _column("cw_kg_m", cw, sound),
-            _column("cw_lo_kg_m", cw_interval.lo, sound & (cw_interval.lo > 0)),
-            _column("cw_hi_kg_m", cw_interval.hi, sound),
-            _column("b_lo_m_s", b_interval.lo, sound),
-            _column("b_hi_m_s", b_interval.hi, sound),
-            _column("power_w", power_per_rower_w(safe, declared, rowers), sound),
-            _column("residual_sd_ratio", residual / safe, sound),
-            _column("calibration_factor", y, calibrated),
-            pl.Series("runs_used", count, pl.Int8),
-            pl.Series("status", status, pl.String),
-            pl.Series("flags", flags, pl.List(pl.String)),
-        )
-
-    def _log_factors_table(self, steps: Steps, known: FloatArray) -> pl.DataFrame:
-        """The season's factor; a tow's own percentage stands in `run_points.speed_factor`."""
-        seasons = self.tows["season"].unique().sort()
-        factor = prescribed_factor(steps.speed, np.full(len(seasons), np.nan))
-        return pl.DataFrame(
-            {
-                "season": seasons,
-                "factor": factor,
-                "lo": pl.Series([None] * len(seasons), dtype=pl.Float64),
-                "hi": pl.Series([None] * len(seasons), dtype=pl.Float64),
-                "source": [steps.speed.correction] * len(seasons),
-            }
-        )
+def _calibrate(
+    batch: Batch, steps: Steps, windows: Windows, log_m_s: FloatArray, used: BoolArray
+) -> tuple[FloatArray, BoolArray]:
+    """Calibration factor of each tow and whether it is known, shape (tows,)."""
+    if steps.calibration.rule == "none":
+        return np.ones(batch.size), np.ones(batch.size, dtype=bool)
+    samples = batch.blocks.total("gps_n", windows.mask)
+    gps = batch.blocks.total("gps", windows.mask) / np.maximum(samples, 1.0)
+    y, determined = gps_factor(
+        gps, log_m_s, batch.direction, batch.tow, used & (samples > 0), batch.size
+    )
+    if steps.calibration.rule == "gps_per_tow":
+        return y, determined
+    return _mean_of_season(batch, y, determined)
 
 
-@dataclass(frozen=True)
-class _Fitted:
-    """The points that were fitted, their free fit, and the curves that the method asks for."""
-
-    points: curve.Points
-    free: curve.Curves
-    curves: curve.Curves
-
-    def intervals(self, declared_m_s: FloatArray) -> tuple[curve.Interval, curve.Interval]:
-        """95 % intervals of Cw at the declared speed and of B, from the points' own scatter."""
-        scatter = curve.own_scatter(self.free)
-        errors = curve.covariance(self.points, self.free, scatter, declared_m_s)
-        cw = curve.cw_interval(self.curves, errors, scatter.dof, declared_m_s)
-        return cw, curve.b_interval(self.points, self.free, scatter)
+def _mean_of_season(
+    batch: Batch, y: FloatArray, determined: BoolArray
+) -> tuple[FloatArray, BoolArray]:
+    """The mean factor of each season's tows, for all of its tows."""
+    _, season = np.unique(batch.of_tow("season"), return_inverse=True)
+    count = np.bincount(season, determined)
+    mean = np.bincount(season, np.where(determined, y, 0.0)) / np.maximum(count, 1)
+    return np.where(count > 0, mean, 1.0)[season], (count > 0)[season]
 
 
-def _place_in_tow(tow: IntArray) -> IntArray:
-    """Rank of each run within its tow: 0, 1, 2, ... for runs that are sorted by tow."""
-    first = np.searchsorted(tow, tow, side="left")
-    return np.asarray(np.arange(len(tow)) - first, dtype=np.int64)
+def _finish(prepared: _Prepared, archive_coefficient: float | None) -> Outcome:
+    ahead, behind, still = _coefficients(prepared, archive_coefficient)
+    cw = prepared.cw_kg_m(ahead, behind, still)
+    points = prepared.points(cw)
+    free = curve.fit(points)
+    return Outcome(
+        batch=prepared.batch,
+        steps=prepared.steps,
+        windows=prepared.windows,
+        reasons=prepared.reasons,
+        known_factor=prepared.known,
+        calibration_factor=prepared.y,
+        speed_m_s=prepared.speed_m_s,
+        speed_factor=prepared.factor,
+        gross_kg_m=prepared.means.gross_kg_m / prepared.factor**2,
+        sd_kg_m=prepared.means.sd_kg_m / prepared.factor**2,
+        inertia_kg_m=prepared.means.inertia_kg_m / prepared.factor**2,
+        air_kg_m=prepared.air_kg_m(ahead, behind),
+        still_air_kg_m=prepared.still_kg_m(still),
+        temperature_kg_m=prepared.temperature_kg_m,
+        temperature_known=prepared.temperature_known,
+        ahead=ahead,
+        behind=behind,
+        cw_kg_m=cw,
+        points=points,
+        free=free,
+        curves=_choose_curve(prepared, points, free),
+    )
 
 
-def _column(name: str, values: FloatArray | IntArray, known: BoolArray) -> pl.Series:
-    """A column of numbers, null where nothing is known or the number is infinite."""
-    numbers = np.asarray(values, dtype=np.float64)
-    sound = known & np.isfinite(numbers)
-    column = pl.Series(name, np.where(sound, numbers, 0.0))
-    return pl.select(pl.when(pl.Series(sound)).then(column).alias(name)).to_series()
+def _choose_curve(prepared: _Prepared, points: curve.Points, free: curve.Curves) -> curve.Curves:
+    rule = prepared.steps.curve
+    if rule.b == "free":
+        return free
+    hull = hull_speed_m_s(prepared.batch.of_tow("waterline_length_m"))
+    if rule.b == "capped":
+        return curve.fit_capped(points, rule.cap_hull_speeds * hull)
+    return curve.fit_given_b(points, hull)
+
+
+def _coefficients(
+    prepared: _Prepared, archive_coefficient: float | None
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Drag coefficients ahead, behind and in still air, each of shape (runs,)."""
+    wind = prepared.steps.wind
+    runs = len(prepared.batch.tow)
+    fixed = np.full(runs, wind.ahead), np.full(runs, wind.behind)
+    if wind.coefficients == "archive" and archive_coefficient is not None:
+        one = np.full(runs, archive_coefficient)
+        return one, one, one
+    if wind.coefficients == "per_tow":
+        one = _best_per_tow(prepared)[prepared.batch.tow]
+        return one, one, one
+    if wind.coefficients == "per_run":
+        return *_best_per_run(prepared, *fixed), fixed[0]
+    return *fixed, fixed[0]
+
+
+def _best_per_run(
+    prepared: _Prepared, ahead: FloatArray, behind: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Coefficients searched run by run so that each point comes nearest to the curve.
+
+    The old rule: fit, move every run as near to the curve as its wind allows, fit again. The
+    still-air part keeps its fixed coefficient (inferred).
+    """
+    still = ahead
+    for _ in range(PER_RUN_ITERATIONS):
+        cw = prepared.cw_kg_m(ahead, behind, still)
+        curves = curve.fit(prepared.points(cw))
+        tow = prepared.batch.tow
+        on_curve = curve.cw(curves.a_kg_m[tow], curves.s_s2_m2[tow], prepared.speed_m_s)
+        fits = curves.converged[tow] & np.isfinite(on_curve)
+        excess = cw + prepared.air_kg_m(ahead, behind) - np.where(fits, on_curve, cw)
+        searched = nearest_coefficients(prepared.means.air, excess * prepared.factor**2)
+        ahead = np.where(fits, searched[0], ahead)
+        behind = np.where(fits, searched[1], behind)
+    return ahead, behind
+
+
+def _misfit(prepared: _Prepared, coefficient: float) -> FloatArray:
+    """Residual sum of squares / Cw^2 of each tow with one drag coefficient, shape (tows,)."""
+    one = np.full(len(prepared.batch.tow), coefficient)
+    curves = curve.fit(prepared.points(prepared.cw_kg_m(one, one, one)))
+    scale = curves.cw_at(prepared.batch.of_tow("declared_speed_m_s"))
+    sound = curves.converged & np.isfinite(scale)
+    return np.where(sound, curves.rss_kg2_m2 / np.where(sound, scale, 1.0) ** 2, 0.0)
+
+
+def _best_per_tow(prepared: _Prepared) -> FloatArray:
+    """One coefficient per tow within its bounds, by trying all of a fine grid, shape (tows,)."""
+    misfits = np.stack([_misfit(prepared, c) for c in PER_TOW_GRID])
+    return PER_TOW_GRID[misfits.argmin(axis=0)]
+
+
+def _archive_coefficient(prepared: list[_Prepared]) -> float | None:
+    """One coefficient for the whole archive: the least misfit of all tows together.
+
+    Out and back feel different wind, so a wrong coefficient drives their points apart. The misfit
+    is a parabola in the coefficient, near its minimum; None without tows.
+    """
+    if not prepared:
+        return None
+    total = np.array([sum(float(_misfit(p, c).sum()) for p in prepared) for c in ARCHIVE_GRID])
+    best = int(np.clip(total.argmin(), 1, len(ARCHIVE_GRID) - 2))
+    below, here, above = total[best - 1 : best + 2]
+    bend = below - 2.0 * here + above
+    step = ARCHIVE_GRID[1] - ARCHIVE_GRID[0]
+    shift = 0.5 * (below - above) / bend if bend > 0 else 0.0
+    return float(np.clip(ARCHIVE_GRID[best] + step * shift, ARCHIVE_GRID[0], ARCHIVE_GRID[-1]))

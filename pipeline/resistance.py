@@ -1,67 +1,195 @@
-"""Run points: mean speed and mean resistance coefficient of each run's steady window.
+"""From a window of a run to its point: means, and what is corrected on the coefficient.
 
 Per sample the gross coefficient is `Cw = F / (v y)^2` (Sleepproef, R. Pot 2017, "IJking
-snelheid"); a run point is the mean over the window, with the air part taken off and the still-air
-part put back. A speed factor k turns log speed into true speed and so divides every coefficient
-by k^2. Here: the arithmetic of one run. Which runs count is decided in `pipeline.recompute`.
+snelheid"). Everything here is in the speed that the log reads; a factor k that turns it into true
+speed divides every coefficient by k^2, and is applied last (`true_cw_kg_m`). Which runs count and
+which factor holds is decided elsewhere.
 """
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from pipeline.arrays import BoolArray, FloatArray
-from pipeline.blocks import RunBlocks
+from pipeline.batch import Batch
+from pipeline.blocks import AIR_SUMS
+from pipeline.friction import (
+    delft_wetted_surface_m2,
+    friction_cw_kg_m,
+    water_density_kg_m3,
+)
+from pipeline.hull import front_area_m2, side_area_m2
+from pipeline.method import RunPoint, Steps, Temperature
+from pipeline.steady import END_SECONDS
+from pipeline.wind import AirParts, air_parts, averaged_terms
+
+LOG2_AGREES_RATIO: Final = 0.01
+"""Log 2 takes part in a mean of both only if its speed is within 1 % of log 1 (inferred from the
+0.01 m/s of Sleepproef 2017, "Log 1 en 2", which no pair of 2014 met)."""
+
+MIDSHIP_COEFFICIENT: Final = 0.65
+BLOCK_COEFFICIENT: Final = 0.40
+"""Share of waterline length x beam x draught that a sloop displaces (stated assumption)."""
 
 
 @dataclass(frozen=True)
-class RunPoints:
-    """One point per run, each array of shape (runs,); coefficients in kg/m.
+class RunMeans:
+    """Means over each run's window in log speed, shape (runs,).
 
     Attributes:
-        speed_m_s: mean true speed.
-        cw_kg_m: coefficient in still air.
-        cw_sd: standard deviation of the samples' gross coefficient, kg/m.
-        gross_kg_m: mean gross coefficient.
-        air_kg_m: the air part that was taken off.
-        still_air_kg_m: the still-air part that was put back.
+        speed_m_s: mean speed.
+        gross_kg_m: F / v^2.
+        sd_kg_m: standard deviation of the samples' F / v^2.
+        inertia_kg_m: part of it that accelerated the boat.
+        air: air resistance / v^2 for drag coefficients of 1.
     """
 
     speed_m_s: FloatArray
-    cw_kg_m: FloatArray
-    cw_sd: FloatArray
     gross_kg_m: FloatArray
-    air_kg_m: FloatArray
-    still_air_kg_m: FloatArray
+    sd_kg_m: FloatArray
+    inertia_kg_m: FloatArray
+    air: AirParts
 
 
-def run_points(
-    blocks: RunBlocks,
-    window: BoolArray,
-    source: str,
-    speed_factor: FloatArray,
-    air_part_kg_m: FloatArray,
-    still_air_kg_m: FloatArray,
-) -> RunPoints:
-    """Means over samples of speed and coefficient, corrected for speed and wind.
+def run_means(batch: Batch, window: BoolArray, steps: Steps) -> RunMeans:
+    """Means of every run over its window.
 
     Args:
-        blocks: the runs.
-        window: shape (runs, seconds).
-        source: speed source of `pipeline.blocks`.
-        speed_factor: true speed / log speed, shape (runs,).
-        air_part_kg_m: mean F_air / v_log^2, shape (runs,).
-        still_air_kg_m: shape (runs,).
+        batch: tows and runs.
+        window: blocks that count, shape (runs, seconds).
+        steps: speed source, estimator, wind model and inertia of the method.
     """
-    scale = 1.0 / speed_factor**2
-    log_cw = blocks.mean(f"{source}_cw", window)
-    variance = blocks.mean(f"{source}_cw2", window) - log_cw**2
-    gross, air = scale * log_cw, scale * air_part_kg_m
-    return RunPoints(
-        speed_m_s=speed_factor * blocks.mean(f"{source}_v", window),
-        cw_kg_m=gross - air + still_air_kg_m,
-        cw_sd=scale * np.sqrt(np.maximum(variance, 0.0)),
-        gross_kg_m=gross,
-        air_kg_m=air,
-        still_air_kg_m=still_air_kg_m,
+    use_mean = _both_logs_good(batch, window) & (steps.speed.source == "mean")
+    single = "log2" if steps.speed.source == "log2" else "log1"
+
+    def mean(name: str) -> FloatArray:
+        of_log = batch.blocks.mean(f"{single}_{name}", window)
+        return np.where(use_mean, batch.blocks.mean(f"mean_{name}", window), of_log)
+
+    speed, samples_cw = mean("v"), mean("cw")
+    variance = np.maximum(mean("cw2") - samples_cw**2, 0.0)
+    if steps.run_point.estimator == "mean_of_ratios":
+        gross = samples_cw
+    else:
+        gross = batch.blocks.mean("force", window) / _or_one(speed) ** 2
+    terms = _air_terms(batch, window, steps, speed, use_mean, single)
+    front = front_area_m2(batch.of_run("beam_m"), batch.of_run("bow_height_m"))
+    side = side_area_m2(batch.of_run("waterline_length_m"), batch.of_run("bow_height_m"))
+    air = air_parts(batch.blocks, terms, steps.wind, front, side)
+    change = _end_speed_change(batch, window, "mean" if use_mean.all() else single)
+    inertia = _inertia(batch, steps.run_point, change, speed)
+    return RunMeans(speed, gross, np.sqrt(variance), inertia, air)
+
+
+def _both_logs_good(batch: Batch, window: BoolArray) -> BoolArray:
+    """Runs of tows in which log 2 agrees with log 1 over all runs together."""
+    log1, log2 = (batch.blocks.mean(f"{log}_v", window) for log in ("log1", "log2"))
+    seen = log1 > 0
+    ratio = batch.mean(log2, seen) / _or_one(batch.mean(log1, seen))
+    return (np.abs(ratio - 1.0) <= LOG2_AGREES_RATIO)[batch.tow]
+
+
+def _air_terms(
+    batch: Batch,
+    window: BoolArray,
+    steps: Steps,
+    speed: FloatArray,
+    use_mean: BoolArray,
+    single: str,
+) -> dict[str, FloatArray]:
+    """Mean of each air term / v^2, per sample or from the averaged wind vector."""
+    blocks = batch.blocks
+    by_ratio = steps.run_point.estimator == "ratio_of_means"
+    smooth = averaged_terms(blocks, steps.wind.averaging_s) if steps.wind.averaging_s else None
+    count = np.maximum(blocks.count(window), 1.0)
+    found = {}
+    for name in AIR_SUMS:
+        if by_ratio:
+            sums = blocks[name] if smooth is None else smooth[name] * blocks.n
+            found[name] = np.where(window, sums, 0.0).sum(axis=1) / count / _or_one(speed) ** 2
+            continue
+        of_source = {
+            source: blocks.total(f"{source}_{name}", window)
+            if smooth is None
+            else np.where(window, smooth[name] * blocks[f"{source}_inv_v2"], 0.0).sum(axis=1)
+            for source in (single, "mean")
+        }
+        found[name] = np.where(use_mean, of_source["mean"], of_source[single]) / count
+    return found
+
+
+def _end_speed_change(batch: Batch, window: BoolArray, source: str) -> FloatArray:
+    """Rise of speed over the window / its length, from the means of its two ends, m/s2."""
+    length = window.sum(axis=1)
+    order = np.cumsum(window, axis=1)
+    first = window & (order <= END_SECONDS)
+    last = window & (order > (length - END_SECONDS)[:, None])
+    rise = batch.blocks.mean(f"{source}_v", last) - batch.blocks.mean(f"{source}_v", first)
+    return rise / np.maximum(length - END_SECONDS, 1)
+
+
+def _inertia(
+    batch: Batch, rule: RunPoint, acceleration_m_s2: FloatArray, speed_m_s: FloatArray
+) -> FloatArray:
+    """Part of F / v^2 that accelerates boat, crew and water: m_eff a / v^2.
+
+    m_eff = (boat + crew) (1 + added mass); source: research, method.md 6.5. 0 where no weight is
+    known.
+    """
+    if rule.inertia == "none":
+        return np.zeros_like(speed_m_s)
+    mass = (1.0 + rule.added_mass_ratio) * np.nan_to_num(displaced_mass_kg(batch))[batch.tow]
+    return mass * acceleration_m_s2 / _or_one(speed_m_s) ** 2
+
+
+def displaced_mass_kg(batch: Batch) -> FloatArray:
+    """Boat and crew, shape (tows,), kg; NaN where a weight is not known."""
+    return batch.of_tow("weight_kg") + batch.of_tow("crew_weight_kg")
+
+
+def temperature_change_kg_m(
+    batch: Batch, rule: Temperature, speed_m_s: FloatArray
+) -> tuple[FloatArray, BoolArray]:
+    """What brings Cw to the reference temperature: friction there minus friction as towed.
+
+    Friction by the ITTC-57 line on a wetted surface by the Delft formula, with a draught from
+    displacement and a block coefficient (all inferred: the federation's own formula of 2018 is not
+    public). No form factor.
+
+    Args:
+        batch: tows and runs.
+        rule: the method's option.
+        speed_m_s: true speed of each run, shape (runs,).
+
+    Returns:
+        Change of Cw, shape (runs,), kg/m; and for which tows it is known, shape (tows,): 0 and
+        False where temperature or weight is missing.
+    """
+    temperature = batch.of_tow("water_temperature_c")
+    mass = displaced_mass_kg(batch)
+    known = np.isfinite(temperature) & np.isfinite(mass)
+    if rule.rule == "none":
+        return np.zeros_like(speed_m_s), known
+    celsius = np.where(known, temperature, rule.reference_c)
+    surface = wetted_surface_m2(batch, np.where(known, mass, 1000.0), rule.reference_c)
+    length = batch.of_run("waterline_length_m")
+    speed = _or_one(speed_m_s)
+    at_reference, as_towed = (
+        friction_cw_kg_m(speed, length, surface[batch.tow], t)
+        for t in (rule.reference_c, celsius[batch.tow])
     )
+    return at_reference - as_towed, known
+
+
+def wetted_surface_m2(batch: Batch, mass_kg: FloatArray, temperature_c: float) -> FloatArray:
+    """Wetted surface of each boat with its crew, shape (tows,), m2."""
+    volume = mass_kg / water_density_kg_m3(temperature_c)
+    length, beam = batch.of_tow("waterline_length_m"), batch.of_tow("beam_m")
+    draught = volume / (BLOCK_COEFFICIENT * length * beam)
+    return delft_wetted_surface_m2(length, volume, beam / draught, MIDSHIP_COEFFICIENT)
+
+
+def _or_one(values: FloatArray) -> FloatArray:
+    """The values, with 1 in place of 0, for a quotient that is not used there."""
+    return np.where(values > 0, values, 1.0)

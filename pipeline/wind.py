@@ -97,11 +97,13 @@ def averaged_terms(blocks: RunBlocks, averaging_s: int) -> dict[str, FloatArray]
     across = _centred_sum(blocks["wind_y"], averaging_s) / safe
     speed = np.maximum(np.hypot(along, across), 1e-9)
     head = along * np.abs(along)
-    by_term = {"head": head, "front": head * np.abs(along) / speed, "side": head * np.abs(across) / speed}
-    clip = {"ahead": np.maximum, "behind": np.minimum}
-    return {
-        name: clip[name.split("_")[1]](by_term[name.split("_")[0]], 0.0) for name in AIR_SUMS
+    by_term = {
+        "head": head,
+        "front": head * np.abs(along) / speed,
+        "side": head * np.abs(across) / speed,
     }
+    clip = {"ahead": np.maximum, "behind": np.minimum}
+    return {name: clip[name.split("_")[1]](by_term[name.split("_")[0]], 0.0) for name in AIR_SUMS}
 
 
 def _centred_sum(values: FloatArray, width: int) -> FloatArray:
@@ -114,9 +116,7 @@ def _centred_sum(values: FloatArray, width: int) -> FloatArray:
     return total
 
 
-def nearest_coefficients(
-    air: AirParts, excess_kg_m: FloatArray
-) -> tuple[FloatArray, FloatArray]:
+def nearest_coefficients(air: AirParts, excess_kg_m: FloatArray) -> tuple[FloatArray, FloatArray]:
     """The coefficients within `PER_RUN_BOUNDS` that bring each run nearest to a given value.
 
     The wind that is felt most is searched first, the other takes what is left.
@@ -139,7 +139,9 @@ def nearest_coefficients(
 def _clipped_quotient(numerator: FloatArray, denominator: FloatArray) -> FloatArray:
     """Quotient within `PER_RUN_BOUNDS`; its lower bound where there is no wind at all."""
     some = np.abs(denominator) > 1e-12
-    return np.clip(np.where(some, numerator, 0.0) / np.where(some, denominator, 1.0), *PER_RUN_BOUNDS)
+    return np.clip(
+        np.where(some, numerator, 0.0) / np.where(some, denominator, 1.0), *PER_RUN_BOUNDS
+    )
 
 
 def mean_wind_angle_deg(blocks: RunBlocks, window: BoolArray) -> FloatArray:
