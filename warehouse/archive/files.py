@@ -9,12 +9,16 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import IO, Final
 
-import pyarrow as pa
+import pyarrow as pa  # type: ignore[import-untyped]
 
 from pipeline.errors import DefectiveInputError
+from warehouse.archive.faults import DefectiveFileError
 from warehouse.archive.text import fold_name
 
 BOATS_FILE: Final = "sloepregister/sloependata.csv"
+TOW_LIST_PATTERN: Final = r"sleeplijst_([0-9]{4})\.csv"
+REGISTER_PATTERN: Final = r"sloepregister_([0-9]{4})\.csv"
+RACES_PATTERN: Final = r".+_([0-9]{4})\.csv"
 SAMPLE_SUFFIXES: Final = (".csv.gz", ".csv.zst", ".csv", ".parquet")
 LIST_MAX_BYTES: Final = 50_000_000
 SAMPLES_MAX_BYTES: Final = 400_000_000
@@ -51,7 +55,7 @@ def list_files(root: Path, folder: str, name_pattern: str) -> list[ArchiveFile]:
     return [
         _archive_file(root, entry, int(match[1]))
         for entry, match in matches
-        if match is not None and entry.is_file()
+        if match is not None and (entry.is_file() or entry.is_symlink())
     ]
 
 
@@ -122,11 +126,13 @@ def _is_inside(root: Path, full: Path) -> bool:
     return full.resolve().is_relative_to(root.resolve())
 
 
-def outside_archive(relative: str) -> DefectiveInputError:
+def outside_archive(relative: str) -> DefectiveFileError:
     """Return the error for a path that leaves the archive."""
-    return DefectiveInputError(
+    return DefectiveFileError(
         "path_outside_archive",
         f"'{relative}' leads outside the archive, where nothing is read.",
+        None,
+        relative,
     )
 
 

@@ -109,9 +109,15 @@ def _selected_runs(
     number = samples["run"].to_numpy()
     starts = run_starts(number)
     bounds = dict(
-        zip(number[starts].tolist(), zip(starts, [*starts[1:], len(number)], strict=True), strict=True)
+        zip(
+            number[starts].tolist(),
+            zip(starts, [*starts[1:], len(number)], strict=True),
+            strict=True,
+        )
     )
-    second = next((int(starts[i]) for i, n in enumerate(number[starts]) if n > SECOND_FILE_OFFSET), 0)
+    second = next(
+        (int(starts[i]) for i, n in enumerate(number[starts]) if n > SECOND_FILE_OFFSET), 0
+    )
     channels = {
         key: samples[name].to_numpy()
         for key, name in _CHANNELS.items()
@@ -277,7 +283,8 @@ def _check_dropouts(runs: list[_Run], tow: Mapping[str, Any]) -> None:
                 raise _fault(
                     "gps_dropout" if key == "gps" else "log_dropout",
                     f"{run.name}: {key} drops to {run.channels[key][row]:.3g} m/s, for "
-                    f"{low.sum() / run.rate_hz:.3g} s in all; it must stay above {DROPOUT_M_S} m/s.",
+                    f"{low.sum() / run.rate_hz:.3g} s in all; it must stay above "
+                    f"{DROPOUT_M_S} m/s.",
                     run,
                     tow,
                     row,

@@ -7,6 +7,7 @@ Reading the samples with it belongs to `samples`.
 import datetime as dt
 import tomllib
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
 
@@ -87,7 +88,7 @@ class _File(_Strict):
     @model_validator(mode="after")
     def _one_profile_per_season(self) -> "_File":
         ranges = sorted(table.seasons for table in self.profile)
-        for (_, last), (first, _) in zip(ranges, ranges[1:], strict=False):
+        for (_, last), (first, _) in pairwise(ranges):
             if first <= last:
                 raise ValueError(f"season {first} has two profiles")
         return self

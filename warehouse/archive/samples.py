@@ -12,8 +12,8 @@ from typing import Any, Final
 
 import numpy as np
 import polars as pl
-import pyarrow as pa
-import pyarrow.parquet as pq
+import pyarrow as pa  # type: ignore[import-untyped]
+import pyarrow.parquet as pq  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
 from pipeline.channels import RUNS_PER_FILE, SAMPLE_SCHEMA, SECOND_FILE_OFFSET
@@ -113,9 +113,7 @@ def _read_part(
     root: Path, tow: Mapping[str, Any], path: str, profile: SeasonProfile
 ) -> pl.DataFrame:
     try:
-        return read_samples(
-            path_inside(root, path), profile, sample_rate_hz=tow["sample_rate_hz"]
-        )
+        return read_samples(path_inside(root, path), profile, sample_rate_hz=tow["sample_rate_hz"])
     except DefectiveInputError as error:
         raise DefectiveFileError(error.reason_code, error.message, error.line, path) from error
 
