@@ -42,6 +42,7 @@ OUTPUT_NAMES: Final = {
 }
 TIME_TOLERANCE: Final = 0.01
 _BLANKS: Final = " \t"
+_QUOTED_DECIMAL_COMMA: Final = r'"([ \t]*[+-]?[0-9]*),([0-9][0-9eE+ \t-]*)"'
 
 
 @dataclass(frozen=True)
@@ -130,7 +131,7 @@ def _read_text(data: bytes, profile: SeasonProfile) -> pl.DataFrame:
 
 
 def _split_header(data: bytes, profile: SeasonProfile) -> _Body:
-    if not data.isascii() or b"\x00" in data:
+    if not data.isascii() or b"\x00" in data or not data[:100].strip():
         data = decode(data).encode()
     header_bytes, _, below = data.partition(b"\n")
     header_line = decode(header_bytes).rstrip("\r")
@@ -172,7 +173,7 @@ def _read_carefully(body: _Body) -> pl.DataFrame:
     text = body.data.decode()
     lines = pl.Series("line", text.split("\n")).str.strip_suffix("\r")
     if body.delimiter == ",":
-        lines = lines.str.replace_all(r'"([^",]*),([^",]*)"', '"$1.$2"')
+        lines = lines.str.replace_all(_QUOTED_DECIMAL_COMMA, '"$1.$2"')
     fields = lines.str.split(body.delimiter)
     whole = fields.list.len() == body.width
     faults = []

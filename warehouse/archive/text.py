@@ -101,8 +101,17 @@ def find_delimiter(header_line: str) -> str:
 
 
 def split_line(line: str, delimiter: str) -> list[str]:
-    """Return the fields of one line, quotes taken off."""
-    return next(csv.reader(io.StringIO(line), delimiter=delimiter), [])
+    """Return the fields of one line, quotes taken off.
+
+    Raises:
+        DefectiveInputError: `unreadable_file` when it is no line of a table.
+    """
+    try:
+        return next(csv.reader(io.StringIO(line), delimiter=delimiter), [])
+    except csv.Error as error:
+        raise DefectiveInputError(
+            "unreadable_file", f"The header cannot be read: {error}.", line=1
+        ) from error
 
 
 def fold(text: str) -> str:
