@@ -1,1 +1,33 @@
-"""The federation's files: what they look like, how they are read, and simulated ones written."""
+"""The federation's archive of plain files: the only place that reads it.
+
+`index_archive` says what is there, `read_tow_samples` and `check_samples` read one tow.
+Everything that cannot be used becomes a `Fault` with a reason code; the format and the codes are
+described in `docs/archive.md`.
+"""
+
+from warehouse.archive.faults import REASONS, DefectiveFileError, Fault, Reason, fault_from
+from warehouse.archive.hashes import FileHashes
+from warehouse.archive.index import ArchiveIndex, index_archive
+from warehouse.archive.plausibility import check_samples
+from warehouse.archive.profile import Profiles, SeasonProfile, SetAside
+from warehouse.archive.published import read_published_registers, read_races
+from warehouse.archive.samples import read_samples, read_tow_samples
+
+__all__ = [
+    "REASONS",
+    "ArchiveIndex",
+    "DefectiveFileError",
+    "Fault",
+    "FileHashes",
+    "Profiles",
+    "Reason",
+    "SeasonProfile",
+    "SetAside",
+    "check_samples",
+    "fault_from",
+    "index_archive",
+    "read_published_registers",
+    "read_races",
+    "read_samples",
+    "read_tow_samples",
+]

@@ -1,0 +1,336 @@
+"""Each thing that goes wrong in a real archive is found, and costs no other tow."""
+
+import gzip
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import polars as pl
+import pytest
+
+from tests.warehouse.archive.conftest import (
+    BOATS,
+    FIRST,
+    HEADER,
+    ROWS,
+    TOWS,
+    Archive,
+    Scan,
+    line_of,
+)
+from warehouse.archive import REASONS
+
+Spoil = Callable[[Archive], object]
+ALL = {"2014-001", "2014-002", "2014-003"}
+LAST = line_of(6, ROWS - 1)
+SECOND = "meetdata_2014/tweede boot 6d 2014.csv"
+
+
+def constant(column: int, value: str, first: int, last: int) -> Spoil:
+    return lambda a: a.cells(column, lambda cell, line: value, first, last)
+
+
+def scaled(column: int, factor: float, first: int = 2, last: int = LAST) -> Spoil:
+    def change(cell: str, line: int) -> str:
+        return f"{float(cell.replace(',', '.')) * factor:.3f}"
+
+    return lambda a: a.cells(column, change, first, last)
+
+
+def several(*spoils: Spoil) -> Spoil:
+    def run(a: Archive) -> None:
+        for spoil in spoils:
+            spoil(a)
+
+    return run
+
+
+def header(old: str, new: str) -> Spoil:
+    return lambda a: a.replace(FIRST, old, new)
+
+
+def swap_header(one: str, other: str) -> Spoil:
+    return lambda a: a.replace(
+        FIRST, HEADER, HEADER.replace(one, "@").replace(other, one).replace("@", other)
+    )
+
+
+def text(old: str, new: str, path: str = TOWS) -> Spoil:
+    return lambda a: a.replace(path, old, new)
+
+
+def lines(change: Callable[[list[str]], list[str]], path: str = FIRST) -> Spoil:
+    return lambda a: a.edit(path, lambda content: "\n".join(change(content.split("\n"))))
+
+
+def with_time(step_s: float, spoiled_line: int | None = None) -> Spoil:
+    def change(content: list[str]) -> list[str]:
+        rows = [
+            f"{row};{((number % ROWS) * step_s if number + 2 != spoiled_line else 0):.4f}"
+            for number, row in enumerate(content[1:-1])
+        ]
+        return [content[0] + ";tijd [s]", *rows, ""]
+
+    return lines(change)
+
+
+def copy(source: str, target: str) -> Spoil:
+    return lambda a: shutil.copy(a.root / source, a.root / target)
+
+
+def link_outside(a: Archive) -> None:
+    outside = a.root.parent / "outside.csv"
+    (a.root / FIRST).rename(outside)
+    (a.root / FIRST).symlink_to(outside)
+
+
+def bomb(a: Archive) -> None:
+    (a.root / FIRST).unlink()
+    (a.root / (FIRST + ".gz")).write_bytes(gzip.compress(bytes(420_000_000), compresslevel=1))
+
+
+# name: (what is spoiled, code, path, tow, line)
+TOW_CASES: dict[str, tuple[Spoil, str, str, int | None]] = {
+    "run missing": (lines(lambda c: [r for r in c if not r.startswith("4;")]), "missing_run", FIRST, None),
+    "run short": (lines(lambda c: c[: LAST - 10 - 10]), "short_run", FIRST, line_of(6)),
+    "cut in mid-row": (lines(lambda c: [*c[:3000], "3;2,"]), "broken_row", FIRST, 3001),
+    "too many fields": (lines(lambda c: [*c[:9], c[9] + ";1", *c[10:]]), "broken_row", FIRST, 10),
+    "blank line": (lines(lambda c: [*c[:9], "", *c[9:]]), "broken_row", FIRST, 10),
+    "letters": (constant(4, "abc", 77, 77), "bad_number", FIRST, 77),
+    "empty gps": (constant(3, "", 77, 77), "bad_number", FIRST, 77),
+    "overflow in 32 bits": (constant(4, "1e39", 77, 77), "bad_number", FIRST, 77),
+    "log1 drops out": (constant(1, "0,000", line_of(2, 100), line_of(2, 300)), "log_dropout", FIRST, line_of(2, 100)),
+    "log2 low": (constant(2, "0,1", line_of(5), line_of(5)), "log_dropout", FIRST, line_of(5)),
+    "gps drops out": (constant(3, "0,00", line_of(3, 60), line_of(3, 79)), "gps_dropout", FIRST, line_of(3, 60)),
+    "km/h": (several(scaled(1, 3.6), scaled(2, 3.6), scaled(3, 3.6)), "speed_unit", FIRST, 1),
+    "log1 alone in km/h": (scaled(1, 3.6), "speed_unit", FIRST, 1),
+    "speeds twice": (several(scaled(1, 2), scaled(2, 2), scaled(3, 2)), "implausible_speed", FIRST, line_of(1)),
+    "force as log1": (swap_header("log1 [m/s]", "kracht [N]"), "swapped_columns", FIRST, 1),
+    "force as log2": (swap_header("log2 [m/s]", "kracht [N]"), "swapped_columns", FIRST, 1),
+    "force as gps": (swap_header("gps [m/s]", "kracht [N]"), "swapped_columns", FIRST, 1),
+    "wind exchanged": (swap_header("wind [m/s]", "wind [gra]"), "swapped_columns", FIRST, 1),
+    "force as angle": (swap_header("kracht [N]", "wind [gra]"), "swapped_columns", FIRST, 1),
+    "force far too large": (scaled(4, 1000), "implausible_value", FIRST, line_of(1)),
+    "force spike": (constant(4, "-99999,9", line_of(3, 7), line_of(3, 7)), "implausible_value", FIRST, line_of(3, 7)),
+    "wind too strong": (constant(5, "41", line_of(4, 9), line_of(4, 9)), "implausible_value", FIRST, line_of(4, 9)),
+    "angle too large": (constant(6, "361", line_of(4, 9), line_of(4, 9)), "implausible_value", FIRST, line_of(4, 9)),
+    "gps off": (scaled(3, 1.5, line_of(2), line_of(2, ROWS - 1)), "implausible_value", FIRST, line_of(2)),
+    "sign of force": (scaled(4, -1), "negative_force", FIRST, line_of(1)),
+    "sign of force in a run": (scaled(4, -1, line_of(2), line_of(2, ROWS - 1)), "negative_force", FIRST, line_of(2)),
+    "a negative second": (scaled(4, -1, line_of(2, 40), line_of(2, 59)), "negative_force", FIRST, line_of(2, 40)),
+    "log1 stuck": (constant(1, "2,400", line_of(2, 50), line_of(2, 149)), "stuck_channel", FIRST, line_of(2, 50)),
+    "log2 stuck": (constant(2, "2,400", line_of(2, 50), line_of(2, 149)), "stuck_channel", FIRST, line_of(2, 50)),
+    "force stuck": (constant(4, "230", line_of(2, 50), line_of(2, 149)), "stuck_channel", FIRST, line_of(2, 50)),
+    "cups stuck": (constant(5, "3,5", line_of(2, 50), line_of(2, 249)), "stuck_channel", FIRST, line_of(2, 50)),
+    "vane stuck": (constant(6, "10", line_of(2, 50), line_of(2, 449)), "stuck_channel", FIRST, line_of(2, 50)),
+    "gps stuck over runs": (constant(3, "2,30", line_of(1), line_of(2, ROWS - 1)), "stuck_channel", FIRST, line_of(2)),
+    "gps stuck while the speed changes": (
+        several(
+            constant(3, "2,30", line_of(1), line_of(1, ROWS - 1)),
+            scaled(1, 1.1, line_of(1), line_of(1, 200)),
+        ),
+        "stuck_channel", FIRST, line_of(1),
+    ),
+    "run 7": (constant(0, "7", 500, 500), "unknown_run", FIRST, 500),
+    "run 1,5": (constant(0, "1,5", 500, 500), "unknown_run", FIRST, 500),
+    "run in two pieces": (constant(0, "2", 500, 500), "split_run", FIRST, 501),
+    "time goes back": (with_time(0.05, spoiled_line=500), "bad_time", FIRST, 500),
+    "time at another rate": (with_time(0.051), "bad_time", FIRST, 2),
+    "column missing": (header("kracht [N]", "krach [N]"), "missing_column", FIRST, 1),
+    "column twice": (header("log2", "log1"), "duplicate_column", FIRST, 1),
+    "unknown unit": (header("kracht [N]", "kracht [lbf]"), "unknown_unit", FIRST, 1),
+    "unit of another kind": (header("kracht [N]", "kracht [m/s]"), "unknown_unit", FIRST, 1),
+    "bare wind": (header("wind [m/s];wind [gra]", "wind;wind"), "unknown_unit", FIRST, 1),
+    "empty file": (lambda a: (a.root / FIRST).write_bytes(b""), "unreadable_file", FIRST, None),
+    "header only": (lambda a: (a.root / FIRST).write_text(HEADER), "unreadable_file", FIRST, None),
+    "UTF-16": (lambda a: a.root.joinpath(FIRST).write_bytes(HEADER.encode("utf-16")), "unreadable_file", FIRST, None),
+    "neither encoding": (lambda a: (a.root / FIRST).write_bytes(b"run;\x81\n1;2\n"), "unreadable_file", FIRST, None),
+    "unpacks to gigabytes": (bomb, "too_large", FIRST + ".gz", None),
+    "link outside": (link_outside, "path_outside_archive", FIRST, None),
+    "no file": (lambda a: (a.root / FIRST).unlink(), "samples_missing", TOWS, 2),
+    "two files": (copy(FIRST, FIRST.replace("eerste", "Eerste")), "ambiguous_file", TOWS, 2),
+    "boat unknown": (text("FSN1;", "FSN9;"), "unknown_boat", TOWS, 2),
+    "day set aside": (
+        lambda a: (a.root / "archief.toml").write_text('[[set_aside]]\ndate = 2014-03-01\nreason = "storm"\n'),
+        "day_set_aside", TOWS, 2,
+    ),
+    "date of another year": (text("2014-03-01", "2013-03-01"), "date_outside_season", TOWS, 2),
+    "no such date": (text("2014-03-01", "2014-02-30"), "bad_list_row", TOWS, 2),
+    "no speed": (text("H;2,40", "H;"), "bad_list_row", TOWS, 2),
+    "speed in km/h": (text("H;2,40", "H;8,64"), "bad_list_row", TOWS, 2),
+    "length in cm": (text(";8,00;", ";800;"), "bad_list_row", TOWS, 2),
+    "class": (text("8;H;2,40", "8;X;2,40"), "bad_list_row", TOWS, 2),
+    "rowers not whole": (text("8;H;2,40", "8,5;H;2,40"), "bad_list_row", TOWS, 2),
+    "run b1 without second file": (text("1,2,3,4,5,6", "1,2,3,b4"), "bad_list_row", TOWS, 2),
+    "run 9": (text("1,2,3,4,5,6", "1,2,9"), "bad_list_row", TOWS, 2),
+    "verbouwd": (text("nee", "misschien"), "bad_list_row", TOWS, 2),
+    "row too short": (text(";20;\n", "\n"), "bad_list_row", TOWS, 2),
+}  # fmt: skip
+
+
+def assert_others_unchanged(scan: Scan, good: Scan, lost: set[str]) -> None:
+    assert set(scan.good) == ALL - lost
+    for tow_id, samples in scan.good.items():
+        assert samples.equals(good.good[tow_id])
+        of_tow = pl.col("tow_id") == tow_id
+        same = pl.exclude("list_line")
+        left, right = (s.index.tows.filter(of_tow).select(same) for s in (scan, good))
+        assert left.equals(right)
+        assert scan.index.runs.filter(of_tow).equals(good.index.runs.filter(of_tow))
+
+
+def test_good_archive_has_no_faults(good_scan: Scan) -> None:
+    assert good_scan.faults == []
+    assert set(good_scan.good) == ALL
+
+
+@pytest.mark.parametrize("case", TOW_CASES)
+def test_one_bad_tow(archive: Archive, good_scan: Scan, case: str) -> None:
+    spoil, code, path, line = TOW_CASES[case]
+    spoil(archive)
+    scan = archive.scan()
+    found = [(f.reason_code, f.path, f.tow_id, f.line) for f in scan.faults]
+    assert found == [(code, path, "2014-001", line)], scan.faults
+    assert len(scan.faults[0].message) > 20
+    assert_others_unchanged(scan, good_scan, {"2014-001"})
+
+
+def second_row(**changes: str) -> Callable[[list[str]], list[str]]:
+    """Append a row like the first with some of its text replaced."""
+
+    def change(content: list[str]) -> list[str]:
+        row = content[1]
+        for old, new in changes.items():
+            row = row.replace(old.removeprefix("_").replace("_", "-"), new, 1)
+        return [*content[:-1], row, ""]
+
+    return change
+
+
+# name: (what is spoiled, the faults as (code, path, tow, line), the tows lost)
+MANY_CASES: dict[str, tuple[Spoil, list[tuple[str, str, str | None, int | None]], set[str]]] = {
+    "file without row": (
+        copy(FIRST, "meetdata_2014/vreemd.csv"),
+        [("samples_not_listed", "meetdata_2014/vreemd.csv", None, None)], set(),
+    ),
+    "path up": (
+        text("eerste boot 8h", "../meetdata_2014/eerste boot 8h"),
+        [("path_outside_archive", TOWS, "2014-001", 2), ("samples_not_listed", FIRST, None, None)],
+        {"2014-001"},
+    ),
+    "absolute path": (
+        text("eerste boot 8h 2014", "/etc/passwd"),
+        [("path_outside_archive", TOWS, "2014-001", 2), ("samples_not_listed", FIRST, None, None)],
+        {"2014-001"},
+    ),
+    "equal rows": (
+        lines(second_row(), TOWS), [("duplicate_tow_id", TOWS, "2014-001", 5)], set(),
+    ),
+    "one id, different rows": (
+        lines(second_row(FSN1="FSN2"), TOWS),
+        [("duplicate_tow_id", TOWS, "2014-001", 2), ("duplicate_tow_id", TOWS, "2014-001", 5)],
+        {"2014-001"},
+    ),
+    "file listed twice": (
+        lines(second_row(_2014_001="2014-009"), TOWS),
+        [("duplicate_tow", TOWS, "2014-009", 5)], set(),
+    ),
+    "copied file": (
+        several(
+            copy(FIRST, "meetdata_2014/kopie.csv"),
+            lines(lambda c: [*c[:-1], c[1].replace("2014-001", "2014-009").replace("eerste boot 8h 2014", "kopie"), ""], TOWS),
+        ),
+        [("duplicate_tow", TOWS, "2014-009", 5)], set(),
+    ),
+    "file of two boats": (
+        text("tweede boot 6d 2014", "eerste boot 8h 2014"),
+        [
+            ("samples_not_listed", SECOND, None, None),
+            ("samples_listed_twice", TOWS, "2014-001", 2),
+            ("samples_listed_twice", TOWS, "2014-002", 3),
+        ],
+        {"2014-001", "2014-002"},
+    ),
+    "second file of another boat": (
+        text("tweede boot 6d 2014;", "tweede boot 6d 2014;eerste boot 8h 2014"),
+        [
+            ("samples_listed_twice", TOWS, "2014-001", 2),
+            ("samples_listed_twice", TOWS, "2014-002", 3),
+        ],
+        {"2014-001", "2014-002"},
+    ),
+    "boat row defective": (
+        text("8,08", "acht", BOATS),
+        [("bad_boat_row", TOWS, "2014-001", 2), ("bad_boat_row", BOATS, None, 2)], {"2014-001"},
+    ),
+    "boat twice": (
+        lambda a: a.edit(BOATS, lambda t: t + "FSN1;0001;eerste boot;;8,08;2,25;0,90;1417;8;H\n"),
+        [("duplicate_boat", TOWS, "2014-001", 2), ("duplicate_boat", BOATS, None, 5)],
+        {"2014-001"},
+    ),
+    "equal boats": (
+        lambda a: a.edit(BOATS, lambda t: t + t.split("\n")[1] + "\n"), [], set(),
+    ),
+    "tow list unreadable": (
+        lambda a: (a.root / TOWS).write_bytes(b"\x00\x01"),
+        [("unreadable_file", TOWS, None, None)], ALL,
+    ),
+    "tow list without boats": (
+        text("fsn_nr", "boot"), [("missing_column", TOWS, None, 1)], ALL,
+    ),
+    "copy of a list": (
+        copy(TOWS, "sleeplijsten/sleeplijst_2014 (2).csv"),
+        [("unrecognised_file", "sleeplijsten/sleeplijst_2014 (2).csv", None, None)], set(),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", MANY_CASES)
+def test_faults_between_rows_boats_and_files(archive: Archive, good_scan: Scan, case: str) -> None:
+    spoil, expected, lost = MANY_CASES[case]
+    spoil(archive)
+    scan = archive.scan()
+    found = [(f.reason_code, f.path, f.tow_id, f.line) for f in scan.faults]
+    assert sorted(found, key=repr) == sorted(expected, key=repr)
+    assert_others_unchanged(scan, good_scan, lost)
+
+
+@pytest.mark.parametrize(
+    "number", ["1e999", "0x12", "1_000", "--", "٣", "nan", "inf", "1.000,5", ""]
+)
+def test_no_numbers_from_garbage(archive: Archive, number: str) -> None:
+    archive.cells(4, lambda cell, line: number, 77, 77)
+    faults = archive.scan().faults
+    assert [(f.reason_code, f.line) for f in faults] == [("bad_number", 77)]
+
+
+@pytest.mark.parametrize(
+    "selection", ["2,3,4,5,6", "2 3 4 5 6", "6,5,4,3,2"], ids=["commas", "blanks", "order"]
+)
+def test_a_fault_in_a_run_that_is_not_used_does_no_harm(archive: Archive, selection: str) -> None:
+    archive.cells(1, lambda cell, line: "0", line_of(1), line_of(1, 200))
+    archive.replace(TOWS, "1,2,3,4,5,6", selection)
+    assert archive.scan().faults == []
+
+
+def test_a_mended_tow_comes_back(archive: Archive, good_scan: Scan) -> None:
+    kept = (archive.root / FIRST).read_bytes()
+    archive.cells(4, lambda cell, line: "abc", 77, 77)
+    assert archive.scan().faults
+    (archive.root / FIRST).write_bytes(kept)
+    assert_others_unchanged(archive.scan(), good_scan, set())
+
+
+def test_an_unreadable_list_costs_only_its_own_season(archive: Archive) -> None:
+    (archive.root / "sleeplijsten/sleeplijst_2015.csv").write_bytes(b"\xff\x00")
+    (archive.root / "meetdata_2015").mkdir()
+    shutil.copy(archive.root / FIRST, archive.root / "meetdata_2015/x.csv")
+    scan = archive.scan()
+    assert [f.reason_code for f in scan.faults] == ["unreadable_file"]
+    assert set(scan.good) == ALL
+
+
+def test_every_reason_code_is_explained_in_the_documentation() -> None:
+    page = Path(__file__).parents[3].joinpath("docs/archive.md").read_text("utf-8")
+    for code, reason in REASONS.items():
+        assert f"| `{code}` | {reason.description} | {reason.way_out} |" in page

@@ -1,0 +1,270 @@
+"""Every allowed spelling of a samples file reads to the same frame."""
+
+import gzip
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import polars as pl
+import pyarrow as pa
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pipeline.channels import SAMPLE_SCHEMA
+from pipeline.errors import DefectiveInputError
+from tests.warehouse.archive.conftest import FIRST, HEADER, TOWS, Archive, Scan
+from warehouse.archive import REASONS, SeasonProfile, read_samples
+from warehouse.archive.text import parse_number
+
+PROFILE = SeasonProfile(season=2014)
+ROWS = [
+    "1;2,000;1,950;2,10;200,5;3,25;350,0",
+    "1;2,100;1,960;2,10;-12,5;3,5;-10,0",
+    "3;2,2;1,97;2,2;2e2;0;0",
+    "2;2,3;1,98;2,3;+210;0,5;360",
+]
+PLAIN = "\n".join([HEADER, *ROWS, ""])
+EXPECTED = pl.DataFrame(
+    {
+        "run": [1, 1, 3, 2],
+        "log1_m_s": [2.0, 2.1, 2.2, 2.3],
+        "log2_m_s": [1.95, 1.96, 1.97, 1.98],
+        "gps_m_s": [2.1, 2.1, 2.2, 2.3],
+        "force_n": [200.5, -12.5, 200.0, 210.0],
+        "wind_speed_m_s": [3.25, 3.5, 0.0, 0.5],
+        "wind_angle_deg": [350.0, 350.0, 0.0, 0.0],
+    },
+    schema=SAMPLE_SCHEMA,
+)
+
+
+def point(text: str) -> str:
+    return text.replace(",", ".")
+
+
+def quoted(text: str) -> str:
+    return "\n".join(
+        ",".join(f'"{cell}"' for cell in line.split(";")) if line else ""
+        for line in text.split("\n")
+    )
+
+
+def extra_columns(text: str) -> str:
+    lines = text.rstrip("\n").split("\n")
+    return "\n".join([f"druk [Pa];{lines[0]};", *(f"één;{line};" for line in lines[1:])])
+
+
+def reversed_columns(text: str) -> str:
+    return "\n".join(";".join(reversed(line.split(";"))) for line in text.split("\n"))
+
+
+SPELLINGS: dict[str, Callable[[str], bytes]] = {
+    "plain": str.encode,
+    "decimal point": lambda t: point(t).encode(),
+    "BOM": lambda t: t.encode("utf-8-sig"),
+    "Windows-1252": lambda t: extra_columns(t).encode("cp1252"),
+    "extra columns": lambda t: extra_columns(t).encode(),
+    "CRLF": lambda t: t.replace("\n", "\r\n").encode(),
+    "no last line end": lambda t: t.rstrip("\n").encode(),
+    "blank lines at the end": lambda t: (t + "\n\r\n").encode(),
+    "tab": lambda t: t.replace(";", "\t").encode(),
+    "comma and point": lambda t: point(t).replace(";", ",").encode(),
+    "comma and quoted decimal comma": lambda t: quoted(t).encode(),
+    "quoted cells": lambda t: quoted(t).replace('","', '";"').encode(),
+    "blanks in cells": lambda t: t.replace(";", " ; ").encode(),
+    "header case and blanks": lambda t: t.replace(HEADER, HEADER.upper().replace("[", "  [ ")).encode(),
+    "no units": lambda t: t.replace("log1 [m/s]", "log1").replace("kracht [N]", "kracht").encode(),
+    "one bare wind": lambda t: t.replace("wind [m/s]", "wind").encode(),
+    "deg": lambda t: t.replace("gra", "deg").encode(),
+    "other order": lambda t: reversed_columns(t).encode(),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("spelling", SPELLINGS)
+def test_spelling_reads_to_the_same_frame(tmp_path: Path, spelling: str) -> None:
+    path = tmp_path / "x.csv"
+    path.write_bytes(SPELLINGS[spelling](PLAIN))
+    assert read_samples(path, PROFILE).equals(EXPECTED)
+
+
+def test_compressed_and_parquet_read_to_the_same_frame(tmp_path: Path) -> None:
+    (tmp_path / "x.CSV.GZ").write_bytes(gzip.compress(PLAIN.encode()))
+    (tmp_path / "x.csv.zst").write_bytes(pa.Codec("zstd").compress(PLAIN.encode(), asbytes=True))
+    headers = HEADER.split(";")
+    EXPECTED.rename(dict(zip(EXPECTED.columns, headers, strict=True))).write_parquet(
+        tmp_path / "x.parquet"
+    )
+    for name in ("x.CSV.GZ", "x.csv.zst", "x.parquet"):
+        assert read_samples(tmp_path / name, PROFILE).equals(EXPECTED), name
+
+
+@pytest.mark.parametrize(
+    ("header", "unit", "column", "factor"),
+    [
+        ("log1 [m/s]", "km/h", "log1_m_s", 1 / 3.6),
+        ("log1 [m/s]", "kn", "log1_m_s", 1852 / 3600),
+        ("kracht [N]", "kgf", "force_n", 9.80665),
+    ],
+)
+def test_units_are_converted(
+    tmp_path: Path, header: str, unit: str, column: str, factor: float
+) -> None:
+    path = tmp_path / "x.csv"
+    path.write_text(PLAIN.replace(header, f"{header.split()[0]} [{unit}]"))
+    expected = (EXPECTED[column].cast(pl.Float64()) * factor).to_list()
+    assert read_samples(path, PROFILE)[column].to_list() == pytest.approx(expected, rel=1e-6)
+
+
+def test_radians_are_converted_and_normalised(tmp_path: Path) -> None:
+    path = tmp_path / "x.csv"
+    path.write_text(f"{HEADER.replace('gra', 'rad')}\n1;2;2;2;200;3;{-math.pi / 2:.9f}\n")
+    assert read_samples(path, PROFILE)["wind_angle_deg"].to_list() == pytest.approx([270.0])
+
+
+@pytest.mark.parametrize("gps", ["absent", "empty"])
+def test_gps_may_be_absent_throughout(tmp_path: Path, gps: str) -> None:
+    columns = [0, 1, 2, 4, 5, 6]
+    path = tmp_path / "x.csv"
+    split = [line.split(";") for line in [HEADER, *ROWS]]
+    if gps == "absent":
+        split = [[line[index] for index in columns] for line in split]
+    else:
+        split[1:] = [[*line[:3], "", *line[4:]] for line in split[1:]]
+    path.write_text("\n".join(";".join(line) for line in split))
+    samples = read_samples(path, PROFILE)
+    assert samples["gps_m_s"].null_count() == len(ROWS)
+    assert samples.drop("gps_m_s").equals(EXPECTED.drop("gps_m_s"))
+
+
+def test_profile_renames_columns_and_their_units(archive: Archive, good_scan: Scan) -> None:
+    archive.replace(FIRST, "log1 [m/s]", "snelheid A")
+    (archive.root / "archief.toml").write_text(
+        '[[profile]]\nseasons = "2013:2014"\ncolumns = { log1 = "Snelheid a" }\n'
+    )
+    scan = archive.scan()
+    assert scan.good["2014-001"].equals(good_scan.good["2014-001"])
+    # The other files have no such column any more: a profile holds for a whole season.
+    assert {f.reason_code for f in scan.faults} == {"missing_column"}
+
+
+@pytest.mark.parametrize(
+    "name", ["EERSTE BOOT 8H 2014", " eerste  boot 8h 2014 ", "eerste boot 8h 2014.csv", "Eerste boot 8h 2014.CSV"]
+)  # fmt: skip
+def test_meetfile_is_matched_forgivingly(archive: Archive, good_scan: Scan, name: str) -> None:
+    archive.replace(TOWS, "eerste boot 8h 2014", name)
+    scan = archive.scan()
+    assert scan.faults == []
+    assert scan.index.tows.equals(good_scan.index.tows)
+
+
+def test_meetfile_is_matched_in_any_unicode_form(archive: Archive) -> None:
+    (archive.root / FIRST).rename(archive.root / "meetdata_2014/e\u0301e\u0301n.csv")
+    archive.replace(TOWS, "eerste boot 8h 2014", "\u00e9\u00e9n")
+    assert archive.scan().faults == []
+
+
+@given(
+    st.decimals(
+        min_value="-99999.999",
+        max_value="99999.999",
+        places=3,
+        allow_nan=False,
+        allow_infinity=False,
+    )
+)
+def test_numbers_survive_writing_and_reading(number: object) -> None:
+    plain = str(number)
+    assert parse_number(plain) == float(plain)
+    assert parse_number(f" {plain.replace('.', ',')} ") == float(plain)
+
+
+@given(st.text(max_size=12))
+def test_text_is_a_number_only_if_python_agrees(text: str) -> None:
+    try:
+        number = parse_number(text)
+    except ValueError:
+        return
+    assert math.isfinite(number)
+    assert number == float(text.replace(",", "."))
+
+
+CELLS = st.sampled_from(
+    ["1", "2,5", "2.5", " 3", "3 ", "5,", ",5", "1e3", "1e999", "nan", "", "-", "a", '"2"', "1e39"]
+)
+
+
+@settings(max_examples=150)
+@given(st.lists(st.lists(CELLS, min_size=6, max_size=8), min_size=1, max_size=4))
+def test_fast_reading_gives_what_careful_reading_gives(
+    tmp_path_factory: pytest.TempPathFactory, rows: list[list[str]]
+) -> None:
+    from warehouse.archive import samples
+
+    data = "\n".join([HEADER, *(";".join(["1", *row[1:]]) for row in rows)]).encode()
+    body = samples._split_header(data, PROFILE)
+    fast = samples._read_fast(body)
+    if fast is not None:
+        assert fast.select(sorted(fast.columns)).equals(
+            samples._read_carefully(body).select(sorted(fast.columns))
+        )
+
+
+@settings(max_examples=300)
+@given(st.data())
+def test_spoiled_bytes_are_read_or_set_aside_and_nothing_else(
+    tmp_path_factory: pytest.TempPathFactory, data: st.DataObject
+) -> None:
+    content = bytearray(PLAIN.encode())
+    for _ in range(data.draw(st.integers(1, 4))):
+        at = data.draw(st.integers(0, len(content) - 1))
+        match data.draw(st.sampled_from(["set", "insert", "cut"])):
+            case "set":
+                content[at] = data.draw(st.integers(0, 255))
+            case "insert":
+                content[at:at] = data.draw(st.binary(max_size=4))
+            case _:
+                del content[at : at + data.draw(st.integers(0, 20))]
+        content = content or bytearray(b"\n")
+    path = tmp_path_factory.getbasetemp() / "spoiled.csv"
+    path.write_bytes(content)
+    try:
+        samples = read_samples(path, PROFILE)
+    except DefectiveInputError as error:
+        assert error.reason_code in REASONS
+    else:
+        assert samples.schema == pl.Schema(SAMPLE_SCHEMA)
+        numbers = samples.drop("gps_m_s").select(pl.all().cast(pl.Float64()).is_finite().all())
+        assert all(numbers.row(0))
+
+
+@pytest.mark.parametrize("suffix", [".parquet", ".csv.gz", ".csv.zst"])
+@settings(max_examples=30)
+@given(cut=st.integers(0, 400), byte=st.integers(0, 255))
+def test_damaged_packed_files_are_set_aside(
+    tmp_path_factory: pytest.TempPathFactory, suffix: str, cut: int, byte: int
+) -> None:
+    path = tmp_path_factory.getbasetemp() / f"damaged{suffix}"
+    if suffix == ".parquet":
+        EXPECTED.rename(dict(zip(EXPECTED.columns, HEADER.split(";"), strict=True))).write_parquet(
+            path
+        )
+    else:
+        packed = (
+            gzip.compress(PLAIN.encode())
+            if suffix == ".csv.gz"
+            else pa.Codec("zstd").compress(PLAIN.encode(), asbytes=True)
+        )
+        path.write_bytes(packed)
+    content = bytearray(path.read_bytes())
+    at = cut % len(content)
+    path.write_bytes(bytes(content[:at]))
+    with pytest.raises(DefectiveInputError) as raised:
+        read_samples(path, PROFILE)
+    assert raised.value.reason_code in REASONS
+    content[at] = byte
+    path.write_bytes(content)
+    try:
+        read_samples(path, PROFILE)
+    except DefectiveInputError as error:
+        assert error.reason_code in REASONS
