@@ -17,7 +17,9 @@ from herijk import text
 from herijk.progress import TerminalProgress
 from pipeline.errors import HerijkError
 from pipeline.method import shipped_method, shipped_methods, shipped_text
+from pipeline.simulate import WorldSettings, simulate_world
 from warehouse import reports
+from warehouse.archive.write import write_simulated_archive
 from warehouse.store import Store
 
 app = typer.Typer(
@@ -124,7 +126,13 @@ def simulate(
     seed: Annotated[int, typer.Option(min=0)] = 1,
 ) -> None:
     """Write a simulated archive with known truth (the truth lies beside it, not in it)."""
-    raise NotImplementedError
+    settings = WorldSettings(tuple(seasons), tows_per_season, rate, seed)
+    with TerminalProgress() as progress:
+        progress.expect(len(seasons) * tows_per_season)
+        truth = write_simulated_archive(
+            directory, simulate_world(settings), lambda done, _: progress.tow_read(str(done), False)
+        )
+    typer.echo(f"Simulated archive: {directory}\nIts truth: {truth}")
 
 
 def _show(report: dict[str, Any], as_text: Any, as_json: bool) -> None:

@@ -4,6 +4,7 @@ The lists of the archive are indexed on every rebuild (they are small); samples 
 season's fingerprint says that something changed. Reading one season's files is `warehouse.lake`.
 """
 
+import dataclasses
 from collections.abc import Collection
 from pathlib import Path
 from typing import Final
@@ -11,9 +12,8 @@ from typing import Final
 import polars as pl
 
 from warehouse import lake
-from warehouse.archive.hashes import FileHashes
-from warehouse.archive.index import ArchiveIndex, index_archive
-from warehouse.archive.profile import Profiles, read_profiles
+from warehouse.archive import ArchiveIndex, FileHashes, Profiles, index_archive
+from warehouse.archive.profile import read_profiles
 from warehouse.store import Store, fingerprint
 
 LISTED: Final = ("boats", "tows", "runs")
@@ -37,7 +37,7 @@ def index(store: Store, root: Path) -> ArchiveIndex:
     hashes.save(store.file_hashes)
     for name in LISTED:
         store.write(f"listed_{name}", getattr(found, name), made_from="")
-    faults = pl.DataFrame([vars(f) for f in found.faults], schema=FAULT_SCHEMA)
+    faults = pl.DataFrame([dataclasses.asdict(f) for f in found.faults], schema=FAULT_SCHEMA)
     store.write("list_faults", faults, made_from="")
     store.write("about_archive", pl.DataFrame({"simulated": [found.profiles.simulated]}), "")
     return found

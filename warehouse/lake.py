@@ -20,9 +20,7 @@ import pipeline.channels
 from pipeline.blocks import block_sums
 from pipeline.errors import DefectiveInputError
 from warehouse import archive
-from warehouse.archive.plausibility import check_samples
-from warehouse.archive.profile import SeasonProfile
-from warehouse.archive.samples import read_tow_samples
+from warehouse.archive import SeasonProfile, check_samples, read_tow_samples
 from warehouse.code import source_hash
 from warehouse.files import written_beside
 from warehouse.store import Store, fingerprint, write_parquet
@@ -127,6 +125,11 @@ def _bring_in(
         }
     count = pl.scan_parquet(path).select(pl.len()).collect().item()
     return row | {"blocks_key": blocks_key, "samples": count}
+
+
+def forget_season(store: Store, season: int) -> None:
+    """Removes the samples and blocks of a season that the archive no longer lists."""
+    _remove_unlisted(store, season, pl.DataFrame(schema=SEASON_INDEX_SCHEMA))
 
 
 def write_samples(samples: pl.DataFrame, path: Path) -> None:
