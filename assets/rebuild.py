@@ -14,7 +14,6 @@ import dagster as dg
 
 from assets.definitions import APPLY, COLLECT, FINISH, INDEX, READ, build_defs
 from assets.resources import Progress, Setup
-from pipeline.errors import HerijkError
 from warehouse import intake, tables
 from warehouse.files import written_beside
 from warehouse.store import Store
@@ -89,7 +88,7 @@ def _finish(jobs: "_Jobs", setup: Setup, progress: Progress) -> bool:
 
 
 class _Jobs:
-    """Runs jobs in process; an error of ours comes out as it was raised."""
+    """Runs jobs in process; an error comes out as the step raised it."""
 
     def __init__(self, defs: dg.Definitions, instance: dg.DagsterInstance) -> None:
         self.defs, self.instance = defs, instance
@@ -97,20 +96,9 @@ class _Jobs:
     def run(self, job: str, partition: str | None = None) -> None:
         if job == READ and partition is not None:
             self.instance.add_dynamic_partitions("season", [partition])
-        try:
-            self.defs.resolve_job_def(job).execute_in_process(
-                instance=self.instance, partition_key=partition, run_config=QUIET_LOG
-            )
-        except dg.DagsterError as error:
-            raise _ours(error) from error
-
-
-def _ours(error: BaseException) -> BaseException:
-    """The error that a step raised, without Dagster's wrapping."""
-    cause: BaseException | None = error
-    while cause is not None and not isinstance(cause, HerijkError):
-        cause = cause.__cause__ or getattr(cause, "user_exception", None)
-    return cause or error
+        self.defs.resolve_job_def(job).execute_in_process(
+            instance=self.instance, partition_key=partition, run_config=QUIET_LOG
+        )
 
 
 @contextmanager

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Protocol
 
 import dagster as dg
+from pydantic import Field
 
 from pipeline.method import Method, shipped_method, shipped_methods
 from warehouse.store import Store
@@ -17,7 +18,7 @@ class Setup(dg.ConfigurableResource):
 
     archive: str
     data: str
-    methods: list[str] = list(shipped_methods())
+    methods: list[str] = Field(default_factory=lambda: list(shipped_methods()))
 
     @property
     def archive_root(self) -> Path:

@@ -82,9 +82,9 @@ class Batch:
         first = np.searchsorted(self.tow, self.tow, side="left")
         return np.asarray(np.arange(len(self.tow)) - first, dtype=np.int64)
 
-    def by_tow(self, values: FloatArray | BoolArray) -> FloatArray | BoolArray:
+    def by_tow(self, values: FloatArray | BoolArray) -> FloatArray:
         """A run quantity as one row a tow, shape (tows, most runs of a tow); 0 where no run is."""
         place = self.place
-        rows = np.zeros((self.size, int(place.max(initial=0)) + 1), dtype=values.dtype)
+        rows = np.zeros((self.size, int(place.max(initial=0)) + 1))
         rows[self.tow, place] = values
         return rows

@@ -13,7 +13,8 @@ The sums of one block, over its `n` samples, with F the tow force, v a speed sou
 - `<source>_cw`, `<source>_cw2`: F/v^2 [kg/m] and its square
 - `<term>_<side>`: the air term of `pipeline.wind` [m2/s2], for wind from `ahead` and from `behind`
 - `<source>_<term>_<side>`: the same divided by v^2
-- `wind_v`, `wind_v2`: w, w^2; `wind_cos`, `wind_sin`: cos a, sin a; `wind_x`, `wind_y`: w cos a, w sin a
+- `wind_v`, `wind_v2`: w, w^2; `wind_cos`, `wind_sin`: cos a, sin a
+- `wind_x`, `wind_y`: w cos a, w sin a
 - `gps`, `gps2`, `gps_n`: ground speed, its square, and how many samples have one
 """
 
@@ -102,8 +103,9 @@ def _terms(samples: pl.DataFrame) -> Iterator[tuple[str, FloatArray]]:
 def _air_terms(along_m_s: FloatArray, cos: FloatArray, sin: FloatArray) -> dict[str, FloatArray]:
     """The three squares of wind speed that air force is proportional to, signed, in m2/s2.
 
-    `head` is u|u| with u = w cos a, the wind along the course (old rule); `front` and `side` weigh it with |cos a| and
-    |sin a| (oblique rule of 2015). Sources: presentation 2015, "Windweerstand", "Dwarse tegenwind".
+    `head` is u|u| with u = w cos a, the wind along the course (old rule); `front` and `side` weigh
+    it with |cos a| and |sin a| (oblique rule of 2015). Sources: presentation 2015,
+    "Windweerstand" and "Dwarse tegenwind".
     """
     head = along_m_s * np.abs(along_m_s)
     terms = {"head": head, "front": head * np.abs(cos), "side": head * np.abs(sin)}

@@ -136,7 +136,7 @@ def _spread(pairs: pl.DataFrame) -> dict[str, float | int | None]:
     if n == 0:
         return {"n_pairs": 0}
     total = float((difference**2).sum())
-    low, high = stats.chi2.ppf([0.5 + LEVEL / 2, 0.5 - LEVEL / 2], n)
+    low, high = stats.chi2.ppf(0.5 + LEVEL / 2, n), stats.chi2.ppf(0.5 - LEVEL / 2, n)
     return {
         "n_pairs": n,
         "sd_ratio": np.sqrt(total / (2 * n)),

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import polars as pl
+from numpy.typing import ArrayLike
 
 from pipeline import curve
-from pipeline.arrays import BoolArray, FloatArray, IntArray
+from pipeline.arrays import BoolArray, FloatArray
 from pipeline.assessment import Observed, flags_of
 from pipeline.batch import Batch
 from pipeline.method import Steps
@@ -63,7 +64,7 @@ class Outcome:
     @property
     def used(self) -> BoolArray:
         """Runs that count."""
-        return self.reasons == ""
+        return np.asarray(self.reasons == "")
 
 
 def as_tables(method: str, outcomes: Sequence[Outcome]) -> Recomputed:
@@ -185,7 +186,7 @@ def _log_factors(o: Outcome) -> pl.DataFrame:
     )
 
 
-def _column(name: str, values: FloatArray | IntArray, known: BoolArray) -> pl.Series:
+def _column(name: str, values: ArrayLike, known: BoolArray) -> pl.Series:
     """A column of numbers, null where nothing is known or the number is infinite."""
     numbers = np.asarray(values, dtype=np.float64)
     sound = known & np.isfinite(numbers)

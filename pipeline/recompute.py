@@ -106,7 +106,7 @@ class _Prepared:
     @property
     def used(self) -> BoolArray:
         """Runs that count, shape (runs,)."""
-        return self.reasons == ""
+        return np.asarray(self.reasons == "")
 
     @property
     def speed_m_s(self) -> FloatArray:
@@ -135,7 +135,7 @@ class _Prepared:
         return curve.Points(
             batch.by_tow(self.speed_m_s),
             batch.by_tow(cw_kg_m),
-            batch.by_tow(sound & (cw_kg_m > 0) & (self.speed_m_s > 0)).astype(bool),
+            batch.by_tow(sound & (cw_kg_m > 0) & (self.speed_m_s > 0)) > 0,
         )
 
 
@@ -299,7 +299,7 @@ def _misfit(prepared: _Prepared, coefficient: float) -> FloatArray:
 def _best_per_tow(prepared: _Prepared) -> FloatArray:
     """One coefficient per tow within its bounds, by trying all of a fine grid, shape (tows,)."""
     misfits = np.stack([_misfit(prepared, c) for c in PER_TOW_GRID])
-    return PER_TOW_GRID[misfits.argmin(axis=0)]
+    return np.asarray(PER_TOW_GRID[misfits.argmin(axis=0)], dtype=np.float64)
 
 
 def _archive_coefficient(prepared: list[_Prepared]) -> float | None:

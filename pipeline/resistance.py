@@ -126,7 +126,7 @@ def _end_speed_change(batch: Batch, window: BoolArray, source: str) -> FloatArra
     first = window & (order <= END_SECONDS)
     last = window & (order > (length - END_SECONDS)[:, None])
     rise = batch.blocks.mean(f"{source}_v", last) - batch.blocks.mean(f"{source}_v", first)
-    return rise / np.maximum(length - END_SECONDS, 1)
+    return np.asarray(rise / np.maximum(length - END_SECONDS, 1), dtype=np.float64)
 
 
 def _inertia(

@@ -45,9 +45,3 @@ def _comment(connection: duckdb.DuckDBPyConnection, name: str) -> None:
 
 def _quoted(text: str | None) -> str:
     return "'" + (text or "").replace("'", "''") + "'"
-
-
-def read_table(path: Path, name: str) -> pl.DataFrame:
-    """A table of the database, in the order in which it was written."""
-    with duckdb.connect(path, read_only=True) as connection:
-        return connection.execute(f'SELECT * FROM "{name}"').pl()  # noqa: S608

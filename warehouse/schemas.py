@@ -38,8 +38,8 @@ def _season() -> dy.Int32:
     return dy.Int32(description="year of the tow list", min=1990, max=2100)
 
 
-def _rowers(**rules: Any) -> dy.Int16:
-    return dy.Int16(description="rowers the curve is valid for", min=1, max=24, **rules)
+def _rowers(**rules: Any) -> dy.Int32:
+    return dy.Int32(description="rowers the curve is valid for", min=1, max=24, **rules)
 
 
 def _crew_class(**rules: Any) -> dy.String:
@@ -84,7 +84,9 @@ class Tows(dy.Schema):
         "1", "speed correction entered by hand, 0.06 for 6 %", nullable=True, min=-0.5, max=0.5
     )
     altered = dy.Bool(description="the boat was altered since its previous tow")
-    sample_rate_hz = _number("Hz", "samples a second", min_exclusive=0)
+    sample_rate_hz = dy.Int32(
+        description="samples a second", metadata={"unit": "Hz"}, min_exclusive=0
+    )
     empty_thwart = _text("thwart left free", nullable=True)
     freeboard_lowest_m = _number("m", "freeboard at its lowest", nullable=True)
     freeboard_bow_m = _number("m", "freeboard at the bow", nullable=True)
