@@ -76,6 +76,8 @@ def test_a_fault_in_the_second_file_names_that_file_and_its_line(archive: Archiv
 
 def test_natural_oddities_are_no_faults(archive: Archive) -> None:
     archive.cells(4, lambda cell, line: "-67", line_of(1, 10), line_of(1, 14))  # surge
+    archive.cells(1, lambda cell, line: "2,64", line_of(3), line_of(3, 98))  # just under 5 s
+    archive.edit(FIRST, lambda text: "\n".join(text.split("\n")[:-11]))  # 49.5 s in run 6
     archive.cells(5, lambda cell, line: "0", line_of(2), line_of(2, 300))  # cups stall
     archive.cells(6, lambda cell, line: "80", line_of(2), line_of(2, 300))  # no wind to turn it
     archive.cells(3, lambda cell, line: "2,40", line_of(2), line_of(2, ROWS - 1))  # held fix
@@ -104,6 +106,7 @@ def test_the_profile_sets_rate_and_directions(archive: Archive) -> None:
         ('[[profile]]\nseasons = "2014"\nunits = { force = "lbf" }', "lbf"),
         ('[[profile]]\nseasons = "2014:2012"', "2014:2012"),
         ('[[profile]]\nseasons = "2012:2014"\n[[profile]]\nseasons = "2014"', "2014"),
+        ('[[profile]]\nseasons = "2014"\ncolumns = { force = "trek [N]" }', "trek [N]"),
         ("[[set_aside]]\ndate = 2014-03-01", "reason"),
         ("simulated = ", "TOML"),
     ],
