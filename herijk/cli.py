@@ -14,6 +14,7 @@ from typing import Annotated, Any
 import typer
 
 from herijk import text
+from herijk.method_text import method_in_words
 from herijk.progress import TerminalProgress
 from pipeline.errors import HerijkError, MissingKnowledgeError
 from pipeline.method import Method, parse_method, shipped_method, shipped_methods, shipped_text
@@ -102,7 +103,7 @@ def show_method(name: Annotated[str, typer.Argument(help="Name of a method.")]) 
     """One method in words, with what differs from the one it extends."""
     shown = _method(name)
     parent = None if shown.extends is None else shipped_method(shown.extends)
-    typer.echo(text.method(shown, parent))
+    typer.echo(method_in_words(shown, parent))
 
 
 @app.command()
