@@ -1,4 +1,4 @@
-"""A method in words that a committee member can read: one sentence per step and range of seasons."""
+"""A method in words for a committee member: one sentence per step and range of seasons."""
 
 from pipeline.method import (
     LAST_SEASON,
