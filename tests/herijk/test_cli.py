@@ -5,8 +5,9 @@ import re
 import sys
 
 import pytest
+from typer.main import get_command
 
-from herijk.cli import main
+from herijk.cli import app, main
 from tests.conftest import METHODS
 
 COMMANDS = ("simulate", "rebuild", "methods", "audit")
@@ -37,8 +38,19 @@ def test_help_explains_itself(herijk, command):
     status, out, err = herijk(*command, "--help")
     assert (status, err) == (0, "")
     assert "Usage:" in out
-    options = re.findall(r"^  (?:\*  )?(--[a-z-]+)(.*)$", out, re.MULTILINE)
-    assert all(text.strip() for _, text in options)
+
+
+def commands(command):
+    yield command
+    for inner in getattr(command, "commands", {}).values():
+        yield from commands(inner)
+
+
+def test_every_command_and_parameter_has_a_help_text():
+    for command in commands(get_command(app)):
+        assert command.help, command.name
+        silent = [p.name for p in command.params if not getattr(p, "help", None)]
+        assert silent == [], command.name
 
 
 def test_the_overview_names_every_command(herijk):
