@@ -114,7 +114,8 @@ def _centred_sum(values: FloatArray, width: int) -> FloatArray:
     """Sum over `width` neighbours along axis 1, centred, cut off at the ends."""
     total = np.zeros_like(values)
     seconds = values.shape[1]
-    for shift in range(-(width // 2), (width - 1) // 2 + 1):
+    before, after = min(width // 2, seconds - 1), min((width - 1) // 2, seconds - 1)
+    for shift in range(-before, after + 1):
         low, high = max(0, -shift), min(seconds, seconds - shift)
         total[:, low:high] += values[:, low + shift : high + shift]
     return total
