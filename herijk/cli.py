@@ -152,9 +152,9 @@ def audit(
 def simulate(
     directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder to make.")],
     seasons: Seasons = "2009:2018",  # type: ignore[assignment]
-    tows_per_season: Annotated[int, typer.Option(min=1, max=1000)] = 24,
+    tows_per_season: Annotated[int, typer.Option(min=1, max=1000, help="Tows in each.")] = 24,
     rate: Annotated[int, typer.Option(min=5, max=1000, help="Samples a second.")] = 1000,
-    seed: Annotated[int, typer.Option(min=0)] = 1,
+    seed: Annotated[int, typer.Option(min=0, help="Decides all that is drawn.")] = 1,
 ) -> None:
     """Write a simulated archive with known truth (the truth lies beside it, not in it)."""
     settings = WorldSettings(tuple(seasons), tows_per_season, rate, seed)

@@ -44,7 +44,7 @@ REGISTER_TABLES: Final = (
 def archive_made_from(store: Store) -> str:
     """What the tables about the archive are made from."""
     seasons = {s: store.made_from("season_index", s) for s in store.partitions("season_index")}
-    lists = [table_digest(store.read(t)) for t in ("listed_boats", "listed_tows", "list_faults")]
+    lists = [table_digest(store.read(t)) for t in ("listed_boats", "list_faults")]
     return fingerprint(seasons, lists, code_version())
 
 
@@ -59,21 +59,42 @@ def collect_archive(store: Store, today: dt.date) -> dict[str, int]:
 
     Returns:
         Rows per table.
+
+    Raises:
+        MissingKnowledgeError: no tow is sound.
     """
     made_from = archive_made_from(store)
+    if not store.partitions("season_index"):
+        raise _nothing_sound(store.read("list_faults"))
     index = store.read_all("season_index")
     sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
-    tows = store.read("listed_tows").join(sound, on="tow_id", how="semi")
-    runs = store.read("listed_runs").join(sound, on="tow_id", how="semi")
+    tows = store.read_all("season_tows").join(sound, on="tow_id", how="semi")
+    runs = store.read_all("season_runs").join(sound, on="tow_id", how="semi")
     found = {
         "boats": store.read("listed_boats"),
         "tows": tows,
         "tow_runs": runs,
         "quarantine": _quarantine(store, index, today),
     }
+    if tows.is_empty():
+        raise _nothing_sound(found["quarantine"])
     for name, frame in found.items():
         store.write(name, conform(name, frame), made_from)
     return {name: frame.height for name, frame in found.items()}
+
+
+def _nothing_sound(faults: pl.DataFrame) -> MissingKnowledgeError:
+    """The error for an archive without any tow that can be used."""
+    if faults.is_empty():
+        return MissingKnowledgeError(
+            "no tow can be used: the tow lists hold none in the seasons that were read; "
+            "fill sleeplijsten/sleeplijst_<jaar>.csv, or widen --seasons"
+        )
+    first = faults.row(0, named=True)
+    return MissingKnowledgeError(
+        f"no tow can be used: {faults.height} tows or files are set aside. Mend the first and "
+        f"try again: {first['path']}: {first['message']}"
+    )
 
 
 def _quarantine(store: Store, index: pl.DataFrame, today: dt.date) -> pl.DataFrame:
@@ -114,17 +135,8 @@ def method_is_stale(store: Store, method: Method) -> bool:
 
 
 def run_blocks(store: Store) -> RunBlocks:
-    """The runs of all sound tows, as arrays.
-
-    Raises:
-        MissingKnowledgeError: there is no sound tow at all.
-    """
-    runs = store.read("tow_runs")
-    if runs.is_empty():
-        raise MissingKnowledgeError(
-            "no tow could be read: every one was set aside; the table quarantine says why"
-        )
-    return stack_blocks(intake.all_blocks(store), runs)
+    """The runs of all sound tows, as arrays."""
+    return stack_blocks(intake.all_blocks(store), store.read("tow_runs"))
 
 
 def apply_method(store: Store, method: Method, blocks: RunBlocks) -> dict[str, pl.DataFrame]:
@@ -297,8 +309,7 @@ def database_is_stale(store: Store, methods: Sequence[Method]) -> bool:
 
 def unaccounted_tows(store: Store) -> list[str]:
     """Listed tows of the seasons read that are neither accepted nor set aside: there are none."""
-    seasons = [int(s) for s in store.partitions("season_index")]
-    listed = store.read("listed_tows").filter(pl.col("season").is_in(seasons))
+    listed = store.read_all("season_tows")
     known = pl.concat([store.read(t).select("tow_id") for t in ("tows", "quarantine")])
     lost: list[str] = listed.join(known, on="tow_id", how="anti")["tow_id"].to_list()
     return lost
