@@ -53,8 +53,10 @@ class Window(_Options):
     rule: Literal["all", "steady"]
     minimum_s: float = Field(default=30.0, ge=5.0, le=50.0)
     speed_drift_m_s: float = Field(default=0.02, gt=0.0, le=0.2)
-    force_ends_ratio: float = Field(default=0.03, gt=0.0, le=0.2)
-    outlier_sd: float = Field(default=4.0, ge=2.0, le=10.0)
+    force_ends_ratio: float = Field(default=0.04, gt=0.0, le=0.2)
+    ramp_m_s: float = Field(default=0.08, gt=0.0, le=0.2)
+    peak_sd: float = Field(default=3.0, ge=1.0, le=10.0)
+    gust_sd: float = Field(default=2.4, ge=1.0, le=10.0)
 
 
 class Wind(_Options):

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d
 
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.blocks import RunBlocks
@@ -18,14 +19,25 @@ from pipeline.method import Window
 END_SECONDS: Final = 5
 """Length of the two ends that are compared, s (research, method.md 6.4)."""
 
+BLOCK_PRICE_S: Final = 10.0
+ENDS_PRICE_S: Final = 5.0
+WORST_ENDS: Final = 5.0
+"""What a fault inside a window costs, in seconds of its length: so much for each block and each
+limit's worth over the limit, and so much for ends that differ by more than their limits. Ends that
+differ more than `WORST_ENDS` limits (0.1 m/s, the source's reason 1) are never accepted."""
+
+LONGEST_RAMP_S: Final = 12
+RAMP_MARGIN_S: Final = 5
+"""Cut beyond the end of the straight line that is fitted to a ramp, whose tail it misses."""
+
+PEAK_MARGIN_S: Final = 1
+"""Cut on both sides of a peak or gust, for its flanks."""
+
 MAD_TO_SD: Final = 1.4826
 FORCE_SD_FLOOR: Final = 0.01
 """Smallest spread of block means that a peak is measured by, as a share of the median force."""
 
 WIND_SD_FLOOR_M_S: Final = 0.25
-
-DRIFT_M_S: Final = 0.1
-"""Rise or fall of speed that is a reason to cut (Sleepproef 2017, "Knippen", reason 1)."""
 
 CUT_REASONS: Final = ("speed_drift", "force_peak", "gust", "ends_differ")
 
@@ -68,26 +80,47 @@ def _windows(mask: BoolArray, reasons: tuple[str, ...]) -> Windows:
 
 @dataclass(frozen=True)
 class _Faults:
-    """What disturbs a run, per block or from block to block, shape (runs, seconds)."""
+    """What disturbs a run, per block, shape (runs, seconds).
+
+    `force_peak` and `gust` are relative to their limits: over 1 is a fault.
+    """
 
     speed: FloatArray
     force: FloatArray
     force_median: FloatArray
-    force_peak: BoolArray
-    gust: BoolArray
+    ramp: BoolArray
+    force_peak: FloatArray
+    gust: FloatArray
 
     @classmethod
     def of(cls, blocks: RunBlocks, rule: Window) -> "_Faults":
         present = blocks.n > 0
-        force, wind = blocks.block_means("force"), blocks.block_means("wind_v")
-        median, spread = _robust(force, present)
-        peak = np.abs(force - median) > rule.outlier_sd * np.maximum(
-            spread, FORCE_SD_FLOOR * np.abs(median)
+        speed, force = blocks.block_means("log1_v"), blocks.block_means("force")
+        force_median, force_sd = _robust(force, present)
+        force_sd = np.maximum(force_sd, FORCE_SD_FLOOR * np.abs(force_median))
+        return cls(
+            speed,
+            force,
+            force_median[:, 0],
+            ramp=_ramps(speed, present, rule.ramp_m_s),
+            force_peak=_widened(np.abs(force - force_median) / (rule.peak_sd * force_sd)),
+            gust=_widened(_wind_change(blocks, present) / rule.gust_sd),
         )
-        wind_median, wind_spread = _robust(wind, present)
-        gust = wind - wind_median > rule.outlier_sd * np.maximum(wind_spread, WIND_SD_FLOOR_M_S)
-        speed = blocks.block_means("log1_v")
-        return cls(speed, force, median[:, 0], peak & present, gust & present)
+
+    def price_s(self) -> FloatArray:
+        """What each block costs a window that holds it, shape (runs, seconds)."""
+        excess = np.maximum(self.force_peak - 1.0, 0.0) + np.maximum(self.gust - 1.0, 0.0)
+        return BLOCK_PRICE_S * np.asarray(excess, dtype=np.float64)
+
+
+def _wind_change(blocks: RunBlocks, present: BoolArray) -> FloatArray:
+    """Distance of each block's wind vector from the run's median one, in robust deviations."""
+    squares = np.zeros(present.shape)
+    for component in ("wind_x", "wind_y"):
+        wind = blocks.block_means(component)
+        median, sd = _robust(wind, present)
+        squares += ((wind - median) / np.maximum(sd, WIND_SD_FLOOR_M_S)) ** 2
+    return np.sqrt(squares)
 
 
 def _robust(values: FloatArray, present: BoolArray) -> tuple[FloatArray, FloatArray]:
@@ -97,35 +130,77 @@ def _robust(values: FloatArray, present: BoolArray) -> tuple[FloatArray, FloatAr
     return median, MAD_TO_SD * np.nanmedian(np.abs(held - median), axis=1, keepdims=True)
 
 
+def _widened(values: FloatArray) -> FloatArray:
+    """The largest value among each block and its neighbours within `PEAK_MARGIN_S`."""
+    return np.asarray(maximum_filter1d(values, 2 * PEAK_MARGIN_S + 1, axis=1, mode="nearest"))
+
+
+def _ramps(speed: FloatArray, present: BoolArray, least_m_s: float) -> BoolArray:
+    """Blocks at the start and the end of a run in which the speed still rises or falls."""
+    length = present.sum(axis=1)
+    second = np.arange(speed.shape[1])
+    from_end = np.clip(length[:, None] - 1 - second, 0, None)
+    backwards = np.take_along_axis(speed, from_end, axis=1)
+    at_start, at_end = (_ramp_length(v, present, least_m_s)[:, None] for v in (speed, backwards))
+    return (second < at_start) | (second >= length[:, None] - at_end)
+
+
+def _ramp_length(speed: FloatArray, present: BoolArray, least_m_s: float) -> IntArray:
+    """Length of the ramp with which each run begins, 0 where there is none, in blocks.
+
+    Fitted by least squares: a straight line up (or down) to second p, level from there, for every
+    p up to `LONGEST_RAMP_S`; the best p, if the line spans at least `least_m_s`.
+    """
+    count = np.maximum(present.sum(axis=1), 1)
+    mean = np.where(present, speed, 0.0).sum(axis=1) / count
+    centred = np.where(present, speed - mean[:, None], 0.0)
+    second = np.arange(speed.shape[1])
+    best_gain, best_length, best_span = np.zeros((3, len(speed)))
+    for p in range(1, LONGEST_RAMP_S + 1):
+        line = np.where(present, np.clip(p - second, 0, None), 0.0)
+        line = np.where(present, line - line.sum(axis=1, keepdims=True) / count[:, None], 0.0)
+        norm, product = (line * line).sum(axis=1), (line * centred).sum(axis=1)
+        gain = product**2 / np.maximum(norm, 1e-12)
+        span = np.abs(product) / np.maximum(norm, 1e-12) * p
+        better = gain > best_gain
+        best_gain = np.where(better, gain, best_gain)
+        best_length, best_span = np.where(better, p, best_length), np.where(better, span, best_span)
+    return np.where(best_span >= least_m_s, best_length + RAMP_MARGIN_S, 0).astype(np.int64)
+
+
 def _search(present: BoolArray, faults: _Faults, rule: Window) -> tuple[IntArray, IntArray]:
-    """Start and length of the best window of every run; length 0 where none is good enough."""
+    """Start and length of the best window of every run; length 0 where none is good enough.
+
+    Best is the longest, less what the faults inside it cost; of equals, the first and longest.
+    """
     runs, seconds = present.shape
     start, length = np.zeros(runs, np.int64), np.zeros(runs, np.int64)
-    good = np.cumsum(present & ~faults.force_peak & ~faults.gust, axis=1, dtype=np.float64)
+    value = np.full(runs, -np.inf)
+    good = np.cumsum(present & ~faults.ramp, axis=1, dtype=np.float64)
+    price = np.cumsum(faults.price_s(), axis=1)
     for size in range(seconds, int(np.ceil(rule.minimum_s)) - 1, -1):
-        todo = length == 0
-        if not todo.any():
-            break
-        whole = _span(good, size)[todo] == size
-        score = _unsteadiness(faults, size, rule, todo)
-        score = np.where(whole, score, np.inf)
-        best = score.argmin(axis=1)
-        fits = np.take_along_axis(score, best[:, None], 1)[:, 0] <= 1.0
-        rows = np.flatnonzero(todo)[fits]
-        start[rows], length[rows] = best[fits], size
+        ends = _unsteadiness(faults, size, rule)
+        accepted = (_span(good, size) == size) & (ends <= WORST_ENDS)
+        worth = size - _span(price, size) - ENDS_PRICE_S * np.maximum(ends - 1.0, 0.0)
+        worth = np.where(accepted, worth, -np.inf)
+        best = worth.argmax(axis=1)
+        found = np.take_along_axis(worth, best[:, None], 1)[:, 0]
+        better = found > value
+        start, length = np.where(better, best, start), np.where(better, size, length)
+        value = np.maximum(found, value)
     return start, length
 
 
-def _unsteadiness(faults: _Faults, size: int, rule: Window, rows: BoolArray) -> FloatArray:
+def _unsteadiness(faults: _Faults, size: int, rule: Window) -> FloatArray:
     """How far the worst steadiness criterion is from its limit (1), for every window of a size.
 
     The criteria: drift of speed by a fitted line over the window, difference of mean speed and
     of mean force between its first and last `END_SECONDS`.
     """
-    speed, force = faults.speed[rows], faults.force[rows]
+    speed, force = faults.speed, faults.force
     drift = np.abs(_slope(speed, size)) * size / rule.speed_drift_m_s
     speed_ends = np.abs(_ends_difference(speed, size)) / rule.speed_drift_m_s
-    force_limit = rule.force_ends_ratio * np.abs(faults.force_median[rows, None])
+    force_limit = rule.force_ends_ratio * np.abs(faults.force_median[:, None])
     force_ends = np.abs(_ends_difference(force, size)) / np.maximum(force_limit, 1e-9)
     return np.maximum(np.maximum(drift, speed_ends), force_ends)
 
@@ -155,14 +230,7 @@ def _ends_difference(values: FloatArray, size: int) -> FloatArray:
 def _reasons(present: BoolArray, mask: BoolArray, faults: _Faults) -> list[str]:
     """What was wrong in the part that was cut, as codes joined by commas."""
     cut = present & ~mask
-    drift = np.abs(faults.speed - _robust(faults.speed, present)[0]) > DRIFT_M_S
-    found = np.stack(
-        [
-            (cut & drift).any(axis=1),
-            (cut & faults.force_peak).any(axis=1),
-            (cut & faults.gust).any(axis=1),
-        ],
-        axis=1,
-    )
-    found = np.column_stack([found, cut.any(axis=1) & ~found.any(axis=1)])
-    return [",".join(np.compress(row, CUT_REASONS)) for row in found]
+    seen = (faults.ramp, faults.force_peak > 1.0, faults.gust > 1.0)
+    found = [(cut & fault).any(axis=1) for fault in seen]
+    rest = cut.any(axis=1) & ~np.any(found, axis=0)
+    return [",".join(np.compress(row, CUT_REASONS)) for row in np.stack([*found, rest], axis=1)]

@@ -20,7 +20,7 @@ import pipeline.channels
 from pipeline.blocks import block_sums
 from pipeline.errors import DefectiveInputError
 from warehouse import archive
-from warehouse.archive import SeasonProfile, check_samples, read_tow_samples
+from warehouse.archive import SeasonProfile, check_samples, fault_from, read_tow_samples
 from warehouse.code import source_hash
 from warehouse.files import written_beside
 from warehouse.store import Store, fingerprint, write_parquet
@@ -116,13 +116,8 @@ def _bring_in(
         if not blocks_path.exists():
             blocks = block_sums(pl.read_parquet(path), tow["sample_rate_hz"])
             write_parquet(blocks, blocks_path)
-    except DefectiveInputError as fault:
-        return row | {
-            "path": tow["samples_path"],
-            "line": fault.line,
-            "reason_code": fault.reason_code,
-            "message": fault.message,
-        }
+    except DefectiveInputError as error:
+        return row | dataclasses.asdict(fault_from(error, tow["samples_path"], tow["tow_id"]))
     count = pl.scan_parquet(path).select(pl.len()).collect().item()
     return row | {"blocks_key": blocks_key, "samples": count}
 

@@ -86,7 +86,7 @@ def read_boats(data: bytes) -> Boats:
 
 
 def _boat(row: ListRow) -> dict[str, Any]:
-    row.check_width()
+    row.check_whole()
     return {
         "fsn_no": row.text("fsn_no"),
         "ht_no": row.optional_text("ht_no"),

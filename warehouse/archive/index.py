@@ -43,6 +43,9 @@ FILES_SCHEMA: Final[dict[str, pl.DataType]] = {
     "size_bytes": pl.Int64(),
 }
 
+_FilesByName = dict[tuple[int, str], list[ArchiveFile]]
+"""Samples files by season and the name they answer to."""
+
 
 @dataclass(frozen=True)
 class ArchiveIndex:
@@ -138,9 +141,10 @@ def index_archive(root: Path, hash_file: Callable[[Path], str]) -> ArchiveIndex:
     sample_files = list_sample_files(root)
     _hash_files(sample_files, hashes, faults)
     faults += _not_listed(entries, sample_files, unread_seasons)
+    by_name = _by_name(sample_files)
     good = _keep(_unique_ids(entries), entries, faults)
     good = _keep(lambda entry: _read_values(entry, profiles), good, faults)
-    good = _keep(lambda entry: _find_files(entry, sample_files, hashes), good, faults)
+    good = _keep(lambda entry: _find_files(entry, by_name, hashes), good, faults)
     good = _keep(_unique_samples(good), good, faults)
     good = _keep(lambda entry: _join_boat(entry, boats), good, faults)
     good = _keep(lambda entry: _check_day(entry, profiles), good, faults)
@@ -243,11 +247,17 @@ def _names(row: ListRow) -> list[str]:
     return [cell for cell in cells if cell is not None]
 
 
-def _candidates(name: str, season: int, sample_files: Iterable[ArchiveFile]) -> list[ArchiveFile]:
+def _by_name(sample_files: Iterable[ArchiveFile]) -> _FilesByName:
+    by_name: _FilesByName = defaultdict(list)
+    for file in sample_files:
+        by_name[file.season, match_key(file.full_path.name)].append(file)
+    return by_name
+
+
+def _candidates(name: str, season: int, by_name: _FilesByName) -> list[ArchiveFile]:
     """Return the files a name in a list can mean; a name with its extension is more precise."""
-    key = match_key(name)
-    alike = [f for f in sample_files if f.season == season and match_key(f.full_path.name) == key]
-    exact = [f for f in alike if fold_name(f.full_path.name) == fold_name(name)]
+    alike = by_name.get((season, match_key(name)), [])
+    exact = [file for file in alike if fold_name(file.full_path.name) == fold_name(name)]
     return exact if len(exact) == 1 else alike
 
 
@@ -330,8 +340,8 @@ def _read_values(entry: _Entry, profiles: Profiles) -> None:
         )
 
 
-def _find_files(entry: _Entry, sample_files: Iterable[ArchiveFile], hashes: _Hashes) -> None:
-    entry.files = [_find_file(entry, name, sample_files) for name in _names(entry.row)]
+def _find_files(entry: _Entry, by_name: _FilesByName, hashes: _Hashes) -> None:
+    entry.files = [_find_file(entry, name, by_name) for name in _names(entry.row)]
     first, second = entry.files[0], entry.files[1] if len(entry.files) > 1 else None
     entry.tow |= {
         "samples_path": first.path,
@@ -343,14 +353,14 @@ def _find_files(entry: _Entry, sample_files: Iterable[ArchiveFile], hashes: _Has
     }
 
 
-def _find_file(entry: _Entry, name: str, sample_files: Iterable[ArchiveFile]) -> ArchiveFile:
+def _find_file(entry: _Entry, name: str, by_name: _FilesByName) -> ArchiveFile:
     if "/" in name or "\\" in name or name.startswith(".."):
         raise entry.fault(
             "path_outside_archive",
             f"'{shorten(name)}' is a path; only the name of a file in "
             f"meetdata_{entry.season}/ can stand here.",
         )
-    candidates = _candidates(name, entry.season, sample_files)
+    candidates = _candidates(name, entry.season, by_name)
     if not candidates:
         raise entry.fault(
             "samples_missing", f"there is no file '{shorten(name)}' in meetdata_{entry.season}/."

@@ -4,9 +4,7 @@ What the columns of the tow list, the boat list, a register or race results mean
 modules that read those.
 """
 
-import csv
 import datetime as dt
-import io
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,6 +19,7 @@ from warehouse.archive.text import (
     find_delimiter,
     parse_number,
     shorten,
+    split_line,
 )
 
 _ISO_DATE: Final = re.compile(r"([0-9]{4})-([0-9]{2})-([0-9]{2})")
@@ -40,23 +39,23 @@ class ListRow:
         cells: text by column key, trimmed.
         columns: the columns found in the header.
         reason_code: what a bad value in this list is called.
-        width_problem: says so when the row has too few or too many fields.
+        row_problem: what is wrong with the row as a whole, e.g. too few fields.
     """
 
     line: int
     cells: dict[str, str]
     columns: dict[str, FoundColumn]
     reason_code: str
-    width_problem: str | None
+    row_problem: str | None
 
     def fault(self, message: str) -> DefectiveInputError:
         """Return the error for this row."""
         return DefectiveInputError(self.reason_code, f"Line {self.line}: {message}", self.line)
 
-    def check_width(self) -> None:
-        """Raise when the row has too few or too many fields."""
-        if self.width_problem is not None:
-            raise self.fault(self.width_problem)
+    def check_whole(self) -> None:
+        """Raise when something is wrong with the row as a whole."""
+        if self.row_problem is not None:
+            raise self.fault(self.row_problem)
 
     def optional_text(self, key: str) -> str | None:
         """Return the text of a cell, None when it is empty."""
@@ -167,37 +166,47 @@ def read_rows(data: bytes, columns: Sequence[Column], reason_code: str) -> list[
     Raises:
         DefectiveInputError: the list as a whole cannot be read.
     """
-    text = decode(data)
-    delimiter = find_delimiter(text.split("\n", 1)[0])
-    reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter)
+    header_line, *lines = decode(data).split("\n")
+    delimiter = find_delimiter(header_line)
+    header = split_line(header_line.rstrip("\r"), delimiter)
+    found = find_columns(header, columns)
+    rows = (
+        _read_row(number, line.rstrip("\r"), delimiter, len(header))
+        for number, line in enumerate(lines, start=2)
+    )
+    return [
+        _row(number, fields, problem, found, reason_code)
+        for number, fields, problem in rows
+        if any(field.strip() for field in fields)
+    ]
+
+
+def _read_row(
+    number: int, line: str, delimiter: str, width: int
+) -> tuple[int, list[str], str | None]:
+    """Return line number, fields and what is wrong with the row as a whole.
+
+    Line by line, as a quotation mark that is not closed would otherwise swallow the rows below.
+    """
     try:
-        header = next(reader)
-        found = find_columns(header, columns)
-        rows: list[ListRow] = []
-        line = reader.line_num + 1
-        for fields in reader:
-            if any(field.strip() for field in fields):
-                rows.append(_row(line, fields, len(header), found, reason_code))
-            line = reader.line_num + 1
-    except csv.Error as error:
-        raise DefectiveInputError(
-            "unreadable_file",
-            f"Line {reader.line_num}: {error}.",
-            line=reader.line_num,
-        ) from error
-    return rows
+        fields = split_line(line, delimiter)
+    except DefectiveInputError:
+        return number, line.split(delimiter), "a quotation mark is not closed, or in mid-field."
+    if len(fields) < width or any(field.strip() for field in fields[width:]):
+        return number, fields, f"the row has {len(fields)} fields where the header has {width}."
+    return number, fields, None
 
 
 def _row(
-    line: int, fields: list[str], width: int, found: dict[str, FoundColumn], reason_code: str
+    line: int,
+    fields: list[str],
+    problem: str | None,
+    found: dict[str, FoundColumn],
+    reason_code: str,
 ) -> ListRow:
     cells = {
         key: fields[column.index].strip()
         for key, column in found.items()
         if column.index < len(fields)
     }
-    too_many = any(field.strip() for field in fields[width:])
-    problem = None
-    if len(fields) < width or too_many:
-        problem = f"the row has {len(fields)} fields where the header has {width}."
     return ListRow(line, cells, found, reason_code, problem)

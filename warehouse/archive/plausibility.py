@@ -89,8 +89,7 @@ def check_samples(samples: pl.DataFrame, tow: Mapping[str, Any], runs: pl.DataFr
     selected = list(_selected_runs(samples, tow, runs))
     for check in (
         _check_length,
-        _check_sign,
-        _check_swapped,
+        _check_mix_ups,
         _check_speed_unit,
         _check_dropouts,
         _check_stuck,
@@ -214,16 +213,16 @@ def _within(value: float, limits: tuple[float, float], unit: float = 1.0) -> boo
     return limits[0] * unit <= value <= limits[1] * unit
 
 
-def _median_intended(runs: list[_Run]) -> float:
-    return float(np.median([run.intended_m_s for run in runs]))
-
-
-def _check_sign(runs: list[_Run], tow: Mapping[str, Any]) -> None:
-    """A force that is right but for its sign is a sign error, not a swap."""
+def _check_mix_ups(runs: list[_Run], tow: Mapping[str, Any]) -> None:
+    """A force that is right but for its sign is a sign error; after that come swapped columns."""
     typical = _typical(runs)
+    intended = float(np.median([run.intended_m_s for run in runs]))
+    wrong = _implausible(typical, intended)
+    if not wrong:
+        return
     force = typical["force"].median
     turned = {**typical, "force": _Typical(-force, 0, 0)}
-    if force < 0 and not _implausible(turned, _median_intended(runs)):
+    if force < 0 and not _implausible(turned, intended):
         raise _fault(
             "negative_force",
             f"The force is {force:.0f} N in a typical run; it must be positive.",
@@ -231,14 +230,6 @@ def _check_sign(runs: list[_Run], tow: Mapping[str, Any]) -> None:
             tow,
             0,
         )
-
-
-def _check_swapped(runs: list[_Run], tow: Mapping[str, Any]) -> None:
-    typical = _typical(runs)
-    intended = _median_intended(runs)
-    wrong = _implausible(typical, intended)
-    if not wrong:
-        return
     for one, other in combinations(typical, 2):
         exchanged = {**typical, one: typical[other], other: typical[one]}
         if (one in wrong or other in wrong) and not _implausible(exchanged, intended):

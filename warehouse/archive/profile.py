@@ -14,7 +14,8 @@ from typing import Annotated, Any, Final, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 from pipeline.channels import BACK, OUT, RUNS_PER_FILE
-from pipeline.errors import MissingKnowledgeError
+from pipeline.errors import DefectiveInputError, MissingKnowledgeError
+from warehouse.archive.files import path_inside
 from warehouse.archive.text import UNITS, Column, fold
 
 PROFILE_FILE: Final = "archief.toml"
@@ -72,7 +73,10 @@ class _ProfileTable(_Strict):
     ] = ["out", "out", "out", "back", "back", "back"]
 
     @model_validator(mode="after")
-    def _units_are_known(self) -> "_ProfileTable":
+    def _names_and_units_are_known(self) -> "_ProfileTable":
+        for channel, name in self.columns.items():
+            if "[" in name:
+                raise ValueError(f"columns.{channel}: '{name}' has a unit; put it under units")
         for channel, unit in self.units.items():
             known = UNITS[_DIMENSIONS[channel]]
             if fold(unit) not in known:
@@ -163,14 +167,16 @@ def read_profiles(root: Path) -> Profiles:
     Raises:
         MissingKnowledgeError: the file cannot be understood; it names the file and the key.
     """
-    path = root / PROFILE_FILE
-    if not path.is_file():
-        return Profiles()
     try:
+        path = path_inside(root, PROFILE_FILE)
+        if not path.is_file():
+            return Profiles()
         content: dict[str, Any] = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
         parsed = _File.model_validate(content)
     except ValidationError as error:
         raise MissingKnowledgeError(f"{PROFILE_FILE}: {_explain(error)}") from error
+    except DefectiveInputError as error:
+        raise MissingKnowledgeError(error.message) from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise MissingKnowledgeError(f"{PROFILE_FILE} is not valid TOML: {error}") from error
     return Profiles(

@@ -125,7 +125,7 @@ def _read_all(
             continue
         for row in rows:
             try:
-                row.check_width()
+                row.check_whole()
                 values = read_row(row, file.season)
             except DefectiveInputError as error:
                 faults.append(fault_from(error, file.path))

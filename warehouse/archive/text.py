@@ -104,13 +104,13 @@ def split_line(line: str, delimiter: str) -> list[str]:
     """Return the fields of one line, quotes taken off.
 
     Raises:
-        DefectiveInputError: `unreadable_file` when it is no line of a table.
+        DefectiveInputError: `unreadable_file`, e.g. when a quotation mark is not closed.
     """
     try:
-        return next(csv.reader(io.StringIO(line), delimiter=delimiter), [])
+        return next(csv.reader(io.StringIO(line), delimiter=delimiter, strict=True), [])
     except csv.Error as error:
         raise DefectiveInputError(
-            "unreadable_file", f"The header cannot be read: {error}.", line=1
+            "unreadable_file", f"The header is no row of a table: {error}.", line=1
         ) from error
 
 

@@ -97,7 +97,7 @@ def read_tow(row: ListRow, season: int, default_rate_hz: int) -> dict[str, Any]:
     Raises:
         DefectiveInputError: `bad_list_row` with the line.
     """
-    row.check_width()
+    row.check_whole()
     tow_id = row.text("tow_id")
     if not _TOW_ID.fullmatch(tow_id):
         raise row.fault(f"'{shorten(tow_id)}' cannot be a sleep_id: too long, or with a slash.")

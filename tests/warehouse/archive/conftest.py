@@ -57,7 +57,7 @@ class Archive:
         last: int,
         path: str = FIRST,
     ) -> None:
-        """Change the cells of a column on lines first..last; `change` gets the cell and the line."""
+        """Change the cells of a column on lines first..last; `change` gets the cell and line."""
 
         def rewrite(text: str) -> str:
             lines = text.split("\n")
@@ -106,8 +106,10 @@ def _samples(seed: int, declared_m_s: float) -> str:
         force = 40 * speed**2 + rng.normal(0, 80, ROWS)
         wind = 4 + rng.normal(0, 0.3, ROWS)
         angle = (rng.normal(5 if run < 4 else 190, 15, ROWS)) % 360
-        for row in zip(log1, log2, gps, force, wind, angle, strict=True):
-            lines.append(";".join([str(run), *(f"{value:.3f}".replace(".", ",") for value in row)]))
+        lines += [
+            ";".join([str(run), *(f"{value:.3f}".replace(".", ",") for value in row)])
+            for row in zip(log1, log2, gps, force, wind, angle, strict=True)
+        ]
     return "\n".join(lines) + "\n"
 
 

@@ -1,0 +1,189 @@
+"""What the index says of a good archive, the profile, and archives that are none."""
+
+import datetime as dt
+from pathlib import Path
+
+import polars as pl
+import pytest
+
+from pipeline.channels import SAMPLE_SCHEMA
+from pipeline.errors import MissingKnowledgeError
+from tests.warehouse.archive.conftest import FIRST, ROWS, TOWS, Archive, Scan, line_of
+from warehouse.archive import FileHashes, index_archive, read_published_registers, read_races
+
+SAMPLE_ARCHIVE = Path(__file__).parents[2] / "data" / "sample-archive"
+NEXT_TOW = "2014-009;2014-03-09;FSN1;tweede;{second};8;H;2,40;;;;;;;;;{runs};nee;20;\n"
+
+
+def test_values_of_a_tow(good_scan: Scan) -> None:
+    tow = good_scan.index.tows.row(0, named=True)
+    assert tow["tow_date"] == dt.date(2014, 3, 1)
+    assert tow["speed_correction_ratio"] == 0.06
+    assert tow["waterline_length_m"] == 8.0
+    assert (tow["altered"], tow["sample_rate_hz"], tow["remark"]) == (False, 20, None)
+    assert (tow["samples_path"], tow["list_path"], tow["list_line"]) == (FIRST, TOWS, 2)
+
+
+def test_empty_dimensions_come_from_the_boat_but_not_its_weight(good_scan: Scan) -> None:
+    tow = good_scan.index.tows.row(1, named=True)
+    assert tow["tow_date"] == dt.date(2014, 3, 2)
+    assert (tow["waterline_length_m"], tow["beam_m"], tow["bow_height_m"]) == (7.73, 2.1, 0.8)
+    assert tow["weight_kg"] is None
+    assert tow["speed_correction_ratio"] is None
+    assert tow["altered"] is True
+
+
+def test_files_have_their_hash_and_size(good_scan: Scan) -> None:
+    files = good_scan.index.files
+    assert files["path"].to_list() == sorted(files["path"])
+    assert len(files) == 5
+    first = files.filter(path=FIRST).row(0, named=True)
+    assert first["sha256"] == good_scan.index.tows["samples_sha256"][0]
+    assert len(first["sha256"]) == 64
+
+
+def add_second_tow(archive: Archive, selection: str) -> None:
+    """Add a tow of the first boat that uses the first boat's file as its second file."""
+    text = (archive.root / FIRST).read_text().replace("1;2", "1;2,", 1).replace(",,", ",0", 1)
+    (archive.root / "meetdata_2014/tweede.csv").write_text(text)
+    row = NEXT_TOW.format(second="eerste boot 8h 2014", runs=selection)
+    archive.edit(TOWS, lambda content: content + row)
+
+
+def test_second_file_is_combined_and_may_be_another_tow_of_the_boat(
+    archive: Archive, good_scan: Scan
+) -> None:
+    add_second_tow(archive, "1,2,3,b4,b5,b6")
+    scan = archive.scan()
+    assert scan.faults == []
+    runs = scan.index.runs.filter(tow_id="2014-009")
+    assert runs["run"].to_list() == [1, 2, 3, 4, 5, 6, 11, 12, 13, 14, 15, 16]
+    assert runs.filter("selected")["run"].to_list() == [1, 2, 3, 14, 15, 16]
+    assert runs["direction"].to_list() == [1, 1, 1, -1, -1, -1] * 2
+    assert runs["target_speed_ratio"].to_list() == [0.9, 1.0, 1.1] * 4
+    second = scan.good["2014-009"].filter(pl.col("run") > 10)
+    assert second.drop("run").equals(good_scan.good["2014-001"].drop("run"))
+
+
+def test_a_fault_in_the_second_file_names_that_file_and_its_line(archive: Archive) -> None:
+    archive.cells(1, lambda cell, line: "0", line_of(5, 3), line_of(5, 9))
+    archive.replace(TOWS, "1,2,3,4,5,6", "1,2,3,4,6")
+    add_second_tow(archive, "1,2,3,b4,b5,b6")
+    (fault,) = archive.scan().faults
+    found = (fault.reason_code, fault.path, fault.tow_id, fault.line)
+    assert found == ("log_dropout", FIRST, "2014-009", line_of(5, 3))
+
+
+def test_natural_oddities_are_no_faults(archive: Archive) -> None:
+    archive.cells(4, lambda cell, line: "-67", line_of(1, 10), line_of(1, 14))  # surge
+    archive.cells(1, lambda cell, line: "2,64", line_of(3), line_of(3, 98))  # just under 5 s
+    archive.edit(FIRST, lambda text: "\n".join(text.split("\n")[:-11]))  # 49.5 s in run 6
+    archive.cells(5, lambda cell, line: "0", line_of(2), line_of(2, 300))  # cups stall
+    archive.cells(6, lambda cell, line: "80", line_of(2), line_of(2, 300))  # no wind to turn it
+    archive.cells(3, lambda cell, line: "2,40", line_of(2), line_of(2, ROWS - 1))  # held fix
+    assert archive.scan().faults == []
+
+
+def test_the_profile_sets_rate_and_directions(archive: Archive) -> None:
+    (archive.root / "archief.toml").write_text(
+        'simulated = true\n[[profile]]\nseasons = "2014"\nsample_rate_hz = 20\n'
+        'directions = ["out", "back", "out", "back", "out", "back"]\n'
+    )
+    archive.edit(TOWS, lambda text: text.replace(";20;", ";;"))
+    scan = archive.scan()
+    assert scan.faults == []
+    assert scan.index.profiles.simulated
+    assert scan.index.tows["sample_rate_hz"].to_list() == [20, 20, 20]
+    assert scan.index.runs["direction"].to_list() == [1, -1] * 9
+
+
+@pytest.mark.parametrize(
+    ("toml", "named"),
+    [
+        ("simulatd = true", "simulatd"),
+        ('[[profile]]\nseasons = "2014"\nrate = 3', "rate"),
+        ('[[profile]]\nseasons = "2014"\ncolumns = { log3 = "x" }', "log3"),
+        ('[[profile]]\nseasons = "2014"\nunits = { force = "lbf" }', "lbf"),
+        ('[[profile]]\nseasons = "2014:2012"', "2014:2012"),
+        ('[[profile]]\nseasons = "2012:2014"\n[[profile]]\nseasons = "2014"', "2014"),
+        ('[[profile]]\nseasons = "2014"\ncolumns = { force = "trek [N]" }', "trek [N]"),
+        ("[[set_aside]]\ndate = 2014-03-01", "reason"),
+        ("simulated = ", "TOML"),
+    ],
+)
+def test_a_wrong_profile_names_file_and_key(archive: Archive, toml: str, named: str) -> None:
+    (archive.root / "archief.toml").write_text(toml)
+    with pytest.raises(MissingKnowledgeError, match=r"archief\.toml") as raised:
+        archive.scan()
+    assert named in str(raised.value)
+
+
+@pytest.mark.parametrize("removed", ["", "sloepregister/sloependata.csv", TOWS])
+def test_no_archive_says_what_was_expected_where(archive: Archive, removed: str) -> None:
+    root = archive.root / "nowhere" if not removed else archive.root
+    if removed:
+        (archive.root / removed).unlink()
+    with pytest.raises(MissingKnowledgeError, match="expected") as raised:
+        index_archive(root, FileHashes().hash_file)
+    assert str(root) in str(raised.value)
+
+
+def test_nothing_outside_the_archive_is_read(archive: Archive) -> None:
+    outside = archive.root.parent / "elsewhere"
+    (archive.root / "meetdata_2014").rename(outside)
+    (archive.root / "meetdata_2014").symlink_to(outside)
+    hashed: list[Path] = []
+
+    def hash_file(path: Path) -> str:
+        hashed.append(path)
+        return FileHashes().hash_file(path)
+
+    index = index_archive(archive.root, hash_file)
+    assert {fault.reason_code for fault in index.faults} == {"path_outside_archive"}
+    assert not [path for path in hashed if "meetdata" in str(path)]
+
+
+def test_sample_archive_reads_without_faults() -> None:
+    scan = Archive(SAMPLE_ARCHIVE).scan()
+    assert scan.faults == []
+    assert set(scan.good) == {"2010-001", "2014-001", "2016-001"}
+    for samples in scan.good.values():
+        assert samples.schema == pl.Schema(SAMPLE_SCHEMA)
+        assert samples["run"].n_unique() == 6
+    assert scan.good["2010-001"]["gps_m_s"].null_count() == 15000
+    assert scan.index.tows["remark"].to_list()[-1] == "één roer los"
+
+
+def test_published_registers() -> None:
+    register, faults = read_published_registers(SAMPLE_ARCHIVE)
+    assert faults == ()
+    assert register["has_valid_curve"].to_list() == [True, True, True, False]
+    assert register["cw_kg_m"].to_list() == [43.89, 41.63, 25.36, None]
+    assert register["a_kg_m"].to_list()[-1] is None
+    assert register["season"].to_list() == [2014] * 4
+
+
+def test_races() -> None:
+    races, faults = read_races(SAMPLE_ARCHIVE)
+    assert faults == ()
+    assert races["rowing_time_s"].to_list() == [7825.0, 7451.0, 9669.0, 9520.0]
+    assert races["distance_m"].to_list() == [18400.0] * 4
+    assert races["stream_m"].to_list() == [None, None, 350.0, 300.0]
+    assert races["penalty_w"].to_list() == [None, 1.5, None, None]
+
+
+def test_faulty_rows_of_registers_and_races(archive: Archive) -> None:
+    (archive.root / "sloepregister/sloepregister_2014.csv").write_text(
+        "fsn_nr;roeiers;klasse;A;B;Cw;roeisnelheid [m/s];sleepdatum\n"
+        "FSN1;8;H;31,60;4,44;43,89;2,35;2012-03-10\nFSN2;8;H;x;4,44;43,89;2,35;2012-03-10\n"
+    )
+    (archive.root / "wedstrijden/race_2016.csv").write_text(
+        "wedstrijd;datum;afstand [km];fsn_nr;roeiers;klasse;roeitijd;stroom [km];straf [W]\n"
+        "Race;2016-06-04;18,4;FSN1;8;H;2:70:25;;\nRace;2016-06-04;18,4;FSN1;8;H;2:10:25;;\n"
+    )
+    register, faults = read_published_registers(archive.root)
+    assert [(f.reason_code, f.line) for f in faults] == [("bad_register_row", 3)]
+    assert len(register) == 1
+    races, faults = read_races(archive.root)
+    assert [(f.reason_code, f.line) for f in faults] == [("bad_race_row", 2)]
+    assert len(races) == 1
