@@ -41,11 +41,11 @@ demo: $(READY) $(DEMO)/archief-truth.json
 	@echo
 	@echo "These were simulated boats. The archive is $(DEMO)/archief, the tables are in"
 	@echo "$(DEMO)/data/warehouse.duckdb. Where the numbers of one boat come from:"
-	@echo "  $(BIN)/herijk audit FSN001 --data $(DEMO)/data"
+	@echo "  $(BIN)/herijk audit FSN106 --data $(DEMO)/data"
 
 # The truth is written last, so half an archive is made again.
 $(DEMO)/archief-truth.json: | $(READY)
-	@echo "Simulating an archive of ten seasons; this takes half a minute."
+	@echo "Simulating an archive of ten seasons; this takes a minute."
 	@rm -rf $(DEMO)/archief
 	@$(BIN)/herijk simulate $(DEMO)/archief $(DEMO_WORLD)
 

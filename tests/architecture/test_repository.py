@@ -37,7 +37,9 @@ def test_every_locked_package_has_a_hash():
 def test_every_dependency_is_locked():
     locked = {name for name, _ in LOCKED.findall(read("requirements.lock"))}
     project = read("pyproject.toml")
-    needed = set(re.findall(r'^  "([a-z0-9-]+)', project[: project.index("[project.scripts]")], re.M))
+    needed = set(
+        re.findall(r'^  "([a-z0-9-]+)', project[: project.index("[project.scripts]")], re.M)
+    )
     assert {"numpy", "dagster", "ruff"} <= needed
     assert needed - locked == set()
 
