@@ -36,17 +36,17 @@ $(READY): requirements.lock pyproject.toml
 	  --no-deps --no-build-isolation --editable .
 	@touch $(READY)
 
-demo: $(READY) $(DEMO)/archief-truth.json
+demo: $(READY) $(DEMO)/archief
 	@$(BIN)/herijk rebuild --archive $(DEMO)/archief --data $(DEMO)/data
 	@echo
 	@echo "These were simulated boats. The archive is $(DEMO)/archief, the tables are in"
 	@echo "$(DEMO)/data/warehouse.duckdb. Where the numbers of one boat come from:"
 	@echo "  $(BIN)/herijk audit FSN106 --data $(DEMO)/data"
 
-# The truth is written last, so half an archive is made again.
-$(DEMO)/archief-truth.json: | $(READY)
+# The archive is put in place when it is complete, so a folder that is there is whole.
+$(DEMO)/archief: | $(READY)
 	@echo "Simulating an archive of ten seasons; this takes a minute."
-	@rm -rf $(DEMO)/archief
+	@rm -f $(DEMO)/archief-truth.json
 	@$(BIN)/herijk simulate $(DEMO)/archief $(DEMO_WORLD)
 
 test: $(READY)
