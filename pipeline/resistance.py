@@ -14,11 +14,7 @@ import numpy as np
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.batch import Batch
 from pipeline.blocks import AIR_SUMS
-from pipeline.friction import (
-    delft_wetted_surface_m2,
-    friction_cw_kg_m,
-    water_density_kg_m3,
-)
+from pipeline.friction import friction_cw_kg_m, water_density_kg_m3
 from pipeline.hull import front_area_m2, side_area_m2
 from pipeline.method import RunPoint, Steps, Temperature
 from pipeline.steady import END_SECONDS
@@ -28,9 +24,9 @@ LOG2_AGREES_RATIO: Final = 0.01
 """Log 2 takes part in a mean of both only if its speed is within 1 % of log 1 (inferred from the
 0.01 m/s of Sleepproef 2017, "Log 1 en 2", which no pair of 2014 met)."""
 
-MIDSHIP_COEFFICIENT: Final = 0.65
-BLOCK_COEFFICIENT: Final = 0.40
-"""Share of waterline length x beam x draught that a sloop displaces (stated assumption)."""
+WETTED_SURFACE_RATIO: Final = 3.0
+"""Wetted surface / sqrt(displaced volume x waterline length). Stated assumption: the Delft formula
+`(1.97 + 0.171 B/T) (0.65/Cm)^(1/3)` gives it at a beam of six draughts, as sloops have."""
 
 
 @dataclass(frozen=True)
@@ -153,9 +149,8 @@ def temperature_change_kg_m(
 ) -> tuple[FloatArray, BoolArray]:
     """What brings Cw to the reference temperature: friction there minus friction as towed.
 
-    Friction by the ITTC-57 line on a wetted surface by the Delft formula, with a draught from
-    displacement and a block coefficient (all inferred: the federation's own formula of 2018 is not
-    public). No form factor.
+    Friction by the ITTC-57 line, without form factor, on the wetted surface of
+    `wetted_surface_m2` (inferred: the federation's own formula of 2018 is not public).
 
     Args:
         batch: tows and runs.
@@ -172,22 +167,19 @@ def temperature_change_kg_m(
     if rule.rule == "none":
         return np.zeros_like(speed_m_s), known
     celsius = np.where(known, temperature, rule.reference_c)
-    surface = wetted_surface_m2(batch, np.where(known, mass, 1000.0), rule.reference_c)
     length = batch.of_run("waterline_length_m")
+    surface = wetted_surface_m2(np.where(known, mass, 0.0)[batch.tow], length)
     speed = _or_one(speed_m_s)
     at_reference, as_towed = (
-        friction_cw_kg_m(speed, length, surface[batch.tow], t)
-        for t in (rule.reference_c, celsius[batch.tow])
+        friction_cw_kg_m(speed, length, surface, t) for t in (rule.reference_c, celsius[batch.tow])
     )
     return at_reference - as_towed, known
 
 
-def wetted_surface_m2(batch: Batch, mass_kg: FloatArray, temperature_c: float) -> FloatArray:
-    """Wetted surface of each boat with its crew, shape (tows,), m2."""
-    volume = mass_kg / water_density_kg_m3(temperature_c)
-    length, beam = batch.of_tow("waterline_length_m"), batch.of_tow("beam_m")
-    draught = volume / (BLOCK_COEFFICIENT * length * beam)
-    return delft_wetted_surface_m2(length, volume, beam / draught, MIDSHIP_COEFFICIENT)
+def wetted_surface_m2(mass_kg: FloatArray, waterline_length_m: FloatArray) -> FloatArray:
+    """Wetted surface of a boat with its crew: c sqrt(V L), with V in fresh water, m2."""
+    volume_m3 = mass_kg / water_density_kg_m3(15.0)
+    return np.asarray(WETTED_SURFACE_RATIO * np.sqrt(volume_m3 * waterline_length_m))
 
 
 def _or_one(values: FloatArray) -> FloatArray:

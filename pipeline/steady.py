@@ -142,7 +142,7 @@ def _ramps(speed: FloatArray, present: BoolArray, least_m_s: float) -> BoolArray
     from_end = np.clip(length[:, None] - 1 - second, 0, None)
     backwards = np.take_along_axis(speed, from_end, axis=1)
     at_start, at_end = (_ramp_length(v, present, least_m_s)[:, None] for v in (speed, backwards))
-    return (second < at_start) | (second >= length[:, None] - at_end)
+    return np.asarray((second < at_start) | (second >= length[:, None] - at_end))
 
 
 def _ramp_length(speed: FloatArray, present: BoolArray, least_m_s: float) -> IntArray:

@@ -98,7 +98,7 @@ class SeasonRow:
 
 
 _PROPELLER_LOGS = Defects(
-    log_season_factor=(1.015, 1.064),
+    log_season_factor=(1.04, 1.065),
     log_tow_wander=0.012,
     log_run_wander=0.004,
     log_noise_m_s=0.04,
