@@ -7,7 +7,7 @@ import pytest
 import typer.main
 
 from herijk.cli import app
-from pipeline.method import Steps
+from pipeline.method import Steps, shipped_methods
 from tests.architecture.repository import ROOT, read, tracked_files
 from warehouse.archive.faults import REASONS
 from warehouse.schemas import TABLES
@@ -46,6 +46,11 @@ def test_every_option_of_a_method_is_documented(step, option):
 def test_no_option_is_documented_that_is_not_there():
     found = set(re.findall(r"^\| `(\w+)\.(\w+)` \|", read("docs/method.md"), re.MULTILINE))
     assert found == set(OPTIONS)
+
+
+@pytest.mark.parametrize("name", shipped_methods())
+def test_every_shipped_method_is_documented(name):
+    assert f"\n| `{name}` |" in read("docs/method.md")
 
 
 def test_every_reason_code_is_documented():
