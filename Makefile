@@ -1,7 +1,7 @@
 # Needs make and Python 3.11 or newer. Everything else goes into .venv, as locked.
 # With another Python than `python3`: make PYTHON=python3.12 demo
 
-PYTHON = python3
+PYTHON ?= python3
 BIN = .venv/bin
 READY = .venv/.ready
 DEMO = demo
