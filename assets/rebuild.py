@@ -12,7 +12,7 @@ from pathlib import Path
 
 import dagster as dg
 
-from assets.definitions import APPLY, COLLECT, FINISH, INDEX, READ, build_defs
+from assets.definitions import APPLY, COLLECT, FINISH, INDEX, READ, STUDY, build_defs
 from assets.resources import Progress, Setup
 from warehouse import intake, tables
 from warehouse.files import written_beside
@@ -71,6 +71,9 @@ def rebuild(
         for name in done.methods:
             progress.step(f"applying method {name} to all tows")
             jobs.run(APPLY, name)
+        if tables.studies_are_stale(store, setup.chosen_methods):
+            progress.step("finding what each step changes, and how much choices matter")
+            jobs.run(STUDY)
         done.database = _finish(jobs, setup, progress)
     return done
 

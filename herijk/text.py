@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from pipeline.method import LAST_SEASON, Method
+from pipeline.method import LAST_SEASON, Method, Steps
 
 Report = dict[str, Any]
 SIMULATED = "SIMULATED archive: made by `herijk simulate`, not the federation's measurements."
@@ -109,18 +109,61 @@ def methods(report: Report) -> str:
     return table(("method", "title", "hash"), rows)
 
 
-def method(shown: Method) -> str:
-    """One method in full: per range of seasons the option of every step."""
+def method(shown: Method, parent: Method | None) -> str:
+    """One method: per range of seasons the option of every step, marked where it differs."""
     lines = [f"{shown.name}: {shown.title}", "", shown.description.strip(), ""]
+    if parent is not None:
+        lines += [f"It extends {parent.name}; what differs is marked with *.", ""]
     for held in shown.ranges:
         last = "the present" if held.last == LAST_SEASON else held.last
         lines.append(f"Seasons {held.first} to {last}")
-        for step, options in held.steps.model_dump().items():
-            words = ", ".join(f"{key} = {value}" for key, value in options.items())
-            lines.append(f"  {step:12} {words}")
+        before = None if parent is None else parent.for_season(held.first)
+        lines += _step_lines(held.steps, before)
         lines.append("")
     lines.append(f"content hash {shown.content_hash}")
     return "\n".join(lines)
+
+
+def _step_lines(steps: Steps, before: Steps | None) -> list[str]:
+    lines = []
+    for step, options in steps.model_dump().items():
+        old = options if before is None else getattr(before, step).model_dump()
+        words = [f"{key} = {value}{' *' * (old[key] != value)}" for key, value in options.items()]
+        lines.append(f"  {step:12} {', '.join(words)}")
+    return lines
+
+
+def rebase(report: Report) -> str:
+    """What a method changes: the ladder per season, and the boats most affected."""
+    parts = [SIMULATED] if report["simulated"] else []
+    parts.append(f"{report['method']} against {report['against']}; nothing was stored.")
+    counts = ", ".join(f"{row['count']} {row['change']}" for row in report["changes"])
+    parts.append(f"Register lines: {counts}.")
+    seasons = report["by_season"]
+    steps = [key for key in seasons[0] if key not in ("season", "tows", "total")]
+    head = ("season", "tows", *steps, "total")
+    lines = [
+        (row["season"], row["tows"], *(_per_cent(row[step]) for step in (*steps, "total")))
+        for row in seasons
+    ]
+    parts.append(
+        "Change of Cw at the declared speed by each step, median of the season's tows; a tow's\n"
+        "own steps multiply to its total, medians need not:\n" + table(head, lines)
+    )
+    boats = [
+        (
+            row["fsn_no"],
+            row["name"] or "-",
+            f"{row['rowers']}{row['crew_class']}",
+            *(_per_cent(row[step]) for step in steps),
+            _per_cent(row["cw_ratio"]),
+            f"{7200 * (row['time_ratio'] - 1):+.0f} s",
+        )
+        for row in report["boats"]
+    ]
+    head = ("boat", "name", "crew", *steps, "Cw", "in 2 h")
+    parts.append("Register lines most affected:\n" + table(head, boats))
+    return "\n\n".join(parts)
 
 
 def audit(report: Report) -> str:

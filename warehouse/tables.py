@@ -14,7 +14,9 @@ from pipeline.blocks import RunBlocks, stack_blocks
 from pipeline.changes import register_changes
 from pipeline.consistency import repeat_pairs, reproducibility, type_consistency
 from pipeline.errors import MissingKnowledgeError
+from pipeline.ladder import ladder
 from pipeline.method import Method
+from pipeline.options import option_effects
 from pipeline.recompute import recompute
 from pipeline.register import LINE, draft_name, draft_register
 from warehouse import intake
@@ -25,6 +27,10 @@ from warehouse.store import Store, fingerprint, table_digest
 
 ARCHIVE_TABLES: Final = ("boats", "tows", "tow_runs", "quarantine")
 METHOD_TABLES: Final = ("run_points", "curves", "log_factors")
+STUDY_TABLES: Final = ("correction_steps", "option_effects")
+STUDIED_METHOD: Final = "rebased"
+"""The method whose options of judgement are studied."""
+
 REGISTER_TABLES: Final = (
     "register",
     "register_changes",
@@ -135,6 +141,45 @@ def apply_method(store: Store, method: Method, blocks: RunBlocks) -> dict[str, p
     return found
 
 
+def studies_made_from(store: Store, methods: Sequence[Method]) -> str:
+    """What the ladders and the option study are made from."""
+    return fingerprint({m.name: method_made_from(store, m) for m in methods})
+
+
+def studies_are_stale(store: Store, methods: Sequence[Method]) -> bool:
+    """Whether ladders and option study have to be made again."""
+    made_from = studies_made_from(store, methods)
+    return any(store.made_from(t) != made_from for t in STUDY_TABLES)
+
+
+def make_studies(store: Store, methods: Sequence[Method], blocks: RunBlocks) -> dict[str, int]:
+    """The ladder from the first method to each other, and the study of judgement options.
+
+    Returns:
+        Rows per table.
+    """
+    tows, first = store.read("tows"), methods[0]
+    ladders = [
+        ladder(first, other, tows, blocks).with_columns(
+            pl.lit(first.name).alias("from_method"), pl.lit(other.name).alias("to_method")
+        )
+        for other in methods[1:]
+    ]
+    studied = [
+        option_effects(m, tows, blocks).with_columns(pl.lit(m.name).alias("method"))
+        for m in methods
+        if m.name == STUDIED_METHOD
+    ]
+    found = {
+        "correction_steps": pl.concat(ladders) if ladders else _empty("correction_steps"),
+        "option_effects": pl.concat(studied) if studied else _empty("option_effects"),
+    }
+    made_from = studies_made_from(store, methods)
+    for name, frame in found.items():
+        store.write(name, conform(name, frame), made_from)
+    return {name: frame.height for name, frame in found.items()}
+
+
 def register_made_from(store: Store, methods: Sequence[Method]) -> str:
     """What the registers, and everything derived from curves, are made from."""
     curves = {m.name: store.made_from("curves", m.name) for m in methods}
@@ -219,7 +264,7 @@ def _methods(methods: Sequence[Method]) -> pl.DataFrame:
 def database_made_from(store: Store, methods: Sequence[Method]) -> str:
     """What the database is made from."""
     return fingerprint(
-        {t: store.made_from(t) for t in (*ARCHIVE_TABLES, *REGISTER_TABLES)},
+        {t: store.made_from(t) for t in (*ARCHIVE_TABLES, *STUDY_TABLES, *REGISTER_TABLES)},
         {m.name: [store.made_from(t, m.name) for t in METHOD_TABLES] for m in methods},
     )
 
@@ -230,7 +275,7 @@ def make_database(store: Store, methods: Sequence[Method]) -> dict[str, int]:
     Returns:
         Rows per table.
     """
-    found = {t: store.read(t) for t in (*ARCHIVE_TABLES, *REGISTER_TABLES)}
+    found = {t: store.read(t) for t in (*ARCHIVE_TABLES, *STUDY_TABLES, *REGISTER_TABLES)}
     for table in METHOD_TABLES:
         found[table] = conform(table, pl.concat([store.read(table, m.name) for m in methods]))
     about = {
@@ -257,3 +302,17 @@ def unaccounted_tows(store: Store) -> list[str]:
     known = pl.concat([store.read(t).select("tow_id") for t in ("tows", "quarantine")])
     lost: list[str] = listed.join(known, on="tow_id", how="anti")["tow_id"].to_list()
     return lost
+
+
+def ladders_multiply(steps: pl.DataFrame) -> bool:
+    """Whether the factors of every ladder multiply to its total, within 1e-10."""
+    ends = (
+        steps.sort("position")
+        .group_by("from_method", "to_method", "tow_id")
+        .agg(
+            pl.col("factor").product(),
+            (pl.col("cw_kg_m").last() / pl.col("cw_kg_m").first()).alias("total"),
+        )
+    )
+    worst = (ends["factor"] / ends["total"] - 1.0).abs().max()
+    return worst is None or float(str(worst)) < 1e-10

@@ -238,7 +238,7 @@ def _read_parquet(path: Path, profile: SeasonProfile, max_bytes: int) -> pl.Data
         raise DefectiveInputError(
             "samples_missing", f"'{path.name}' is not there any more."
         ) from error
-    except (OSError, pa.ArrowException, pl.exceptions.PolarsError) as error:
+    except (OSError, ValueError, pa.ArrowException, pl.exceptions.PolarsError) as error:
         raise DefectiveInputError(
             "unreadable_file", f"'{path.name}' is not a whole Parquet file: {error}."
         ) from error
