@@ -8,10 +8,12 @@ ASSETS = [
     "archive_index",
     "blocks",
     "boats",
+    "correction_steps",
     "curves",
     "lineage",
     "log_factors",
     "methods",
+    "option_effects",
     "quarantine",
     "register",
     "register_changes",
@@ -25,6 +27,7 @@ ASSETS = [
 ]
 
 CHECKS = [
+    "correction_steps: steps_multiply_to_the_total",
     "curves: every_tow_has_a_curve_row",
     "samples: most_tows_sound",
     "tows: every_listed_tow_accounted_for",
