@@ -39,10 +39,14 @@ def archive_tables(setup: Setup):
     )
 
 
+all_blocks = dg.AssetDep(blocks, partition_mapping=dg.AllPartitionMapping())
+"""Every method needs the blocks of every season."""
+
+
 @dg.multi_asset(
     specs=[
         dg.AssetSpec(
-            name, deps=["tows", "tow_runs", blocks], group_name="method", kinds={"parquet"}
+            name, deps=["tows", "tow_runs", all_blocks], group_name="method", kinds={"parquet"}
         )
         for name in tables.METHOD_TABLES
     ],
