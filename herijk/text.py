@@ -45,9 +45,8 @@ def rebuild(report: Report) -> str:
     )
     if report["set_aside"]:
         rows = [(r["reason_code"], r["number"]) for r in report["set_aside"]]
-        parts.append(
-            "Set aside (table quarantine says where and why):\n" + table(("reason", "number"), rows)
-        )
+        parts.append("Set aside:\n" + table(("reason", "number"), rows))
+        parts.append(_faults(report["first_faults"], sum(number for _, number in rows)))
     else:
         parts.append("Set aside: nothing.")
     rows = [(r["method"], r["status"], r["number"]) for r in report["curves"]]
@@ -65,6 +64,19 @@ def _work_done(done: Report) -> str:
     seasons = ", ".join(str(s) for s in done["seasons"]) or "none"
     methods = ", ".join(done["methods"]) or "none"
     return f"Seasons read: {seasons}. Methods applied: {methods}."
+
+
+def _faults(first: list[Report], number: int) -> str:
+    lines = [f"  {_place(fault)}: {fault['message']}" for fault in first]
+    if number > len(first):
+        lines.append(f"  and {number - len(first)} more: see the table quarantine")
+    return "\n".join(lines)
+
+
+def _place(fault: Report) -> str:
+    line = "" if fault["line"] is None else f", line {fault['line']}"
+    tow = "" if fault["tow_id"] is None else f" (tow {fault['tow_id']})"
+    return f"{fault['path']}{line}{tow}"
 
 
 def _by_season(rows: list[Report]) -> str:

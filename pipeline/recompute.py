@@ -172,7 +172,9 @@ def _prepare(batch: Batch, steps: Steps, windows: Windows) -> _Prepared:
     means = run_means(batch, windows.mask, steps)
     known = prescribed_factor(steps.speed, batch.of_tow("speed_correction_ratio"))
     reasons = _reasons(batch, steps, windows, means.speed_m_s * known[batch.tow])
-    y, determined = _calibrate(batch, steps, windows, means.speed_m_s, reasons == "")
+    y, determined = _calibrate(
+        batch, steps, windows, means.speed_m_s * known[batch.tow], reasons == ""
+    )
     reasons = np.where((reasons == "") & ~determined[batch.tow], NOT_CALIBRATED, reasons)
     speed = means.speed_m_s * (known * y)[batch.tow]
     temperature, temperature_known = temperature_change_kg_m(batch, steps.temperature, speed)
@@ -205,7 +207,7 @@ def _reasons(batch: Batch, steps: Steps, windows: Windows, speed_m_s: FloatArray
 def _calibrate(
     batch: Batch, steps: Steps, windows: Windows, log_m_s: FloatArray, used: BoolArray
 ) -> tuple[FloatArray, BoolArray]:
-    """Calibration factor of each tow and whether it is known, shape (tows,)."""
+    """Factor on the log speed as corrected so far, and whether it is known, shape (tows,)."""
     if steps.calibration.rule == "none":
         return np.ones(batch.size), np.ones(batch.size, dtype=bool)
     samples = batch.blocks.total("gps_n", windows.mask)

@@ -109,7 +109,8 @@ def test_temperature(clean, water_c):
     water = Defects(water_temperature_c=(water_c, water_c))
     without = error(cw_of(water), clean)
     corrected = error(cw_of(water, temperature='{ rule = "ittc57" }'), clean)
-    assert without.min() > 0.025
+    # CF changes by 4-5 % over those 12 degrees, and friction is over 40 % of the resistance.
+    assert without.min() > 0.016
     # The method knows neither the form factor nor the wetted surface, only estimates of it.
     assert corrected.max() < 0.25 * without.max()
     assert corrected.max() < 0.01
