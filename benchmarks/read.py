@@ -21,6 +21,13 @@ from warehouse.archive.write import write_simulated_archive
 from warehouse.lake import write_samples
 
 
+def timed(seconds, work, *arguments):
+    start = time.perf_counter()
+    made = work(*arguments)
+    seconds.append(time.perf_counter() - start)
+    return made
+
+
 def main():
     tows = int(sys.argv[1]) if len(sys.argv) > 1 else 8
     with tempfile.TemporaryDirectory() as folder:
@@ -40,19 +47,11 @@ def main():
         sizes = []
         for tow in index.tows.iter_rows(named=True):
             parquet = Path(folder) / f"{tow['tow_id']}.parquet"
-            stages = {
-                "read text": lambda tow=tow: read_tow_samples(root, tow, profile),
-                "check": lambda tow=tow: check_samples(samples, tow, index.runs),
-                "write Parquet": lambda path=parquet: write_samples(samples, path),
-                "read Parquet": lambda path=parquet: pl.read_parquet(path),
-                "add up": lambda: block_sums(samples, 1000),
-            }
-            for stage, work in stages.items():
-                start = time.perf_counter()
-                made = work()
-                times[stage].append(time.perf_counter() - start)
-                if stage == "read text":
-                    samples = made
+            samples = timed(times["read text"], read_tow_samples, root, tow, profile)
+            timed(times["check"], check_samples, samples, tow, index.runs)
+            timed(times["write Parquet"], write_samples, samples, parquet)
+            timed(times["read Parquet"], pl.read_parquet, parquet)
+            timed(times["add up"], block_sums, samples, 1000)
             sizes.append(parquet.stat().st_size / 1e6)
     print(f"python {platform.python_version()}, polars {pl.__version__}; {tows} tows, median a tow")
     print(f"  {'index and hash':15} {index_s / tows * 1e3:8.1f} ms")

@@ -1,6 +1,6 @@
 """Recompute of every shipped method over a thousand tows with blocks present, by method.
 
-    python benchmarks/recompute.py [tows]
+    PYTHONPATH=. python benchmarks/recompute.py [tows]
 
 Blocks are those of 40 simulated tows at 20 Hz, repeated: the number of samples in a block does not
 matter to a recompute.

@@ -133,4 +133,4 @@ def _is_simulated(db: duckdb.DuckDBPyConnection) -> bool:
 def read_table(store: Store, name: str) -> pl.DataFrame:
     """A table of the database, in the order in which it was written."""
     with _open(store.database) as db:
-        return db.sql(f'SELECT * FROM "{name}"').pl()  # noqa: S608
+        return pl.DataFrame(db.sql(f'SELECT * FROM "{name}"').pl())  # noqa: S608

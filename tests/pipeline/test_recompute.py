@@ -212,8 +212,9 @@ def without_runs(measured: Measured, tow_id: str, runs: list[int]) -> Measured:
 
 
 @pytest.mark.parametrize(
-    ("left_out", "status"), [([6], "flagged"), ([1, 6], "flagged"), ([1, 2, 6], "rejected"), ([4, 5, 6], "rejected")]
-)  # fmt: skip
+    ("left_out", "status"),
+    [([6], "flagged"), ([1, 6], "flagged"), ([1, 2, 6], "rejected"), ([4, 5, 6], "rejected")],
+)
 def test_a_curve_needs_four_runs_and_both_ways(measured, left_out, status):
     tow_id = measured.tows["tow_id"][0]
     fewer = without_runs(measured, tow_id, left_out)
