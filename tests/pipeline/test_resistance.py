@@ -67,7 +67,7 @@ def test_the_wetted_surface_is_near_that_of_the_simulated_hulls():
     """The simulator keeps a surface of its own; both are estimates from the same dimensions."""
     batch = batch_of(Defects())
     mass = batch.of_tow("weight_kg") + batch.of_tow("crew_weight_kg")
-    surface = wetted_surface_m2(batch, mass, 15.0)
+    surface = wetted_surface_m2(mass, batch.of_tow("waterline_length_m"))
     length, beam = batch.of_tow("waterline_length_m"), batch.of_tow("beam_m")
     assert (surface > 0.5 * length * beam).all()
     assert (surface < 1.5 * length * beam).all()
