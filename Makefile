@@ -12,13 +12,14 @@ unexport PYTHONDONTWRITEBYTECODE
 export DAGSTER_DISABLE_TELEMETRY = 1
 export DAGSTER_DG_UPDATE_CHECK_ENABLED = 0
 
-.PHONY: help env demo test lint bench clean
+.PHONY: help env demo test lint bench accuracy clean
 
 help:
 	@echo "make demo   simulate an archive of ten seasons and rebuild its history"
 	@echo "make test   run all tests"
 	@echo "make lint   check style, types, imports and the Dagster definitions"
 	@echo "make bench  measure speed and memory"
+	@echo "make accuracy  measure how near the truth the methods come, on simulated worlds"
 	@echo "make env    make the environment in .venv, and nothing more"
 	@echo "make clean  remove the environment, the demo and the caches"
 
@@ -60,7 +61,10 @@ lint: $(READY)
 	@VIRTUAL_ENV="$(CURDIR)/.venv" $(BIN)/dg check defs --no-check-yaml
 
 bench: $(READY)
-	@for file in benchmarks/*.py; do echo "== $$file"; $(BIN)/python "$$file" || exit 1; done
+	@for file in benchmarks/*.py; do echo "== $$file"; PYTHONPATH=. $(BIN)/python "$$file" || exit 1; done
+
+accuracy: $(READY)
+	@for file in benchmarks/accuracy/*.py; do echo "== $$file"; PYTHONPATH=. $(BIN)/python "$$file" || exit 1; done
 
 clean:
 	rm -rf .venv $(DEMO) .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis

@@ -10,7 +10,7 @@ from pipeline.channels import BACK, OUT, TARGET_SPEED_RATIOS
 from pipeline.method import Method
 from pipeline.outcome import Recomputed
 from pipeline.recompute import recompute
-from pipeline.simulate import Tow, World, WorldSettings, simulate_tow, simulate_world
+from pipeline.simulate import RunTruth, Tow, World, WorldSettings, simulate_tow, simulate_world
 
 
 @dataclass(frozen=True)
@@ -22,12 +22,14 @@ class Measured:
         runs: rows of `tow_runs`.
         blocks: their blocks, stacked.
         truth: per tow the fields of `TowTruth`, with `season`.
+        run_truth: what really happened in each run, by tow.
     """
 
     tows: pl.DataFrame
     runs: pl.DataFrame
     blocks: RunBlocks
     truth: pl.DataFrame
+    run_truth: dict[str, tuple[RunTruth, ...]]
 
 
 def measure(settings: WorldSettings) -> Measured:
@@ -35,15 +37,13 @@ def measure(settings: WorldSettings) -> Measured:
     world = simulate_world(settings)
     tows = tow_rows(world)
     runs = run_rows(tows)
-    blocks = pl.concat(
-        [
-            block_sums(simulate_tow(world, tow)[0], settings.rate_hz).select(
-                pl.lit(tow.tow_id).alias("tow_id"), pl.all()
-            )
-            for tow in world.tows
-        ]
-    )
-    return Measured(tows, runs, stack_blocks(blocks, runs), truth_rows(world))
+    blocks, run_truth = [], {}
+    for tow in world.tows:
+        samples, run_truth[tow.tow_id] = simulate_tow(world, tow)
+        tow_id = pl.lit(tow.tow_id).alias("tow_id")
+        blocks.append(block_sums(samples, settings.rate_hz).select(tow_id, pl.all()))
+    stacked = stack_blocks(pl.concat(blocks), runs)
+    return Measured(tows, runs, stacked, truth_rows(world), run_truth)
 
 
 def recompute_world(
