@@ -226,6 +226,7 @@ def type_outliers(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
 
 def _against_type(boats: Observed, quantity: str, eras: tuple[Era, ...]) -> pl.DataFrame | None:
     y, unit = quantities(boats)[quantity]
+    speed = standard_speed_m_s(boats)
     displacement = _explaining(boats, "ln_displacement")
     weighed = quantity == "ln_cw_standard" and bool(np.isfinite(displacement).all())
     known = np.flatnonzero(np.isfinite(y))
@@ -251,7 +252,7 @@ def _against_type(boats: Observed, quantity: str, eras: tuple[Era, ...]) -> pl.D
         "boat_type",
         "season",
         pl.lit(quantity).alias("quantity"),
-        pl.lit(standard_speed_m_s(boats)).alias("standard_speed_m_s"),
+        pl.lit(speed).alias("standard_speed_m_s"),
         pl.Series("value", y),
         pl.Series("expected", y - left_out.error),
         pl.Series("deviation_sd", deviation),

@@ -27,6 +27,9 @@ LEVEL: Final = 0.95
 PROFILE_DROP: Final = 3.841458820694124
 """Deviance above its minimum at the ends of a 95 % profile interval (chi-squared, 1 dof)."""
 
+PROFILE_PRECISION: Final = 3e-3
+"""Precision of the ends of a profile interval: of the deviance, and of the sd as a share."""
+
 SMALLEST_SHARE: Final = 1e-9
 """Least measuring error and least component, as a share of the spread of y: keeps V invertible."""
 
@@ -228,14 +231,15 @@ class Fit:
         def excess(sd: float) -> float:
             held = list(self.sd)
             held[index] = sd
-            return _search(self.problem, rest, tuple(held))[1] - least - PROFILE_DROP
+            nearest = _search(self.problem, rest, (held[0], held[1], held[2]), PROFILE_PRECISION)
+            return nearest[1] - least - PROFILE_DROP
 
         sd, scale = self.sd[index], self.problem.spread
-        lo = optimize.brentq(excess, 0.0, sd, xtol=1e-4 * scale) if excess(0.0) > 0 else 0.0
+        lo = optimize.brentq(excess, 0.0, sd, xtol=PROFILE_PRECISION * scale) if excess(0.0) > 0 else 0.0
         outside = max(2.0 * sd, 0.1 * scale)
         for _ in range(8):
             if excess(outside) > 0:
-                return float(lo), float(optimize.brentq(excess, sd, outside, xtol=1e-4 * scale))
+                return float(lo), float(optimize.brentq(excess, sd, outside, xtol=PROFILE_PRECISION * scale))
             outside *= 2.0
         return float(lo), None
 
@@ -243,16 +247,18 @@ class Fit:
 def fit(problem: Problem, free: tuple[str, ...]) -> Fit:
     """Restricted maximum likelihood of the components named in `free`."""
     scale = problem.spread
-    start = tuple(0.5 * scale * (component in free) for component in COMPONENTS)
-    best = _search(problem, free, start)[0]
+    boat, other, cell = (0.5 * scale * (component in free) for component in COMPONENTS)
+    best = _search(problem, free, (boat, other, cell))[0]
     return Fit(problem, free, best)
 
 
 _Sds = tuple[float, float, float]
 
 
-def _search(problem: Problem, free: tuple[str, ...], start: _Sds) -> tuple[_Sds, float]:
-    """Least deviance over the free sds, the others as in `start`; a negligible sd becomes 0."""
+def _search(
+    problem: Problem, free: tuple[str, ...], start: _Sds, precision: float = 1e-5
+) -> tuple[_Sds, float]:
+    """Least deviance over the free sds from `start` on, the others held; a negligible sd is 0."""
     places = [COMPONENTS.index(component) for component in free]
     sd = np.array(start)
     scale = max(problem.spread, float(np.sqrt(problem.variance.min())))
@@ -267,11 +273,10 @@ def _search(problem: Problem, free: tuple[str, ...], start: _Sds) -> tuple[_Sds,
         )
         best = np.array([found.x])
     elif places:
-        simplex = np.vstack([np.full(len(places), 0.5), 0.5 + 0.4 * np.eye(len(places))])
-        options = {"xatol": 1e-4, "fatol": 1e-5, "initial_simplex": simplex}
-        best = np.abs(
-            optimize.minimize(deviance, simplex[0], method="Nelder-Mead", options=options).x
-        )
+        first = sd[places] / scale
+        simplex = np.vstack([first, first + np.diag(0.3 * np.maximum(first, 0.1))])
+        options = {"xatol": precision, "fatol": precision, "initial_simplex": simplex}
+        best = np.abs(optimize.minimize(deviance, first, method="Nelder-Mead", options=options).x)
     else:
         best = np.zeros(0)
     least = deviance(best)
