@@ -32,12 +32,16 @@ def share(values):
 
 
 def false_alarms_and_power(n):
-    print(f"homogeneity test at 5 %, {n} repetitions: boats, run noise, true CV of B, rejected, stated")
+    print(
+        f"homogeneity test at 5 %, {n} repetitions: "
+        "boats, run noise, true CV of B, rejected, stated"
+    )
     for boats in (5, 8, 12, 20):
         for noise in (0.01, 0.02, 0.03):
             for cv in (0.0, 0.05, 0.10):
+                seed = [boats, round(1000 * noise), round(100 * cv)]
                 found = type_homogeneity(
-                    observe(*fleet(boats, n, boats=boats, noise=noise, b_cv=cv))
+                    observe(*fleet(seed, n, boats=boats, noise=noise, b_cv=cv))
                 )
                 stated = {0.05: "power_at_5pct", 0.10: "power_at_10pct"}.get(cv)
                 said = f"{found[stated].mean():.2f}" if stated else ""
@@ -122,22 +126,21 @@ def prediction(n):
     )
 
 
+def _named(frame, number):
+    """Boats and tows of one type under names of their own."""
+    own = [c for c in ("tow_id", "fsn_no") if c in frame.columns]
+    frame = frame.with_columns((pl.lit(f"t{number}-") + pl.col(c)).alias(c) for c in own)
+    if "boat_type" not in frame.columns:
+        return frame
+    return frame.with_columns(pl.lit(f"type {number}").alias("boat_type"))
+
+
 def speed():
     parts = [
-        fleet(
-            k, 4, boats=20, seasons=range(2010, 2015), b_cv=0.05, height_sd=0.03, season_sd=0.02
-        )
+        fleet(k, 4, boats=20, seasons=range(2010, 2015), b_cv=0.05, height_sd=0.03, season_sd=0.02)
         for k in range(10)
     ]
-    for k, part in enumerate(parts):
-        for i in range(4):
-            frame = part[i]
-            names = [c for c in ("tow_id", "fsn_no") if c in frame.columns]
-            frame = frame.with_columns((pl.lit(f"t{k}-") + pl.col(c)).alias(c) for c in names)
-            if "boat_type" in frame.columns:
-                frame = frame.with_columns(pl.lit(f"type {k}").alias("boat_type"))
-            part = (*part[:i], frame, *part[i + 1 :])
-        parts[k] = part
+    parts = [[_named(frame, k) for frame in part] for k, part in enumerate(parts)]
     tables = [pl.concat(frames) for frames in zip(*parts, strict=True)]
     start = time.perf_counter()
     consistency_tables(*tables)

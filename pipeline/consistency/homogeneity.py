@@ -29,7 +29,7 @@ OWN, PARTIAL, SHARED = "own", "partial", "shared"
 
 def shared_bend(boats: Observed) -> float:
     """The one s = 1/B^2 [s2/m2] that fits all boats best, each with its own height."""
-    fastest = np.where(boats.points.used, boats.points.speed_m_s, 0.0).max() ** 2
+    fastest = float(np.where(boats.points.used, boats.points.speed_m_s, 0.0).max()) ** 2
     found = optimize.minimize_scalar(
         lambda r: _misfit(boats, r / fastest),
         bounds=(-2.0, 0.999),
@@ -136,15 +136,19 @@ def _spread(boats: Observed, shared: float, sigma: float, f: float) -> dict[str,
     powers = {
         f"power_at_{round(100 * cv)}pct": power(boats, shared, sigma, cv, dof) for cv in POWER_AT
     }
-    return facts | powers | {
-        "shared_q": q,
-        "shared_b_m_s": float(1.0 / np.sqrt(shared)),
-        "between_b_sd_ratio": _bend_prior(boats, speed, sigma)[1] / (2.0 * q * (1.0 + q)),
-        "b_sd_ratio": float(b.std(ddof=1) / b.mean()) if several else None,
-        "b_noise_sd_ratio": noise,
-        "ab_correlation": _correlation(np.log(a), np.log(b)) if several else None,
-        "ab_noise_correlation": _noise_correlation(boats, q),
-    }
+    return (
+        facts
+        | powers
+        | {
+            "shared_q": q,
+            "shared_b_m_s": float(1.0 / np.sqrt(shared)),
+            "between_b_sd_ratio": _bend_prior(boats, speed, sigma)[1] / (2.0 * q * (1.0 + q)),
+            "b_sd_ratio": float(b.std(ddof=1) / b.mean()) if several else None,
+            "b_noise_sd_ratio": noise,
+            "ab_correlation": _correlation(np.log(a), np.log(b)) if several else None,
+            "ab_noise_correlation": _noise_correlation(boats, q),
+        }
+    )
 
 
 def power(

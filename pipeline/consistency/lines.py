@@ -176,15 +176,15 @@ def _fitted_line(
 def _explaining(boats: Observed, name: str) -> FloatArray:
     """An explaining variable, NaN where missing."""
     if name == "ln_displacement":
-        return np.log(boats.table["displacement_kg"].to_numpy().astype(np.float64))
-    return boats.table[name].to_numpy().astype(np.float64)
+        return np.log(_explaining(boats, "displacement_kg"))
+    return np.asarray(boats.table[name].to_numpy(), dtype=np.float64)
 
 
 def _crew_effects(boats: Observed) -> FloatArray:
     """One indicator column per crew (rowers and class)."""
     crews = boats.table.select(pl.struct("rowers", "crew_class").rank("dense") - 1).to_series()
     number = crews.to_numpy().astype(np.int64)
-    return np.eye(int(number.max(initial=0)) + 1)[number]
+    return np.asarray(np.eye(int(number.max(initial=0)) + 1)[number])
 
 
 def type_outliers(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:

@@ -95,7 +95,11 @@ class Problem:
     @cached_property
     def _others(self) -> FloatArray:
         n = len(self.y)
-        return np.zeros((n, 0)) if self.other is None else np.eye(int(self.other.max()) + 1)[self.other]
+        return (
+            np.zeros((n, 0))
+            if self.other is None
+            else np.eye(int(self.other.max()) + 1)[self.other]
+        )
 
     @cached_property
     def _columns(self) -> FloatArray:
@@ -113,7 +117,7 @@ class Problem:
         dof = max(len(self.y) - self.x.shape[1], 1)
         return float(np.sqrt(((self.y - self.x @ beta) ** 2).sum() / dof))
 
-    def deviance(self, sd: Sequence[float]) -> float:
+    def deviance(self, sd: Sequence[float] | FloatArray) -> float:
         """-2 log of the restricted likelihood but for a constant, at sds of boat, other, cell.
 
         The boats' effects are integrated out in closed form (Sherman-Morrison within a boat), then
@@ -154,7 +158,7 @@ class Fit:
     @property
     def dof(self) -> int:
         """Degrees of freedom of the boats: rows of one boat do not count twice."""
-        return self.problem.boats - self.problem.x.shape[1]
+        return self.problem.boats - int(self.problem.x.shape[1])
 
     @cached_property
     def _inverse(self) -> FloatArray:
@@ -177,7 +181,7 @@ class Fit:
 
     @property
     def misfit(self) -> float:
-        """y' P y: the weighted sum of squares about the fixed effects."""
+        """Y' P Y: the weighted sum of squares about the fixed effects."""
         return float(self.problem.y @ self._projection @ self.problem.y)
 
     @property
@@ -185,7 +189,9 @@ class Fit:
         """The same without the last column of X, at the same variances."""
         rest = self.problem.x[:, :-1]
         v = self._inverse
-        residual = self.problem.y - rest @ np.linalg.solve(rest.T @ v @ rest, rest.T @ v @ self.problem.y)
+        residual = self.problem.y - rest @ np.linalg.solve(
+            rest.T @ v @ rest, rest.T @ v @ self.problem.y
+        )
         return float(residual @ v @ residual)
 
     @property
@@ -235,11 +241,17 @@ class Fit:
             return nearest[1] - least - PROFILE_DROP
 
         sd, scale = self.sd[index], self.problem.spread
-        lo = optimize.brentq(excess, 0.0, sd, xtol=PROFILE_PRECISION * scale) if excess(0.0) > 0 else 0.0
+        lo = (
+            optimize.brentq(excess, 0.0, sd, xtol=PROFILE_PRECISION * scale)
+            if excess(0.0) > 0
+            else 0.0
+        )
         outside = max(2.0 * sd, 0.1 * scale)
         for _ in range(8):
             if excess(outside) > 0:
-                return float(lo), float(optimize.brentq(excess, sd, outside, xtol=PROFILE_PRECISION * scale))
+                return float(lo), float(
+                    optimize.brentq(excess, sd, outside, xtol=PROFILE_PRECISION * scale)
+                )
             outside *= 2.0
         return float(lo), None
 
@@ -268,15 +280,20 @@ def _search(
         return problem.deviance(sd)
 
     if len(places) == 1:
-        found = optimize.minimize_scalar(
+        alone = optimize.minimize_scalar(
             deviance, bounds=(0.0, 3.0), method="bounded", options={"xatol": 1e-5}
         )
-        best = np.array([found.x])
+        best = np.array([alone.x])
     elif places:
         first = sd[places] / scale
         simplex = np.vstack([first, first + np.diag(0.3 * np.maximum(first, 0.1))])
-        options = {"xatol": precision, "fatol": precision, "initial_simplex": simplex}
-        best = np.abs(optimize.minimize(deviance, first, method="Nelder-Mead", options=options).x)
+        found = optimize.minimize(
+            deviance,
+            first,
+            method="Nelder-Mead",
+            options={"xatol": precision, "fatol": precision, "initial_simplex": simplex},
+        )
+        best = np.abs(found.x)
     else:
         best = np.zeros(0)
     least = deviance(best)

@@ -42,9 +42,7 @@ def speed_trend(observed: Observed) -> pl.DataFrame:
     rows = []
     for (method,), fleet in boats.groups("method"):
         parts = [
-            part
-            for (boat_type,), part in fleet.groups("boat_type")
-            if boat_type != UNKNOWN_TYPE
+            part for (boat_type,), part in fleet.groups("boat_type") if boat_type != UNKNOWN_TYPE
         ]
         named = [(str(part.table["boat_type"][0]), [part]) for part in parts]
         rows += [
@@ -138,9 +136,7 @@ def _slow_of_type(boats: Observed, boat_type: str) -> pl.DataFrame:
     ).with_columns(pl.Series(k, v).fill_nan(None) for k, v in ratios.items())
 
 
-def _power_ratio(
-    tows: Observed, s_s2_m2: float, above: float
-) -> tuple[FloatArray, FloatArray]:
+def _power_ratio(tows: Observed, s_s2_m2: float, above: float) -> tuple[FloatArray, FloatArray]:
     """Power by the own curve / by the shared bend, and half the width of its interval in ln."""
     speed = above * tows.column("declared_speed_m_s")
     s = np.full(len(speed), s_s2_m2)
