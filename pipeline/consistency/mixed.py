@@ -196,7 +196,7 @@ class Fit:
 
     @property
     def scale(self) -> float:
-        """Misfit per degree of freedom where it is above 1 (Hartung & Knapp 2001, modified)."""
+        """Misfit per row beyond the fixed effects, at least 1: below, it is only rounding."""
         rows = len(self.problem.y) - self.problem.x.shape[1]
         return max(1.0, self.misfit / rows) if rows > 0 else 1.0
 
@@ -206,8 +206,13 @@ class Fit:
         return np.asarray(self._covariance @ (self.problem.x.T @ self._inverse @ self.problem.y))
 
     def coefficients(self) -> Coefficients:
-        """Fixed effects with 95 % intervals; needs `dof` of at least 1."""
-        sd = np.sqrt(np.diag(self._covariance) * self.scale)
+        """Fixed effects with 95 % intervals; needs `dof` of at least 1.
+
+        The variance is scaled with the misfit per degree of freedom (Hartung & Knapp 2001): with
+        equal errors the interval is that of ordinary least squares, whatever was estimated.
+        """
+        rows = len(self.problem.y) - self.problem.x.shape[1]
+        sd = np.sqrt(np.diag(self._covariance) * max(self.misfit, 0.0) / rows)
         half = float(stdtrit(self.dof, 0.5 + LEVEL / 2)) * sd
         beta = self.beta
         return Coefficients(beta, beta - half, beta + half)

@@ -115,7 +115,7 @@ def test_leaving_a_boat_out_equals_fitting_without_it():
 # Equal boats, equal B?
 
 TRIALS = 100
-TRIALS_OF_LINES = 25
+TRIALS_OF_LINES = 40
 
 
 @pytest.fixture(scope="module")
