@@ -109,13 +109,24 @@ def register_tables(setup: Setup):
     yield from _results(tables.make_registers(setup.store, setup.chosen_methods))
 
 
-@dg.asset(
-    deps=[
-        *tables.REGISTER_TABLES,
-        *tables.STUDY_TABLES,
-        *tables.METHOD_TABLES,
-        *tables.ARCHIVE_TABLES,
+@dg.multi_asset(
+    specs=[
+        dg.AssetSpec(
+            name,
+            deps=["curves", "run_points", "tows", "boats"],
+            group_name="consistency",
+            kinds={"parquet"},
+        )
+        for name in tables.CONSISTENCY_TABLES
     ],
+)
+def consistency_tables(setup: Setup):
+    """Are equal boats equal: the statistics of every boat type under every method."""
+    yield from _results(tables.make_consistency(setup.store, setup.chosen_methods))
+
+
+@dg.asset(
+    deps=[*tables.WHOLE_TABLES, *tables.METHOD_TABLES],
     group_name="register",
     kinds={"duckdb"},
 )

@@ -12,7 +12,7 @@ import polars as pl
 
 from pipeline.blocks import RunBlocks, stack_blocks
 from pipeline.changes import register_changes
-from pipeline.consistency import repeat_pairs, reproducibility, type_consistency
+from pipeline.consistency import consistency_tables
 from pipeline.errors import MissingKnowledgeError
 from pipeline.ladder import ladder
 from pipeline.method import Method
@@ -34,11 +34,25 @@ STUDIED_METHOD: Final = "rebased"
 REGISTER_TABLES: Final = (
     "register",
     "register_changes",
-    "type_consistency",
-    "reproducibility",
     "lineage",
     "methods",
 )
+CONSISTENCY_TABLES: Final = (
+    "type_consistency",
+    "type_outliers",
+    "type_homogeneity",
+    "pooled_curves",
+    "speed_trend",
+    "slow_tows",
+    "repeat_pairs",
+    "reproducibility",
+    "variance_components",
+    "predicted_cw",
+    "prediction_error",
+)
+
+WHOLE_TABLES: Final = (*ARCHIVE_TABLES, *STUDY_TABLES, *REGISTER_TABLES, *CONSISTENCY_TABLES)
+"""Tables in one piece; those of `METHOD_TABLES` have a partition per method."""
 
 
 def archive_made_from(store: Store) -> str:
@@ -201,11 +215,29 @@ def register_made_from(store: Store, methods: Sequence[Method]) -> str:
 def register_is_stale(store: Store, methods: Sequence[Method]) -> bool:
     """Whether registers and comparisons have to be made again."""
     made_from = register_made_from(store, methods)
-    return any(store.made_from(t) != made_from for t in REGISTER_TABLES)
+    return any(store.made_from(t) != made_from for t in (*REGISTER_TABLES, *CONSISTENCY_TABLES))
+
+
+def make_consistency(store: Store, methods: Sequence[Method]) -> dict[str, int]:
+    """Are equal boats equal: the statistics of every boat type under every method.
+
+    Returns:
+        Rows per table.
+    """
+    curves, run_points = (_of_methods(store, t, methods) for t in ("curves", "run_points"))
+    found = consistency_tables(curves, store.read("tows"), store.read("boats"), run_points)
+    made_from = register_made_from(store, methods)
+    for name in CONSISTENCY_TABLES:
+        store.write(name, conform(name, found[name]), made_from)
+    return {name: found[name].height for name in CONSISTENCY_TABLES}
+
+
+def _of_methods(store: Store, table: str, methods: Sequence[Method]) -> pl.DataFrame:
+    return pl.concat([store.read(table, m.name) for m in methods])
 
 
 def make_registers(store: Store, methods: Sequence[Method]) -> dict[str, int]:
-    """A draft register per method, what changes between them, and how equal boats are.
+    """A draft register per method, and what changes between them.
 
     Validity is judged on the day of the archive's last tow, not today: so the same archive gives
     the same tables. Drafts are compared with the first method's.
@@ -213,9 +245,8 @@ def make_registers(store: Store, methods: Sequence[Method]) -> dict[str, int]:
     Returns:
         Rows per table.
     """
-    tows, boats = store.read("tows"), store.read("boats")
-    crews = store.read("listed_boats")
-    curves = pl.concat([store.read("curves", m.name) for m in methods])
+    tows, crews = store.read("tows"), store.read("listed_boats")
+    curves = _of_methods(store, "curves", methods)
     on_date = max(tows["tow_date"])
     drafts = [_as_edition(m, draft_register(_of(curves, m), tows, crews, on_date)) for m in methods]
     register = pl.concat(drafts)
@@ -223,8 +254,6 @@ def make_registers(store: Store, methods: Sequence[Method]) -> dict[str, int]:
     found = {
         "register": register,
         "register_changes": pl.concat(changes) if changes else _empty("register_changes"),
-        "type_consistency": type_consistency(curves, tows, boats),
-        "reproducibility": reproducibility(repeat_pairs(curves, tows)),
         "lineage": _lineage(register, tows, methods),
         "methods": _methods(methods),
     }
@@ -276,7 +305,7 @@ def _methods(methods: Sequence[Method]) -> pl.DataFrame:
 def database_made_from(store: Store, methods: Sequence[Method]) -> str:
     """What the database is made from."""
     return fingerprint(
-        {t: store.made_from(t) for t in (*ARCHIVE_TABLES, *STUDY_TABLES, *REGISTER_TABLES)},
+        {t: store.made_from(t) for t in WHOLE_TABLES},
         {m.name: [store.made_from(t, m.name) for t in METHOD_TABLES] for m in methods},
     )
 
@@ -287,9 +316,9 @@ def make_database(store: Store, methods: Sequence[Method]) -> dict[str, int]:
     Returns:
         Rows per table.
     """
-    found = {t: store.read(t) for t in (*ARCHIVE_TABLES, *STUDY_TABLES, *REGISTER_TABLES)}
+    found = {t: store.read(t) for t in WHOLE_TABLES}
     for table in METHOD_TABLES:
-        found[table] = conform(table, pl.concat([store.read(table, m.name) for m in methods]))
+        found[table] = conform(table, _of_methods(store, table, methods))
     about = {
         "simulated": str(store.read("about_archive")["simulated"][0]).lower(),
         "code_version": code_version(),

@@ -1,6 +1,6 @@
 """False alarms, power and coverage of the consistency analysis on fleets whose truth is known.
 
-    python -m benchmarks.accuracy_consistency [repetitions]
+    PYTHONPATH=. python benchmarks/accuracy/consistency.py [repetitions]
 
 One type of like boats; run noise, true spread of B and of heights as stated per line.
 """
