@@ -33,7 +33,7 @@ def register_ensemble(
 
     Args:
         lines: one row a line with `tow_id` (may occur more than once) and `cw_kg_m`.
-        budget: rows of `uncertainty.budget` of those tows.
+        budget: rows of `uncertainty.budget`, at least of those tows.
         found: the season factors, whose errors are drawn with their correlation.
         members: number of realisations.
         seed: of the draws; a part of the edition.
@@ -41,6 +41,7 @@ def register_ensemble(
     Returns:
         Cw [kg/m], shape (members, lines).
     """
+    budget = budget.filter(pl.col("tow_id").is_in(lines["tow_id"].unique().implode()))
     keys, errors = _errors(budget, found, members, seed)
     tows = budget["tow_id"].unique().sort()
     place = pl.DataFrame({"tow_id": tows}).with_row_index("place")

@@ -44,8 +44,10 @@ NOT_TOLD: Final = "not told"
 FEWEST_BOATS: Final = 3
 SMALLEST_STEP: Final = 0.03
 """A smaller step of ln Cw is one per cent of speed: no cause is looked for."""
-TELLING: Final = 3.3
-"""A level step this many sd of the slope's: either cause is then mistaken in 5 % at most."""
+TELLING: Final = 3.0
+"""A level step of this many sd of the slope's can be told: half way to the other cause is 1.5."""
+SURE: Final = 4.0
+"""A force step of this many sd is one, however large the log's own part of the level."""
 
 MAX_ITERATIONS: Final = 300
 TOLERANCE: Final = 1e-7
@@ -812,6 +814,8 @@ def _weighted_mean(values: FloatArray, weight: FloatArray) -> tuple[float, float
 def _cause(level: float, level_sd: float, force: float, force_sd: float) -> str:
     if abs(level) < max(SMALLEST_STEP, 2.0 * level_sd):
         return "none"
+    if abs(force) > SURE * force_sd:
+        return "force"
     if abs(level) < TELLING * force_sd:
         return NOT_TOLD
     return "log" if abs(force) < abs(force - level) else "force"
