@@ -9,7 +9,7 @@ Everything is relative: standard deviations of ln Cw. Components that a season o
 shares are kept apart from those of a single tow, because they do not average out.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -165,6 +165,30 @@ class Assumed:
     temperature_unknown_c: float = 2.0
     temperature_ratio_per_c: float = 0.003
     straightness_ratio: float = 0.002
+
+    def as_repeats_show(self, tow_sd: float, kappa: float) -> "Assumed":
+        """The same with what differs from tow to tow scaled to what repeat tows show.
+
+        Calibration, stream drift, mass, recorded temperature and straightness cannot be told
+        apart in repeat tows, but their sum is seen there; it replaces what is assumed of it.
+
+        Args:
+            tow_sd: standard deviation of ln Cw of a calibrated tow beyond its random part, from
+                the network of repeat tows (`season_log`).
+            kappa: usual elasticity of Cw to speed, with which the speed errors enter the sum.
+        """
+        speed = np.hypot(self.calibration_speed_ratio, self.stream_drift_speed_ratio)
+        temperature = self.temperature_known_c * self.temperature_ratio_per_c
+        other = (self.mass_ratio, temperature, self.straightness_ratio)
+        scale = tow_sd / float(np.linalg.norm([kappa * speed, *other]))
+        return replace(
+            self,
+            calibration_speed_ratio=scale * self.calibration_speed_ratio,
+            stream_drift_speed_ratio=scale * self.stream_drift_speed_ratio,
+            mass_ratio=scale * self.mass_ratio,
+            temperature_known_c=scale * self.temperature_known_c,
+            straightness_ratio=scale * self.straightness_ratio,
+        )
 
 
 def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:

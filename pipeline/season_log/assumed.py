@@ -36,9 +36,9 @@ class Settings:
     weight_elasticity: Prior = Prior(0.4, 0.4)
     length_elasticity: Prior = Prior(0.0, 1.0)
     tow_sd: float = 0.01
-    wander_sd: float = 0.005
+    wander_sd: float = 0.003
     gps_sd: float = 0.01
-    prior_dof: float = 2.0
+    prior_dof: float = 1.0
     gps_season_sd: float = 0.003
     gps_noise_m_s: float = 0.1
     t_dof: float = 8.0

@@ -32,7 +32,7 @@ class SeasonFactors:
         covariance: covariance of ln factor between the rows of `factors` that are determined, in
             their order.
         wander_sd: standard deviation of ln factor from tow to tow, by first season of the era.
-        tow_sd: core standard deviation of ln Cw of a tow beyond its random part.
+        tow_sd: standard deviation of ln Cw of a calibrated tow beyond its random part.
         ageing_per_year: change of ln Cw per year, with `ageing_sd`.
         weakest_mode_sd: standard deviation of the combination of ln factors that is known worst.
     """
@@ -79,12 +79,14 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
     n = rows.groups
     covariance = spread.covariance[:n, :n]
     mode_sd, mode = _weakest_mode(covariance)
-    wander_sd = np.sqrt(fit.variances[2:]).tolist()
+    # The scale of a t distribution is less than its standard deviation.
+    as_sd = float(np.sqrt(settings.t_dof / (settings.t_dof - 2.0)))
+    wander_sd = (as_sd * np.sqrt(fit.variances[2:])).tolist()
     return SeasonFactors(
         factors=_described(_numbers(network, fit, spread, mode), network, second),
         covariance=covariance,
         wander_sd=dict(zip(settings.era_starts, wander_sd, strict=True)),
-        tow_sd=float(np.sqrt(fit.variances[0])),
+        tow_sd=float(np.sqrt(fit.variances[0])) * as_sd,
         ageing_per_year=ageing[0],
         ageing_sd=ageing[1],
         weakest_mode_sd=mode_sd,

@@ -252,3 +252,13 @@ def test_a_step_is_not_told_from_two_boats():
     told = log_or_force(tows, estimate_season_factors(tows))
     assert set(told["cause"]) == {"not told"}
     assert told.columns[:3] == list(GROUP)
+
+
+def test_weakest_mode_is_ageing_like_and_belongs_to_its_variance():
+    found = estimate_season_factors(simulate(HARD, 12).tows)
+    mode = found.factors["weakest_mode"].to_numpy()
+    assert np.linalg.norm(mode) == pytest.approx(1.0)
+    assert (mode > 0).all()  # all seasons off together, the earliest most
+    assert mode @ found.covariance @ mode == pytest.approx(found.weakest_mode_sd**2)
+    sd = np.sqrt(np.diag(found.covariance))
+    assert sd == pytest.approx(found.factors["ln_sd"].to_numpy())

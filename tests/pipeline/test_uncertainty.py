@@ -7,6 +7,7 @@ from scipy import stats
 
 from pipeline.uncertainty import (
     COMPONENTS,
+    Assumed,
     budget,
     combine,
     residual_scatter,
@@ -147,3 +148,17 @@ def test_interval_takes_few_degrees_of_freedom_into_account():
     assert total["lo_ratio"] == pytest.approx(1 / total["hi_ratio"])
     many = combine(budget(tows(random_dof=np.inf))).row(0, named=True)
     assert np.log(many["hi_ratio"]) / many["u_ratio"] == pytest.approx(1.95996, abs=1e-4)
+
+
+def test_repeat_tows_replace_what_was_assumed_of_their_scatter():
+    assumed = Assumed().as_repeats_show(tow_sd=0.005, kappa=2.86)
+    held = budget(tows(temperature_known=True), assumed)
+    seen = pl.col("component").is_in(
+        ["calibration", "stream_drift", "mass", "temperature", "straightness"]
+    )
+    assert np.linalg.norm(held.filter(seen)["u_ratio"]) == pytest.approx(0.005)
+    usual = budget(tows(temperature_known=True))
+    unseen = held.filter(~seen)
+    assert unseen["u_ratio"].to_list() == usual.filter(~seen)["u_ratio"].to_list()
+    again = assumed.as_repeats_show(tow_sd=0.005, kappa=2.86)
+    assert again.mass_ratio == pytest.approx(assumed.mass_ratio)
