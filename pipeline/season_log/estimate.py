@@ -8,6 +8,7 @@ import polars as pl
 from scipy.special import stdtrit
 
 from pipeline.arrays import FloatArray, IntArray
+from pipeline.errors import BrokenPromiseError
 from pipeline.season_log.assumed import USUAL, Settings
 from pipeline.season_log.joint import AGEING, Fit, Rows, fit_jointly, leave_boats_out
 from pipeline.season_log.left_out import LeftOut
@@ -69,7 +70,11 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
         (`influence_boat`) is left out, `critical_boats` how many boats would leave the season
         undetermined, `weakest_mode` its share in the combination of seasons that is known worst,
         `agreement` (factor - the one without boat identity) in standard deviations.
+
+    Raises:
+        BrokenPromiseError: a number that every tow must have is missing or not positive.
     """
+    _refuse_unknown(tows)
     network = Network.of(tows)
     rows = Rows.of(network, settings)
     fit = fit_jointly(rows, settings)
@@ -91,6 +96,18 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
         ageing_sd=ageing[1],
         weakest_mode_sd=mode_sd,
     )
+
+
+def _refuse_unknown(tows: pl.DataFrame) -> None:
+    for name in ("ln_cw", "kappa", "ln_cw_sd", "declared_speed_m_s"):
+        least = -np.inf if name == "ln_cw" else 0.0
+        sound = pl.col(name).is_finite() & (pl.col(name) > least)
+        faulty = tows.filter(~sound.fill_null(False))
+        if faulty.height:
+            raise BrokenPromiseError(
+                f"season factors: {name} of tow {faulty['tow_id'][0]} is {faulty[name][0]}, and "
+                f"{faulty.height - 1} more; give only tows with a sound curve"
+            )
 
 
 def _weakest_mode(covariance: FloatArray) -> tuple[float, FloatArray]:

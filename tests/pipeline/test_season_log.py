@@ -9,6 +9,7 @@ import pytest
 from scipy.stats import binom
 
 from pipeline import curve
+from pipeline.errors import BrokenPromiseError
 from pipeline.season_log import (
     GROUP,
     Prior,
@@ -221,6 +222,16 @@ def test_archives_that_say_nothing_give_no_factor(seasons):
     found = estimate_season_factors(tows)
     assert found.factors["factor"].null_count() == found.factors.height
     assert found.covariance.shape == (0, 0)
+
+
+@pytest.mark.parametrize(
+    ("column", "value"), [("ln_cw", None), ("ln_cw", float("nan")), ("kappa", 0.0)]
+)
+def test_a_tow_without_a_sound_curve_is_refused(column, value):
+    tows = simulate(CLEAN, 1).tows
+    spoiled = pl.when(pl.col("tow_id") == tows["tow_id"][7]).then(value).otherwise(column)
+    with pytest.raises(BrokenPromiseError, match=f"{column} of tow {tows['tow_id'][7]}"):
+        estimate_season_factors(tows.with_columns(spoiled.cast(pl.Float64).alias(column)))
 
 
 def test_the_order_of_the_rows_does_not_matter():
