@@ -36,8 +36,9 @@ def log_or_force(tows: pl.DataFrame, found: SeasonFactors) -> pl.DataFrame:
     Returns:
         One row per season, part and log (anchored ones too): `level_step` (ln Cw against the
         boats' other tows, those corrected by their factors), `force_step` (the part in ln force
-        that the slope shows), both with `_sd`, `n_boats`, and `cause`: `log`, `force`, `none` (no
-        level step of 3 % and twice its sd), or `not told`: the slope is too uncertain.
+        that the slope shows), both with `_sd`, `n_boats`, and `cause`: `log`, `force` (a log error
+        may have come with it), `none` (no level step of 3 % and twice its sd), or `not told`: the
+        slope is too uncertain, or there are fewer than three boats.
     """
     placed = (
         with_state(tows)

@@ -33,7 +33,7 @@ class Setup:
     altered_sd: float = 0.08
     ageing_per_year: float = 0.0
     gps_run_error: float = 0.012
-    gps_season_error: float = 0.0015
+    gps_season_error: float = 0.003
     kappa_error: float = 0.03
     force_step: tuple[int, float] | None = None
     log_factors: tuple[tuple[int, float], ...] = ()
@@ -53,6 +53,7 @@ def simulate(setup: Setup, seed: int) -> World:
     rng = np.random.default_rng(seed)
     ln_factor = {s: _true_ln_factor(s, rng) for s in SEASONS}
     ln_factor |= {s: float(np.log(f)) for s, f in setup.log_factors}
+    gps_offset = {s: setup.gps_season_error * rng.standard_normal() for s in SEASONS}
     boats = _boats(setup.boats, rng)
     state = boats["ln_cw"].copy()
     ln_weight = boats["ln_weight"].copy()
@@ -74,6 +75,7 @@ def simulate(setup: Setup, seed: int) -> World:
                     ln_weight[boat] + change,
                     change,
                     ln_factor[season],
+                    gps_offset[season],
                     rng,
                 )
             )
@@ -114,7 +116,7 @@ def _schedule(setup):
         yield season, crews
 
 
-def _tow(setup, season, boat, boats, ln_cw, ln_weight, change, ln_factor, rng):
+def _tow(setup, season, boat, boats, ln_cw, ln_weight, change, ln_factor, gps_offset, rng):
     anchored = season >= ANCHORED_FROM
     r, q = boats["r"][boat], boats["r"][boat] / (1 - boats["r"][boat])
     wander = 0.0 if anchored else setup.wander * rng.standard_normal()
@@ -129,7 +131,7 @@ def _tow(setup, season, boat, boats, ln_cw, ln_weight, change, ln_factor, rng):
     )
     gps = None
     if GPS_FROM <= season < ANCHORED_FROM:
-        gps = ln_factor + wander + setup.gps_run_error * rng.standard_normal()
+        gps = ln_factor + wander + gps_offset + setup.gps_run_error * rng.standard_normal()
     q_guess = q * (1 + setup.kappa_error * rng.standard_normal())
     return {
         "season": season,
