@@ -43,11 +43,12 @@ Texts: TypeAlias = np.ndarray[tuple[int, ...], np.dtype[np.str_]]
 
 
 def recompute(method: Method, tows: pl.DataFrame, blocks: RunBlocks) -> Recomputed:
-    """Run points, curves and log factors of all tows under a method.
+    """Run points, curves, log factors and assessments of all tows under a method.
 
     Args:
         method: the method.
-        tows: rows of the warehouse's `tows`.
+        tows: rows of the warehouse's `tows`, with `boat_type` where it is known, so that a tow can
+            be compared with like boats.
         blocks: their runs; `blocks.runs` has the columns of `tow_runs`.
 
     Raises:
@@ -55,7 +56,7 @@ def recompute(method: Method, tows: pl.DataFrame, blocks: RunBlocks) -> Recomput
     """
     prepared = [_prepare(batch, steps) for batch, steps in _batches(method, tows, blocks)]
     shared = _archive_coefficient([p for p in prepared if p.steps.wind.coefficients == "archive"])
-    return as_tables(method.name, [_finish(p, shared) for p in prepared])
+    return as_tables(method, tows, [_finish(p, shared) for p in prepared])
 
 
 def _batches(

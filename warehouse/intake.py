@@ -16,7 +16,7 @@ from warehouse.archive import ArchiveIndex, FileHashes, Profiles, index_archive
 from warehouse.archive.profile import read_profiles
 from warehouse.store import Store, fingerprint
 
-LISTED: Final = ("boats", "tows", "runs")
+LISTED: Final = ("boats", "tows", "runs", "windows")
 FAULT_SCHEMA: Final = {
     "path": pl.String(),
     "tow_id": pl.String(),
