@@ -246,15 +246,12 @@ def _of_like_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     """Excess of each tow over boats of its type with the same crew.
 
     Cw at the type's common speed, over its size, against the type's median; less the season's
-    median, which holds the error of its log; less what the boat shows in its own later tows, when
-    it was steered straight. Medians, so that a tow pulled askew does not move what it is held
-    against.
+    median, which holds the error of its log. Medians, so that a tow pulled askew does not move
+    what it is held against.
     """
     boats = _with_boats(curves, tows)
     if "boat_type" not in boats.columns:
         return pl.DataFrame(schema={"tow_id": pl.String(), "pulled_askew": pl.Float64()})
-    steered_straight = pl.col("season") > _LAST_SEASON["pulled_askew"]
-    own = pl.col("ln_excess").filter(steered_straight).median().over(LINE)
     common_speed = pl.col("declared_speed_m_s").median().over(LIKE)
     return (
         boats.drop_nulls(["boat_type", "size"])
@@ -262,5 +259,5 @@ def _of_like_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
         .with_columns(ln_excess=(_cw_at(common_speed) / pl.col("size")).log())
         .with_columns(pl.col("ln_excess") - pl.col("ln_excess").median().over(LIKE))
         .with_columns(pl.col("ln_excess") - pl.col("ln_excess").median().over("season"))
-        .select("tow_id", pulled_askew=(pl.col("ln_excess") - own.fill_null(0.0)).exp() - 1)
+        .select("tow_id", pulled_askew=pl.col("ln_excess").exp() - 1)
     )

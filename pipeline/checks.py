@@ -139,8 +139,8 @@ CHECKS: Final = (
     ),
     Check(
         "range_not_covered",
-        "how far the runs fall short of 90 or 110 % of the declared speed / that speed: used from 85 "
-        "to 115 %, the curve is then extrapolated",
+        "how far the runs fall short of 90 or 110 % of the declared speed, as a part of it: used "
+        "from 85 to 115 %, the curve is then extrapolated",
         "1",
         "Cw-kromme 2015, 'Hyperbool als beste benadering': never over 5 % from a measured speed",
         highest=0.05,
@@ -231,8 +231,8 @@ CHECKS: Final = (
     ),
     Check(
         "pulled_askew",
-        "excess of Cw over like boats that weight, length, season and the boat's later tows leave "
-        "unexplained: it may have been pulled askew",
+        "excess of Cw over like boats that weight, length and season leave unexplained: the boat "
+        "may have been pulled askew",
         "1",
         "presentation 24-01-2015: 5 to 10 % too high; straight steering was aided from 2014 on",
         highest=0.05,
