@@ -124,7 +124,8 @@ class _Faults:
         present = blocks.n > 0
         speed, force = blocks.block_means("log1_v"), blocks.block_means("force")
         force_median, force_sd = _robust(force, present)
-        force_sd = np.maximum(force_sd, FORCE_SD_FLOOR * np.abs(force_median))
+        force_floor = np.maximum(FORCE_SD_FLOOR * np.abs(force_median), 1e-9)
+        force_sd = np.maximum(force_sd, force_floor)
         return cls(
             speed,
             force,
@@ -151,8 +152,9 @@ def _wind_change(blocks: RunBlocks, present: BoolArray) -> FloatArray:
 
 
 def _robust(values: FloatArray, present: BoolArray) -> tuple[FloatArray, FloatArray]:
-    """Median and robust standard deviation of each row, shape (runs, 1)."""
-    held = np.where(present, values, np.nan)
+    """Median and robust standard deviation of each row, shape (runs, 1); 0 for an empty row."""
+    empty = ~present.any(axis=1, keepdims=True)
+    held = np.where(present, values, np.where(empty, 0.0, np.nan))
     median = np.nanmedian(held, axis=1, keepdims=True)
     return median, MAD_TO_SD * np.nanmedian(np.abs(held - median), axis=1, keepdims=True)
 
