@@ -42,7 +42,10 @@ def archive_tables(setup: Setup):
 @dg.multi_asset(
     specs=[
         dg.AssetSpec(
-            name, deps=["tows", "tow_runs", blocks], group_name="method", kinds={"parquet"}
+            name,
+            deps=["boats", "tows", "tow_runs", "hand_windows", blocks],
+            group_name="method",
+            kinds={"parquet"},
         )
         for name in tables.METHOD_TABLES
     ],
@@ -50,7 +53,7 @@ def archive_tables(setup: Setup):
     check_specs=[dg.AssetCheckSpec("every_tow_has_a_curve_row", asset="curves")],
 )
 def method_tables(context: dg.AssetExecutionContext, setup: Setup):
-    """Run points, curves and log factors of all tows under one method."""
+    """Run points, curves, log factors and assessments of all tows under one method."""
     store = setup.store
     method = shipped_method(context.partition_key)
     found = tables.apply_method(store, method, tables.run_blocks(store))
