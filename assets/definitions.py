@@ -5,11 +5,12 @@ import dagster as dg
 from assets import archive, tables
 from assets.resources import Progress, Quiet, Setup
 
-INDEX, READ, COLLECT, APPLY, FINISH = (
+INDEX, READ, COLLECT, APPLY, STUDY, FINISH = (
     "index_archive",
     "read_season",
     "collect_archive",
     "apply_method",
+    "study_methods",
     "finish",
 )
 """The jobs of a rebuild, in order: `READ` runs per season and `APPLY` per method."""
@@ -20,6 +21,7 @@ jobs = [
     dg.define_asset_job(READ, dg.AssetSelection.assets(archive.samples, archive.blocks)),
     dg.define_asset_job(COLLECT, dg.AssetSelection.assets(tables.archive_tables)),
     dg.define_asset_job(APPLY, dg.AssetSelection.assets(tables.method_tables)),
+    dg.define_asset_job(STUDY, dg.AssetSelection.assets(tables.study_tables)),
     dg.define_asset_job(
         FINISH,
         dg.AssetSelection.assets(tables.register_tables, tables.warehouse_database),
@@ -36,6 +38,7 @@ def build_defs(setup: Setup, progress: Progress) -> dg.Definitions:
             archive.blocks,
             tables.archive_tables,
             tables.method_tables,
+            tables.study_tables,
             tables.register_tables,
             tables.warehouse_database,
         ],

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import dagster as dg
 
-from assets.definitions import APPLY, COLLECT, FINISH, INDEX, READ, build_defs
+from assets.definitions import APPLY, COLLECT, FINISH, INDEX, READ, STUDY, build_defs
 from assets.resources import Progress, Setup
 from warehouse import intake, tables
 from warehouse.files import written_beside
@@ -21,7 +21,24 @@ from warehouse.store import Store
 INSTANCE_SETTINGS = """\
 telemetry:
   enabled: false
+event_log_storage:
+  module: dagster._core.storage.event_log
+  class: ConsolidatedSqliteEventLogStorage
+  config:
+    base_dir: {env: DAGSTER_HOME}
+run_storage:
+  module: dagster._core.storage.runs
+  class: SqliteRunStorage
+  config:
+    base_dir: {env: DAGSTER_HOME}
+schedule_storage:
+  module: dagster._core.storage.schedules
+  class: SqliteScheduleStorage
+  config:
+    base_dir: {env: DAGSTER_HOME}
 """
+"""Consolidated, because a database of its own for every run costs half a second each."""
+
 QUIET_LOG = {"loggers": {"console": {"config": {"log_level": "CRITICAL"}}}}
 
 
@@ -71,6 +88,9 @@ def rebuild(
         for name in done.methods:
             progress.step(f"applying method {name} to all tows")
             jobs.run(APPLY, name)
+        if tables.studies_are_stale(store, setup.chosen_methods):
+            progress.step("finding what each step changes, and how much choices matter")
+            jobs.run(STUDY)
         done.database = _finish(jobs, setup, progress)
     return done
 

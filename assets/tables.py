@@ -39,11 +39,15 @@ def archive_tables(setup: Setup):
     )
 
 
+all_blocks = dg.AssetDep(blocks, partition_mapping=dg.AllPartitionMapping())
+"""Every method needs the blocks of every season."""
+
+
 @dg.multi_asset(
     specs=[
         dg.AssetSpec(
             name,
-            deps=["boats", "tows", "tow_runs", "hand_windows", blocks],
+            deps=["boats", "tows", "tow_runs", "hand_windows", all_blocks],
             group_name="method",
             kinds={"parquet"},
         )
@@ -77,6 +81,27 @@ def method_tables(context: dg.AssetExecutionContext, setup: Setup):
 @dg.multi_asset(
     specs=[
         dg.AssetSpec(
+            name, deps=["tows", "tow_runs", blocks], group_name="method", kinds={"parquet"}
+        )
+        for name in tables.STUDY_TABLES
+    ],
+    check_specs=[dg.AssetCheckSpec("steps_multiply_to_the_total", asset="correction_steps")],
+)
+def study_tables(setup: Setup):
+    """What each step of a method changes, and how much choices of judgement matter."""
+    store = setup.store
+    rows = tables.make_studies(store, setup.chosen_methods, tables.run_blocks(store))
+    yield from _results(rows)
+    yield dg.AssetCheckResult(
+        check_name="steps_multiply_to_the_total",
+        asset_key="correction_steps",
+        passed=tables.ladders_multiply(store.read("correction_steps")),
+    )
+
+
+@dg.multi_asset(
+    specs=[
+        dg.AssetSpec(
             name, deps=["curves", "tows", "boats"], group_name="register", kinds={"parquet"}
         )
         for name in tables.REGISTER_TABLES
@@ -88,7 +113,12 @@ def register_tables(setup: Setup):
 
 
 @dg.asset(
-    deps=[*tables.REGISTER_TABLES, *tables.METHOD_TABLES, *tables.ARCHIVE_TABLES],
+    deps=[
+        *tables.REGISTER_TABLES,
+        *tables.STUDY_TABLES,
+        *tables.METHOD_TABLES,
+        *tables.ARCHIVE_TABLES,
+    ],
     group_name="register",
     kinds={"duckdb"},
 )

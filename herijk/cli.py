@@ -14,12 +14,15 @@ from typing import Annotated, Any
 import typer
 
 from herijk import text
+from herijk.method_text import method_in_words
 from herijk.progress import TerminalProgress
-from pipeline.errors import HerijkError
-from pipeline.method import shipped_method, shipped_methods, shipped_text
+from pipeline.errors import HerijkError, MissingKnowledgeError
+from pipeline.method import Method, parse_method, shipped_method, shipped_methods, shipped_text
+from pipeline.register import draft_name
 from pipeline.simulate import WorldSettings, simulate_world
 from warehouse import reports
 from warehouse.archive.write import write_simulated_archive
+from warehouse.rebase import rebase as rebase_history
 from warehouse.store import Store
 
 app = typer.Typer(
@@ -97,8 +100,36 @@ def methods(context: typer.Context, as_json: AsJson = False) -> None:
 
 @methods_app.command("show")
 def show_method(name: Annotated[str, typer.Argument(help="Name of a method.")]) -> None:
-    """One method in full."""
-    typer.echo(text.method(shipped_method(name)))
+    """One method in words, with what differs from the one it extends."""
+    shown = _method(name)
+    parent = None if shown.extends is None else shipped_method(shown.extends)
+    typer.echo(method_in_words(shown, parent))
+
+
+@app.command()
+def rebase(
+    method: Annotated[
+        str, typer.Argument(metavar="METHOD_OR_FILE", help="A method's name, or a TOML file.")
+    ],
+    data: DataFolder = Path("data"),
+    against: Annotated[
+        str, typer.Option(metavar="METHOD_OR_FILE", help="What it is compared with.")
+    ] = "as-published",
+    as_json: AsJson = False,
+) -> None:
+    """All of history under a method: what changes and why. Nothing is published or stored."""
+    report = rebase_history(Store(data), _method(method), _method(against))
+    _show(report, text.rebase, as_json)
+
+
+def _method(name_or_file: str) -> Method:
+    """A method that ships, or one from a file; a draft's name stands for its method."""
+    file = Path(name_or_file)
+    if file.suffix == ".toml":
+        if not file.is_file():
+            raise MissingKnowledgeError(f"there is no method file {file}")
+        return parse_method(file.read_text(encoding="utf-8"), str(file))
+    return shipped_method(name_or_file.removeprefix(draft_name("")))
 
 
 @app.command()
@@ -121,9 +152,9 @@ def audit(
 def simulate(
     directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder to make.")],
     seasons: Seasons = "2009:2018",  # type: ignore[assignment]
-    tows_per_season: Annotated[int, typer.Option(min=1, max=1000)] = 24,
+    tows_per_season: Annotated[int, typer.Option(min=1, max=1000, help="Tows in each.")] = 24,
     rate: Annotated[int, typer.Option(min=5, max=1000, help="Samples a second.")] = 1000,
-    seed: Annotated[int, typer.Option(min=0)] = 1,
+    seed: Annotated[int, typer.Option(min=0, help="Decides all that is drawn.")] = 1,
 ) -> None:
     """Write a simulated archive with known truth (the truth lies beside it, not in it)."""
     settings = WorldSettings(tuple(seasons), tows_per_season, rate, seed)

@@ -3,8 +3,6 @@
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from pipeline.method import LAST_SEASON, Method
-
 Report = dict[str, Any]
 SIMULATED = "SIMULATED archive: made by `herijk simulate`, not the federation's measurements."
 
@@ -47,9 +45,8 @@ def rebuild(report: Report) -> str:
     )
     if report["set_aside"]:
         rows = [(r["reason_code"], r["number"]) for r in report["set_aside"]]
-        parts.append(
-            "Set aside (table quarantine says where and why):\n" + table(("reason", "number"), rows)
-        )
+        parts.append("Set aside:\n" + table(("reason", "number"), rows))
+        parts.append(_faults(report["first_faults"], sum(number for _, number in rows)))
     else:
         parts.append("Set aside: nothing.")
     rows = [(r["method"], r["status"], r["number"]) for r in report["curves"]]
@@ -67,6 +64,19 @@ def _work_done(done: Report) -> str:
     seasons = ", ".join(str(s) for s in done["seasons"]) or "none"
     methods = ", ".join(done["methods"]) or "none"
     return f"Seasons read: {seasons}. Methods applied: {methods}."
+
+
+def _faults(first: list[Report], number: int) -> str:
+    lines = [f"  {_place(fault)}: {fault['message']}" for fault in first]
+    if number > len(first):
+        lines.append(f"  and {number - len(first)} more: see the table quarantine")
+    return "\n".join(lines)
+
+
+def _place(fault: Report) -> str:
+    line = "" if fault["line"] is None else f", line {fault['line']}"
+    tow = "" if fault["tow_id"] is None else f" (tow {fault['tow_id']})"
+    return f"{fault['path']}{line}{tow}"
 
 
 def _by_season(rows: list[Report]) -> str:
@@ -109,18 +119,37 @@ def methods(report: Report) -> str:
     return table(("method", "title", "hash"), rows)
 
 
-def method(shown: Method) -> str:
-    """One method in full: per range of seasons the option of every step."""
-    lines = [f"{shown.name}: {shown.title}", "", shown.description.strip(), ""]
-    for held in shown.ranges:
-        last = "the present" if held.last == LAST_SEASON else held.last
-        lines.append(f"Seasons {held.first} to {last}")
-        for step, options in held.steps.model_dump().items():
-            words = ", ".join(f"{key} = {value}" for key, value in options.items())
-            lines.append(f"  {step:12} {words}")
-        lines.append("")
-    lines.append(f"content hash {shown.content_hash}")
-    return "\n".join(lines)
+def rebase(report: Report) -> str:
+    """What a method changes: the ladder per season, and the boats most affected."""
+    parts = [SIMULATED] if report["simulated"] else []
+    parts.append(f"{report['method']} against {report['against']}; nothing was stored.")
+    counts = ", ".join(f"{row['count']} {row['change']}" for row in report["changes"])
+    parts.append(f"Register lines: {counts}.")
+    seasons = report["by_season"]
+    steps = [key for key in seasons[0] if key not in ("season", "tows", "total")]
+    head = ("season", "tows", *steps, "total")
+    lines = [
+        (row["season"], row["tows"], *(_per_cent(row[step]) for step in (*steps, "total")))
+        for row in seasons
+    ]
+    parts.append(
+        "Change of Cw at the declared speed by each step, median of the season's tows; a tow's\n"
+        "own steps multiply to its total, medians need not:\n" + table(head, lines)
+    )
+    boats = [
+        (
+            row["fsn_no"],
+            row["name"] or "-",
+            f"{row['rowers']}{row['crew_class']}",
+            *(_per_cent(row[step]) for step in steps),
+            _per_cent(row["cw_ratio"]),
+            f"{7200 * (row['time_ratio'] - 1):+.0f} s",
+        )
+        for row in report["boats"]
+    ]
+    head = ("boat", "name", "crew", *steps, "Cw", "in 2 h")
+    parts.append("Register lines most affected:\n" + table(head, boats))
+    return "\n\n".join(parts)
 
 
 def audit(report: Report) -> str:

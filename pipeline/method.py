@@ -269,8 +269,10 @@ class _Reader:
         except ValidationError as error:
             raise self.from_validation(error, allowed=_Head) from error
 
-    def error(self, key: str, message: str) -> MethodFileError:
-        return MethodFileError(f"{self.file_name}{self._line(key)}: {key}: {message}")
+    def error(self, key: str, message: str, where: str | None = None) -> MethodFileError:
+        """An error about `key`, on the line of `where`, which is the key unless it is missing."""
+        line = self._line(key if where is None else where)
+        return MethodFileError(f"{self.file_name}{line}: {key}: {message}")
 
     def from_validation(
         self, error: ValidationError, allowed: type[BaseModel], season: str = ""
@@ -284,14 +286,28 @@ class _Reader:
             message = "missing"
         else:
             message = f"{message[0].lower()}{message[1:]}, not {first['input']!r}"
-        return self.error(".".join(path), message + season)
+        where = path[:-1] if first["type"] == "missing" else path
+        return self.error(".".join(path), message + season, where=".".join(where))
 
     def _line(self, key: str) -> str:
-        """Where the key stands: the last line that begins with its last part, or holds it."""
-        last = re.escape(key.rsplit(".", maxsplit=1)[-1])
-        pattern = re.compile(rf"(^|[\s{{.,\[])\"?{last}\"?\s*(=|\]|\.)")
-        lines = [i for i, line in enumerate(self.text.splitlines(), 1) if pattern.search(line)]
-        return f", line {lines[-1]}" if lines else ""
+        """Where the key stands: the last line that holds it, or else the step it belongs to."""
+        parts = key.split(".")
+        for wanted in (parts[-2:], parts[-1:], parts[-2:-1]):
+            lines = [number for number, held in self._keys_of_lines() if set(wanted) <= held]
+            if lines:
+                return f", line {lines[-1]}"
+        return ""
+
+    def _keys_of_lines(self) -> list[tuple[int, set[str]]]:
+        """The keys named on each line, with those of the table it stands in."""
+        table: set[str] = set()
+        found = []
+        for number, line in enumerate(self.text.splitlines(), 1):
+            header = re.match(r"\s*\[+([\w.-]+)\]+", line)
+            if header:
+                table = set(header[1].split("."))
+            found.append((number, table | set(re.findall(r"([\w-]+)\s*=", line))))
+        return found
 
 
 def _keys_at(model: type[BaseModel], path: list[str]) -> list[str]:
@@ -334,7 +350,7 @@ def _step_tables(
     for step, table in options.items():
         if step not in Steps.model_fields:
             allowed = ", ".join(Steps.model_fields)
-            raise reader.error(f"{where}.{step}", f"unknown step; the steps are {allowed}")
+            raise reader.error(f"{where}.{step}", f"unknown step; allowed here: {allowed}")
         if not isinstance(table, dict):
             raise reader.error(f"{where}.{step}", f"a table of options is needed, not {table!r}")
     return dict(options)

@@ -7,7 +7,7 @@ the whole archive is found first and applied after. Nothing here knows a season:
 what holds when.
 """
 
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -21,7 +21,7 @@ from pipeline.blocks import RunBlocks
 from pipeline.calibration import gps_factor
 from pipeline.channels import BACK, OUT
 from pipeline.hull import front_area_m2, hull_speed_m_s, still_air_coefficient_kg_m
-from pipeline.method import Method, Steps
+from pipeline.method import Method, Steps, Window
 from pipeline.outcome import Outcome, Recomputed, as_tables
 from pipeline.resistance import RunMeans, run_means, temperature_change_kg_m
 from pipeline.speed import prescribed_factor
@@ -39,6 +39,7 @@ PER_RUN_ITERATIONS = 4
 PER_TOW_GRID = np.linspace(*PER_TOW_BOUNDS, 41)
 ARCHIVE_GRID = np.linspace(0.0, 1.2, 13)
 
+KnownWindows: TypeAlias = dict[tuple[int, Window], Windows]
 Texts: TypeAlias = np.ndarray[tuple[int, ...], np.dtype[np.str_]]
 
 
@@ -54,25 +55,46 @@ def recompute(method: Method, tows: pl.DataFrame, blocks: RunBlocks) -> Recomput
     Raises:
         MissingKnowledgeError: the method says nothing about a season of `tows`.
     """
-    prepared = [_prepare(batch, steps) for batch, steps in _batches(method, tows, blocks)]
-    shared = _archive_coefficient([p for p in prepared if p.steps.wind.coefficients == "archive"])
-    return as_tables(method, tows, [_finish(p, shared) for p in prepared])
+    plans = [(batch, steps) for batch, (steps,) in batches([method], tows, blocks)]
+    return as_tables(method, tows, evaluate(plans))
 
 
-def _batches(
-    method: Method, tows: pl.DataFrame, blocks: RunBlocks
-) -> Iterator[tuple[Batch, Steps]]:
-    """Tows that share their steps, together, so that each step works on all of them at once."""
-    held: list[tuple[Steps, list[int]]] = []
+def batches(
+    methods: Sequence[Method], tows: pl.DataFrame, blocks: RunBlocks
+) -> list[tuple[Batch, tuple[Steps, ...]]]:
+    """Tows that share their steps under every method, together: each step works on all at once.
+
+    Returns:
+        Batches, each with its steps under each of the methods.
+    """
+    seasons: dict[str, tuple[tuple[Steps, ...], list[int]]] = {}
     for season in tows["season"].unique().sort():
-        steps = method.for_season(season)
-        seasons = next((seen for other, seen in held if other == steps), None)
-        if seasons is None:
-            held.append((steps, [season]))
-        else:
-            seasons.append(season)
-    for steps, seasons in held:
-        yield Batch.of(tows.filter(pl.col("season").is_in(seasons)), blocks), steps
+        steps = tuple(method.for_season(season) for method in methods)
+        seasons.setdefault(str(steps), (steps, []))[1].append(season)
+    return [
+        (Batch.of(tows.filter(pl.col("season").is_in(held)), blocks), steps)
+        for steps, held in seasons.values()
+    ]
+
+
+def evaluate(
+    plans: Sequence[tuple[Batch, Steps]], known_windows: KnownWindows | None = None
+) -> list[Outcome]:
+    """What the given steps make of each batch.
+
+    Args:
+        plans: batches with their steps; what is searched over the archive is searched over them.
+        known_windows: windows found before for the same batches, by place and rule; added to.
+    """
+    windows = {} if known_windows is None else known_windows
+    prepared = []
+    for place, (batch, steps) in enumerate(plans):
+        key = (place, steps.window)
+        if key not in windows:
+            windows[key] = choose_windows(batch.blocks, steps.window)
+        prepared.append(_prepare(batch, steps, windows[key]))
+    shared = _archive_coefficient([p for p in prepared if p.steps.wind.coefficients == "archive"])
+    return [_finish(p, shared) for p in prepared]
 
 
 @dataclass(frozen=True)
@@ -147,12 +169,13 @@ def enough_runs(batch: Batch, used: BoolArray, minimum: int) -> BoolArray:
     return (out + back >= minimum) & (out > 0) & (back > 0)
 
 
-def _prepare(batch: Batch, steps: Steps) -> _Prepared:
-    windows = choose_windows(batch.blocks, steps.window)
+def _prepare(batch: Batch, steps: Steps, windows: Windows) -> _Prepared:
     means = run_means(batch, windows.mask, steps)
     known = prescribed_factor(steps.speed, batch.of_tow("speed_correction_ratio"))
     reasons = _reasons(batch, steps, windows, means.speed_m_s * known[batch.tow])
-    y, determined = _calibrate(batch, steps, windows, means.speed_m_s, reasons == "")
+    y, determined = _calibrate(
+        batch, steps, windows, means.speed_m_s * known[batch.tow], reasons == ""
+    )
     reasons = np.where((reasons == "") & ~determined[batch.tow], NOT_CALIBRATED, reasons)
     speed = means.speed_m_s * (known * y)[batch.tow]
     temperature, temperature_known = temperature_change_kg_m(batch, steps.temperature, speed)
@@ -185,7 +208,7 @@ def _reasons(batch: Batch, steps: Steps, windows: Windows, speed_m_s: FloatArray
 def _calibrate(
     batch: Batch, steps: Steps, windows: Windows, log_m_s: FloatArray, used: BoolArray
 ) -> tuple[FloatArray, BoolArray]:
-    """Calibration factor of each tow and whether it is known, shape (tows,)."""
+    """Factor on the log speed as corrected so far, and whether it is known, shape (tows,)."""
     if steps.calibration.rule == "none":
         return np.ones(batch.size), np.ones(batch.size, dtype=bool)
     samples = batch.blocks.total("gps_n", windows.mask)

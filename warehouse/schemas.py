@@ -234,6 +234,30 @@ class RegisterChanges(dy.Schema):
     causes = _text("what made the change, with its factor on Cw, as JSON")
 
 
+class CorrectionSteps(dy.Schema):
+    """The ladder: what each step from one method to another does to a tow's Cw."""
+
+    from_method = _text("method the ladder begins with", primary_key=True)
+    to_method = _text("method it ends with", primary_key=True)
+    tow_id = _tow_id(primary_key=True)
+    position = dy.Int8(primary_key=True, description="place of the step; 0 is the start", min=0)
+    step = _text("step of the method that was exchanged")
+    factor = _number("1", "Cw after / before the step; they multiply to the total", min_exclusive=0)
+    cw_kg_m = _number("kg/m", "Cw at the declared speed after the step")
+
+
+class OptionEffects(dy.Schema):
+    """How much choices of judgement matter, on top of a method."""
+
+    method = _method(primary_key=True)
+    tow_id = _tow_id(primary_key=True)
+    option = _text("option of a step, or all", primary_key=True)
+    cw_effect_ratio = _number("1", "Cw with the second value / with the first", nullable=True)
+    b_effect_ratio = _number("1", "the same for B", nullable=True)
+    cw_sd_ratio = _number("1", "spread of Cw over all combinations", nullable=True, min=0)
+    b_sd_ratio = _number("1", "the same for B", nullable=True, min=0)
+
+
 class TypeConsistency(dy.Schema):
     """How a quantity follows weight or tow speed within a boat type: a straight line."""
 
@@ -308,6 +332,8 @@ TABLES: Final[dict[str, type[dy.Schema]]] = {
     "log_factors": LogFactors,
     "register": Register,
     "register_changes": RegisterChanges,
+    "correction_steps": CorrectionSteps,
+    "option_effects": OptionEffects,
     "type_consistency": TypeConsistency,
     "reproducibility": Reproducibility,
     "quarantine": Quarantine,

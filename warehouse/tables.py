@@ -15,7 +15,9 @@ from pipeline.blocks import RunBlocks, stack_blocks
 from pipeline.changes import register_changes
 from pipeline.consistency import repeat_pairs, reproducibility, type_consistency
 from pipeline.errors import MissingKnowledgeError
+from pipeline.ladder import ladder
 from pipeline.method import Method
+from pipeline.options import option_effects
 from pipeline.recompute import recompute
 from pipeline.register import LINE, draft_name, draft_register
 from pipeline.steady import HAND_COLUMNS
@@ -28,6 +30,10 @@ from warehouse.store import Store, fingerprint, table_digest
 
 ARCHIVE_TABLES: Final = ("boats", "tows", "tow_runs", "hand_windows", "quarantine")
 METHOD_TABLES: Final = ("run_points", "curves", "log_factors", "assessments")
+STUDY_TABLES: Final = ("correction_steps", "option_effects")
+STUDIED_METHOD: Final = "rebased"
+"""The method whose options of judgement are studied."""
+
 REGISTER_TABLES: Final = (
     "register",
     "register_changes",
@@ -41,7 +47,7 @@ REGISTER_TABLES: Final = (
 def archive_made_from(store: Store) -> str:
     """What the tables about the archive are made from."""
     seasons = {s: store.made_from("season_index", s) for s in store.partitions("season_index")}
-    read = ("listed_boats", "listed_tows", "listed_windows", "list_faults")
+    read = ("listed_boats", "listed_windows", "list_faults")
     lists = [table_digest(store.read(t)) for t in read]
     return fingerprint(seasons, lists, code_version())
 
@@ -57,13 +63,18 @@ def collect_archive(store: Store, today: dt.date) -> dict[str, int]:
 
     Returns:
         Rows per table.
+
+    Raises:
+        MissingKnowledgeError: no tow is sound.
     """
     made_from = archive_made_from(store)
+    if not store.partitions("season_index"):
+        raise _nothing_sound(store.read("list_faults"))
     index = store.read_all("season_index")
     sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
-    tows = store.read("listed_tows").join(sound, on="tow_id", how="semi")
-    runs = store.read("listed_runs").join(sound, on="tow_id", how="semi")
-    windows = store.read("listed_windows").join(sound, on="tow_id", how="semi")
+    tows = store.read_all("season_tows").join(sound, on="tow_id", how="semi")
+    runs = store.read_all("season_runs").join(sound, on="tow_id", how="semi")
+    windows = store.read("listed_windows").join(runs, on=["tow_id", "run"], how="semi")
     beyond = _outside_run(store, windows)
     found = {
         "boats": store.read("listed_boats"),
@@ -74,9 +85,25 @@ def collect_archive(store: Store, today: dt.date) -> dict[str, int]:
         ),
         "quarantine": _quarantine(store, index, beyond, today),
     }
+    if tows.is_empty():
+        raise _nothing_sound(found["quarantine"])
     for name, frame in found.items():
         store.write(name, conform(name, frame), made_from)
     return {name: frame.height for name, frame in found.items()}
+
+
+def _nothing_sound(faults: pl.DataFrame) -> MissingKnowledgeError:
+    """The error for an archive without any tow that can be used."""
+    if faults.is_empty():
+        return MissingKnowledgeError(
+            "no tow can be used: the tow lists hold none in the seasons that were read; "
+            "fill sleeplijsten/sleeplijst_<jaar>.csv, or widen --seasons"
+        )
+    first = faults.row(0, named=True)
+    return MissingKnowledgeError(
+        f"no tow can be used: {faults.height} tows or files are set aside. Mend the first and "
+        f"try again: {first['path']}: {first['message']}"
+    )
 
 
 _LISTED_AT: Final = ["list_path", "list_line"]
@@ -136,19 +163,16 @@ def method_is_stale(store: Store, method: Method) -> bool:
 
 
 def run_blocks(store: Store) -> RunBlocks:
-    """The runs of all sound tows as arrays, with the windows that were given by hand.
-
-    Raises:
-        MissingKnowledgeError: there is no sound tow at all.
-    """
-    runs = store.read("tow_runs")
-    if runs.is_empty():
-        raise MissingKnowledgeError(
-            "no tow could be read: every one was set aside; the table quarantine says why"
-        )
+    """The runs of all sound tows as arrays, with the windows that were given by hand."""
     windows = store.read("hand_windows").rename(HAND_COLUMNS)
-    given = runs.join(windows, on=["tow_id", "run"], how="left")
-    return stack_blocks(intake.all_blocks(store), given)
+    runs = store.read("tow_runs").join(windows, on=["tow_id", "run"], how="left")
+    return stack_blocks(intake.all_blocks(store), runs)
+
+
+def typed_tows(store: Store) -> pl.DataFrame:
+    """All sound tows with the type of their boat."""
+    types = store.read("boats").select("fsn_no", "boat_type")
+    return store.read("tows").join(types, on="fsn_no", how="left")
 
 
 def apply_method(store: Store, method: Method, blocks: RunBlocks) -> dict[str, pl.DataFrame]:
@@ -158,13 +182,50 @@ def apply_method(store: Store, method: Method, blocks: RunBlocks) -> dict[str, p
         The tables written, by name.
     """
     made_from = method_made_from(store, method)
-    types = store.read("boats").select("fsn_no", "boat_type")
-    tows = store.read("tows").join(types, on="fsn_no", how="left")
-    result = recompute(method, tows, blocks)
+    result = recompute(method, typed_tows(store), blocks)
     found = {name: conform(name, getattr(result, name)) for name in METHOD_TABLES}
     for name, frame in found.items():
         store.write(name, frame, made_from, method.name)
     return found
+
+
+def studies_made_from(store: Store, methods: Sequence[Method]) -> str:
+    """What the ladders and the option study are made from."""
+    return fingerprint({m.name: method_made_from(store, m) for m in methods})
+
+
+def studies_are_stale(store: Store, methods: Sequence[Method]) -> bool:
+    """Whether ladders and option study have to be made again."""
+    made_from = studies_made_from(store, methods)
+    return any(store.made_from(t) != made_from for t in STUDY_TABLES)
+
+
+def make_studies(store: Store, methods: Sequence[Method], blocks: RunBlocks) -> dict[str, int]:
+    """The ladder from the first method to each other, and the study of judgement options.
+
+    Returns:
+        Rows per table.
+    """
+    tows, first = store.read("tows"), methods[0]
+    ladders = [
+        ladder(first, other, tows, blocks).with_columns(
+            pl.lit(first.name).alias("from_method"), pl.lit(other.name).alias("to_method")
+        )
+        for other in methods[1:]
+    ]
+    studied = [
+        option_effects(m, tows, blocks).with_columns(pl.lit(m.name).alias("method"))
+        for m in methods
+        if m.name == STUDIED_METHOD
+    ]
+    found = {
+        "correction_steps": pl.concat(ladders) if ladders else _empty("correction_steps"),
+        "option_effects": pl.concat(studied) if studied else _empty("option_effects"),
+    }
+    made_from = studies_made_from(store, methods)
+    for name, frame in found.items():
+        store.write(name, conform(name, frame), made_from)
+    return {name: frame.height for name, frame in found.items()}
 
 
 def register_made_from(store: Store, methods: Sequence[Method]) -> str:
@@ -251,7 +312,7 @@ def _methods(methods: Sequence[Method]) -> pl.DataFrame:
 def database_made_from(store: Store, methods: Sequence[Method]) -> str:
     """What the database is made from."""
     return fingerprint(
-        {t: store.made_from(t) for t in (*ARCHIVE_TABLES, *REGISTER_TABLES)},
+        {t: store.made_from(t) for t in (*ARCHIVE_TABLES, *STUDY_TABLES, *REGISTER_TABLES)},
         {m.name: [store.made_from(t, m.name) for t in METHOD_TABLES] for m in methods},
     )
 
@@ -262,7 +323,7 @@ def make_database(store: Store, methods: Sequence[Method]) -> dict[str, int]:
     Returns:
         Rows per table.
     """
-    found = {t: store.read(t) for t in (*ARCHIVE_TABLES, *REGISTER_TABLES)}
+    found = {t: store.read(t) for t in (*ARCHIVE_TABLES, *STUDY_TABLES, *REGISTER_TABLES)}
     for table in METHOD_TABLES:
         found[table] = conform(table, pl.concat([store.read(table, m.name) for m in methods]))
     about = {
@@ -284,8 +345,21 @@ def database_is_stale(store: Store, methods: Sequence[Method]) -> bool:
 
 def unaccounted_tows(store: Store) -> list[str]:
     """Listed tows of the seasons read that are neither accepted nor set aside: there are none."""
-    seasons = [int(s) for s in store.partitions("season_index")]
-    listed = store.read("listed_tows").filter(pl.col("season").is_in(seasons))
+    listed = store.read_all("season_tows")
     known = pl.concat([store.read(t).select("tow_id") for t in ("tows", "quarantine")])
     lost: list[str] = listed.join(known, on="tow_id", how="anti")["tow_id"].to_list()
     return lost
+
+
+def ladders_multiply(steps: pl.DataFrame) -> bool:
+    """Whether the factors of every ladder multiply to its total, within 1e-10."""
+    ends = (
+        steps.sort("position")
+        .group_by("from_method", "to_method", "tow_id")
+        .agg(
+            pl.col("factor").product(),
+            (pl.col("cw_kg_m").last() / pl.col("cw_kg_m").first()).alias("total"),
+        )
+    )
+    worst = (ends["factor"] / ends["total"] - 1.0).abs().max()
+    return worst is None or float(str(worst)) < 1e-10

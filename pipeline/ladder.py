@@ -1,0 +1,89 @@
+"""The ladder: what each step of a method changes, one at a time, in factors that multiply.
+
+From one method to another the options of one step after the other are exchanged, in a fixed order,
+and everything is recomputed: so the factor of a step is what it does on top of those before it.
+What a step does stands in its own module.
+"""
+
+from typing import Final
+
+import numpy as np
+import polars as pl
+
+from pipeline.arrays import FloatArray
+from pipeline.blocks import RunBlocks
+from pipeline.method import Method, Steps
+from pipeline.outcome import Outcome
+from pipeline.recompute import KnownWindows, batches, evaluate
+
+STEP_ORDER: Final = (
+    "speed",
+    "window",
+    "runs",
+    "calibration",
+    "run_point",
+    "wind",
+    "temperature",
+    "curve",
+)
+"""The order in which steps are exchanged: that of the computation, and of the history."""
+
+START: Final = "start"
+
+
+def ladder(
+    from_method: Method, to_method: Method, tows: pl.DataFrame, blocks: RunBlocks
+) -> pl.DataFrame:
+    """The effect of each step on every tow's Cw at the declared speed.
+
+    Where an intermediate method gives no curve, its change is counted with the next step that does;
+    a tow without a curve under either method has no ladder.
+
+    Args:
+        from_method, to_method: the ends of the ladder.
+        tows: rows of the warehouse's `tows`.
+        blocks: their runs.
+
+    Returns:
+        Sorted rows `tow_id`, `position` (0 is the start), `step`, `factor` (Cw after / before the
+        step; 1 at the start) and `cw_kg_m` (after it). The factors of a tow multiply to its total.
+    """
+    pairs = batches([from_method, to_method], tows, blocks)
+    known: KnownWindows = {}
+    rungs = [
+        evaluate([(batch, _mixed(old, new, count)) for batch, (old, new) in pairs], known)
+        for count in range(len(STEP_ORDER) + 1)
+    ]
+    found = [_rungs_of_batch(list(outcomes)) for outcomes in zip(*rungs, strict=True)]
+    return pl.concat(found).sort("tow_id", "position")
+
+
+def _mixed(old: Steps, new: Steps, count: int) -> Steps:
+    """The old steps with the first `count` of `STEP_ORDER` taken from the new."""
+    return old.model_copy(update={step: getattr(new, step) for step in STEP_ORDER[:count]})
+
+
+def cw_at_declared(outcome: Outcome) -> FloatArray:
+    """Cw at the declared speed of each tow, shape (tows,); NaN where there is no curve."""
+    cw = outcome.curves.cw_at(outcome.batch.of_tow("declared_speed_m_s"))
+    return np.where(outcome.curves.converged & np.isfinite(cw), cw, np.nan)
+
+
+def _rungs_of_batch(outcomes: list[Outcome]) -> pl.DataFrame:
+    cw = np.stack([cw_at_declared(outcome) for outcome in outcomes])
+    sound = np.isfinite(cw[0]) & np.isfinite(cw[-1])
+    for rung in range(1, len(cw)):
+        cw[rung] = np.where(np.isfinite(cw[rung]), cw[rung], cw[rung - 1])
+    held = cw[:, sound]
+    factor = np.vstack([np.ones(held.shape[1]), held[1:] / held[:-1]])
+    tow_ids = outcomes[0].batch.tows["tow_id"].filter(pl.Series(sound))
+    steps = (START, *STEP_ORDER)
+    return pl.DataFrame(
+        {
+            "tow_id": pl.concat([tow_ids] * len(steps)),
+            "position": np.repeat(np.arange(len(steps), dtype=np.int8), held.shape[1]),
+            "step": np.repeat(np.array(steps), held.shape[1]),
+            "factor": factor.ravel(),
+            "cw_kg_m": held.ravel(),
+        }
+    )

@@ -1,0 +1,117 @@
+"""The option study: how much do choices matter that are a matter of judgement.
+
+A full factorial over options that a careful person could choose either way, on top of a method, as
+the 2015 presentation did by hand for one boat. Options that are known to be wrong (searching wind
+coefficients run by run) are history, not a vote, and take no part.
+"""
+
+import itertools
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+import polars as pl
+
+from pipeline.arrays import FloatArray
+from pipeline.blocks import RunBlocks
+from pipeline.ladder import cw_at_declared
+from pipeline.method import Method, Steps
+from pipeline.recompute import KnownWindows, batches, evaluate
+
+ALL_OPTIONS: Final = "all"
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One option of a step with the two values between which judgement may choose."""
+
+    step: str
+    option: str
+    values: tuple[Any, Any]
+
+    @property
+    def name(self) -> str:
+        """As written in a method file."""
+        return f"{self.step}.{self.option}"
+
+
+CHOICES: Final = (
+    Choice("window", "speed_drift_m_s", (0.02, 0.04)),
+    Choice("speed", "operation", ("multiply", "divide")),
+    Choice("run_point", "estimator", ("mean_of_ratios", "ratio_of_means")),
+    Choice("wind", "coefficients", ("fixed", "archive")),
+    Choice("wind", "averaging_s", (0, 3)),
+    Choice("curve", "b", ("capped", "free")),
+)
+
+
+def option_effects(method: Method, tows: pl.DataFrame, blocks: RunBlocks) -> pl.DataFrame:
+    """Spread of Cw and B over all combinations of `CHOICES`, and the effect of each choice.
+
+    Args:
+        method: the method whose other options hold.
+        tows: rows of the warehouse's `tows`.
+        blocks: their runs.
+
+    Returns:
+        Sorted rows per tow and option: `tow_id`, `option`, `cw_effect_ratio` and `b_effect_ratio`
+        (second value / first value, mean over all combinations of the others; null where no
+        combination gives the number), `cw_sd_ratio` and `b_sd_ratio` (standard deviation over all
+        combinations, relative; only in the row `all`).
+    """
+    pairs = batches([method], tows, blocks)
+    known: KnownWindows = {}
+    cw, slope, corners = [], [], list(itertools.product((0, 1), repeat=len(CHOICES)))
+    for corner in corners:
+        outcomes = evaluate([(b, _chosen(steps, corner)) for b, (steps,) in pairs], known)
+        cw.append(np.concatenate([np.log(cw_at_declared(o)) for o in outcomes]))
+        slope.append(np.concatenate([_ln_b(o.curves.b_m_s) for o in outcomes]))
+    tow_ids = pl.concat([batch.tows["tow_id"] for batch, _ in pairs])
+    ln_cw, ln_b, signs = np.stack(cw), np.stack(slope), 2 * np.array(corners) - 1
+    frames = [
+        _frame(tow_ids, choice.name, _effect(ln_cw, signs[:, i]), _effect(ln_b, signs[:, i]))
+        for i, choice in enumerate(CHOICES)
+    ]
+    spread = _frame(tow_ids, ALL_OPTIONS, None, None, _spread(ln_cw), _spread(ln_b))
+    return pl.concat([*frames, spread]).sort("tow_id", "option")
+
+
+def _chosen(steps: Steps, corner: tuple[int, ...]) -> Steps:
+    for choice, side in zip(CHOICES, corner, strict=True):
+        step = getattr(steps, choice.step).model_copy(update={choice.option: choice.values[side]})
+        steps = steps.model_copy(update={choice.step: step})
+    return steps
+
+
+def _ln_b(b_m_s: FloatArray) -> FloatArray:
+    finite = np.isfinite(b_m_s)
+    return np.where(finite, np.log(np.where(finite, b_m_s, 1.0)), np.nan)
+
+
+def _effect(ln_values: FloatArray, sign: FloatArray) -> FloatArray:
+    """Mean difference between the two sides of a choice; NaN unless every combination counts."""
+    return np.asarray((ln_values * sign[:, None]).mean(axis=0) * 2.0)
+
+
+def _spread(ln_values: FloatArray) -> FloatArray:
+    return np.asarray(ln_values.std(axis=0))
+
+
+def _frame(
+    tow_ids: pl.Series,
+    option: str,
+    cw_effect: FloatArray | None,
+    b_effect: FloatArray | None,
+    cw_sd: FloatArray | None = None,
+    b_sd: FloatArray | None = None,
+) -> pl.DataFrame:
+    nothing = np.full(len(tow_ids), np.nan)
+    columns = {
+        "cw_effect_ratio": nothing if cw_effect is None else np.exp(cw_effect),
+        "b_effect_ratio": nothing if b_effect is None else np.exp(b_effect),
+        "cw_sd_ratio": nothing if cw_sd is None else cw_sd,
+        "b_sd_ratio": nothing if b_sd is None else b_sd,
+    }
+    return pl.DataFrame({"tow_id": tow_ids, **columns}).select(
+        "tow_id", pl.lit(option).alias("option"), pl.col(list(columns)).fill_nan(None)
+    )
