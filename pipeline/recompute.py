@@ -44,18 +44,19 @@ Texts: TypeAlias = np.ndarray[tuple[int, ...], np.dtype[np.str_]]
 
 
 def recompute(method: Method, tows: pl.DataFrame, blocks: RunBlocks) -> Recomputed:
-    """Run points, curves and log factors of all tows under a method.
+    """Run points, curves, log factors and assessments of all tows under a method.
 
     Args:
         method: the method.
-        tows: rows of the warehouse's `tows`.
+        tows: rows of the warehouse's `tows`, with `boat_type` where it is known, so that a tow can
+            be compared with like boats.
         blocks: their runs; `blocks.runs` has the columns of `tow_runs`.
 
     Raises:
         MissingKnowledgeError: the method says nothing about a season of `tows`.
     """
     plans = [(batch, steps) for batch, (steps,) in batches([method], tows, blocks)]
-    return as_tables(method.name, evaluate(plans))
+    return as_tables(method, tows, evaluate(plans))
 
 
 def batches(

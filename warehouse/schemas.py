@@ -108,6 +108,16 @@ class TowRuns(dy.Schema):
     selected = dy.Bool(description="the tow list says to use it")
 
 
+class HandWindows(dy.Schema):
+    """Windows that a person gave, one row a run; a method may use them (`by_hand`)."""
+
+    tow_id = _tow_id(primary_key=True)
+    run = dy.Int8(primary_key=True, description="run", min=1, max=16)
+    start_s = dy.Int16(description="start of the window", metadata={"unit": "s"}, min=0)
+    end_s = dy.Int16(description="end of the window", metadata={"unit": "s"}, min=1)
+    reason = _text("why, in the person's words")
+
+
 class RunPoints(dy.Schema):
     """One point per method, tow and run."""
 
@@ -118,7 +128,7 @@ class RunPoints(dy.Schema):
     target_speed_ratio = _number("1", "intended speed / declared speed", min_exclusive=0)
     window_start_s = _number("s", "start of the window that counts", min=0, nullable=True)
     window_end_s = _number("s", "end of the window that counts", min=0, nullable=True)
-    cut_reason = _text("why the rest was cut: codes, comma separated")
+    cut_reason = _text("why the rest was cut: codes, comma separated, or by_hand and the reason")
     speed_factor = _number("1", "true speed / log speed", min_exclusive=0, nullable=True)
     speed_m_s = _speed("mean true speed", nullable=True)
     gross_cw_kg_m = _number("kg/m", "mean F/v^2 before the wind", nullable=True)
@@ -163,6 +173,19 @@ class Curves(dy.Schema):
     runs_used = dy.Int8(description="points the curve is fitted through", min=0)
     status = _text("accepted, flagged or rejected", regex=f"^({'|'.join(STATUSES)})$")
     flags = dy.List(dy.String(), description="codes of what a person should look at")
+
+
+class Assessments(dy.Schema):
+    """What each check found, one row per method, tow and check; a check not made has no row."""
+
+    method = _method(primary_key=True)
+    tow_id = _tow_id(primary_key=True)
+    check = _text("code of the check", primary_key=True)
+    severity = _text("flag: a person should look; note: worth knowing", regex="^(flag|note)$")
+    observed = _number("as in unit", "what was observed")
+    limit = _number("as in unit", "the limit that is exceeded, or the nearest")
+    unit = _text("unit of both; 1 for a ratio, a count or yes (1) and no (0)")
+    flagged = dy.Bool(description="the observed number is beyond its limit")
 
 
 class LogFactors(dy.Schema):
@@ -477,8 +500,10 @@ TABLES: Final[dict[str, type[dy.Schema]]] = {
     "boats": Boats,
     "tows": Tows,
     "tow_runs": TowRuns,
+    "hand_windows": HandWindows,
     "run_points": RunPoints,
     "curves": Curves,
+    "assessments": Assessments,
     "log_factors": LogFactors,
     "register": Register,
     "register_changes": RegisterChanges,

@@ -6,10 +6,12 @@ from assets.definitions import defs
 
 ASSETS = [
     "archive_index",
+    "assessments",
     "blocks",
     "boats",
     "correction_steps",
     "curves",
+    "hand_windows",
     "lineage",
     "log_factors",
     "methods",
