@@ -21,7 +21,7 @@ from pipeline.outcome import Outcome
 from pipeline.race import power_per_rower_w
 from pipeline.season_log import SeasonFactors
 from pipeline.speed import log_factor
-from pipeline.sureness import budget_of, cw_bounds, pooled_scatter
+from pipeline.sureness import budget_of, cw_bounds, pooled_scatter, run_point_ratio
 from pipeline.wind import mean_wind_angle_deg
 
 LEVEL = 0.95
@@ -94,6 +94,7 @@ def _run_points(o: Outcome) -> pl.DataFrame:
         "wind_coefficient_behind": o.behind,
         "cw_kg_m": o.cw_kg_m,
         "cw_sd": o.sd_kg_m,
+        "u_ratio": run_point_ratio(o),
         "wind_m_s": blocks.mean("wind_v", mask),
         "wind_angle_deg": mean_wind_angle_deg(blocks, mask),
         "log2_ratio": blocks.mean("log2_v", mask) / log1,

@@ -13,13 +13,18 @@ import numpy as np
 import polars as pl
 
 from pipeline import curve
-from pipeline.arrays import FloatArray, IntArray
+from pipeline.arrays import FloatArray
 from pipeline.outcome import Outcome
 from pipeline.season_log import SeasonFactors
+from pipeline.season_log.assumed import USUAL
 from pipeline.uncertainty import Assumed, budget, combine, residual_scatter, run_point_uncertainty
 
 ARCHIVE_COEFFICIENT_SD: Final = 0.01
 """Of the one coefficient found for the whole archive (research, method.md 0.9; measured here)."""
+
+WITHOUT_CHANGED_BOATS: Final = float(np.sqrt(1.0 - 2.0 / USUAL.t_dof))
+"""Scale / standard deviation of the t distribution of repeat tows: its tails are boats that changed
+without a report, which is no error of a tow."""
 
 USUAL_BEND: Final = 0.4
 """q where no curve has a bend (research, method.md 0.7: r of 0.3)."""
@@ -40,10 +45,7 @@ def random_ratio(o: Outcome) -> tuple[FloatArray, FloatArray]:
 
 
 def pooled_scatter(o: Outcome) -> curve.Scatter:
-    """Scatter of single run points about their curve, pooled over the tows of a season.
-
-    Never less than what the blocks within the runs show: a few tows can agree by chance.
-    """
+    """Scatter of single run points about their curve, pooled over the tows of a season."""
     on_curve = curve.cw(
         o.free.a_kg_m[:, None],
         o.free.s_s2_m2[:, None],
@@ -54,17 +56,15 @@ def pooled_scatter(o: Outcome) -> curve.Scatter:
     season = o.batch.of_tow("season").astype(np.int64)
     residual, dof = residual_scatter(ratio, used, season)
     known = np.isfinite(residual)
-    relative = np.maximum(np.where(known, residual, 0.0), _within_runs(o, season))
+    relative = np.where(known, residual, 0.0)
     height = np.where(used, on_curve, 0.0).sum(axis=1) / np.maximum(used.sum(axis=1), 1)
     return curve.Scatter((relative * height) ** 2, np.where(known, dof, 0.0))
 
 
-def _within_runs(o: Outcome, season: IntArray) -> FloatArray:
-    """Usual relative uncertainty of a run point from within its run, shape (tows,)."""
-    source = o.steps.speed.source
-    of_run = run_point_uncertainty(o.batch.blocks, o.windows.mask, season[o.batch.tow], source)
-    squares = np.where(o.used & np.isfinite(of_run), of_run, 0.0) ** 2
-    return np.sqrt(o.batch.mean(squares, o.used))
+def run_point_ratio(o: Outcome) -> FloatArray:
+    """Relative uncertainty of each run point from within the runs of its season, shape (runs,)."""
+    season = o.batch.of_tow("season").astype(np.int64)[o.batch.tow]
+    return run_point_uncertainty(o.batch.blocks, o.windows.mask, season, o.steps.speed.source)
 
 
 def budget_of(outcomes: Sequence[Outcome], found: SeasonFactors | None) -> pl.DataFrame:
@@ -112,7 +112,8 @@ def _budget_of_batch(o: Outcome, found: SeasonFactors | None) -> pl.DataFrame:
         pl.Series("air_per_coefficient", per_coefficient / safe),
         pl.Series("temperature_known", o.temperature_known),
     ).filter(pl.Series(sound))
-    return budget(rows, _assumed(o, found, kappa))
+    usual_air = float(np.sqrt(np.mean((air / safe)[sound] ** 2))) if sound.any() else 0.0
+    return budget(rows, _assumed(o, found, kappa, usual_air))
 
 
 def _kappa(o: Outcome) -> FloatArray:
@@ -135,10 +136,13 @@ def _wander(o: Outcome, found: SeasonFactors | None) -> FloatArray:
     return wander
 
 
-def _assumed(o: Outcome, found: SeasonFactors | None, kappa: FloatArray) -> Assumed:
+def _assumed(
+    o: Outcome, found: SeasonFactors | None, kappa: FloatArray, air_ratio: float
+) -> Assumed:
     assumed = Assumed()
     if o.steps.wind.coefficients == "archive":
         assumed = replace(assumed, wind_coefficient=ARCHIVE_COEFFICIENT_SD)
     if found is None:
         return assumed
-    return assumed.as_repeats_show(found.tow_sd, float(np.median(kappa)))
+    tow_sd = WITHOUT_CHANGED_BOATS * found.tow_sd
+    return assumed.as_repeats_show(tow_sd, float(np.median(kappa)), air_ratio)
