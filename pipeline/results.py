@@ -21,7 +21,7 @@ from pipeline.outcome import Outcome
 from pipeline.race import power_per_rower_w
 from pipeline.season_log import SeasonFactors
 from pipeline.speed import log_factor
-from pipeline.sureness import budget_of, cw_bounds, pooled_scatter, run_point_ratio
+from pipeline.sureness import budget_of, cw_bounds, run_point_ratio, scatter_of
 from pipeline.wind import mean_wind_angle_deg
 
 LEVEL = 0.95
@@ -51,10 +51,11 @@ def as_tables(
     def together(frames: list[pl.DataFrame]) -> pl.DataFrame:
         return pl.concat(frames).select(name, pl.all())
 
-    run_points = together([_run_points(o) for o in outcomes])
+    pooled = found is not None
+    run_points = together([_run_points(o, pooled) for o in outcomes])
     budget = budget_of(outcomes, found)
     bounds = cw_bounds(budget)
-    curves = together([_curves(o, bounds) for o in outcomes])
+    curves = together([_curves(o, bounds, pooled) for o in outcomes])
     assessments = assess(curves, run_points, tows)
     rejecting = [
         (season, check)
@@ -73,7 +74,7 @@ def as_tables(
     )
 
 
-def _run_points(o: Outcome) -> pl.DataFrame:
+def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
     blocks, mask, found = o.batch.blocks, o.windows.mask, o.windows.found
     tow = o.batch.tow
     on_curve = curve.cw(o.curves.a_kg_m[tow], o.curves.s_s2_m2[tow], o.speed_m_s)
@@ -94,7 +95,7 @@ def _run_points(o: Outcome) -> pl.DataFrame:
         "wind_coefficient_behind": o.behind,
         "cw_kg_m": o.cw_kg_m,
         "cw_sd": o.sd_kg_m,
-        "u_ratio": run_point_ratio(o),
+        "u_ratio": run_point_ratio(o) if pooled else np.full(len(tow), np.nan),
         "wind_m_s": blocks.mean("wind_v", mask),
         "wind_angle_deg": mean_wind_angle_deg(blocks, mask),
         "log2_ratio": blocks.mean("log2_v", mask) / log1,
@@ -109,14 +110,14 @@ def _run_points(o: Outcome) -> pl.DataFrame:
     )
 
 
-def _curves(o: Outcome, bounds: pl.DataFrame) -> pl.DataFrame:
+def _curves(o: Outcome, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
     tows = o.batch.tows
     declared = o.batch.of_tow("declared_speed_m_s")
     cw = o.curves.cw_at(declared)
     sound = o.curves.converged & np.isfinite(cw)
     mine = tows.select("tow_id").join(bounds, on="tow_id", how="left", maintain_order="left")
     lo, hi = (mine[name].fill_null(np.nan).to_numpy() for name in ("lo_ratio", "hi_ratio"))
-    b_interval = curve.b_interval(o.points, o.free, pooled_scatter(o))
+    b_interval = curve.b_interval(o.points, o.free, scatter_of(o, pooled))
     safe_cw = np.where(sound, cw, 1.0)
     residual = np.sqrt(o.curves.rss_kg2_m2 / np.maximum(o.curves.n_points - 2, 1)) / safe_cw
     numbers = {

@@ -1,8 +1,9 @@
 """How sure a curve is: the random part from its points, and the budget of every component.
 
 Here outcomes are given to `pipeline.uncertainty`, which has the formulas, and the interval of Cw
-at the declared speed comes back. Without estimated season factors a method is taken at its word:
-its interval holds if its log factors are right.
+at the declared speed comes back. A method with estimated season factors knows the whole archive:
+its scatter is pooled over a season. Any other method is taken at its word, tow by tow: its
+interval rests on the tow's own points and holds if its log factors are right.
 """
 
 from collections.abc import Sequence
@@ -27,15 +28,20 @@ WITHOUT_CHANGED_BOATS: Final = float(np.sqrt(1.0 - 2.0 / USUAL.t_dof))
 without a report, which is no error of a tow."""
 
 USUAL_BEND: Final = 0.4
-"""q where no curve has a bend (research, method.md 0.7: r of 0.3)."""
+"""q where the archive is not asked for it (research, method.md 0.7: r of 0.3)."""
 
 
-def random_ratio(o: Outcome) -> tuple[FloatArray, FloatArray]:
+def scatter_of(o: Outcome, pooled: bool) -> curve.Scatter:
+    """Scatter of single run points: of the season, or of each tow alone."""
+    return pooled_scatter(o) if pooled else curve.own_scatter(o.free)
+
+
+def random_ratio(o: Outcome, pooled: bool = True) -> tuple[FloatArray, FloatArray]:
     """Relative random uncertainty of Cw at the declared speed, and its degrees of freedom.
 
-    From the scatter of the run points about their curves (`pooled_scatter`).
+    From the scatter of the run points about their curves (`scatter_of`).
     """
-    scatter = pooled_scatter(o)
+    scatter = scatter_of(o, pooled)
     declared = o.batch.of_tow("declared_speed_m_s")
     errors = curve.covariance(o.points, o.free, scatter, declared)
     cw = o.free.cw_at(declared)
@@ -89,8 +95,8 @@ def _budget_of_batch(o: Outcome, found: SeasonFactors | None) -> pl.DataFrame:
     batch, cw = o.batch, o.cw_at_declared
     sound = np.isfinite(cw)
     safe = np.where(sound, cw, 1.0)
-    random, dof = random_ratio(o)
-    kappa = _kappa(o)
+    random, dof = random_ratio(o, pooled=found is not None)
+    kappa = np.full(batch.size, 2.0 * (1.0 + (USUAL_BEND if found is None else _median_bend(o))))
     estimated = np.isfinite(o.estimated.factor)
     air = batch.mean(o.air_kg_m - o.still_air_kg_m, o.used)
     # A larger coefficient takes more off as felt and puts more back for still air.
@@ -116,13 +122,12 @@ def _budget_of_batch(o: Outcome, found: SeasonFactors | None) -> pl.DataFrame:
     return budget(rows, _assumed(o, found, kappa, usual_air))
 
 
-def _kappa(o: Outcome) -> FloatArray:
-    """Elasticity of Cw to speed, 2 (1 + q), with the median bend of the batch."""
+def _median_bend(o: Outcome) -> float:
+    """Median of q at the declared speed over the batch."""
     declared = o.batch.of_tow("declared_speed_m_s")
     r = np.where(o.free.converged, o.free.s_s2_m2 * declared**2, np.nan)
     known = np.isfinite(r) & (r > 0.0) & (r < 1.0)
-    q = float(np.median(r[known] / (1.0 - r[known]))) if known.any() else USUAL_BEND
-    return np.full(o.batch.size, 2.0 * (1.0 + q))
+    return float(np.median(r[known] / (1.0 - r[known]))) if known.any() else USUAL_BEND
 
 
 def _wander(o: Outcome, found: SeasonFactors | None) -> FloatArray:

@@ -140,7 +140,9 @@ class RunPoints(dy.Schema):
     wind_coefficient_behind = _number("1", "the same from behind", nullable=True)
     cw_kg_m = _number("kg/m", "resistance coefficient in still air", nullable=True)
     cw_sd = _number("kg/m", "standard deviation of the samples", nullable=True, min=0)
-    u_ratio = _number("1", "uncertainty of Cw / Cw from within the runs", nullable=True)
+    u_ratio = _number(
+        "1", "uncertainty / Cw from within the season's runs, if pooled", nullable=True
+    )
     fitted_cw_kg_m = _number("kg/m", "coefficient of the curve at this speed", nullable=True)
     wind_m_s = _number("m/s", "mean apparent wind speed", nullable=True)
     wind_angle_deg = _number("deg", "circular mean of the apparent wind", nullable=True)
