@@ -10,7 +10,15 @@ from pipeline.channels import BACK, OUT, TARGET_SPEED_RATIOS
 from pipeline.method import Method
 from pipeline.recompute import recompute
 from pipeline.results import Recomputed
-from pipeline.simulate import RunTruth, Tow, World, WorldSettings, simulate_tow, simulate_world
+from pipeline.simulate import (
+    RunTruth,
+    Tow,
+    World,
+    WorldSettings,
+    nearest_hyperbola,
+    simulate_tow,
+    simulate_world,
+)
 
 
 @dataclass(frozen=True)
@@ -23,6 +31,7 @@ class Measured:
         blocks: their blocks, stacked.
         truth: per tow the fields of `TowTruth`, with `season`.
         run_truth: what really happened in each run, by tow.
+        nearest_b_m_s: B of the hyperbola nearest to the true curve at 15 C, by tow.
     """
 
     tows: pl.DataFrame
@@ -30,6 +39,7 @@ class Measured:
     blocks: RunBlocks
     truth: pl.DataFrame
     run_truth: dict[str, tuple[RunTruth, ...]]
+    nearest_b_m_s: dict[str, float]
 
 
 def measure(settings: WorldSettings) -> Measured:
@@ -43,7 +53,12 @@ def measure(settings: WorldSettings) -> Measured:
         tow_id = pl.lit(tow.tow_id).alias("tow_id")
         blocks.append(block_sums(samples, settings.rate_hz).select(tow_id, pl.all()))
     stacked = stack_blocks(pl.concat(blocks), runs)
-    return Measured(tows, runs, stacked, truth_rows(world), run_truth)
+    air = settings.air
+    nearest = {
+        tow.tow_id: nearest_hyperbola(tow.hull, tow.declared_speed_m_s, 15.0, air)[1]
+        for tow in world.tows
+    }
+    return Measured(tows, runs, stacked, truth_rows(world), run_truth, nearest)
 
 
 def recompute_world(

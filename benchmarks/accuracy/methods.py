@@ -47,7 +47,9 @@ def main() -> None:
     worlds = int(sys.argv[1]) if len(sys.argv) > 1 else 3
     history = [measure(settings(100 + seed)) for seed in range(worlds)]
     clean = [measure(settings(200 + seed, Defects.clean)) for seed in range(worlds)]
-    lines = [*cw_lines(history, clean), *window_lines(history), *exact_lines(history[0])]
+    lines = [*season_lines("clean", clean, 0.005), *season_lines("history", history, 0.008)]
+    lines += [*cw_lines(history, clean), *b_lines(clean)]
+    lines += [*window_lines(history), *exact_lines(history[0])]
     lines += [*coefficient_lines(), *history_lines(history)]
     print(f"Simulated worlds: {worlds} history, {worlds} clean, {TOWS_PER_SEASON} tows a season")
     width = max(len(line.what) for line in lines)
@@ -71,6 +73,47 @@ def errors(worlds: list[Measured], method: str, truth: str, first: int, last: in
     )
 
 
+def season_lines(name: str, worlds: list[Measured], limit: float) -> Iterator[Line]:
+    """Estimated log factors against the true ones of the season."""
+    frames = [
+        recompute(shipped_method("rebased"), world.tows, world.blocks).log_factors.join(
+            world.truth.group_by("season").agg(pl.col("season_log_factor").first()), on="season"
+        )
+        for world in worlds
+    ]
+    found = pl.concat(frames).filter(pl.col("season") < 2014).drop_nulls("lo")
+    error = (found["factor"] / found["season_log_factor"] - 1.0).filter(found["season"] < 2012)
+    rmse, worst = float(np.sqrt((error**2).mean())), error.abs().max()
+    yield Line(
+        f"season log error, 2009-2011, {name}: RMSE (worst)",
+        f"{limit:.1%}",
+        f"{rmse:.2%} ({worst:.2%})",
+        rmse <= limit,
+    )
+    covered = found.select(pl.col("season_log_factor").is_between("lo", "hi").mean()).item()
+    yield Line(
+        f"95 % intervals of season factors cover, 2009-2013, {name}",
+        "90-99 %",
+        f"{covered:.1%} of {found.height}",
+        0.90 <= covered <= 0.99,
+    )
+
+
+def b_lines(worlds: list[Measured]) -> Iterator[Line]:
+    """Intervals of B against the hyperbola nearest to the true curve."""
+    frames = []
+    for world in worlds:
+        curves = recompute(shipped_method("rebased"), world.tows, world.blocks).curves
+        true_b = pl.DataFrame(
+            {"tow_id": list(world.nearest_b_m_s), "true_b": list(world.nearest_b_m_s.values())}
+        )
+        frames.append(curves.drop_nulls("b_lo_m_s").join(true_b, on="tow_id"))
+    held = pl.concat(frames).filter(pl.col("season") >= 2014)
+    upper = pl.col("b_hi_m_s").fill_null(float("inf"))
+    covered = held.select(pl.col("true_b").is_between(pl.col("b_lo_m_s"), upper).mean()).item()
+    yield Line("95 % intervals of B cover, 2014 on", "90-98 %", f"{covered:.1%}", covered >= 0.9)
+
+
 def cw_lines(history: list[Measured], clean: list[Measured]) -> Iterator[Line]:
     new = errors(history, "rebased", "cw_at_15c_kg_m", 2014, 9999)
     yield from bias_and_rmse("Cw, rebased, 2014 on", new["error"], 0.003, 0.010)
@@ -88,12 +131,21 @@ def cw_lines(history: list[Measured], clean: list[Measured]) -> Iterator[Line]:
         f"{median:.1%}",
         0.12 <= median <= 0.25,
     )
-    covered = new.select(
-        pl.col("cw_at_15c_kg_m").is_between("cw_lo_kg_m", "cw_hi_kg_m").mean()
-    ).item()
-    yield Line(
-        "95 % intervals of Cw cover, 2014 on", "90-98 %", f"{covered:.1%}", 0.90 <= covered <= 0.98
-    )
+    modern = errors(clean, "rebased", "cw_at_15c_kg_m", 2014, 9999)
+    for name, held in (
+        ("2014 on, history", new),
+        ("2014 on, clean", modern),
+        ("2009-2011, clean", old),
+        ("2009-2011, history", errors(history, "rebased", "cw_at_15c_kg_m", 2009, 2011)),
+    ):
+        inside = pl.col("cw_at_15c_kg_m").is_between("cw_lo_kg_m", "cw_hi_kg_m")
+        covered = held.select(inside.mean()).item()
+        yield Line(
+            f"95 % intervals of Cw cover, {name}",
+            "90-98 %",
+            f"{covered:.1%} of {held.height}",
+            0.90 <= covered <= 0.98,
+        )
 
 
 def bias_and_rmse(
