@@ -1,0 +1,211 @@
+"""Two editions side by side: every line with its causes, and what it does to races.
+
+The numbers come from `pipeline.changes`, `pipeline.ladder` and `pipeline.replay`; here it is found
+out what two editions do not share: tow, files, method, code. The steps of the method are computed
+with the code and blocks of today; what they leave is one factor, named after what else differs.
+"""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+import polars as pl
+
+from pipeline.blocks import stack_blocks
+from pipeline.changes import NO_FACTOR, NO_STEPS, register_changes, side_by_side
+from pipeline.ladder import ladder
+from pipeline.register import LINE
+from pipeline.replay import RaceRules, race_changes, replay
+from warehouse import intake
+from warehouse.archive import read_races
+from warehouse.editions.folder import Edition, read_edition
+from warehouse.editions.inputs import INPUTS_HASH, archive_root, tows_of_today
+from warehouse.store import Store
+
+PRINTED: Final = "printed"
+TOW: Final = "tow"
+INPUT: Final = "input"
+OTHER_INPUT: Final = "other_input"
+CODE: Final = "code"
+INPUT_AND_CODE: Final = "input_and_code"
+CODE_OR_OTHER_INPUT: Final = "code_or_other_input"
+METHOD: Final = "method"
+UNSEPARATED: Final = "unseparated"
+UNEXPLAINED: Final = "unexplained"
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Two editions side by side.
+
+    Attributes:
+        old, new: the editions.
+        lines: rows of `register_changes`, with the columns of `pipeline.changes.side_by_side` and
+            the boat's `name`.
+    """
+
+    old: Edition
+    new: Edition
+    lines: pl.DataFrame
+
+
+def diff(store: Store, old: str, new: str) -> Comparison:
+    """Compares two published editions.
+
+    Raises:
+        MissingKnowledgeError: there is no such edition.
+        BrokenPromiseError: a file of it is missing or damaged.
+    """
+    return compare(store, read_edition(store, old), read_edition(store, new))
+
+
+def compare(store: Store, old: Edition, new: Edition) -> Comparison:
+    """Compares two editions line by line, with causes whose factors multiply to the change."""
+    steps = _steps(store, old, new)
+    changes = register_changes(old.register, new.register, steps, _grounds(old, new, steps))
+    names = pl.concat([new.register.select(*LINE, "name"), old.register.select(*LINE, "name")])
+    lines = (
+        changes.join(side_by_side(old.register, new.register), on=LINE)
+        .join(names.unique(LINE, keep="first"), on=LINE, how="left")
+        .sort(LINE)
+    )
+    return Comparison(old, new, lines)
+
+
+def race_effects(store: Store, old: Edition, new: Edition, rules: RaceRules) -> pl.DataFrame | None:
+    """Power, rank and podium of every result in the archive under both editions.
+
+    Returns:
+        Rows of `pipeline.replay.race_changes`; None where the archive is not there or has no races.
+
+    Raises:
+        MissingKnowledgeError: the rules ask for what is not known.
+    """
+    root = archive_root(store)
+    results = None if root is None else read_races(root)[0]
+    if results is None or results.is_empty():
+        return None
+    before, after = (replay(edition.register, results, rules) for edition in (old, new))
+    return race_changes(before, after)
+
+
+def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
+    """The ladder from the old to the new method, on the new edition's tows that are still there."""
+    if old.method is None or new.method is None:
+        return NO_STEPS
+    if old.method.content_hash == new.method.content_hash:
+        return NO_STEPS
+    tows = new.tables["tows"].join(
+        tows_of_today(store), on=["tow_id", INPUTS_HASH], how="semi"
+    )
+    if tows.is_empty():
+        return NO_STEPS
+    runs = new.tables["tow_runs"].join(tows, on="tow_id", how="semi")
+    blocks = stack_blocks(intake.all_blocks(store), runs)
+    return ladder(old.method, new.method, tows, blocks)
+
+
+def _grounds(old: Edition, new: Edition, steps: pl.DataFrame) -> pl.DataFrame:
+    """Per line the name of what the steps of the method do not explain."""
+    shared = [*LINE, "tow_id", INPUTS_HASH, "basis"]
+    pairs = old.register.select(shared).join(
+        new.register.select(shared), on=LINE, suffix="_new", nulls_equal=True
+    )
+    climbed = set(steps["tow_id"].unique().to_list())
+    grounds = [_ground(row, old, new, climbed) for row in pairs.iter_rows(named=True)]
+    return pairs.select(LINE).with_columns(pl.Series("ground", grounds, pl.String))
+
+
+def _ground(line: Mapping[str, Any], old: Edition, new: Edition, climbed: set[str]) -> str:
+    if {line["basis"], line["basis_new"]} != {"measured"}:
+        return PRINTED
+    if line["tow_id"] != line["tow_id_new"]:
+        return TOW
+    own = line[INPUTS_HASH] != line[f"{INPUTS_HASH}_new"]
+    others = not own and old.about.inputs_digest != new.about.inputs_digest
+    code = old.about.code_version != new.about.code_version
+    if old.about.method_hash != new.about.method_hash and line["tow_id_new"] not in climbed:
+        return UNSEPARATED if own or code else METHOD
+    named = {
+        (True, False, False): INPUT,
+        (True, False, True): INPUT_AND_CODE,
+        (False, True, False): OTHER_INPUT,
+        (False, True, True): CODE_OR_OTHER_INPUT,
+        (False, False, True): CODE,
+    }
+    return named.get((own, others, code), UNEXPLAINED)
+
+
+# Summary
+
+
+LARGEST: Final = 10
+
+Report = dict[str, Any]
+
+
+def report(comparison: Comparison) -> Report:
+    """A comparison as plain data: counts, who gains and loses, causes, and every line.
+
+    A line gains when the new register gives its crew more power for the same race.
+    """
+    lines = comparison.lines
+    compared = lines.filter(pl.col("cw_ratio").is_not_null())
+    moved = compared.filter(pl.col("change") == "changed")
+    gain = moved.filter(pl.col("power_ratio") > 1).sort("power_ratio", "fsn_no", descending=True)
+    loss = moved.filter(pl.col("power_ratio") <= 1).sort("power_ratio", "fsn_no")
+    return {
+        "from_edition": comparison.old.about.edition,
+        "to_edition": comparison.new.about.edition,
+        "simulated": comparison.old.about.simulated or comparison.new.about.simulated,
+        "lines": lines.height,
+        "changes": dict(lines["change"].value_counts().sort("change").rows()),
+        "gain": _group(gain),
+        "loss": _group(loss),
+        "exceeds_interval": int(moved["exceeds_interval"].fill_null(False).sum()),
+        "interval_unknown": int(moved["exceeds_interval"].null_count()),
+        "causes": _causes(compared),
+        "largest": _rows(_by_size(moved).head(LARGEST)),
+        "rows": _rows(lines),
+    }
+
+
+def _group(lines: pl.DataFrame) -> Report:
+    return {
+        "lines": lines.height,
+        "median_power_ratio": lines["power_ratio"].median(),
+        "median_seconds": lines["gain_in_two_hours_s"].median(),
+        "most": _rows(lines.head(LARGEST)),
+    }
+
+
+def _by_size(lines: pl.DataFrame) -> pl.DataFrame:
+    return lines.sort(pl.col("cw_ratio").log().abs(), "fsn_no", descending=[True, False])
+
+
+def _causes(lines: pl.DataFrame) -> list[Report]:
+    """Per cause and step: the lines it moved, and its factors there."""
+    found = [
+        {"cause": one["cause"], "step": one.get("step"), "factor": one["factor"]}
+        for text in lines["causes"]
+        for one in json.loads(text)
+        if abs(one["factor"] - 1.0) > NO_FACTOR
+    ]
+    schema = {"cause": pl.String, "step": pl.String, "factor": pl.Float64}
+    return (
+        pl.DataFrame(found, schema=schema)
+        .group_by("cause", "step")
+        .agg(
+            pl.len().alias("lines"),
+            pl.col("factor").median().alias("median_factor"),
+            pl.col("factor").min().alias("lowest_factor"),
+            pl.col("factor").max().alias("highest_factor"),
+        )
+        .sort("lines", "cause", "step", descending=[True, False, False])
+        .to_dicts()
+    )
+
+
+def _rows(lines: pl.DataFrame) -> list[Report]:
+    return [row | {"causes": json.loads(row["causes"])} for row in lines.to_dicts()]
