@@ -96,9 +96,7 @@ def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
         return NO_STEPS
     if old.method.content_hash == new.method.content_hash:
         return NO_STEPS
-    tows = new.tables["tows"].join(
-        tows_of_today(store), on=["tow_id", INPUTS_HASH], how="semi"
-    )
+    tows = new.tables["tows"].join(tows_of_today(store), on=["tow_id", INPUTS_HASH], how="semi")
     if tows.is_empty():
         return NO_STEPS
     runs = new.tables["tow_runs"].join(tows, on="tow_id", how="semi")

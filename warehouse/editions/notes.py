@@ -3,6 +3,7 @@
 Made from the edition and its comparison with the one before; no number is computed here.
 """
 
+from collections.abc import Sequence
 from typing import Final
 
 import polars as pl
@@ -90,7 +91,9 @@ def _what(edition: Edition) -> str:
 
 
 def _first() -> str:
-    return "## Wat verandert er\n\nDit is de eerste uitgave: er is geen eerdere om mee te vergelijken."
+    return (
+        "## Wat verandert er\n\nDit is de eerste uitgave: er is geen eerdere om mee te vergelijken."
+    )
 
 
 def _changes(found: Report) -> str:
@@ -167,7 +170,7 @@ def _number(value: float | None) -> str:
     return "-" if value is None else f"{value:.2f}".replace(".", ",")
 
 
-def _table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
+def _table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
     lines = [head, ("---",) * len(head), *rows]
     return "\n".join("| " + " | ".join(_cell(c) for c in line) + " |" for line in lines)
 

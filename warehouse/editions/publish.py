@@ -168,9 +168,7 @@ def method_lines(
     decisions: pl.DataFrame,
 ) -> pl.DataFrame:
     """The lines of a method on a day, each with the facts of its tow; numbers only where valid."""
-    draft = draft_register(
-        tables["curves"], tables["tows"], crews, valid_from, rule, decisions
-    )
+    draft = draft_register(tables["curves"], tables["tows"], crews, valid_from, rule, decisions)
     valid = pl.col("status") == "valid"
     return draft.join(
         tables["tows"].select("tow_id", *TOW_FACTS), on="tow_id", how="left"
@@ -245,9 +243,7 @@ def _complete(
     return full.with_columns(pl.Series(sheets.CODE_FIELD.column, codes, pl.String))
 
 
-def _write(
-    store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str, str]
-) -> Path:
+def _write(store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str, str]) -> Path:
     """Writes an edition's folder: tables, sheets, texts, and last what it says of itself."""
     about = edition.about
     previous = None
@@ -304,7 +300,9 @@ def _printed_lines(store: Store, season: int) -> tuple[pl.DataFrame, pl.DataFram
     lines = printed.select(
         *LINE,
         *("tow_date", "declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m"),
-        pl.when("has_valid_curve").then(pl.lit("valid")).otherwise(pl.lit(NO_VALID_CURVE))
+        pl.when("has_valid_curve")
+        .then(pl.lit("valid"))
+        .otherwise(pl.lit(NO_VALID_CURVE))
         .alias("status"),
         pl.when("has_valid_curve").then(pl.lit(AS_PRINTED)).alias("basis"),
         _row_hashes(printed),
@@ -363,4 +361,3 @@ def _with_carried(lines: pl.DataFrame, printed: pl.DataFrame) -> pl.DataFrame:
     """Lines of the warehouse, with a printed one in place of each that is not valid."""
     taken = printed.join(lines.filter(pl.col("status") == "valid"), on=LINE, how="anti")
     return pl.concat([lines.join(taken, on=LINE, how="anti"), taken], how="diagonal_relaxed")
-

@@ -10,12 +10,14 @@ import datetime as dt
 import hashlib
 import io
 import json
+import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal
+from xml.etree import ElementTree
 
 import polars as pl
-import xlsxwriter
+import xlsxwriter  # type: ignore[import-untyped,unused-ignore]
 
 from warehouse.editions.folder import CSV, INPUTS, About
 
@@ -63,7 +65,9 @@ REGISTER_FIELDS: Final = (
     Field("status", "status", "string", "geldig, of waarom er geen geldige kromme is"),
     Field("roeisnelheid [m/s]", "declared_speed_m_s", "number", "opgegeven snelheid", 2),
     Field("A", "a_kg_m", "number", "A in kg/m: de weerstand bij snelheid 0"),
-    Field("B", "b_m_s", "number", "B in m/s; leeg waar hij niet bepaald is: dan is Cw gelijk aan A"),
+    Field(
+        "B", "b_m_s", "number", "B in m/s; leeg waar hij niet bepaald is: dan is Cw gelijk aan A"
+    ),
     Field("Cw", "cw_kg_m", "number", "Cw in kg/m bij de roeisnelheid"),
     Field("Cw laagst", "cw_lo_kg_m", "number", "ondergrens van het 95 %-interval"),
     Field("Cw hoogst", "cw_hi_kg_m", "number", "bovengrens"),
@@ -264,3 +268,31 @@ def _write_about(book: xlsxwriter.Workbook, about: About) -> None:
     for row, (name, value) in enumerate(rows.items()):
         sheet.write_string(row, 0, name)
         sheet.write_string(row, 1, value)
+
+
+_SHEET: Final = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
+
+
+def read_xlsx_cells(content: bytes) -> dict[str, str | float]:
+    """The filled cells of the first sheet, by place ("B3").
+
+    Raises:
+        ValueError: this is no XLSX.
+    """
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as book:
+            sheet, shared = (
+                ElementTree.fromstring(book.read(f"xl/{part}.xml"))  # noqa: S314 - our own file
+                for part in ("worksheets/sheet1", "sharedStrings")
+            )
+    except (zipfile.BadZipFile, KeyError, ElementTree.ParseError) as error:
+        raise ValueError(f"no XLSX: {error}") from error
+    texts = ["".join(t.text or "" for t in s.iter(f"{_SHEET}t")) for s in shared]
+    found: dict[str, str | float] = {}
+    for cell in sheet.iter(f"{_SHEET}c"):
+        value = cell.find(f"{_SHEET}v")
+        if value is not None and value.text is not None:
+            place = cell.get("r", "")
+            is_text = cell.get("t") == "s"
+            found[place] = texts[int(value.text)] if is_text else float(value.text)
+    return found
