@@ -6,7 +6,8 @@ about their inputs and code, is not decided here.
 """
 
 import json
-from typing import Final
+import math
+from typing import Any, Final
 
 import numpy as np
 import polars as pl
@@ -31,26 +32,34 @@ RANKING_POWER_W: Final = {"H": 80.0, "D": 47.5}
 BISECTIONS: Final = 60
 FASTEST_M_S: Final = 20.0
 
-NO_STEPS: Final = pl.DataFrame(
-    schema={"tow_id": pl.String(), "position": pl.Int8(), "step": pl.String(), "factor": pl.Float64}
-)
+PART_SCHEMA: Final = {
+    "fsn_no": pl.String(),
+    "rowers": pl.Int32(),
+    "crew_class": pl.String(),
+    "cause": pl.String(),
+    "step": pl.String(),
+    "factor": pl.Float64(),
+}
+NO_PARTS: Final = pl.DataFrame(schema=PART_SCHEMA)
+"""Parts of changes whose cause is known: per line and cause a factor on Cw; `step` where the cause
+is the method."""
 
 
 def register_changes(
     old: pl.DataFrame,
     new: pl.DataFrame,
-    steps: pl.DataFrame = NO_STEPS,
+    parts: pl.DataFrame = NO_PARTS,
     grounds: pl.DataFrame | None = None,
 ) -> pl.DataFrame:
     """Compares two editions line by line.
 
-    A change is the product of the steps of the method, on the new line's tow, and of one factor
-    for everything else, whose name the caller knows.
+    A change is the product of its known parts and of one factor for everything else, whose name
+    the caller knows too.
 
     Args:
         old, new: rows of the table `register`, each of one edition.
-        steps: `tow_id`, `position`, `step`, `factor`: the ladder between the two methods.
-        grounds: per line the `ground` of what the steps do not explain; without it `tow` where
+        parts: what is known of the causes, in order; `PART_SCHEMA`.
+        grounds: per line the `ground` of what the parts do not explain; without it `tow` where
             another tow counts, else `method`.
 
     Returns:
@@ -81,7 +90,20 @@ def register_changes(
                 ("time_ratio", time_ratio),
             )
         ),
-        pl.Series("causes", _causes(pairs, compared, cw_ratio, steps, grounds), pl.String),
+        pl.Series("causes", _causes(pairs, compared, cw_ratio, parts, grounds), pl.String),
+    )
+
+
+def steps_of_lines(register: pl.DataFrame, ladder: pl.DataFrame) -> pl.DataFrame:
+    """The steps of a ladder as parts of the changes of the lines whose tow they are of.
+
+    Args:
+        register: lines with their `tow_id`.
+        ladder: `tow_id`, `position`, `step`, `factor`.
+    """
+    steps = register.select(*LINE, "tow_id").join(ladder, on="tow_id").sort(*LINE, "position")
+    return steps.select(
+        *LINE, pl.lit("method").alias("cause"), "step", pl.col("factor").cast(pl.Float64)
     )
 
 
@@ -204,18 +226,17 @@ def _causes(
     pairs: pl.DataFrame,
     compared: np.ndarray,
     ratio: FloatArray,
-    steps: pl.DataFrame,
+    parts: pl.DataFrame,
     grounds: pl.DataFrame | None,
 ) -> list[str]:
     """The causes of each change with their factors on Cw, as JSON."""
-    of_tow = {
-        str(tow): list(zip(group["step"], group["factor"], strict=True))
-        for (tow,), group in steps.sort("position").group_by("tow_id", maintain_order=True)
-    }
+    moved = parts.filter((pl.col("factor") - 1.0).abs() > NO_FACTOR)
+    of_line = moved.group_by(LINE).agg(pl.struct("cause", "step", "factor").alias("parts"))
+    known = pairs.select(LINE).join(of_line, on=LINE, how="left", maintain_order="left")["parts"]
     rests = _grounds(pairs, grounds)
     return [
-        json.dumps(_factors(of_tow.get(tow, []), float(factor), rest) if both else [])
-        for tow, both, factor, rest in zip(pairs["tow_id_new"], compared, ratio, rests, strict=True)
+        json.dumps(_factors(found or [], float(factor), rest) if both else [])
+        for found, both, factor, rest in zip(known.to_list(), compared, ratio, rests, strict=True)
     ]
 
 
@@ -227,15 +248,10 @@ def _grounds(pairs: pl.DataFrame, grounds: pl.DataFrame | None) -> list[str]:
     return named["ground"].to_list()
 
 
-def _factors(
-    steps: list[tuple[str, float]], total: float, rest: str
-) -> list[dict[str, str | float]]:
-    """The steps that did something, and one factor for the rest, which multiply to the total."""
-    moved = [(step, factor) for step, factor in steps if abs(factor - 1.0) > NO_FACTOR]
-    causes: list[dict[str, str | float]] = [
-        {"cause": "method", "step": step, "factor": factor} for step, factor in moved
-    ]
-    left = total / float(np.prod([factor for _, factor in moved]))
-    if abs(left - 1.0) > NO_FACTOR or not moved:
+def _factors(parts: list[dict[str, Any]], total: float, rest: str) -> list[dict[str, Any]]:
+    """The known parts, and one factor for the rest, which multiply to the total."""
+    causes = [{k: v for k, v in part.items() if v is not None} for part in parts]
+    left = total / math.prod(part["factor"] for part in parts)
+    if abs(left - 1.0) > NO_FACTOR or not parts:
         causes.append({"cause": rest, "factor": left})
     return causes

@@ -13,14 +13,22 @@ from typing import Any, Final
 import polars as pl
 
 from pipeline.blocks import stack_blocks
-from pipeline.changes import NO_FACTOR, NO_STEPS, register_changes, side_by_side
+from pipeline.changes import (
+    NO_FACTOR,
+    NO_PARTS,
+    register_changes,
+    side_by_side,
+    steps_of_lines,
+)
 from pipeline.ladder import ladder
 from pipeline.register import LINE
 from pipeline.replay import RaceRules, race_changes, replay
 from warehouse import intake
 from warehouse.archive import read_races
+from warehouse.code import code_version
 from warehouse.editions.folder import Edition, read_edition
-from warehouse.editions.inputs import INPUTS_HASH, archive_root, tows_of_today
+from warehouse.editions.inputs import INPUTS_HASH, archive_root, has_inputs_of, tows_of_today
+from warehouse.editions.lines import MEASURED, lines_made_again
 from warehouse.store import Store
 
 PRINTED: Final = "printed"
@@ -33,6 +41,10 @@ CODE_OR_OTHER_INPUT: Final = "code_or_other_input"
 METHOD: Final = "method"
 UNSEPARATED: Final = "unseparated"
 UNEXPLAINED: Final = "unexplained"
+
+NO_LADDER: Final = pl.DataFrame(
+    schema={"tow_id": pl.String, "position": pl.Int8, "step": pl.String, "factor": pl.Float64}
+)
 
 
 @dataclass(frozen=True)
@@ -62,8 +74,12 @@ def diff(store: Store, old: str, new: str) -> Comparison:
 
 def compare(store: Store, old: Edition, new: Edition) -> Comparison:
     """Compares two editions line by line, with causes whose factors multiply to the change."""
-    steps = _steps(store, old, new)
-    changes = register_changes(old.register, new.register, steps, _grounds(old, new, steps))
+    today = tows_of_today(store)
+    code = _code_parts(store, today, old, new)
+    steps = _steps(store, today, old, new)
+    parts = pl.concat([code, steps_of_lines(new.register, steps)], how="diagonal_relaxed")
+    grounds = _grounds(old, new, set(steps["tow_id"]), code_known=not code.is_empty())
+    changes = register_changes(old.register, new.register, parts, grounds)
     names = pl.concat([new.register.select(*LINE, "name"), old.register.select(*LINE, "name")])
     lines = (
         changes.join(side_by_side(old.register, new.register), on=LINE)
@@ -90,39 +106,60 @@ def race_effects(store: Store, old: Edition, new: Edition, rules: RaceRules) -> 
     return race_changes(before, after)
 
 
-def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
+def _code_parts(store: Store, today: pl.DataFrame, old: Edition, new: Edition) -> pl.DataFrame:
+    """What the code alone changed: the old edition made again by the code of the new one.
+
+    Known where the new edition was made by the code of today and the warehouse still has all
+    inputs of the old one, unchanged.
+    """
+    versions = (old.about.code_version, new.about.code_version)
+    if old.method is None or versions[0] == versions[1] or versions[1] != code_version():
+        return NO_PARTS
+    if not has_inputs_of(today, old):
+        return NO_PARTS
+    again = lines_made_again(store, old).with_columns(pl.lit("again").alias("edition"))
+    return register_changes(old.register, again).select(
+        *LINE,
+        pl.lit(CODE).alias("cause"),
+        pl.lit(None, pl.String).alias("step"),
+        pl.col("cw_ratio").fill_null(1.0).alias("factor"),
+    )
+
+
+def _steps(store: Store, today: pl.DataFrame, old: Edition, new: Edition) -> pl.DataFrame:
     """The ladder from the old to the new method, on the new edition's tows that are still there."""
     if old.method is None or new.method is None:
-        return NO_STEPS
+        return NO_LADDER
     if old.method.content_hash == new.method.content_hash:
-        return NO_STEPS
-    tows = new.tables["tows"].join(tows_of_today(store), on=["tow_id", INPUTS_HASH], how="semi")
+        return NO_LADDER
+    tows = new.tables["tows"].join(today, on=["tow_id", INPUTS_HASH], how="semi")
     if tows.is_empty():
-        return NO_STEPS
+        return NO_LADDER
     runs = new.tables["tow_runs"].join(tows, on="tow_id", how="semi")
     blocks = stack_blocks(intake.all_blocks(store), runs)
     return ladder(old.method, new.method, tows, blocks)
 
 
-def _grounds(old: Edition, new: Edition, steps: pl.DataFrame) -> pl.DataFrame:
-    """Per line the name of what the steps of the method do not explain."""
+def _grounds(old: Edition, new: Edition, climbed: set[str], code_known: bool) -> pl.DataFrame:
+    """Per line the name of what its known parts do not explain."""
     shared = [*LINE, "tow_id", INPUTS_HASH, "basis"]
     pairs = old.register.select(shared).join(
         new.register.select(shared), on=LINE, suffix="_new", nulls_equal=True
     )
-    climbed = set(steps["tow_id"].unique().to_list())
-    grounds = [_ground(row, old, new, climbed) for row in pairs.iter_rows(named=True)]
+    code = not code_known and old.about.code_version != new.about.code_version
+    grounds = [_ground(row, old, new, climbed, code) for row in pairs.iter_rows(named=True)]
     return pairs.select(LINE).with_columns(pl.Series("ground", grounds, pl.String))
 
 
-def _ground(line: Mapping[str, Any], old: Edition, new: Edition, climbed: set[str]) -> str:
-    if {line["basis"], line["basis_new"]} != {"measured"}:
+def _ground(
+    line: Mapping[str, Any], old: Edition, new: Edition, climbed: set[str], code: bool
+) -> str:
+    if {line["basis"], line["basis_new"]} != {MEASURED}:
         return PRINTED
     if line["tow_id"] != line["tow_id_new"]:
         return TOW
     own = line[INPUTS_HASH] != line[f"{INPUTS_HASH}_new"]
     others = not own and old.about.inputs_digest != new.about.inputs_digest
-    code = old.about.code_version != new.about.code_version
     if old.about.method_hash != new.about.method_hash and line["tow_id_new"] not in climbed:
         return UNSEPARATED if own or code else METHOD
     named = {

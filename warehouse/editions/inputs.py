@@ -10,6 +10,7 @@ from typing import Final
 import polars as pl
 
 from pipeline.errors import MissingKnowledgeError
+from warehouse.editions.folder import Edition
 from warehouse.store import Store, fingerprint, table_digest
 
 NOT_INPUT: Final = ("samples_path", "second_path", "remark", "inputs_sha256")
@@ -38,6 +39,12 @@ def tows_of_today(store: Store) -> pl.DataFrame:
 def inputs_digest(tows: pl.DataFrame) -> str:
     """One hash for all tows together."""
     return table_digest(tows.select("tow_id", INPUTS_HASH).sort("tow_id"))
+
+
+def has_inputs_of(today: pl.DataFrame, edition: Edition) -> bool:
+    """Whether the warehouse has all tows of an edition, each as it was."""
+    mine = edition.tables["tows"].select("tow_id")
+    return inputs_digest(today.join(mine, on="tow_id", how="semi")) == edition.about.inputs_digest
 
 
 def input_files(store: Store, tows: pl.DataFrame) -> pl.DataFrame:

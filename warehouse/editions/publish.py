@@ -19,7 +19,7 @@ import polars as pl
 from pipeline.curve import cw, rebase, s_of_b
 from pipeline.errors import MissingKnowledgeError
 from pipeline.method import Method, RegisterRule, method_text
-from pipeline.register import LINE, draft_register, valid_until
+from pipeline.register import LINE, valid_until
 from warehouse import decisions as decided
 from warehouse.archive import read_published_registers
 from warehouse.code import code_version
@@ -53,14 +53,13 @@ from warehouse.editions.inputs import (
     inputs_digest,
     tows_of_today,
 )
+from warehouse.editions.lines import TOW_FACTS, method_lines
 from warehouse.schemas import Register, conform
 from warehouse.store import Store, fingerprint, table_digest
 from warehouse.tables import method_is_stale
 
-NUMBERS: Final = ("a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
-TOW_FACTS: Final = ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg", INPUTS_HASH)
 BOAT_FACTS: Final = ("ht_no", "name", "boat_type")
-MEASURED, AS_PRINTED, REBASED = "measured", "printed", "printed_rebased"
+AS_PRINTED, REBASED = "printed", "printed_rebased"
 PRINTED_METHOD: Final = "as-printed"
 NO_VALID_CURVE: Final = "no_valid_curve"
 LINE_SCHEMA: Final = {
@@ -158,24 +157,6 @@ def recomputed_edition(
     tables["register"] = _complete(store, lines, terms.edition, method.name, method.content_hash)
     about = _about(store, terms, method, inputs_digest(tows))
     return Edition(about, tables, method)
-
-
-def method_lines(
-    tables: dict[str, pl.DataFrame],
-    crews: pl.DataFrame,
-    valid_from: dt.date,
-    rule: RegisterRule,
-    decisions: pl.DataFrame,
-) -> pl.DataFrame:
-    """The lines of a method on a day, each with the facts of its tow; numbers only where valid."""
-    draft = draft_register(tables["curves"], tables["tows"], crews, valid_from, rule, decisions)
-    valid = pl.col("status") == "valid"
-    return draft.join(
-        tables["tows"].select("tow_id", *TOW_FACTS), on="tow_id", how="left"
-    ).with_columns(
-        *(pl.when(valid).then(pl.col(name)).alias(name) for name in NUMBERS),
-        pl.when(valid).then(pl.lit(MEASURED)).alias("basis"),
-    )
 
 
 def latest_before(store: Store, valid_from: dt.date, published_on: dt.date) -> str | None:

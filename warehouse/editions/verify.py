@@ -11,21 +11,16 @@ from pathlib import Path
 from typing import Any, Final
 
 import polars as pl
-from pydantic import TypeAdapter, ValidationError
+from pydantic import ValidationError
 
-from pipeline.blocks import stack_blocks
 from pipeline.errors import BrokenPromiseError, HerijkError
-from pipeline.recompute import recompute
 from pipeline.register import LINE
-from warehouse import decisions as decided
-from warehouse import intake
 from warehouse.archive import FileHashes, index_archive
 from warehouse.code import code_version
 from warehouse.editions import sheets
 from warehouse.editions.folder import (
     ABOUT,
     CSV,
-    DECISIONS,
     INPUTS,
     XLSX,
     About,
@@ -37,8 +32,15 @@ from warehouse.editions.folder import (
     read_edition,
     read_table,
 )
-from warehouse.editions.inputs import INPUTS_HASH, LIST, NOT_INPUT, archive_root, tows_of_today
-from warehouse.editions.publish import MEASURED, NUMBERS, method_lines
+from warehouse.editions.inputs import (
+    INPUTS_HASH,
+    LIST,
+    NOT_INPUT,
+    archive_root,
+    has_inputs_of,
+    tows_of_today,
+)
+from warehouse.editions.lines import MEASURED, NUMBERS, lines_made_again
 from warehouse.store import Store, table_digest
 
 SAME_NUMBER: Final = 1e-9
@@ -281,8 +283,7 @@ def _made_again(store: Store, name: str) -> tuple[int, list[Finding]]:
     """Lines that come out equal, and a finding for each that does not."""
     try:
         edition = read_edition(store, name)
-        decisions = _read_decisions(editions_folder(store) / name)
-        again = _lines_of_today(store, edition, decisions)
+        again = lines_made_again(store, edition)
     except (HerijkError, ValidationError, OSError, pl.exceptions.PolarsError) as error:
         reason = str(error).splitlines()[0]
         return 0, [Finding(name, "unchecked", "register", f"it cannot be made again: {reason}")]
@@ -291,39 +292,15 @@ def _made_again(store: Store, name: str) -> tuple[int, list[Finding]]:
     return lines - len(findings), findings
 
 
-def _read_decisions(path: Path) -> pl.DataFrame:
-    text = (path / DECISIONS).read_text(encoding="utf-8")
-    found = TypeAdapter(tuple[decided.Decision, ...]).validate_json(text)
-    return decided.decision_table(found)
-
-
-def _lines_of_today(store: Store, edition: Edition, decisions: pl.DataFrame) -> pl.DataFrame:
-    """The lines that the edition's method gives on its tows, as archive and code are now."""
-    if edition.method is None or store.made_from("tows") is None:
-        raise BrokenPromiseError("there is no warehouse; run herijk rebuild")
-    mine = edition.tables["tows"].select("tow_id")
-    tows = tows_of_today(store).join(mine, on="tow_id", how="semi")
-    runs = store.read("tow_runs").join(mine, on="tow_id", how="semi")
-    blocks = stack_blocks(intake.all_blocks(store), runs)
-    curves = recompute(edition.method, tows, blocks).curves
-    crews = pl.DataFrame(schema={n: edition.register.schema[n] for n in LINE})
-    return method_lines(
-        {"curves": curves, "tows": tows},
-        crews,
-        edition.about.valid_from,
-        edition.method.validity,
-        decisions,
-    )
-
-
 def _differing(store: Store, edition: Edition, again: pl.DataFrame) -> Iterator[Finding]:
     lines = edition.register.filter(pl.col("basis") == MEASURED)
     columns = ["tow_id", *NUMBERS, INPUTS_HASH]
     pairs = lines.select(*LINE, *columns).join(
         again.select(*LINE, *columns), on=LINE, how="left", suffix="_now"
     )
-    present = set(store.read("tows")["tow_id"])
-    same_inputs = edition.about.inputs_digest == _digest_of_today(store, edition)
+    today = tows_of_today(store)
+    present = set(today["tow_id"])
+    same_inputs = has_inputs_of(today, edition)
     for row in pairs.sort(LINE).iter_rows(named=True):
         unequal = [n for n in NUMBERS if not _same(row[n], row[f"{n}_now"])]
         if not unequal and row["tow_id"] == row["tow_id_now"]:
@@ -337,12 +314,6 @@ def _differing(store: Store, edition: Edition, again: pl.DataFrame) -> Iterator[
             f"made again, {what or 'another tow counts'}: {why}",
             wrong,
         )
-
-
-def _digest_of_today(store: Store, edition: Edition) -> str:
-    mine = edition.tables["tows"].select("tow_id")
-    today = tows_of_today(store).join(mine, on="tow_id", how="semi")
-    return table_digest(today.select("tow_id", INPUTS_HASH).sort("tow_id"))
 
 
 def _why(
