@@ -153,7 +153,8 @@ def recomputed_edition(
     lines = method_lines(tables, crews, terms.valid_from, method.validity, decisions)
     if carry is not None:
         printed = _carried(read_edition(store, carry), tables["log_factors"], method.validity)
-        lines = _with_carried(lines, printed.filter(pl.col("valid_until") >= terms.valid_from))
+        counts = pl.lit(terms.valid_from).is_between("tow_date", "valid_until")
+        lines = _with_carried(lines, printed.filter(counts & pl.col("cw_kg_m").is_finite()))
     tables["register"] = _complete(store, lines, terms.edition, method.name, method.content_hash)
     about = _about(store, terms, method, inputs_digest(tows))
     return Edition(about, tables, method)
