@@ -24,7 +24,9 @@ jobs = [
     dg.define_asset_job(STUDY, dg.AssetSelection.assets(tables.study_tables)),
     dg.define_asset_job(
         FINISH,
-        dg.AssetSelection.assets(tables.register_tables, tables.warehouse_database),
+        dg.AssetSelection.assets(
+            tables.register_tables, tables.consistency_tables, tables.warehouse_database
+        ),
     ),
 ]
 
@@ -40,6 +42,7 @@ def build_defs(setup: Setup, progress: Progress) -> dg.Definitions:
             tables.method_tables,
             tables.study_tables,
             tables.register_tables,
+            tables.consistency_tables,
             tables.warehouse_database,
         ],
         jobs=jobs,

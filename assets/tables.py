@@ -39,10 +39,17 @@ def archive_tables(setup: Setup):
     )
 
 
+all_blocks = dg.AssetDep(blocks, partition_mapping=dg.AllPartitionMapping())
+"""Every method needs the blocks of every season."""
+
+
 @dg.multi_asset(
     specs=[
         dg.AssetSpec(
-            name, deps=["tows", "tow_runs", blocks], group_name="method", kinds={"parquet"}
+            name,
+            deps=["boats", "tows", "tow_runs", "hand_windows", all_blocks],
+            group_name="method",
+            kinds={"parquet"},
         )
         for name in tables.METHOD_TABLES
     ],
@@ -50,7 +57,7 @@ def archive_tables(setup: Setup):
     check_specs=[dg.AssetCheckSpec("every_tow_has_a_curve_row", asset="curves")],
 )
 def method_tables(context: dg.AssetExecutionContext, setup: Setup):
-    """Run points, curves and log factors of all tows under one method."""
+    """Run points, curves, log factors and assessments of all tows under one method."""
     store = setup.store
     method = shipped_method(context.partition_key)
     found = tables.apply_method(store, method, tables.run_blocks(store))
@@ -105,13 +112,24 @@ def register_tables(setup: Setup):
     yield from _results(tables.make_registers(setup.store, setup.chosen_methods))
 
 
-@dg.asset(
-    deps=[
-        *tables.REGISTER_TABLES,
-        *tables.STUDY_TABLES,
-        *tables.METHOD_TABLES,
-        *tables.ARCHIVE_TABLES,
+@dg.multi_asset(
+    specs=[
+        dg.AssetSpec(
+            name,
+            deps=["curves", "run_points", "tows", "boats"],
+            group_name="consistency",
+            kinds={"parquet"},
+        )
+        for name in tables.CONSISTENCY_TABLES
     ],
+)
+def consistency_tables(setup: Setup):
+    """Are equal boats equal: the statistics of every boat type under every method."""
+    yield from _results(tables.make_consistency(setup.store, setup.chosen_methods))
+
+
+@dg.asset(
+    deps=[*tables.WHOLE_TABLES, *tables.METHOD_TABLES],
     group_name="register",
     kinds={"duckdb"},
 )

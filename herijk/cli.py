@@ -14,6 +14,7 @@ import typer
 
 from herijk import commands_editions, text
 from herijk.arguments import AsJson, DataFolder, show
+from herijk.method_text import method_in_words
 from herijk.progress import TerminalProgress
 from pipeline.errors import HerijkError, MissingKnowledgeError
 from pipeline.method import Method, parse_method, shipped_method, shipped_methods, shipped_text
@@ -99,7 +100,7 @@ def show_method(name: Annotated[str, typer.Argument(help="Name of a method.")]) 
     """One method in words, with what differs from the one it extends."""
     shown = _method(name)
     parent = None if shown.extends is None else shipped_method(shown.extends)
-    typer.echo(text.method(shown, parent))
+    typer.echo(method_in_words(shown, parent))
 
 
 @app.command()
@@ -148,9 +149,9 @@ def audit(
 def simulate(
     directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder to make.")],
     seasons: Seasons = "2009:2018",  # type: ignore[assignment]
-    tows_per_season: Annotated[int, typer.Option(min=1, max=1000)] = 24,
+    tows_per_season: Annotated[int, typer.Option(min=1, max=1000, help="Tows in each.")] = 24,
     rate: Annotated[int, typer.Option(min=5, max=1000, help="Samples a second.")] = 1000,
-    seed: Annotated[int, typer.Option(min=0)] = 1,
+    seed: Annotated[int, typer.Option(min=0, help="Decides all that is drawn.")] = 1,
 ) -> None:
     """Write a simulated archive with known truth (the truth lies beside it, not in it)."""
     settings = WorldSettings(tuple(seasons), tows_per_season, rate, seed)

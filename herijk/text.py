@@ -3,8 +3,6 @@
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from pipeline.method import LAST_SEASON, Method, Steps
-
 Report = dict[str, Any]
 SIMULATED = "SIMULATED archive: made by `herijk simulate`, not the federation's measurements."
 
@@ -47,9 +45,8 @@ def rebuild(report: Report) -> str:
     )
     if report["set_aside"]:
         rows = [(r["reason_code"], r["number"]) for r in report["set_aside"]]
-        parts.append(
-            "Set aside (table quarantine says where and why):\n" + table(("reason", "number"), rows)
-        )
+        parts.append("Set aside:\n" + table(("reason", "number"), rows))
+        parts.append(_faults(report["first_faults"], sum(number for _, number in rows)))
     else:
         parts.append("Set aside: nothing.")
     rows = [(r["method"], r["status"], r["number"]) for r in report["curves"]]
@@ -67,6 +64,19 @@ def _work_done(done: Report) -> str:
     seasons = ", ".join(str(s) for s in done["seasons"]) or "none"
     methods = ", ".join(done["methods"]) or "none"
     return f"Seasons read: {seasons}. Methods applied: {methods}."
+
+
+def _faults(first: list[Report], number: int) -> str:
+    lines = [f"  {_place(fault)}: {fault['message']}" for fault in first]
+    if number > len(first):
+        lines.append(f"  and {number - len(first)} more: see the table quarantine")
+    return "\n".join(lines)
+
+
+def _place(fault: Report) -> str:
+    line = "" if fault["line"] is None else f", line {fault['line']}"
+    tow = "" if fault["tow_id"] is None else f" (tow {fault['tow_id']})"
+    return f"{fault['path']}{line}{tow}"
 
 
 def _by_season(rows: list[Report]) -> str:
@@ -107,30 +117,6 @@ def methods(report: Report) -> str:
     """The list of methods."""
     rows = [(m["method"], m["title"], m["content_hash"][:12]) for m in report["methods"]]
     return table(("method", "title", "hash"), rows)
-
-
-def method(shown: Method, parent: Method | None) -> str:
-    """One method: per range of seasons the option of every step, marked where it differs."""
-    lines = [f"{shown.name}: {shown.title}", "", shown.description.strip(), ""]
-    if parent is not None:
-        lines += [f"It extends {parent.name}; what differs is marked with *.", ""]
-    for held in shown.ranges:
-        last = "the present" if held.last == LAST_SEASON else held.last
-        lines.append(f"Seasons {held.first} to {last}")
-        before = None if parent is None else parent.for_season(held.first)
-        lines += _step_lines(held.steps, before)
-        lines.append("")
-    lines.append(f"content hash {shown.content_hash}")
-    return "\n".join(lines)
-
-
-def _step_lines(steps: Steps, before: Steps | None) -> list[str]:
-    lines = []
-    for step, options in steps.model_dump().items():
-        old = options if before is None else getattr(before, step).model_dump()
-        words = [f"{key} = {value}{' *' * (old[key] != value)}" for key, value in options.items()]
-        lines.append(f"  {step:12} {', '.join(words)}")
-    return lines
 
 
 def rebase(report: Report) -> str:

@@ -14,10 +14,12 @@ import re
 import tomllib
 from collections.abc import Callable, Mapping
 from importlib import resources
-from typing import Any, Final, Literal
+from typing import Annotated, Any, Final, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
+from pydantic_core import PydanticCustomError
 
+from pipeline.checks import CODES
 from pipeline.errors import HerijkError, MissingKnowledgeError
 
 LAST_SEASON: Final = 9999
@@ -50,7 +52,7 @@ class Calibration(_Options):
 class Window(_Options):
     """Which part of a run counts."""
 
-    rule: Literal["all", "steady"]
+    rule: Literal["all", "steady", "by_hand"]
     minimum_s: float = Field(default=30.0, ge=5.0, le=50.0)
     speed_drift_m_s: float = Field(default=0.02, gt=0.0, le=0.2)
     force_ends_ratio: float = Field(default=0.04, gt=0.0, le=0.2)
@@ -100,6 +102,18 @@ class Curve(_Options):
     cap_hull_speeds: float = Field(default=3.0, ge=1.0, le=10.0)
 
 
+def _known_check(code: str) -> str:
+    if code not in CODES:
+        raise PydanticCustomError("unknown_check", f"Must be one of {', '.join(CODES)}")
+    return code
+
+
+class Assessment(_Options):
+    """Which checks of the assessment reject a tow, by their code (`pipeline.checks`)."""
+
+    reject: tuple[Annotated[str, AfterValidator(_known_check)], ...] = ()
+
+
 class Steps(_Options):
     """The option of every step, for one season."""
 
@@ -111,6 +125,7 @@ class Steps(_Options):
     temperature: Temperature
     runs: Runs
     curve: Curve
+    assessment: Assessment
 
 
 class RegisterRule(_Options):
@@ -292,14 +307,16 @@ class _Reader:
         except ValidationError as error:
             raise self.from_validation(error, allowed=_Head) from error
 
-    def error(self, key: str, message: str) -> MethodFileError:
-        return MethodFileError(f"{self.file_name}{self._line(key)}: {key}: {message}")
+    def error(self, key: str, message: str, where: str | None = None) -> MethodFileError:
+        """An error about `key`, on the line of `where`, which is the key unless it is missing."""
+        line = self._line(key if where is None else where)
+        return MethodFileError(f"{self.file_name}{line}: {key}: {message}")
 
     def from_validation(
         self, error: ValidationError, allowed: type[BaseModel], season: str = ""
     ) -> MethodFileError:
         first = error.errors()[0]
-        path = [str(part) for part in first["loc"]]
+        path = [part for part in first["loc"] if isinstance(part, str)]
         message = first["msg"]
         if first["type"] == "extra_forbidden":
             message = f"unknown key; allowed here: {', '.join(_keys_at(allowed, path[:-1]))}"
@@ -307,14 +324,28 @@ class _Reader:
             message = "missing"
         else:
             message = f"{message[0].lower()}{message[1:]}, not {first['input']!r}"
-        return self.error(".".join(path), message + season)
+        where = path[:-1] if first["type"] == "missing" else path
+        return self.error(".".join(path), message + season, where=".".join(where))
 
     def _line(self, key: str) -> str:
-        """Where the key stands: the last line that begins with its last part, or holds it."""
-        last = re.escape(key.rsplit(".", maxsplit=1)[-1])
-        pattern = re.compile(rf"(^|[\s{{.,\[])\"?{last}\"?\s*(=|\]|\.)")
-        lines = [i for i, line in enumerate(self.text.splitlines(), 1) if pattern.search(line)]
-        return f", line {lines[-1]}" if lines else ""
+        """Where the key stands: the last line that holds it, or else the step it belongs to."""
+        parts = key.split(".")
+        for wanted in (parts[-2:], parts[-1:], parts[-2:-1]):
+            lines = [number for number, held in self._keys_of_lines() if set(wanted) <= held]
+            if lines:
+                return f", line {lines[-1]}"
+        return ""
+
+    def _keys_of_lines(self) -> list[tuple[int, set[str]]]:
+        """The keys named on each line, with those of the table it stands in."""
+        table: set[str] = set()
+        found = []
+        for number, line in enumerate(self.text.splitlines(), 1):
+            header = re.match(r"\s*\[+([\w.-]+)\]+", line)
+            if header:
+                table = set(header[1].split("."))
+            found.append((number, table | set(re.findall(r"([\w-]+)\s*=", line))))
+        return found
 
 
 def _keys_at(model: type[BaseModel], path: list[str]) -> list[str]:
@@ -369,7 +400,7 @@ def _step_tables(
     for step, table in options.items():
         if step not in Steps.model_fields:
             allowed = ", ".join(Steps.model_fields)
-            raise reader.error(f"{where}.{step}", f"unknown step; the steps are {allowed}")
+            raise reader.error(f"{where}.{step}", f"unknown step; allowed here: {allowed}")
         if not isinstance(table, dict):
             raise reader.error(f"{where}.{step}", f"a table of options is needed, not {table!r}")
     return dict(options)

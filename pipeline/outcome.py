@@ -1,7 +1,7 @@
-"""The outcome of a method as tables: `run_points`, `curves` and `log_factors`.
+"""The outcome of a method as tables: `run_points`, `curves`, `log_factors`, `assessments`.
 
 Arrays in, frames out; a number that is not known becomes null here, never NaN. What is computed
-stands in `pipeline.recompute`, what a flag means in `pipeline.assessment`.
+stands in `pipeline.recompute`; `pipeline.assessment` makes the tables' last, `assessments`.
 """
 
 from collections.abc import Sequence
@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike
 
 from pipeline import curve
 from pipeline.arrays import BoolArray, FloatArray
-from pipeline.assessment import Observed, flags_of
+from pipeline.assessment import assess, with_status
 from pipeline.batch import Batch
-from pipeline.method import Steps
+from pipeline.method import Method, Steps
 from pipeline.race import power_per_rower_w
 from pipeline.speed import prescribed_factor
 from pipeline.steady import Windows
@@ -24,11 +24,12 @@ from pipeline.wind import mean_wind_angle_deg
 
 @dataclass(frozen=True)
 class Recomputed:
-    """The tables of one method: `run_points`, `curves` and `log_factors` of the warehouse."""
+    """The tables of one method, named as in the warehouse."""
 
     run_points: pl.DataFrame
     curves: pl.DataFrame
     log_factors: pl.DataFrame
+    assessments: pl.DataFrame
 
 
 @dataclass(frozen=True)
@@ -67,17 +68,26 @@ class Outcome:
         return np.asarray(self.reasons == "")
 
 
-def as_tables(method: str, outcomes: Sequence[Outcome]) -> Recomputed:
-    """The tables of a method from its batches."""
-    name = pl.lit(method).alias("method")
+def as_tables(method: Method, tows: pl.DataFrame, outcomes: Sequence[Outcome]) -> Recomputed:
+    """The tables of a method from its batches; tows are assessed when all curves are there."""
+    name = pl.lit(method.name).alias("method")
 
     def together(frames: list[pl.DataFrame]) -> pl.DataFrame:
         return pl.concat(frames).select(name, pl.all())
 
+    run_points = together([_run_points(o) for o in outcomes])
+    curves = together([_curves(o) for o in outcomes])
+    assessments = assess(curves, run_points, tows)
+    rejecting = [
+        (season, check)
+        for season in tows["season"].unique().sort()
+        for check in method.for_season(season).assessment.reject
+    ]
     return Recomputed(
-        run_points=together([_run_points(o) for o in outcomes]),
-        curves=together([_curves(o) for o in outcomes]),
+        run_points=run_points,
+        curves=with_status(curves, assessments, rejecting),
         log_factors=together([_log_factors(o) for o in outcomes]),
+        assessments=assessments,
     )
 
 
@@ -137,9 +147,6 @@ def _curves(o: Outcome) -> pl.DataFrame:
         "power_w": power_per_rower_w(safe_cw, declared, o.batch.of_tow("rowers")),
         "residual_sd_ratio": residual,
     }
-    flags = flags_of(_observed(o, sound))
-    looked_at = np.array([bool(found) for found in flags])
-    status = np.select([~sound, looked_at], ["rejected", "flagged"], "accepted")
     return tows.select(
         "tow_id", "fsn_no", "season", "rowers", "crew_class", "declared_speed_m_s"
     ).with_columns(
@@ -148,27 +155,11 @@ def _curves(o: Outcome) -> pl.DataFrame:
         _column("calibration_factor", o.calibration_factor, _calibrated(o)),
         pl.Series("b_capped", o.curves.b_capped),
         pl.Series("runs_used", o.batch.count(o.used), pl.Int8),
-        pl.Series("status", status, pl.String),
-        pl.Series("flags", flags, pl.List(pl.String)),
     )
 
 
 def _calibrated(o: Outcome) -> BoolArray:
     return np.full(o.batch.size, o.steps.calibration.rule != "none")
-
-
-def _observed(o: Outcome, sound: BoolArray) -> Observed:
-    return Observed(
-        batch=o.batch,
-        used=o.used,
-        speed_m_s=o.speed_m_s,
-        cw_kg_m=o.cw_kg_m,
-        sd_kg_m=o.sd_kg_m,
-        curve_found=sound,
-        b_capped=o.curves.b_capped,
-        b_determined=o.curves.b_determined,
-        calibration_factor=o.calibration_factor,
-    )
 
 
 def _log_factors(o: Outcome) -> pl.DataFrame:

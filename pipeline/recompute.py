@@ -44,18 +44,19 @@ Texts: TypeAlias = np.ndarray[tuple[int, ...], np.dtype[np.str_]]
 
 
 def recompute(method: Method, tows: pl.DataFrame, blocks: RunBlocks) -> Recomputed:
-    """Run points, curves and log factors of all tows under a method.
+    """Run points, curves, log factors and assessments of all tows under a method.
 
     Args:
         method: the method.
-        tows: rows of the warehouse's `tows`.
+        tows: rows of the warehouse's `tows`, with `boat_type` where it is known, so that a tow can
+            be compared with like boats.
         blocks: their runs; `blocks.runs` has the columns of `tow_runs`.
 
     Raises:
         MissingKnowledgeError: the method says nothing about a season of `tows`.
     """
     plans = [(batch, steps) for batch, (steps,) in batches([method], tows, blocks)]
-    return as_tables(method.name, evaluate(plans))
+    return as_tables(method, tows, evaluate(plans))
 
 
 def batches(
@@ -172,7 +173,9 @@ def _prepare(batch: Batch, steps: Steps, windows: Windows) -> _Prepared:
     means = run_means(batch, windows.mask, steps)
     known = prescribed_factor(steps.speed, batch.of_tow("speed_correction_ratio"))
     reasons = _reasons(batch, steps, windows, means.speed_m_s * known[batch.tow])
-    y, determined = _calibrate(batch, steps, windows, means.speed_m_s, reasons == "")
+    y, determined = _calibrate(
+        batch, steps, windows, means.speed_m_s * known[batch.tow], reasons == ""
+    )
     reasons = np.where((reasons == "") & ~determined[batch.tow], NOT_CALIBRATED, reasons)
     speed = means.speed_m_s * (known * y)[batch.tow]
     temperature, temperature_known = temperature_change_kg_m(batch, steps.temperature, speed)
@@ -205,7 +208,7 @@ def _reasons(batch: Batch, steps: Steps, windows: Windows, speed_m_s: FloatArray
 def _calibrate(
     batch: Batch, steps: Steps, windows: Windows, log_m_s: FloatArray, used: BoolArray
 ) -> tuple[FloatArray, BoolArray]:
-    """Calibration factor of each tow and whether it is known, shape (tows,)."""
+    """Factor on the log speed as corrected so far, and whether it is known, shape (tows,)."""
     if steps.calibration.rule == "none":
         return np.ones(batch.size), np.ones(batch.size, dtype=bool)
     samples = batch.blocks.total("gps_n", windows.mask)

@@ -73,7 +73,11 @@ def run_means(batch: Batch, window: BoolArray, steps: Steps) -> RunMeans:
     front = front_area_m2(batch.of_run("beam_m"), batch.of_run("bow_height_m"))
     side = side_area_m2(batch.of_run("waterline_length_m"), batch.of_run("bow_height_m"))
     air = air_parts(batch.blocks, terms, steps.wind, front, side)
-    change = _end_speed_change(batch, window, "mean" if use_mean.all() else single)
+    change = np.where(
+        use_mean,
+        _end_speed_change(batch, window, "mean"),
+        _end_speed_change(batch, window, single),
+    )
     inertia = _inertia(batch, steps.run_point, change, speed)
     return RunMeans(speed, gross, np.sqrt(variance), inertia, air)
 

@@ -79,11 +79,12 @@ def air_parts(
 
 
 def averaged_terms(blocks: RunBlocks, averaging_s: int) -> dict[str, FloatArray]:
-    """Air terms of each block from the wind vector averaged over some seconds around it.
+    """Air terms of each block from the mean wind of some seconds around it.
 
     The vane jitters, and the square of a jittering wind is not the square of its mean: per
-    sample the force comes out -17 to +12 % wrong (research, method.md 6.8). Jitter also makes the
-    averaged vector too short (by 2.6 % at 13 degrees), so it gets the length of the mean speed.
+    sample the force comes out -17 to +12 % wrong (research, method.md 6.8). Mean wind is the mean
+    speed in the circular mean direction: a mean vector would be too short, by 3 % at 13 degrees of
+    jitter.
 
     Args:
         blocks: the runs.
@@ -92,17 +93,18 @@ def averaged_terms(blocks: RunBlocks, averaging_s: int) -> dict[str, FloatArray]
     Returns:
         Means by name of `AIR_SUMS`, each of shape (runs, seconds), m2/s2.
     """
-    count = _centred_sum(blocks.n, averaging_s)
-    speed = _centred_sum(blocks["wind_v"], averaging_s) / np.maximum(count, 1.0)
-    x, y = (_centred_sum(blocks[name], averaging_s) for name in ("wind_x", "wind_y"))
-    shrunk = np.maximum(np.hypot(x, y), 1e-9)
-    along, across = speed * x / shrunk, speed * y / shrunk
-    speed = np.maximum(speed, 1e-9)
+    count = np.maximum(_centred_sum(blocks.n, averaging_s), 1.0)
+    speed = _centred_sum(blocks["wind_v"], averaging_s) / count
+    cos_sum = _centred_sum(blocks["wind_cos"], averaging_s)
+    sin_sum = _centred_sum(blocks["wind_sin"], averaging_s)
+    length = np.maximum(np.hypot(cos_sum, sin_sum), 1e-9)
+    cos, sin = cos_sum / length, sin_sum / length
+    along = speed * cos
     head = along * np.abs(along)
     by_term = {
         "head": head,
-        "front": head * np.abs(along) / speed,
-        "side": head * np.abs(across) / speed,
+        "front": head * np.abs(cos),
+        "side": head * np.abs(sin),
     }
     clip = {"ahead": np.maximum, "behind": np.minimum}
     return {name: clip[name.split("_")[1]](by_term[name.split("_")[0]], 0.0) for name in AIR_SUMS}
@@ -112,7 +114,8 @@ def _centred_sum(values: FloatArray, width: int) -> FloatArray:
     """Sum over `width` neighbours along axis 1, centred, cut off at the ends."""
     total = np.zeros_like(values)
     seconds = values.shape[1]
-    for shift in range(-(width // 2), (width - 1) // 2 + 1):
+    before, after = min(width // 2, seconds - 1), min((width - 1) // 2, seconds - 1)
+    for shift in range(-before, after + 1):
         low, high = max(0, -shift), min(seconds, seconds - shift)
         total[:, low:high] += values[:, low + shift : high + shift]
     return total

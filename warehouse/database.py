@@ -25,11 +25,13 @@ def build_database(path: Path, tables: Mapping[str, pl.DataFrame]) -> None:
         beside.unlink()
         with duckdb.connect(beside) as connection:
             connection.execute("SET threads = 1")
+            connection.execute("BEGIN")  # one commit: a hundred comments would each sync the disk
             for name, frame in sorted(tables.items()):
                 connection.register("frame", frame.to_arrow())
                 connection.execute(f'CREATE TABLE "{name}" AS SELECT * FROM frame')  # noqa: S608
                 connection.unregister("frame")
                 _comment(connection, name)
+            connection.execute("COMMIT")
 
 
 def _comment(connection: duckdb.DuckDBPyConnection, name: str) -> None:

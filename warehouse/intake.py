@@ -16,7 +16,9 @@ from warehouse.archive import ArchiveIndex, FileHashes, Profiles, index_archive
 from warehouse.archive.profile import read_profiles
 from warehouse.store import Store, fingerprint
 
-LISTED: Final = ("boats", "tows", "runs")
+LISTED: Final = ("boats", "tows", "runs", "windows")
+SEASON_TABLES: Final = ("season_tows", "season_runs", "season_index", "blocks")
+"""What is kept of a season, as the archive was when it was read."""
 FAULT_SCHEMA: Final = {
     "path": pl.String(),
     "tow_id": pl.String(),
@@ -68,18 +70,24 @@ def forget_unlisted_seasons(store: Store) -> list[int]:
     gone = [int(s) for s in store.partitions("blocks") if int(s) not in listed]
     for season in gone:
         lake.forget_season(store, season)
-        for table in ("blocks", "season_index"):
+        for table in SEASON_TABLES:
             store.remove(table, str(season))
     return gone
 
 
 def read_season(store: Store, root: Path, season: int, report: lake.Report) -> pl.DataFrame:
-    """Brings one season's samples into the lake and keeps its index."""
+    """Brings one season's samples into the lake; keeps its index and the list it was read by.
+
+    Returns:
+        The index: where each listed tow's samples and blocks lie, or its fault.
+    """
     tows, runs = _listed(store, season)
     profile = read_profiles(root).for_season(season)
     found = lake.read_season(store, root, tows, runs, profile, report)
     made_from = lake.season_fingerprint(tows, runs, profile)
-    store.write("season_index", found, made_from, str(season))
+    kept = {"season_tows": tows, "season_runs": runs, "season_index": found}
+    for name, frame in kept.items():
+        store.write(name, frame, made_from, str(season))
     return found
 
 

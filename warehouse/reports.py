@@ -14,6 +14,7 @@ from warehouse.store import Store
 
 Report = dict[str, Any]
 BIGGEST = 10
+FIRST_FAULTS = 10
 
 
 def _open(database: Path) -> duckdb.DuckDBPyConnection:
@@ -44,6 +45,11 @@ def rebuild_report(store: Store) -> Report:
                 db,
                 "SELECT reason_code, count(*) AS number FROM quarantine "
                 "GROUP BY reason_code ORDER BY number DESC, reason_code",
+            ),
+            "first_faults": _rows(
+                db,
+                "SELECT path, tow_id, line, message FROM quarantine ORDER BY path, line LIMIT ?",
+                FIRST_FAULTS,
             ),
             "curves": _rows(
                 db,
@@ -127,4 +133,4 @@ def _is_simulated(db: duckdb.DuckDBPyConnection) -> bool:
 def read_table(store: Store, name: str) -> pl.DataFrame:
     """A table of the database, in the order in which it was written."""
     with _open(store.database) as db:
-        return pl.DataFrame(db.execute(f'SELECT * FROM "{name}"').to_arrow_table())  # noqa: S608
+        return pl.DataFrame(db.sql(f'SELECT * FROM "{name}"').pl())  # noqa: S608

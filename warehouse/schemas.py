@@ -108,6 +108,16 @@ class TowRuns(dy.Schema):
     selected = dy.Bool(description="the tow list says to use it")
 
 
+class HandWindows(dy.Schema):
+    """Windows that a person gave, one row a run; a method may use them (`by_hand`)."""
+
+    tow_id = _tow_id(primary_key=True)
+    run = dy.Int8(primary_key=True, description="run", min=1, max=16)
+    start_s = dy.Int16(description="start of the window", metadata={"unit": "s"}, min=0)
+    end_s = dy.Int16(description="end of the window", metadata={"unit": "s"}, min=1)
+    reason = _text("why, in the person's words")
+
+
 class RunPoints(dy.Schema):
     """One point per method, tow and run."""
 
@@ -118,7 +128,7 @@ class RunPoints(dy.Schema):
     target_speed_ratio = _number("1", "intended speed / declared speed", min_exclusive=0)
     window_start_s = _number("s", "start of the window that counts", min=0, nullable=True)
     window_end_s = _number("s", "end of the window that counts", min=0, nullable=True)
-    cut_reason = _text("why the rest was cut: codes, comma separated")
+    cut_reason = _text("why the rest was cut: codes, comma separated, or by_hand and the reason")
     speed_factor = _number("1", "true speed / log speed", min_exclusive=0, nullable=True)
     speed_m_s = _speed("mean true speed", nullable=True)
     gross_cw_kg_m = _number("kg/m", "mean F/v^2 before the wind", nullable=True)
@@ -163,6 +173,19 @@ class Curves(dy.Schema):
     runs_used = dy.Int8(description="points the curve is fitted through", min=0)
     status = _text("accepted, flagged or rejected", regex=f"^({'|'.join(STATUSES)})$")
     flags = dy.List(dy.String(), description="codes of what a person should look at")
+
+
+class Assessments(dy.Schema):
+    """What each check found, one row per method, tow and check; a check not made has no row."""
+
+    method = _method(primary_key=True)
+    tow_id = _tow_id(primary_key=True)
+    check = _text("code of the check", primary_key=True)
+    severity = _text("flag: a person should look; note: worth knowing", regex="^(flag|note)$")
+    observed = _number("as in unit", "what was observed")
+    limit = _number("as in unit", "the limit that is exceeded, or the nearest")
+    unit = _text("unit of both; 1 for a ratio, a count or yes (1) and no (0)")
+    flagged = dy.Bool(description="the observed number is beyond its limit")
 
 
 class LogFactors(dy.Schema):
@@ -239,15 +262,136 @@ class TypeConsistency(dy.Schema):
     """How a quantity follows weight or tow speed within a boat type: a straight line."""
 
     method = _method(primary_key=True)
-    boat_type = _text("type of boat", primary_key=True)
-    quantity = _text("b_m_s, a_kg_m or cw_kg_m", primary_key=True)
-    explaining = _text("weight_kg or declared_speed_m_s", primary_key=True)
-    n = dy.Int32(description="tows", min=0)
+    boat_type = _text("type of boat; unknown: boats without type, no claims", primary_key=True)
+    quantity = _text(
+        "b_m_s, a_kg_m, q, cw_kg_m, cw_standard_kg_m or ln_cw_standard", primary_key=True
+    )
+    explaining = _text(
+        "weight_kg, displacement_kg, declared_speed_m_s or ln_displacement", primary_key=True
+    )
+    standard_speed_m_s = _speed("common speed of q and cw_standard: median declared speed")
+    n = dy.Int32(description="tows: the newest of each boat and crew", min=0)
+    n_boats = dy.Int32(description="boats", min=0)
     slope = _number("quantity / explaining", "slope of the line", nullable=True)
     slope_lo = _number("quantity / explaining", "lower end of its 95 % interval", nullable=True)
     slope_hi = _number("quantity / explaining", "upper end", nullable=True)
-    r2 = _number("1", "share of the spread that is explained", nullable=True)
-    residual_sd_ratio = _number("1", "spread about the line / mean", nullable=True)
+    r2 = _number("1", "share of the spread that is explained", nullable=True, min=0, max=1)
+    residual_sd_ratio = _number("1", "spread about the line / mean", nullable=True, min=0)
+    between_sd_ratio = _number("1", "true spread about the line / mean", nullable=True, min=0)
+    noise_sd_ratio = _number("1", "spread by run noise alone / mean", nullable=True, min=0)
+    reason = _text("why there is no line: no_type, few_boats, equal_values; else empty")
+
+
+class TypeOutliers(dy.Schema):
+    """Every boat and crew against the other boats of its type."""
+
+    method = _method(primary_key=True)
+    tow_id = _tow_id(primary_key=True)
+    fsn_no = _fsn_no()
+    rowers = _rowers()
+    crew_class = _crew_class()
+    boat_type = _text("type of boat")
+    season = _season()
+    quantity = _text("ln_cw_standard or q", primary_key=True)
+    standard_speed_m_s = _speed("common speed: median declared speed of the type")
+    value = _number("1", "quantity of this tow; Cw in kg/m before the logarithm")
+    expected = _number("1", "the same as the type's other boats predict it")
+    deviation_sd = _number("1", "difference in standard deviations of a prediction")
+    outside = dy.Bool(description="differs at 5 % over all boats of the type together")
+    candidates = dy.List(dy.String(), description="codes of what could explain a difference")
+
+
+class TypeHomogeneity(dy.Schema):
+    """Equal boats, equal B? An F test per method and type, and what noise alone gives."""
+
+    method = _method(primary_key=True)
+    boat_type = _text("type of boat; unknown: boats without type, no claims", primary_key=True)
+    n = dy.Int32(description="tows: the newest of each boat and crew", min=0)
+    n_boats = dy.Int32(description="boats", min=0)
+    dof_between = dy.Int32(description="degrees of freedom between", nullable=True, min=1)
+    dof_within = dy.Int32(description="degrees of freedom within", nullable=True, min=1)
+    standard_speed_m_s = _speed("common speed of shared_q", nullable=True)
+    run_sd_ratio = _number("1", "scatter of a run about its curve", nullable=True, min=0)
+    f_value = _number("1", "spread of the bends / what noise gives", nullable=True, min=0)
+    p_value = _number("1", "chance of such an F with one bend", nullable=True, min=0, max=1)
+    power_at_5pct = _number("1", "chance to see a true spread of B of 5 %", nullable=True)
+    power_at_10pct = _number("1", "the same for 10 %", nullable=True)
+    noise_share = _number("1", "share of the bends' spread that noise gives", nullable=True)
+    between_b_sd_ratio = _number("1", "estimated true spread of B", nullable=True, min=0)
+    b_sd_ratio = _number("1", "seen spread of B where determined", nullable=True, min=0)
+    b_noise_sd_ratio = _number("1", "spread of B by noise alone", nullable=True, min=0)
+    cw_noise_sd_ratio = _number("1", "spread of Cw by noise alone", nullable=True, min=0)
+    ab_correlation = _number("1", "correlation of ln A and ln B", nullable=True)
+    ab_noise_correlation = _number("1", "the same by noise alone", nullable=True)
+    shared_q = _number("1", "q of the one bend, at the standard speed", nullable=True)
+    shared_b_m_s = _number("m/s", "B of the one bend; empty without", nullable=True)
+    reason = _text("why there is no test: no_type, few_boats, no_scatter; else empty")
+
+
+class PooledCurves(dy.Schema):
+    """The register if boats of a type kept their bend (own), shared it in part, or wholly."""
+
+    method = _method(primary_key=True)
+    tow_id = _tow_id(primary_key=True)
+    fsn_no = _fsn_no()
+    rowers = _rowers()
+    crew_class = _crew_class()
+    boat_type = _text("type of boat, or unknown")
+    pooling = _text("own, partial or shared", primary_key=True, regex="^(own|partial|shared)$")
+    standard_speed_m_s = _speed("common speed of q")
+    q = _number("1", "bend at the standard speed", nullable=True)
+    a_kg_m = _number("kg/m", "A", nullable=True)
+    b_m_s = _number("m/s", "B; empty where it is not determined", nullable=True)
+    cw_085_kg_m = _number("kg/m", "Cw at 85 % of the declared speed", nullable=True)
+    cw_kg_m = _number("kg/m", "Cw at the declared speed", nullable=True)
+    cw_115_kg_m = _number("kg/m", "Cw at 115 % of the declared speed", nullable=True)
+
+
+class SpeedTrend(dy.Schema):
+    """Does the bend follow the speed of the tow? If the hyperbola is true, it does not."""
+
+    method = _method(primary_key=True)
+    boat_type = _text("type of boat, or all: all types, each about its level", primary_key=True)
+    n = dy.Int32(description="tows: the newest of each boat and crew", min=0)
+    n_boats = dy.Int32(description="boats", min=0)
+    slope = _number("1", "change of q at the standard speed per ln of tow speed", nullable=True)
+    slope_lo = _number("1", "lower end of its 95 % interval", nullable=True)
+    slope_hi = _number("1", "upper end", nullable=True)
+    reason = _text("why there is no trend: few_boats, equal_values; else empty")
+
+
+class SlowTows(dy.Schema):
+    """Tows with too little power, and race power by their curve / with their type's bend."""
+
+    method = _method(primary_key=True)
+    tow_id = _tow_id(primary_key=True)
+    fsn_no = _fsn_no()
+    rowers = _rowers()
+    crew_class = _crew_class()
+    boat_type = _text("type of boat, or unknown")
+    declared_speed_m_s = _speed("speed v0 the crew declared")
+    power_w = _number("W", "power a rower at the declared speed")
+    power_ratio_110 = _number("1", "power ratio at 110 % of that speed", nullable=True)
+    power_ratio_110_lo = _number("1", "lower end of its 95 % interval", nullable=True)
+    power_ratio_110_hi = _number("1", "upper end", nullable=True)
+    power_ratio_120 = _number("1", "power ratio at 120 % of that speed", nullable=True)
+    power_ratio_120_lo = _number("1", "lower end of its 95 % interval", nullable=True)
+    power_ratio_120_hi = _number("1", "upper end", nullable=True)
+
+
+class RepeatPairs(dy.Schema):
+    """Consecutive tows of one boat and crew without an alteration between them."""
+
+    method = _method(primary_key=True)
+    fsn_no = _fsn_no()
+    rowers = _rowers()
+    crew_class = _crew_class()
+    tow_id = _tow_id(primary_key=True)
+    tow_id_before = _tow_id()
+    season = _season()
+    season_before = _season()
+    ln_ratio = _number("1", "ln of new / old Cw, at the old declared speed")
+    e_n = _number("1", "difference / both 95 % intervals (ISO 13528)", nullable=True)
 
 
 class Reproducibility(dy.Schema):
@@ -256,11 +400,65 @@ class Reproducibility(dy.Schema):
     method = _method(primary_key=True)
     scope = _text("all pairs, or an era", primary_key=True)
     n_pairs = dy.Int32(description="pairs of consecutive tows of one boat and crew", min=0)
-    sd_ratio = _number("1", "standard deviation of one tow", nullable=True, min=0)
+    n_tows = dy.Int32(description="tows behind run_sd_ratio", min=0)
+    sd_ratio = _number("1", "standard deviation of one tow, s_R", nullable=True, min=0)
     lo = _number("1", "lower end of its 95 % interval", nullable=True, min=0)
     hi = _number("1", "upper end", nullable=True, min=0)
     share_within_1pct = _number("1", "share of pairs that differ under 1 %", nullable=True)
     share_within_2pct = _number("1", "the same for 2 %", nullable=True)
+    share_e_n_above_1 = _number("1", "share of pairs that disagree; 5 % expected", nullable=True)
+    run_sd_ratio = _number("1", "scatter of a run about its curve", nullable=True, min=0)
+    within_sd_ratio = _number("1", "s_r: what that does to a tow's Cw", nullable=True, min=0)
+
+
+class VarianceComponents(dy.Schema):
+    """Spread of Cw by cause, from a mixed model over all tows (REML)."""
+
+    method = _method(primary_key=True)
+    scope = _text("fleet, or within_type", primary_key=True)
+    component = _text("boat, season, boat_season or run", primary_key=True)
+    n = dy.Int32(description="tows", min=0)
+    n_boats = dy.Int32(description="boats and crews between two alterations", min=0)
+    n_seasons = dy.Int32(description="seasons", min=0)
+    n_repeated = dy.Int32(description="tows beyond a boat's first", min=0)
+    sd_ratio = _number("1", "standard deviation of Cw by this cause", nullable=True, min=0)
+    lo = _number("1", "lower end of its 95 % interval", nullable=True, min=0)
+    hi = _number("1", "upper end; empty: no bound", nullable=True, min=0)
+    share = _number("1", "share of the variance of a tow's Cw", nullable=True, min=0, max=1)
+    distinct_categories = _number("1", "boats told apart: 1.41 s_boat / s_R", nullable=True)
+    reason = _text("why there are no numbers: too_few_repeats; else empty")
+
+
+class PredictedCw(dy.Schema):
+    """A second opinion without towing: Cw from weight, length, beam and type."""
+
+    method = _method(primary_key=True)
+    tow_id = _tow_id(primary_key=True)
+    fsn_no = _fsn_no()
+    rowers = _rowers()
+    crew_class = _crew_class()
+    boat_type = _text("type of boat, or unknown")
+    standard_speed_m_s = _speed("median declared speed of type and crew class")
+    cw_kg_m = _number("kg/m", "Cw of the tow at that speed")
+    cw_sd_ratio = _number("1", "its standard uncertainty by run noise", min=0)
+    predicted_cw_kg_m = _number("kg/m", "Cw as the other boats predict it", nullable=True)
+    predicted_lo_kg_m = _number("kg/m", "lower end of its 95 % interval", nullable=True)
+    predicted_hi_kg_m = _number("kg/m", "upper end", nullable=True)
+    predicted_sd_ratio = _number("1", "its standard uncertainty", nullable=True, min=0)
+    ln_ratio = _number("1", "ln of the tow's Cw / the predicted", nullable=True)
+    disagrees = dy.Bool(description="differs by more than both uncertainties", nullable=True)
+    reason = _text("why there is no prediction: few_boats; else empty")
+
+
+class PredictionError(dy.Schema):
+    """Cross-validated error of the prediction, boats left out one by one."""
+
+    method = _method(primary_key=True)
+    n = dy.Int32(description="boats and crews predicted", min=0)
+    n_boats = dy.Int32(description="boats", min=0)
+    rmse_ratio = _number("1", "root mean square of ln tow / predicted", min=0)
+    tow_sd_ratio = _number("1", "of which run noise of the tow", min=0)
+    share_disagreeing = _number("1", "share beyond both uncertainties", min=0, max=1)
 
 
 class Quarantine(dy.Schema):
@@ -302,15 +500,26 @@ TABLES: Final[dict[str, type[dy.Schema]]] = {
     "boats": Boats,
     "tows": Tows,
     "tow_runs": TowRuns,
+    "hand_windows": HandWindows,
     "run_points": RunPoints,
     "curves": Curves,
+    "assessments": Assessments,
     "log_factors": LogFactors,
     "register": Register,
     "register_changes": RegisterChanges,
     "correction_steps": CorrectionSteps,
     "option_effects": OptionEffects,
     "type_consistency": TypeConsistency,
+    "type_outliers": TypeOutliers,
+    "type_homogeneity": TypeHomogeneity,
+    "pooled_curves": PooledCurves,
+    "speed_trend": SpeedTrend,
+    "slow_tows": SlowTows,
+    "repeat_pairs": RepeatPairs,
     "reproducibility": Reproducibility,
+    "variance_components": VarianceComponents,
+    "predicted_cw": PredictedCw,
+    "prediction_error": PredictionError,
     "quarantine": Quarantine,
     "methods": Methods,
     "lineage": Lineage,

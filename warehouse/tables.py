@@ -4,6 +4,7 @@ A function here reads tables, calls one thing in `pipeline`, checks the result a
 and writes it. `stale_*` and `*_made_from` say what has to be done again. Nothing is computed here.
 """
 
+import dataclasses
 import datetime as dt
 from collections.abc import Sequence
 from typing import Final
@@ -12,21 +13,23 @@ import polars as pl
 
 from pipeline.blocks import RunBlocks, stack_blocks
 from pipeline.changes import register_changes
-from pipeline.consistency import repeat_pairs, reproducibility, type_consistency
+from pipeline.consistency import consistency_tables
 from pipeline.errors import MissingKnowledgeError
 from pipeline.ladder import ladder
 from pipeline.method import Method
 from pipeline.options import option_effects
 from pipeline.recompute import recompute
 from pipeline.register import LINE, draft_name, draft_register
+from pipeline.steady import HAND_COLUMNS
 from warehouse import intake
+from warehouse.archive import outside_run
 from warehouse.code import code_version
 from warehouse.database import build_database
 from warehouse.schemas import TABLES, Quarantine, conform
 from warehouse.store import Store, fingerprint, table_digest
 
-ARCHIVE_TABLES: Final = ("boats", "tows", "tow_runs", "quarantine")
-METHOD_TABLES: Final = ("run_points", "curves", "log_factors")
+ARCHIVE_TABLES: Final = ("boats", "tows", "tow_runs", "hand_windows", "quarantine")
+METHOD_TABLES: Final = ("run_points", "curves", "log_factors", "assessments")
 STUDY_TABLES: Final = ("correction_steps", "option_effects")
 STUDIED_METHOD: Final = "rebased"
 """The method whose options of judgement are studied."""
@@ -34,17 +37,32 @@ STUDIED_METHOD: Final = "rebased"
 REGISTER_TABLES: Final = (
     "register",
     "register_changes",
-    "type_consistency",
-    "reproducibility",
     "lineage",
     "methods",
 )
+CONSISTENCY_TABLES: Final = (
+    "type_consistency",
+    "type_outliers",
+    "type_homogeneity",
+    "pooled_curves",
+    "speed_trend",
+    "slow_tows",
+    "repeat_pairs",
+    "reproducibility",
+    "variance_components",
+    "predicted_cw",
+    "prediction_error",
+)
+
+WHOLE_TABLES: Final = (*ARCHIVE_TABLES, *STUDY_TABLES, *REGISTER_TABLES, *CONSISTENCY_TABLES)
+"""Tables in one piece; those of `METHOD_TABLES` have a partition per method."""
 
 
 def archive_made_from(store: Store) -> str:
     """What the tables about the archive are made from."""
     seasons = {s: store.made_from("season_index", s) for s in store.partitions("season_index")}
-    lists = [table_digest(store.read(t)) for t in ("listed_boats", "listed_tows", "list_faults")]
+    read = ("listed_boats", "listed_windows", "list_faults")
+    lists = [table_digest(store.read(t)) for t in read]
     return fingerprint(seasons, lists, code_version())
 
 
@@ -55,32 +73,77 @@ def archive_is_stale(store: Store) -> bool:
 
 
 def collect_archive(store: Store, today: dt.date) -> dict[str, int]:
-    """Boats, sound tows with their runs, and everything that was set aside.
+    """Boats, sound tows with their runs and windows, and everything that was set aside.
 
     Returns:
         Rows per table.
+
+    Raises:
+        MissingKnowledgeError: no tow is sound.
     """
     made_from = archive_made_from(store)
+    if not store.partitions("season_index"):
+        raise _nothing_sound(store.read("list_faults"))
     index = store.read_all("season_index")
     sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
-    tows = store.read("listed_tows").join(sound, on="tow_id", how="semi")
-    runs = store.read("listed_runs").join(sound, on="tow_id", how="semi")
+    tows = store.read_all("season_tows").join(sound, on="tow_id", how="semi")
+    runs = store.read_all("season_runs").join(sound, on="tow_id", how="semi")
+    windows = store.read("listed_windows").join(runs, on=["tow_id", "run"], how="semi")
+    beyond = _outside_run(store, windows)
     found = {
         "boats": store.read("listed_boats"),
         "tows": tows,
         "tow_runs": runs,
-        "quarantine": _quarantine(store, index, today),
+        "hand_windows": windows.join(
+            beyond, left_on=_LISTED_AT, right_on=["path", "line"], how="anti"
+        ),
+        "quarantine": _quarantine(store, index, beyond, today),
     }
+    if tows.is_empty():
+        raise _nothing_sound(found["quarantine"])
     for name, frame in found.items():
         store.write(name, conform(name, frame), made_from)
     return {name: frame.height for name, frame in found.items()}
 
 
-def _quarantine(store: Store, index: pl.DataFrame, today: dt.date) -> pl.DataFrame:
+def _nothing_sound(faults: pl.DataFrame) -> MissingKnowledgeError:
+    """The error for an archive without any tow that can be used."""
+    if faults.is_empty():
+        return MissingKnowledgeError(
+            "no tow can be used: the tow lists hold none in the seasons that were read; "
+            "fill sleeplijsten/sleeplijst_<jaar>.csv, or widen --seasons"
+        )
+    first = faults.row(0, named=True)
+    return MissingKnowledgeError(
+        f"no tow can be used: {faults.height} tows or files are set aside. Mend the first and "
+        f"try again: {first['path']}: {first['message']}"
+    )
+
+
+_LISTED_AT: Final = ["list_path", "list_line"]
+
+
+def _outside_run(store: Store, windows: pl.DataFrame) -> pl.DataFrame:
+    """Faults of windows that end after their run."""
+    faults = []
+    if not windows.is_empty():
+        seconds = (
+            intake.all_blocks(store)
+            .group_by("tow_id", "run")
+            .agg((pl.col("second").max() + 1).alias("seconds"))
+        )
+        faults = outside_run(windows, seconds)
+    return pl.DataFrame([dataclasses.asdict(f) for f in faults], schema=intake.FAULT_SCHEMA)
+
+
+def _quarantine(
+    store: Store, index: pl.DataFrame, beyond: pl.DataFrame, today: dt.date
+) -> pl.DataFrame:
     """All faults; one that was there before keeps the day on which it was first seen."""
     faults = pl.concat(
         [
             store.read("list_faults"),
+            beyond,
             index.filter(pl.col("reason_code").is_not_null()).select(list(intake.FAULT_SCHEMA)),
         ]
     )
@@ -114,27 +177,26 @@ def method_is_stale(store: Store, method: Method) -> bool:
 
 
 def run_blocks(store: Store) -> RunBlocks:
-    """The runs of all sound tows, as arrays.
-
-    Raises:
-        MissingKnowledgeError: there is no sound tow at all.
-    """
-    runs = store.read("tow_runs")
-    if runs.is_empty():
-        raise MissingKnowledgeError(
-            "no tow could be read: every one was set aside; the table quarantine says why"
-        )
+    """The runs of all sound tows as arrays, with the windows that were given by hand."""
+    windows = store.read("hand_windows").rename(HAND_COLUMNS)
+    runs = store.read("tow_runs").join(windows, on=["tow_id", "run"], how="left")
     return stack_blocks(intake.all_blocks(store), runs)
 
 
+def typed_tows(store: Store) -> pl.DataFrame:
+    """All sound tows with the type of their boat."""
+    types = store.read("boats").select("fsn_no", "boat_type")
+    return store.read("tows").join(types, on="fsn_no", how="left")
+
+
 def apply_method(store: Store, method: Method, blocks: RunBlocks) -> dict[str, pl.DataFrame]:
-    """Run points, curves and log factors of all tows under one method.
+    """Run points, curves, log factors and assessments of all tows under one method.
 
     Returns:
         The tables written, by name.
     """
     made_from = method_made_from(store, method)
-    result = recompute(method, store.read("tows"), blocks)
+    result = recompute(method, typed_tows(store), blocks)
     found = {name: conform(name, getattr(result, name)) for name in METHOD_TABLES}
     for name, frame in found.items():
         store.write(name, frame, made_from, method.name)
@@ -189,11 +251,29 @@ def register_made_from(store: Store, methods: Sequence[Method]) -> str:
 def register_is_stale(store: Store, methods: Sequence[Method]) -> bool:
     """Whether registers and comparisons have to be made again."""
     made_from = register_made_from(store, methods)
-    return any(store.made_from(t) != made_from for t in REGISTER_TABLES)
+    return any(store.made_from(t) != made_from for t in (*REGISTER_TABLES, *CONSISTENCY_TABLES))
+
+
+def make_consistency(store: Store, methods: Sequence[Method]) -> dict[str, int]:
+    """Are equal boats equal: the statistics of every boat type under every method.
+
+    Returns:
+        Rows per table.
+    """
+    curves, run_points = (_of_methods(store, t, methods) for t in ("curves", "run_points"))
+    found = consistency_tables(curves, store.read("tows"), store.read("boats"), run_points)
+    made_from = register_made_from(store, methods)
+    for name in CONSISTENCY_TABLES:
+        store.write(name, conform(name, found[name]), made_from)
+    return {name: found[name].height for name in CONSISTENCY_TABLES}
+
+
+def _of_methods(store: Store, table: str, methods: Sequence[Method]) -> pl.DataFrame:
+    return pl.concat([store.read(table, m.name) for m in methods])
 
 
 def make_registers(store: Store, methods: Sequence[Method]) -> dict[str, int]:
-    """A draft register per method, what changes between them, and how equal boats are.
+    """A draft register per method, and what changes between them.
 
     Validity is judged on the day of the archive's last tow, not today: so the same archive gives
     the same tables. Drafts are compared with the first method's.
@@ -201,9 +281,8 @@ def make_registers(store: Store, methods: Sequence[Method]) -> dict[str, int]:
     Returns:
         Rows per table.
     """
-    tows, boats = store.read("tows"), store.read("boats")
-    crews = store.read("listed_boats")
-    curves = pl.concat([store.read("curves", m.name) for m in methods])
+    tows, crews = store.read("tows"), store.read("listed_boats")
+    curves = _of_methods(store, "curves", methods)
     on_date = max(tows["tow_date"])
     drafts = [_as_edition(m, draft_register(_of(curves, m), tows, crews, on_date)) for m in methods]
     register = pl.concat(drafts)
@@ -211,8 +290,6 @@ def make_registers(store: Store, methods: Sequence[Method]) -> dict[str, int]:
     found = {
         "register": register,
         "register_changes": pl.concat(changes) if changes else _empty("register_changes"),
-        "type_consistency": type_consistency(curves, tows, boats),
-        "reproducibility": reproducibility(repeat_pairs(curves, tows)),
         "lineage": _lineage(register, tows, methods),
         "methods": _methods(methods),
     }
@@ -264,7 +341,7 @@ def _methods(methods: Sequence[Method]) -> pl.DataFrame:
 def database_made_from(store: Store, methods: Sequence[Method]) -> str:
     """What the database is made from."""
     return fingerprint(
-        {t: store.made_from(t) for t in (*ARCHIVE_TABLES, *STUDY_TABLES, *REGISTER_TABLES)},
+        {t: store.made_from(t) for t in WHOLE_TABLES},
         {m.name: [store.made_from(t, m.name) for t in METHOD_TABLES] for m in methods},
     )
 
@@ -275,9 +352,9 @@ def make_database(store: Store, methods: Sequence[Method]) -> dict[str, int]:
     Returns:
         Rows per table.
     """
-    found = {t: store.read(t) for t in (*ARCHIVE_TABLES, *STUDY_TABLES, *REGISTER_TABLES)}
+    found = {t: store.read(t) for t in WHOLE_TABLES}
     for table in METHOD_TABLES:
-        found[table] = conform(table, pl.concat([store.read(table, m.name) for m in methods]))
+        found[table] = conform(table, _of_methods(store, table, methods))
     about = {
         "simulated": str(store.read("about_archive")["simulated"][0]).lower(),
         "code_version": code_version(),
@@ -297,8 +374,7 @@ def database_is_stale(store: Store, methods: Sequence[Method]) -> bool:
 
 def unaccounted_tows(store: Store) -> list[str]:
     """Listed tows of the seasons read that are neither accepted nor set aside: there are none."""
-    seasons = [int(s) for s in store.partitions("season_index")]
-    listed = store.read("listed_tows").filter(pl.col("season").is_in(seasons))
+    listed = store.read_all("season_tows")
     known = pl.concat([store.read(t).select("tow_id") for t in ("tows", "quarantine")])
     lost: list[str] = listed.join(known, on="tow_id", how="anti")["tow_id"].to_list()
     return lost

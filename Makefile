@@ -1,0 +1,70 @@
+# Needs make and Python 3.11 or newer. Everything else goes into .venv, as locked.
+# With another Python than `python3`: make PYTHON=python3.12 demo
+
+PYTHON ?= python3
+BIN = .venv/bin
+READY = .venv/.ready
+DEMO = demo
+DEMO_WORLD = --seasons 2009:2018 --tows-per-season 12 --rate 1000 --seed 1
+
+# Containers often forbid Python to keep compiled modules; every command would compile Dagster again.
+unexport PYTHONDONTWRITEBYTECODE
+export DAGSTER_DISABLE_TELEMETRY = 1
+export DAGSTER_DG_UPDATE_CHECK_ENABLED = 0
+
+.PHONY: help env demo test lint bench accuracy clean
+
+help:
+	@echo "make demo   simulate an archive of ten seasons and rebuild its history"
+	@echo "make test   run all tests"
+	@echo "make lint   check style, types, imports and the Dagster definitions"
+	@echo "make bench  measure speed and memory"
+	@echo "make accuracy  measure how near the truth the methods come, on simulated worlds"
+	@echo "make env    make the environment in .venv, and nothing more"
+	@echo "make clean  remove the environment, the demo and the caches"
+
+env: $(READY)
+
+$(READY): requirements.lock pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
+	  echo "Herijk needs Python 3.11 or newer, and $(PYTHON) is not. Name one that is, for example: make PYTHON=python3.12 env" >&2; \
+	  exit 1; }
+	@echo "Making the environment in .venv; this takes a minute or two the first time."
+	@$(PYTHON) -m venv --clear .venv
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile \
+	  --no-deps --require-hashes --requirement requirements.lock
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check \
+	  --no-deps --no-build-isolation --editable .
+	@touch $(READY)
+
+demo: $(READY) $(DEMO)/archief
+	@$(BIN)/herijk rebuild --archive $(DEMO)/archief --data $(DEMO)/data
+	@echo
+	@echo "These were simulated boats. The archive is $(DEMO)/archief, the tables are in"
+	@echo "$(DEMO)/data/warehouse.duckdb. Where the numbers of one boat come from:"
+	@echo "  $(BIN)/herijk audit FSN106 --data $(DEMO)/data"
+
+# The archive is put in place when it is complete, so a folder that is there is whole.
+$(DEMO)/archief: | $(READY)
+	@echo "Simulating an archive of ten seasons; this takes a minute."
+	@rm -f $(DEMO)/archief-truth.json
+	@$(BIN)/herijk simulate $(DEMO)/archief $(DEMO_WORLD)
+
+test: $(READY)
+	@$(BIN)/python -m pytest -n 2
+
+lint: $(READY)
+	@$(BIN)/ruff check .
+	@$(BIN)/ruff format --check .
+	@$(BIN)/mypy
+	@$(BIN)/lint-imports --no-logo
+	@VIRTUAL_ENV="$(CURDIR)/.venv" $(BIN)/dg check defs --no-check-yaml
+
+bench: $(READY)
+	@for file in benchmarks/*.py; do echo "== $$file"; PYTHONPATH=. $(BIN)/python "$$file" || exit 1; done
+
+accuracy: $(READY)
+	@for file in benchmarks/accuracy/*.py; do echo "== $$file"; PYTHONPATH=. $(BIN)/python "$$file" || exit 1; done
+
+clean:
+	rm -rf .venv $(DEMO) .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis

@@ -1,0 +1,65 @@
+"""The Dagster code location loads, and nobody adds or loses an asset without noticing."""
+
+import dagster as dg
+
+from assets.definitions import defs
+
+ASSETS = [
+    "archive_index",
+    "assessments",
+    "blocks",
+    "boats",
+    "correction_steps",
+    "curves",
+    "hand_windows",
+    "lineage",
+    "log_factors",
+    "methods",
+    "option_effects",
+    "pooled_curves",
+    "predicted_cw",
+    "prediction_error",
+    "quarantine",
+    "register",
+    "register_changes",
+    "repeat_pairs",
+    "reproducibility",
+    "run_points",
+    "samples",
+    "slow_tows",
+    "speed_trend",
+    "tow_runs",
+    "tows",
+    "type_consistency",
+    "type_homogeneity",
+    "type_outliers",
+    "variance_components",
+    "warehouse_database",
+]
+
+CHECKS = [
+    "correction_steps: steps_multiply_to_the_total",
+    "curves: every_tow_has_a_curve_row",
+    "samples: most_tows_sound",
+    "tows: every_listed_tow_accounted_for",
+]
+
+
+def test_definitions_are_loadable():
+    dg.Definitions.validate_loadable(defs)
+
+
+def test_assets_are_those_listed():
+    keys = defs.resolve_asset_graph().get_all_asset_keys()
+    assert sorted(key.to_user_string() for key in keys) == ASSETS
+
+
+def test_checks_are_those_listed():
+    keys = defs.resolve_asset_graph().asset_check_keys
+    assert sorted(f"{key.asset_key.to_user_string()}: {key.name}" for key in keys) == CHECKS
+
+
+def test_every_asset_is_described_and_grouped():
+    graph = defs.resolve_asset_graph()
+    for key in graph.get_all_asset_keys():
+        assert graph.get(key).group_name != "default", key

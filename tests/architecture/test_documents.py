@@ -1,0 +1,90 @@
+"""The documents say what the code does: options, reason codes, commands, links."""
+
+import re
+from typing import Literal, get_args, get_origin
+
+import pytest
+import typer.main
+
+from herijk.cli import app
+from pipeline.method import Steps, shipped_methods
+from tests.architecture.repository import ROOT, read, tracked_files
+from warehouse.archive.faults import REASONS
+from warehouse.schemas import TABLES
+
+OPTIONS = [
+    (step, option)
+    for step, options in Steps.model_fields.items()
+    for option in options.annotation.model_fields
+]
+
+LINK = re.compile(r"\[[^\]]*\]\(([^)#\s]+)(?:#[^)]*)?\)")
+
+
+def commands():
+    """Names of the commands that the command line has."""
+    return sorted(typer.main.get_command(app).commands)
+
+
+def option_row(step, option):
+    """The line of method.md that explains an option."""
+    start = f"| `{step}.{option}` |"
+    return next((r for r in read("docs/method.md").splitlines() if r.startswith(start)), "")
+
+
+@pytest.mark.parametrize(("step", "option"), OPTIONS)
+def test_every_option_of_a_method_is_documented(step, option):
+    row = option_row(step, option)
+    field = Steps.model_fields[step].annotation.model_fields[option]
+    values = get_args(field.annotation) if get_origin(field.annotation) is Literal else ()
+    default = [] if field.is_required() else [field.default]
+    assert row, f"docs/method.md has no row `{step}.{option}`"
+    for value in (*values, *default):
+        assert f"`{value}`" in row
+
+
+def test_no_option_is_documented_that_is_not_there():
+    found = set(re.findall(r"^\| `(\w+)\.(\w+)` \|", read("docs/method.md"), re.MULTILINE))
+    assert found == set(OPTIONS)
+
+
+@pytest.mark.parametrize("name", shipped_methods())
+def test_every_shipped_method_is_documented(name):
+    assert f"\n| `{name}` |" in read("docs/method.md")
+
+
+def test_every_reason_code_is_documented():
+    found = set(re.findall(r"^\| `(\w+)` \|", read("docs/archive.md"), re.MULTILINE))
+    assert set(REASONS) - found == set()
+
+
+def test_every_table_is_documented():
+    found = set(re.findall(r"^\| `(\w+)` \|", read("docs/tables.md"), re.MULTILINE))
+    assert found == set(TABLES)
+
+
+@pytest.mark.parametrize("command", commands())
+def test_every_command_is_in_the_readme(command):
+    assert f"`herijk {command}" in read("README.md")
+
+
+def test_readme_names_no_command_that_is_not_there():
+    named = set(re.findall(r"herijk ([a-z]+)", read("README.md")))
+    assert named - set(commands()) == set()
+
+
+def test_every_link_leads_somewhere():
+    pages = [f for f in tracked_files() if f.suffix == ".md"]
+    broken = [
+        f"{page.relative_to(ROOT)}: {target}"
+        for page in pages
+        for target in LINK.findall(page.read_text(encoding="utf-8"))
+        if "://" not in target and not (page.parent / target).exists()
+    ]
+    assert broken == []
+
+
+def test_every_page_is_reached_from_the_map():
+    linked = {(ROOT / "docs" / target).resolve() for target in LINK.findall(read("docs/index.md"))}
+    pages = set((ROOT / "docs").rglob("*.md")) - {ROOT / "docs" / "index.md"}
+    assert {p.relative_to(ROOT) for p in pages if p.resolve() not in linked} == set()

@@ -1,0 +1,51 @@
+"""What the repository may hold: small files, shipped methods that parse, a lock without hosts."""
+
+import re
+
+import pytest
+
+from pipeline.method import shipped_method, shipped_methods
+from tests.architecture.repository import ROOT, read, tracked_files
+
+MB = 1_000_000
+LOCKED = re.compile(r"^([a-z0-9][a-z0-9._-]*)==(\S+)", re.MULTILINE)
+
+
+def test_no_large_file_is_tracked():
+    large = [f.name for f in tracked_files() if f.is_file() and f.stat().st_size > MB]
+    assert large == []
+
+
+def test_what_is_made_is_not_tracked():
+    made = {"data", "demo", "archive", ".venv"}
+    assert [f for f in tracked_files() if f.relative_to(ROOT).parts[0] in made] == []
+
+
+def test_lock_names_no_index():
+    text = read("requirements.lock")
+    assert "://" not in text
+    assert not re.search(r"^\s*-", re.sub(r"^\s+--hash=", "", text, flags=re.MULTILINE), re.M)
+
+
+def test_every_locked_package_has_a_hash():
+    blocks = re.split(r"\n(?=[a-z0-9])", read("requirements.lock"))
+    locked = [block for block in blocks if LOCKED.match(block)]
+    assert locked
+    assert [LOCKED.match(b)[1] for b in locked if "--hash=sha256:" not in b] == []
+
+
+def test_every_dependency_is_locked():
+    locked = {name for name, _ in LOCKED.findall(read("requirements.lock"))}
+    project = read("pyproject.toml")
+    needed = set(
+        re.findall(r'^  "([a-z0-9-]+)', project[: project.index("[project.scripts]")], re.M)
+    )
+    assert {"numpy", "dagster", "ruff"} <= needed
+    assert needed - locked == set()
+
+
+@pytest.mark.parametrize("name", shipped_methods())
+def test_shipped_methods_parse_and_cover_every_season(name):
+    method = shipped_method(name)
+    assert method.name == name
+    assert [method.for_season(season).speed.source for season in range(2009, 2027)]

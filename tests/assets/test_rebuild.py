@@ -1,0 +1,259 @@
+"""A rebuild does what changed and nothing else, and loses no tow without saying so."""
+
+import shutil
+from pathlib import Path
+
+import polars as pl
+import pytest
+from polars.testing import assert_frame_equal
+
+import warehouse.lake
+from assets.rebuild import Done
+from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
+from tests.conftest import METHODS, SMALL, Workbench
+from warehouse import tables
+from warehouse.store import table_digest
+
+TOWS_2009 = "sleeplijsten/sleeplijst_2009.csv"
+
+
+def samples_files(bench: Workbench, season: int) -> list[Path]:
+    return sorted((bench.archive / f"meetdata_{season}").iterdir())
+
+
+def spoil(file: Path) -> bytes:
+    """Puts letters on line 5 of a samples file; gives the old content."""
+    kept = file.read_bytes()
+    lines = kept.split(b"\n")
+    lines[4] = b"x" + lines[4]
+    file.write_bytes(b"\n".join(lines))
+    return kept
+
+
+def tow_of(bench: Workbench, file: Path) -> str:
+    path = file.relative_to(bench.archive).as_posix()
+    return bench.store.read("listed_tows").filter(samples_path=path)["tow_id"].item()
+
+
+def assert_same_tables(one: dict[str, pl.DataFrame], other: dict[str, pl.DataFrame]) -> None:
+    assert one.keys() == other.keys()
+    for name, frame in one.items():
+        assert_frame_equal(frame, other[name], check_exact=True)
+
+
+@pytest.fixture
+def files_read(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Tows whose archive files were opened."""
+    read: list[str] = []
+    original = warehouse.lake.read_tow_samples
+
+    def noted(root, tow, profile):
+        read.append(tow["tow_id"])
+        return original(root, tow, profile)
+
+    monkeypatch.setattr(warehouse.lake, "read_tow_samples", noted)
+    return read
+
+
+def test_every_listed_tow_is_a_row_of_tows_and_of_every_method(built):
+    per_season = built.table("tows").group_by("season").len().sort("season").rows()
+    assert per_season == [(season, SMALL.tows_per_season) for season in SMALL.seasons]
+    assert built.table("quarantine").height == 0
+    tow_ids = set(built.table("tows")["tow_id"])
+    for method in METHODS:
+        assert set(built.table("curves").filter(method=method)["tow_id"]) == tow_ids
+        points = built.table("run_points").filter(method=method)
+        assert points.height == 6 * len(tow_ids)
+    assert tables.unaccounted_tows(built.store) == []
+
+
+def test_a_second_rebuild_does_nothing(bench, files_read):
+    before, database = bench.lake_files(), bench.store.database.stat()
+    assert bench.rebuild() == Done(seasons=[], methods=[], database=False)
+    assert files_read == []
+    assert bench.lake_files() == before
+    assert bench.store.database.stat() == database
+
+
+def test_touching_every_file_does_nothing_either(bench, files_read):
+    for file in bench.archive.rglob("*"):
+        file.touch()
+    assert bench.rebuild() == Done()
+    assert files_read == []
+
+
+def test_a_spoiled_file_leaves_alone_and_a_mended_one_comes_back_by_itself(
+    bench, built, files_read
+):
+    file = samples_files(bench, 2009)[3]
+    tow, before = tow_of(bench, file), bench.lake_files()
+    kept = spoil(file)
+    assert bench.rebuild() == Done(seasons=[2009], methods=list(METHODS), database=True)
+    assert files_read == [tow]
+    set_aside = bench.table("quarantine").select("path", "tow_id", "line", "reason_code").rows()
+    path = file.relative_to(bench.archive).as_posix()
+    assert set_aside == [(path, tow, 5, "bad_number")]
+    for name in ("tows", "run_points", "curves"):
+        others = built.table(name).filter(pl.col("tow_id") != tow)
+        assert_frame_equal(bench.table(name), others, check_exact=True)
+    after = bench.lake_files()
+    assert len(before.keys() - after.keys()) == 2  # its samples and its blocks
+    assert after.items() <= before.items()  # the others were not written again
+
+    assert bench.rebuild() == Done()  # a known fault is not read again either
+    assert files_read == [tow]
+
+    file.write_bytes(kept)
+    assert bench.rebuild().seasons == [2009]
+    assert files_read == [tow, tow]
+    assert_same_tables(bench.tables(), built.tables())
+    assert bench.lake_files().keys() == before.keys()
+
+
+def test_a_removed_row_takes_its_samples_blocks_and_rows_along(bench, built, files_read):
+    file = samples_files(bench, 2009)[0]
+    tow, before = tow_of(bench, file), bench.lake_files()
+    file.unlink()
+    lines = (bench.archive / TOWS_2009).read_text("cp1252").split("\n")
+    kept = [line for line in lines if not line.startswith(f"{tow};")]
+    assert len(kept) == len(lines) - 1
+    (bench.archive / TOWS_2009).write_text("\n".join(kept), "cp1252")
+    bench.rebuild()
+    assert files_read == []
+    assert bench.table("quarantine").height == 0
+    for name in ("tows", "run_points", "curves"):
+        others = built.table(name).filter(pl.col("tow_id") != tow)
+        assert_frame_equal(bench.table(name), others, check_exact=True)
+    after = bench.lake_files()
+    assert len(before) - len(after) == 2
+    assert after.items() <= before.items()
+
+
+def test_a_removed_season_leaves_and_a_new_one_enters(bench, built, files_read, tmp_path):
+    (bench.archive / TOWS_2009).rename(tmp_path / "list")
+    (bench.archive / "meetdata_2009").rename(tmp_path / "samples")
+    assert bench.rebuild().seasons == []
+    assert bench.table("tows")["season"].unique().to_list() == [2014]
+    assert bench.table("curves")["season"].unique().to_list() == [2014]
+    assert not [name for name in bench.lake_files() if "2009" in name]
+    (tmp_path / "list").rename(bench.archive / TOWS_2009)
+    (tmp_path / "samples").rename(bench.archive / "meetdata_2009")
+    assert files_read == []
+    assert bench.rebuild().seasons == [2009]
+    assert len(files_read) == SMALL.tows_per_season
+    assert_same_tables(bench.tables(), built.tables())
+
+
+def test_a_changed_list_row_changes_its_tow_without_reading_samples(bench, built, files_read):
+    path = bench.archive / TOWS_2009
+    weight = built.table("tows").filter(season=2009)["weight_kg"][0]
+    tow = built.table("tows").filter(season=2009)["tow_id"][0]
+    lines = path.read_text("cp1252").split("\n")
+    changed = [
+        line.replace(f";{weight:.0f};", f";{weight + 7:.0f};", 1) if line.startswith(tow) else line
+        for line in lines
+    ]
+    path.write_text("\n".join(changed), "cp1252")
+    bench.rebuild()
+    assert bench.table("tows").filter(tow_id=tow)["weight_kg"].item() == weight + 7
+    assert files_read == []
+
+
+def test_only_the_seasons_asked_for_are_read(bench, files_read):
+    shutil.rmtree(bench.data)
+    assert bench.rebuild(seasons=range(2014, 2017)).seasons == [2014]
+    assert bench.table("tows")["season"].unique().to_list() == [2014]
+    assert len(files_read) == SMALL.tows_per_season
+    assert bench.rebuild().seasons == [2009]
+    assert len(files_read) == 2 * SMALL.tows_per_season
+
+
+def test_seasons_that_are_not_asked_for_stay_as_they_are(bench, built):
+    spoil(samples_files(bench, 2009)[3])
+    assert bench.rebuild(seasons=[2014]) == Done()
+    assert_same_tables(bench.tables(), built.tables())
+
+
+def test_one_method_gives_one_methods_rows(bench, built, files_read):
+    done = bench.rebuild(methods=["rebased-2015"])
+    assert (done.seasons, done.methods, done.database) == ([], [], True)
+    assert files_read == []
+    found = bench.tables()
+    for name in ("curves", "run_points", "log_factors", "register", "methods"):
+        assert_frame_equal(found[name], built.table(name).filter(method="rebased-2015"))
+    assert found["register_changes"].height == 0
+
+
+def test_leftovers_of_a_killed_rebuild_are_ignored(bench, built):
+    folders = {f.parent for f in (bench.data / "lake").rglob("*.parquet")} | {bench.data}
+    for folder in folders:
+        (folder / ".herijk-killed.parquet").write_bytes(b"half")
+        (folder / ".herijk-killed.duckdb").write_bytes(b"half")
+    spoil(samples_files(bench, 2009)[3])
+    assert bench.rebuild().seasons == [2009]
+    assert bench.table("tows").height == built.table("tows").height - 1
+
+
+@pytest.mark.parametrize("kind", ["samples", "blocks"])
+def test_lost_lake_files_are_made_again_when_their_season_is_read(bench, built, kind):
+    for file in (bench.data / "lake" / kind / "season=2009").iterdir():
+        file.unlink()
+    (bench.data / "lake/tables/blocks/2009.parquet").unlink()
+    (bench.data / "lake/tables/season_index/2009.parquet").unlink()
+    assert bench.rebuild().seasons == [2009]
+    assert_same_tables(bench.tables(), built.tables())
+
+
+def test_the_old_database_stays_when_a_step_fails(bench, built, monkeypatch):
+    spoil(samples_files(bench, 2009)[3])
+
+    def broken(*args):
+        raise BrokenPromiseError("a promise was broken")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(tables, "recompute", broken)
+        with pytest.raises(BrokenPromiseError, match="a promise was broken"):
+            bench.rebuild()
+    assert_same_tables(bench.tables(), built.tables())
+    assert bench.rebuild().database  # what failed is done now
+    assert bench.table("quarantine").height == 1
+
+
+def test_a_database_that_cannot_be_finished_leaves_the_old_one(bench, built, monkeypatch):
+    spoil(samples_files(bench, 2009)[3])
+
+    def broken(*args):
+        raise OSError("disk full")
+
+    with monkeypatch.context() as patched:
+        patched.setattr("warehouse.database._comment", broken)
+        with pytest.raises(OSError, match="disk full"):
+            bench.rebuild()
+    assert_same_tables(bench.tables(), built.tables())
+    assert not list(bench.data.glob(".herijk-*"))
+    assert bench.rebuild().database
+
+
+def test_an_archive_of_which_no_tow_can_be_used_says_so_and_changes_nothing(bench, built):
+    for season in SMALL.seasons:
+        for file in samples_files(bench, season):
+            file.write_bytes(b"")
+    with pytest.raises(MissingKnowledgeError, match=r"no tow can be used: 40 .* set aside"):
+        bench.rebuild()
+    assert_same_tables(bench.tables(), built.tables())
+
+
+def test_lists_without_any_sound_row_say_so(bench, tmp_path):
+    for path in (bench.archive / "sleeplijsten").iterdir():
+        path.write_text(path.read_text("cp1252").split("\n")[0] + "\n", "utf-8")
+    fresh = Workbench(bench.archive, tmp_path / "fresh")
+    with pytest.raises(MissingKnowledgeError, match="no tow can be used"):
+        fresh.rebuild()
+    assert not fresh.store.database.exists()
+
+
+def test_the_tables_do_not_depend_on_where_the_archive_lies(bench, built, tmp_path):
+    elsewhere = Workbench(bench.archive, tmp_path / "other data")
+    elsewhere.rebuild()
+    for name, frame in built.tables().items():
+        assert table_digest(elsewhere.table(name)) == table_digest(frame), name

@@ -1,0 +1,92 @@
+"""Settings of the property tests, and a small simulated archive with what a rebuild makes of it."""
+
+import shutil
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from unittest import mock
+
+import dagster as dg
+import duckdb
+import polars as pl
+import pytest
+from hypothesis import settings
+
+import assets.rebuild
+from assets.rebuild import Done
+from assets.resources import Quiet
+from pipeline.simulate import WorldSettings, simulate_world
+from warehouse.archive.write import write_simulated_archive
+from warehouse.store import Store
+
+# The same examples every time, whatever the machine's speed.
+settings.register_profile("repeatable", deadline=None, derandomize=True)
+settings.load_profile("repeatable")
+
+METHODS = ("as-published", "rebased-2015")
+SMALL = WorldSettings(seasons=(2009, 2014), tows_per_season=20, rate_hz=20, seed=3)
+"""Season 2009 is written as plain CSV, 2014 as .csv.gz."""
+
+
+@contextmanager
+def _dagster_in_memory(store: Store) -> Iterator[dg.DagsterInstance]:
+    with dg.DagsterInstance.ephemeral() as instance:
+        yield instance
+
+
+@dataclass(frozen=True)
+class Workbench:
+    """An archive and a data folder that a test may change."""
+
+    archive: Path
+    data: Path
+
+    @property
+    def store(self) -> Store:
+        return Store(self.data)
+
+    def rebuild(
+        self, methods: Sequence[str] = METHODS, seasons: Collection[int] | None = None
+    ) -> Done:
+        """A rebuild in this process; Dagster's records are kept in memory to save time."""
+        with mock.patch.object(assets.rebuild, "_instance", _dagster_in_memory):
+            return assets.rebuild.rebuild(self.archive, self.data, methods, Quiet(), seasons)
+
+    def table(self, name: str) -> pl.DataFrame:
+        """A table as a reader of the database gets it."""
+        with duckdb.connect(self.store.database, read_only=True) as db:
+            return db.sql(f'SELECT * FROM "{name}"').pl()  # noqa: S608
+
+    def tables(self) -> dict[str, pl.DataFrame]:
+        """All tables of the database."""
+        with duckdb.connect(self.store.database, read_only=True) as db:
+            names = [row[0] for row in db.execute("SHOW TABLES").fetchall()]
+        return {name: self.table(name) for name in names}
+
+    def lake_files(self) -> dict[str, int]:
+        """Samples and blocks in the lake, with the time at which each was written."""
+        return {
+            str(f.relative_to(self.data)): f.stat().st_mtime_ns
+            for kind in ("samples", "blocks")
+            for f in (self.data / "lake" / kind).rglob("*")
+            if f.is_file()
+        }
+
+
+@pytest.fixture(scope="session")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Workbench:
+    """The small archive, rebuilt once; read only."""
+    root = tmp_path_factory.mktemp("built")
+    bench = Workbench(root / "archive", root / "data")
+    write_simulated_archive(bench.archive, simulate_world(SMALL))
+    bench.rebuild()
+    return bench
+
+
+@pytest.fixture
+def bench(built: Workbench, tmp_path: Path) -> Workbench:
+    """A copy of the small archive and its data folder, to change at will."""
+    shutil.copytree(built.archive, tmp_path / "archive")
+    shutil.copytree(built.data, tmp_path / "data")
+    return Workbench(tmp_path / "archive", tmp_path / "data")

@@ -1,0 +1,182 @@
+"""The command: what it prints where, and with which exit status."""
+
+import json
+import re
+import sys
+
+import pytest
+from typer.main import get_command
+
+from herijk.cli import app, main
+from tests.conftest import METHODS
+
+COMMANDS = ("simulate", "rebuild", "methods", "audit")
+
+
+@pytest.fixture
+def herijk(monkeypatch, capsys):
+    """Runs the command in this process; gives exit status, stdout and stderr."""
+
+    def run(*arguments):
+        monkeypatch.setattr(sys, "argv", ["herijk", *map(str, arguments)])
+        capsys.readouterr()
+        try:
+            main()
+        except SystemExit as stop:
+            status = stop.code or 0
+        else:
+            status = 0
+        printed = capsys.readouterr()
+        assert "Traceback" not in printed.err
+        return status, printed.out, printed.err
+
+    return run
+
+
+@pytest.mark.parametrize("command", [(), *((name,) for name in COMMANDS), ("methods", "show")])
+def test_help_explains_itself(herijk, command):
+    status, out, err = herijk(*command, "--help")
+    assert (status, err) == (0, "")
+    assert "Usage:" in out
+
+
+def commands(command):
+    yield command
+    for inner in getattr(command, "commands", {}).values():
+        yield from commands(inner)
+
+
+def test_every_command_and_parameter_has_a_help_text():
+    for command in commands(get_command(app)):
+        assert command.help, command.name
+        silent = [p.name for p in command.params if not getattr(p, "help", None)]
+        assert silent == [], command.name
+
+
+def test_the_overview_names_every_command(herijk):
+    out = herijk("--help")[1]
+    for name in COMMANDS:
+        assert re.search(rf"^  {name} +\w", out, re.MULTILINE), name
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("rebuild",),
+        ("rebuild", "--archive"),
+        ("rebuild", "--archive", "x", "--seasons", "2016:2014"),
+        ("rebuild", "--archive", "x", "--seasons", "14"),
+        ("rebuild", "--archive", "x", "--fast"),
+        ("simulate",),
+        ("simulate", "x", "--rate", "0"),
+        ("audit",),
+        ("methods", "show"),
+        ("recalculate",),
+    ],
+)
+def test_wrong_arguments_are_status_2(herijk, arguments):
+    status, out, err = herijk(*arguments)
+    assert status == 2
+    assert out == ""
+    assert len(err) > 20
+
+
+def test_a_missing_archive_is_status_1_and_a_sentence(herijk, tmp_path):
+    status, out, err = herijk("rebuild", "--archive", tmp_path / "no", "--data", tmp_path / "data")
+    assert (status, out) == (1, "")
+    assert str(tmp_path / "no") in err
+    for expected in ("sloepregister/sloependata.csv", "sleeplijsten/", "meetdata_<jaar>/"):
+        assert expected in err
+    assert not (tmp_path / "data" / "warehouse.duckdb").exists()
+
+
+def test_an_empty_archive_is_status_1_and_a_sentence(herijk, tmp_path):
+    (tmp_path / "archive").mkdir()
+    status, out, err = herijk(
+        "rebuild", "--archive", tmp_path / "archive", "--data", tmp_path / "d"
+    )
+    assert (status, out) == (1, "")
+    assert str(tmp_path / "archive") in err
+    assert "sloepregister/sloependata.csv" in err
+
+
+def test_an_archive_without_tow_lists_is_status_1_and_a_sentence(herijk, built, tmp_path):
+    boats = tmp_path / "archive/sloepregister/sloependata.csv"
+    boats.parent.mkdir(parents=True)
+    boats.write_bytes((built.archive / "sloepregister/sloependata.csv").read_bytes())
+    status, out, err = herijk(
+        "rebuild", "--archive", tmp_path / "archive", "--data", tmp_path / "d"
+    )
+    assert (status, out) == (1, "")
+    assert "sleeplijsten/sleeplijst_<jaar>.csv" in err
+
+
+def test_an_unknown_method_names_those_that_exist(herijk, built, tmp_path):
+    for arguments in (
+        ("rebuild", "--archive", built.archive, "--data", tmp_path, "--method", "best"),
+        ("methods", "show", "best"),
+        ("audit", "FSN101", "--data", built.data, "--method", "best"),
+    ):
+        status, out, err = herijk(*arguments)
+        assert (status, out) == (1, "")
+        assert "'best'" in err
+        assert "rebased-2015" in err
+
+
+def test_methods_lists_and_shows(herijk):
+    listed = herijk("methods")[1]
+    for name in METHODS:
+        assert name in listed
+        shown = herijk("methods", "show", name)[1]
+        assert name in shown
+        for step in ("speed", "calibration", "window", "wind", "run_point", "runs", "curve"):
+            assert re.search(rf"^[ *]+{step} ", shown, re.MULTILINE), step
+
+
+def test_json_is_json_and_nothing_else(herijk, built):
+    listed = json.loads(herijk("methods", "--json")[1])
+    assert {m["method"] for m in listed["methods"]} >= set(METHODS)
+    boat = built.table("tows")["fsn_no"][0]
+    report = json.loads(herijk("audit", boat, "--data", built.data, "--json")[1])
+    assert report["boat"]["fsn_no"] == boat
+    assert {c["method"] for tow in report["tows"] for c in tow["curves"]} == set(METHODS)
+
+
+def test_audit_shows_every_tow_and_step(herijk, built):
+    boat = built.table("tows")["fsn_no"][0]
+    status, out, err = herijk("audit", boat, "--data", built.data)
+    assert (status, err) == (0, "")
+    assert out.startswith("SIMULATED")
+    for tow_id in built.table("tows").filter(fsn_no=boat)["tow_id"]:
+        assert f"Tow {tow_id}" in out
+    curve = built.table("curves").filter(fsn_no=boat, method="as-published").row(0, named=True)
+    assert f"Cw {curve['cw_kg_m']:.2f} kg/m" in out
+    points = built.table("run_points").filter(tow_id=curve["tow_id"], method="as-published")
+    for speed in points["speed_m_s"]:
+        assert f"{speed:.3f}" in out
+
+
+def test_audit_of_one_method_shows_that_one(herijk, built):
+    boat = built.table("tows")["fsn_no"][0]
+    out = herijk("audit", boat, "--data", built.data, "--method", "rebased-2015")[1]
+    assert "rebased-2015" in out
+    assert "as-published" not in out
+
+
+def test_audit_of_an_unknown_boat_gives_the_way_out(herijk, built):
+    status, out, err = herijk("audit", "FSN99999", "--data", built.data)
+    assert (status, out) == (1, "")
+    assert "FSN99999" in err
+    assert re.search(r"for example FSN\d+", err)
+
+
+def test_audit_without_a_database_says_how_to_make_one(herijk, tmp_path):
+    status, out, err = herijk("audit", "FSN101", "--data", tmp_path)
+    assert (status, out) == (1, "")
+    assert "herijk rebuild --archive" in err
+
+
+def test_simulate_refuses_to_overwrite(herijk, built):
+    status, out, err = herijk("simulate", built.archive, "--rate", "20")
+    assert (status, out) == (1, "")
+    assert "nothing was written" in err

@@ -1,0 +1,23 @@
+"""Methods for tests: every step switched off, but for what a test names."""
+
+from pipeline.method import Method, parse_method
+
+PLAIN = {
+    "speed": '{ source = "log1", correction = "none" }',
+    "calibration": '{ rule = "none" }',
+    "window": '{ rule = "all" }',
+    "wind": '{ model = "none" }',
+    "run_point": '{ estimator = "mean_of_ratios" }',
+    "temperature": '{ rule = "none" }',
+    "runs": "{ highest_target_ratio = 1.5 }",
+    "curve": '{ b = "free" }',
+}
+
+
+def method_text(name: str = "test", **steps: str) -> str:
+    lines = [f"{step} = {options}" for step, options in (PLAIN | steps).items()]
+    return "\n".join([f'name = "{name}"', 'title = "Test"', "[steps]", *lines]) + "\n"
+
+
+def method(name: str = "test", **steps: str) -> Method:
+    return parse_method(method_text(name, **steps), f"{name}.toml")

@@ -1,0 +1,158 @@
+"""Blocks give exactly the means over samples, whatever the rate and the length of the runs."""
+
+import math
+
+import numpy as np
+import polars as pl
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pipeline.blocks import SUM_NAMES, block_sums, stack_blocks
+from pipeline.channels import SAMPLE_SCHEMA
+from pipeline.errors import BrokenPromiseError
+from pipeline.wind import mean_wind_angle_deg
+
+EXACT = 1e-12
+
+
+def samples_of(lengths: list[int], seed: int = 1, gps: bool = True) -> pl.DataFrame:
+    """Runs of so many samples each, with everything in the range of a tow."""
+    rng = np.random.default_rng(seed)
+    n = sum(lengths)
+    values = {
+        "run": np.repeat(np.arange(1, len(lengths) + 1), lengths),
+        "log1_m_s": rng.uniform(1.5, 3.5, n),
+        "log2_m_s": rng.uniform(1.5, 3.5, n),
+        "gps_m_s": rng.uniform(1.5, 3.5, n),
+        "force_n": rng.uniform(50.0, 900.0, n),
+        "wind_speed_m_s": rng.uniform(0.0, 12.0, n),
+        "wind_angle_deg": rng.uniform(0.0, 360.0, n),
+    }
+    frame = pl.DataFrame(
+        {name: pl.Series(v).cast(SAMPLE_SCHEMA[name]) for name, v in values.items()}
+    )
+    return frame if gps else frame.with_columns(pl.lit(None, pl.Float32).alias("gps_m_s"))
+
+
+def quantities(row: dict[str, float]) -> dict[str, float]:
+    """Every summed quantity of one sample, written out from its definition."""
+    force, wind = row["force_n"], row["wind_speed_m_s"]
+    angle = math.radians(row["wind_angle_deg"])
+    along, across = wind * math.cos(angle), wind * math.sin(angle)
+    sign = "ahead" if along > 0 else "behind"
+    air = {
+        f"{term}_{side}": 0.0 for term in ("head", "front", "side") for side in ("ahead", "behind")
+    }
+    air[f"head_{sign}"] = along * abs(along)
+    air[f"front_{sign}"] = along * abs(along) * abs(math.cos(angle))
+    air[f"side_{sign}"] = along * abs(along) * abs(math.sin(angle))
+    gps = row["gps_m_s"]
+    found = {
+        "force": force,
+        "force2": force**2,
+        "wind_v": wind,
+        "wind_v2": wind**2,
+        "wind_cos": math.cos(angle),
+        "wind_sin": math.sin(angle),
+        "wind_x": along,
+        "wind_y": across,
+        "gps": 0.0 if gps is None else gps,
+        "gps2": 0.0 if gps is None else gps**2,
+        "gps_n": float(gps is not None),
+        **air,
+    }
+    logs = row["log1_m_s"], row["log2_m_s"]
+    for source, v in (("log1", logs[0]), ("log2", logs[1]), ("mean", sum(logs) / 2)):
+        found |= {f"{source}_v": v, f"{source}_v2": v**2, f"{source}_inv_v2": v**-2}
+        found |= {f"{source}_cw": force / v**2, f"{source}_cw2": (force / v**2) ** 2}
+        found |= {f"{source}_{name}": value / v**2 for name, value in air.items()}
+    return found
+
+
+def stacked(samples: pl.DataFrame, rate_hz: float):
+    blocks = block_sums(samples, rate_hz).with_columns(pl.lit("t").alias("tow_id"))
+    return stack_blocks(blocks, samples.select(pl.lit("t").alias("tow_id"), "run").unique())
+
+
+@given(
+    rate_hz=st.sampled_from([5, 7, 20, 33]),
+    lengths=st.lists(st.integers(1, 120), min_size=1, max_size=4),
+    window=st.tuples(st.integers(0, 6), st.integers(1, 25)),
+    gps=st.booleans(),
+    seed=st.integers(0, 1000),
+)
+def test_every_window_mean_is_that_over_samples(rate_hz, lengths, window, gps, seed):
+    samples = samples_of(lengths, seed, gps)
+    blocks = stacked(samples, rate_hz)
+    start, end = window[0], window[0] + window[1]
+    second = np.arange(blocks.seconds)
+    mask = np.broadcast_to((second >= start) & (second < end), blocks.n.shape)
+    counts = blocks.count(mask)
+    for i, run in enumerate(samples["run"].unique().sort()):
+        rows = samples.filter(pl.col("run") == run).rows(named=True)
+        chosen = [quantities(r) for k, r in enumerate(rows) if start * rate_hz <= k < end * rate_hz]
+        assert counts[i] == len(chosen)
+        for name in SUM_NAMES:
+            values = [q[name] for q in chosen]
+            size = math.fsum(map(abs, values)) / max(len(values), 1)
+            mean = math.fsum(values) / max(len(values), 1)
+            assert abs(blocks.mean(name, mask)[i] - mean) <= EXACT * size, name
+
+
+@given(angle=st.floats(0.0, 359.9), spread=st.floats(0.1, 60.0), seed=st.integers(0, 99))
+def test_mean_wind_angle_goes_round_north(angle, spread, seed):
+    samples = samples_of([100], seed)
+    offsets = np.random.default_rng(seed).uniform(-spread, spread, 50)
+    around = np.mod(angle + np.concatenate([offsets, -offsets]), 360.0)
+    samples = samples.with_columns(pl.Series("wind_angle_deg", around))
+    blocks = stacked(samples, 10)
+    found = mean_wind_angle_deg(blocks, blocks.n > 0)[0]
+    assert abs((found - angle + 180.0) % 360.0 - 180.0) < 1e-9
+
+
+@pytest.mark.parametrize("rate_hz", [1, 20, 50, 333, 1000])
+def test_a_run_of_50_s_has_50_full_blocks(rate_hz):
+    blocks = block_sums(samples_of([50 * rate_hz, 50 * rate_hz]), rate_hz)
+    assert blocks["second"].to_list() == [*range(50), *range(50)]
+    assert blocks["n"].to_list() == [rate_hz] * 100
+
+
+def test_the_last_block_may_be_short():
+    blocks = block_sums(samples_of([25, 20, 1]), 10)
+    assert blocks.select("run", "second", "n").rows() == [
+        (1, 0, 10), (1, 1, 10), (1, 2, 5), (2, 0, 10), (2, 1, 10), (3, 0, 1),
+    ]  # fmt: skip
+
+
+def test_a_tow_does_not_depend_on_its_neighbours_nor_on_the_order_of_tows():
+    frames = {
+        name: block_sums(samples_of([40, 70], seed), 10).with_columns(pl.lit(name).alias("tow_id"))
+        for seed, name in enumerate("abc")
+    }
+    runs = pl.DataFrame({"tow_id": [t for t in "abc" for _ in "12"], "run": [1, 2] * 3})
+    runs = runs.with_columns(pl.col("run").cast(pl.Int8))
+    in_order = stack_blocks(pl.concat(frames[t] for t in "abc"), runs)
+    shuffled = stack_blocks(
+        pl.concat(frames[t] for t in "cab").sample(fraction=1.0, shuffle=True, seed=3),
+        runs.reverse(),
+    )
+    alone = stack_blocks(frames["b"], runs.filter(tow_id="b"))
+    assert shuffled.runs.equals(in_order.runs)
+    middle = in_order.take((in_order.runs["tow_id"] == "b").to_numpy())
+    for name in SUM_NAMES:
+        assert np.array_equal(shuffled[name], in_order[name])
+        assert np.array_equal(middle[name], alone[name])
+
+
+def test_a_run_without_blocks_breaks_a_promise():
+    blocks = block_sums(samples_of([20]), 10).with_columns(pl.lit("t").alias("tow_id"))
+    runs = pl.DataFrame({"tow_id": ["t", "t"], "run": pl.Series([1, 2], dtype=pl.Int8)})
+    with pytest.raises(BrokenPromiseError, match="tow t, run 2"):
+        stack_blocks(blocks, runs)
+
+
+def test_means_over_an_empty_window_are_zero_not_nan():
+    blocks = stacked(samples_of([30]), 10)
+    nothing = np.zeros(blocks.n.shape, dtype=bool)
+    assert blocks.mean("force", nothing).tolist() == [0.0]

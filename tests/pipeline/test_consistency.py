@@ -1,0 +1,362 @@
+"""Consistency of boats: against independent implementations, known truth, and degenerate input."""
+
+import numpy as np
+import polars as pl
+import pytest
+from scipy import optimize, stats
+
+from pipeline.consistency import (
+    ERAS,
+    consistency_tables,
+    mixed,
+    observe,
+    pooled_curves,
+    repeat_pairs,
+    reproducibility,
+    slow_tows,
+    speed_trend,
+    type_consistency,
+    type_homogeneity,
+    type_outliers,
+    variance_components,
+)
+from tests.pipeline.consistency_fleet import fleet
+from warehouse.schemas import conform
+
+
+def within(observed, expected, trials):
+    """Whether a share of trials lies within four standard errors of what is expected."""
+    return abs(observed - expected) <= 4.0 * np.sqrt(expected * (1 - expected) / trials)
+
+
+# The mixed model
+
+
+def grouped_data(seed=1, n=60, boats=20, others=5):
+    rng = np.random.default_rng(seed)
+    boat, other = rng.integers(0, boats, n), rng.integers(0, others, n)
+    boat[:boats], other[:others] = np.arange(boats), np.arange(others)
+    x = np.column_stack([np.ones(n), rng.normal(size=n)])
+    known = rng.uniform(0.5, 2.0, n) ** 2
+    y = x @ [1.0, 0.5] + 2.0 * rng.normal(size=boats)[boat] + rng.normal(size=others)[other]
+    return mixed.Problem.of(y + np.sqrt(known) * rng.normal(size=n), x, known, boat, other)
+
+
+def dense_deviance(problem, sd):
+    """-2 log restricted likelihood from the whole covariance matrix, as in the textbooks."""
+    v = np.diag(problem.variance + sd[2] ** 2)
+    v += sd[0] ** 2 * (problem.boat[:, None] == problem.boat)
+    v += sd[1] ** 2 * (problem.other[:, None] == problem.other)
+    inverse, x = np.linalg.inv(v), problem.x
+    information = x.T @ inverse @ x
+    beta = np.linalg.solve(information, x.T @ inverse @ problem.y)
+    r = problem.y - x @ beta
+    return np.linalg.slogdet(v)[1] + np.linalg.slogdet(information)[1] + r @ inverse @ r
+
+
+@pytest.mark.parametrize("sd", [(0.0, 0.0, 0.0), (2.0, 1.0, 0.5), (0.3, 0.0, 1.5)])
+def test_deviance_equals_the_dense_formula(sd):
+    problem = grouped_data()
+    assert problem.deviance(sd) == pytest.approx(dense_deviance(problem, sd), rel=1e-10)
+
+
+def test_fit_finds_the_minimum_that_another_optimiser_finds():
+    problem = grouped_data()
+    found = mixed.fit(problem, mixed.COMPONENTS)
+    other = optimize.minimize(
+        lambda v: dense_deviance(problem, np.sqrt(v)), [1.0] * 3, bounds=[(0, 50)] * 3
+    )
+    assert problem.deviance(found.sd) == pytest.approx(other.fun, abs=1e-3)
+    # The likelihood is flat at its top, so the components agree less closely than its height.
+    assert found.sd == pytest.approx(np.sqrt(other.x), abs=0.02 * problem.spread)
+
+
+def test_with_no_true_spread_the_line_is_weighted_least_squares():
+    problem = grouped_data()
+    wls = mixed.Fit(problem, (), (0.0, 0.0, 0.0))
+    weight = 1.0 / np.sqrt(problem.variance)
+    beta, *_ = np.linalg.lstsq(problem.x * weight[:, None], problem.y * weight)
+    assert wls.beta == pytest.approx(beta, rel=1e-9)
+
+
+def test_equal_errors_give_the_interval_of_ordinary_least_squares():
+    # Balanced, so the true spread is estimated as the residual spread and the two must agree.
+    rng = np.random.default_rng(3)
+    x = rng.normal(size=12)
+    y = 1.0 + 2.0 * x + rng.normal(size=12)
+    problem = mixed.Problem.of(y, np.column_stack([np.ones(12), x]), np.full(12, 1e-6), range(12))
+    found = mixed.fit(problem, (mixed.BOAT,)).coefficients()
+    ols = stats.linregress(x, y)
+    half = stats.t.ppf(0.975, 10) * ols.stderr
+    assert found.value[1] == pytest.approx(ols.slope, rel=1e-6)
+    assert found.hi[1] - found.value[1] == pytest.approx(half, rel=1e-3)
+
+
+def test_leaving_a_boat_out_equals_fitting_without_it():
+    problem = grouped_data()
+    sd = (2.0, 1.0, 0.5)
+    found = mixed.Fit(problem, mixed.COMPONENTS, sd).leave_boats_out()
+    v = np.diag(problem.variance + sd[2] ** 2)
+    v += sd[0] ** 2 * (problem.boat[:, None] == problem.boat)
+    v += sd[1] ** 2 * (problem.other[:, None] == problem.other)
+    out = problem.boat == 3
+    inverse, x = np.linalg.inv(v[np.ix_(~out, ~out)]), problem.x[~out]
+    information = x.T @ inverse @ x
+    beta = np.linalg.solve(information, x.T @ inverse @ problem.y[~out])
+    gain = v[np.ix_(out, ~out)] @ inverse
+    predicted = problem.x[out] @ beta + gain @ (problem.y[~out] - x @ beta)
+    rest = problem.x[out] - gain @ x
+    variance = v[np.ix_(out, out)] - gain @ v[np.ix_(~out, out)]
+    variance = variance + rest @ np.linalg.inv(information) @ rest.T
+    assert found.error[out] == pytest.approx(problem.y[out] - predicted, rel=1e-8)
+    assert found.variance[out] == pytest.approx(np.diag(variance), rel=1e-8)
+
+
+# Equal boats, equal B?
+
+TRIALS = 100
+TRIALS_OF_LINES = 40
+
+
+@pytest.fixture(scope="module")
+def like_boats():
+    return observe(*fleet(11, TRIALS))
+
+
+def test_like_boats_raise_few_false_alarms(like_boats):
+    rejected = (type_homogeneity(like_boats)["p_value"].to_numpy() < 0.05).mean()
+    assert within(rejected, 0.05, TRIALS)
+
+
+def test_power_is_what_is_stated_and_enough():
+    for cv, column, least in ((0.05, "power_at_5pct", 0.5), (0.10, "power_at_10pct", 0.9)):
+        found = type_homogeneity(observe(*fleet(12, TRIALS, b_cv=cv)))
+        rejected = (found["p_value"].to_numpy() < 0.05).mean()
+        assert rejected >= least
+        # Stated with the estimated bend and noise, so a few points beside the sampling error.
+        assert abs(rejected - found[column].mean()) < 4 * np.sqrt(0.25 / TRIALS)
+
+
+def test_of_like_boats_noise_gives_the_whole_spread_and_a_and_b_go_together():
+    found = type_homogeneity(observe(*fleet(10, 40, weights_kg=np.full(12, 1000.0))))
+    assert found["noise_share"].median() > 0.8
+    assert found["ab_correlation"].mean() == pytest.approx(
+        found["ab_noise_correlation"].mean(), abs=0.1
+    )
+    # Linearised spread of B against the spread seen; the second is skewed upwards.
+    assert found["b_noise_sd_ratio"].mean() == pytest.approx(found["b_sd_ratio"].mean(), rel=0.2)
+
+
+def test_pooling_halves_the_error_of_the_bend_of_like_boats(like_boats):
+    found = pooled_curves(like_boats)
+    s = pl.col("q") / (1 + pl.col("q")) / pl.col("standard_speed_m_s") ** 2
+    error = {
+        kind: np.sqrt((((group.select(s).to_series() * 4.6**2) - 1) ** 2).mean())
+        for (kind,), group in found.group_by("pooling")
+    }
+    assert error["partial"] <= 0.5 * error["own"]
+    assert error["shared"] <= 0.5 * error["own"]
+
+
+def test_sharing_the_bend_hardly_moves_cw_at_the_declared_speed(like_boats):
+    found = pooled_curves(like_boats).pivot("pooling", index=["method", "tow_id"], values="cw_kg_m")
+    assert (found["shared"] / found["own"] - 1).abs().max() < 0.03
+
+
+# Lines, outliers, tow speed
+
+
+def test_intervals_of_slopes_cover_the_truth():
+    lines = type_consistency(
+        observe(*fleet(13, TRIALS_OF_LINES, boats=8, b_cv=0.05, height_sd=0.02))
+    )
+    for quantity, explaining, truth in (
+        ("ln_cw_standard", "ln_displacement", 0.8),
+        ("b_m_s", "weight_kg", 0.0),
+        ("q", "declared_speed_m_s", 0.0),
+    ):
+        row = lines.filter((pl.col("quantity") == quantity) & (pl.col("explaining") == explaining))
+        inside = ((row["slope_lo"] <= truth) & (truth <= row["slope_hi"])).mean()
+        assert within(inside, 0.95, TRIALS_OF_LINES)
+
+
+def test_the_finding_of_2015():
+    # B and A do not follow weight, Cw at one speed does.
+    lines = type_consistency(observe(*fleet(14, 10, boats=12, height_sd=0.01)))
+    by_weight = lines.filter(pl.col("explaining") == "weight_kg")
+    r2 = dict(by_weight.group_by("quantity").agg(pl.col("r2").mean()).iter_rows())
+    assert r2["b_m_s"] < 0.2
+    assert r2["cw_standard_kg_m"] > 0.7
+
+
+def test_two_tows_of_a_boat_are_one_boat():
+    lines = type_consistency(observe(*fleet(15, boats=6, seasons=(2014, 2016))))
+    assert lines["n"].unique().to_list() == [6]
+    assert lines["n_boats"].unique().to_list() == [6]
+
+
+def with_run_points(tables, tow_id, factor):
+    """One tow with all its coefficients multiplied."""
+    curves, tows, boats, points = tables
+    grow = pl.when(pl.col("tow_id") == tow_id).then(factor).otherwise(1.0)
+    points = points.with_columns(pl.col("cw_kg_m") * grow)
+    curves = curves.with_columns(pl.col("cw_kg_m") * grow, pl.col("a_kg_m") * grow)
+    return curves, tows, boats, points
+
+
+def test_a_boat_pulled_askew_lies_outside_and_is_named():
+    for season, candidates in ((2012, ["askew"]), (2016, [])):
+        tables = fleet(16, height_sd=0.01, seasons=(season,))
+        found = type_outliers(
+            observe(*with_run_points(tables, f"{season}-003", 1.15)), ERAS
+        ).filter("outside")
+        assert found["tow_id"].to_list() == [f"{season}-003"]
+        assert found["candidates"].to_list() == [candidates]
+
+
+def test_no_boat_is_called_outside_too_often():
+    found = type_outliers(observe(*fleet(17, TRIALS, height_sd=0.02)), ERAS)
+    alarms = found.filter(pl.col("quantity") == "q").group_by("method").agg(pl.col("outside").any())
+    assert alarms["outside"].mean() <= 0.05 + 4 * np.sqrt(0.05 * 0.95 / TRIALS)
+
+
+def test_a_bend_that_follows_tow_speed_is_seen_and_none_is_not_claimed():
+    speeds = np.linspace(2.1, 2.7, 12)
+    plain = speed_trend(observe(*fleet(18, speeds_m_s=speeds)))
+    assert (plain["slope_lo"] < 0).all()
+    assert (plain["slope_hi"] > 0).all()
+    curves, tows, boats, points = fleet(18, speeds_m_s=speeds)
+    slow = curves.select("tow_id", "declared_speed_m_s")
+    # Cw of slow tows made to rise faster: (v/v0)^(3 (2.7 - v0)).
+    points = points.join(slow, on="tow_id").with_columns(
+        pl.col("cw_kg_m")
+        * (pl.col("speed_m_s") / pl.col("declared_speed_m_s"))
+        ** (3 * (2.7 - pl.col("declared_speed_m_s")))
+    )
+    assert (speed_trend(observe(curves, tows, boats, points))["slope_hi"] < 0).all()
+
+
+def test_slow_tows_are_singled_out_with_their_effect_on_power():
+    speeds = np.full(8, 2.5)
+    speeds[2] = 2.0
+    tables = fleet(19, boats=8, speeds_m_s=speeds, noise=1e-4)
+    found = slow_tows(observe(*tables))
+    assert found["tow_id"].to_list() == ["2016-002"]
+    assert found["power_w"][0] < 60
+    # The same hyperbola for all: a slow tow does no harm.
+    assert found["power_ratio_120"][0] == pytest.approx(1.0, abs=0.005)
+
+
+# Repeats
+
+
+def test_reproducibility_recovers_the_spread_of_a_tow():
+    tables = fleet(20, boats=60, seasons=(2014, 2016, 2018), tow_sd=0.03, noise=0.001)
+    pairs = repeat_pairs(tables[0], tables[1])
+    found = reproducibility(pairs, observe(*tables)).row(0, named=True)
+    assert found["scope"] == "all"
+    assert found["n_pairs"] == 120
+    # Pairs share a tow, so the spread rests on about 90 instead of 120 differences.
+    assert found["sd_ratio"] == pytest.approx(0.03, rel=4 / np.sqrt(2 * 90))
+    assert found["run_sd_ratio"] == pytest.approx(0.001, rel=4 / np.sqrt(2 * 720))
+
+
+def test_e_n_is_the_difference_in_both_intervals():
+    curves, tows, *_ = fleet(21, boats=1, seasons=(2014, 2016), speeds_m_s=[2.5])
+    pair = repeat_pairs(curves, tows).row(0, named=True)
+    old, new = curves.sort("season").iter_rows(named=True)
+    half = [0.5 * np.log(c["cw_hi_kg_m"] / c["cw_lo_kg_m"]) for c in (old, new)]
+    difference = np.log(new["cw_kg_m"] / old["cw_kg_m"])
+    assert pair["e_n"] == pytest.approx(difference / np.hypot(*half))
+
+
+def test_no_pair_across_an_alteration():
+    curves, tows, *_ = fleet(22, boats=2, seasons=(2014, 2016))
+    tows = tows.with_columns((pl.col("tow_id") == "2016-001").alias("altered"))
+    assert repeat_pairs(curves, tows)["tow_id"].to_list() == ["2016-000"]
+
+
+def test_a_falling_curve_is_compared_at_its_own_height():
+    curves, tows, *_ = fleet(23, boats=1, seasons=(2014, 2016), speeds_m_s=[2.5])
+    falling = curves.with_columns(
+        pl.lit(None, pl.Float64).alias("b_m_s"), (1.1 * pl.col("cw_kg_m")).alias("a_kg_m")
+    )
+    old, new = falling.sort("season")["cw_kg_m"]
+    assert repeat_pairs(falling, tows)["ln_ratio"][0] == pytest.approx(np.log(new / old))
+
+
+def test_variance_components_recover_the_truth():
+    tables = fleet(
+        24,
+        boats=60,
+        seasons=range(2009, 2019),
+        height_sd=0.05,
+        season_sd=0.03,
+        tow_sd=0.015,
+        weights_kg=np.full(60, 1000.0),
+    )
+    found = variance_components(observe(*tables)).filter(pl.col("scope") == "fleet")
+    for name, sd, dof in (("boat", 0.05, 59), ("season", 0.03, 9), ("boat_season", 0.015, 500)):
+        row = found.row(by_predicate=pl.col("component") == name, named=True)
+        assert row["sd_ratio"] == pytest.approx(sd, rel=4 / np.sqrt(2 * dof))
+        assert row["lo"] < row["sd_ratio"] < row["hi"]
+    assert found["share"].sum() == pytest.approx(1.0)
+
+
+# Degenerate input: nulls and a reason, never NaN, never a warning (warnings are errors here)
+
+
+def undetermined(tables):
+    curves, *rest = tables
+    return curves.with_columns(pl.lit(None, pl.Float64).alias("b_m_s")), *rest
+
+
+CASES = {
+    "no tows": tuple(frame.clear() for frame in fleet(30)),
+    "one boat": fleet(31, boats=1),
+    "two boats": fleet(32, boats=2),
+    "no type": fleet(33, boat_type=None),
+    "equal weights": fleet(34, weights_kg=np.full(12, 1000.0), speeds_m_s=np.full(12, 2.5)),
+    "no weights": fleet(35, weights_kg=np.full(12, np.nan)),
+    "no B": undetermined(fleet(36)),
+    "no scatter": fleet(37, noise=0.0, weights_kg=np.full(12, 1000.0)),
+    "two seasons": fleet(38, boats=4, seasons=(2014, 2016)),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_degenerate_input_gives_no_nan_and_fits_the_schemas(case):
+    for name, frame in consistency_tables(*CASES[case]).items():
+        checked = conform(name, frame)
+        for column in checked.select(pl.col(pl.Float64)):
+            assert not column.is_nan().any(), (name, column.name)
+            assert not column.is_infinite().any(), (name, column.name)
+
+
+@pytest.mark.parametrize(
+    ("case", "quantity", "explaining", "reason", "n"),
+    [
+        ("one boat", "cw_kg_m", "weight_kg", "few_boats", 1),
+        ("two boats", "cw_kg_m", "weight_kg", "few_boats", 2),
+        ("no type", "cw_kg_m", "weight_kg", "no_type", 12),
+        ("equal weights", "cw_kg_m", "weight_kg", "equal_values", 12),
+        ("no weights", "cw_kg_m", "weight_kg", "few_boats", 0),
+        ("no weights", "ln_cw_standard", "ln_displacement", "few_boats", 0),
+        ("no B", "b_m_s", "weight_kg", "few_boats", 0),
+    ],
+)
+def test_where_there_is_no_line_the_reason_is_said(case, quantity, explaining, reason, n):
+    lines = type_consistency(observe(*CASES[case]))
+    row = lines.row(
+        by_predicate=(pl.col("quantity") == quantity) & (pl.col("explaining") == explaining),
+        named=True,
+    )
+    assert (row["reason"], row["n"], row["slope"]) == (reason, n, None)
+
+
+def test_the_order_of_rows_does_not_matter():
+    tables = fleet(40, boats=8, seasons=(2014, 2016, 2018), height_sd=0.03, season_sd=0.02)
+    shuffled = [frame.sample(fraction=1.0, shuffle=True, seed=1) for frame in tables]
+    ours, theirs = consistency_tables(*tables), consistency_tables(*shuffled)
+    for name, frame in ours.items():
+        assert conform(name, frame).equals(conform(name, theirs[name])), name

@@ -1,0 +1,236 @@
+"""A method file: every error says where and what; the hash is honest."""
+# ruff: noqa: E501 - tables of cases, one a line
+
+import re
+
+import pytest
+
+from pipeline.errors import MissingKnowledgeError
+from pipeline.method import MethodFileError, parse_method, shipped_method, shipped_methods
+from tests.pipeline.methods import PLAIN, method_text
+
+LINE_OF = {step: number for number, step in enumerate(PLAIN, 4)}
+"""Line of each step in `method_text`: name, title and [steps] come first."""
+
+
+def parse(text: str, **others: str):
+    def text_of(name: str) -> str:
+        if name not in others:
+            raise MissingKnowledgeError(f"there is no method {name!r}; the methods are {others}")
+        return others[name]
+
+    return parse_method(text, "own.toml", text_of)
+
+
+def changed(step: str, options: str) -> str:
+    return method_text(**{step: options})
+
+
+def with_override(text: str, range_text: str = '"2010:2012"') -> str:
+    return method_text() + f"[[overrides]]\nrange = {range_text}\n{text}\n"
+
+
+FIRST_OVERRIDE = len(method_text().splitlines()) + 1
+
+WRONG = {
+    "no TOML": ("name = \n", ["own.toml", "line 1", "not valid TOML"]),
+    "no name": (method_text().split("\n", 1)[1], ["own.toml", "name", "missing"]),
+    "name with capitals": (method_text("Own"), ["line 1", "name", "'Own'"]),
+    "title of a wrong type": (
+        method_text().replace('title = "Test"', "title = 3"), ["line 2", "title", "string", "3"],
+    ),
+    "unknown key at the top": (
+        'titel = "x"\n' + method_text(), ["line 1", "titel", "unknown key", "title", "overrides"],
+    ),
+    "unknown step": (
+        method_text(winds="{}"), [f"line {len(PLAIN) + 4}", "winds", "unknown step", "wind", "curve"],
+    ),
+    "step without options": (
+        changed("wind", '"none"'), [f"line {LINE_OF['wind']}", "steps.wind", "table", "'none'"],
+    ),
+    "missing step": (
+        "\n".join(li for li in method_text().splitlines() if not li.startswith("curve")),
+        ["own.toml", "curve.b", "missing", "2009"],
+    ),
+    "unknown key": (
+        changed("window", '{ rule = "all", minimal_s = 30 }'),
+        [f"line {LINE_OF['window']}", "window.minimal_s", "unknown key", "minimum_s", "rule"],
+    ),
+    "unknown option": (
+        changed("wind", '{ model = "sideways" }'),
+        [f"line {LINE_OF['wind']}", "wind.model", "'none', 'head' or 'oblique'", "'sideways'"],
+    ),
+    "wrong type": (
+        changed("wind", '{ model = "head", ahead = "half" }'),
+        [f"line {LINE_OF['wind']}", "wind.ahead", "number", "'half'"],
+    ),
+    "impossible value": (
+        changed("wind", '{ model = "head", ahead = -0.5 }'),
+        [f"line {LINE_OF['wind']}", "wind.ahead", "greater than or equal to 0", "-0.5"],
+    ),
+    "not a number": (
+        changed("wind", '{ model = "head", ahead = nan }'), ["wind.ahead", "finite number", "nan"],
+    ),
+    "too many per cent": (
+        changed("speed", '{ source = "log1", correction = "prescribed", correction_ratio = 6.0 }'),
+        [f"line {LINE_OF['speed']}", "speed.correction_ratio", "less than or equal to 0.15", "6.0"],
+    ),
+    "half a second": (
+        changed("wind", '{ model = "head", averaging_s = 2.5 }'), ["wind.averaging_s", "integer", "2.5"],
+    ),
+    "range that is no range": (
+        with_override('wind = { ahead = 0.4 }', '"2010-2012"'),
+        [f"line {FIRST_OVERRIDE + 1}", "range", "'2010-2012'", "2009:2011"],
+    ),
+    "range backwards": (
+        with_override('wind = { ahead = 0.4 }', '"2012:2010"'), ["range", "ends before it begins"],
+    ),
+    "range that is a number": (
+        with_override('wind = { ahead = 0.4 }', "2010"), ["range", "2010", "2009:2011"],
+    ),
+    "no range": (
+        method_text() + "[[overrides]]\nwind = { ahead = 0.4 }\n", ["own.toml", "range", "2009:2011"],
+    ),
+    "unknown step in an override": (
+        with_override("winds = { ahead = 0.4 }"), [f"line {FIRST_OVERRIDE + 2}", "winds", "unknown step"],
+    ),
+    "impossible value in an override": (
+        with_override("wind = { ahead = 4.0 }"),
+        [f"line {FIRST_OVERRIDE + 2}", "wind.ahead", "less than or equal to 2", "season 2010"],
+    ),
+    "overlap": (
+        with_override("wind = { ahead = 0.4 }")
+        + '[[overrides]]\nrange = "2012:"\nwind = { ahead = 0.3 }\n',
+        ["wind.ahead", "twice", "season 2012", "overlap"],
+    ),
+    "unknown parent": (
+        'extends = "parent"\n' + method_text(), ["line 1", "extends", "there is no method 'parent'"],
+    ),
+    "its own parent": ('extends = "test"\n' + method_text(), ["line 1", "extends", "circle", "test"]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_every_error_says_where_what_and_what_is_allowed(case):
+    text, expected = WRONG[case]
+    with pytest.raises(MethodFileError) as caught:
+        parse(text)
+    message = str(caught.value)
+    assert message.startswith("own.toml")
+    assert [part for part in expected if part not in message] == [], message
+    assert "\n" not in message
+    assert "pydantic" not in message
+
+
+def test_a_circle_over_two_files_is_found():
+    one, two = (f'extends = "{o}"\n' + method_text(n) for n, o in (("one", "two"), ("two", "one")))
+    with pytest.raises(MethodFileError, match="one extends two extends one"):
+        parse(one, one=one, two=two)
+
+
+def test_an_error_in_the_parent_names_the_parents_file():
+    parent = changed("wind", '{ model = "head" }').replace("[steps]", "[steps]\nwinds = {}")
+    with pytest.raises(MethodFileError, match=r"^parent\.toml, line 4: steps\.winds"):
+        parse('name = "own"\ntitle = "x"\nextends = "parent"\n', parent=parent)
+
+
+def test_a_child_takes_all_and_replaces_what_it_names():
+    parent = method_text(wind='{ model = "head", ahead = 0.5, behind = 0.7 }')
+    child = (
+        'name = "own"\ntitle = "x"\nextends = "parent"\n[steps]\nwind = { ahead = 0.4 }\n'
+        '[[overrides]]\nrange = "2012:2013"\nwind = { behind = 0.6 }\n'
+    )
+    made = parse(child, parent=parent)
+    assert [(r.first, r.last) for r in made.ranges] == [(2009, 2011), (2012, 2013), (2014, 9999)]
+    wind = made.for_season(2010).wind
+    assert (wind.model, wind.ahead, wind.behind) == ("head", 0.4, 0.7)
+    assert made.for_season(2012).wind.behind == 0.6
+    assert made.for_season(2010).curve == parse(parent).for_season(2010).curve
+
+
+def test_a_parents_override_stands_above_a_childs_rule_for_all_seasons_only_where_it_says():
+    parent = with_override("wind = { ahead = 0.1 }")
+    child = 'name = "own"\ntitle = "x"\nextends = "parent"\n[[overrides]]\nrange = "2012:"\nwind = { ahead = 0.2 }\n'
+    made = parse(child, parent=parent)
+    assert [made.for_season(s).wind.ahead for s in (2009, 2010, 2012, 2013)] == [0.5, 0.1, 0.2, 0.2]
+
+
+def test_a_season_before_the_first_is_missing_knowledge():
+    made = parse(method_text().replace("title =", 'seasons = "2012:2016"\ntitle ='))
+    for season in (2011, 2017):
+        with pytest.raises(MissingKnowledgeError, match=rf"{season}.*2012 to 2016"):
+            made.for_season(season)
+    assert made.for_season(2012) == made.for_season(2016)
+
+
+def test_a_method_cannot_be_changed():
+    made = parse(method_text())
+    with pytest.raises(ValueError, match="frozen"):
+        made.name = "other"
+    with pytest.raises(ValueError, match="frozen"):
+        made.ranges[0].steps.wind.ahead = 0.1
+
+
+@pytest.mark.parametrize("name", shipped_methods())
+def test_shipped_methods_are_named_after_their_file_and_cover_every_season(name):
+    made = shipped_method(name)
+    assert made.name == name
+    assert made.title
+    for season in (2009, 2013, 2018, 2040):
+        made.for_season(season)
+
+
+SAME_RESULT = {
+    "title": lambda t: t.replace('"Test"', '"Other"'),
+    "description": lambda t: t.replace("title =", 'description = "long"\ntitle ='),
+    "comment": lambda t: "# why\n" + t,
+    "order": lambda t: t.replace('model = "none"', 'ahead = 0.5, model = "none"'),
+    "default written out": lambda t: t.replace('{ b = "free" }', '{ b = "free", cap_hull_speeds = 3 }'),
+    "override that changes nothing": lambda t: t + '[[overrides]]\nrange = "2012:"\nwind = { ahead = 0.5 }\n',
+    "why": lambda t: t + '[[overrides]]\nrange = "2012:"\nwhy = "x"\nwind = { ahead = 0.5 }\n',
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", SAME_RESULT)
+def test_the_hash_stays_when_results_do(case):
+    text = SAME_RESULT[case](method_text())
+    assert text != method_text()
+    assert parse(text).content_hash == parse(method_text()).content_hash
+
+
+def test_extending_gives_the_hash_of_the_same_written_out():
+    child = 'name = "own"\ntitle = "x"\nextends = "parent"\n[steps]\nwind = { model = "head" }\n'
+    written_out = method_text(wind='{ model = "head" }')
+    assert parse(child, parent=method_text()).content_hash == parse(written_out).content_hash
+
+
+OTHER_RESULT = {
+    "speed": '{ source = "log2", correction = "none" }',
+    "calibration": '{ rule = "gps_per_tow" }',
+    "window": '{ rule = "all", minimum_s = 25 }',
+    "wind": '{ model = "none", ahead = 0.50001 }',
+    "run_point": '{ estimator = "ratio_of_means" }',
+    "temperature": '{ rule = "none", reference_c = 12 }',
+    "runs": "{ highest_target_ratio = 1.5, minimum = 5 }",
+    "curve": '{ b = "capped" }',
+}
+
+
+@pytest.mark.parametrize("step", OTHER_RESULT)
+def test_the_hash_changes_with_any_option(step):
+    other = parse(changed(step, OTHER_RESULT[step]))
+    assert other.content_hash != parse(method_text()).content_hash
+
+
+def test_the_hash_changes_with_one_season_of_an_override_and_with_the_seasons_covered():
+    hashes = [
+        parse(text).content_hash
+        for text in (
+            method_text(),
+            with_override("wind = { ahead = 0.4 }"),
+            with_override("wind = { ahead = 0.4 }", '"2010:2011"'),
+            method_text().replace("title =", 'seasons = "2009:2016"\ntitle ='),
+        )
+    ]
+    assert len(set(hashes)) == len(hashes)
+    assert all(re.fullmatch("[0-9a-f]{64}", h) for h in hashes)

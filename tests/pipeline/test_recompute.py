@@ -1,0 +1,256 @@
+"""The whole method against a straightforward computation per sample, and what must not matter."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import polars as pl
+import pytest
+from polars.testing import assert_frame_equal
+
+from pipeline.blocks import block_sums, stack_blocks
+from pipeline.errors import MissingKnowledgeError
+from pipeline.method import parse_method, shipped_method
+from pipeline.recompute import recompute
+from pipeline.simulate import WorldSettings, simulate_tow, simulate_world
+from tests.pipeline.methods import method, method_text
+from tests.worlds import Measured, measure, run_rows, tow_rows
+
+SETTINGS = WorldSettings((2010, 2012, 2015), 10, 20, 11)
+RHO = 1.225
+TABLES = ("run_points", "curves", "log_factors")
+
+
+@pytest.fixture(scope="module")
+def measured() -> Measured:
+    return measure(SETTINGS)
+
+
+# An implementation of `rebased-2015` of its own: sample by sample, tow by tow, no blocks. Only
+# the choice of windows is taken as given; it has its own tests.
+
+
+def oracle_run(samples: list[dict], tow: dict, factor: float) -> dict[str, float]:
+    front = tow["beam_m"] * tow["bow_height_m"] + 0.5
+    side = tow["waterline_length_m"] * tow["bow_height_m"] + 1.0
+    speeds, gross, net = [], [], []
+    for s in samples:
+        v = s["log1_m_s"] * factor
+        angle = math.radians(s["wind_angle_deg"])
+        along = s["wind_speed_m_s"] * math.cos(angle)
+        area = front * abs(math.cos(angle)) * 0.5 + side * abs(math.sin(angle)) * 0.2
+        air = math.copysign(RHO / 2 * area * along**2, along)
+        speeds.append(v)
+        gross.append(s["force_n"] / v**2)
+        net.append((s["force_n"] - air) / v**2)
+    n = len(samples)
+    cw = math.fsum(net) / n + RHO / 2 * front * 0.5
+    mean = math.fsum(gross) / n
+    sd = math.sqrt(math.fsum((g - mean) ** 2 for g in gross) / n)
+    return {"speed_m_s": math.fsum(speeds) / n, "gross_cw_kg_m": mean, "cw_kg_m": cw, "cw_sd": sd}
+
+
+def oracle_calibration(runs: dict[int, list[dict]], season: int) -> float:
+    if season < 2014:
+        return 1.0
+    ways = {"gps_m_s": [], "log1_m_s": []}
+    for channel, found in ways.items():
+        for numbers in ((1, 2, 3), (4, 5, 6)):
+            of_runs = [
+                math.fsum(s[channel] for s in runs[k]) / len(runs[k]) for k in numbers if k in runs
+            ]
+            found.append(math.fsum(of_runs) / len(of_runs))
+    return math.fsum(ways["gps_m_s"]) / math.fsum(ways["log1_m_s"])
+
+
+def oracle_curve(points: list[dict], cap_m_s: float) -> tuple[float, float]:
+    """A and s = 1/B^2 by Gauss-Newton in A and s, with B no larger than the cap."""
+    v2 = np.array([p["speed_m_s"] for p in points]) ** 2
+    cw = np.array([p["cw_kg_m"] for p in points])
+    a, s = cw.mean(), 0.0
+    for _ in range(200):
+        g = 1 / (1 - s * v2)
+        jacobian = np.stack([g, a * v2 * g**2], axis=1)
+        step = np.linalg.lstsq(jacobian, cw - a * g, rcond=None)[0]
+        a, s = a + step[0], s + step[1]
+    least = 1 / cap_m_s**2
+    if s < least:
+        s = least
+        g = 1 / (1 - s * v2)
+        a = (g @ cw) / (g @ g)
+    return a, s
+
+
+@pytest.fixture(scope="module")
+def rebased(measured):
+    return recompute(shipped_method("rebased-2015"), measured.tows, measured.blocks)
+
+
+@pytest.mark.parametrize("season", SETTINGS.seasons)
+def test_rebased_2015_equals_a_computation_sample_by_sample(rebased, season):
+    world = simulate_world(SETTINGS)
+    compared = 0
+    for simulated in world.tows:
+        if simulated.season != season:
+            continue
+        tow = tow_rows(world).filter(tow_id=simulated.tow_id).row(0, named=True)
+        points = rebased.run_points.filter(tow_id=simulated.tow_id).sort("run").rows(named=True)
+        samples = simulate_tow(world, simulated)[0]
+        windows = {}
+        for p in points:
+            if p["window_start_s"] is not None:
+                rows = samples.filter(run=p["run"]).rows(named=True)
+                first, last = (
+                    int(p[f"window_{end}_s"] * SETTINGS.rate_hz) for end in ("start", "end")
+                )
+                windows[p["run"]] = rows[first:last]
+        known = 1.06 if season <= 2011 else 1.0
+        limit = 1.15 * tow["declared_speed_m_s"]
+        used = {
+            run: rows
+            for run, rows in windows.items()
+            if math.fsum(s["log1_m_s"] for s in rows) / len(rows) * known <= limit
+        }
+        assert [p["run"] for p in points if p["used"]] == list(used)
+        both_ways = {1, 2, 3} & used.keys() and {4, 5, 6} & used.keys()
+        if not both_ways:
+            continue
+        factor = known * oracle_calibration(used, season)
+        expected = {run: oracle_run(rows, tow, factor) for run, rows in used.items()}
+        for p in points:
+            for name, value in expected.get(p["run"], {}).items():
+                assert p[name] == pytest.approx(value, rel=1e-9), (simulated.tow_id, name)
+        curve = rebased.curves.filter(tow_id=simulated.tow_id).row(0, named=True)
+        if curve["status"] == "rejected":
+            assert len(used) < 4
+            continue
+        cap = 3 * 1.25 * math.sqrt(tow["waterline_length_m"])
+        a, s = oracle_curve(list(expected.values()), cap)
+        assert curve["a_kg_m"] == pytest.approx(a, rel=1e-9)
+        assert curve["b_m_s"] == pytest.approx(s**-0.5, rel=1e-9)
+        cw = a / (1 - s * tow["declared_speed_m_s"] ** 2)
+        assert curve["cw_kg_m"] == pytest.approx(cw, rel=1e-9)
+        compared += 1
+    assert compared >= 3
+
+
+# What must not matter
+
+
+def shuffled(measured: Measured) -> Measured:
+    """The same tows, renamed nowhere, but read in another order."""
+    world = simulate_world(SETTINGS)
+    frames = [
+        block_sums(simulate_tow(world, tow)[0], SETTINGS.rate_hz).select(
+            pl.lit(tow.tow_id).alias("tow_id"), pl.all()
+        )
+        for tow in reversed(world.tows)
+    ]
+    runs = run_rows(measured.tows).sample(fraction=1.0, shuffle=True, seed=2)
+    tows = measured.tows.sample(fraction=1.0, shuffle=True, seed=3)
+    return replace(measured, tows=tows, blocks=stack_blocks(pl.concat(frames), runs))
+
+
+@pytest.mark.parametrize("name", ["as-published", "rebased-2015"])
+def test_the_order_of_tows_and_runs_does_not_matter(measured, name):
+    chosen = shipped_method(name)
+    other = shuffled(measured)
+    one = recompute(chosen, measured.tows, measured.blocks)
+    two = recompute(chosen, other.tows, other.blocks)
+    for table in TABLES:
+        left, right = (getattr(made, table) for made in (one, two))
+        key = [c for c in ("tow_id", "season", "run") if c in left.columns]
+        assert_frame_equal(left.sort(key), right.sort(key), check_exact=True)
+
+
+@pytest.mark.parametrize("name", ["as-published", "rebased-2015"])
+def test_a_tow_does_not_depend_on_the_other_tows(measured, name):
+    chosen = shipped_method(name)
+    together = recompute(chosen, measured.tows, measured.blocks)
+    for tow_id in measured.tows["tow_id"].sample(4, seed=1):
+        mine = measured.tows.filter(tow_id=tow_id)
+        alone = recompute(chosen, mine, measured.blocks)
+        for table in ("run_points", "curves"):
+            both = getattr(together, table).filter(tow_id=tow_id)
+            # What a tow is compared with are other tows: that may change its flags, never a number.
+            judged = [c for c in ("status", "flags") if c in both.columns]
+            one = getattr(alone, table).drop(judged)
+            assert_frame_equal(one, both.drop(judged), check_exact=True)
+
+
+def test_every_tow_and_run_is_in_the_tables(measured, rebased):
+    assert rebased.curves["tow_id"].sort().to_list() == measured.tows["tow_id"].sort().to_list()
+    keys = rebased.run_points.select("tow_id", "run").sort("tow_id", "run")
+    assert_frame_equal(keys, measured.runs.select("tow_id", "run"))
+
+
+def test_seasons_are_batched_by_their_steps_and_not_otherwise(measured):
+    """A method that says the same of every season in many overrides gives the same numbers."""
+    once = recompute(method(), measured.tows, measured.blocks)
+    blocks = "".join(
+        f'[[overrides]]\nrange = "{season}"\nwind = {{ averaging_s = {season - 2009} }}\n'
+        for season in SETTINGS.seasons
+    )
+    split = parse_method(method_text() + blocks, "split.toml")
+    many = recompute(split, measured.tows, measured.blocks)
+    for table in ("run_points", "curves"):
+        left, right = (getattr(made, table).sort("tow_id") for made in (once, many))
+        assert_frame_equal(left, right, check_exact=True)
+
+
+def test_a_season_that_the_method_does_not_cover_is_named(measured):
+    text = method_text().replace("title =", 'seasons = "2010:2012"\ntitle =')
+    with pytest.raises(MissingKnowledgeError, match="nothing about season 2015"):
+        recompute(parse_method(text, "t.toml"), measured.tows, measured.blocks)
+
+
+# Runs that do not count
+
+
+def without_runs(measured: Measured, tow_id: str, runs: list[int]) -> Measured:
+    chosen = measured.blocks.runs.with_columns(
+        selected=~((pl.col("tow_id") == tow_id) & pl.col("run").is_in(runs))
+    )
+    return replace(measured, blocks=replace(measured.blocks, runs=chosen))
+
+
+@pytest.mark.parametrize(
+    ("left_out", "status"),
+    [([6], "flagged"), ([1, 6], "flagged"), ([1, 2, 6], "rejected"), ([4, 5, 6], "rejected")],
+)
+def test_a_curve_needs_four_runs_and_both_ways(measured, left_out, status):
+    tow_id = measured.tows["tow_id"][0]
+    fewer = without_runs(measured, tow_id, left_out)
+    made = recompute(method(), fewer.tows, fewer.blocks)
+    curve = made.curves.filter(tow_id=tow_id).row(0, named=True)
+    assert curve["status"] == status
+    assert curve["runs_used"] == 6 - len(left_out)
+    assert "few_runs" in curve["flags"]
+    assert ("no_curve" in curve["flags"]) == (status == "rejected")
+    if status == "rejected":
+        assert curve["cw_kg_m"] is None
+        assert curve["a_kg_m"] is None
+    reasons = made.run_points.filter(tow_id=tow_id).filter(~pl.col("used"))
+    assert reasons["run"].to_list() == left_out
+    assert set(reasons["reason"]) == {"not_selected"}
+
+
+def test_a_run_at_120_per_cent_does_not_count(measured):
+    tow_id = measured.tows.filter(season=2015)["tow_id"][0]
+    slower = measured.tows.with_columns(
+        pl.when(tow_id=tow_id)
+        .then(pl.col("declared_speed_m_s") / 1.09)
+        .otherwise("declared_speed_m_s")
+        .alias("declared_speed_m_s")
+    )
+    made = recompute(method(runs="{ highest_target_ratio = 1.15 }"), slower, measured.blocks)
+    points = made.run_points.filter(tow_id=tow_id)
+    assert points.filter(reason="above_target_speed")["run"].to_list() == [3, 6]
+
+
+def test_without_gps_nothing_is_calibrated_and_the_tow_says_so(measured):
+    made = recompute(method(calibration='{ rule = "gps_per_tow" }'), measured.tows, measured.blocks)
+    early = made.run_points.join(measured.tows.filter(season=2010), on="tow_id", how="semi")
+    assert set(early["reason"]) == {"not_calibrated"}
+    assert set(made.curves.filter(season=2010)["status"]) == {"rejected"}
+    assert made.curves.filter(season=2015)["status"].is_in(["accepted", "flagged"]).all()

@@ -1,0 +1,71 @@
+"""The draft register: newest sound tow, validity, and lines without a curve."""
+
+import datetime as dt
+
+import polars as pl
+import pytest
+from polars.testing import assert_frame_equal
+
+from pipeline.register import draft_register
+
+ON = dt.date(2016, 6, 1)
+NUMBERS = ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
+
+
+def frames(rows):
+    """Curves and tows from (tow_id, day, boat, rowers, class, status)."""
+    curves = pl.DataFrame(
+        [
+            {"tow_id": t, "fsn_no": b, "rowers": r, "crew_class": c, "status": s}
+            | {n: None if s == "rejected" else float(i + 1) for i, n in enumerate(NUMBERS)}
+            for t, _, b, r, c, s in rows
+        ],
+        schema_overrides=dict.fromkeys(NUMBERS, pl.Float64),
+    )
+    return curves, pl.DataFrame({"tow_id": [r[0] for r in rows], "tow_date": [r[1] for r in rows]})
+
+
+ROWS = [
+    ("t1", dt.date(2010, 3, 1), "FSN1", 8, "H", "accepted"),
+    ("t2", dt.date(2014, 3, 1), "FSN1", 8, "H", "flagged"),
+    ("t3", dt.date(2015, 3, 1), "FSN1", 8, "H", "rejected"),
+    ("t4", dt.date(2010, 3, 1), "FSN2", 6, "D", "accepted"),
+    ("t5", dt.date(2015, 3, 1), "FSN3", 6, "D", "rejected"),
+    ("t6", dt.date(2011, 1, 1), "FSN1", 8, "D", "accepted"),
+]
+BOATS = pl.DataFrame(
+    {"fsn_no": ["FSN1", "FSN4", "FSN5"], "rowers": [8, 10, None], "crew_class": ["H", "H", "D"]}
+)
+
+
+def register(rows=ROWS, on=ON):
+    return draft_register(*frames(rows), BOATS, on)
+
+
+def test_one_line_per_boat_and_crew_with_its_newest_sound_tow():
+    found = register().select("fsn_no", "rowers", "crew_class", "tow_id", "status").rows()
+    assert found == [
+        ("FSN1", 8, "D", "t6", "valid"),
+        ("FSN1", 8, "H", "t2", "valid"),
+        ("FSN2", 6, "D", "t4", "expired"),
+        ("FSN3", 6, "D", None, "rejected"),
+        ("FSN4", 10, "H", None, "never_towed"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("on", "status"), [(dt.date(2015, 12, 31), "valid"), (dt.date(2016, 1, 1), "expired")]
+)
+def test_a_tow_is_valid_to_the_end_of_the_fifth_calendar_year(on, status):
+    line = register(on=on).filter(fsn_no="FSN2")
+    assert line["valid_until"].item() == dt.date(2015, 12, 31)
+    assert line["status"].item() == status
+
+
+def test_a_line_without_a_curve_has_no_numbers():
+    without = register().filter(pl.col("status").is_in(["rejected", "never_towed"]))
+    assert without.select(NUMBERS).null_count().row(0) == (2,) * len(NUMBERS)
+
+
+def test_the_order_of_tows_does_not_matter():
+    assert_frame_equal(register(ROWS[::-1]), register())

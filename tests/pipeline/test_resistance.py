@@ -1,0 +1,86 @@
+"""From a window to a run point: which log counts, estimators, and corrections without weights."""
+
+import numpy as np
+import polars as pl
+import pytest
+
+from pipeline.batch import Batch
+from pipeline.resistance import run_means, temperature_change_kg_m, wetted_surface_m2
+from pipeline.simulate import Defects, WorldSettings
+from tests.pipeline.methods import method
+from tests.worlds import measure
+
+
+def batch_of(defects: Defects, **columns: pl.Expr) -> Batch:
+    measured = measure(WorldSettings((2015,), 6, 20, 5, defects=lambda season: defects))
+    return Batch.of(measured.tows.with_columns(**columns), measured.blocks)
+
+
+def means(batch: Batch, **steps: str):
+    return run_means(batch, batch.blocks.n > 0, method(**steps).for_season(2015))
+
+
+MEAN_OF_LOGS = '{ source = "mean", correction = "none" }'
+LOG2 = '{ source = "log2", correction = "none" }'
+
+
+def test_log_2_takes_part_in_a_mean_only_when_it_agrees_with_log_1():
+    for ratio, expected in ((1.008, 1.004), (0.95, 1.0)):
+        batch = batch_of(Defects(log2_ratio=(ratio, ratio)))
+        found = means(batch, speed=MEAN_OF_LOGS).speed_m_s / means(batch).speed_m_s
+        assert found == pytest.approx(np.full(36, expected), rel=1e-6)
+
+
+def test_log_2_alone_is_taken_as_it_reads():
+    batch = batch_of(Defects(log2_ratio=(0.95, 0.95)))
+    one, two = means(batch), means(batch, speed=LOG2)
+    assert two.speed_m_s == pytest.approx(0.95 * one.speed_m_s, rel=1e-6)
+    assert two.gross_kg_m == pytest.approx(one.gross_kg_m / 0.95**2, rel=1e-6)
+
+
+def test_an_empty_window_gives_zero_not_nan():
+    batch = batch_of(Defects(wind_m_s=4.0))
+    nothing = np.zeros(batch.blocks.n.shape, dtype=bool)
+    for estimator in ("mean_of_ratios", "ratio_of_means"):
+        steps = method(
+            run_point=f'{{ estimator = "{estimator}", inertia = "end_speeds" }}',
+            wind='{ model = "oblique", averaging_s = 5 }',
+        ).for_season(2015)
+        found = run_means(batch, nothing, steps)
+        for values in (found.speed_m_s, found.gross_kg_m, found.inertia_kg_m, found.air.ahead):
+            assert np.array_equal(values, np.zeros(36))
+
+
+@pytest.mark.parametrize("missing", ["weight_kg", "crew_weight_kg", "water_temperature_c"])
+def test_what_is_not_known_is_not_corrected_and_said(missing):
+    cold = Defects(water_temperature_c=(4.0, 4.0))
+    unknown = pl.when(pl.col("tow_id") == "2015-002").then(None).otherwise(missing)
+    batch = batch_of(cold, **{missing: unknown})
+    rule = method(temperature='{ rule = "ittc57" }').for_season(2015).temperature
+    change, known = temperature_change_kg_m(batch, rule, np.full(36, 2.5))
+    assert known.tolist() == [True, False, True, True, True, True]
+    assert (change[batch.tow == 1] == 0.0).all()
+    assert (change[batch.tow != 1] < 0.0).all()  # warmer water has less friction
+
+
+def test_the_wetted_surface_is_near_that_of_the_simulated_hulls():
+    """The simulator keeps a surface of its own; both are estimates from the same dimensions."""
+    batch = batch_of(Defects())
+    mass = batch.of_tow("weight_kg") + batch.of_tow("crew_weight_kg")
+    surface = wetted_surface_m2(mass, batch.of_tow("waterline_length_m"))
+    length, beam = batch.of_tow("waterline_length_m"), batch.of_tow("beam_m")
+    assert (surface > 0.5 * length * beam).all()
+    assert (surface < 1.5 * length * beam).all()
+
+
+def test_a_mean_of_logs_is_decided_per_tow():
+    measured = measure(
+        WorldSettings((2015,), 6, 20, 5, defects=lambda s: Defects(log2_ratio=(0.97, 1.03)))
+    )
+    batch = Batch.of(measured.tows, measured.blocks)
+    ratio = measured.truth.sort("tow_id")["log2_ratio"].to_numpy()
+    agrees = np.abs(ratio - 1.0) <= 0.01
+    assert 0 < agrees.sum() < len(agrees)
+    found = means(batch, speed=MEAN_OF_LOGS).speed_m_s / means(batch).speed_m_s
+    expected = np.where(agrees, (1.0 + ratio) / 2, 1.0)[batch.tow]
+    assert found == pytest.approx(expected, rel=1e-6)

@@ -1,0 +1,81 @@
+"""Wind: air parts by the two formulas, averaging, and the searched coefficients."""
+
+import math
+
+import numpy as np
+import polars as pl
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pipeline.blocks import AIR_SUMS, RunBlocks, block_sums, stack_blocks
+from pipeline.channels import SAMPLE_SCHEMA
+from pipeline.method import Wind
+from pipeline.wind import AirParts, air_parts, averaged_terms, nearest_coefficients
+
+FRONT, SIDE = np.array([3.26]), np.array([9.0])
+SPEED = 2.5
+
+
+def blocks_of(wind_m_s: object, angle_deg: object, seconds: int = 4, rate_hz: int = 5) -> RunBlocks:
+    n = seconds * rate_hz
+    values = {"run": 1, "log1_m_s": SPEED, "log2_m_s": SPEED, "gps_m_s": None, "force_n": 250.0}
+    values |= {"wind_speed_m_s": wind_m_s, "wind_angle_deg": angle_deg}
+    samples = pl.DataFrame(
+        {
+            name: pl.Series(np.broadcast_to(v, n)).cast(SAMPLE_SCHEMA[name])
+            if v is not None
+            else pl.Series([None] * n, dtype=SAMPLE_SCHEMA[name])
+            for name, v in values.items()
+        }
+    )
+    blocks = block_sums(samples, rate_hz).with_columns(pl.lit("t").alias("tow_id"))
+    return stack_blocks(
+        blocks, pl.DataFrame({"tow_id": ["t"], "run": pl.Series([1], dtype=pl.Int8)})
+    )
+
+
+def parts(blocks: RunBlocks, model: str) -> AirParts:
+    everything = blocks.n > 0
+    terms = {name: blocks.mean(f"log1_{name}", everything) for name in AIR_SUMS}
+    return air_parts(blocks, terms, Wind(model=model), FRONT, SIDE)
+
+
+@given(wind=st.floats(0.1, 12.0), angle=st.floats(0.0, 359.9))
+def test_both_formulas_written_out(wind, angle):
+    a = math.radians(float(np.float32(angle)))
+    w = float(np.float32(wind))
+    sign = math.copysign(1.0, math.cos(a))
+    along2 = (w * math.cos(a)) ** 2
+    blocks = blocks_of(wind, angle)
+    head = parts(blocks, "head").total(np.array([0.5]), np.array([0.7]), 0.2)[0]
+    cvt = 0.5 if sign > 0 else 0.7
+    assert head * SPEED**2 == pytest.approx(1.225 / 2 * 3.26 * cvt * along2 * sign, abs=1e-9)
+    oblique = parts(blocks, "oblique").total(np.array([0.5]), np.array([0.5]), 0.2)[0]
+    area = 3.26 * abs(math.cos(a)) * 0.5 + 9.0 * abs(math.sin(a)) * 0.2
+    assert oblique * SPEED**2 == pytest.approx(1.225 / 2 * area * along2 * sign, abs=1e-9)
+    assert parts(blocks, "none").total(np.array([0.5]), np.array([0.5]), 0.2)[0] == 0.0
+
+
+@given(wind=st.floats(0.1, 12.0), angle=st.floats(0.0, 359.9), width=st.integers(1, 15))
+def test_averaging_a_steady_wind_changes_nothing(wind, angle, width):
+    blocks = blocks_of(wind, angle)
+    for name, averaged in averaged_terms(blocks, width).items():
+        assert averaged == pytest.approx(blocks.block_means(name), abs=1e-9)
+
+
+def test_averaging_goes_round_north_and_keeps_the_speed_of_a_jittering_wind():
+    angles = np.tile([350.0, 0.0, 10.0, 0.0, 0.0], 4)
+    terms = averaged_terms(blocks_of(6.0, angles), 3)
+    assert terms["head_ahead"] == pytest.approx(np.full((1, 4), 36.0), rel=1e-6)
+    assert terms["head_behind"] == pytest.approx(np.zeros((1, 4)), abs=1e-12)
+    assert terms["side_ahead"] == pytest.approx(np.zeros((1, 4)), abs=1e-4)
+
+
+def test_coefficients_that_are_searched_stay_between_0_and_1():
+    air = AirParts(
+        np.array([4.0, 4.0, 4.0, 0.5, 0.0]), np.array([0.0, 0.0, 0.0, -2.0, 0.0]), np.zeros(5)
+    )
+    ahead, behind = nearest_coefficients(air, np.array([2.0, 9.0, -1.0, -1.0, 3.0]))
+    assert ahead.tolist() == [0.5, 1.0, 0.0, 0.0, 0.0]
+    assert behind.tolist() == [0.0, 0.0, 0.0, 0.5, 0.0]

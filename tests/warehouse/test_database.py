@@ -1,0 +1,131 @@
+"""The database is swapped in whole, and says what its columns mean."""
+
+import re
+import threading
+
+import duckdb
+import polars as pl
+import pytest
+
+from tests.conftest import Workbench
+from warehouse.database import build_database
+from warehouse.schemas import TABLES
+
+CONTRACT = {
+    "boats": "fsn_no, ht_no, name, boat_type",
+    "tows": "tow_id, season, tow_date, fsn_no, rowers, crew_class, declared_speed_m_s, "
+    "waterline_length_m, beam_m, bow_height_m, weight_kg, crew_weight_kg, water_temperature_c, "
+    "altered",
+    "run_points": "method, tow_id, run, window_start_s, window_end_s, speed_m_s, cw_kg_m, cw_sd, "
+    "used, reason",
+    "curves": "method, tow_id, fsn_no, season, rowers, crew_class, declared_speed_m_s, a_kg_m, "
+    "b_m_s, b_capped, cw_kg_m, cw_lo_kg_m, cw_hi_kg_m, b_lo_m_s, b_hi_m_s, runs_used, status, "
+    "flags",
+    "log_factors": "method, season, factor, lo, hi, source",
+    "register": "edition, method, fsn_no, rowers, crew_class, tow_id, tow_date, valid_until, "
+    "declared_speed_m_s, a_kg_m, b_m_s, cw_kg_m, cw_lo_kg_m, cw_hi_kg_m, status",
+    "register_changes": "from_edition, to_edition, fsn_no, rowers, crew_class, change, cw_ratio, "
+    "power_ratio, time_ratio, causes",
+    "type_consistency": "method, boat_type, quantity, explaining, n, slope, slope_lo, slope_hi, "
+    "r2, residual_sd_ratio",
+    "reproducibility": "method, scope, n_pairs, sd_ratio, lo, hi, share_within_1pct, "
+    "share_within_2pct",
+    "quarantine": "path, tow_id, line, reason_code, message, first_seen",
+    "methods": "method, title, content_hash, definition",
+    "lineage": "edition, fsn_no, path, sha256, method_hash, code_version",
+}
+"""The names other programs rely on, typed over from the contract."""
+
+UNIT_SUFFIX = {
+    "m/s": "_m_s", "kg/m": "_kg_m", "kg": "_kg", "m": "_m", "s": "_s", "W": "_w", "C": "_c",
+    "N": "_n", "Hz": "_hz", "deg": "_deg",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("table", CONTRACT)
+def test_the_contract_is_kept(built: Workbench, table: str):
+    found = built.table(table)
+    missing = [name for name in CONTRACT[table].split(", ") if name not in found.columns]
+    assert missing == []
+    not_numbers = [s.name for s in found if s.dtype.is_float() and s.is_nan().any()]
+    assert not_numbers == []
+
+
+@pytest.mark.parametrize("table", TABLES)
+def test_units_stand_in_the_names_of_columns(table: str):
+    for name, column in TABLES[table].columns().items():
+        unit = (column.metadata or {}).get("unit")
+        if unit in UNIT_SUFFIX and name != "cw_sd":  # named so in the contract
+            assert re.search(rf"{UNIT_SUFFIX[unit]}(_|$)", name), (name, unit)
+        assert not re.search(r"_(km_h|kn|kgf|cm|gra|pct|percent)$", name)
+
+
+def test_every_table_and_column_says_what_it_means(built: Workbench):
+    with duckdb.connect(built.store.database, read_only=True) as db:
+        columns = db.execute(
+            "SELECT table_name, column_name, comment FROM duckdb_columns() WHERE NOT internal"
+        ).fetchall()
+        tables = db.execute("SELECT table_name, comment FROM duckdb_tables()").fetchall()
+    assert {name for name, comment in tables if comment} == set(TABLES)
+    silent = [(t, c) for t, c, comment in columns if not comment and t in TABLES]
+    assert silent == []
+    comments = {(t, c): comment for t, c, comment in columns}
+    assert comments["curves", "cw_kg_m"] == "Cw at the declared speed [kg/m]"
+
+
+def test_readers_never_see_an_error_or_half_of_a_database(tmp_path):
+    path, stop = tmp_path / "warehouse.duckdb", threading.Event()
+    seen: list[tuple[int, int]] = []
+    errors: list[Exception] = []
+
+    def build(version: int) -> None:
+        rows = pl.DataFrame({"version": [version] * 1000})
+        build_database(path, {"first": rows, "second": rows})
+
+    def poll() -> None:
+        while not stop.is_set():
+            try:
+                with duckdb.connect(path, read_only=True) as db:
+                    first, second = (
+                        db.execute(
+                            f"SELECT min(version), max(version), count(*) FROM {t}"  # noqa: S608
+                        ).fetchone()
+                        for t in ("first", "second")
+                    )
+                assert first == second
+                assert first[0] == first[1]
+                seen.append((first[0], first[2]))
+            except Exception as error:
+                errors.append(error)
+                return
+
+    build(0)
+    readers = [threading.Thread(target=poll) for _ in range(2)]
+    for reader in readers:
+        reader.start()
+    for version in range(1, 9):
+        build(version)
+    stop.set()
+    for reader in readers:
+        reader.join()
+    assert errors == []
+    assert {count for _, count in seen} == {1000}
+    assert len({version for version, _ in seen}) > 1
+
+
+def test_a_reader_that_has_the_old_database_open_keeps_it(tmp_path):
+    path = tmp_path / "warehouse.duckdb"
+    build_database(path, {"t": pl.DataFrame({"x": [1]})})
+    with duckdb.connect(path, read_only=True) as db:
+        build_database(path, {"t": pl.DataFrame({"x": [2, 3]})})
+        assert db.execute("SELECT x FROM t").fetchall() == [(1,)]
+
+
+def test_a_failed_build_leaves_the_old_database_and_no_litter(tmp_path):
+    path = tmp_path / "warehouse.duckdb"
+    build_database(path, {"t": pl.DataFrame({"x": [1]})})
+    with pytest.raises(AttributeError):
+        build_database(path, {"t": pl.DataFrame({"x": [2]}), "u": None})
+    assert [f.name for f in tmp_path.iterdir()] == ["warehouse.duckdb"]
+    with duckdb.connect(path, read_only=True) as db:
+        assert db.execute("SELECT x FROM t").fetchall() == [(1,)]

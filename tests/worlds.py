@@ -1,0 +1,113 @@
+"""A simulated world as the frames and arrays that `pipeline.recompute` works on, without files."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+
+import polars as pl
+
+from pipeline.blocks import RunBlocks, block_sums, stack_blocks
+from pipeline.channels import BACK, OUT, TARGET_SPEED_RATIOS
+from pipeline.method import Method
+from pipeline.outcome import Recomputed
+from pipeline.recompute import recompute
+from pipeline.simulate import RunTruth, Tow, World, WorldSettings, simulate_tow, simulate_world
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What is known of a world's tows, and beside it what is true.
+
+    Attributes:
+        tows: rows of the table `tows`, but for the columns about files.
+        runs: rows of `tow_runs`.
+        blocks: their blocks, stacked.
+        truth: per tow the fields of `TowTruth`, with `season`.
+        run_truth: what really happened in each run, by tow.
+    """
+
+    tows: pl.DataFrame
+    runs: pl.DataFrame
+    blocks: RunBlocks
+    truth: pl.DataFrame
+    run_truth: dict[str, tuple[RunTruth, ...]]
+
+
+def measure(settings: WorldSettings) -> Measured:
+    """Simulates a world and adds its samples up."""
+    world = simulate_world(settings)
+    tows = tow_rows(world)
+    runs = run_rows(tows)
+    blocks, run_truth = [], {}
+    for tow in world.tows:
+        samples, run_truth[tow.tow_id] = simulate_tow(world, tow)
+        tow_id = pl.lit(tow.tow_id).alias("tow_id")
+        blocks.append(block_sums(samples, settings.rate_hz).select(tow_id, pl.all()))
+    stacked = stack_blocks(pl.concat(blocks), runs)
+    return Measured(tows, runs, stacked, truth_rows(world), run_truth)
+
+
+def recompute_world(
+    settings: WorldSettings, methods: Sequence[Method]
+) -> tuple[Recomputed, pl.DataFrame]:
+    """Tables of all methods, one below the other, and the truth of every tow."""
+    measured = measure(settings)
+    made = [recompute(method, measured.tows, measured.blocks) for method in methods]
+    names = [field.name for field in fields(Recomputed)]
+    tables = {name: pl.concat([getattr(one, name) for one in made]) for name in names}
+    return Recomputed(**tables), measured.truth
+
+
+def tow_rows(world: World) -> pl.DataFrame:
+    """What the tow lists say."""
+    return pl.DataFrame(
+        [_tow_row(world, tow) for tow in world.tows], infer_schema_length=None
+    ).with_columns(
+        pl.col("season", "rowers", "sample_rate_hz").cast(pl.Int32),
+        pl.col("speed_correction_ratio", "^freeboard_.*$").cast(pl.Float64),
+    )
+
+
+def _tow_row(world: World, tow: Tow) -> dict[str, object]:
+    return {
+        "tow_id": tow.tow_id,
+        "season": tow.season,
+        "tow_date": tow.day,
+        "fsn_no": tow.boat.fsn_no,
+        "rowers": tow.boat.boat_type.rowers,
+        "crew_class": tow.crew_class,
+        "declared_speed_m_s": tow.declared_speed_m_s,
+        "waterline_length_m": tow.boat.waterline_length_m,
+        "beam_m": tow.boat.beam_m,
+        "bow_height_m": tow.boat.bow_height_m,
+        "weight_kg": tow.weight_kg,
+        "weight_after_kg": tow.weight_after_kg,
+        "crew_weight_kg": tow.boat.crew_kg(tow.crew_class),
+        "water_temperature_c": tow.water_temperature_c,
+        "speed_correction_ratio": None,
+        "altered": tow.altered_reported,
+        "sample_rate_hz": world.settings.rate_hz,
+        "freeboard_lowest_m": None,
+        "freeboard_bow_m": None,
+        "freeboard_stern_m": None,
+    }
+
+
+def run_rows(tows: pl.DataFrame) -> pl.DataFrame:
+    """Six runs a tow, all selected: out at three speeds, and back at the same."""
+    runs = pl.DataFrame(
+        {
+            "run": range(1, 7),
+            "direction": [OUT] * 3 + [BACK] * 3,
+            "target_speed_ratio": TARGET_SPEED_RATIOS * 2,
+            "selected": [True] * 6,
+        },
+        schema_overrides={"run": pl.Int8, "direction": pl.Int8},
+    )
+    return tows.select("tow_id").join(runs, how="cross").sort("tow_id", "run")
+
+
+def truth_rows(world: World) -> pl.DataFrame:
+    """What nobody was told."""
+    return pl.DataFrame(
+        [{"tow_id": t.tow_id, "season": t.season, **vars(t.truth)} for t in world.tows]
+    ).with_columns(pl.col("season").cast(pl.Int32))
