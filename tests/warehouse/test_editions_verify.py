@@ -9,6 +9,7 @@ import pytest
 
 import pipeline.recompute
 from pipeline.errors import MissingKnowledgeError
+from pipeline.method import parse_method
 from warehouse.editions.folder import editions_folder, read_about, read_edition
 from warehouse.editions.lineage import lineage, lineage_rows
 from warehouse.editions.verify import verify
@@ -162,6 +163,31 @@ def test_a_changed_tow_list_is_named_by_tow_and_fact(published_copy):
     assert [f["message"] for f in findings] == [
         f"tow {tow['tow_id']}: weight_kg is 777.0; it was {tow['weight_kg']}"
     ]
+
+
+BY_HAND = """
+name = "by-hand"
+title = "proef"
+extends = "rebased-2015"
+
+[steps]
+window = { rule = "by_hand" }
+"""
+
+
+def test_a_window_given_by_hand_afterwards_is_named(bench_of_editions):
+    bench = bench_of_editions
+    method = parse_method(BY_HAND, "by-hand.toml")
+    bench.rebuild((method,))
+    bench.publish("x", method)
+    tow = bench.tow(2014)["tow_id"]
+    file = bench.archive / "sleeplijsten" / "vensters_2014.csv"
+    file.write_text(f"sleep_id;run;van;tot;reden\n{tow};2;5;40;boei\n", encoding="utf-8")
+    bench.rebuild((method,))
+    findings, wrong = found(bench, kind="differs")
+    assert wrong
+    (one,) = findings
+    assert f"the list row of tow {tow} changed" in one["message"]
 
 
 def test_a_new_season_is_no_fault(published_copy):

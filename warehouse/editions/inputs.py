@@ -12,8 +12,12 @@ import polars as pl
 from pipeline.errors import MissingKnowledgeError
 from warehouse.editions.folder import Edition
 from warehouse.store import Store, fingerprint, table_digest
+from warehouse.tables import runs_with_windows, typed_tows
 
-NOT_INPUT: Final = ("samples_path", "second_path", "remark", "inputs_sha256")
+NOT_INPUT: Final = (
+    *("samples_path", "second_path", "remark", "boat_type", "inputs_sha256"),
+    *("hand_reason", "list_path", "list_line"),
+)
 """What a tow is called or said to be does not change its numbers."""
 
 INPUTS_HASH: Final = "inputs_sha256"
@@ -22,7 +26,8 @@ SAMPLES, LIST, REGISTER = "meetdata", "lijst", "register"
 
 def with_input_hashes(tows: pl.DataFrame, runs: pl.DataFrame) -> pl.DataFrame:
     """Tows with the hash of all that their numbers are made from: list row, runs and files."""
-    of_tow = dict(runs.sort("tow_id", "run").partition_by("tow_id", as_dict=True))
+    facts = [name for name in sorted(runs.columns) if name not in NOT_INPUT]
+    of_tow = dict(runs.sort("tow_id", "run").select(facts).partition_by("tow_id", as_dict=True))
     measured = [name for name in sorted(tows.columns) if name not in NOT_INPUT]
     hashes = [
         fingerprint([row[name] for name in measured], of_tow[row["tow_id"],].rows())
@@ -33,7 +38,7 @@ def with_input_hashes(tows: pl.DataFrame, runs: pl.DataFrame) -> pl.DataFrame:
 
 def tows_of_today(store: Store) -> pl.DataFrame:
     """The tows of the warehouse as it is now, with their hashes."""
-    return with_input_hashes(store.read("tows"), store.read("tow_runs"))
+    return with_input_hashes(typed_tows(store), runs_with_windows(store))
 
 
 def inputs_digest(tows: pl.DataFrame) -> str:

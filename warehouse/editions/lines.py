@@ -20,6 +20,7 @@ from warehouse import intake
 from warehouse.editions.folder import DECISIONS, Edition, editions_folder
 from warehouse.editions.inputs import INPUTS_HASH, tows_of_today
 from warehouse.store import Store
+from warehouse.tables import runs_with_windows
 
 NUMBERS: Final = ("a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
 TOW_FACTS: Final = ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg", INPUTS_HASH)
@@ -56,7 +57,7 @@ def lines_made_again(store: Store, edition: Edition) -> pl.DataFrame:
         raise MissingKnowledgeError("there is no warehouse to make it from; run herijk rebuild")
     mine = edition.tables["tows"].select("tow_id")
     tows = tows_of_today(store).join(mine, on="tow_id", how="semi")
-    runs = store.read("tow_runs").join(mine, on="tow_id", how="semi")
+    runs = runs_with_windows(store).join(mine, on="tow_id", how="semi")
     blocks = stack_blocks(intake.all_blocks(store), runs)
     curves = recompute(edition.method, tows, blocks).curves
     nobody = pl.DataFrame(schema={name: edition.register.schema[name] for name in LINE})

@@ -56,7 +56,7 @@ from warehouse.editions.inputs import (
 from warehouse.editions.lines import TOW_FACTS, method_lines
 from warehouse.schemas import Register, conform
 from warehouse.store import Store, fingerprint, table_digest
-from warehouse.tables import method_is_stale
+from warehouse.tables import method_is_stale, runs_with_windows
 
 BOAT_FACTS: Final = ("ht_no", "name", "boat_type")
 AS_PRINTED, REBASED = "printed", "printed_rebased"
@@ -146,7 +146,7 @@ def recomputed_edition(
     _check_decided_tows(decisions, tows)
     tables = {
         "tows": tows,
-        "tow_runs": store.read("tow_runs"),
+        "tow_runs": runs_with_windows(store),
         **{name: store.read(name, method.name) for name in ("curves", "run_points", "log_factors")},
     }
     crews = store.read("listed_boats")

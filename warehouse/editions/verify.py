@@ -15,6 +15,7 @@ from pydantic import ValidationError
 
 from pipeline.errors import BrokenPromiseError, HerijkError
 from pipeline.register import LINE
+from pipeline.steady import HAND_COLUMNS
 from warehouse.archive import FileHashes, index_archive
 from warehouse.code import code_version
 from warehouse.editions import sheets
@@ -257,23 +258,36 @@ def _archive(store: Store, path: Path, about: About) -> Iterator[Finding]:
 
 
 def _list_rows(path: Path, root: Path, hashes: FileHashes) -> Iterator[Finding]:
-    """Tows of the edition whose row in a list is no longer what it was."""
+    """Tows of the edition whose rows in the lists are no longer what they were."""
     try:
-        was, now = read_table(path, "tows"), index_archive(root, hashes.hash_file).tows
+        index = index_archive(root, hashes.hash_file)
+        was = {name: read_table(path, name) for name in ("tows", "tow_runs")}
     except HerijkError as error:
         yield Finding(path.name, "unchecked", "sleeplijsten", str(error))
         return
-    facts = [c for c in was.columns if c in now.columns and c not in NOT_INPUT]
-    rows = {row["tow_id"]: row for row in now.select(facts).iter_rows(named=True)}
-    for row in was.select(facts).iter_rows(named=True):
-        tow = row["tow_id"]
-        if tow not in rows:
-            yield Finding(path.name, "missing", tow, f"tow {tow} is no longer in the tow lists")
-            continue
+    windows = index.windows.rename(HAND_COLUMNS)
+    runs = index.runs.join(windows, on=["tow_id", "run"], how="left")
+    for tow in sorted(set(was["tows"]["tow_id"]) - set(index.tows["tow_id"])):
+        yield Finding(path.name, "missing", tow, f"tow {tow} is no longer in the tow lists")
+    yield from _changed_facts(path.name, was["tows"], index.tows, ["tow_id"])
+    yield from _changed_facts(path.name, was["tow_runs"], runs, ["tow_id", "run"])
+
+
+def _changed_facts(
+    edition: str, was: pl.DataFrame, now: pl.DataFrame, key: list[str]
+) -> Iterator[Finding]:
+    facts = [
+        name
+        for name in was.columns
+        if name in now.columns and name not in (*key, *NOT_INPUT) and not name.endswith("_sha256")
+    ]
+    pairs = was.select(*key, *facts).join(now.select(*key, *facts), on=key, suffix="_now")
+    for row in pairs.sort(key).iter_rows(named=True):
+        name = "tow " + ", run ".join(str(row[k]) for k in key)
         for fact in facts:
-            if rows[tow][fact] != row[fact] and not fact.endswith("_sha256"):
-                message = f"tow {tow}: {fact} is {rows[tow][fact]}; it was {row[fact]}"
-                yield Finding(path.name, "swapped", f"tow {tow}", message)
+            if row[f"{fact}_now"] != row[fact]:
+                message = f"{name}: {fact} is {row[f'{fact}_now']}; it was {row[fact]}"
+                yield Finding(edition, "swapped", name, message)
 
 
 # Do archive and code of today give the same register?
