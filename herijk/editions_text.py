@@ -89,7 +89,7 @@ def _line(row: Report) -> tuple[Any, ...]:
         row["fsn_no"],
         row["name"] or "-",
         f"{row['rowers']}{row['crew_class']}",
-        row["change"],
+        row["change"] if row["change"] != "removed" else f"removed: {row['new_status'] or 'gone'}",
         *pairs,
         _per_cent(row["cw_ratio"]),
         _seconds(row["gain_in_two_hours_s"]),

@@ -22,6 +22,7 @@ from tests.warehouse.edition_bench import terms
 from warehouse.decisions import FILE_NAME
 from warehouse.editions import sheets
 from warehouse.editions.folder import (
+    CHANGES,
     TABLES,
     edition_names,
     editions_folder,
@@ -29,6 +30,7 @@ from warehouse.editions.folder import (
     read_edition,
 )
 from warehouse.editions.publish import publish, publish_printed
+from warehouse.editions.published import published_made_from, published_tables
 from warehouse.schemas import conform
 from warehouse.store import table_digest
 
@@ -41,8 +43,9 @@ FILES = {
     "method.toml",
     "decisions.json",
     "toelichting.md",
-    *(f"{name}.parquet" for name in TABLES),
+    *(f"{name}.parquet" for name in TABLES if name != CHANGES),
 }
+"""Files of the first edition."""
 
 
 def edition_of(bench, name="2014-1"):
@@ -64,6 +67,27 @@ def test_an_edition_holds_everything_behind_it(published):
     for name, frame in edition_of(published).tables.items():
         assert about.tables[name].rows == frame.height
         assert about.tables[name].digest == table_digest(frame)
+
+
+def test_an_edition_keeps_what_changed_since_the_one_before(published):
+    second = edition_of(published, "2014-2")
+    assert second.about.previous == "2014-1"
+    changes = conform("register_changes", second.tables[CHANGES])
+    assert set(changes["from_edition"]) == {"2014-1"}
+    assert changes.height == second.register.height
+
+
+def test_all_editions_as_rows_of_the_warehouse(published):
+    tables = published_tables(published.store)
+    assert tables.keys() == {"register", "register_changes", "lineage"}
+    heights = [edition_of(published, name).register.height for name in ("2014-1", "2014-2")]
+    assert tables["register"]["edition"].value_counts().sort("edition").rows() == [
+        ("2014-1", heights[0]),
+        ("2014-2", heights[1]),
+    ]
+    assert set(tables["register_changes"]["to_edition"]) == {"2014-2"}
+    assert set(tables["lineage"]["edition"]) == {"2014-1", "2014-2"}
+    assert published_made_from(published.store).keys() == {"2014-1", "2014-2"}
 
 
 def test_the_register_has_the_columns_of_the_warehouse_and_a_code_per_line(published):

@@ -53,8 +53,8 @@ class Comparison:
 
     Attributes:
         old, new: the editions.
-        lines: rows of `register_changes`, with the columns of `pipeline.changes.side_by_side` and
-            the boat's `name`.
+        lines: rows of `register_changes`, with the columns of `pipeline.changes.side_by_side`, the
+            boat's `name`, and the status in both, which says why a line has no curve any more.
     """
 
     old: Edition
@@ -84,6 +84,8 @@ def compare(store: Store, old: Edition, new: Edition) -> Comparison:
     lines = (
         changes.join(side_by_side(old.register, new.register), on=LINE)
         .join(names.unique(LINE, keep="first"), on=LINE, how="left")
+        .join(old.register.select(*LINE, old_status="status"), on=LINE, how="left")
+        .join(new.register.select(*LINE, new_status="status"), on=LINE, how="left")
         .sort(LINE)
     )
     return Comparison(old, new, lines)

@@ -36,7 +36,8 @@ XLSX: Final = "register.xlsx"
 INPUTS: Final = "inputs.csv"
 PACKAGE: Final = "datapackage.json"
 NOTES: Final = "toelichting.md"
-TABLES: Final = ("register", "tows", "tow_runs", "curves", "run_points", "log_factors")
+CHANGES: Final = "register_changes"
+TABLES: Final = ("register", "tows", "tow_runs", "curves", "run_points", "log_factors", CHANGES)
 
 _NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,59}")
 _LOCK: Final = f"{TEMPORARY_PREFIX}lock"
@@ -95,7 +96,8 @@ class Edition:
 
     Attributes:
         about: what it is.
-        tables: by name, those of `TABLES`; empty but for `register` when as printed.
+        tables: by name, those of `TABLES` it has: `register` always, `register_changes` when there
+            was an edition before it, the others when it was recomputed.
         method: the method, with every option of every season; None when as printed.
     """
 

@@ -27,6 +27,7 @@ from warehouse.editions import notes, sheets
 from warehouse.editions.compare import compare
 from warehouse.editions.folder import (
     ABOUT,
+    CHANGES,
     CSV,
     DECISIONS,
     INPUTS,
@@ -228,9 +229,11 @@ def _complete(
 def _write(store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str, str]) -> Path:
     """Writes an edition's folder: tables, sheets, texts, and last what it says of itself."""
     about = edition.about
+    tables = dict(edition.tables)
     previous = None
     if about.previous is not None:
         previous = compare(store, read_edition(store, about.previous), edition)
+        tables[CHANGES] = previous.lines
     text = notes.release_notes(edition, previous)
     fields = [*sheets.REGISTER_FIELDS, sheets.CODE_FIELD]
     contents = {
@@ -239,14 +242,14 @@ def _write(store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str,
         INPUTS: sheets.csv_bytes(files, sheets.INPUT_FIELDS),
         NOTES: text.encode("utf-8"),
         **{name: content.encode("utf-8") for name, content in texts.items()},
-        **{f"{n}.parquet": _parquet(edition.tables[n]) for n in TABLES if n in edition.tables},
+        **{f"{name}.parquet": _parquet(tables[name]) for name in TABLES if name in tables},
     }
     contents[PACKAGE] = sheets.package_bytes(about, contents, notes.summary(edition))
     sealed = about.model_copy(
         update={
             "tables": {
                 name: TableDigest(rows=frame.height, digest=table_digest(frame))
-                for name, frame in edition.tables.items()
+                for name, frame in tables.items()
             },
             "files": {n: hashlib.sha256(c).hexdigest() for n, c in sorted(contents.items())},
         }
