@@ -14,6 +14,7 @@ CAUSES = {
     "code_or_other_input": "the code or data of other tows changed",
     "method": "method",
     "printed": "printed register: its method is not recorded",
+    "closed_form": "printed A and B re-based with the log factor",
     "unseparated": "method with data or code, not to be separated",
     "unexplained": "unexplained",
 }

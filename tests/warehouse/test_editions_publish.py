@@ -21,6 +21,7 @@ from pipeline.method import parse_method, shipped_method
 from tests.warehouse.edition_bench import terms
 from warehouse.decisions import FILE_NAME
 from warehouse.editions import sheets
+from warehouse.editions.compare import diff
 from warehouse.editions.folder import (
     CHANGES,
     TABLES,
@@ -388,3 +389,7 @@ def test_a_printed_line_is_rebased_in_closed_form_where_nothing_was_measured(wit
     assert line["b_m_s"] == pytest.approx(5.59 * 1.06, rel=1e-12)
     measured = line_of(with_printed, with_printed.tow(2014), "2014-1")
     assert measured["basis"] == "measured"
+    lines = diff(with_printed.store, "gedrukt-2012", "2014-1").lines
+    causes = {row["fsn_no"]: json.loads(row["causes"]) for row in lines.iter_rows(named=True)}
+    assert [c["cause"] for c in causes["FSN900"]] == ["closed_form"]
+    assert [c["cause"] for c in causes[measured["fsn_no"]]] == ["printed"]

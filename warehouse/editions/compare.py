@@ -32,6 +32,7 @@ from warehouse.editions.lines import MEASURED, lines_made_again
 from warehouse.store import Store
 
 PRINTED: Final = "printed"
+CLOSED_FORM: Final = "closed_form"
 TOW: Final = "tow"
 INPUT: Final = "input"
 OTHER_INPUT: Final = "other_input"
@@ -157,7 +158,8 @@ def _ground(
     line: Mapping[str, Any], old: Edition, new: Edition, climbed: set[str], code: bool
 ) -> str:
     if {line["basis"], line["basis_new"]} != {MEASURED}:
-        return PRINTED
+        same_line = line[INPUTS_HASH] == line[f"{INPUTS_HASH}_new"]
+        return CLOSED_FORM if same_line else PRINTED
     if line["tow_id"] != line["tow_id_new"]:
         return TOW
     own = line[INPUTS_HASH] != line[f"{INPUTS_HASH}_new"]
@@ -226,8 +228,7 @@ def _causes(lines: pl.DataFrame) -> list[Report]:
     found = [
         {"cause": one["cause"], "step": one.get("step"), "factor": one["factor"]}
         for text in lines["causes"]
-        for one in json.loads(text)
-        if abs(one["factor"] - 1.0) > NO_FACTOR
+        for one in _moved(text)
     ]
     schema = {"cause": pl.String, "step": pl.String, "factor": pl.Float64}
     return (
@@ -245,4 +246,9 @@ def _causes(lines: pl.DataFrame) -> list[Report]:
 
 
 def _rows(lines: pl.DataFrame) -> list[Report]:
-    return [row | {"causes": json.loads(row["causes"])} for row in lines.to_dicts()]
+    return [row | {"causes": _moved(row["causes"])} for row in lines.to_dicts()]
+
+
+def _moved(causes: str) -> list[Report]:
+    """The causes that changed something."""
+    return [one for one in json.loads(causes) if abs(one["factor"] - 1.0) > NO_FACTOR]

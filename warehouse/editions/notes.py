@@ -21,6 +21,7 @@ CAUSE_WORDS: Final = {
     "code_or_other_input": "programma of gegevens van andere sleepproeven gewijzigd",
     "method": "methode",
     "printed": "gedrukt register: methode niet vastgelegd",
+    "closed_form": "gedrukte A en B omgerekend met de logfactor",
     "unseparated": "methode met gegevens of programma, niet te scheiden",
     "unexplained": "onverklaard",
 }
@@ -83,7 +84,7 @@ def _what(edition: Edition) -> str:
     taken = edition.register.filter(pl.col("basis") == "printed_rebased").height
     if taken:
         text += (
-            f"\n\nVan {taken} regels zijn de meetgegevens er niet meer. Hun gedrukte A en B zijn "
+            f"\n\nVan {_lines(taken)} zijn de meetgegevens er niet meer. De gedrukte A en B zijn "
             "omgerekend met de logfactor y van het seizoen: A/y² en B·y (basis "
             f"“{sheets.BASIS_WORDS['printed_rebased']}”)."
         )
@@ -102,7 +103,8 @@ def _changes(found: Report) -> str:
         f"## Wat verandert er ten opzichte van {found['from_edition']}",
         f"Regels: {counts or 'geen'}. Meer vermogen bij dezelfde roeitijd krijgen "
         f"{_group(found['gain'])}; minder krijgen {_group(found['loss'])}. Groter dan de "
-        f"onzekerheid van beide uitgaven samen zijn {found['exceeds_interval']} wijzigingen"
+        "onzekerheid van beide uitgaven samen is de wijziging van "
+        f"{_lines(found['exceeds_interval'])}"
         + (
             f" (van {found['interval_unknown']} is de onzekerheid niet bekend)."
             if found["interval_unknown"]
@@ -122,11 +124,15 @@ def _changes(found: Report) -> str:
 
 def _group(group: Report) -> str:
     if not group["lines"]:
-        return "0 regels"
+        return _lines(0)
     return (
-        f"{group['lines']} regels (mediaan {per_cent(group['median_power_ratio'])}, "
+        f"{_lines(group['lines'])} (mediaan {per_cent(group['median_power_ratio'])}, "
         f"{seconds(group['median_seconds'])} in een race van twee uur)"
     )
+
+
+def _lines(count: int) -> str:
+    return "1 regel" if count == 1 else f"{count} regels"
 
 
 def _largest(found: Report) -> str:
