@@ -38,7 +38,7 @@ class Speed(_Options):
     """Which speed through the water, and what is known to be wrong with it."""
 
     source: Literal["log1", "log2", "mean"]
-    correction: Literal["none", "prescribed"]
+    correction: Literal["none", "prescribed", "estimated"]
     correction_ratio: float = Field(default=0.0, ge=-0.15, le=0.15)
     operation: Literal["multiply", "divide"] = "multiply"
 

@@ -166,25 +166,35 @@ class Assumed:
     temperature_ratio_per_c: float = 0.003
     straightness_ratio: float = 0.002
 
-    def as_repeats_show(self, tow_sd: float, kappa: float) -> "Assumed":
-        """The same with what differs from tow to tow scaled to what repeat tows show.
+    def as_repeats_show(self, tow_sd: float, kappa: float, air_ratio: float) -> "Assumed":
+        """The same, scaled to what repeat tows show.
 
-        Calibration, stream drift, mass, recorded temperature and straightness cannot be told
-        apart in repeat tows, but their sum is seen there; it replaces what is assumed of it.
+        Calibration, stream drift, force, anemometer, mass, recorded temperature and straightness
+        cannot be told apart in repeat tows, but their sum is seen there, also of those that a
+        season shares, since repeats are of different seasons. It replaces what is assumed of it.
 
         Args:
             tow_sd: standard deviation of ln Cw of a calibrated tow beyond its random part, from
                 the network of repeat tows (`season_log`).
             kappa: usual elasticity of Cw to speed, with which the speed errors enter the sum.
+            air_ratio: usual size of the net wind correction / Cw.
         """
         speed = np.hypot(self.calibration_speed_ratio, self.stream_drift_speed_ratio)
-        temperature = self.temperature_known_c * self.temperature_ratio_per_c
-        other = (self.mass_ratio, temperature, self.straightness_ratio)
-        scale = tow_sd / float(np.linalg.norm([kappa * speed, *other]))
+        parts = (
+            kappa * speed,
+            self.force_ratio,
+            2.0 * self.anemometer_ratio * air_ratio,
+            self.mass_ratio,
+            self.temperature_known_c * self.temperature_ratio_per_c,
+            self.straightness_ratio,
+        )
+        scale = tow_sd / float(np.linalg.norm(parts))
         return replace(
             self,
             calibration_speed_ratio=scale * self.calibration_speed_ratio,
             stream_drift_speed_ratio=scale * self.stream_drift_speed_ratio,
+            force_ratio=scale * self.force_ratio,
+            anemometer_ratio=scale * self.anemometer_ratio,
             mass_ratio=scale * self.mass_ratio,
             temperature_known_c=scale * self.temperature_known_c,
             straightness_ratio=scale * self.straightness_ratio,

@@ -8,8 +8,8 @@ import polars as pl
 from pipeline.blocks import RunBlocks, block_sums, stack_blocks
 from pipeline.channels import BACK, OUT, TARGET_SPEED_RATIOS
 from pipeline.method import Method
-from pipeline.outcome import Recomputed
 from pipeline.recompute import recompute
+from pipeline.results import Recomputed
 from pipeline.simulate import RunTruth, Tow, World, WorldSettings, simulate_tow, simulate_world
 
 

@@ -29,7 +29,14 @@ from warehouse.schemas import TABLES, Quarantine, conform
 from warehouse.store import Store, fingerprint, table_digest
 
 ARCHIVE_TABLES: Final = ("boats", "tows", "tow_runs", "hand_windows", "quarantine")
-METHOD_TABLES: Final = ("run_points", "curves", "log_factors", "assessments")
+METHOD_TABLES: Final = (
+    "run_points",
+    "curves",
+    "log_factors",
+    "season_links",
+    "uncertainty_budget",
+    "assessments",
+)
 STUDY_TABLES: Final = ("correction_steps", "option_effects")
 STUDIED_METHOD: Final = "rebased"
 """The method whose options of judgement are studied."""

@@ -26,6 +26,7 @@ ASSETS = [
     "reproducibility",
     "run_points",
     "samples",
+    "season_links",
     "slow_tows",
     "speed_trend",
     "tow_runs",
@@ -33,6 +34,7 @@ ASSETS = [
     "type_consistency",
     "type_homogeneity",
     "type_outliers",
+    "uncertainty_budget",
     "variance_components",
     "warehouse_database",
 ]
