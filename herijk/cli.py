@@ -5,15 +5,15 @@ arguments. What a command does stands in `assets`, `warehouse` and `pipeline`; h
 as text, in `herijk.text`.
 """
 
-import json
 import re
 import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
-from herijk import text
+from herijk import commands_editions, text
+from herijk.arguments import AsJson, DataFolder, show
 from herijk.method_text import method_in_words
 from herijk.progress import TerminalProgress
 from pipeline.errors import HerijkError, MissingKnowledgeError
@@ -35,10 +35,7 @@ app = typer.Typer(
 methods_app = typer.Typer(help="The methods that ship with Herijk.", rich_markup_mode=None)
 app.add_typer(methods_app, name="methods", invoke_without_command=True)
 
-DataFolder = Annotated[
-    Path, typer.Option("--data", help="Folder with everything Herijk writes.", metavar="DIR")
-]
-AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
+commands_editions.add_to(app)
 
 
 def main() -> None:
@@ -86,7 +83,7 @@ def rebuild(
     with TerminalProgress() as progress:
         done = run(archive, data, chosen, progress, seasons)
     report = reports.rebuild_report(Store(data)) | {"done": vars(done)}
-    _show(report, text.rebuild, as_json)
+    show(report, text.rebuild, as_json)
 
 
 @methods_app.callback()
@@ -95,7 +92,7 @@ def methods(context: typer.Context, as_json: AsJson = False) -> None:
     if context.invoked_subcommand is None:
         known = [shipped_method(name) for name in shipped_methods()]
         rows = [{"method": m.name, "title": m.title, "content_hash": m.content_hash} for m in known]
-        _show({"methods": rows}, text.methods, as_json)
+        show({"methods": rows}, text.methods, as_json)
 
 
 @methods_app.command("show")
@@ -119,7 +116,7 @@ def rebase(
 ) -> None:
     """All of history under a method: what changes and why. Nothing is published or stored."""
     report = rebase_history(Store(data), _method(method), _method(against))
-    _show(report, text.rebase, as_json)
+    show(report, text.rebase, as_json)
 
 
 def _method(name_or_file: str) -> Method:
@@ -145,7 +142,7 @@ def audit(
         shipped_text(method)
         for tow in report["tows"]:
             tow["curves"] = [c for c in tow["curves"] if c["method"] == method]
-    _show(report, text.audit, as_json)
+    show(report, text.audit, as_json)
 
 
 @app.command("log-error")
@@ -175,7 +172,3 @@ def simulate(
             directory, simulate_world(settings), lambda done, _: progress.tow_read(str(done), False)
         )
     typer.echo(f"Simulated archive: {directory}\nIts truth: {truth}")
-
-
-def _show(report: dict[str, Any], as_text: Any, as_json: bool) -> None:
-    typer.echo(json.dumps(report, default=str, indent=1) if as_json else as_text(report))

@@ -128,6 +128,13 @@ class Steps(_Options):
     assessment: Assessment
 
 
+class RegisterRule(_Options):
+    """How long a tow counts. It changes no curve, only which lines of a register are valid."""
+
+    valid_years: int = Field(default=5, ge=1, le=20)
+    six_years_from: int | None = Field(default=None, ge=1990, le=2100)
+
+
 class SeasonSteps(_Options):
     """The steps of the seasons `first` to `last`, both included."""
 
@@ -144,6 +151,7 @@ class Method(_Options):
     description: str
     extends: str | None
     ranges: tuple[SeasonSteps, ...]
+    validity: RegisterRule = RegisterRule()
 
     def for_season(self, season: int) -> Steps:
         """The steps of a season.
@@ -162,13 +170,13 @@ class Method(_Options):
 
     @property
     def definition(self) -> str:
-        """Everything that can change a result, as canonical JSON."""
+        """Everything that can change a curve, as canonical JSON; the register's rule cannot."""
         held = [r.model_dump(mode="json") for r in self.ranges]
         return json.dumps(held, sort_keys=True, separators=(",", ":"))
 
     @property
     def content_hash(self) -> str:
-        """SHA-256 of `definition`, in hex: equal for methods that give equal numbers."""
+        """SHA-256 of `definition`, in hex: equal for methods that give equal curves."""
         return hashlib.sha256(self.definition.encode()).hexdigest()
 
 
@@ -217,7 +225,36 @@ def parse_method(text: str, file_name: str, text_of: Callable[[str], str] = ship
         description=head.description,
         extends=head.extends,
         ranges=_ranges(reader, layers, seasons),
+        validity=_register_rule(reader, head, text_of),
     )
+
+
+def method_text(method: Method) -> str:
+    """A method as TOML that stands alone: every option of every season, nothing inherited.
+
+    Reading it gives a method with the same content hash and register rule.
+    """
+    years = {k: v for k, v in method.validity.model_dump().items() if v is not None}
+    seasons = _range_text(method.ranges[0].first, method.ranges[-1].last)
+    lines = [
+        f"name = {json.dumps(method.name)}",
+        f"title = {json.dumps(method.title, ensure_ascii=False)}",
+        f"description = {json.dumps(method.description, ensure_ascii=False)}",
+        f"seasons = {json.dumps(seasons)}",
+        "",
+        "[register]",
+        *(f"{key} = {json.dumps(value)}" for key, value in years.items()),
+    ]
+    for held in method.ranges:
+        lines += ["", "[[overrides]]", f"range = {json.dumps(_range_text(held.first, held.last))}"]
+        for step, options in held.steps.model_dump(mode="json", exclude_none=True).items():
+            inner = ", ".join(f"{key} = {json.dumps(value)}" for key, value in options.items())
+            lines.append(f"{step} = {{ {inner} }}")
+    return "\n".join(lines) + "\n"
+
+
+def _range_text(first: int, last: int) -> str:
+    return f"{first}:" if last == LAST_SEASON else f"{first}:{last}"
 
 
 class _Head(_Options):
@@ -228,6 +265,7 @@ class _Head(_Options):
     description: str = ""
     extends: str | None = None
     seasons: str = "2009:"
+    validity: dict[str, Any] = Field(default={}, alias="register")
     steps: dict[str, Any] = {}
     overrides: list[dict[str, Any]] = []
 
@@ -342,6 +380,18 @@ def _layers(
         own.append(_Layer(held=held, options=_step_tables(reader, options, "overrides")))
     _refuse_overlap(reader, own)
     return layers + own
+
+
+def _register_rule(reader: _Reader, head: _Head, text_of: Callable[[str], str]) -> RegisterRule:
+    """The rule of validity, with what the methods it extends say where it says nothing."""
+    table, own = dict(head.validity), head
+    while own.extends is not None:
+        own = _Reader(text_of(own.extends), f"{own.extends}.toml").head()
+        table = own.validity | table
+    try:
+        return RegisterRule.model_validate(table)
+    except ValidationError as error:
+        raise reader.from_validation(error, RegisterRule, " ([register])") from error
 
 
 def _step_tables(

@@ -41,7 +41,9 @@ def index(store: Store, root: Path) -> ArchiveIndex:
         store.write(f"listed_{name}", getattr(found, name), made_from="")
     faults = pl.DataFrame([dataclasses.asdict(f) for f in found.faults], schema=FAULT_SCHEMA)
     store.write("list_faults", faults, made_from="")
-    store.write("about_archive", pl.DataFrame({"simulated": [found.profiles.simulated]}), "")
+    about = {"simulated": [found.profiles.simulated], "root": [str(root.resolve())]}
+    store.write("about_archive", pl.DataFrame(about), made_from="")
+    store.write("listed_files", found.files, made_from="")
     return found
 
 

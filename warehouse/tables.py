@@ -183,11 +183,15 @@ def method_is_stale(store: Store, method: Method) -> bool:
     return any(store.made_from(t, method.name) != made_from for t in METHOD_TABLES)
 
 
+def runs_with_windows(store: Store) -> pl.DataFrame:
+    """The runs of all sound tows, with the windows that were given by hand."""
+    windows = store.read("hand_windows").rename(HAND_COLUMNS)
+    return store.read("tow_runs").join(windows, on=["tow_id", "run"], how="left")
+
+
 def run_blocks(store: Store) -> RunBlocks:
     """The runs of all sound tows as arrays, with the windows that were given by hand."""
-    windows = store.read("hand_windows").rename(HAND_COLUMNS)
-    runs = store.read("tow_runs").join(windows, on=["tow_id", "run"], how="left")
-    return stack_blocks(intake.all_blocks(store), runs)
+    return stack_blocks(intake.all_blocks(store), runs_with_windows(store))
 
 
 def typed_tows(store: Store) -> pl.DataFrame:

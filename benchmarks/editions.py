@@ -1,0 +1,68 @@
+"""Publishing, comparing and verifying editions of 300 boats, from blocks.
+
+    PYTHONPATH=. python benchmarks/editions.py [tows a season]
+
+The samples are simulated at 5 Hz: the number of samples in a block does not matter here. Making the
+archive and reading it is not counted.
+"""
+
+import datetime as dt
+import platform
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from pipeline.method import shipped_method
+from pipeline.simulate import WorldSettings, simulate_world
+from warehouse import intake, tables
+from warehouse.archive.write import write_simulated_archive
+from warehouse.editions.compare import diff
+from warehouse.editions.folder import read_edition
+from warehouse.editions.publish import Terms, publish
+from warehouse.editions.verify import verify
+from warehouse.store import Store
+
+DAY = dt.date(2018, 6, 1)
+METHODS = ("as-published", "rebased")
+
+
+def rebuilt(root, tows_per_season):
+    """A data folder with the tables of both methods."""
+    settings = WorldSettings(tuple(range(2009, 2019)), tows_per_season, 5)
+    write_simulated_archive(root / "archive", simulate_world(settings))
+    store = Store(root / "data")
+    intake.index(store, root / "archive")
+    for season in intake.listed_seasons(store):
+        intake.read_season(store, root / "archive", season, lambda *_: None)
+        intake.collect_blocks(store, season)
+    tables.collect_archive(store, DAY)
+    blocks = tables.run_blocks(store)
+    for name in METHODS:
+        tables.apply_method(store, shipped_method(name), blocks)
+    return store
+
+
+def timed(what, function, *arguments):
+    start = time.perf_counter()
+    result = function(*arguments)
+    print(f"{what:34} {time.perf_counter() - start:6.2f} s")
+    return result
+
+
+def main(tows_per_season):
+    with tempfile.TemporaryDirectory() as folder:
+        store = rebuilt(Path(folder), tows_per_season)
+        print(f"{platform.processor() or platform.machine()}, {store.read('tows').height} tows")
+        for name in METHODS:
+            terms = Terms(f"edition-{name}", DAY, "benchmark", DAY)
+            timed(f"publish {name}", publish, store, shipped_method(name), terms)
+        names = [f"edition-{name}" for name in METHODS]
+        print(f"lines: {read_edition(store, names[0]).register.height}")
+        timed("diff", diff, store, *names)
+        report = timed("verify both", verify, store)
+        assert not report["wrong"], report["findings"]
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 75)

@@ -1,0 +1,18 @@
+"""Arguments that several commands share, and how a result is shown."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+DataFolder = Annotated[
+    Path, typer.Option("--data", help="Folder with everything Herijk writes.", metavar="DIR")
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
+
+
+def show(report: dict[str, Any], as_text: Callable[[dict[str, Any]], str], as_json: bool) -> None:
+    """Prints a result for a person, or for a program."""
+    typer.echo(json.dumps(report, default=str, indent=1) if as_json else as_text(report))

@@ -1,0 +1,207 @@
+"""Results of the commands about editions as text for a person."""
+
+from typing import Any
+
+from herijk.text import SIMULATED, table
+
+Report = dict[str, Any]
+CAUSES = {
+    "tow": "another tow counts",
+    "input": "data of the tow changed",
+    "other_input": "data of other tows changed",
+    "code": "the code changed",
+    "input_and_code": "data and code changed, not to be separated",
+    "code_or_other_input": "the code or data of other tows changed",
+    "method": "method",
+    "printed": "printed register: its method is not recorded",
+    "closed_form": "printed A and B re-based with the log factor",
+    "unseparated": "method with data or code, not to be separated",
+    "unexplained": "unexplained",
+}
+
+
+def published(report: Report) -> str:
+    """An edition that was just published."""
+    lines = report["tables"]["register"]["rows"]
+    source = report["method"] or "as printed"
+    return "\n".join(
+        [
+            *([SIMULATED] if report["simulated"] else []),
+            f"Published {report['edition']}: {lines} lines, method {source}, valid from "
+            f"{report['valid_from']}.",
+            f"Decision: {report['decision']}",
+            f"Folder: {report['folder']} (release notes: toelichting.md)",
+        ]
+    )
+
+
+def diff(report: Report) -> str:
+    """Two editions side by side."""
+    parts = [SIMULATED] if report["simulated"] else []
+    counts = ", ".join(f"{count} {change}" for change, count in report["changes"].items())
+    parts.append(f"{report['from_edition']} -> {report['to_edition']}: {counts or 'no lines'}.")
+    parts.append(
+        f"Gain (more power for the same race): {_group(report['gain'])}\n"
+        f"Lose: {_group(report['loss'])}\n"
+        f"Larger than the 95 % intervals of both: {report['exceeds_interval']}; interval not known "
+        f"for {report['interval_unknown']}."
+    )
+    if report["causes"]:
+        rows = [
+            (
+                _cause(c),
+                c["lines"],
+                *(_per_cent(c[f"{n}_factor"]) for n in ("median", "lowest", "highest")),
+            )
+            for c in report["causes"]
+        ]
+        head = ("cause", "lines", "median", "lowest", "highest")
+        parts.append("Causes, with their factor on Cw:\n" + table(head, rows))
+    parts.append("Every line:\n" + _lines(report["rows"]))
+    parts.append(_races(report))
+    return "\n\n".join(parts)
+
+
+def _group(group: Report) -> str:
+    if not group["lines"]:
+        return "no lines"
+    return (
+        f"{group['lines']} lines, median {_per_cent(group['median_power_ratio'])}, "
+        f"{_seconds(group['median_seconds'])} in two hours"
+    )
+
+
+def _lines(rows: list[Report]) -> str:
+    head = (
+        *("boat", "name", "crew", "change", "A", "", "B", "", "Cw", "", "W", ""),
+        *("Cw %", "in 2 h", "rank", "", "causes"),
+    )
+    return table(head, [_line(row) for row in rows])
+
+
+def _line(row: Report) -> tuple[Any, ...]:
+    pairs = [
+        _number(row[f"{side}_{name}"])
+        for name in ("a_kg_m", "b_m_s", "cw_kg_m", "power_w")
+        for side in ("old", "new")
+    ]
+    causes = "; ".join(f"{_cause(c)} {_per_cent(c['factor'])}" for c in row["causes"])
+    return (
+        row["fsn_no"],
+        row["name"] or "-",
+        f"{row['rowers']}{row['crew_class']}",
+        row["change"] if row["change"] != "removed" else f"removed: {row['new_status'] or 'gone'}",
+        *pairs,
+        _per_cent(row["cw_ratio"]),
+        _seconds(row["gain_in_two_hours_s"]),
+        row["old_rank"],
+        row["new_rank"],
+        causes,
+    )
+
+
+def _races(report: Report) -> str:
+    races, rules = report["races"], report["race_rules"]
+    if races is None:
+        return "Races: the archive holds none."
+    moved = [r for r in races if r["old_rank"] != r["new_rank"]]
+    podium = sum(r["podium_changed"] for r in races)
+    head = f"Races (fatigue {rules['fatigue']}, stream {rules['stream']}): "
+    text = f"{head}{len(races)} results, {len(moved)} change rank, {podium} on or off the podium."
+    if not moved:
+        return text
+    rows = [
+        (
+            r["race"],
+            str(r["race_date"]),
+            r["fsn_no"],
+            f"{r['rowers']}{r['crew_class']}",
+            _number(r["old_power_w"]),
+            _number(r["new_power_w"]),
+            r["old_rank"],
+            r["new_rank"],
+            "podium" if r["podium_changed"] else "",
+        )
+        for r in moved
+    ]
+    columns = ("race", "day", "boat", "crew", "old W", "new W", "old rank", "new rank", "")
+    return f"{text}\n{table(columns, rows)}"
+
+
+def verify(report: Report) -> str:
+    """What was checked and what is wrong."""
+    if not report["editions"] and not report["findings"]:
+        return "No edition was published yet; nothing to verify."
+    parts = [
+        table(
+            ("edition", "kind", "lines made again"),
+            [(e["edition"], e["kind"], e["lines_made_again"]) for e in report["editions"]],
+        )
+    ]
+    if report["findings"]:
+        rows = [
+            (f["edition"], "WRONG" if f["wrong"] else "notice", f["kind"], f["where"], f["message"])
+            for f in report["findings"]
+        ]
+        parts.append(table(("edition", "", "kind", "where", "what"), rows))
+    wrong = sum(f["wrong"] for f in report["findings"])
+    parts.append(f"{wrong} things are wrong." if wrong else "Everything is as it was published.")
+    return "\n\n".join(parts)
+
+
+def lineage(report: Report) -> str:
+    """From a line to files, runs and seconds."""
+    about = report["about"]
+    parts = [SIMULATED] if about["simulated"] else []
+    parts.append(
+        f"Edition {about['edition']}, valid from {about['valid_from']}, method "
+        f"{about['method'] or 'as printed'} ({(about['method_hash'] or '-')[:12]}), code "
+        f"{about['code_version']}. Decision: {about['decision']}"
+    )
+    parts += [_line_history(line) for line in report["lines"]]
+    return "\n\n".join(parts)
+
+
+def _line_history(found: Report) -> str:
+    printed = "; ".join(f"{header} {cell}" for header, cell in found["printed"].items() if cell)
+    parts = [f"Verification code {found['code']}\n  {printed}"]
+    if found["tow"] is None:
+        parts.append("  No tow of the archive is behind this line.")
+        return "\n".join(parts)
+    files = "\n".join(f"    {f['path']}  sha256 {f['sha256']}" for f in found["files"])
+    parts.append(f"  Tow {found['tow']['tow_id']} of {found['tow']['tow_date']}, from\n{files}")
+    rows = [
+        (
+            run["run"],
+            _seconds_of(run),
+            run["speed_m_s"],
+            run["cw_kg_m"],
+            "yes" if run["used"] else f"no: {run['reason']}",
+        )
+        for run in found["runs"]
+    ]
+    parts.append(table(("run", "seconds", "v m/s", "Cw kg/m", "counts"), rows))
+    return "\n".join(parts)
+
+
+def _seconds_of(run: Report) -> str:
+    if run["window_start_s"] is None:
+        return "-"
+    return f"{run['window_start_s']:.0f}-{run['window_end_s']:.0f}"
+
+
+def _cause(cause: Report) -> str:
+    words = CAUSES.get(cause["cause"], cause["cause"])
+    return f"{words}: {cause['step']}" if cause.get("step") else words
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.2f}"
+
+
+def _per_cent(ratio: float | None) -> str:
+    return "-" if ratio is None else f"{100 * (ratio - 1):+.2f} %"
+
+
+def _seconds(value: float | None) -> str:
+    return "-" if value is None else f"{value:+.0f} s"

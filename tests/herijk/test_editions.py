@@ -1,0 +1,117 @@
+"""The commands about editions: what they print, and their exit status."""
+
+import json
+import sys
+
+import pytest
+
+from herijk.cli import main
+from tests.warehouse.edition_bench import EditionBench
+
+DECISION = ("--decision", "ALV 12-5-2014")
+FROM = ("--valid-from", "2014-06-01", "--published-on", "2014-05-13")
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory):
+    """Rebuilt, with two editions published through the command."""
+    made = EditionBench.simulated(tmp_path_factory.mktemp("command"))
+    for edition, method in (("2014-1", "as-published"), ("2014-2", "rebased")):
+        made.publish(edition, method)
+    return made
+
+
+@pytest.fixture
+def herijk(monkeypatch, capsys):
+    """Runs the command in this process; gives exit status, stdout and stderr."""
+
+    def run(*arguments):
+        monkeypatch.setattr(sys, "argv", ["herijk", *map(str, arguments)])
+        capsys.readouterr()
+        try:
+            main()
+        except SystemExit as stop:
+            status = stop.code or 0
+        else:
+            status = 0
+        printed = capsys.readouterr()
+        assert "Traceback" not in printed.err
+        return status, printed.out, printed.err
+
+    return run
+
+
+def test_publish_tells_where_the_edition_is_and_only_once(herijk, bench, tmp_path):
+    copy = bench.copy(tmp_path)
+    call = ("publish", "x", "--method", "rebased", *FROM, *DECISION, "--data", copy.data)
+    status, out, err = herijk(*call)
+    assert (status, err) == (0, "")
+    assert "Published x" in out
+    assert "SIMULATED" in out
+    assert (copy.data / "editions" / "x" / "register.csv").exists()
+    status, out, err = herijk(*call)
+    assert (status, out) == (1, "")
+    assert "already published" in err
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("publish", "x", *FROM, *DECISION),
+        ("publish", "x", "--method", "rebased", "--printed", "2014", *FROM, *DECISION),
+        ("publish", "x", "--printed", "2014", "--carry", "y", *FROM, *DECISION),
+        ("publish", "x", "--method", "rebased", "--valid-from", "1-6-2014", *DECISION),
+        ("publish", "x", "--method", "rebased", *FROM),
+        ("diff", "2014-1", "2014-2", "--fatigue", "some"),
+        ("diff", "2014-1"),
+    ],
+)
+def test_wrong_arguments_are_status_2(herijk, bench, arguments):
+    assert herijk(*arguments, "--data", bench.data)[0] == 2
+
+
+def test_diff_names_gain_loss_causes_and_races(herijk, bench):
+    status, out, err = herijk("diff", "2014-1", "2014-2", "--data", bench.data)
+    assert (status, err) == (0, "")
+    for part in ("Gain", "Lose", "method: temperature", "in 2 h", "Races (fatigue extend"):
+        assert part in out
+    status, out, _ = herijk("diff", "2014-1", "2014-2", "--data", bench.data, "--json")
+    report = json.loads(out)
+    assert len(report["rows"]) == report["lines"]
+    assert {"cw_ratio", "old_rank", "new_rank", "old_power_w", "causes"} <= set(report["rows"][0])
+
+
+def test_diff_refuses_the_rule_over_legs_in_one_sentence(herijk, bench):
+    call = ("diff", "2014-1", "2014-2", "--stream", "net_speed_over_legs", "--data", bench.data)
+    status, out, err = herijk(*call)
+    assert (status, out) == (1, "")
+    assert "needs distance, time and stream of each leg" in err
+
+
+def test_verify_is_0_when_all_is_well_and_1_when_not(herijk, bench, tmp_path):
+    status, out, err = herijk("verify", "--data", bench.data)
+    assert (status, err) == (0, "")
+    assert "Everything is as it was published." in out
+    copy = bench.copy(tmp_path)
+    file = copy.data / "editions" / "2014-1" / "register.csv"
+    file.write_bytes(file.read_bytes().replace(b",1", b",2", 1))
+    status, out, _ = herijk("verify", "--data", copy.data)
+    assert status == 1
+    assert "register.csv, line" in out
+    assert "WRONG" in out
+
+
+def test_verify_without_any_edition_says_so(herijk, tmp_path):
+    status, out, _ = herijk("verify", "--data", tmp_path)
+    assert (status, out) == (0, "No edition was published yet; nothing to verify.\n")
+
+
+def test_lineage_goes_from_line_to_files_runs_and_seconds(herijk, bench):
+    tow = bench.tow(2014)
+    status, out, err = herijk("lineage", "2014-2", tow["fsn_no"], "--data", bench.data)
+    assert (status, err) == (0, "")
+    for part in ("Verification code", tow["samples_path"], tow["samples_sha256"], "seconds"):
+        assert part in out
+    status, _, err = herijk("lineage", "2014-2", "FSN000", "--data", bench.data)
+    assert status == 1
+    assert "boat FSN000 is not in edition 2014-2" in err

@@ -1,0 +1,163 @@
+"""Races replayed under a register: the presentation's example, ranks, fatigue, stream, penalty."""
+
+import datetime as dt
+
+import numpy as np
+import polars as pl
+import pytest
+
+from pipeline.curve import cw, s_of_b
+from pipeline.errors import MissingKnowledgeError
+from pipeline.replay import RaceRules, race_changes, replay
+
+DAY = dt.date(2015, 6, 6)
+PLAIN = RaceRules(fatigue="none")
+
+
+def register(*lines):
+    """Lines of (boat, A, B), eight men."""
+    rows = [
+        {"fsn_no": boat, "rowers": 8, "crew_class": "H", "a_kg_m": a, "b_m_s": b}
+        for boat, a, b in lines
+    ]
+    return pl.DataFrame(rows, schema_overrides={"a_kg_m": pl.Float64, "b_m_s": pl.Float64})
+
+
+def results(*rows):
+    """Results of (boat, time [s]), with the stream [m] and the penalty [W] where there are."""
+    return pl.DataFrame(
+        [
+            {
+                "race": "HT",
+                "race_date": DAY,
+                "fsn_no": boat,
+                "rowers": 8,
+                "crew_class": "H",
+                "distance_m": 18400.0,
+                "rowing_time_s": float(time),
+                "stream_m": more[0] if more else None,
+                "penalty_w": more[1] if len(more) > 1 else None,
+            }
+            for boat, time, *more in rows
+        ],
+        schema_overrides={"stream_m": pl.Float64, "penalty_w": pl.Float64},
+    )
+
+
+def power(a, b, speed):
+    return float(cw(a, s_of_b(b), speed) * speed**3 / 8)
+
+
+def test_the_example_of_the_presentation():
+    """18.4 km in 2:10:25 with A 31.6, B 4.44 and 8 rowers: v 2.35 m/s, 71.21 W."""
+    rounded = RaceRules(fatigue="none", speed_decimals=2)
+    found = replay(register(("X", 31.6, 4.44)), results(("X", 7825)), rounded).row(0, named=True)
+    assert found["speed_m_s"] == 2.35
+    assert f"{found['power_w']:.2f}" == "71.21"
+    unrounded = replay(register(("X", 31.6, 4.44)), results(("X", 7825)), PLAIN)
+    assert f"{unrounded['power_w'].item():.2f}" == "71.38"
+
+
+def test_rank_is_by_power_and_not_by_time():
+    heavy_light = register(("HEAVY", 40.0, 5.0), ("LIGHT", 25.0, 5.0))
+    found = replay(heavy_light, results(("HEAVY", 8000), ("LIGHT", 7600)), PLAIN)
+    assert found.select("fsn_no", "rank").rows() == [("HEAVY", 1), ("LIGHT", 2)]
+
+
+def test_fatigue_favours_the_slower_crew_by_79_over_77_at_three_hours_against_two():
+    two = register(("FAST", 30.0, 5.0), ("SLOW", 30.0, 5.0))
+    rows = results(("FAST", 7200), ("SLOW", 10800))
+    corrected = replay(two, rows, RaceRules(fatigue="known"))
+    plain = replay(two, rows, PLAIN)
+    ratio = (corrected["power_w"] / plain["power_w"]).to_list()
+    assert ratio == pytest.approx([1.0, 0.79 / 0.77])
+
+
+def test_outside_the_known_points_fatigue_is_refused_or_extended_by_name():
+    one = register(("X", 30.0, 5.0))
+    rows = results(("X", 5000))
+    with pytest.raises(MissingKnowledgeError, match="2 to 3 h"):
+        replay(one, rows, RaceRules(fatigue="known"))
+    assert replay(one, rows, RaceRules(fatigue="extend"))["fatigue_factor"].item() == 1.0
+
+
+def test_the_stream_comes_off_the_distance():
+    found = replay(register(("X", 30.0, 5.0)), results(("X", 8000, 400.0)), PLAIN)
+    assert found["power_w"].item() == pytest.approx(power(30.0, 5.0, 18000 / 8000))
+
+
+def legs(boat, *rows):
+    return pl.DataFrame(
+        [
+            {
+                "race": "HT",
+                "race_date": DAY,
+                "fsn_no": boat,
+                "rowers": 8,
+                "crew_class": "H",
+                "distance_m": distance,
+                "time_s": time,
+                "stream_m": stream,
+            }
+            for distance, time, stream in rows
+        ]
+    )
+
+
+def test_net_speed_is_averaged_over_legs_before_the_power():
+    rules = RaceRules(fatigue="none", stream="net_speed_over_legs")
+    parts = legs("X", (10000.0, 4000.0, 1000.0), (8400.0, 4000.0, -600.0))
+    found = replay(register(("X", 30.0, 5.0)), results(("X", 8000)), rules, parts)
+    speed = np.mean([9000 / 4000, 9000 / 4000])
+    assert found["power_w"].item() == pytest.approx(power(30.0, 5.0, speed))
+    uneven = legs("X", (10000.0, 5000.0, 0.0), (8400.0, 3000.0, 0.0))
+    found = replay(register(("X", 30.0, 5.0)), results(("X", 8000)), rules, uneven)
+    assert found["speed_m_s"].item() == pytest.approx((2.0 + 2.8) / 2)
+
+
+@pytest.mark.parametrize("parts", [None, legs("Y", (1.0, 1.0, 0.0))])
+def test_the_rule_over_legs_is_refused_where_there_are_none(parts):
+    rules = RaceRules(stream="net_speed_over_legs")
+    with pytest.raises(MissingKnowledgeError, match=r"HT of 2015-06-06 has none for X.*distance_f"):
+        replay(register(("X", 30.0, 5.0)), results(("X", 8000)), rules, parts)
+
+
+def test_a_penalty_in_watt_comes_off_the_power():
+    one = register(("X", 30.0, 5.0))
+    free, fined = (
+        replay(one, results(("X", 8000, None, watt)), PLAIN)["power_w"].item()
+        for watt in (None, 1.5)
+    )
+    assert fined == pytest.approx(free - 1.5)
+
+
+def test_a_boat_without_a_curve_has_no_power_and_no_rank():
+    held = register(
+        ("X", 30.0, 5.0), ("FLAT", 30.0, None), ("LOW", 30.0, 2.0), ("NONE", None, None)
+    )
+    rows = results(("X", 8000), ("FLAT", 8000), ("LOW", 8000), ("NONE", 8000), ("OUT", 8000))
+    found = {r["fsn_no"]: r for r in replay(held, rows, PLAIN).iter_rows(named=True)}
+    assert found["FLAT"]["power_w"] == pytest.approx(30.0 * 2.3**3 / 8)
+    assert found["LOW"]["reason"] == "speed_not_below_b"
+    assert found["NONE"]["reason"] == found["OUT"]["reason"] == "not_in_register"
+    assert [found[b]["rank"] for b in ("X", "FLAT", "LOW", "NONE", "OUT")] == [
+        1,
+        2,
+        None,
+        None,
+        None,
+    ]
+
+
+def test_another_register_changes_rank_and_podium():
+    boats = [f"B{i}" for i in range(5)]
+    rows = results(*((boat, 8000 + i) for i, boat in enumerate(boats)))
+    old = register(*((boat, 40.0 - i, 5.0) for i, boat in enumerate(boats)))
+    new = register(
+        *((boat, 40.0 - i + (3.5 if boat == "B3" else 0), 5.0) for i, boat in enumerate(boats))
+    )
+    found = race_changes(replay(old, rows, PLAIN), replay(new, rows, PLAIN))
+    by_boat = {r["fsn_no"]: r for r in found.iter_rows(named=True)}
+    assert (by_boat["B3"]["old_rank"], by_boat["B3"]["new_rank"]) == (4, 1)
+    assert [b for b in boats if by_boat[b]["podium_changed"]] == ["B2", "B3"]
+    assert by_boat["B0"]["new_power_w"] == by_boat["B0"]["old_power_w"]

@@ -1,0 +1,92 @@
+"""A small simulated archive and its warehouse, made without Dagster, for tests of editions."""
+
+import datetime as dt
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+import polars as pl
+
+from pipeline.method import Method, shipped_method
+from pipeline.simulate import WorldSettings, simulate_world
+from warehouse import intake, tables
+from warehouse.archive.write import write_simulated_archive
+from warehouse.editions.publish import Terms, publish
+from warehouse.store import Store
+
+SMALL = WorldSettings(seasons=(2009, 2014), tows_per_season=8, rate_hz=10, seed=5)
+"""Season 2009 is written as plain CSV; a line of either season is valid in June 2014."""
+
+METHODS = ("as-published", "rebased")
+DAY = dt.date(2014, 6, 1)
+
+
+@dataclass(frozen=True)
+class EditionBench:
+    """An archive and a data folder that a test may change."""
+
+    archive: Path
+    data: Path
+
+    @classmethod
+    def simulated(cls, root: Path) -> "EditionBench":
+        bench = cls(root / "archive", root / "data")
+        write_simulated_archive(bench.archive, simulate_world(SMALL))
+        bench.rebuild()
+        return bench
+
+    def copy(self, root: Path) -> "EditionBench":
+        """A copy to change at will; the warehouse knows its archive by the new place."""
+        shutil.copytree(self.archive, root / "archive")
+        shutil.copytree(self.data, root / "data")
+        copied = EditionBench(root / "archive", root / "data")
+        intake.index(copied.store, copied.archive)
+        return copied
+
+    @property
+    def store(self) -> Store:
+        return Store(self.data)
+
+    def rebuild(self, methods: tuple[Method, ...] = tuple(map(shipped_method, METHODS))) -> None:
+        """Everything that a rebuild does up to the curves."""
+        store = self.store
+        intake.index(store, self.archive)
+        intake.forget_unlisted_seasons(store)
+        for season in intake.stale_seasons(store, self.archive):
+            intake.read_season(store, self.archive, season, lambda *_: None)
+            intake.collect_blocks(store, season)
+        tables.collect_archive(store, DAY)
+        blocks = tables.run_blocks(store)
+        for method in methods:
+            tables.apply_method(store, method, blocks)
+
+    def publish(
+        self,
+        edition: str,
+        method: str | Method = "as-published",
+        valid_from: dt.date = DAY,
+        carry: str | None = None,
+    ) -> Path:
+        chosen = shipped_method(method) if isinstance(method, str) else method
+        return publish(self.store, chosen, terms(edition, valid_from), carry)
+
+    def tow(self, season: int) -> dict:
+        """The first sound tow of a season."""
+        return self.store.read("tows").filter(pl.col("season") == season).row(0, named=True)
+
+    def stretch_force(self, samples_path: str, factor: float) -> None:
+        """Makes the forces in a samples file (plain CSV) larger by a factor."""
+        path = self.archive / samples_path
+        head, *rows = path.read_text(encoding="utf-8").splitlines()
+        place = next(i for i, name in enumerate(head.split(";")) if name.startswith("kracht"))
+        changed = [head]
+        for row in rows:
+            cells = row.split(";")
+            force = float(cells[place].replace(",", ".")) * factor
+            cells[place] = f"{force:.3f}".replace(".", ",")
+            changed.append(";".join(cells))
+        path.write_text("\n".join(changed) + "\n", encoding="utf-8")
+
+
+def terms(edition: str, valid_from: dt.date = DAY) -> Terms:
+    return Terms(edition, valid_from, "besluit van de ALV", valid_from)

@@ -1,0 +1,231 @@
+"""Causes of a change: one file, one option, the code, another tow, each under its own name."""
+
+import json
+import math
+import shutil
+
+import polars as pl
+import pytest
+
+import pipeline.recompute
+from pipeline.errors import MissingKnowledgeError
+from pipeline.method import parse_method, shipped_method
+from pipeline.register import LINE
+from pipeline.replay import RaceRules
+from warehouse.decisions import FILE_NAME
+from warehouse.editions.compare import diff, race_effects, report
+from warehouse.editions.folder import read_edition
+
+VARIANT = """
+name = "variant"
+title = "proef"
+extends = "as-published"
+
+[[overrides]]
+range = "2014:"
+runs = { highest_target_ratio = 1.05 }
+"""
+
+
+def causes(lines):
+    """Per line the list of (cause, step, factor), those that changed nothing left out."""
+    return [
+        [
+            (c["cause"], c.get("step"), c["factor"])
+            for c in json.loads(text)
+            if abs(c["factor"] - 1) > 1e-9
+        ]
+        for text in lines["causes"]
+    ]
+
+
+def names(lines):
+    return {(cause, step) for line in causes(lines) for cause, step, _ in line}
+
+
+def assert_factors_multiply(lines):
+    for row in lines.drop_nulls("cw_ratio").iter_rows(named=True):
+        product = math.prod(c["factor"] for c in json.loads(row["causes"]))
+        assert product == pytest.approx(row["cw_ratio"], rel=1e-10)
+
+
+def new_code(monkeypatch):
+    """Another version of the code, which finds other run points."""
+    original = pipeline.recompute.still_air_coefficient_kg_m
+    monkeypatch.setattr(
+        pipeline.recompute,
+        "still_air_coefficient_kg_m",
+        lambda area, drag: 1.5 * original(area, drag),
+    )
+    for room in ("tables", "editions.publish", "editions.compare", "editions.verify"):
+        monkeypatch.setattr(f"warehouse.{room}.code_version", lambda: "0.2.0+other")
+
+
+def test_an_edition_against_itself_is_the_same(published):
+    lines = diff(published.store, "2014-1", "2014-1").lines
+    assert set(lines["change"]) == {"same"}
+    assert names(lines) == set()
+
+
+def test_between_methods_only_steps_are_causes_and_they_multiply(published):
+    lines = diff(published.store, "2014-1", "2014-2").lines
+    assert lines["cw_ratio"].null_count() == 0
+    found = names(lines)
+    assert {cause for cause, _ in found} <= {"method"}
+    assert {"wind", "temperature", "run_point"} <= {step for _, step in found}
+    assert_factors_multiply(lines)
+
+
+def test_one_option_shows_under_its_own_step_alone(bench_of_editions):
+    bench = bench_of_editions
+    variant = parse_method(VARIANT, "variant.toml")
+    bench.rebuild((shipped_method("as-published"), variant))
+    bench.publish("a", "as-published")
+    bench.publish("b", variant)
+    lines = diff(bench.store, "a", "b").lines
+    assert names(lines) == {("method", "runs")}
+    assert_factors_multiply(lines)
+    seasons = bench.store.read("tows").select(tow_id_of="tow_id", season="season")
+    moved = lines.filter(pl.col("change") == "changed").join(
+        seasons, left_on="new_tow_id", right_on="tow_id_of"
+    )
+    assert set(moved["season"]) == {2014}
+
+
+def test_one_file_shows_as_input_on_its_own_line_alone(bench_of_editions):
+    bench = bench_of_editions
+    bench.publish("a")
+    tow = line_with_season(bench, "a", 2009)
+    stretch(bench, tow, 1.02)
+    bench.rebuild()
+    bench.publish("b")
+    lines = diff(bench.store, "a", "b").lines
+    changed = lines.filter(pl.col("change") == "changed")
+    assert changed["new_tow_id"].to_list() == [tow]
+    ((cause,),) = causes(changed)
+    assert cause[:2] == ("input", None)
+    assert cause[2] == pytest.approx(1.02, abs=0.003)
+    assert names(lines) == {("input", None)}
+
+
+def line_with_season(bench, edition, season):
+    register = read_edition(bench.store, edition).register
+    return register.filter(pl.col("tow_date").dt.year() == season)["tow_id"][0]
+
+
+def stretch(bench, tow_id, factor):
+    tow = bench.store.read("tows").filter(pl.col("tow_id") == tow_id).row(0, named=True)
+    bench.stretch_force(tow["samples_path"], factor)
+
+
+def test_where_tows_share_a_coefficient_the_others_say_so(bench_of_editions):
+    bench = bench_of_editions
+    bench.publish("a", "rebased")
+    tow = line_with_season(bench, "a", 2009)
+    stretch(bench, tow, 1.02)
+    bench.rebuild()
+    bench.publish("b", "rebased")
+    lines = diff(bench.store, "a", "b").lines
+    assert names(lines.filter(pl.col("new_tow_id") == tow)) == {("input", None)}
+    others = names(lines.filter(pl.col("new_tow_id") != tow))
+    assert others == {("other_input", None)}
+
+
+def test_the_code_alone_shows_as_code(bench_of_editions, monkeypatch):
+    bench = bench_of_editions
+    bench.publish("a")
+    new_code(monkeypatch)
+    bench.rebuild()
+    bench.publish("b")
+    lines = diff(bench.store, "a", "b").lines
+    assert set(lines["change"]) == {"changed"}
+    assert names(lines) == {("code", None)}
+    assert_factors_multiply(lines)
+
+
+def test_method_code_and_one_file_together_are_told_apart(bench_of_editions, monkeypatch):
+    bench = bench_of_editions
+    bench.publish("a", "as-published")
+    tow = line_with_season(bench, "a", 2009)
+    stretch(bench, tow, 1.02)
+    new_code(monkeypatch)
+    bench.rebuild()
+    bench.publish("b", "rebased")
+    lines = diff(bench.store, "a", "b").lines
+    assert_factors_multiply(lines)
+    own = lines.filter(pl.col("new_tow_id") == tow)
+    assert {cause for cause, _ in names(own)} == {"method", "input_and_code"}
+    others = lines.filter(pl.col("new_tow_id") != tow)
+    assert {cause for cause, _ in names(others)} == {"method", "code_or_other_input"}
+
+
+def test_another_tow_shows_as_tow_beside_the_steps(bench_of_editions):
+    bench = bench_of_editions
+    bench.publish("a", "as-published")
+    twice = [
+        row
+        for row in read_edition(bench.store, "a").register.iter_rows(named=True)
+        if bench.store.read("tows").filter(*(pl.col(name) == row[name] for name in LINE)).height > 1
+    ]
+    assert twice
+    (bench.data / FILE_NAME).write_text(
+        f'[[besluit]]\nsleep_id = "{twice[0]["tow_id"]}"\noordeel = "uitsluiten"\n'
+        'reden = "scheef getrokken"\nwie = "SKC"\ndatum = 2014-05-01\n',
+        encoding="utf-8",
+    )
+    bench.publish("b", "rebased")
+    lines = diff(bench.store, "a", "b").lines
+    row = lines.filter(*(pl.col(name) == twice[0][name] for name in LINE))
+    assert row["old_tow_id"].item() != row["new_tow_id"].item()
+    assert {cause for cause, _ in names(row)} == {"tow", "method"}
+    assert_factors_multiply(lines)
+
+
+def test_the_summary_names_gainers_losers_and_the_largest(published):
+    found = report(diff(published.store, "2014-1", "2014-2"))
+    moved = [r for r in found["rows"] if r["change"] == "changed"]
+    assert found["gain"]["lines"] + found["loss"]["lines"] == len(moved)
+    assert all(r["power_ratio"] > 1 for r in found["gain"]["most"])
+    sizes = [abs(math.log(r["cw_ratio"])) for r in found["largest"]]
+    assert sizes == sorted(sizes, reverse=True)
+    assert sizes[0] == max(abs(math.log(r["cw_ratio"])) for r in moved)
+    row = found["largest"][0]
+    assert row["new_power_w"] == pytest.approx(row["old_power_w"] * row["power_ratio"])
+    assert row["gain_in_two_hours_s"] == pytest.approx(7200 * (row["time_ratio"] - 1))
+    exceeding = [r for r in moved if r["exceeds_interval"]]
+    assert found["exceeds_interval"] == len(exceeding)
+    json.dumps(found, default=str)
+
+
+def test_races_are_replayed_under_both(bench_of_editions):
+    bench = bench_of_editions
+    bench.publish("a", "as-published")
+    bench.publish("b", "rebased")
+    register = read_edition(bench.store, "a").register.drop_nulls("cw_kg_m")
+    rows = [
+        f"Proefrace;2014-06-07;18,4;{r['fsn_no']};{r['rowers']};{r['crew_class']};2:1{i}:00;;"
+        for i, r in enumerate(register.head(6).iter_rows(named=True))
+    ]
+    head = "wedstrijd;datum;afstand [km];fsn_nr;roeiers;klasse;roeitijd;stroom [km];straf [W]"
+    folder = empty_races(bench)
+    (folder / "proefrace_2014.csv").write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
+    old, new = (read_edition(bench.store, name) for name in "ab")
+    found = race_effects(bench.store, old, new, RaceRules())
+    assert found is not None
+    assert found.height == 6
+    assert found["old_power_w"].null_count() == 0
+    with pytest.raises(MissingKnowledgeError, match="needs distance, time and stream of each leg"):
+        race_effects(bench.store, old, new, RaceRules(stream="net_speed_over_legs"))
+
+
+def test_without_races_there_is_no_effect(published_copy):
+    empty_races(published_copy)
+    edition = read_edition(published_copy.store, "2014-1")
+    assert race_effects(published_copy.store, edition, edition, RaceRules()) is None
+
+
+def empty_races(bench):
+    folder = bench.archive / "wedstrijden"
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
+    return folder

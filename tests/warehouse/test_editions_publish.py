@@ -1,0 +1,395 @@
+"""Publishing: what an edition holds, and that nothing half-written ever shows."""
+
+import csv
+import dataclasses
+import datetime as dt
+import errno
+import io
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import frictionless
+import polars as pl
+import pytest
+
+from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
+from pipeline.method import parse_method, shipped_method
+from tests.warehouse.edition_bench import terms
+from warehouse.decisions import FILE_NAME
+from warehouse.editions import sheets
+from warehouse.editions.compare import diff
+from warehouse.editions.folder import (
+    CHANGES,
+    TABLES,
+    edition_names,
+    editions_folder,
+    read_about,
+    read_edition,
+)
+from warehouse.editions.publish import publish, publish_printed
+from warehouse.editions.published import published_made_from, published_tables
+from warehouse.schemas import conform
+from warehouse.store import table_digest
+
+FILES = {
+    "register.csv",
+    "register.xlsx",
+    "inputs.csv",
+    "datapackage.json",
+    "edition.json",
+    "method.toml",
+    "decisions.json",
+    "toelichting.md",
+    *(f"{name}.parquet" for name in TABLES if name != CHANGES),
+}
+"""Files of the first edition."""
+
+
+def edition_of(bench, name="2014-1"):
+    return read_edition(bench.store, name)
+
+
+def folder(bench, name="2014-1"):
+    return editions_folder(bench.store) / name
+
+
+def test_an_edition_holds_everything_behind_it(published):
+    path = folder(published)
+    assert {f.name for f in path.iterdir()} == FILES
+    about = read_about(path)
+    assert set(about.files) == FILES - {"edition.json"}
+    assert (about.method, about.valid_from) == ("as-published", dt.date(2014, 6, 1))
+    assert about.seal == about.expected_seal
+    assert about.method_hash == shipped_method("as-published").content_hash
+    for name, frame in edition_of(published).tables.items():
+        assert about.tables[name].rows == frame.height
+        assert about.tables[name].digest == table_digest(frame)
+
+
+def test_an_edition_keeps_what_changed_since_the_one_before(published):
+    second = edition_of(published, "2014-2")
+    assert second.about.previous == "2014-1"
+    changes = conform("register_changes", second.tables[CHANGES])
+    assert set(changes["from_edition"]) == {"2014-1"}
+    assert changes.height == second.register.height
+
+
+def test_all_editions_as_rows_of_the_warehouse(published):
+    tables = published_tables(published.store)
+    assert tables.keys() == {"register", "register_changes", "lineage"}
+    heights = [edition_of(published, name).register.height for name in ("2014-1", "2014-2")]
+    assert tables["register"]["edition"].value_counts().sort("edition").rows() == [
+        ("2014-1", heights[0]),
+        ("2014-2", heights[1]),
+    ]
+    assert set(tables["register_changes"]["to_edition"]) == {"2014-2"}
+    assert set(tables["lineage"]["edition"]) == {"2014-1", "2014-2"}
+    assert published_made_from(published.store).keys() == {"2014-1", "2014-2"}
+
+
+def test_the_register_has_the_columns_of_the_warehouse_and_a_code_per_line(published):
+    register = edition_of(published).register
+    conform("register", register)
+    assert register["verification_code"].n_unique() == register.height
+    assert register["verification_code"].str.contains("^[A-Z2-7]{10}$").all()
+
+
+def test_the_method_text_stands_alone(published):
+    text = (folder(published, "2014-2") / "method.toml").read_text(encoding="utf-8")
+    method = parse_method(text, "method.toml")
+    shipped = shipped_method("rebased")
+    assert method.content_hash == shipped.content_hash
+    assert method.validity == shipped.validity
+    assert method.extends is None
+
+
+def test_a_line_of_an_expired_tow_has_no_numbers(bench_of_editions):
+    bench_of_editions.publish("2018-1", valid_from=dt.date(2018, 6, 1))
+    register = edition_of(bench_of_editions, "2018-1").register
+    expired = register.filter(pl.col("status") == "expired")
+    assert expired["tow_date"].dt.year().unique().to_list() == [2009]
+    assert expired.height > 0
+    assert expired["cw_kg_m"].null_count() == expired["a_kg_m"].null_count() == expired.height
+    assert register.filter(pl.col("status") == "valid")["cw_kg_m"].null_count() == 0
+
+
+def test_a_later_tow_does_not_count_in_an_earlier_edition(bench_of_editions):
+    bench_of_editions.publish("2013-1", valid_from=dt.date(2013, 1, 1))
+    towed = edition_of(bench_of_editions, "2013-1").register.drop_nulls("tow_date")
+    assert towed["tow_date"].dt.year().unique().to_list() == [2009]
+
+
+# Sheets
+
+
+def csv_rows(path: Path) -> list[dict[str, str]]:
+    content = path.read_bytes()
+    assert content.startswith(b"\xef\xbb\xbf")
+    return list(csv.DictReader(io.StringIO(content.decode("utf-8-sig")), delimiter=";"))
+
+
+def test_the_csv_reads_back_in_a_dutch_spreadsheet(published):
+    rows = csv_rows(folder(published) / "register.csv")
+    register = edition_of(published).register
+    assert [r["fsn_nr"] for r in rows] == register["fsn_no"].to_list()
+    for header, column, decimals in (
+        ("A", "a_kg_m", 3),
+        ("roeisnelheid [m/s]", "declared_speed_m_s", 2),
+    ):
+        cells = [r[header] for r in rows]
+        assert not any("." in cell for cell in cells)
+        read = [float(cell.replace(",", ".")) if cell else None for cell in cells]
+        written = [None if v is None else round(v, decimals) for v in register[column]]
+        assert read == written
+    assert [r["controlecode"] for r in rows] == register["verification_code"].to_list()
+
+
+@pytest.mark.parametrize("name", ["=1+1", "+31", "-x", "@cmd", "\tx"])
+def test_a_name_that_looks_like_a_formula_is_none_in_the_sheets(published, name):
+    edition = edition_of(published)
+    register = edition.register.with_columns(pl.lit(name).alias("name"))
+    rows = sheets.read_csv_cells(sheets.csv_bytes(register, sheets.REGISTER_FIELDS))
+    assert {row[2] for row in rows[1:]} == {f"'{name}"}
+    content = sheets.xlsx_bytes(register, sheets.REGISTER_FIELDS, edition.about)
+    assert sheets.read_xlsx_cells(content)["C2"] == name
+
+
+def test_numbers_in_the_xlsx_are_numbers_and_days_are_days(published):
+    cells = sheets.read_xlsx_cells((folder(published) / "register.xlsx").read_bytes())
+    register = edition_of(published).register
+    letter = dict(
+        zip((f.header for f in sheets.REGISTER_FIELDS), "ABCDEFGHIJKLMNOPQRSTUVW", strict=True)
+    )
+    for row, line in enumerate(register.iter_rows(named=True), 2):
+        assert cells[f"{letter['fsn_nr']}{row}"] == line["fsn_no"]
+        assert cells[f"{letter['roeiers']}{row}"] == line["rowers"]
+        assert cells.get(f"{letter['Cw']}{row}") == pytest.approx(line["cw_kg_m"], abs=5e-4)
+        day = (line["tow_date"] - dt.date(1899, 12, 30)).days
+        assert cells[f"{letter['sleepdatum']}{row}"] == day
+
+
+def test_the_data_package_validates_with_its_own_tool(published):
+    report = frictionless.validate(str(folder(published) / "datapackage.json"))
+    assert report.valid, report.flatten(["type", "message"])
+    assert report.stats["tasks"] == 2
+
+
+def test_the_data_package_tool_would_see_a_changed_number(published_copy):
+    file = folder(published_copy) / "register.csv"
+    file.write_bytes(file.read_bytes().replace(b";8;", b";acht;", 1))
+    assert not frictionless.validate(str(file.parent / "datapackage.json")).valid
+
+
+def test_the_notes_say_what_changes(published):
+    text = (folder(published, "2014-2") / "toelichting.md").read_text(encoding="utf-8")
+    for part in (
+        "GESIMULEERD",
+        "ten opzichte van 2014-1",
+        "besluit van de ALV",
+        "## Bezwaar",
+        "ensemble",
+    ):
+        assert part in text
+    first = (folder(published) / "toelichting.md").read_text(encoding="utf-8")
+    assert "eerste uitgave" in first
+
+
+# Verification codes
+
+
+def test_a_code_follows_from_inputs_method_and_printed_numbers(published):
+    register = edition_of(published).register
+    codes = sheets.verification_codes(register, "m")
+    assert sheets.verification_codes(register, "m") == codes
+    for changed in (
+        sheets.verification_codes(register, "other"),
+        sheets.verification_codes(register.with_columns(pl.lit("x").alias("inputs_sha256")), "m"),
+        sheets.verification_codes(register.with_columns(pl.col("cw_kg_m") + 0.001), "m"),
+    ):
+        valid = register["cw_kg_m"].is_not_null()
+        pairs = zip(codes, changed, valid, strict=True)
+        assert all(one != other for one, other, is_valid in pairs if is_valid)
+    unseen = register.with_columns(pl.col("cw_kg_m") * (1 + 1e-12))
+    assert sheets.verification_codes(unseen, "m") == codes
+
+
+# Whole or not at all
+
+
+def test_an_edition_is_never_published_twice(published):
+    before = {f.name: f.read_bytes() for f in folder(published).iterdir()}
+    with pytest.raises(BrokenPromiseError, match=r"already published .* another name"):
+        published.publish("2014-1", "rebased")
+    assert {f.name: f.read_bytes() for f in folder(published).iterdir()} == before
+
+
+def test_a_full_disk_leaves_nothing(bench_of_editions, monkeypatch):
+    written = []
+
+    def full(path, content):
+        written.append(path)
+        if len(written) == 4:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        with path.open("wb") as file:
+            file.write(content)
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    with pytest.raises(BrokenPromiseError, match=r"No space left .* make room"):
+        bench_of_editions.publish("2014-1")
+    assert edition_names(bench_of_editions.store) == []
+    assert [f for f in editions_folder(bench_of_editions.store).iterdir() if f.is_dir()] == []
+
+
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+from tests.warehouse.edition_bench import EditionBench
+Path.rename = lambda *_: os.kill(os.getpid(), signal.SIGKILL)
+EditionBench(Path(sys.argv[1]), Path(sys.argv[2])).publish("2014-1")
+"""
+
+
+def test_a_publication_killed_in_the_middle_leaves_nothing_to_see(bench_of_editions):
+    bench = bench_of_editions
+    done = subprocess.run(
+        [sys.executable, "-c", KILLED, bench.archive, bench.data], check=False, timeout=60
+    )
+    assert done.returncode == -signal.SIGKILL
+    assert edition_names(bench.store) == []
+    root = editions_folder(bench.store)
+    assert len([f for f in root.iterdir() if f.is_dir()]) == 1
+    bench.publish("2014-1")
+    assert [f.name for f in root.iterdir() if f.is_dir()] == ["2014-1"]
+
+
+@pytest.mark.parametrize("name", ["", "../x", ".x", "concept-x", "a/b", "x" * 61])
+def test_a_name_that_cannot_be_one_is_refused(published, name):
+    with pytest.raises(MissingKnowledgeError, match="cannot name an edition"):
+        published.publish(name)
+
+
+def test_a_decision_is_needed(published):
+    undecided = dataclasses.replace(terms("x"), decision="  ")
+    with pytest.raises(MissingKnowledgeError, match="needs a decision"):
+        publish(published.store, shipped_method("rebased"), undecided)
+
+
+def test_tables_of_another_method_or_code_are_not_published(published, monkeypatch):
+    with pytest.raises(MissingKnowledgeError, match="herijk rebuild"):
+        published.publish("x", "rebased-2015")
+    monkeypatch.setattr("warehouse.tables.code_version", lambda: "other")
+    with pytest.raises(MissingKnowledgeError, match="not those of the archive and code of today"):
+        published.publish("x", "rebased")
+
+
+# Decisions of people
+
+
+def decide(bench, tow, verdict):
+    bench.data.joinpath(FILE_NAME).write_text(
+        f'[[besluit]]\nsleep_id = "{tow}"\noordeel = "{verdict}"\nreden = "wind"\n'
+        'wie = "SKC"\ndatum = 2014-05-01\n',
+        encoding="utf-8",
+    )
+
+
+def line_of(bench, tow, edition="x"):
+    key = [tow[name] for name in ("fsn_no", "rowers", "crew_class")]
+    names = ("fsn_no", "rowers", "crew_class")
+    register = edition_of(bench, edition).register
+    return register.filter(
+        *(pl.col(name) == value for name, value in zip(names, key, strict=True))
+    ).row(0, named=True)
+
+
+def test_an_excluded_tow_does_not_count_and_the_edition_says_so(bench_of_editions):
+    tow = bench_of_editions.tow(2014)
+    decide(bench_of_editions, tow["tow_id"], "uitsluiten")
+    bench_of_editions.publish("x")
+    line = line_of(bench_of_editions, tow)
+    assert line["tow_id"] != tow["tow_id"]
+    kept = json.loads((folder(bench_of_editions, "x") / "decisions.json").read_text())
+    assert kept[0] | {"reden": "wind", "wie": "SKC"} == kept[0]
+
+
+def test_a_decision_about_an_unknown_tow_stops_the_publication(bench_of_editions):
+    decide(bench_of_editions, "1999-001", "uitsluiten")
+    with pytest.raises(MissingKnowledgeError, match=r"1999-001.*mend the sleep_id"):
+        bench_of_editions.publish("x")
+
+
+# Printed registers
+
+
+PRINTED = """fsn_nr;roeiers;klasse;A;B;Cw;roeisnelheid [m/s];sleepdatum
+{boat};{rowers};{crew};31,60;4,44;43,89;2,35;2011-03-10
+FSN900;8;H;32,62;5,59;41,63;2,60;2011-03-06
+FSN901;6;H;0,99;25,00;1,00;2,20;
+"""
+
+
+@pytest.fixture
+def with_printed(bench_of_editions):
+    tow = bench_of_editions.tow(2014)
+    text = PRINTED.format(boat=tow["fsn_no"], rowers=tow["rowers"], crew=tow["crew_class"])
+    file = bench_of_editions.archive / "sloepregister" / "sloepregister_2012.csv"
+    file.write_text(text, encoding="utf-8")
+    bench_of_editions.rebuild()
+    return bench_of_editions
+
+
+def publish_register_of(bench, season=2012, edition="gedrukt-2012"):
+    return publish_printed(bench.store, season, terms(edition, dt.date(2012, 5, 1)))
+
+
+def test_a_printed_register_stands_as_an_edition(with_printed):
+    publish_register_of(with_printed)
+    edition = edition_of(with_printed, "gedrukt-2012")
+    assert edition.about.kind == "as_printed"
+    assert edition.method is None
+    by_boat = {row["fsn_no"]: row for row in edition.register.iter_rows(named=True)}
+    assert by_boat["FSN900"]["cw_kg_m"] == 41.63
+    assert by_boat["FSN900"]["basis"] == "printed"
+    assert by_boat["FSN901"]["status"] == "no_valid_curve"
+    assert by_boat["FSN901"]["cw_kg_m"] is None
+
+
+def test_a_year_without_a_printed_register_is_named(with_printed):
+    with pytest.raises(MissingKnowledgeError, match="printed in 2010; it holds: 2012"):
+        publish_register_of(with_printed, 2010)
+
+
+def test_a_printed_line_is_rebased_in_closed_form_where_nothing_was_measured(with_printed):
+    publish_register_of(with_printed)
+    corrected = shipped_method("corrected-2013")
+    with_printed.rebuild((corrected, shipped_method("as-published")))
+    season = pl.DataFrame(
+        {"season": [2011], "factor": [1.06]}, schema_overrides={"season": pl.Int32}
+    )
+    made_from = with_printed.store.made_from("log_factors", "corrected-2013")
+    factors = with_printed.store.read("log_factors", "corrected-2013")
+    factors = pl.concat(
+        [
+            factors,
+            season.join(factors.drop("season", "factor").head(1), how="cross").select(
+                factors.columns
+            ),
+        ]
+    )
+    with_printed.store.write("log_factors", factors, made_from, "corrected-2013")
+    with_printed.publish("2014-1", "corrected-2013", carry="gedrukt-2012")
+    register = edition_of(with_printed).register
+    line = register.filter(pl.col("fsn_no") == "FSN900").row(0, named=True)
+    assert (line["basis"], line["status"]) == ("printed_rebased", "valid")
+    assert line["a_kg_m"] == pytest.approx(32.62 / 1.06**2, rel=1e-12)
+    assert line["b_m_s"] == pytest.approx(5.59 * 1.06, rel=1e-12)
+    measured = line_of(with_printed, with_printed.tow(2014), "2014-1")
+    assert measured["basis"] == "measured"
+    lines = diff(with_printed.store, "gedrukt-2012", "2014-1").lines
+    causes = {row["fsn_no"]: json.loads(row["causes"]) for row in lines.iter_rows(named=True)}
+    assert [c["cause"] for c in causes["FSN900"]] == ["closed_form"]
+    assert [c["cause"] for c in causes[measured["fsn_no"]]] == ["printed"]

@@ -1,0 +1,262 @@
+"""Verify: every kind of tampering is found and named; what is whole passes."""
+
+import io
+import json
+import zipfile
+
+import polars as pl
+import pytest
+
+import pipeline.recompute
+from pipeline.errors import MissingKnowledgeError
+from pipeline.method import parse_method
+from warehouse.editions.folder import editions_folder, read_about, read_edition
+from warehouse.editions.lineage import lineage, lineage_rows
+from warehouse.editions.verify import verify
+from warehouse.schemas import conform
+
+
+def folder(bench, name="2014-1"):
+    return editions_folder(bench.store) / name
+
+
+def found(bench, **wanted):
+    report = verify(bench.store)
+    return [
+        f for f in report["findings"] if all(f[key] == value for key, value in wanted.items())
+    ], report["wrong"]
+
+
+def test_untouched_editions_pass_and_come_out_equal_when_made_again(published):
+    report = verify(published.store)
+    assert report["findings"] == []
+    assert not report["wrong"]
+    for one in report["editions"]:
+        register = read_edition(published.store, one["edition"]).register
+        assert one["lines_made_again"] == register.filter(basis="measured").height > 0
+
+
+def test_a_changed_digit_in_the_csv_is_named_by_line_and_column(published_copy):
+    file = folder(published_copy) / "register.csv"
+    lines = file.read_text(encoding="utf-8-sig").splitlines()
+    cells = lines[2].split(";")
+    place = lines[0].split(";").index("Cw")
+    was, cells[place] = cells[place], "99,999"
+    lines[2] = ";".join(cells)
+    file.write_text("\n".join(lines), encoding="utf-8-sig")
+    findings, wrong = found(published_copy, where=f"register.csv, line 3 ({cells[0]}), column Cw")
+    assert wrong
+    assert findings[0]["message"] == f"it says '99,999'; it was '{was}'"
+
+
+def test_a_changed_number_in_the_table_is_named_and_its_code_no_longer_fits(published_copy):
+    file = folder(published_copy) / "register.parquet"
+    register = pl.read_parquet(file)
+    boat = register["fsn_no"][3]
+    changed = pl.when(pl.int_range(pl.len()) == 3).then(pl.col("a_kg_m") + 1)
+    register.with_columns(changed.otherwise(pl.col("a_kg_m")).alias("a_kg_m")).write_parquet(file)
+    report = verify(published_copy.store)
+    places = [f["where"] for f in report["findings"]]
+    assert f"register.csv, line 5 ({boat}), column A" not in places
+    assert f"register.parquet, line 5 ({boat}), column A" in places
+    assert any("code" in f["message"] and boat in f["where"] for f in report["findings"])
+    assert any(f["kind"] == "differs" for f in report["findings"])
+
+
+def test_a_changed_number_in_the_xlsx_is_named_by_its_cell(published_copy):
+    file = folder(published_copy) / "register.xlsx"
+    with zipfile.ZipFile(file) as book:
+        parts = {name: book.read(name) for name in book.namelist()}
+    sheet = parts["xl/worksheets/sheet1.xml"].decode()
+    start = sheet.index('<c r="K4"')
+    end = sheet.index("</c>", start)
+    changed = sheet[:start] + '<c r="K4"><v>12.5</v>' + sheet[end:]
+    parts["xl/worksheets/sheet1.xml"] = changed.encode()
+    target = io.BytesIO()
+    with zipfile.ZipFile(target, "w") as book:
+        for name, content in parts.items():
+            book.writestr(name, content)
+    file.write_bytes(target.getvalue())
+    findings, wrong = found(published_copy, where="register.xlsx, cell K4")
+    assert wrong
+    assert findings[0]["message"].startswith("it says 12.5; it was ")
+
+
+@pytest.mark.parametrize("name", ["method.toml", "inputs.csv", "toelichting.md", "decisions.json"])
+def test_any_changed_file_is_named(published_copy, name):
+    file = folder(published_copy) / name
+    file.write_bytes(file.read_bytes() + b"\n")
+    findings, wrong = found(published_copy, kind="altered")
+    assert wrong
+    assert [f["where"] for f in findings] == [name]
+
+
+@pytest.mark.parametrize("name", ["register.csv", "tows.parquet"])
+def test_a_missing_file_is_named(published_copy, name):
+    (folder(published_copy) / name).unlink()
+    findings, wrong = found(published_copy, kind="missing")
+    assert wrong
+    assert [f["where"] for f in findings] == [name]
+
+
+def test_a_changed_decision_breaks_the_seal(published_copy):
+    file = folder(published_copy) / "edition.json"
+    about = json.loads(file.read_text(encoding="utf-8"))
+    file.write_text(json.dumps(about | {"decision": "van niemand"}), encoding="utf-8")
+    findings, wrong = found(published_copy, where="edition.json")
+    assert wrong
+    assert "seal" in findings[0]["message"]
+
+
+@pytest.mark.parametrize("content", [b"", b"{}", b"\xff\xfe"])
+def test_a_damaged_description_does_not_stop_the_others(published_copy, content):
+    (folder(published_copy) / "edition.json").write_bytes(content)
+    report = verify(published_copy.store)
+    assert report["wrong"]
+    assert [e["edition"] for e in report["editions"]] == ["2014-2"]
+
+
+def test_a_damaged_table_is_told(published_copy):
+    (folder(published_copy) / "register.parquet").write_bytes(b"PAR1 nothing")
+    findings, wrong = found(published_copy, edition="2014-1", where="register.parquet")
+    assert wrong
+    assert any("cannot be read" in f["message"] for f in findings)
+
+
+def test_an_added_file_is_a_notice(published_copy):
+    (folder(published_copy) / "~lock.register.xlsx#").write_text("x", encoding="utf-8")
+    findings, wrong = found(published_copy, kind="notice")
+    assert not wrong
+    assert findings[0]["where"] == "~lock.register.xlsx#"
+
+
+def test_a_swapped_samples_file_is_named(published_copy):
+    first, second = (published_copy.tow(season)["samples_path"] for season in (2009, 2014))
+    content = (published_copy.archive / first).read_bytes()
+    (published_copy.archive / second).write_bytes(content)
+    findings, wrong = found(published_copy, kind="swapped")
+    assert wrong
+    assert {(f["edition"], f["where"]) for f in findings} == {
+        ("2014-1", second),
+        ("2014-2", second),
+    }
+
+
+def test_a_missing_samples_file_is_named(published_copy):
+    path = published_copy.tow(2014)["samples_path"]
+    (published_copy.archive / path).unlink()
+    findings, wrong = found(published_copy, kind="missing")
+    assert wrong
+    assert {f["where"] for f in findings} == {path}
+
+
+def test_a_changed_tow_list_is_named_by_tow_and_fact(published_copy):
+    tow = published_copy.tow(2014)
+    file = published_copy.archive / "sleeplijsten" / "sleeplijst_2014.csv"
+    text = file.read_text(encoding="utf-8")
+    row = next(line for line in text.splitlines() if line.startswith(tow["tow_id"]))
+    weight = f"{tow['weight_kg']:.0f}"
+    assert f",{weight}," in row
+    file.write_text(text.replace(row, row.replace(f",{weight},", ",777,", 1)), encoding="utf-8")
+    findings, wrong = found(published_copy, edition="2014-1", kind="swapped")
+    assert wrong
+    assert [f["message"] for f in findings] == [
+        f"tow {tow['tow_id']}: weight_kg is 777.0; it was {tow['weight_kg']}"
+    ]
+
+
+BY_HAND = """
+name = "by-hand"
+title = "proef"
+extends = "rebased-2015"
+
+[steps]
+window = { rule = "by_hand" }
+"""
+
+
+def test_a_window_given_by_hand_afterwards_is_named(bench_of_editions):
+    bench = bench_of_editions
+    method = parse_method(BY_HAND, "by-hand.toml")
+    bench.rebuild((method,))
+    bench.publish("x", method)
+    tow = bench.tow(2014)["tow_id"]
+    file = bench.archive / "sleeplijsten" / "vensters_2014.csv"
+    file.write_text(f"sleep_id;run;van;tot;reden\n{tow};2;5;40;boei\n", encoding="utf-8")
+    bench.rebuild((method,))
+    findings, wrong = found(bench, kind="differs")
+    assert wrong
+    (one,) = findings
+    assert f"the list row of tow {tow} changed" in one["message"]
+
+
+def test_a_new_season_is_no_fault(published_copy):
+    lists = published_copy.archive / "sleeplijsten"
+    head = (lists / "sleeplijst_2014.csv").read_text(encoding="utf-8").splitlines()[0]
+    (lists / "sleeplijst_2015.csv").write_text(head + "\n", encoding="utf-8")
+    assert found(published_copy) == ([], False)
+
+
+def test_a_file_changed_and_rebuilt_makes_another_number_and_says_why(published_copy):
+    path = published_copy.tow(2009)["samples_path"]
+    published_copy.stretch_force(path, 1.02)
+    published_copy.rebuild()
+    tow = published_copy.tow(2009)["tow_id"]
+    report = verify(published_copy.store)
+    assert report["wrong"]
+    own = [f for f in report["findings"] if f["kind"] == "differs" and f["edition"] == "2014-1"]
+    register = read_edition(published_copy.store, "2014-1").register
+    counts = register.filter(tow_id=tow).height
+    assert len(own) == counts
+    assert all(f"the list row of tow {tow} changed" in f["message"] for f in own)
+
+
+def test_other_code_is_told_but_is_no_broken_promise(published_copy, monkeypatch):
+    original = pipeline.recompute.still_air_coefficient_kg_m
+    monkeypatch.setattr(
+        pipeline.recompute,
+        "still_air_coefficient_kg_m",
+        lambda area, drag: 1.5 * original(area, drag),
+    )
+    assert verify(published_copy.store)["wrong"]
+    monkeypatch.setattr("warehouse.editions.verify.code_version", lambda: "0.2.0+other")
+    findings, wrong = found(published_copy, kind="differs")
+    assert not wrong
+    assert all("the code changed, from" in f["message"] for f in findings)
+    assert findings
+
+
+def test_an_archive_that_went_away_is_told(published_copy):
+    published_copy.archive.rename(published_copy.archive.with_name("elsewhere"))
+    findings, wrong = found(published_copy, kind="unchecked")
+    assert wrong
+    assert "herijk rebuild" in findings[0]["message"]
+
+
+# Lineage
+
+
+def test_lineage_leads_to_files_runs_and_seconds(published):
+    register = read_edition(published.store, "2014-2").register
+    line = register.filter(basis="measured").row(0, named=True)
+    found_lines = lineage(published.store, "2014-2", line["fsn_no"])["lines"]
+    one = next(f for f in found_lines if f["code"] == line["verification_code"])
+    tows = published.store.read("tows").filter(tow_id=line["tow_id"]).row(0, named=True)
+    assert one["files"] == [{"path": tows["samples_path"], "sha256": tows["samples_sha256"]}]
+    assert [run["run"] for run in one["runs"]] == [1, 2, 3, 4, 5, 6]
+    assert all(0 <= run["window_start_s"] < run["window_end_s"] <= 50 for run in one["runs"])
+    assert one["curve"]["cw_kg_m"] == line["cw_kg_m"]
+
+
+def test_lineage_rows_are_those_of_the_warehouse(published):
+    edition = read_edition(published.store, "2014-1")
+    rows = conform("lineage", lineage_rows(edition))
+    assert rows.height == edition.register.drop_nulls("tow_id").height
+    assert set(rows["method_hash"]) == {read_about(folder(published)).method_hash}
+
+
+def test_a_boat_or_edition_that_is_not_there_is_named(published):
+    with pytest.raises(MissingKnowledgeError, match="boat FSN000 is not in edition 2014-1"):
+        lineage(published.store, "2014-1", "FSN000")
+    with pytest.raises(MissingKnowledgeError, match="published: 2014-1, 2014-2"):
+        lineage(published.store, "2014-9", "FSN000")

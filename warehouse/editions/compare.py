@@ -1,0 +1,254 @@
+"""Two editions side by side: every line with its causes, and what it does to races.
+
+The numbers come from `pipeline.changes`, `pipeline.ladder` and `pipeline.replay`; here it is found
+out what two editions do not share: tow, files, method, code. The steps of the method are computed
+with the code and blocks of today; what they leave is one factor, named after what else differs.
+"""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+import polars as pl
+
+from pipeline.blocks import stack_blocks
+from pipeline.changes import (
+    NO_FACTOR,
+    NO_PARTS,
+    register_changes,
+    side_by_side,
+    steps_of_lines,
+)
+from pipeline.ladder import ladder
+from pipeline.register import LINE
+from pipeline.replay import RaceRules, race_changes, replay
+from warehouse import intake
+from warehouse.archive import read_races
+from warehouse.code import code_version
+from warehouse.editions.folder import Edition, read_edition
+from warehouse.editions.inputs import INPUTS_HASH, archive_root, has_inputs_of, tows_of_today
+from warehouse.editions.lines import MEASURED, lines_made_again
+from warehouse.store import Store
+
+PRINTED: Final = "printed"
+CLOSED_FORM: Final = "closed_form"
+TOW: Final = "tow"
+INPUT: Final = "input"
+OTHER_INPUT: Final = "other_input"
+CODE: Final = "code"
+INPUT_AND_CODE: Final = "input_and_code"
+CODE_OR_OTHER_INPUT: Final = "code_or_other_input"
+METHOD: Final = "method"
+UNSEPARATED: Final = "unseparated"
+UNEXPLAINED: Final = "unexplained"
+
+NO_LADDER: Final = pl.DataFrame(
+    schema={"tow_id": pl.String, "position": pl.Int8, "step": pl.String, "factor": pl.Float64}
+)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Two editions side by side.
+
+    Attributes:
+        old, new: the editions.
+        lines: rows of `register_changes`, with the columns of `pipeline.changes.side_by_side`, the
+            boat's `name`, and the status in both, which says why a line has no curve any more.
+    """
+
+    old: Edition
+    new: Edition
+    lines: pl.DataFrame
+
+
+def diff(store: Store, old: str, new: str) -> Comparison:
+    """Compares two published editions.
+
+    Raises:
+        MissingKnowledgeError: there is no such edition.
+        BrokenPromiseError: a file of it is missing or damaged.
+    """
+    return compare(store, read_edition(store, old), read_edition(store, new))
+
+
+def compare(store: Store, old: Edition, new: Edition) -> Comparison:
+    """Compares two editions line by line, with causes whose factors multiply to the change."""
+    today = tows_of_today(store)
+    code = _code_parts(store, today, old, new)
+    steps = _steps(store, today, old, new)
+    parts = pl.concat([code, steps_of_lines(new.register, steps)], how="diagonal_relaxed")
+    grounds = _grounds(old, new, set(steps["tow_id"]), code_known=not code.is_empty())
+    changes = register_changes(old.register, new.register, parts, grounds)
+    names = pl.concat([new.register.select(*LINE, "name"), old.register.select(*LINE, "name")])
+    lines = (
+        changes.join(side_by_side(old.register, new.register), on=LINE)
+        .join(names.unique(LINE, keep="first"), on=LINE, how="left")
+        .join(old.register.select(*LINE, old_status="status"), on=LINE, how="left")
+        .join(new.register.select(*LINE, new_status="status"), on=LINE, how="left")
+        .sort(LINE)
+    )
+    return Comparison(old, new, lines)
+
+
+def race_effects(store: Store, old: Edition, new: Edition, rules: RaceRules) -> pl.DataFrame | None:
+    """Power, rank and podium of every result in the archive under both editions.
+
+    Returns:
+        Rows of `pipeline.replay.race_changes`; None where the archive is not there or has no races.
+
+    Raises:
+        MissingKnowledgeError: the rules ask for what is not known.
+    """
+    root = archive_root(store)
+    results = None if root is None else read_races(root)[0]
+    if results is None or results.is_empty():
+        return None
+    before, after = (replay(edition.register, results, rules) for edition in (old, new))
+    return race_changes(before, after)
+
+
+def _code_parts(store: Store, today: pl.DataFrame, old: Edition, new: Edition) -> pl.DataFrame:
+    """What the code alone changed: the old edition made again by the code of the new one.
+
+    Known where the new edition was made by the code of today and the warehouse still has all
+    inputs of the old one, unchanged.
+    """
+    versions = (old.about.code_version, new.about.code_version)
+    if old.method is None or versions[0] == versions[1] or versions[1] != code_version():
+        return NO_PARTS
+    if not has_inputs_of(today, old):
+        return NO_PARTS
+    again = lines_made_again(store, old).with_columns(pl.lit("again").alias("edition"))
+    return register_changes(old.register, again).select(
+        *LINE,
+        pl.lit(CODE).alias("cause"),
+        pl.lit(None, pl.String).alias("step"),
+        pl.col("cw_ratio").fill_null(1.0).alias("factor"),
+    )
+
+
+def _steps(store: Store, today: pl.DataFrame, old: Edition, new: Edition) -> pl.DataFrame:
+    """The ladder from the old to the new method, on the new edition's tows that are still there."""
+    if old.method is None or new.method is None:
+        return NO_LADDER
+    if old.method.content_hash == new.method.content_hash:
+        return NO_LADDER
+    tows = new.tables["tows"].join(today, on=["tow_id", INPUTS_HASH], how="semi")
+    if tows.is_empty():
+        return NO_LADDER
+    runs = new.tables["tow_runs"].join(tows, on="tow_id", how="semi")
+    blocks = stack_blocks(intake.all_blocks(store), runs)
+    return ladder(old.method, new.method, tows, blocks)
+
+
+def _grounds(old: Edition, new: Edition, climbed: set[str], code_known: bool) -> pl.DataFrame:
+    """Per line the name of what its known parts do not explain."""
+    shared = [*LINE, "tow_id", INPUTS_HASH, "basis"]
+    pairs = old.register.select(shared).join(
+        new.register.select(shared), on=LINE, suffix="_new", nulls_equal=True
+    )
+    code = not code_known and old.about.code_version != new.about.code_version
+    grounds = [_ground(row, old, new, climbed, code) for row in pairs.iter_rows(named=True)]
+    return pairs.select(LINE).with_columns(pl.Series("ground", grounds, pl.String))
+
+
+def _ground(
+    line: Mapping[str, Any], old: Edition, new: Edition, climbed: set[str], code: bool
+) -> str:
+    if {line["basis"], line["basis_new"]} != {MEASURED}:
+        same_line = line[INPUTS_HASH] == line[f"{INPUTS_HASH}_new"]
+        return CLOSED_FORM if same_line else PRINTED
+    if line["tow_id"] != line["tow_id_new"]:
+        return TOW
+    own = line[INPUTS_HASH] != line[f"{INPUTS_HASH}_new"]
+    others = not own and old.about.inputs_digest != new.about.inputs_digest
+    if old.about.method_hash != new.about.method_hash and line["tow_id_new"] not in climbed:
+        return UNSEPARATED if own or code else METHOD
+    named = {
+        (True, False, False): INPUT,
+        (True, False, True): INPUT_AND_CODE,
+        (False, True, False): OTHER_INPUT,
+        (False, True, True): CODE_OR_OTHER_INPUT,
+        (False, False, True): CODE,
+    }
+    return named.get((own, others, code), UNEXPLAINED)
+
+
+# Summary
+
+
+LARGEST: Final = 10
+
+Report = dict[str, Any]
+
+
+def report(comparison: Comparison) -> Report:
+    """A comparison as plain data: counts, who gains and loses, causes, and every line.
+
+    A line gains when the new register gives its crew more power for the same race.
+    """
+    lines = comparison.lines
+    compared = lines.filter(pl.col("cw_ratio").is_not_null())
+    moved = compared.filter(pl.col("change") == "changed")
+    gain = moved.filter(pl.col("power_ratio") > 1).sort("power_ratio", "fsn_no", descending=True)
+    loss = moved.filter(pl.col("power_ratio") <= 1).sort("power_ratio", "fsn_no")
+    return {
+        "from_edition": comparison.old.about.edition,
+        "to_edition": comparison.new.about.edition,
+        "simulated": comparison.old.about.simulated or comparison.new.about.simulated,
+        "lines": lines.height,
+        "changes": dict(lines["change"].value_counts().sort("change").rows()),
+        "gain": _group(gain),
+        "loss": _group(loss),
+        "exceeds_interval": int(moved["exceeds_interval"].fill_null(False).sum()),
+        "interval_unknown": int(moved["exceeds_interval"].null_count()),
+        "causes": _causes(compared),
+        "largest": _rows(_by_size(moved).head(LARGEST)),
+        "rows": _rows(lines),
+    }
+
+
+def _group(lines: pl.DataFrame) -> Report:
+    return {
+        "lines": lines.height,
+        "median_power_ratio": lines["power_ratio"].median(),
+        "median_seconds": lines["gain_in_two_hours_s"].median(),
+        "most": _rows(lines.head(LARGEST)),
+    }
+
+
+def _by_size(lines: pl.DataFrame) -> pl.DataFrame:
+    return lines.sort(pl.col("cw_ratio").log().abs(), "fsn_no", descending=[True, False])
+
+
+def _causes(lines: pl.DataFrame) -> list[Report]:
+    """Per cause and step: the lines it moved, and its factors there."""
+    found = [
+        {"cause": one["cause"], "step": one.get("step"), "factor": one["factor"]}
+        for text in lines["causes"]
+        for one in _moved(text)
+    ]
+    schema = {"cause": pl.String, "step": pl.String, "factor": pl.Float64}
+    return (
+        pl.DataFrame(found, schema=schema)
+        .group_by("cause", "step")
+        .agg(
+            pl.len().alias("lines"),
+            pl.col("factor").median().alias("median_factor"),
+            pl.col("factor").min().alias("lowest_factor"),
+            pl.col("factor").max().alias("highest_factor"),
+        )
+        .sort("lines", "cause", "step", descending=[True, False, False])
+        .to_dicts()
+    )
+
+
+def _rows(lines: pl.DataFrame) -> list[Report]:
+    return [row | {"causes": _moved(row["causes"])} for row in lines.to_dicts()]
+
+
+def _moved(causes: str) -> list[Report]:
+    """The causes that changed something."""
+    return [one for one in json.loads(causes) if abs(one["factor"] - 1.0) > NO_FACTOR]

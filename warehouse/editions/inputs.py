@@ -1,0 +1,81 @@
+"""What went into an edition: tows with their files, each tow's own hash, and one for all together.
+
+A number depends on its own tow, and under some methods on all tows at once (a coefficient found for
+the whole archive); so both hashes are kept. Which files still are what they were is `verify`'s.
+"""
+
+from pathlib import Path
+from typing import Final
+
+import polars as pl
+
+from pipeline.errors import MissingKnowledgeError
+from warehouse.editions.folder import Edition
+from warehouse.store import Store, fingerprint, table_digest
+from warehouse.tables import runs_with_windows, typed_tows
+
+NOT_INPUT: Final = (
+    *("samples_path", "second_path", "remark", "boat_type", "inputs_sha256"),
+    *("hand_reason", "list_path", "list_line"),
+)
+"""What a tow is called or said to be does not change its numbers."""
+
+INPUTS_HASH: Final = "inputs_sha256"
+SAMPLES, LIST, REGISTER = "meetdata", "lijst", "register"
+
+
+def with_input_hashes(tows: pl.DataFrame, runs: pl.DataFrame) -> pl.DataFrame:
+    """Tows with the hash of all that their numbers are made from: list row, runs and files."""
+    facts = [name for name in sorted(runs.columns) if name not in NOT_INPUT]
+    of_tow = dict(runs.sort("tow_id", "run").select(facts).partition_by("tow_id", as_dict=True))
+    measured = [name for name in sorted(tows.columns) if name not in NOT_INPUT]
+    hashes = [
+        fingerprint([row[name] for name in measured], of_tow[row["tow_id"],].rows())
+        for row in tows.iter_rows(named=True)
+    ]
+    return tows.with_columns(pl.Series(INPUTS_HASH, hashes, pl.String))
+
+
+def tows_of_today(store: Store) -> pl.DataFrame:
+    """The tows of the warehouse as it is now, with their hashes."""
+    return with_input_hashes(typed_tows(store), runs_with_windows(store))
+
+
+def inputs_digest(tows: pl.DataFrame) -> str:
+    """One hash for all tows together."""
+    return table_digest(tows.select("tow_id", INPUTS_HASH).sort("tow_id"))
+
+
+def has_inputs_of(today: pl.DataFrame, edition: Edition) -> bool:
+    """Whether the warehouse has all tows of an edition, each as it was."""
+    mine = edition.tables["tows"].select("tow_id")
+    return inputs_digest(today.join(mine, on="tow_id", how="semi")) == edition.about.inputs_digest
+
+
+def input_files(store: Store, tows: pl.DataFrame) -> pl.DataFrame:
+    """The files behind an edition: samples of its tows, and the lists of the archive."""
+    first = tows.select(path="samples_path", sha256="samples_sha256")
+    second = tows.select(path="second_path", sha256="second_sha256").drop_nulls()
+    samples = pl.concat([first, second]).unique().with_columns(pl.lit(SAMPLES).alias("kind"))
+    is_list = pl.col("path").str.contains(r"^(sleeplijsten/|sloepregister/sloependata|archief)")
+    lists = (
+        store.read("listed_files")
+        .filter(is_list)
+        .select("path", "sha256", pl.lit(LIST).alias("kind"))
+    )
+    return pl.concat([samples, lists]).sort("path")
+
+
+def archive_root(store: Store) -> Path | None:
+    """Where the archive was when the warehouse was last rebuilt; None if it is not there now.
+
+    Raises:
+        MissingKnowledgeError: nothing was ever rebuilt in this data folder.
+    """
+    if store.made_from("about_archive") is None:
+        raise MissingKnowledgeError(
+            f"{store.root} holds no warehouse; make it with: herijk rebuild --archive DIR "
+            f"--data {store.root}"
+        )
+    root = Path(store.read("about_archive")["root"][0])
+    return root if root.is_dir() else None

@@ -1,0 +1,356 @@
+"""Whether everything still is what it was: editions, the archive behind them, and the numbers.
+
+Three questions, in this order: was a file of an edition changed by hand, and where in it; are the
+archive's files those it was made from; and do archive and code of today give the same register?
+Nothing is ever mended here.
+"""
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import polars as pl
+from pydantic import ValidationError
+
+from pipeline.errors import BrokenPromiseError, HerijkError
+from pipeline.register import LINE
+from pipeline.steady import HAND_COLUMNS
+from warehouse.archive import FileHashes, index_archive
+from warehouse.code import code_version
+from warehouse.editions import sheets
+from warehouse.editions.folder import (
+    ABOUT,
+    CSV,
+    INPUTS,
+    XLSX,
+    About,
+    Edition,
+    edition_names,
+    editions_folder,
+    file_sha256,
+    read_about,
+    read_edition,
+    read_table,
+)
+from warehouse.editions.inputs import (
+    INPUTS_HASH,
+    LIST,
+    NOT_INPUT,
+    archive_root,
+    has_inputs_of,
+    tows_of_today,
+)
+from warehouse.editions.lines import MEASURED, NUMBERS, lines_made_again
+from warehouse.store import Store, table_digest
+
+SAME_NUMBER: Final = 1e-9
+"""Relative difference up to which a number made again is the same."""
+
+MOST_CELLS: Final = 20
+"""Altered cells of a file that are named one by one."""
+
+Report = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something that is not as it was.
+
+    Attributes:
+        edition: the edition.
+        kind: `altered`, `missing`, `swapped`, `differs` (made again, another number), `unchecked`
+            or `notice`.
+        where: file, tow or line.
+        message: what is seen, what it was, what to do.
+        wrong: whether a promise is broken; a notice is none.
+    """
+
+    edition: str
+    kind: str
+    where: str
+    message: str
+    wrong: bool = True
+
+
+def verify(store: Store) -> Report:
+    """Checks every published edition.
+
+    Returns:
+        `editions` (name, lines, and how many were made again equal), `findings`, and `wrong`:
+        whether any finding is more than a notice.
+    """
+    names = edition_names(store)
+    findings: list[Finding] = []
+    checked = []
+    for name in names:
+        path = editions_folder(store) / name
+        try:
+            about = read_about(path)
+        except BrokenPromiseError as error:
+            findings.append(Finding(name, "altered", ABOUT, str(error)))
+            continue
+        findings += [*_altered(path, about), *_archive(store, path, about)]
+        made = 0
+        if about.kind == "recomputed":
+            made, differing = _made_again(store, name)
+            findings += differing
+        checked.append({"edition": name, "kind": about.kind, "lines_made_again": made})
+    return {
+        "editions": checked,
+        "findings": [asdict(f) for f in findings],
+        "wrong": any(f.wrong for f in findings),
+    }
+
+
+# Was a file of the edition changed by hand?
+
+
+def _altered(path: Path, about: About) -> Iterator[Finding]:
+    name = path.name
+    if about.edition != name:
+        yield Finding(name, "altered", ABOUT, f"the folder was renamed; it is {about.edition}")
+    if about.seal != about.expected_seal:
+        yield Finding(name, "altered", ABOUT, f"{ABOUT} was changed: its seal does not fit")
+    present = {f.name for f in path.iterdir()}
+    for file in sorted(present - {*about.files, ABOUT}):
+        yield Finding(name, "notice", file, f"{file} was added after publication", wrong=False)
+    for file in sorted(about.files.keys() - present):
+        yield Finding(name, "missing", file, f"{file} is gone; put it back from a copy")
+    changed = [
+        f for f in sorted(about.files.keys() & present) if file_sha256(path / f) != about.files[f]
+    ]
+    intact = (about.files.keys() & present) - set(changed)
+    for file in changed:
+        yield Finding(name, "altered", file, f"{file} was changed after publication")
+        for where, message in _where(path, about, file, intact):
+            yield Finding(name, "altered", where, message)
+    if "register.parquet" in present:
+        yield from _codes(path, about)
+
+
+def _codes(path: Path, about: About) -> Iterator[Finding]:
+    """Lines whose verification code does not fit their inputs, method and numbers."""
+    try:
+        register = read_table(path, "register")
+        expected = sheets.verification_codes(register, about.method_hash)
+    except (HerijkError, pl.exceptions.PolarsError):
+        return
+    stated = register[sheets.CODE_FIELD.column].to_list()
+    for row, code, right in zip(register.iter_rows(named=True), stated, expected, strict=True):
+        if code != right:
+            yield Finding(
+                path.name,
+                "altered",
+                f"register.parquet, {_line_name(row)}",
+                f"verification code {code} does not fit the line: inputs or numbers were changed",
+            )
+
+
+def _where(path: Path, about: About, file: str, intact: set[str]) -> list[tuple[str, str]]:
+    """Places within a changed file, as far as an intact copy of its content tells."""
+    try:
+        if file == CSV and "register.parquet" in intact:
+            return _cells(
+                file, _expected_csv(path), sheets.read_csv_cells((path / file).read_bytes())
+            )
+        if file == XLSX and "register.parquet" in intact:
+            return _xlsx_cells(path, about)
+        if file == "register.parquet" and CSV in intact:
+            stated = sheets.read_csv_cells((path / CSV).read_bytes())
+            return _cells(file, stated, _expected_csv(path))
+        table = file.removesuffix(".parquet")
+        if table in about.tables and table_digest(read_table(path, table)) == (
+            about.tables[table].digest
+        ):
+            return [(file, "it was written anew; its values are the same")]
+    except (HerijkError, OSError, ValueError, pl.exceptions.PolarsError) as error:
+        return [(file, f"it cannot be read any more: {str(error).splitlines()[0]}")]
+    return []
+
+
+def _expected_csv(path: Path) -> sheets.Cells:
+    fields = [*sheets.REGISTER_FIELDS, sheets.CODE_FIELD]
+    rows = sheets.printed_cells(read_table(path, "register"), fields)
+    return [[field.header for field in fields], *rows]
+
+
+def _cells(file: str, was: sheets.Cells, now: sheets.Cells) -> list[tuple[str, str]]:
+    """The cells that differ, each with its line, boat and column."""
+    found: list[tuple[str, str]] = []
+    if len(was) != len(now):
+        found.append((file, f"it has {len(now) - 1} lines; there were {len(was) - 1}"))
+    for number, (before, after) in enumerate(zip(was, now, strict=False), 1):
+        if len(before) != len(after):
+            found.append((f"{file}, line {number}", "it has another number of cells"))
+            continue
+        found += [
+            (
+                f"{file}, line {number} ({before[0]}), column {header}",
+                f"it says {b!r}; it was {a!r}",
+            )
+            for header, a, b in zip(was[0], before, after, strict=True)
+            if a != b
+        ]
+    return _not_too_many(file, found)
+
+
+def _xlsx_cells(path: Path, about: About) -> list[tuple[str, str]]:
+    fields = [*sheets.REGISTER_FIELDS, sheets.CODE_FIELD]
+    register = read_table(path, "register")
+    was = sheets.read_xlsx_cells(sheets.xlsx_bytes(register, fields, about))
+    now = sheets.read_xlsx_cells((path / XLSX).read_bytes())
+    places = sorted(p for p in was.keys() | now.keys() if was.get(p) != now.get(p))
+    found = [
+        (f"{XLSX}, cell {place}", f"it says {now.get(place)!r}; it was {was.get(place)!r}")
+        for place in places
+    ]
+    return _not_too_many(XLSX, found)
+
+
+def _not_too_many(file: str, found: list[tuple[str, str]]) -> list[tuple[str, str]]:
+    if len(found) <= MOST_CELLS:
+        return found
+    more = len(found) - MOST_CELLS
+    return [*found[:MOST_CELLS], (file, f"and {more} more places differ")]
+
+
+def _line_name(row: dict[str, Any]) -> str:
+    return f"{row['fsn_no']} {row['rowers']}{row['crew_class']}"
+
+
+# Are the archive's files those it was made from?
+
+
+def _archive(store: Store, path: Path, about: About) -> Iterator[Finding]:
+    name = path.name
+    root = archive_root(store) if store.made_from("about_archive") is not None else None
+    if root is None:
+        yield Finding(
+            name,
+            "unchecked",
+            "archive",
+            "the archive is not where the last rebuild found it; run herijk rebuild --archive DIR",
+        )
+        return
+    if not (path / INPUTS).exists():
+        return
+    hashes = FileHashes.load(store.file_hashes)
+    lists_changed = False
+    for row in sheets.read_csv_cells((path / INPUTS).read_bytes())[1:]:
+        if len(row) != len(sheets.INPUT_FIELDS):
+            continue  # the file was changed, which is found elsewhere
+        file, kind, sha256 = row
+        at = root / file
+        if not at.is_file():
+            yield Finding(name, "missing", file, f"{file} is gone from the archive; put it back")
+        elif hashes.hash_file(at) != sha256:
+            lists_changed |= kind == LIST
+            yield Finding(
+                name,
+                "notice" if kind == LIST else "swapped",
+                file,
+                f"{file} is not the file that the edition was made from",
+                wrong=kind != LIST,
+            )
+    if lists_changed and about.kind == "recomputed" and (path / "tows.parquet").exists():
+        yield from _list_rows(path, root, hashes)
+
+
+def _list_rows(path: Path, root: Path, hashes: FileHashes) -> Iterator[Finding]:
+    """Tows of the edition whose rows in the lists are no longer what they were."""
+    try:
+        index = index_archive(root, hashes.hash_file)
+        was = {name: read_table(path, name) for name in ("tows", "tow_runs")}
+    except HerijkError as error:
+        yield Finding(path.name, "unchecked", "sleeplijsten", str(error))
+        return
+    windows = index.windows.rename(HAND_COLUMNS)
+    runs = index.runs.join(windows, on=["tow_id", "run"], how="left")
+    for tow in sorted(set(was["tows"]["tow_id"]) - set(index.tows["tow_id"])):
+        yield Finding(path.name, "missing", tow, f"tow {tow} is no longer in the tow lists")
+    yield from _changed_facts(path.name, was["tows"], index.tows, ["tow_id"])
+    yield from _changed_facts(path.name, was["tow_runs"], runs, ["tow_id", "run"])
+
+
+def _changed_facts(
+    edition: str, was: pl.DataFrame, now: pl.DataFrame, key: list[str]
+) -> Iterator[Finding]:
+    facts = [
+        name
+        for name in was.columns
+        if name in now.columns and name not in (*key, *NOT_INPUT) and not name.endswith("_sha256")
+    ]
+    pairs = was.select(*key, *facts).join(now.select(*key, *facts), on=key, suffix="_now")
+    for row in pairs.sort(key).iter_rows(named=True):
+        name = "tow " + ", run ".join(str(row[k]) for k in key)
+        for fact in facts:
+            if row[f"{fact}_now"] != row[fact]:
+                message = f"{name}: {fact} is {row[f'{fact}_now']}; it was {row[fact]}"
+                yield Finding(edition, "swapped", name, message)
+
+
+# Do archive and code of today give the same register?
+
+
+def _made_again(store: Store, name: str) -> tuple[int, list[Finding]]:
+    """Lines that come out equal, and a finding for each that does not."""
+    try:
+        edition = read_edition(store, name)
+        again = lines_made_again(store, edition)
+    except (HerijkError, ValidationError, OSError, pl.exceptions.PolarsError) as error:
+        reason = str(error).splitlines()[0]
+        return 0, [Finding(name, "unchecked", "register", f"it cannot be made again: {reason}")]
+    findings = list(_differing(store, edition, again))
+    lines = edition.register.filter(pl.col("basis") == MEASURED).height
+    return lines - len(findings), findings
+
+
+def _differing(store: Store, edition: Edition, again: pl.DataFrame) -> Iterator[Finding]:
+    lines = edition.register.filter(pl.col("basis") == MEASURED)
+    columns = ["tow_id", *NUMBERS, INPUTS_HASH]
+    pairs = lines.select(*LINE, *columns).join(
+        again.select(*LINE, *columns), on=LINE, how="left", suffix="_now"
+    )
+    today = tows_of_today(store)
+    present = set(today["tow_id"])
+    same_inputs = has_inputs_of(today, edition)
+    for row in pairs.sort(LINE).iter_rows(named=True):
+        unequal = [n for n in NUMBERS if not _same(row[n], row[f"{n}_now"])]
+        if not unequal and row["tow_id"] == row["tow_id_now"]:
+            continue
+        why, wrong = _why(row, edition.about, present, same_inputs)
+        what = ", ".join(f"{n} {_text(row[n])} becomes {_text(row[f'{n}_now'])}" for n in unequal)
+        yield Finding(
+            edition.about.edition,
+            "differs",
+            _line_name(row),
+            f"made again, {what or 'another tow counts'}: {why}",
+            wrong,
+        )
+
+
+def _why(
+    row: dict[str, Any], about: About, present: set[str], same_inputs: bool
+) -> tuple[str, bool]:
+    """Why a line comes out otherwise, and whether that breaks a promise."""
+    tow = row["tow_id"]
+    if tow not in present:
+        return f"tow {tow} is no longer in the warehouse", True
+    if row["tow_id_now"] == tow and row[INPUTS_HASH] != row[f"{INPUTS_HASH}_now"]:
+        return f"the files or the list row of tow {tow} changed", True
+    if not same_inputs:
+        return "other tows that went into it changed", True
+    if about.code_version != code_version():
+        return f"the code changed, from {about.code_version} to {code_version()}", False
+    return "inputs, method and code are the same; this should not happen", True
+
+
+def _same(was: float | None, now: float | None) -> bool:
+    if was is None or now is None:
+        return was is now
+    return abs(now - was) <= SAME_NUMBER * abs(was)
+
+
+def _text(value: float | None) -> str:
+    return "nothing" if value is None else f"{value:.6g}"
