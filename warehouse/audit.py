@@ -115,7 +115,8 @@ def _type_facts(db: duckdb.DuckDBPyConnection, boat_type: str) -> Report:
                    count(DISTINCT t.fsn_no) AS n_towed, count(t.tow_id) AS n_tows,
                    min(t.season) AS first_season, max(t.season) AS last_season,
                    min(t.weight_kg) AS lightest_kg, max(t.weight_kg) AS heaviest_kg,
-                   min(t.declared_speed_m_s) AS slowest_m_s, max(t.declared_speed_m_s) AS fastest_m_s
+                   min(t.declared_speed_m_s) AS slowest_m_s,
+                   max(t.declared_speed_m_s) AS fastest_m_s
             FROM boats AS b LEFT JOIN tows AS t USING (fsn_no)
             WHERE {_TYPE} = ? GROUP BY ALL""",  # noqa: S608
         boat_type,
@@ -193,9 +194,9 @@ def _era(pairs: list[Report], era: Era) -> Report:
     found = median_interval(ratios)
     counted = {"era": era.name, "against": era.name if last else "later", "n": len(ratios)}
     if found is None:
-        return counted | dict.fromkeys(("shift_ratio", "lo", "hi", "apart")) | {
-            "reason": "few_pairs"
-        }
+        return (
+            counted | dict.fromkeys(("shift_ratio", "lo", "hi", "apart")) | {"reason": "few_pairs"}
+        )
     median, lo, hi = (exp(value) for value in found)
     apart = lo > 1.0 or hi < 1.0
     return counted | {"shift_ratio": median, "lo": lo, "hi": hi, "apart": apart, "reason": ""}

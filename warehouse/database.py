@@ -65,7 +65,9 @@ def open_database(path: Path) -> duckdb.DuckDBPyConnection:
     return duckdb.connect(path, read_only=True)
 
 
-def rows(connection: duckdb.DuckDBPyConnection, query: str, *values: object) -> list[dict[str, Any]]:
+def rows(
+    connection: duckdb.DuckDBPyConnection, query: str, *values: object
+) -> list[dict[str, Any]]:
     """What a query gives, a dictionary a row; `values` fill its question marks."""
     found = connection.execute(query, list(values))
     names = [column[0] for column in found.description or []]
