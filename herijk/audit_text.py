@@ -4,6 +4,7 @@ Words only: every figure and every verdict comes from `warehouse.audit`. True, f
 verdict are three different things: yes, not seen, and not claimed.
 """
 
+import re
 import textwrap
 from collections.abc import Callable, Iterator
 from math import exp
@@ -61,10 +62,13 @@ def audit(report: Report) -> str:
 # Words and figures -------------------------------------------------------------------------------
 
 
-def _wrapped(text: str, indent: int = 2) -> str:
-    return textwrap.fill(
-        text, WIDTH, initial_indent=" " * indent, subsequent_indent=" " * (indent + 2)
+def _wrapped(text: str, indent: int = 2, hanging: int = 2) -> str:
+    """Lines of at most `WIDTH`; a figure stays with its sign and n with its number."""
+    bound = re.sub(r"(?<=\d) (?=%)|(?<=\bn) (?=\d)|(?<=\bp) (?=\d)", "\xa0", text)
+    lines = textwrap.fill(
+        bound, WIDTH, initial_indent=" " * indent, subsequent_indent=" " * (indent + hanging)
     )
+    return lines.replace("\xa0", " ")
 
 
 def _share(ratio: float | None, digits: int = 0) -> str:
@@ -125,21 +129,31 @@ def _one_type(report: Report) -> list[str]:
     repeats = [_eras(under, fleet), *_repeats(under, fleet)]
     opinion = [line for m in under for line in _prediction(m, under[m], fleet[m])]
     sections = [
-        ("1. Do A [kg/m] and B [m/s] follow weight or tow speed? Does Cw [kg/m]?", _lines(under)),
+        (_first_title(under), _lines(under)),
         ("2. Can all boats have the same bend?", _each(under, _equal_bends)),
         (
             "3. Does the bend follow the tow speed? By a true hyperbola it would not.",
             _each(under, _speed_trend),
         ),
-        ("4. If like boats shared one bend q", _each(under, _shared)),
+        (
+            "4. If like boats shared one bend: B, and most change of a register's Cw by speed",
+            _shared(under),
+        ),
         ("5. Which boats lie outside their type?", _each(under, _outside)),
         ("6. Slow tows", _each(under, _slow)),
         ("7. Do repeat tows of unaltered boats agree, before and after correction?", repeats),
         ("8. Second opinion without towing: Cw from weight, length, beam and type", opinion),
     ]
     heading = [f"{found['boat_type']}: are equal boats equal?", _heading(found)]
-    heading = [_wrapped(line, 0) for line in (*heading, NOTE)]
+    heading = [_wrapped(line, 0, 0) for line in (*heading, NOTE)]
     return ["\n".join(heading), *map(_section, sections)]
+
+
+def _first_title(under: Report) -> str:
+    lines = [_line(figures, "cw_standard_kg_m", "weight_kg") for figures in under.values()]
+    speeds = {f"{x['standard_speed_m_s']:.2f} m/s" for x in lines if "standard_speed_m_s" in x}
+    at = f" at a standard {' or '.join(sorted(speeds))}" if speeds else ""
+    return f"1. Do A [kg/m] and B [m/s] follow weight or tow speed? Does Cw [kg/m]{at}?"
 
 
 def _section(section: tuple[str, list[str]]) -> str:
@@ -183,16 +197,23 @@ def _lines(under: Report) -> list[str]:
                 if line["reason"]:
                     silent.append((method, f"{letter} against {against}", _nothing(line)))
                     continue
-                cells.append((label, method, *_line_figures(line, explaining)))
+                cells.append((label, method, _slope(line, explaining), *_line_figures(line)))
                 label = ""
+    label = "Cw, power of m"
+    for method, figures in under.items():
+        line = _line(figures, "ln_cw_standard", "ln_displacement")
+        if not line["reason"]:
+            power = _interval(line["slope"], line["slope_lo"], line["slope_hi"], digits=2)
+            explained, verdict = _share(line["r2"]), _yes(line["follows"])
+            cells.append((label, method, power, explained, "", "", line["n"], verdict))
+            label = ""
     head = ("", "method", "slope", "explained", "spread", "noise", "n", "")
     shown = [table(head, cells)] if cells else []
     return shown + _silent(silent) + (_each(under, _closest) if cells else [])
 
 
-def _line_figures(line: Report, explaining: str) -> tuple[Any, ...]:
+def _line_figures(line: Report) -> tuple[Any, ...]:
     return (
-        _slope(line, explaining),
         _share(line["r2"]),
         _share(line["residual_sd_ratio"], 1),
         _share(line["noise_sd_ratio"], 1),
@@ -202,11 +223,16 @@ def _line_figures(line: Report, explaining: str) -> tuple[Any, ...]:
 
 
 def _silent(silent: list[tuple[str, str, str]]) -> list[str]:
-    """What is not claimed: the same reason of several lines is told once."""
-    by_reason: dict[str, dict[str, None]] = {}
+    """What is not claimed, for methods and lines of the same reason at once."""
+    methods: dict[str, dict[str, None]] = {}
+    lines: dict[str, dict[str, None]] = {}
     for method, what, reason in silent:
-        by_reason.setdefault(f"{method}: {reason}", {})[what] = None
-    return [_wrapped(f"{reason}: {', '.join(whats)}") for reason, whats in by_reason.items()]
+        methods.setdefault(reason, {})[method] = None
+        lines.setdefault(reason, {})[what] = None
+    return [
+        _wrapped(f"{', '.join(methods[reason])}: {reason}: {', '.join(lines[reason])}")
+        for reason in methods
+    ]
 
 
 def _closest(under: Report) -> list[str]:
@@ -216,22 +242,11 @@ def _closest(under: Report) -> list[str]:
         if line["reason"]:
             return [_nothing(line)]
     spread = {letter: line["residual_sd_ratio"] for letter, line in found.items()}
-    closer = spread["Cw"] < min(spread["A"], spread["B"])
-    cw = found["Cw"]
+    closer = "lies closer" if spread["Cw"] < min(spread["A"], spread["B"]) else "lies no closer"
     return [
-        f"about weight Cw at {cw['standard_speed_m_s']:.2f} m/s spreads {_share(spread['Cw'], 1)} "
-        f"(n {cw['n']}), A {_share(spread['A'], 1)} (n {found['A']['n']}), B "
-        f"{_share(spread['B'], 1)} (n {found['B']['n']}): Cw lies "
-        f"{'closer' if closer else 'not closer'} together.{_power(under)}"
+        f"about weight Cw spreads {_share(spread['Cw'], 1)} (n {found['Cw']['n']}), A "
+        f"{_share(spread['A'], 1)}, B {_share(spread['B'], 1)}: Cw {closer} together."
     ]
-
-
-def _power(under: Report) -> str:
-    line = _line(under, "ln_cw_standard", "ln_displacement")
-    if line["reason"]:
-        return ""
-    ends = f"{line['slope']:.2f} ({line['slope_lo']:.2f} to {line['slope_hi']:.2f})"
-    return f" It grows with displacement to the power {ends}."
 
 
 def _equal_bends(under: Report) -> list[str]:
@@ -244,15 +259,14 @@ def _equal_bends(under: Report) -> list[str]:
         None: "not claimed, too weak a test",
     }[test["equal_possible"]]
     said = (
-        f"{verdict}: F {test['f_value']:.2f} on {test['dof_between']} and {test['dof_within']} "
-        f"degrees of freedom, p {test['p_value']:.3f}, n {test['n']}."
+        f"{verdict}: p {test['p_value']:.3f} (F {test['f_value']:.2f} on {test['dof_between']} and "
+        f"{test['dof_within']}, n {test['n']})."
     )
     if test["power_at_5pct"] is None:
         return [f"{said} The shared curve does not bend upwards: there is no B to compare."]
     return [
-        f"{said} A true spread of B of 5 % would be seen with a chance of "
-        f"{_share(test['power_at_5pct'])}, of 10 % with {_share(test['power_at_10pct'])}. "
-        f"{_noise(test)}"
+        f"{said} Chance to see a true spread of B of 5 %: {_share(test['power_at_5pct'])}, of "
+        f"10 %: {_share(test['power_at_10pct'])}. {_noise(test)}"
     ]
 
 
@@ -261,9 +275,9 @@ def _noise(test: Report) -> str:
     if test["b_sd_ratio"] is None or test["ab_correlation"] is None:
         return f"{noise}."
     return (
-        f"{noise}; B spreads {_share(test['b_sd_ratio'], 1)} (noise alone "
-        f"{_share(test['b_noise_sd_ratio'], 1)}), A and B go along by {test['ab_correlation']:.2f} "
-        f"(noise alone {test['ab_noise_correlation']:.2f})."
+        f"{noise}, B a spread of {_share(test['b_noise_sd_ratio'], 1)} (seen "
+        f"{_share(test['b_sd_ratio'], 1)}), A and B a correlation of "
+        f"{test['ab_noise_correlation']:.2f} (seen {test['ab_correlation']:.2f})."
     )
 
 
@@ -276,19 +290,22 @@ def _speed_trend(under: Report) -> list[str]:
 
 
 def _shared(under: Report) -> list[str]:
-    found = {row["pooling"]: row for row in under["shared"]}
-    if "shared" not in found:
-        own = found.get("own", {"n": 0})
-        return [_nothing({"reason": under["bends"]["reason"] or "few_boats", "n": own["n"]})]
-    own, part, shared = (found[pooling] for pooling in ("own", "partial", "shared"))
-    b = "no B" if shared["median_b_m_s"] is None else f"B {shared['median_b_m_s']:.2f} m/s"
-    return [
-        f"{b} for all (own B spread {_share(own['b_sd_ratio'], 1)}, shared in part "
-        f"{_share(part['b_sd_ratio'], 1)}), n {shared['n']}; a register line would move at most "
-        f"{_share(shared['most_085'], 1)} of Cw at 85 % of the declared speed, "
-        f"{_share(shared['most_100'], 1)} at it, {_share(shared['most_115'], 1)} at 115 % "
-        f"({shared['most_fsn_no']}).",
-    ]
+    """What becomes of the register when boats share their bend: B, and how far Cw would move."""
+    cells, silent = [], []
+    for method, figures in under.items():
+        found = {row["pooling"]: row for row in figures["shared"]}
+        if "shared" not in found:
+            reason = {"reason": figures["bends"]["reason"] or "few_boats"}
+            silent.append((method, "shared bend", _nothing(figures["bends"] | reason)))
+            continue
+        own, part, shared = (found[pooling] for pooling in ("own", "partial", "shared"))
+        b = shared["median_b_m_s"]
+        spreads = [_share(row["b_sd_ratio"], 1) for row in (own, part)]
+        moves = [_share(shared[f"most_{at}"], 1) for at in ("085", "100", "115")]
+        place = "none" if b is None else f"{b:.2f} m/s"
+        cells.append((method, place, *spreads, *moves, shared["most_fsn_no"], shared["n"]))
+    head = ("method", "B", "own B spread", "in part", "85 %", "100 %", "115 %", "boat", "n")
+    return ([table(head, cells)] if cells else []) + _silent(silent)
 
 
 def _judged(under: Report) -> str:
@@ -392,16 +409,15 @@ def _repeats(under: Report, fleet: Report) -> list[str]:
     """How well repeat tows agree, per method."""
     lines = []
     for method, figures in under.items():
-        pairs, everyone = figures["repeats"], _scope(fleet[method], "all")
-        said = "no repeat pairs of this type (n 0)."
+        pairs, within = figures["repeats"], _scope(fleet[method], "all").get("within_sd_ratio")
+        said = "no repeat pairs of this type (n 0)"
         if pairs["n_pairs"]:
-            within = everyone.get("within_sd_ratio")
             said = (
-                f"s_R of one tow {_share(pairs['sd_ratio'], 1)} (n {pairs['n_pairs']} pairs; "
-                f"within a tow, all types, s_r {_share(within, 1)}); {pairs['n_disagree']} of "
-                f"{pairs['n_e_n']} pairs disagree by E_n (5 % expected)."
+                f"s_R {_share(pairs['sd_ratio'], 1)} (n {pairs['n_pairs']} pairs, "
+                f"{pairs['n_disagree']} of {pairs['n_e_n']} disagree by E_n)"
             )
-        lines.append(_wrapped(f"{method}: {said} {_components(fleet[method])}"))
+        causes = _components(fleet[method])
+        lines.append(_wrapped(f"{method}: {said}. All types: s_r {_share(within, 1)}; {causes}"))
     return lines
 
 
@@ -409,10 +425,10 @@ def _components(fleet: Report) -> str:
     found = {row["component"]: row for row in fleet["components"]}
     if "boat" not in found or found["boat"]["reason"]:
         reason = found["boat"]["reason"] if "boat" in found else "no_curves"
-        return f"Spread by cause: nothing claimed, {REASONS[reason]}."
+        return f"spread by cause: nothing claimed, {REASONS[reason]}."
     boat, season, rest = (found[name]["sd_ratio"] for name in ("boat", "season", "boat_season"))
     return (
-        f"Within types boats spread {_share(boat, 1)}, seasons {_share(season, 1)}, the rest "
+        f"within types boats spread {_share(boat, 1)}, seasons {_share(season, 1)}, the rest "
         f"{_share(rest, 1)} (n {found['boat']['n']})."
     )
 
@@ -542,7 +558,7 @@ def _two_types(report: Report) -> list[str]:
     intro = [f"{one['boat_type']}: {_heading(one)}" for one in types]
     intro.append(f"{NOTE} Per cent after a verdict: share of the spread that the line explains.")
     return [
-        "\n".join(_wrapped(line, 0) for line in intro),
+        "\n".join(_wrapped(line, 0, 0) for line in intro),
         table(("", "method", *names), cells),
         _section(("What differs:", differences or ["  no verdict differs between the two"])),
     ]
@@ -578,7 +594,8 @@ def _boat(report: Report) -> list[str]:
             [_set_aside(row) for row in report["set_aside"]] or ["  nothing"],
         ),
     ]
-    return [*parts, *(_section(section) for section in sections if section[1])]
+    wrapped = [(title, [_wrapped(line.strip()) for line in lines]) for title, lines in sections]
+    return [*parts, *(_section(section) for section in wrapped if section[1])]
 
 
 def _place_title(report: Report) -> str:

@@ -141,10 +141,11 @@ def _type_under(db: duckdb.DuckDBPyConnection, boat_type: str, method: str) -> R
 
 
 def _one(db: duckdb.DuckDBPyConnection, table: str, method: str, boat_type: str) -> Report:
-    """The one row of a method and type; without a curve of the type there is none."""
+    """The one row of a method and type; there is none without a curve, or where types are asked."""
     query = f"SELECT * FROM {table} WHERE method = ? AND boat_type = ?"  # noqa: S608
     found = rows(db, query, method, boat_type)
-    return found[0] if found else {"n": 0, "n_boats": 0, "reason": "no_curves"}
+    reason = "no_type" if boat_type == UNKNOWN_TYPE else "no_curves"
+    return found[0] if found else {"n": 0, "reason": reason}
 
 
 def _away_from_zero(line: Report) -> bool | None:
