@@ -471,7 +471,7 @@ def _headline(eras: list[str]) -> list[Figure]:
         *lines,
         ("spread about weight", _spread_cell),
         ("equal bends possible", _bends_cell),
-        ("bend against tow speed", _trend_cell),
+        ("q per 10 % tow speed", _trend_cell),
         ("boats outside", _outside_cell),
         ("slow tows", lambda u: (None, f"{len(u['slow_tows'])} of n {u['bends']['n']}")),
         *((f"{era}, next tow", _era_cell(i)) for i, era in enumerate(eras)),
@@ -480,11 +480,15 @@ def _headline(eras: list[str]) -> list[Figure]:
     ]
 
 
+def _no_cell(row: Report) -> str:
+    return f"- {row['reason'].replace('_', ' ')}, n {row['n']}"
+
+
 def _line_cell(quantity: str, explaining: str) -> Callable[[Report], tuple[bool | None, str]]:
     def cell(under: Report) -> tuple[bool | None, str]:
         line = _line(under, quantity, explaining)
         if line["reason"]:
-            return None, f"- {REASONS.get(line['reason'], line['reason'])}, n {line['n']}"
+            return None, _no_cell(line)
         return line["follows"], f"{_yes(line['follows'])}, {_share(line['r2'])}, n {line['n']}"
 
     return cell
@@ -501,7 +505,7 @@ def _spread_cell(under: Report) -> tuple[bool | None, str]:
 def _bends_cell(under: Report) -> tuple[bool | None, str]:
     test = under["bends"]
     if test["reason"]:
-        return None, f"- {REASONS.get(test['reason'], test['reason'])}, n {test['n']}"
+        return None, _no_cell(test)
     word = {True: "yes", False: "no", None: "not claimed"}[test["equal_possible"]]
     return (
         test["equal_possible"],
@@ -512,8 +516,10 @@ def _bends_cell(under: Report) -> tuple[bool | None, str]:
 def _trend_cell(under: Report) -> tuple[bool | None, str]:
     trend = under["speed_trend"]
     if trend["reason"]:
-        return None, f"- {REASONS.get(trend['reason'], trend['reason'])}, n {trend['n']}"
-    return trend["follows"], f"{_yes(trend['follows'])}, q {0.1 * trend['slope']:+.3f} per 10 %"
+        return None, _no_cell(trend)
+    return trend[
+        "follows"
+    ], f"{_yes(trend['follows'])}, {0.1 * trend['slope']:+.3f}, n {trend['n']}"
 
 
 def _outside_cell(under: Report) -> tuple[bool | None, str]:
@@ -525,7 +531,7 @@ def _era_cell(index: int) -> Callable[[Report], tuple[bool | None, str]]:
     def cell(under: Report) -> tuple[bool | None, str]:
         era = under["repeats"]["eras"][index]
         if era["reason"]:
-            return None, f"- {REASONS[era['reason']]}, n {era['n']}"
+            return None, _no_cell(era)
         return era["apart"], f"{_apart(era)}, {_change(era['shift_ratio'])} %, n {era['n']}"
 
     return cell
