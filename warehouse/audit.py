@@ -322,7 +322,7 @@ def _tow(db: duckdb.DuckDBPyConnection, tow: Report, methods: list[str]) -> Repo
     curves = rows(db, _CURVES, tow_id, methods)
     for curve in curves:
         curve["run_points"] = rows(db, _RUN_POINTS, tow_id, curve["method"])
-    return tow | {"curves": curves, "steps": rows(db, _STEPS, tow_id, methods)}
+    return tow | {"curves": curves, "steps": rows(db, _STEPS, tow_id, methods, methods)}
 
 
 _TOWS = "SELECT * FROM tows WHERE fsn_no = ? ORDER BY tow_date, tow_id"
@@ -332,7 +332,8 @@ _CURVES = "SELECT * FROM curves WHERE tow_id = ? AND list_contains(?, method) OR
 _RUN_POINTS = "SELECT * FROM run_points WHERE tow_id = ? AND method = ? ORDER BY run"
 
 _STEPS = """
-SELECT * FROM correction_steps WHERE tow_id = ? AND list_contains(?, to_method)
+SELECT * FROM correction_steps
+WHERE tow_id = ? AND list_contains(?, from_method) AND list_contains(?, to_method)
 ORDER BY from_method, to_method, position
 """
 
