@@ -85,6 +85,11 @@ def _type_named(db: duckdb.DuckDBPyConnection, name: str) -> str:
     for row in types:
         if _plain(row["boat_type"]) == _plain(name):
             return str(row["boat_type"])
+    for boat in _boats_named(db, name):
+        raise MissingKnowledgeError(
+            f"{boat['fsn_no']} is a boat, not a type; a boat has a page of its own: "
+            f"herijk audit {boat['fsn_no']}"
+        )
     example = rows(db, "SELECT min(fsn_no) AS fsn_no FROM tows")[0]["fsn_no"]
     known = ", ".join(f"{row['boat_type']} ({row['n']} boats)" for row in types)
     raise MissingKnowledgeError(

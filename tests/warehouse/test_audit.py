@@ -150,7 +150,7 @@ def test_an_unknown_name_lists_the_types_and_a_boat(built):
 
 def test_a_boat_next_to_a_type_is_refused(built):
     boat = built.table("tows")["fsn_no"][0]
-    with pytest.raises(MissingKnowledgeError, match="no type"):
+    with pytest.raises(MissingKnowledgeError, match="a page of its own"):
         audit(built.store, [boat, "Kuikensloep"])
 
 
