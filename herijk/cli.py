@@ -8,11 +8,11 @@ as text, in `herijk.text`.
 import re
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Final
 
 import typer
 
-from herijk import commands_editions, text
+from herijk import audit_text, commands_editions, text
 from herijk.arguments import AsJson, DataFolder, show
 from herijk.method_text import method_in_words
 from herijk.progress import TerminalProgress
@@ -22,6 +22,7 @@ from pipeline.register import draft_name
 from pipeline.simulate import WorldSettings, simulate_world
 from warehouse import reports
 from warehouse.archive.write import write_simulated_archive
+from warehouse.audit import audit as audit_report
 from warehouse.rebase import rebase as rebase_history
 from warehouse.store import Store
 
@@ -36,6 +37,8 @@ methods_app = typer.Typer(help="The methods that ship with Herijk.", rich_markup
 app.add_typer(methods_app, name="methods", invoke_without_command=True)
 
 commands_editions.add_to(app)
+
+MOST_TYPES: Final = 2
 
 
 def main() -> None:
@@ -131,18 +134,22 @@ def _method(name_or_file: str) -> Method:
 
 @app.command()
 def audit(
-    fsn_no: Annotated[str, typer.Argument(metavar="FSN_NO", help="Boat, for example FSN211.")],
+    names: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="FSN_NO|TYPE [TYPE]", help="A boat, FSN211, or one or two types of boat."
+        ),
+    ],
     data: DataFolder = Path("data"),
     method: Annotated[str | None, typer.Option(help="Show this method only.")] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Where a boat's numbers come from: every tow, each step from window to curve."""
-    report = reports.audit_boat(Store(data), fsn_no)
+    """Where a boat's numbers come from, step by step; or whether boats of a type are equal."""
+    if len(names) > MOST_TYPES:
+        raise typer.BadParameter("give a boat, or one or two types; quote a name with blanks")
     if method is not None:
         shipped_text(method)
-        for tow in report["tows"]:
-            tow["curves"] = [c for c in tow["curves"] if c["method"] == method]
-    show(report, text.audit, as_json)
+    show(audit_report(Store(data), names, method), audit_text.audit, as_json)
 
 
 @app.command("log-error")

@@ -1,4 +1,7 @@
-"""Results as text for a person: one function per command, from plain data to lines."""
+"""Results as text for a person: one function per command, from plain data to lines.
+
+The pages of `herijk audit` are in `herijk.audit_text`.
+"""
 
 from collections.abc import Iterable, Sequence
 from typing import Any
@@ -218,72 +221,3 @@ def rebase(report: Report) -> str:
     head = ("boat", "name", "crew", *steps, "Cw", "in 2 h")
     parts.append("Register lines most affected:\n" + table(head, boats))
     return "\n\n".join(parts)
-
-
-def audit(report: Report) -> str:
-    """A boat's tows with, per method, the numbers of each step."""
-    boat = report["boat"]
-    parts = [SIMULATED] if report["simulated"] else []
-    parts.append(f"{boat['fsn_no']} {boat['name']}, type {boat['boat_type'] or 'not known'}")
-    parts += [_tow(tow) for tow in report["tows"]]
-    if not report["tows"]:
-        parts.append("No tow of this boat was accepted.")
-    return "\n\n".join(parts)
-
-
-def _tow(tow: Report) -> str:
-    weight = "weight not known" if tow["weight_kg"] is None else f"{tow['weight_kg']:.0f} kg"
-    head = (
-        f"Tow {tow['tow_id']} of {tow['tow_date']}: {tow['rowers']}{tow['crew_class']}, declared "
-        f"{tow['declared_speed_m_s']:.2f} m/s, {tow['waterline_length_m']:.2f} x "
-        f"{tow['beam_m']:.2f} x {tow['bow_height_m']:.2f} m, {weight}, from {tow['samples_path']}"
-    )
-    return "\n".join([head, *(_curve(curve) for curve in tow["curves"])])
-
-
-def _curve(curve: Report) -> str:
-    head = (
-        "run",
-        "window s",
-        "cut because",
-        "factor",
-        "v m/s",
-        "gross",
-        "-air",
-        "+still",
-        "Cw",
-        "curve",
-        "",
-    )
-    rows = [
-        (
-            p["run"],
-            "-"
-            if p["window_start_s"] is None
-            else f"{p['window_start_s']:.0f}-{p['window_end_s']:.0f}",
-            p["cut_reason"],
-            p["speed_factor"],
-            p["speed_m_s"],
-            p["gross_cw_kg_m"],
-            p["air_cw_kg_m"],
-            p["still_air_cw_kg_m"],
-            p["cw_kg_m"],
-            p["fitted_cw_kg_m"],
-            p["reason"],
-        )
-        for p in curve["run_points"]
-    ]
-    return f"  {curve['method']}: {_result(curve)}\n{table(head, rows)}"
-
-
-def _result(curve: Report) -> str:
-    flags = f" ({', '.join(curve['flags'])})" if curve["flags"] else ""
-    if curve["cw_kg_m"] is None:
-        return f"no curve, {curve['status']}{flags}"
-    b = "B not determined" if curve["b_m_s"] is None else f"B {curve['b_m_s']:.2f} m/s"
-    upper = "no upper bound" if curve["b_hi_m_s"] is None else f"{curve['b_hi_m_s']:.2f}"
-    return (
-        f"A {curve['a_kg_m']:.2f} kg/m, {b} (95 %: {curve['b_lo_m_s']:.2f} to {upper}), Cw "
-        f"{curve['cw_kg_m']:.2f} kg/m (95 %: {curve['cw_lo_kg_m']:.2f} to "
-        f"{curve['cw_hi_kg_m']:.2f}), {curve['power_w']:.1f} W a rower, {curve['status']}{flags}"
-    )

@@ -1,15 +1,18 @@
 """The database that readers use: all tables in one DuckDB file, built beside and swapped in.
 
 A reader that has the old file open keeps reading the old tables; one that opens the file later
-sees the new ones. Nobody sees half of either.
+sees the new ones. Nobody sees half of either. What is asked of it is in `warehouse.reports` and
+`warehouse.audit`.
 """
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import duckdb
 import polars as pl
 
+from pipeline.errors import MissingKnowledgeError
 from warehouse.files import written_beside
 from warehouse.schemas import TABLES
 
@@ -47,3 +50,31 @@ def _comment(connection: duckdb.DuckDBPyConnection, name: str) -> None:
 
 def _quoted(text: str | None) -> str:
     return "'" + (text or "").replace("'", "''") + "'"
+
+
+def open_database(path: Path) -> duckdb.DuckDBPyConnection:
+    """The database, to read only.
+
+    Raises:
+        MissingKnowledgeError: it was not made yet.
+    """
+    if not path.exists():
+        raise MissingKnowledgeError(
+            f"{path} is not there; make it with: herijk rebuild --archive DIR --data {path.parent}"
+        )
+    return duckdb.connect(path, read_only=True)
+
+
+def rows(
+    connection: duckdb.DuckDBPyConnection, query: str, *values: object
+) -> list[dict[str, Any]]:
+    """What a query gives, a dictionary a row; `values` fill its question marks."""
+    found = connection.execute(query, list(values))
+    names = [column[0] for column in found.description or []]
+    return [dict(zip(names, row, strict=True)) for row in found.fetchall()]
+
+
+def is_simulated(connection: duckdb.DuckDBPyConnection) -> bool:
+    """Whether the archive behind it was made by the simulator."""
+    row = connection.execute("SELECT value FROM about WHERE key = 'simulated'").fetchone()
+    return row is not None and row[0] == "true"

@@ -1,0 +1,212 @@
+"""What is collected about a boat or a type: figures of the tables, and verdicts they bear."""
+
+import duckdb
+import numpy as np
+import polars as pl
+import pytest
+from scipy import stats
+
+from pipeline.errors import MissingKnowledgeError
+from tests.conftest import METHODS
+from warehouse.audit import audit, median_interval
+
+
+def change(bench, *statements):
+    """Writes into the bench's own copy of the database."""
+    with duckdb.connect(bench.store.database) as db:
+        for statement in statements:
+            db.execute(statement)
+
+
+def types_of(bench):
+    return sorted(bench.table("boats")["boat_type"].drop_nulls().unique())
+
+
+def under(bench, boat_type, method="rebased-2015"):
+    return audit(bench.store, [boat_type], method)["types"][0]["under"][method]
+
+
+@pytest.mark.parametrize("n", [6, 8, 9, 17, 40, 101])
+def test_the_interval_of_a_median_is_that_of_order_statistics(n):
+    values = np.random.default_rng(n).normal(size=n)
+    found = median_interval(values)
+    independent = stats.quantile_test(values, p=0.5).confidence_interval(0.95)
+    assert found == pytest.approx((np.median(values), independent.low, independent.high))
+
+
+@pytest.mark.parametrize("n", [0, 1, 5])
+def test_a_median_of_fewer_than_six_values_has_no_interval(n):
+    assert median_interval([0.1] * n) is None
+
+
+def test_an_outlier_does_not_move_a_shift():
+    values = [0.01 * k for k in range(-4, 5)]
+    assert median_interval([*values[:-1], 40.0]) == pytest.approx(
+        median_interval(values), abs=0.011
+    )
+
+
+def test_figures_of_a_type_are_those_of_the_tables(built):
+    for boat_type in types_of(built):
+        report = audit(built.store, [boat_type])
+        assert report["methods"] == list(METHODS)
+        for method in METHODS:
+            own = {"method": method, "boat_type": boat_type}
+            found = report["types"][0]["under"][method]
+            lines = built.table("type_consistency").filter(**own)
+            assert lines.height == len(found["lines"])
+            for line in found["lines"]:
+                key = {name: line[name] for name in ("quantity", "explaining")}
+                row = lines.row(by_predicate=_where(key), named=True)
+                assert row.items() <= line.items()
+            test = built.table("type_homogeneity").filter(**own).row(0, named=True)
+            assert test.items() <= found["bends"].items()
+            outliers = built.table("type_outliers").filter(**own)
+            assert len(found["outside"]) == outliers["outside"].sum()
+            assert sum(row["n"] for row in found["judged"]) == outliers.height
+
+
+def _where(key):
+    return pl.all_horizontal(*(pl.col(name) == value for name, value in key.items()))
+
+
+def test_a_line_follows_only_where_its_interval_leaves_out_zero(built):
+    seen = set()
+    for boat_type in types_of(built):
+        for line in under(built, boat_type)["lines"]:
+            expected = None if line["reason"] else line["slope_lo"] > 0 or line["slope_hi"] < 0
+            assert line["follows"] is expected
+            seen.add(line["follows"])
+    assert seen == {None, True, False}
+
+
+@pytest.mark.parametrize(
+    ("p_value", "power", "verdict"),
+    [(0.3, 0.9, True), (0.3, 0.5, None), (0.01, 0.9, False), (0.01, 0.5, False), (0.3, None, None)],
+)
+def test_equal_bends_are_possible_only_by_a_test_that_could_have_failed(
+    bench, p_value, power, verdict
+):
+    change(
+        bench,
+        f"UPDATE type_homogeneity SET p_value = {p_value}, "  # noqa: S608
+        f"power_at_10pct = {'NULL' if power is None else power}, reason = ''",
+    )
+    assert under(bench, "Kuikensloep")["bends"]["equal_possible"] is verdict
+
+
+def test_repeats_of_a_type_are_those_of_its_boats(built):
+    boats = built.table("boats").filter(boat_type="Kuikensloep")["fsn_no"].to_list()
+    pairs = built.table("repeat_pairs").filter(method="rebased-2015")
+    own = pairs.filter(pairs["fsn_no"].is_in(boats))["ln_ratio"].to_numpy()
+    found = under(built, "Kuikensloep")["repeats"]
+    assert found["n_pairs"] == len(own) > 0
+    assert found["sd_ratio"] == pytest.approx(np.sqrt((own**2).mean() / 2))
+
+
+def test_eras_count_pairs_into_later_eras_and_the_last_era_its_own(bench):
+    change(
+        bench,
+        "DELETE FROM repeat_pairs",
+        """INSERT INTO repeat_pairs
+           SELECT m.method, b.fsn_no, 8, 'H', b.fsn_no || x.season, b.fsn_no || x.season_before,
+                  x.season, x.season_before, x.ln_ratio, 0.5
+           FROM (VALUES ('rebased-2015'), ('as-published')) AS m(method)
+           CROSS JOIN (SELECT fsn_no FROM boats WHERE boat_type = 'Kuikensloep'
+                       ORDER BY fsn_no LIMIT 6) AS b
+           CROSS JOIN (VALUES (2010, 2009, 0.3), (2014, 2009, -0.16), (2018, 2014, 0.001))
+                AS x(season, season_before, ln_ratio)""",
+    )
+    first, second, last = under(bench, "Kuikensloep")["repeats"]["eras"]
+    assert (first["n"], first["apart"]) == (6, True)
+    assert first["shift_ratio"] == pytest.approx(np.exp(-0.16))
+    assert (second["n"], second["apart"], second["reason"]) == (0, None, "few_pairs")
+    assert (last["n"], last["era"], last["against"]) == (6, "2014-", "2014-")
+
+
+@pytest.mark.parametrize("name", ["Kuikensloep", "kuikensloep", " KUIKEN SLOEP "])
+def test_a_type_is_found_whatever_its_case_and_blanks(built, name):
+    assert audit(built.store, [name])["types"][0]["boat_type"] == "Kuikensloep"
+
+
+def test_a_boat_is_found_whatever_its_case_and_blanks(built):
+    fsn_no = built.table("tows")["fsn_no"][0]
+    assert audit(built.store, [f" fsn {fsn_no[3:]}"])["boat"]["fsn_no"] == fsn_no
+
+
+def test_boats_without_a_type_have_a_page_without_claims(built):
+    found = under(built, "unknown")
+    assert {line["reason"] for line in found["lines"]} == {"no_type"}
+    assert (found["bends"]["reason"], found["speed_trend"]["reason"]) == ("no_type", "no_type")
+    assert found["bends"]["equal_possible"] is None
+
+
+def test_an_unknown_name_lists_the_types_and_a_boat(built):
+    with pytest.raises(MissingKnowledgeError) as error:
+        audit(built.store, ["Kromhout"])
+    for expected in (*types_of(built), "'Kromhout'", "FSN1"):
+        assert expected in str(error.value)
+
+
+def test_a_boat_next_to_a_type_is_refused(built):
+    boat = built.table("tows")["fsn_no"][0]
+    with pytest.raises(MissingKnowledgeError, match="a page of its own"):
+        audit(built.store, [boat, "Kuikensloep"])
+
+
+def test_a_method_that_the_tables_do_not_hold_is_named_with_those_they_do(built):
+    with pytest.raises(MissingKnowledgeError, match=r"'rebased'.*as-published, rebased-2015"):
+        audit(built.store, ["Kuikensloep"], "rebased")
+
+
+def test_a_type_whose_tows_gave_no_curve_has_a_page(bench):
+    change(bench, "UPDATE boats SET boat_type = 'Punter' WHERE fsn_no = 'FSN100'")
+    found = under(bench, "punter")
+    assert found["lines"] == []
+    assert found["bends"]["reason"] == found["speed_trend"]["reason"] == "no_curves"
+
+
+def test_a_boats_page_holds_all_that_the_tables_say_of_it(built):
+    fsn_no = built.table("repeat_pairs")["fsn_no"][0]
+    report = audit(built.store, [fsn_no])
+    tables = {
+        "tows": "tows",
+        "in_type": "type_outliers",
+        "pooled": "pooled_curves",
+        "repeat_pairs": "repeat_pairs",
+        "predicted": "predicted_cw",
+        "register": "register",
+    }
+    for part, table in tables.items():
+        assert len(report[part]) == built.table(table).filter(fsn_no=fsn_no).height, part
+    assert len(report["repeat_pairs"]) > 0
+    for tow in report["tows"]:
+        assert {curve["method"] for curve in tow["curves"]} == set(METHODS)
+        assert tow["steps"][0]["step"] == "start"
+
+
+def test_one_method_leaves_out_the_others(built):
+    fsn_no = built.table("repeat_pairs")["fsn_no"][0]
+    report = audit(built.store, [fsn_no], "rebased-2015")
+    parts = ("in_type", "pooled", "repeat_pairs", "predicted", "register")
+    methods = {row["method"] for part in parts for row in report[part]}
+    curves = {curve["method"] for tow in report["tows"] for curve in tow["curves"]}
+    assert methods == curves == {"rebased-2015"}
+
+
+def test_set_aside_tows_of_a_boat_are_found_by_number_or_file_and_no_others(bench):
+    change(
+        bench,
+        "UPDATE boats SET name = 'Razende Snol' WHERE fsn_no = 'FSN101'",
+        *(
+            f"INSERT INTO quarantine VALUES ('{path}', NULL, NULL, 'x', '{message}', '2026-01-01')"  # noqa: S608
+            for path, message in (
+                ("a.csv", "boat FSN101 is not in the list"),
+                ("b.csv", "boat FSN1010 is not in the list"),
+                ("meetdata_2014/razende snol 8h 2014.csv", "a broken row"),
+                ("meetdata_2014/razende snollen 8h 2014.csv", "a broken row"),
+            )
+        ),
+    )
+    found = [row["path"] for row in audit(bench.store, ["FSN101"])["set_aside"]]
+    assert found == ["a.csv", "meetdata_2014/razende snol 8h 2014.csv"]
