@@ -153,7 +153,7 @@ def log_error(
 ) -> None:
     """How wrong the speed log was in each season, how sure that is, and what it rests on."""
     shipped_text(method)
-    _show(reports.log_error_report(Store(data), method), text.log_error, as_json)
+    show(reports.log_error_report(Store(data), method), text.log_error, as_json)
 
 
 @app.command()

@@ -15,7 +15,7 @@ from warehouse.store import Store, fingerprint, table_digest
 from warehouse.tables import runs_with_windows, typed_tows
 
 NOT_INPUT: Final = (
-    *("samples_path", "second_path", "remark", "boat_type", "inputs_sha256"),
+    *("samples_path", "second_path", "remark", "inputs_sha256"),
     *("hand_reason", "list_path", "list_line"),
 )
 """What a tow is called or said to be does not change its numbers."""
