@@ -11,6 +11,7 @@ import pipeline.recompute
 from pipeline.errors import MissingKnowledgeError
 from pipeline.method import parse_method
 from warehouse.editions.folder import editions_folder, read_about, read_edition
+from warehouse.editions.inputs import same_tows, unchanged_tows
 from warehouse.editions.lineage import lineage, lineage_rows
 from warehouse.editions.verify import verify
 from warehouse.schemas import conform
@@ -224,6 +225,17 @@ def test_other_code_is_told_but_is_no_broken_promise(published_copy, monkeypatch
     assert not wrong
     assert all("the code changed, from" in f["message"] for f in findings)
     assert findings
+
+
+def test_a_fact_that_was_not_recorded_then_is_no_change_of_input(published):
+    edition = read_edition(published.store, "2014-1")
+    assert len(unchanged_tows(published.store, edition)) == edition.tables["tows"].height
+    fewer = edition.tables | {"tows": edition.tables["tows"].drop("boat_type")}
+    assert same_tows(fewer, edition.tables) == set(edition.tables["tows"]["tow_id"])
+    heavier = edition.tables | {
+        "tows": edition.tables["tows"].with_columns(pl.col("weight_kg") + 1)
+    }
+    assert same_tows(heavier, edition.tables) == frozenset()
 
 
 def test_an_archive_that_went_away_is_told(published_copy):

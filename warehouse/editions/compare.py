@@ -27,9 +27,16 @@ from warehouse import intake
 from warehouse.archive import read_races
 from warehouse.code import code_version
 from warehouse.editions.folder import Edition, read_edition
-from warehouse.editions.inputs import INPUTS_HASH, archive_root, has_inputs_of, tows_of_today
+from warehouse.editions.inputs import (
+    INPUTS_HASH,
+    archive_root,
+    same_tows,
+    tows_of_today,
+    unchanged_tows,
+)
 from warehouse.editions.lines import MEASURED, lines_made_again
 from warehouse.store import Store
+from warehouse.tables import runs_with_windows
 
 PRINTED: Final = "printed"
 CLOSED_FORM: Final = "closed_form"
@@ -75,9 +82,8 @@ def diff(store: Store, old: str, new: str) -> Comparison:
 
 def compare(store: Store, old: Edition, new: Edition) -> Comparison:
     """Compares two editions line by line, with causes whose factors multiply to the change."""
-    today = tows_of_today(store)
-    code = _code_parts(store, today, old, new)
-    steps = _steps(store, today, old, new)
+    code = _code_parts(store, old, new)
+    steps = _steps(store, old, new)
     parts = pl.concat([code, steps_of_lines(new.register, steps)], how="diagonal_relaxed")
     grounds = _grounds(old, new, set(steps["tow_id"]), code_known=not code.is_empty())
     changes = register_changes(old.register, new.register, parts, grounds)
@@ -109,7 +115,7 @@ def race_effects(store: Store, old: Edition, new: Edition, rules: RaceRules) -> 
     return race_changes(before, after)
 
 
-def _code_parts(store: Store, today: pl.DataFrame, old: Edition, new: Edition) -> pl.DataFrame:
+def _code_parts(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     """What the code alone changed: the old edition made again by the code of the new one.
 
     Known where the new edition was made by the code of today and the warehouse still has all
@@ -118,7 +124,7 @@ def _code_parts(store: Store, today: pl.DataFrame, old: Edition, new: Edition) -
     versions = (old.about.code_version, new.about.code_version)
     if old.method is None or versions[0] == versions[1] or versions[1] != code_version():
         return NO_PARTS
-    if not has_inputs_of(today, old):
+    if len(unchanged_tows(store, old)) < old.tables["tows"].height:
         return NO_PARTS
     again = lines_made_again(store, old).with_columns(pl.lit("again").alias("edition"))
     return register_changes(old.register, again).select(
@@ -129,16 +135,16 @@ def _code_parts(store: Store, today: pl.DataFrame, old: Edition, new: Edition) -
     )
 
 
-def _steps(store: Store, today: pl.DataFrame, old: Edition, new: Edition) -> pl.DataFrame:
+def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     """The ladder from the old to the new method, on the new edition's tows that are still there."""
     if old.method is None or new.method is None:
         return NO_LADDER
     if old.method.content_hash == new.method.content_hash:
         return NO_LADDER
-    tows = new.tables["tows"].join(today, on=["tow_id", INPUTS_HASH], how="semi")
+    there = pl.col("tow_id").is_in(list(unchanged_tows(store, new)))
+    tows, runs = tows_of_today(store).filter(there), runs_with_windows(store).filter(there)
     if tows.is_empty():
         return NO_LADDER
-    runs = new.tables["tow_runs"].join(tows, on="tow_id", how="semi")
     blocks = stack_blocks(intake.all_blocks(store), runs)
     return ladder(old.method, new.method, tows, blocks)
 
@@ -150,20 +156,28 @@ def _grounds(old: Edition, new: Edition, climbed: set[str], code_known: bool) ->
         new.register.select(shared), on=LINE, suffix="_new", nulls_equal=True
     )
     code = not code_known and old.about.code_version != new.about.code_version
-    grounds = [_ground(row, old, new, climbed, code) for row in pairs.iter_rows(named=True)]
+    same = None
+    if "tows" in old.tables and "tows" in new.tables:
+        same = same_tows(old.tables, new.tables)
+    grounds = [_ground(row, old, new, climbed, code, same) for row in pairs.iter_rows(named=True)]
     return pairs.select(LINE).with_columns(pl.Series("ground", grounds, pl.String))
 
 
 def _ground(
-    line: Mapping[str, Any], old: Edition, new: Edition, climbed: set[str], code: bool
+    line: Mapping[str, Any],
+    old: Edition,
+    new: Edition,
+    climbed: set[str],
+    code: bool,
+    same: frozenset[str] | None,
 ) -> str:
-    if {line["basis"], line["basis_new"]} != {MEASURED}:
+    if same is None or {line["basis"], line["basis_new"]} != {MEASURED}:
         same_line = line[INPUTS_HASH] == line[f"{INPUTS_HASH}_new"]
         return CLOSED_FORM if same_line else PRINTED
     if line["tow_id"] != line["tow_id_new"]:
         return TOW
-    own = line[INPUTS_HASH] != line[f"{INPUTS_HASH}_new"]
-    others = not own and old.about.inputs_digest != new.about.inputs_digest
+    own = line["tow_id"] not in same
+    others = not own and any(e.tables["tows"].height > len(same) for e in (old, new))
     if old.about.method_hash != new.about.method_hash and line["tow_id_new"] not in climbed:
         return UNSEPARATED if own or code else METHOD
     named = {

@@ -4,6 +4,7 @@ A number depends on its own tow, and under some methods on all tows at once (a c
 the whole archive); so both hashes are kept. Which files still are what they were is `verify`'s.
 """
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
@@ -15,7 +16,7 @@ from warehouse.store import Store, fingerprint, table_digest
 from warehouse.tables import runs_with_windows, typed_tows
 
 NOT_INPUT: Final = (
-    *("samples_path", "second_path", "remark", "boat_type", "inputs_sha256"),
+    *("samples_path", "second_path", "remark", "inputs_sha256"),
     *("hand_reason", "list_path", "list_line"),
 )
 """What a tow is called or said to be does not change its numbers."""
@@ -46,10 +47,26 @@ def inputs_digest(tows: pl.DataFrame) -> str:
     return table_digest(tows.select("tow_id", INPUTS_HASH).sort("tow_id"))
 
 
-def has_inputs_of(today: pl.DataFrame, edition: Edition) -> bool:
-    """Whether the warehouse has all tows of an edition, each as it was."""
-    mine = edition.tables["tows"].select("tow_id")
-    return inputs_digest(today.join(mine, on="tow_id", how="semi")) == edition.about.inputs_digest
+def same_tows(was: Mapping[str, pl.DataFrame], now: Mapping[str, pl.DataFrame]) -> frozenset[str]:
+    """Tows whose inputs are the same in two sets of tables `tows` and `tow_runs`.
+
+    Compared is what both tables say: a fact that was not recorded earlier is no difference.
+    """
+    shared = {
+        name: [column for column in was[name].columns if column in now[name].columns]
+        for name in ("tows", "tow_runs")
+    }
+    one, other = (
+        with_input_hashes(*(held[name].select(shared[name]) for name in shared))
+        for held in (was, now)
+    )
+    return frozenset(one.join(other, on=["tow_id", INPUTS_HASH], how="semi")["tow_id"])
+
+
+def unchanged_tows(store: Store, edition: Edition) -> frozenset[str]:
+    """Tows of an edition that the warehouse has with the same inputs."""
+    today = {"tows": typed_tows(store), "tow_runs": runs_with_windows(store)}
+    return same_tows(edition.tables, today)
 
 
 def input_files(store: Store, tows: pl.DataFrame) -> pl.DataFrame:

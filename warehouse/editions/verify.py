@@ -34,12 +34,10 @@ from warehouse.editions.folder import (
     read_table,
 )
 from warehouse.editions.inputs import (
-    INPUTS_HASH,
     LIST,
     NOT_INPUT,
     archive_root,
-    has_inputs_of,
-    tows_of_today,
+    unchanged_tows,
 )
 from warehouse.editions.lines import MEASURED, NUMBERS, lines_made_again
 from warehouse.store import Store, table_digest
@@ -308,18 +306,18 @@ def _made_again(store: Store, name: str) -> tuple[int, list[Finding]]:
 
 def _differing(store: Store, edition: Edition, again: pl.DataFrame) -> Iterator[Finding]:
     lines = edition.register.filter(pl.col("basis") == MEASURED)
-    columns = ["tow_id", *NUMBERS, INPUTS_HASH]
+    columns = ["tow_id", *NUMBERS]
     pairs = lines.select(*LINE, *columns).join(
         again.select(*LINE, *columns), on=LINE, how="left", suffix="_now"
     )
-    today = tows_of_today(store)
-    present = set(today["tow_id"])
-    same_inputs = has_inputs_of(today, edition)
+    present = set(store.read("tows")["tow_id"])
+    unchanged = unchanged_tows(store, edition)
+    same_inputs = len(unchanged) == edition.tables["tows"].height
     for row in pairs.sort(LINE).iter_rows(named=True):
         unequal = [n for n in NUMBERS if not _same(row[n], row[f"{n}_now"])]
         if not unequal and row["tow_id"] == row["tow_id_now"]:
             continue
-        why, wrong = _why(row, edition.about, present, same_inputs)
+        why, wrong = _why(row, edition.about, present, unchanged, same_inputs)
         what = ", ".join(f"{n} {_text(row[n])} becomes {_text(row[f'{n}_now'])}" for n in unequal)
         yield Finding(
             edition.about.edition,
@@ -331,13 +329,17 @@ def _differing(store: Store, edition: Edition, again: pl.DataFrame) -> Iterator[
 
 
 def _why(
-    row: dict[str, Any], about: About, present: set[str], same_inputs: bool
+    row: dict[str, Any],
+    about: About,
+    present: set[str],
+    unchanged: frozenset[str],
+    same_inputs: bool,
 ) -> tuple[str, bool]:
     """Why a line comes out otherwise, and whether that breaks a promise."""
     tow = row["tow_id"]
     if tow not in present:
         return f"tow {tow} is no longer in the warehouse", True
-    if row["tow_id_now"] == tow and row[INPUTS_HASH] != row[f"{INPUTS_HASH}_now"]:
+    if tow not in unchanged:
         return f"the files or the list row of tow {tow} changed", True
     if not same_inputs:
         return "other tows that went into it changed", True
