@@ -35,9 +35,9 @@ def rebase(store: Store, method: Method, against: Method) -> Report:
     rungs = ladder(against, method, tows, blocks).filter(pl.col("step") != START)
     on_date = max(tows["tow_date"])
     drafts = [
-        draft_register(recompute(m, tows, blocks).curves, tows, crews, on_date).with_columns(
-            pl.lit(draft_name(m.name)).alias("edition")
-        )
+        draft_register(
+            recompute(m, tows, blocks).curves, tows, crews, on_date, m.validity
+        ).with_columns(pl.lit(draft_name(m.name)).alias("edition"))
         for m in (against, method)
     ]
     changes = register_changes(*drafts)

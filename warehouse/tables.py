@@ -25,6 +25,7 @@ from warehouse import intake
 from warehouse.archive import outside_run
 from warehouse.code import code_version
 from warehouse.database import build_database
+from warehouse.editions.published import published_made_from, published_tables
 from warehouse.schemas import TABLES, Quarantine, conform
 from warehouse.store import Store, fingerprint, table_digest
 
@@ -255,8 +256,9 @@ def make_studies(store: Store, methods: Sequence[Method], blocks: RunBlocks) -> 
 
 def register_made_from(store: Store, methods: Sequence[Method]) -> str:
     """What the registers, and everything derived from curves, are made from."""
-    curves = {m.name: store.made_from("curves", m.name) for m in methods}
-    return fingerprint(curves, store.made_from("tows"), store.made_from("boats"), code_version())
+    curves = {m.name: [store.made_from("curves", m.name), str(m.validity)] for m in methods}
+    archive = [store.made_from(t) for t in ("tows", "boats")]
+    return fingerprint(curves, archive, published_made_from(store), code_version())
 
 
 def register_is_stale(store: Store, methods: Sequence[Method]) -> bool:
@@ -284,7 +286,7 @@ def _of_methods(store: Store, table: str, methods: Sequence[Method]) -> pl.DataF
 
 
 def make_registers(store: Store, methods: Sequence[Method]) -> dict[str, int]:
-    """A draft register per method, and what changes between them.
+    """A draft register per method and what changes between them, and the published editions.
 
     Validity is judged on the day of the archive's last tow, not today: so the same archive gives
     the same tables. Drafts are compared with the first method's.
@@ -295,8 +297,12 @@ def make_registers(store: Store, methods: Sequence[Method]) -> dict[str, int]:
     tows, crews = store.read("tows"), store.read("listed_boats")
     curves = _of_methods(store, "curves", methods)
     on_date = max(tows["tow_date"])
-    drafts = [_as_edition(m, draft_register(_of(curves, m), tows, crews, on_date)) for m in methods]
+    drafts = [
+        _as_edition(m, draft_register(_of(curves, m), tows, crews, on_date, m.validity))
+        for m in methods
+    ]
     register = pl.concat(drafts)
+    published = published_tables(store)
     changes = [register_changes(drafts[0], draft) for draft in drafts[1:]]
     found = {
         "register": register,
@@ -306,7 +312,10 @@ def make_registers(store: Store, methods: Sequence[Method]) -> dict[str, int]:
     }
     made_from = register_made_from(store, methods)
     for name, frame in found.items():
-        store.write(name, conform(name, frame), made_from)
+        rows = conform(name, frame)
+        if name in published:
+            rows = conform(name, pl.concat([rows, published[name]]))
+        store.write(name, rows, made_from)
     return {name: frame.height for name, frame in found.items()}
 
 
