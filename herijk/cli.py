@@ -23,6 +23,7 @@ from pipeline.simulate import WorldSettings, simulate_world
 from warehouse import reports
 from warehouse.archive.write import write_simulated_archive
 from warehouse.audit import audit as audit_report
+from warehouse.editions.folder import edition_names, method_of_edition
 from warehouse.rebase import rebase as rebase_history
 from warehouse.store import Store
 
@@ -113,12 +114,15 @@ def rebase(
     ],
     data: DataFolder = Path("data"),
     against: Annotated[
-        str, typer.Option(metavar="METHOD_OR_FILE", help="What it is compared with.")
+        str,
+        typer.Option(metavar="EDITION", help="Edition, method or file it is compared with."),
     ] = "as-published",
     as_json: AsJson = False,
 ) -> None:
     """All of history under a method: what changes and why. Nothing is published or stored."""
-    report = rebase_history(Store(data), _method(method), _method(against))
+    store = Store(data)
+    old = method_of_edition(store, against) if against in edition_names(store) else _method(against)
+    report = rebase_history(store, _method(method), old)
     show(report, text.rebase, as_json)
 
 

@@ -186,6 +186,21 @@ def read_edition(store: Store, edition: str) -> Edition:
     return Edition(about, tables, method)
 
 
+def method_of_edition(store: Store, edition: str) -> Method:
+    """The method that an edition was made with, as it was then.
+
+    Raises:
+        MissingKnowledgeError: the edition was taken over from print and has no method.
+    """
+    method = read_edition(store, edition).method
+    if method is None:
+        raise MissingKnowledgeError(
+            f"edition {edition} was taken over from print and has no method; compare it with "
+            f"another edition: herijk diff {edition} EDITION"
+        )
+    return method
+
+
 def read_table(path: Path, name: str) -> pl.DataFrame:
     """A table of an edition.
 
