@@ -116,9 +116,9 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
     ),
     "boat_traces": ("Wat de instrumenten zeiden", "What the instruments said"),
     "boat_traces_note": (
-        "Gemiddelden per seconde. Het grijze vlak is het venster dat telt; de rest is weggesneden "
+        "Gemiddelden per seconde; snelheid: doorgetrokken log 1, gestreept GPS. Het grijze vlak is het venster dat telt; de rest is weggesneden "
         "om de reden die in de tabel staat.",
-        "Means per second. The grey area is the window that counts; the rest is cut for the "
+        "Means per second; speed: solid log 1, dashed GPS. The grey area is the window that counts; the rest is cut for the "
         "reason in the table.",
     ),
     "boat_runs": ("Runs", "Runs"),
@@ -229,8 +229,7 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
     "hand_windows": ("Vensters met de hand", "Windows by hand"),
     # Figures
     "speed": ("Snelheid door het water [m/s]", "Speed through water [m/s]"),
-    "gps": ("GPS-snelheid [m/s]", "GPS speed [m/s]"),
-    "log_speed": ("Log 1 [m/s]", "Log 1 [m/s]"),
+    "speed_short": ("Snelheid [m/s]", "Speed [m/s]"),
     "force": ("Sleepkracht [N]", "Tow force [N]"),
     "wind": ("Schijnbare wind [m/s]", "Apparent wind [m/s]"),
     "wind_angle": ("Hoek van de wind [graden]", "Wind angle [deg]"),

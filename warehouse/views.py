@@ -28,6 +28,7 @@ class Views:
         if not store.database.exists():
             raise MissingKnowledgeError(f"{store.database} is not there; make it with rebuild")
         self._store = store
+        self._rows: dict[str, int] = {}
         self._db = duckdb.connect(store.database, read_only=True)
         self._db.execute("SET threads = 1")  # sums in one order: same tables, same bytes
 
@@ -45,12 +46,14 @@ class Views:
 
     def has(self, table: str) -> bool:
         """Whether the table is there and holds rows."""
-        return table in self.row_counts() and self.row_counts()[table] > 0
+        return self.row_counts().get(table, 0) > 0
 
     def row_counts(self) -> dict[str, int]:
-        """Rows by table, sorted by name."""
-        names = self.frame("SELECT table_name FROM duckdb_tables() ORDER BY 1")["table_name"]
-        return {name: self._count(name) for name in names}
+        """Rows by table, sorted by name; counted once, the file does not change while it is open."""
+        if not self._rows:
+            names = self.frame("SELECT table_name FROM duckdb_tables() ORDER BY 1")["table_name"]
+            self._rows = {name: self._count(name) for name in names}
+        return self._rows
 
     def _count(self, table: str) -> int:
         return int(self.frame(f'SELECT count(*) AS n FROM "{table}"')["n"][0])  # noqa: S608
@@ -151,9 +154,12 @@ class Views:
     def curve_lines(self) -> pl.DataFrame:
         """Every curve over its valid range with the 95 % band that its runs' scatter gives.
 
+        What seasons share is not in the band: the curve's own interval at the declared speed, in
+        `curves`, may be wider.
+
         Returns:
             `method, tow_id, speed_m_s, cw_kg_m, cw_lo_kg_m, cw_hi_kg_m`, 13 rows a curve; a bound
-            is empty where it is not finite. At the declared speed it is the curve's interval.
+            is empty where it is not finite.
         """
         curves = self.frame(
             "SELECT method, tow_id, declared_speed_m_s, a_kg_m, b_m_s FROM curves "

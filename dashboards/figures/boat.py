@@ -4,7 +4,7 @@ import altair as alt
 import polars as pl
 
 from dashboards.figures.style import BACK, GREY, HEIGHT, OKABE_ITO, OUT, WIDTH
-from dashboards.figures.style import colour, number, shape, tips
+from dashboards.figures.style import colour, number, shape, stroke, tips
 from dashboards.words import Say
 
 DIRECTION = "datum.value == 1 ? '{out}' : '{back}'"
@@ -40,7 +40,7 @@ def resistance_curve(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
             cw_hi_kg_m, run, direction, used`.
         say: gives texts.
     """
-    x = number(alt.X, "speed_m_s", say("speed"))
+    x = number(alt.X, "speed_m_s", say("speed"), axis=alt.Axis(tickCount=8))
     y = number(alt.Y, "cw_kg_m", say("cw"))
     whole = alt.Chart(frame)
     line = whole.transform_filter("datum.kind == 'line'")
@@ -78,16 +78,17 @@ def history(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     base = alt.Chart(frame).encode(
         alt.X("tow:O", title=say("tow"), axis=alt.Axis(labelAngle=-30)),
         xOffset="method:N",
-        color=colour("method", say("method")),
     )
     y = number(alt.Y, "cw_kg_m", say("cw_declared"))
     return alt.layer(
         base.mark_rule(strokeWidth=2).encode(
             alt.Y("cw_lo_kg_m:Q", title=say("cw_declared"), scale=alt.Scale(zero=False)),
             alt.Y2("cw_hi_kg_m:Q"),
+            stroke=stroke("method"),
         ),
         base.mark_point(filled=True, size=70, opacity=1).encode(
             y,
+            colour("method", say("method")),
             shape("method", say("method")),
             tooltip=tips(
                 ("method:N", say("method")),
@@ -113,7 +114,7 @@ def traces(frame: pl.DataFrame, say: Say) -> alt.VConcatChart:
         (("force_n", OKABE_ITO[2], [1, 0]),),
         (("wind_m_s", OKABE_ITO[6], [1, 0]),),
     ]
-    titles = (f"{say('log_speed')}, {say('gps')}", say("force"), say("wind"))
+    titles = (say("speed_short"), say("force"), say("wind"))
     return alt.vconcat(
         *(_trace_row(frame, say, fields, title) for fields, title in zip(rows, titles, strict=True))
     )

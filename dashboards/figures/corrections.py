@@ -3,7 +3,7 @@
 import altair as alt
 import polars as pl
 
-from dashboards.figures.style import GREY, HEIGHT, OKABE_ITO, WIDTH, colour, number, shape, tips
+from dashboards.figures.style import GREY, HEIGHT, OKABE_ITO, WIDTH, colour, number, shape, stroke, tips
 from dashboards.words import Say
 
 
@@ -17,15 +17,15 @@ def log_factors(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     base = alt.Chart(frame).encode(
         alt.X("season:O", title=say("season")),
         xOffset="method:N",
-        color=colour("method", say("method")),
     )
     y = number(alt.Y, "factor", say("factor"))
     interval = number(alt.Y, "lo", say("factor")), alt.Y2("hi:Q")
     return alt.layer(
         _at_one(frame, "y"),
-        base.mark_rule(strokeWidth=2).encode(*interval),
+        base.mark_rule(strokeWidth=2).encode(*interval, stroke=stroke("method")),
         base.mark_point(filled=True, size=60, opacity=1).encode(
             y,
+            colour("method", say("method")),
             shape("method", say("method")),
             tooltip=tips(
                 ("method:N", say("method")),
@@ -54,7 +54,7 @@ def season_ladder(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
         alt.Y("season:O", title=say("season")),
     )
     shades = alt.Scale(
-        domain=[0.8, 1.0, 1.2], range=[OKABE_ITO[5], "#ffffff", OKABE_ITO[4]], clamp=True
+        domain=[0.8, 1.0, 1.2], range=[OKABE_ITO[5], "#ffffff", OKABE_ITO[4]], clamp=True, interpolate="rgb"
     )
     return alt.layer(
         base.mark_rect(stroke="#dddddd").encode(
@@ -71,14 +71,14 @@ def season_change(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     base = alt.Chart(frame).encode(
         alt.X("season:O", title=say("season")),
         xOffset="method:N",
-        color=colour("method", say("method")),
     )
     span = number(alt.Y, "lowest_ratio", say("ratio_cw")), alt.Y2("highest_ratio:Q")
     return alt.layer(
         _at_one(frame, "y"),
-        base.mark_rule(strokeWidth=2).encode(*span),
+        base.mark_rule(strokeWidth=2).encode(*span, stroke=stroke("method")),
         base.mark_point(filled=True, size=60, opacity=1).encode(
             number(alt.Y, "median_ratio", say("ratio_cw")),
+            colour("method", say("method")),
             shape("method", say("method")),
             tooltip=tips(
                 ("method:N", say("method")),

@@ -3,7 +3,7 @@
 import altair as alt
 import polars as pl
 
-from dashboards.figures.style import GREY, HEIGHT, WIDTH, colour, number, shape, tips
+from dashboards.figures.style import GREY, HEIGHT, WIDTH, colour, number, shape, stroke, tips
 from dashboards.words import Say
 
 
@@ -12,13 +12,13 @@ def spread(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     base = alt.Chart(frame).encode(
         alt.X("scope:N", title=say("scope"), axis=alt.Axis(labelAngle=0)),
         xOffset="method:N",
-        color=colour("method", say("method")),
     )
     interval = number(alt.Y, "lo", say("sd_ratio"), zero=True), alt.Y2("hi:Q")
     return alt.layer(
-        base.mark_rule(strokeWidth=2).encode(*interval),
+        base.mark_rule(strokeWidth=2).encode(*interval, stroke=stroke("method")),
         base.mark_point(filled=True, size=70, opacity=1).encode(
             number(alt.Y, "sd_ratio", say("sd_ratio"), zero=True),
+            colour("method", say("method")),
             shape("method", say("method")),
             tooltip=tips(
                 ("method:N", say("method")),
@@ -63,15 +63,17 @@ def components(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
         alt.X("component:N", title=say("component"),
               axis=alt.Axis(labelExpr=f"({names})[datum.value] || datum.value", labelAngle=0)),
         xOffset="method:N",
-        color=colour("method", say("method")),
     )
     return (
         alt.layer(
             base.mark_rule(strokeWidth=2).encode(
-                number(alt.Y, "lo", say("sd_ratio"), zero=True), alt.Y2("hi:Q")
+                number(alt.Y, "lo", say("sd_ratio"), zero=True),
+                alt.Y2("hi:Q"),
+                stroke=stroke("method"),
             ),
             base.mark_point(filled=True, size=60, opacity=1).encode(
                 number(alt.Y, "sd_ratio", say("sd_ratio"), zero=True),
+                colour("method", say("method")),
                 shape("method", say("method")),
                 tooltip=tips(("method:N", say("method")), ("sd_ratio:Q", say("sd_ratio"))),
             ),

@@ -10,7 +10,6 @@ OKABE_ITO: Final = (
 """Okabe and Ito (2008), dark ones first; yellow is left out, it cannot be seen on white."""
 
 SHAPES: Final = ("circle", "square", "triangle-up", "diamond", "cross", "triangle-down")
-DASHES: Final = ([1, 0], [6, 3], [2, 2], [8, 2, 2, 2], [4, 4], [1, 3])
 GREY: Final = "#666666"
 WIDTH: Final = 620
 HEIGHT: Final = 320
@@ -22,6 +21,11 @@ BACK: Final = OKABE_ITO[1]
 def colour(field: str, title: str, **more: Any) -> alt.Color:
     """A category by colour."""
     return alt.Color(f"{field}:N", title=title, scale=alt.Scale(range=list(OKABE_ITO)), **more)
+
+
+def stroke(field: str) -> alt.Stroke:
+    """The colour of an interval: as its point's, which has the legend."""
+    return alt.Stroke(f"{field}:N", scale=alt.Scale(range=list(OKABE_ITO)), legend=None)
 
 
 def shape(field: str, title: str, **more: Any) -> alt.Shape:

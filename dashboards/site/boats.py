@@ -4,13 +4,12 @@ from collections.abc import Iterator, Sequence
 
 import polars as pl
 
-from dashboards.site.parts import Chart, Page, Section, Select, Table, boat_path
+from dashboards.site.parts import Chart, Page, Section, Select, Table, boat_path, default_method
 from warehouse.views import Views
 
 OF_THE_TOW = {"tow_id": "tow_id"}
 OF_THE_CURVE = {"tow_id": "tow_id", "method": "method"}
 FOLLOWS = ["tow_id", "method"]
-PARTS = ("boats", "register", "curves", "runs", "curve", "stages", "traces", "lineage")
 EXTRA = ("assessments", "uncertainty_budget", "hand_windows")
 """Tables about tows that are shown as they are, where there are any."""
 
@@ -38,6 +37,9 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
     curves = views.curves().with_columns(
         tow=pl.format("{} · {}{}", "tow_id", "rowers", "crew_class")
     )
+    declared = curves.drop_nulls("cw_kg_m").with_columns(speed_m_s="declared_speed_m_s")
+    lines = views.curve_lines().join(boat_of, on="tow_id")
+    windows = points.drop_nulls("window_start_s")
     lineage = views.table("lineage").with_columns(
         pl.format("{}{}", "rowers", "crew_class").alias("crew")
     )
@@ -46,9 +48,12 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
         "register": views.register(),
         "curves": curves,
         "runs": points,
-        "curve": _curve_rows(views.curve_lines().join(boat_of, on="tow_id"), points, curves),
+        "line": _kind(lines, "line", "method", *NUMBERS),
+        "point": _kind(points.drop_nulls("cw_kg_m"), "point", "method", *POINT),
+        "declared": _kind(declared, "declared", "method", *NUMBERS),
         "stages": _stages(points),
-        "traces": _trace_rows(views.traces().join(boat_of, on="tow_id"), points),
+        "trace": _seconds(views.traces().join(boat_of, on="tow_id")),
+        "window": _kind(windows, "window", "method", "run", "window_start_s", "window_end_s"),
         "lineage": lineage,
     }
     for name in EXTRA:
@@ -58,27 +63,12 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
     return found
 
 
+POINT = ["run", "direction", "speed_m_s", "cw_kg_m", "used"]
 NUMBERS = ["speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"]
 
 
 def _kind(frame: pl.DataFrame, kind: str, *columns: str) -> pl.DataFrame:
     return frame.select("fsn_no", "tow_id", *columns, kind=pl.lit(kind))
-
-
-def _curve_rows(lines: pl.DataFrame, points: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
-    """Line, run points and interval at the declared speed in one frame, told apart by `kind`."""
-    declared = curves.drop_nulls("cw_kg_m").with_columns(speed_m_s="declared_speed_m_s")
-    seen = points.drop_nulls("cw_kg_m")
-    return pl.concat(
-        [
-            _kind(lines, "line", "method", *NUMBERS),
-            _kind(
-                seen, "point", "method", "run", "direction", "speed_m_s", "cw_kg_m", "used"
-            ),
-            _kind(declared, "declared", "method", *NUMBERS),
-        ],
-        how="diagonal",
-    )
 
 
 def _stages(points: pl.DataFrame) -> pl.DataFrame:
@@ -93,18 +83,11 @@ def _stages(points: pl.DataFrame) -> pl.DataFrame:
     )
 
 
-def _trace_rows(traces: pl.DataFrame, points: pl.DataFrame) -> pl.DataFrame:
-    """Seconds of every run, and the window that each method takes, told apart by `kind`."""
+def _seconds(traces: pl.DataFrame) -> pl.DataFrame:
+    """Seconds of every run, to the digits that a chart can show."""
     fields = {"speed_m_s": 3, "gps_m_s": 3, "force_n": 1, "wind_m_s": 2}
-    seconds = traces.with_columns(pl.col(name).round(digits) for name, digits in fields.items())
-    windows = points.drop_nulls("window_start_s")
-    return pl.concat(
-        [
-            _kind(seconds, "trace", "run", "second", *fields),
-            _kind(windows, "window", "method", "run", "window_start_s", "window_end_s"),
-        ],
-        how="diagonal",
-    )
+    rounded = traces.with_columns(pl.col(name).round(digits) for name, digits in fields.items())
+    return _kind(rounded, "trace", "run", "second", *fields)
 
 
 LINE_COLUMNS = (
@@ -132,31 +115,31 @@ def _page(fsn_no: str, own: dict[str, pl.DataFrame], methods: Sequence[str]) -> 
     facts = Section("facts", tables=[Table("boat", own["boats"], FACT_COLUMNS, "facts")])
     tows = own["curves"]["tow_id"].unique(maintain_order=True).to_list()
     sections = [facts, *(_sections(own) if tows else [])]
+    selects = [
+        Select("tow_id", "tow", tows, tows[-1]),
+        Select("method", "method", methods, default_method(methods)),
+    ]
     return Page(
         boat_path(fsn_no),
         "boat",
         sections,
         name=own["boats"]["name"][0],
-        selects=[
-            Select("tow_id", "tow", tows, tows[-1]),
-            Select("method", "method", methods, methods[-1]),
-        ]
-        if tows
-        else [],
-        data={
-            name: own[name].drop("fsn_no") for name in ("curve", "stages", "traces")
-        }
-        | {
-            "runs": own["runs"].select(
-                *("method", "tow_id", "run", "direction", "wind_m_s", "wind_angle_deg")
-            ),
-            "curves": own["curves"].select(
-                *("method", "tow", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", "a_kg_m", "b_m_s")
-            ),
-        }
-        if tows
-        else {},
+        selects=selects if tows else [],
+        data=_data(own) if tows else {},
     )
+
+
+def _data(own: dict[str, pl.DataFrame]) -> dict[str, list[pl.DataFrame]]:
+    """What the charts draw; rows of several kinds stand one below the other."""
+    wind = ("method", "tow_id", "run", "direction", "wind_m_s", "wind_angle_deg")
+    history = ("method", "tow", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", "a_kg_m", "b_m_s")
+    parts = {"curve": ("line", "point", "declared"), "traces": ("trace", "window")}
+    found = {name: [own[part].drop("fsn_no") for part in held] for name, held in parts.items()}
+    return found | {
+        "stages": [own["stages"].drop("fsn_no")],
+        "runs": [own["runs"].select(wind)],
+        "curves": [own["curves"].select(history)],
+    }
 
 
 def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 import polars as pl
 
 from dashboards.site.boats import boat_pages
-from dashboards.site.parts import Chart, Page, Section, Select, Table, boat_path
+from dashboards.site.parts import Chart, Page, Section, Select, Table, boat_path, default_method
 from warehouse.views import Views
 
 MENU = ("index", "register", "types", "corrections", "reproducibility", "changes", "quality")
@@ -44,8 +44,8 @@ def _with_page(frame: pl.DataFrame) -> pl.DataFrame:
     return frame.with_columns(page.alias("page"))
 
 
-def _method(methods: Sequence[str], chosen: str | None = None) -> Select:
-    return Select("method", "method", methods, chosen or methods[-1])
+def _method(methods: Sequence[str]) -> Select:
+    return Select("method", "method", methods, default_method(methods))
 
 
 def _index(views: Views) -> Page:
@@ -100,9 +100,9 @@ def _register(views: Views) -> Page:
 
 
 def _newest(editions: Sequence[str]) -> str:
-    """The last published edition, or the last draft where none is published."""
+    """The last published edition, or the default method's draft where none is published."""
     published = [e for e in editions if not e.startswith("concept-")]
-    return (published or list(editions))[-1]
+    return published[-1] if published else default_method(editions)
 
 
 def _types(views: Views, methods: list[str]) -> Page:
@@ -135,11 +135,11 @@ def _types(views: Views, methods: list[str]) -> Page:
         ],
         selects=[
             Select("before", "before", methods, methods[0]),
-            Select("after", "after", methods, methods[-1]),
+            Select("after", "after", methods, default_method(methods)),
             Select("boat_type", "type", types, "", with_all=True),
             Select("boat_type_2", "type_second", types, "", with_all=True),
         ],
-        data={"type_boats": boats.drop("a_kg_m", "tow_id")},
+        data={"type_boats": [boats.drop("a_kg_m", "tow_id")]},
     )
 
 
@@ -202,7 +202,7 @@ def _corrections(views: Views, methods: list[str]) -> Page:
         "corrections",
         [*sections, *_whole(views, "season_links", "season_links")],
         selects=[_method(methods)],
-        data=data,
+        data={name: [frame] for name, frame in data.items()},
     )
 
 
@@ -266,7 +266,7 @@ def _reproducibility(views: Views, methods: list[str]) -> Page:
         "reproducibility",
         sections,
         selects=[_method(methods)],
-        data=data,
+        data={name: [frame] for name, frame in data.items()},
     )
 
 
@@ -288,7 +288,7 @@ def _changes(views: Views) -> Page:
         "changes",
         [Section("changes_list", "changes_note", [chart], [table]), *races],
         selects=[Select("to_edition", "edition", editions, _newest(editions))],
-        data={"changes": drawn},
+        data={"changes": [drawn]},
     )
 
 
@@ -316,7 +316,7 @@ def _quality(views: Views, methods: list[str]) -> Page:
         "quality",
         sections,
         selects=[_method(methods)],
-        data={"statuses": statuses},
+        data={"statuses": [statuses]},
     )
 
 

@@ -7,6 +7,9 @@ from dataclasses import dataclass, field
 
 import polars as pl
 
+from pipeline.register import draft_name
+from warehouse.tables import STUDIED_METHOD
+
 
 @dataclass(frozen=True)
 class Table:
@@ -82,7 +85,7 @@ class Page:
         sections: in order.
         name: of the boat, data rather than a text; empty elsewhere.
         selects: selectors.
-        data: frames that charts draw, by name.
+        data: frames that charts draw, by name; of several, the rows come one below the other.
     """
 
     path: str
@@ -90,12 +93,18 @@ class Page:
     sections: Sequence[Section]
     name: str = ""
     selects: Sequence[Select] = ()
-    data: Mapping[str, pl.DataFrame] = field(default_factory=dict)
+    data: Mapping[str, Sequence[pl.DataFrame]] = field(default_factory=dict)
 
     @property
     def root(self) -> str:
         """The way from this page to the site's root."""
         return "../" * self.path.count("/")
+
+
+def default_method(names: Sequence[str]) -> str:
+    """What is shown first: the default method or its draft, else the last."""
+    wanted = [n for n in names if n in (STUDIED_METHOD, draft_name(STUDIED_METHOD))]
+    return [*names, *wanted][-1]
 
 
 def boat_path(fsn_no: str) -> str:

@@ -8,7 +8,7 @@ import datetime as dt
 import json
 import shutil
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any, Final
@@ -32,7 +32,10 @@ DIGITS: Final = (
     ("_kg_m", 2), ("_m_s", 2), ("_deg", 0), ("_kg", 0), ("_w", 1), ("_s", 0), ("cw_sd", 2),
     ("_m", 2), ("_sd", 1),
 )  # fmt: skip
-"""Decimals shown by the ending of a column's name; 4 otherwise. Downloads hold all digits."""
+"""Decimals shown by the ending of a column's name; 4 otherwise."""
+
+KEPT: Final = 9
+"""Significant digits in downloads and charts; the database holds all."""
 
 CODES: Final = {
     *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "flag"),
@@ -123,9 +126,20 @@ def as_json(value: Any) -> str:
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
 
 
-def _data(frame: pl.DataFrame) -> Markup:
-    """A frame as columns, for a data block."""
-    return Markup(as_json(frame.to_dict(as_series=False)))  # noqa: S704 - as_json escapes
+def _data(frames: Sequence[pl.DataFrame]) -> Markup:
+    """Frames as columns, for a data block; a column of texts as its values and their places."""
+    found = [{c.name: _column(c) for c in frame} for frame in frames]
+    return Markup(as_json(found))  # noqa: S704 - as_json escapes
+
+
+def _column(column: pl.Series) -> list[Any] | dict[str, list[Any]]:
+    if column.dtype.is_float():
+        return column.round_sig_figs(KEPT).to_list()
+    if column.dtype != pl.String:
+        return column.to_list()
+    values = column.unique(maintain_order=True)
+    places = {value: place for place, value in enumerate(values)}
+    return {"values": values.to_list(), "places": [places[value] for value in column]}
 
 
 def _environment(comments: dict[str, str]) -> jinja2.Environment:
@@ -177,12 +191,12 @@ _EMPTY = Markup('<td data-v=""></td>')
 def _number(value: float | None, digits: int) -> Markup:
     if value is None:
         return Markup('<td class="n" data-v=""></td>')
-    return Markup('<td class="n" data-v="{!r}">{:.{}f}</td>').format(value, value, digits)
+    return Markup(f'<td class="n" data-v="{value:.{KEPT}g}">{value:.{digits}f}</td>')  # noqa: S704 - a number
 
 
 def _integer(value: int | None) -> Markup:
     text = "" if value is None else str(value)
-    return Markup('<td class="i" data-v="{}">{}</td>').format(text, text)
+    return Markup(f'<td class="i" data-v="{text}">{text}</td>')  # noqa: S704 - a number
 
 
 def _shown(value: Any, show: Callable[[Any], Markup]) -> Markup:

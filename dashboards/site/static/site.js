@@ -111,13 +111,22 @@
 
   // -- Charts -----------------------------------------------------------------------------------
   const frames = new Map();
+
+  // Columns to rows; a column of texts holds its values once, and the place of each.
+  function asRows(columns) {
+    const names = Object.keys(columns);
+    const values = names.map((name) => {
+      const column = columns[name];
+      return Array.isArray(column) ? column : column.places.map((place) => column.values[place]);
+    });
+    return (values[0] ?? []).map((_, i) =>
+      Object.fromEntries(names.map((name, j) => [name, values[j][i]])));
+  }
+
   function rowsOf(name) {
     if (!frames.has(name)) {
       const block = document.querySelector(`script[data-name="${name}"]`);
-      const columns = Object.entries(JSON.parse(block.textContent));
-      const height = columns.length ? columns[0][1].length : 0;
-      frames.set(name, Array.from({ length: height }, (_, i) =>
-        Object.fromEntries(columns.map(([key, values]) => [key, values[i]]))));
+      frames.set(name, JSON.parse(block.textContent).flatMap(asRows));
     }
     return frames.get(name);
   }
@@ -125,7 +134,13 @@
   function shownRows(figure) {
     const follows = Object.entries(JSON.parse(figure.dataset.follows));
     return rowsOf(figure.dataset.data).filter((row) => follows.every(([column, name]) =>
-      row[column] === null || matches(name, row[column])));
+      (row[column] ?? null) === null || matches(name, row[column])));
+  }
+
+  // What the selectors say, so that a chart names its tow and method, also in print.
+  function picked(figure) {
+    const names = Object.values(JSON.parse(figure.dataset.follows));
+    return names.map(choice).filter((text) => text !== "").join(", ");
   }
 
   const views = new Map(); // figure -> its Vega view
@@ -137,6 +152,7 @@
     const spec = structuredClone(window.HERIJK_FIGURES[root.lang][figure.dataset.figure]);
     spec.datasets = { rows: shownRows(figure) };
     fitWidth(spec, figure);
+    figure.querySelector(".picked").textContent = picked(figure);
     views.get(figure)?.finalize();
     views.delete(figure);
     try {
@@ -145,6 +161,11 @@
         renderer: "svg",
         formatLocale: LOCALES[root.lang],
         loader: { target: "_self" },
+        config: {
+          axis: { labelFontSize: 12, titleFontSize: 12, labelLimit: 200 },
+          legend: { labelFontSize: 12, titleFontSize: 12, labelLimit: 220 },
+          header: { labelFontSize: 12, titleFontSize: 12 },
+        },
       });
       if (turn !== figure.turn) { made.finalize(); return; }
       views.set(figure, made);
@@ -216,7 +237,7 @@
   for (const figure of charts) {
     figure.querySelector(".csv").addEventListener("click", () => {
       const rows = shownRows(figure);
-      const columns = Object.keys(rowsOf(figure.dataset.data)[0] ?? {}).filter((c) => c !== "page");
+      const columns = [...new Set(rows.flatMap(Object.keys))].filter((c) => c !== "page");
       download(figure.dataset.figure, columns, rows.map((row) => columns.map((c) => row[c])));
     });
   }
