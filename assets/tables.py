@@ -46,7 +46,10 @@ all_blocks = dg.AssetDep(blocks, partition_mapping=dg.AllPartitionMapping())
 @dg.multi_asset(
     specs=[
         dg.AssetSpec(
-            name, deps=["tows", "tow_runs", all_blocks], group_name="method", kinds={"parquet"}
+            name,
+            deps=["boats", "tows", "tow_runs", "hand_windows", all_blocks],
+            group_name="method",
+            kinds={"parquet"},
         )
         for name in tables.METHOD_TABLES
     ],
@@ -54,7 +57,7 @@ all_blocks = dg.AssetDep(blocks, partition_mapping=dg.AllPartitionMapping())
     check_specs=[dg.AssetCheckSpec("every_tow_has_a_curve_row", asset="curves")],
 )
 def method_tables(context: dg.AssetExecutionContext, setup: Setup):
-    """Run points, curves and log factors of all tows under one method."""
+    """Run points, curves, log factors and assessments of all tows under one method."""
     store = setup.store
     method = shipped_method(context.partition_key)
     found = tables.apply_method(store, method, tables.run_blocks(store))

@@ -148,6 +148,17 @@ def audit(
     _show(report, text.audit, as_json)
 
 
+@app.command("log-error")
+def log_error(
+    data: DataFolder = Path("data"),
+    method: Annotated[str, typer.Option(help="Method whose factors are shown.")] = "rebased",
+    as_json: AsJson = False,
+) -> None:
+    """How wrong the speed log was in each season, how sure that is, and what it rests on."""
+    shipped_text(method)
+    _show(reports.log_error_report(Store(data), method), text.log_error, as_json)
+
+
 @app.command()
 def simulate(
     directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder to make.")],

@@ -2,6 +2,7 @@
 
 from pipeline.method import (
     LAST_SEASON,
+    Assessment,
     Calibration,
     Curve,
     Method,
@@ -56,6 +57,7 @@ def steps_in_words(steps: Steps) -> dict[str, str]:
         "temperature": _temperature(steps.temperature),
         "runs": _runs(steps.runs),
         "curve": _curve(steps.curve),
+        "assessment": _assessment(steps.assessment),
     }
 
 
@@ -64,6 +66,8 @@ def _speed(step: Speed) -> str:
     words = source[step.source]
     if step.correction == "none":
         return f"{words}, as it reads."
+    if step.correction == "estimated":
+        return f"{words}, with the season's factor as estimated from repeat tows and GPS."
     factor = (
         f"multiplied by {1 + step.correction_ratio:g}"
         if step.operation == "multiply"
@@ -141,3 +145,9 @@ def _curve(step: Curve) -> str:
         "capped": f"least squares in Cw, B at most {step.cap_hull_speeds:g} x hull speed.",
         "hull_speed": "least squares for A alone, B is the hull speed.",
     }[step.b]
+
+
+def _assessment(step: Assessment) -> str:
+    if not step.reject:
+        return "flags are shown; none rejects a tow."
+    return f"a tow is rejected for: {', '.join(step.reject)}."

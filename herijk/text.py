@@ -119,6 +119,74 @@ def methods(report: Report) -> str:
     return table(("method", "title", "hash"), rows)
 
 
+PLOT_WIDTH = 41
+PLOT_RANGE = (0.94, 1.08)
+
+
+def log_error(report: Report) -> str:
+    """The season table with a small plot of each factor and its interval."""
+    parts = [SIMULATED] if report["simulated"] else []
+    parts.append(f"True speed = log speed x factor, under {report['method']} (95 % intervals):")
+    head = (
+        "season",
+        "factor",
+        "from",
+        "to",
+        "source",
+        "tows",
+        "links",
+        "without boats",
+        "sd apart",
+    )
+    rows = [
+        (
+            r["season"],
+            _factor(r["factor"]),
+            _factor(r["lo"]),
+            _factor(r["hi"]),
+            r["source"],
+            r["n_tows"],
+            r["n_links"],
+            _factor(r["factor_no_boats"]),
+            "-" if r["agreement"] is None else f"{r['agreement']:+.1f}",
+        )
+        for r in report["factors"]
+    ]
+    parts.append(table(head, rows))
+    low, high = PLOT_RANGE
+    scale = (
+        f"{low:<{_place_on_line(1.0)}.2f}{'1':<{PLOT_WIDTH - _place_on_line(1.0) - 4}}{high:.2f}"
+    )
+    plots = [f"  {r['season']}  {_plot(r)}" for r in report["factors"]]
+    parts.append("\n".join([f"  {'':4}  {scale}", *plots]))
+    parts.append(
+        "links: boats also towed in other seasons; without boats: a second estimate that does not\n"
+        "know which boat is which; sd apart: how far the two are, in standard deviations."
+    )
+    return "\n\n".join(parts)
+
+
+def _factor(value: float | None) -> str:
+    return "-" if value is None else f"{value:.4f}"
+
+
+def _plot(row: Report) -> str:
+    """A line of text: the interval as dashes, the factor as o, no error at the bar."""
+    marks = [" "] * PLOT_WIDTH
+    marks[_place_on_line(1.0)] = "|"
+    if row["lo"] is not None and row["hi"] is not None:
+        for i in range(_place_on_line(row["lo"]), _place_on_line(row["hi"]) + 1):
+            marks[i] = "-"
+    marks[_place_on_line(row["factor"])] = "o"
+    return "".join(marks).rstrip()
+
+
+def _place_on_line(factor: float) -> int:
+    low, high = PLOT_RANGE
+    place = round((factor - low) / (high - low) * (PLOT_WIDTH - 1))
+    return min(max(place, 0), PLOT_WIDTH - 1)
+
+
 def rebase(report: Report) -> str:
     """What a method changes: the ladder per season, and the boats most affected."""
     parts = [SIMULATED] if report["simulated"] else []

@@ -10,11 +10,10 @@ from typing import Final
 import numpy as np
 import polars as pl
 
-from pipeline.arrays import FloatArray
 from pipeline.blocks import RunBlocks
 from pipeline.method import Method, Steps
 from pipeline.outcome import Outcome
-from pipeline.recompute import KnownWindows, batches, evaluate
+from pipeline.recompute import KnownWindows, batches, evaluate, season_factors
 
 STEP_ORDER: Final = (
     "speed",
@@ -50,8 +49,15 @@ def ladder(
     """
     pairs = batches([from_method, to_method], tows, blocks)
     known: KnownWindows = {}
+    old_found, new_found = (
+        season_factors([(batch, steps[end]) for batch, steps in pairs], known) for end in (0, 1)
+    )
     rungs = [
-        evaluate([(batch, _mixed(old, new, count)) for batch, (old, new) in pairs], known)
+        evaluate(
+            [(batch, _mixed(old, new, count)) for batch, (old, new) in pairs],
+            known,
+            new_found if count else old_found,
+        )
         for count in range(len(STEP_ORDER) + 1)
     ]
     found = [_rungs_of_batch(list(outcomes)) for outcomes in zip(*rungs, strict=True)]
@@ -63,14 +69,8 @@ def _mixed(old: Steps, new: Steps, count: int) -> Steps:
     return old.model_copy(update={step: getattr(new, step) for step in STEP_ORDER[:count]})
 
 
-def cw_at_declared(outcome: Outcome) -> FloatArray:
-    """Cw at the declared speed of each tow, shape (tows,); NaN where there is no curve."""
-    cw = outcome.curves.cw_at(outcome.batch.of_tow("declared_speed_m_s"))
-    return np.where(outcome.curves.converged & np.isfinite(cw), cw, np.nan)
-
-
 def _rungs_of_batch(outcomes: list[Outcome]) -> pl.DataFrame:
-    cw = np.stack([cw_at_declared(outcome) for outcome in outcomes])
+    cw = np.stack([outcome.cw_at_declared for outcome in outcomes])
     sound = np.isfinite(cw[0]) & np.isfinite(cw[-1])
     for rung in range(1, len(cw)):
         cw[rung] = np.where(np.isfinite(cw[rung]), cw[rung], cw[rung - 1])

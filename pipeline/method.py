@@ -14,10 +14,12 @@ import re
 import tomllib
 from collections.abc import Callable, Mapping
 from importlib import resources
-from typing import Any, Final, Literal
+from typing import Annotated, Any, Final, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
+from pydantic_core import PydanticCustomError
 
+from pipeline.checks import CODES
 from pipeline.errors import HerijkError, MissingKnowledgeError
 
 LAST_SEASON: Final = 9999
@@ -36,7 +38,7 @@ class Speed(_Options):
     """Which speed through the water, and what is known to be wrong with it."""
 
     source: Literal["log1", "log2", "mean"]
-    correction: Literal["none", "prescribed"]
+    correction: Literal["none", "prescribed", "estimated"]
     correction_ratio: float = Field(default=0.0, ge=-0.15, le=0.15)
     operation: Literal["multiply", "divide"] = "multiply"
 
@@ -50,7 +52,7 @@ class Calibration(_Options):
 class Window(_Options):
     """Which part of a run counts."""
 
-    rule: Literal["all", "steady"]
+    rule: Literal["all", "steady", "by_hand"]
     minimum_s: float = Field(default=30.0, ge=5.0, le=50.0)
     speed_drift_m_s: float = Field(default=0.02, gt=0.0, le=0.2)
     force_ends_ratio: float = Field(default=0.04, gt=0.0, le=0.2)
@@ -100,6 +102,18 @@ class Curve(_Options):
     cap_hull_speeds: float = Field(default=3.0, ge=1.0, le=10.0)
 
 
+def _known_check(code: str) -> str:
+    if code not in CODES:
+        raise PydanticCustomError("unknown_check", f"Must be one of {', '.join(CODES)}")
+    return code
+
+
+class Assessment(_Options):
+    """Which checks of the assessment reject a tow, by their code (`pipeline.checks`)."""
+
+    reject: tuple[Annotated[str, AfterValidator(_known_check)], ...] = ()
+
+
 class Steps(_Options):
     """The option of every step, for one season."""
 
@@ -111,6 +125,7 @@ class Steps(_Options):
     temperature: Temperature
     runs: Runs
     curve: Curve
+    assessment: Assessment
 
 
 class SeasonSteps(_Options):
@@ -263,7 +278,7 @@ class _Reader:
         self, error: ValidationError, allowed: type[BaseModel], season: str = ""
     ) -> MethodFileError:
         first = error.errors()[0]
-        path = [str(part) for part in first["loc"]]
+        path = [part for part in first["loc"] if isinstance(part, str)]
         message = first["msg"]
         if first["type"] == "extra_forbidden":
             message = f"unknown key; allowed here: {', '.join(_keys_at(allowed, path[:-1]))}"

@@ -14,9 +14,8 @@ import polars as pl
 
 from pipeline.arrays import FloatArray
 from pipeline.blocks import RunBlocks
-from pipeline.ladder import cw_at_declared
 from pipeline.method import Method, Steps
-from pipeline.recompute import KnownWindows, batches, evaluate
+from pipeline.recompute import KnownWindows, batches, evaluate, season_factors
 
 ALL_OPTIONS: Final = "all"
 
@@ -61,10 +60,11 @@ def option_effects(method: Method, tows: pl.DataFrame, blocks: RunBlocks) -> pl.
     """
     pairs = batches([method], tows, blocks)
     known: KnownWindows = {}
+    found = season_factors([(batch, steps) for batch, (steps,) in pairs], known)
     cw, slope, corners = [], [], list(itertools.product((0, 1), repeat=len(CHOICES)))
     for corner in corners:
-        outcomes = evaluate([(b, _chosen(steps, corner)) for b, (steps,) in pairs], known)
-        cw.append(np.concatenate([np.log(cw_at_declared(o)) for o in outcomes]))
+        outcomes = evaluate([(b, _chosen(steps, corner)) for b, (steps,) in pairs], known, found)
+        cw.append(np.concatenate([np.log(o.cw_at_declared) for o in outcomes]))
         slope.append(np.concatenate([_ln_b(o.curves.b_m_s) for o in outcomes]))
     tow_ids = pl.concat([batch.tows["tow_id"] for batch, _ in pairs])
     ln_cw, ln_b, signs = np.stack(cw), np.stack(slope), 2 * np.array(corners) - 1

@@ -22,9 +22,17 @@ from pipeline.calibration import gps_factor
 from pipeline.channels import BACK, OUT
 from pipeline.hull import front_area_m2, hull_speed_m_s, still_air_coefficient_kg_m
 from pipeline.method import Method, Steps, Window
-from pipeline.outcome import Outcome, Recomputed, as_tables
+from pipeline.outcome import Outcome, TowFactor
 from pipeline.resistance import RunMeans, run_means, temperature_change_kg_m
-from pipeline.speed import prescribed_factor
+from pipeline.results import Recomputed, as_tables
+from pipeline.season_factors import (
+    factor_of_tows,
+    find_season_factors,
+    is_estimated,
+    without_factor,
+)
+from pipeline.season_log import SeasonFactors
+from pipeline.speed import log_factor
 from pipeline.steady import Windows, choose_windows
 from pipeline.wind import PER_TOW_BOUNDS, nearest_coefficients
 
@@ -44,18 +52,31 @@ Texts: TypeAlias = np.ndarray[tuple[int, ...], np.dtype[np.str_]]
 
 
 def recompute(method: Method, tows: pl.DataFrame, blocks: RunBlocks) -> Recomputed:
-    """Run points, curves and log factors of all tows under a method.
+    """Run points, curves, log factors and assessments of all tows under a method.
 
     Args:
         method: the method.
-        tows: rows of the warehouse's `tows`.
+        tows: rows of the warehouse's `tows`, with `boat_type` where it is known, so that a tow can
+            be compared with like boats.
         blocks: their runs; `blocks.runs` has the columns of `tow_runs`.
 
     Raises:
         MissingKnowledgeError: the method says nothing about a season of `tows`.
     """
     plans = [(batch, steps) for batch, (steps,) in batches([method], tows, blocks)]
-    return as_tables(method.name, evaluate(plans))
+    known: KnownWindows = {}
+    found = season_factors(plans, known)
+    return as_tables(method, tows, evaluate(plans, known, found), found)
+
+
+def season_factors(
+    plans: Sequence[tuple[Batch, Steps]], known_windows: KnownWindows
+) -> SeasonFactors | None:
+    """The log factors that the given steps ask to estimate; None if they ask for none."""
+    if not any(is_estimated(steps) for _, steps in plans):
+        return None
+    before = evaluate([(batch, without_factor(steps)) for batch, steps in plans], known_windows)
+    return find_season_factors(before)
 
 
 def batches(
@@ -77,13 +98,16 @@ def batches(
 
 
 def evaluate(
-    plans: Sequence[tuple[Batch, Steps]], known_windows: KnownWindows | None = None
+    plans: Sequence[tuple[Batch, Steps]],
+    known_windows: KnownWindows | None = None,
+    found: SeasonFactors | None = None,
 ) -> list[Outcome]:
     """What the given steps make of each batch.
 
     Args:
         plans: batches with their steps; what is searched over the archive is searched over them.
         known_windows: windows found before for the same batches, by place and rule; added to.
+        found: log factors, for steps that ask for estimated ones.
     """
     windows = {} if known_windows is None else known_windows
     prepared = []
@@ -91,7 +115,8 @@ def evaluate(
         key = (place, steps.window)
         if key not in windows:
             windows[key] = choose_windows(batch.blocks, steps.window)
-        prepared.append(_prepare(batch, steps, windows[key]))
+        factor = factor_of_tows(batch, steps, found)
+        prepared.append(_prepare(batch, steps, windows[key], factor))
     shared = _archive_coefficient([p for p in prepared if p.steps.wind.coefficients == "archive"])
     return [_finish(p, shared) for p in prepared]
 
@@ -103,6 +128,8 @@ class _Prepared:
     Attributes:
         known: speed factor of the log's known error, shape (tows,).
         y: calibration factor, shape (tows,).
+        calibrated: there is one, shape (tows,).
+        estimated: what was estimated of the log factor.
         reasons: why a run does not count, empty where it does, shape (runs,).
         still_unit_kg_m: still-air coefficient for a drag coefficient of 1, shape (runs,).
         temperature_kg_m: change to the reference temperature, shape (runs,).
@@ -115,6 +142,8 @@ class _Prepared:
     means: RunMeans
     known: FloatArray
     y: FloatArray
+    calibrated: BoolArray
+    estimated: TowFactor
     reasons: Texts
     still_unit_kg_m: FloatArray
     temperature_kg_m: FloatArray
@@ -168,9 +197,10 @@ def enough_runs(batch: Batch, used: BoolArray, minimum: int) -> BoolArray:
     return (out + back >= minimum) & (out > 0) & (back > 0)
 
 
-def _prepare(batch: Batch, steps: Steps, windows: Windows) -> _Prepared:
+def _prepare(batch: Batch, steps: Steps, windows: Windows, estimated: TowFactor) -> _Prepared:
     means = run_means(batch, windows.mask, steps)
-    known = prescribed_factor(steps.speed, batch.of_tow("speed_correction_ratio"))
+    tow_list = batch.of_tow("speed_correction_ratio")
+    known = log_factor(steps.speed, tow_list, estimated.factor)
     reasons = _reasons(batch, steps, windows, means.speed_m_s * known[batch.tow])
     y, determined = _calibrate(
         batch, steps, windows, means.speed_m_s * known[batch.tow], reasons == ""
@@ -187,6 +217,8 @@ def _prepare(batch: Batch, steps: Steps, windows: Windows) -> _Prepared:
         means,
         known,
         y,
+        determined & (steps.calibration.rule != "none"),
+        estimated,
         reasons,
         still_unit_kg_m=still_air_coefficient_kg_m(front, has_wind),
         temperature_kg_m=temperature,
@@ -242,6 +274,8 @@ def _finish(prepared: _Prepared, archive_coefficient: float | None) -> Outcome:
         reasons=prepared.reasons,
         known_factor=prepared.known,
         calibration_factor=prepared.y,
+        calibrated=prepared.calibrated,
+        estimated=prepared.estimated,
         speed_m_s=prepared.speed_m_s,
         speed_factor=prepared.factor,
         gross_kg_m=prepared.means.gross_kg_m / prepared.factor**2,
@@ -249,6 +283,8 @@ def _finish(prepared: _Prepared, archive_coefficient: float | None) -> Outcome:
         inertia_kg_m=prepared.means.inertia_kg_m / prepared.factor**2,
         air_kg_m=prepared.air_kg_m(ahead, behind),
         still_air_kg_m=prepared.still_kg_m(still),
+        still_air_coefficient=still,
+        air_unit_kg_m=(prepared.means.air.ahead + prepared.means.air.behind) / prepared.factor**2,
         temperature_kg_m=prepared.temperature_kg_m,
         temperature_known=prepared.temperature_known,
         ahead=ahead,

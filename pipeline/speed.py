@@ -3,7 +3,7 @@
 In 2009-2011 the propeller logs were worn and read low; the correction found in 2013 was up to
 6 % (presentation 2015, "Meten van de sleepsnelheid"). Whether one multiplies by 1.06 or divides
 by 0.94 is written nowhere: both are options. A percentage in the tow list goes before the
-season's.
+season's prescribed one. How a season's factor is estimated instead stands in `pipeline.season_log`.
 """
 
 import numpy as np
@@ -12,20 +12,26 @@ from pipeline.arrays import FloatArray
 from pipeline.method import Speed
 
 
-def prescribed_factor(speed: Speed, tow_list_ratio: FloatArray) -> FloatArray:
+def log_factor(
+    speed: Speed, tow_list_ratio: FloatArray, estimated_factor: FloatArray
+) -> FloatArray:
     """True speed / log speed for each tow.
 
     Args:
         speed: the method's option.
         tow_list_ratio: correction of the tow list as a ratio (0.06 for 6 %), NaN where the list
             gives none, shape (tows,).
+        estimated_factor: factor estimated for the tow's season and log, NaN where there is none,
+            shape (tows,). The tow list takes no part in it, and none where it is used.
 
     Returns:
         Factor of shape (tows,): `1 + ratio` when multiplying, `1 / (1 - ratio)` when dividing.
+        Where an estimate is asked for and there is none, the prescribed factor.
     """
     if speed.correction == "none":
         return np.ones(len(tow_list_ratio))
     ratio = np.where(np.isnan(tow_list_ratio), speed.correction_ratio, tow_list_ratio)
-    if speed.operation == "multiply":
-        return np.asarray(1.0 + ratio, dtype=np.float64)
-    return np.asarray(1.0 / (1.0 - ratio), dtype=np.float64)
+    prescribed = 1.0 + ratio if speed.operation == "multiply" else 1.0 / (1.0 - ratio)
+    if speed.correction == "prescribed":
+        return np.asarray(prescribed, dtype=np.float64)
+    return np.where(np.isnan(estimated_factor), prescribed, estimated_factor)

@@ -39,6 +39,11 @@ FORCE_SD_FLOOR: Final = 0.01
 
 WIND_SD_FLOOR_M_S: Final = 0.25
 
+HAND_COLUMNS: Final = {"start_s": "hand_start_s", "end_s": "hand_end_s", "reason": "hand_reason"}
+"""Columns of `blocks.runs` with the windows given by hand, by their name in `hand_windows`; null
+where a run has none."""
+
+BY_HAND: Final = "by_hand"
 CUT_REASONS: Final = ("speed_drift", "force_peak", "gust", "ends_differ")
 
 
@@ -61,7 +66,11 @@ class Windows:
 
 
 def choose_windows(blocks: RunBlocks, rule: Window) -> Windows:
-    """The window of every run under a rule; runs without any block have none."""
+    """The window of every run under a rule; runs without any block have none.
+
+    `steady` searches; `by_hand` takes the window that a person gave (`HAND_COLUMNS` of
+    `blocks.runs`) and searches where none is given; `all` takes the whole run.
+    """
     present = blocks.n > 0
     if rule.rule == "all":
         return _windows(present, ("",) * present.shape[0])
@@ -69,7 +78,25 @@ def choose_windows(blocks: RunBlocks, rule: Window) -> Windows:
     start, length = _search(present, faults, rule)
     second = np.arange(blocks.seconds)
     mask = (second >= start[:, None]) & (second < (start + length)[:, None])
-    return _windows(mask, tuple(_reasons(present, mask, faults)))
+    searched = _windows(mask, tuple(_reasons(present, mask, faults)))
+    return _given_by_hand(blocks, rule, searched) if rule.rule == "by_hand" else searched
+
+
+def _given_by_hand(blocks: RunBlocks, rule: Window, searched: Windows) -> Windows:
+    """The windows given by hand, which must be as long as any other, else the searched ones."""
+    if not set(HAND_COLUMNS.values()) <= set(blocks.runs.columns):
+        return searched
+    hand_start, hand_end, hand_reason = (blocks.runs[c] for c in HAND_COLUMNS.values())
+    given = hand_start.is_not_null().to_numpy()
+    start, end = (bound.fill_null(0).to_numpy()[:, None] for bound in (hand_start, hand_end))
+    second = np.arange(blocks.seconds)
+    inside = (second >= start) & (second < end) & (blocks.n > 0)
+    long_enough = inside.sum(axis=1, keepdims=True) >= rule.minimum_s
+    reasons = tuple(
+        f"{BY_HAND}: {why}" if hand else found
+        for hand, why, found in zip(given, hand_reason, searched.reasons, strict=True)
+    )
+    return _windows(np.where(given[:, None], inside & long_enough, searched.mask), reasons)
 
 
 def _windows(mask: BoolArray, reasons: tuple[str, ...]) -> Windows:
@@ -97,7 +124,8 @@ class _Faults:
         present = blocks.n > 0
         speed, force = blocks.block_means("log1_v"), blocks.block_means("force")
         force_median, force_sd = _robust(force, present)
-        force_sd = np.maximum(force_sd, FORCE_SD_FLOOR * np.abs(force_median))
+        force_floor = np.maximum(FORCE_SD_FLOOR * np.abs(force_median), 1e-9)
+        force_sd = np.maximum(force_sd, force_floor)
         return cls(
             speed,
             force,
@@ -124,8 +152,9 @@ def _wind_change(blocks: RunBlocks, present: BoolArray) -> FloatArray:
 
 
 def _robust(values: FloatArray, present: BoolArray) -> tuple[FloatArray, FloatArray]:
-    """Median and robust standard deviation of each row, shape (runs, 1)."""
-    held = np.where(present, values, np.nan)
+    """Median and robust standard deviation of each row, shape (runs, 1); 0 for an empty row."""
+    empty = ~present.any(axis=1, keepdims=True)
+    held = np.where(present, values, np.where(empty, 0.0, np.nan))
     median = np.nanmedian(held, axis=1, keepdims=True)
     return median, MAD_TO_SD * np.nanmedian(np.abs(held - median), axis=1, keepdims=True)
 

@@ -8,8 +8,8 @@ import polars as pl
 from pipeline.blocks import RunBlocks, block_sums, stack_blocks
 from pipeline.channels import BACK, OUT, TARGET_SPEED_RATIOS
 from pipeline.method import Method
-from pipeline.outcome import Recomputed
 from pipeline.recompute import recompute
+from pipeline.results import Recomputed
 from pipeline.simulate import RunTruth, Tow, World, WorldSettings, simulate_tow, simulate_world
 
 
@@ -63,7 +63,7 @@ def tow_rows(world: World) -> pl.DataFrame:
         [_tow_row(world, tow) for tow in world.tows], infer_schema_length=None
     ).with_columns(
         pl.col("season", "rowers", "sample_rate_hz").cast(pl.Int32),
-        pl.col("speed_correction_ratio").cast(pl.Float64),
+        pl.col("speed_correction_ratio", "^freeboard_.*$").cast(pl.Float64),
     )
 
 
@@ -86,6 +86,9 @@ def _tow_row(world: World, tow: Tow) -> dict[str, object]:
         "speed_correction_ratio": None,
         "altered": tow.altered_reported,
         "sample_rate_hz": world.settings.rate_hz,
+        "freeboard_lowest_m": None,
+        "freeboard_bow_m": None,
+        "freeboard_stern_m": None,
     }
 
 

@@ -16,7 +16,7 @@ from warehouse.archive import ArchiveIndex, FileHashes, Profiles, index_archive
 from warehouse.archive.profile import read_profiles
 from warehouse.store import Store, fingerprint
 
-LISTED: Final = ("boats", "tows", "runs")
+LISTED: Final = ("boats", "tows", "runs", "windows")
 SEASON_TABLES: Final = ("season_tows", "season_runs", "season_index", "blocks")
 """What is kept of a season, as the archive was when it was read."""
 FAULT_SCHEMA: Final = {

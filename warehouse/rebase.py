@@ -14,7 +14,7 @@ from pipeline.method import Method
 from pipeline.recompute import recompute
 from pipeline.register import LINE, draft_name, draft_register
 from warehouse.store import Store
-from warehouse.tables import run_blocks
+from warehouse.tables import run_blocks, typed_tows
 
 Report = dict[str, Any]
 MOST_AFFECTED = 15
@@ -30,7 +30,7 @@ def rebase(store: Store, method: Method, against: Method) -> Report:
     Raises:
         MissingKnowledgeError: there is no sound tow, or a method does not cover a season.
     """
-    tows, boats, crews = (store.read(t) for t in ("tows", "boats", "listed_boats"))
+    tows, boats, crews = typed_tows(store), store.read("boats"), store.read("listed_boats")
     blocks = run_blocks(store)
     rungs = ladder(against, method, tows, blocks).filter(pl.col("step") != START)
     on_date = max(tows["tow_date"])

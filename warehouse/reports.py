@@ -61,6 +61,23 @@ def rebuild_report(store: Store) -> Report:
         }
 
 
+def log_error_report(store: Store, method: str) -> Report:
+    """The log factor of every season under a method, and what the estimated ones rest on."""
+    with _open(store.database) as db:
+        return {
+            "simulated": _is_simulated(db),
+            "method": method,
+            "factors": _rows(db, _LOG_FACTORS, method),
+        }
+
+
+_LOG_FACTORS = """
+SELECT f.season, f.factor, f.lo, f.hi, f.source, l.n_tows, l.n_links, l.component, l.influence,
+       l.influence_boat, l.factor_no_boats, l.agreement
+FROM log_factors AS f LEFT JOIN season_links AS l USING (method, season)
+WHERE f.method = ? ORDER BY f.season
+"""
+
 _BY_SEASON = """
 SELECT new.method, new.season, count(*) AS tows,
        median(new.cw_kg_m / old.cw_kg_m) AS median_ratio,

@@ -108,6 +108,16 @@ class TowRuns(dy.Schema):
     selected = dy.Bool(description="the tow list says to use it")
 
 
+class HandWindows(dy.Schema):
+    """Windows that a person gave, one row a run; a method may use them (`by_hand`)."""
+
+    tow_id = _tow_id(primary_key=True)
+    run = dy.Int8(primary_key=True, description="run", min=1, max=16)
+    start_s = dy.Int16(description="start of the window", metadata={"unit": "s"}, min=0)
+    end_s = dy.Int16(description="end of the window", metadata={"unit": "s"}, min=1)
+    reason = _text("why, in the person's words")
+
+
 class RunPoints(dy.Schema):
     """One point per method, tow and run."""
 
@@ -118,7 +128,7 @@ class RunPoints(dy.Schema):
     target_speed_ratio = _number("1", "intended speed / declared speed", min_exclusive=0)
     window_start_s = _number("s", "start of the window that counts", min=0, nullable=True)
     window_end_s = _number("s", "end of the window that counts", min=0, nullable=True)
-    cut_reason = _text("why the rest was cut: codes, comma separated")
+    cut_reason = _text("why the rest was cut: codes, comma separated, or by_hand and the reason")
     speed_factor = _number("1", "true speed / log speed", min_exclusive=0, nullable=True)
     speed_m_s = _speed("mean true speed", nullable=True)
     gross_cw_kg_m = _number("kg/m", "mean F/v^2 before the wind", nullable=True)
@@ -130,6 +140,9 @@ class RunPoints(dy.Schema):
     wind_coefficient_behind = _number("1", "the same from behind", nullable=True)
     cw_kg_m = _number("kg/m", "resistance coefficient in still air", nullable=True)
     cw_sd = _number("kg/m", "standard deviation of the samples", nullable=True, min=0)
+    u_ratio = _number(
+        "1", "uncertainty / Cw from within the season's runs, if pooled", nullable=True
+    )
     fitted_cw_kg_m = _number("kg/m", "coefficient of the curve at this speed", nullable=True)
     wind_m_s = _number("m/s", "mean apparent wind speed", nullable=True)
     wind_angle_deg = _number("deg", "circular mean of the apparent wind", nullable=True)
@@ -165,6 +178,19 @@ class Curves(dy.Schema):
     flags = dy.List(dy.String(), description="codes of what a person should look at")
 
 
+class Assessments(dy.Schema):
+    """What each check found, one row per method, tow and check; a check not made has no row."""
+
+    method = _method(primary_key=True)
+    tow_id = _tow_id(primary_key=True)
+    check = _text("code of the check", primary_key=True)
+    severity = _text("flag: a person should look; note: worth knowing", regex="^(flag|note)$")
+    observed = _number("as in unit", "what was observed")
+    limit = _number("as in unit", "the limit that is exceeded, or the nearest")
+    unit = _text("unit of both; 1 for a ratio, a count or yes (1) and no (0)")
+    flagged = dy.Bool(description="the observed number is beyond its limit")
+
+
 class LogFactors(dy.Schema):
     """True speed = log speed x factor, per method and season."""
 
@@ -174,6 +200,46 @@ class LogFactors(dy.Schema):
     lo = _number("1", "lower end of the 95 % interval; empty where unknown", nullable=True)
     hi = _number("1", "upper end", nullable=True)
     source = _text("none, prescribed, estimated or gps", regex="^(none|prescribed|estimated|gps)$")
+
+
+class SeasonLinks(dy.Schema):
+    """What each estimated log factor rests on, per method, season, part of it and log."""
+
+    method = _method(primary_key=True)
+    season = dy.Int32(primary_key=True, description="year of the tow list")
+    part = dy.Int32(primary_key=True, description="part of the season, until a log was replaced")
+    log = _text("speed source", primary_key=True)
+    source = _text("estimated, gps, or not determined")
+    n_tows = dy.Int32(description="tows of the season", min=0)
+    n_links = dy.Int32(description="boats also towed in other seasons", min=0)
+    component = dy.Int32(description="connected part of the network; 0 has the dGPS anchor", min=0)
+    critical_boats = dy.Int32(
+        description="boats without any of which the season is undetermined", nullable=True, min=0
+    )
+    factor = _number("1", "true speed / log speed; empty: not determined", nullable=True)
+    lo = _number("1", "lower end of its 95 % interval", nullable=True)
+    hi = _number("1", "upper end", nullable=True)
+    ln_sd = _number("1", "standard deviation of ln factor", nullable=True)
+    influence = _number("1", "largest change when one boat is left out", nullable=True)
+    influence_boat = _text("that boat", nullable=True)
+    weakest_mode = _number("1", "share in what is known worst", nullable=True)
+    factor_no_boats = _number("1", "the same without boat identity, a check", nullable=True)
+    lo_no_boats = _number("1", "lower end of its 95 % interval", nullable=True)
+    hi_no_boats = _number("1", "upper end", nullable=True)
+    agreement = _number("1", "difference of the two in standard deviations", nullable=True)
+
+
+class UncertaintyBudget(dy.Schema):
+    """What makes Cw at the declared speed uncertain, per method, tow and component."""
+
+    method = _method(primary_key=True)
+    tow_id = _tow_id(primary_key=True)
+    component = _text("what is uncertain", primary_key=True)
+    shared = _text("single, season or archive: with whom the error is shared")
+    key = _text("rows with one key share one error")
+    effect_ratio = _number("1", "change of ln Cw by one standard deviation of it")
+    u_ratio = _number("1", "relative standard uncertainty", min=0)
+    dof = _number("1", "degrees of freedom; empty: not limited", nullable=True)
 
 
 class Register(dy.Schema):
@@ -477,9 +543,13 @@ TABLES: Final[dict[str, type[dy.Schema]]] = {
     "boats": Boats,
     "tows": Tows,
     "tow_runs": TowRuns,
+    "hand_windows": HandWindows,
     "run_points": RunPoints,
     "curves": Curves,
+    "assessments": Assessments,
     "log_factors": LogFactors,
+    "season_links": SeasonLinks,
+    "uncertainty_budget": UncertaintyBudget,
     "register": Register,
     "register_changes": RegisterChanges,
     "correction_steps": CorrectionSteps,

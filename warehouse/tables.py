@@ -4,6 +4,7 @@ A function here reads tables, calls one thing in `pipeline`, checks the result a
 and writes it. `stale_*` and `*_made_from` say what has to be done again. Nothing is computed here.
 """
 
+import dataclasses
 import datetime as dt
 from collections.abc import Sequence
 from typing import Final
@@ -19,14 +20,23 @@ from pipeline.method import Method
 from pipeline.options import option_effects
 from pipeline.recompute import recompute
 from pipeline.register import LINE, draft_name, draft_register
+from pipeline.steady import HAND_COLUMNS
 from warehouse import intake
+from warehouse.archive import outside_run
 from warehouse.code import code_version
 from warehouse.database import build_database
 from warehouse.schemas import TABLES, Quarantine, conform
 from warehouse.store import Store, fingerprint, table_digest
 
-ARCHIVE_TABLES: Final = ("boats", "tows", "tow_runs", "quarantine")
-METHOD_TABLES: Final = ("run_points", "curves", "log_factors")
+ARCHIVE_TABLES: Final = ("boats", "tows", "tow_runs", "hand_windows", "quarantine")
+METHOD_TABLES: Final = (
+    "run_points",
+    "curves",
+    "log_factors",
+    "season_links",
+    "uncertainty_budget",
+    "assessments",
+)
 STUDY_TABLES: Final = ("correction_steps", "option_effects")
 STUDIED_METHOD: Final = "rebased"
 """The method whose options of judgement are studied."""
@@ -58,7 +68,8 @@ WHOLE_TABLES: Final = (*ARCHIVE_TABLES, *STUDY_TABLES, *REGISTER_TABLES, *CONSIS
 def archive_made_from(store: Store) -> str:
     """What the tables about the archive are made from."""
     seasons = {s: store.made_from("season_index", s) for s in store.partitions("season_index")}
-    lists = [table_digest(store.read(t)) for t in ("listed_boats", "list_faults")]
+    read = ("listed_boats", "listed_windows", "list_faults")
+    lists = [table_digest(store.read(t)) for t in read]
     return fingerprint(seasons, lists, code_version())
 
 
@@ -69,7 +80,7 @@ def archive_is_stale(store: Store) -> bool:
 
 
 def collect_archive(store: Store, today: dt.date) -> dict[str, int]:
-    """Boats, sound tows with their runs, and everything that was set aside.
+    """Boats, sound tows with their runs and windows, and everything that was set aside.
 
     Returns:
         Rows per table.
@@ -84,11 +95,16 @@ def collect_archive(store: Store, today: dt.date) -> dict[str, int]:
     sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
     tows = store.read_all("season_tows").join(sound, on="tow_id", how="semi")
     runs = store.read_all("season_runs").join(sound, on="tow_id", how="semi")
+    windows = store.read("listed_windows").join(runs, on=["tow_id", "run"], how="semi")
+    beyond = _outside_run(store, windows)
     found = {
         "boats": store.read("listed_boats"),
         "tows": tows,
         "tow_runs": runs,
-        "quarantine": _quarantine(store, index, today),
+        "hand_windows": windows.join(
+            beyond, left_on=_LISTED_AT, right_on=["path", "line"], how="anti"
+        ),
+        "quarantine": _quarantine(store, index, beyond, today),
     }
     if tows.is_empty():
         raise _nothing_sound(found["quarantine"])
@@ -111,11 +127,30 @@ def _nothing_sound(faults: pl.DataFrame) -> MissingKnowledgeError:
     )
 
 
-def _quarantine(store: Store, index: pl.DataFrame, today: dt.date) -> pl.DataFrame:
+_LISTED_AT: Final = ["list_path", "list_line"]
+
+
+def _outside_run(store: Store, windows: pl.DataFrame) -> pl.DataFrame:
+    """Faults of windows that end after their run."""
+    faults = []
+    if not windows.is_empty():
+        seconds = (
+            intake.all_blocks(store)
+            .group_by("tow_id", "run")
+            .agg((pl.col("second").max() + 1).alias("seconds"))
+        )
+        faults = outside_run(windows, seconds)
+    return pl.DataFrame([dataclasses.asdict(f) for f in faults], schema=intake.FAULT_SCHEMA)
+
+
+def _quarantine(
+    store: Store, index: pl.DataFrame, beyond: pl.DataFrame, today: dt.date
+) -> pl.DataFrame:
     """All faults; one that was there before keeps the day on which it was first seen."""
     faults = pl.concat(
         [
             store.read("list_faults"),
+            beyond,
             index.filter(pl.col("reason_code").is_not_null()).select(list(intake.FAULT_SCHEMA)),
         ]
     )
@@ -149,18 +184,26 @@ def method_is_stale(store: Store, method: Method) -> bool:
 
 
 def run_blocks(store: Store) -> RunBlocks:
-    """The runs of all sound tows, as arrays."""
-    return stack_blocks(intake.all_blocks(store), store.read("tow_runs"))
+    """The runs of all sound tows as arrays, with the windows that were given by hand."""
+    windows = store.read("hand_windows").rename(HAND_COLUMNS)
+    runs = store.read("tow_runs").join(windows, on=["tow_id", "run"], how="left")
+    return stack_blocks(intake.all_blocks(store), runs)
+
+
+def typed_tows(store: Store) -> pl.DataFrame:
+    """All sound tows with the type of their boat."""
+    types = store.read("boats").select("fsn_no", "boat_type")
+    return store.read("tows").join(types, on="fsn_no", how="left")
 
 
 def apply_method(store: Store, method: Method, blocks: RunBlocks) -> dict[str, pl.DataFrame]:
-    """Run points, curves and log factors of all tows under one method.
+    """Run points, curves, log factors and assessments of all tows under one method.
 
     Returns:
         The tables written, by name.
     """
     made_from = method_made_from(store, method)
-    result = recompute(method, store.read("tows"), blocks)
+    result = recompute(method, typed_tows(store), blocks)
     found = {name: conform(name, getattr(result, name)) for name in METHOD_TABLES}
     for name, frame in found.items():
         store.write(name, frame, made_from, method.name)

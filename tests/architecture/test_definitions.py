@@ -6,10 +6,12 @@ from assets.definitions import defs
 
 ASSETS = [
     "archive_index",
+    "assessments",
     "blocks",
     "boats",
     "correction_steps",
     "curves",
+    "hand_windows",
     "lineage",
     "log_factors",
     "methods",
@@ -24,6 +26,7 @@ ASSETS = [
     "reproducibility",
     "run_points",
     "samples",
+    "season_links",
     "slow_tows",
     "speed_trend",
     "tow_runs",
@@ -31,6 +34,7 @@ ASSETS = [
     "type_consistency",
     "type_homogeneity",
     "type_outliers",
+    "uncertainty_budget",
     "variance_components",
     "warehouse_database",
 ]

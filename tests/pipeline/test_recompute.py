@@ -172,7 +172,10 @@ def test_a_tow_does_not_depend_on_the_other_tows(measured, name):
         alone = recompute(chosen, mine, measured.blocks)
         for table in ("run_points", "curves"):
             both = getattr(together, table).filter(tow_id=tow_id)
-            assert_frame_equal(getattr(alone, table), both, check_exact=True)
+            # What a tow is compared with are other tows: that may change its flags, never a number.
+            judged = [c for c in ("status", "flags") if c in both.columns]
+            one = getattr(alone, table).drop(judged)
+            assert_frame_equal(one, both.drop(judged), check_exact=True)
 
 
 def test_every_tow_and_run_is_in_the_tables(measured, rebased):

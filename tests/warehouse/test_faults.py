@@ -170,7 +170,9 @@ def test_all_other_rows_are_those_of_the_clean_archive(spoiled, built, table):
     bench, _, lost = spoiled
     others = built.table(table).filter(~pl.col("tow_id").is_in(list(lost)))
     assert 0 < others.height < built.table(table).height
-    assert_frame_equal(bench.table(table), others, check_exact=True)
+    # A tow is also judged against others, so a missing one may change a flag, never a number.
+    judged = [c for c in ("status", "flags") if c in others.columns]
+    assert_frame_equal(bench.table(table).drop(judged), others.drop(judged), check_exact=True)
 
 
 def test_boats_are_all_there(spoiled, built):

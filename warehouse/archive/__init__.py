@@ -12,6 +12,7 @@ from warehouse.archive.plausibility import check_samples
 from warehouse.archive.profile import Profiles, SeasonProfile, SetAside
 from warehouse.archive.published import read_published_registers, read_races
 from warehouse.archive.samples import read_samples, read_tow_samples
+from warehouse.archive.windows import outside_run
 
 __all__ = [
     "REASONS",
@@ -26,6 +27,7 @@ __all__ = [
     "check_samples",
     "fault_from",
     "index_archive",
+    "outside_run",
     "read_published_registers",
     "read_races",
     "read_samples",

@@ -118,6 +118,27 @@ REASONS: Final[dict[str, Reason]] = {
         "Different rows: neither counts, as nobody can know which is right.",
         "Remove one row, or give it its own `sleep_id`.",
     ),
+    "bad_window_row": Reason(
+        "A row of windows given by hand lacks a value, holds one that cannot be right, or ends "
+        "before it begins; the rule chooses the window of that run.",
+        "Mend the row in `vensters_<jaar>.csv`.",
+    ),
+    "window_unknown_tow": Reason(
+        "A window is given for a tow that is not in the list of that year.",
+        "Correct the `sleep_id`, or move the row to the list of the tow's year.",
+    ),
+    "window_unknown_run": Reason(
+        "A window is given for a run that the tow does not have.",
+        "Correct `run`; `b1` to `b6` need a `meetfile2` in the tow list.",
+    ),
+    "window_outside_run": Reason(
+        "A window given by hand ends after its run; the rule chooses the window of that run.",
+        "Correct `tot`.",
+    ),
+    "window_given_twice": Reason(
+        "Two windows are given for one run; none of them counts.",
+        "Keep one row of the two.",
+    ),
     "bad_register_row": Reason(
         "A row of a published register cannot be read.",
         "Mend the row.",

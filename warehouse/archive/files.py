@@ -17,6 +17,7 @@ from warehouse.archive.text import fold_name
 
 BOATS_FILE: Final = "sloepregister/sloependata.csv"
 TOW_LIST_PATTERN: Final = r"sleeplijst_([0-9]{4})\.csv"
+WINDOWS_PATTERN: Final = r"vensters_([0-9]{4})\.csv"
 REGISTER_PATTERN: Final = r"sloepregister_([0-9]{4})\.csv"
 RACES_PATTERN: Final = r".+_([0-9]{4})\.csv"
 SAMPLE_SUFFIXES: Final = (".csv.gz", ".csv.zst", ".csv", ".parquet")

@@ -16,6 +16,7 @@ from pipeline.channels import RUNS_PER_FILE, SECOND_FILE_OFFSET, TARGET_SPEED_RA
 from pipeline.errors import DefectiveInputError, MissingKnowledgeError
 from warehouse.archive import boats as boat_list
 from warehouse.archive import tows as tow_list
+from warehouse.archive import windows as window_list
 from warehouse.archive.boats import Boats
 from warehouse.archive.faults import DefectiveFileError, Fault, fault_from
 from warehouse.archive.files import (
@@ -24,6 +25,7 @@ from warehouse.archive.files import (
     RACES_PATTERN,
     REGISTER_PATTERN,
     TOW_LIST_PATTERN,
+    WINDOWS_PATTERN,
     ArchiveFile,
     list_files,
     list_sample_files,
@@ -55,6 +57,8 @@ class ArchiveIndex:
         boats: one row a boat (`boats.SCHEMA`).
         tows: one row a tow that can be read (`tows.SCHEMA`).
         runs: one row a run of those tows (`tows.RUNS_SCHEMA`); runs of a second file are 11-16.
+        windows: windows given by hand for those runs (`windows.SCHEMA`), of which nobody knows yet
+            whether they lie in their run.
         faults: what is set aside, and why.
         files: every file that was looked at: path, sha256, size_bytes.
         profiles: `archief.toml`.
@@ -63,6 +67,7 @@ class ArchiveIndex:
     boats: pl.DataFrame
     tows: pl.DataFrame
     runs: pl.DataFrame
+    windows: pl.DataFrame
     faults: tuple[Fault, ...]
     files: pl.DataFrame
     profiles: Profiles
@@ -148,13 +153,13 @@ def index_archive(root: Path, hash_file: Callable[[Path], str]) -> ArchiveIndex:
     good = _keep(_unique_samples(good), good, faults)
     good = _keep(lambda entry: _join_boat(entry, boats), good, faults)
     good = _keep(lambda entry: _check_day(entry, profiles), good, faults)
+    runs = [run for entry in good for run in _runs(entry, profiles)]
+    windows = _read_windows(root, hashes, entries, runs, faults)
     return ArchiveIndex(
         boats=boats.frame(),
         tows=pl.DataFrame([entry.tow for entry in good], schema=tow_list.SCHEMA),
-        runs=pl.DataFrame(
-            [run for entry in good for run in _runs(entry, profiles)],
-            schema=tow_list.RUNS_SCHEMA,
-        ),
+        runs=pl.DataFrame(runs, schema=tow_list.RUNS_SCHEMA),
+        windows=pl.DataFrame(windows, schema=window_list.SCHEMA),
         faults=tuple(sorted(faults, key=_fault_order)),
         files=hashes.frame(),
         profiles=profiles,
@@ -206,7 +211,7 @@ def _read_tow_lists(
     """Return the rows of all tow lists, and the seasons of lists that cannot be read."""
     entries: list[_Entry] = []
     unread_seasons: set[int] = set()
-    for path in list_strangers(root, "sleeplijsten", TOW_LIST_PATTERN):
+    for path in list_strangers(root, "sleeplijsten", f"{TOW_LIST_PATTERN}|{WINDOWS_PATTERN}"):
         message = f"'{path}' is not read, as it is not named like sleeplijst_2014.csv."
         faults.append(Fault(path, None, None, "unrecognised_file", message))
     for file in list_files(root, "sleeplijsten", TOW_LIST_PATTERN):
@@ -218,6 +223,32 @@ def _read_tow_lists(
             continue
         entries += [_Entry(row, file.path, file.season) for row in rows]
     return entries, unread_seasons
+
+
+def _read_windows(
+    root: Path,
+    hashes: _Hashes,
+    entries: list[_Entry],
+    runs: list[Mapping[str, Any]],
+    faults: list[Fault],
+) -> list[window_list.Window]:
+    """Return the windows given by hand, of all years."""
+    windows: list[window_list.Window] = []
+    runs_of: dict[str, set[int]] = defaultdict(set)
+    for run in runs:
+        runs_of[run["tow_id"]].add(run["run"])
+    for file in list_files(root, "sleeplijsten", WINDOWS_PATTERN):
+        tow_ids = {e.tow_id for e in entries if e.season == file.season and e.tow_id is not None}
+        listed = window_list.Listed(tow_ids, runs_of)
+        try:
+            data = _read_list(root, file.path, hashes)
+            found, faulty = window_list.read_windows(data, file.path, listed)
+        except DefectiveInputError as error:
+            faults.append(fault_from(error, file.path))
+            continue
+        windows += found
+        faults += faulty
+    return windows
 
 
 # Files

@@ -156,7 +156,8 @@ def read_selection(row: ListRow) -> frozenset[int]:
     cell = row.optional_text("use_runs")
     if cell is None:
         return frozenset(range(1, RUNS_PER_FILE + 1))
-    runs = [_run_number(part, row) for part in re.split(r"[\s,;]+", cell.strip(" ,;"))]
+    parts = re.split(r"[\s,;]+", cell.strip(" ,;"))
+    runs = [run_number(part, row, "gebruik runs") for part in parts]
     if len(set(runs)) < len(runs):
         raise row.fault(f"'gebruik runs' is '{shorten(cell)}'; one run stands in it twice.")
     if max(runs) > SECOND_FILE_OFFSET and row.optional_text("second_file") is None:
@@ -164,11 +165,16 @@ def read_selection(row: ListRow) -> frozenset[int]:
     return frozenset(runs)
 
 
-def _run_number(part: str, row: ListRow) -> int:
+def run_number(part: str, row: ListRow, header: str) -> int:
+    """Return the number of a run as written in a list: 1-6, or 11-16 for b1-b6.
+
+    Raises:
+        DefectiveInputError: it is none, with the row's reason code and line.
+    """
     match = _RUN.fullmatch(part)
     if match is None:
         raise row.fault(
-            f"'gebruik runs' has '{shorten(part)}'; runs are 1 to {RUNS_PER_FILE}, or b1 to "
+            f"'{header}' has '{shorten(part)}'; runs are 1 to {RUNS_PER_FILE}, or b1 to "
             f"b{RUNS_PER_FILE} for the second file, with commas between them."
         )
     return int(match[2]) + (SECOND_FILE_OFFSET if match[1] else 0)

@@ -1,0 +1,153 @@
+"""How sure a curve is: the random part from its points, and the budget of every component.
+
+Here outcomes are given to `pipeline.uncertainty`, which has the formulas, and the interval of Cw
+at the declared speed comes back. A method with estimated season factors knows the whole archive:
+its scatter is pooled over a season. Any other method is taken at its word, tow by tow: its
+interval rests on the tow's own points and holds if its log factors are right.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+import polars as pl
+
+from pipeline import curve
+from pipeline.arrays import FloatArray
+from pipeline.outcome import Outcome
+from pipeline.season_log import SeasonFactors
+from pipeline.season_log.assumed import USUAL
+from pipeline.uncertainty import Assumed, budget, combine, residual_scatter, run_point_uncertainty
+
+ARCHIVE_COEFFICIENT_SD: Final = 0.01
+"""Of the one coefficient found for the whole archive (research, method.md 0.9; measured here)."""
+
+WITHOUT_CHANGED_BOATS: Final = float(np.sqrt(1.0 - 2.0 / USUAL.t_dof))
+"""Scale / standard deviation of the t distribution of repeat tows: its tails are boats that changed
+without a report, which is no error of a tow."""
+
+USUAL_BEND: Final = 0.4
+"""q where the archive is not asked for it (research, method.md 0.7: r of 0.3)."""
+
+
+def scatter_of(o: Outcome, pooled: bool) -> curve.Scatter:
+    """Scatter of single run points: of the season, or of each tow alone."""
+    return pooled_scatter(o) if pooled else curve.own_scatter(o.free)
+
+
+def random_ratio(o: Outcome, pooled: bool = True) -> tuple[FloatArray, FloatArray]:
+    """Relative random uncertainty of Cw at the declared speed, and its degrees of freedom.
+
+    From the scatter of the run points about their curves (`scatter_of`).
+    """
+    scatter = scatter_of(o, pooled)
+    declared = o.batch.of_tow("declared_speed_m_s")
+    errors = curve.covariance(o.points, o.free, scatter, declared)
+    cw = o.free.cw_at(declared)
+    known = np.isfinite(cw) & np.isfinite(errors.c0_variance_kg2_m2)
+    variance = np.where(known, errors.c0_variance_kg2_m2, 1.0)
+    return np.where(known, np.sqrt(variance) / np.where(known, cw, 1.0), 1.0), scatter.dof
+
+
+def pooled_scatter(o: Outcome) -> curve.Scatter:
+    """Scatter of single run points about their curve, pooled over the tows of a season."""
+    on_curve = curve.cw(
+        o.free.a_kg_m[:, None],
+        o.free.s_s2_m2[:, None],
+        np.where(o.points.used, o.points.speed_m_s, 0.0),
+    )
+    used = o.points.used & np.isfinite(on_curve) & o.free.converged[:, None]
+    ratio = np.where(used, o.points.cw_kg_m / np.where(used, on_curve, 1.0) - 1.0, 0.0)
+    season = o.batch.of_tow("season").astype(np.int64)
+    residual, dof = residual_scatter(ratio, used, season)
+    known = np.isfinite(residual)
+    relative = np.where(known, residual, 0.0)
+    height = np.where(used, on_curve, 0.0).sum(axis=1) / np.maximum(used.sum(axis=1), 1)
+    return curve.Scatter((relative * height) ** 2, np.where(known, dof, 0.0))
+
+
+def run_point_ratio(o: Outcome) -> FloatArray:
+    """Relative uncertainty of each run point from within the runs of its season, shape (runs,)."""
+    season = o.batch.of_tow("season").astype(np.int64)[o.batch.tow]
+    return run_point_uncertainty(o.batch.blocks, o.windows.mask, season, o.steps.speed.source)
+
+
+def budget_of(outcomes: Sequence[Outcome], found: SeasonFactors | None) -> pl.DataFrame:
+    """Every component of the uncertainty of Cw at the declared speed, per tow with a curve.
+
+    Args:
+        outcomes: all batches of a method.
+        found: its season factors, if it has estimated ones.
+
+    Returns:
+        Rows as `pipeline.uncertainty.budget` gives them, sorted by tow.
+    """
+    return pl.concat([_budget_of_batch(o, found) for o in outcomes]).sort("tow_id", "component")
+
+
+def cw_bounds(held: pl.DataFrame) -> pl.DataFrame:
+    """Bounds of the 95 % interval of Cw relative to Cw, per tow: `tow_id, lo_ratio, hi_ratio`."""
+    return combine(held).select("tow_id", "lo_ratio", "hi_ratio")
+
+
+def _budget_of_batch(o: Outcome, found: SeasonFactors | None) -> pl.DataFrame:
+    batch, cw = o.batch, o.cw_at_declared
+    sound = np.isfinite(cw)
+    safe = np.where(sound, cw, 1.0)
+    random, dof = random_ratio(o, pooled=found is not None)
+    kappa = np.full(batch.size, 2.0 * (1.0 + (USUAL_BEND if found is None else _median_bend(o))))
+    estimated = np.isfinite(o.estimated.factor)
+    air = batch.mean(o.air_kg_m - o.still_air_kg_m, o.used)
+    # A larger coefficient takes more off as felt and puts more back for still air.
+    still_unit = o.still_air_kg_m / np.maximum(o.still_air_coefficient, 1e-9)
+    per_coefficient = batch.mean(still_unit - o.air_unit_kg_m, o.used)
+    rows = batch.tows.select(
+        "tow_id",
+        "season",
+        pl.lit(0).alias("part"),
+        pl.lit(o.steps.speed.source).alias("log"),
+        pl.Series("kappa", kappa),
+        pl.Series("random_ratio", random),
+        pl.Series("random_dof", dof),
+        pl.Series("calibrated", o.calibrated),
+        pl.Series("log_sd", np.where(estimated, o.estimated.ln_sd, 0.0)),
+        pl.Series("log_dof", np.where(estimated, o.estimated.dof, np.inf)),
+        pl.Series("wander_sd", np.where(o.calibrated, 0.0, _wander(o, found))),
+        pl.Series("air_ratio", air / safe),
+        pl.Series("air_per_coefficient", per_coefficient / safe),
+        pl.Series("temperature_known", o.temperature_known),
+    ).filter(pl.Series(sound))
+    usual_air = float(np.sqrt(np.mean((air / safe)[sound] ** 2))) if sound.any() else 0.0
+    return budget(rows, _assumed(o, found, kappa, usual_air))
+
+
+def _median_bend(o: Outcome) -> float:
+    """Median of q at the declared speed over the batch."""
+    declared = o.batch.of_tow("declared_speed_m_s")
+    r = np.where(o.free.converged, o.free.s_s2_m2 * declared**2, np.nan)
+    known = np.isfinite(r) & (r > 0.0) & (r < 1.0)
+    return float(np.median(r[known] / (1.0 - r[known]))) if known.any() else USUAL_BEND
+
+
+def _wander(o: Outcome, found: SeasonFactors | None) -> FloatArray:
+    """Standard deviation of ln of the log factor from tow to tow, by era."""
+    if found is None:
+        return np.zeros(o.batch.size)
+    season = o.batch.of_tow("season")
+    wander = np.zeros(o.batch.size)
+    for first, sd in sorted(found.wander_sd.items()):
+        wander = np.where(season >= first, sd, wander)
+    return wander
+
+
+def _assumed(
+    o: Outcome, found: SeasonFactors | None, kappa: FloatArray, air_ratio: float
+) -> Assumed:
+    assumed = Assumed()
+    if o.steps.wind.coefficients == "archive":
+        assumed = replace(assumed, wind_coefficient=ARCHIVE_COEFFICIENT_SD)
+    if found is None:
+        return assumed
+    tow_sd = WITHOUT_CHANGED_BOATS * found.tow_sd
+    return assumed.as_repeats_show(tow_sd, float(np.median(kappa)), air_ratio)

@@ -1,0 +1,213 @@
+"""Archives at the level of tows, with known truth: boats, schedule, log errors, repeat tows.
+
+Fast enough for hundreds of worlds; what a tow's samples look like is left to `pipeline.simulate`.
+The set-ups are those of research, method.md 9.3 and 9.4.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import polars as pl
+from scipy.signal import lfilter
+
+from pipeline import season_log, uncertainty
+from pipeline.blocks import RunBlocks
+
+SEASONS = range(2009, 2019)
+ANCHORED_FROM = 2014
+GPS_FROM = 2011
+RETOW_YEARS = (3, 4, 4, 5)
+TYPES = 8
+
+
+@dataclass(frozen=True)
+class Setup:
+    """What is wrong in a world. Ratios; alterations are not reported."""
+
+    tows_a_season: int = 24
+    boats: int = 90
+    tow_noise: float = 0.01
+    run_noise: float = 0.01
+    wander: float = 0.0
+    altered_share: float = 0.0
+    altered_sd: float = 0.08
+    ageing_per_year: float = 0.0
+    gps_run_error: float = 0.012
+    gps_season_error: float = 0.003
+    kappa_error: float = 0.03
+    force_step: tuple[int, float] | None = None
+    log_factors: tuple[tuple[int, float], ...] = ()
+
+
+CLEAN = Setup()
+HARD = Setup(wander=0.012, altered_share=0.12, ageing_per_year=0.004)
+
+
+@dataclass(frozen=True)
+class World:
+    tows: pl.DataFrame
+    ln_factor: dict[int, float]
+
+
+def simulate(setup: Setup, seed: int) -> World:
+    rng = np.random.default_rng(seed)
+    ln_factor = {s: _true_ln_factor(s, rng) for s in SEASONS}
+    ln_factor |= {s: float(np.log(f)) for s, f in setup.log_factors}
+    gps_offset = {s: setup.gps_season_error * rng.standard_normal() for s in SEASONS}
+    boats = _boats(setup.boats, rng)
+    state = boats["ln_cw"].copy()
+    ln_weight = boats["ln_weight"].copy()
+    towed = np.zeros(setup.boats, bool)
+    rows = []
+    for season, crews in _schedule(setup):
+        for boat in crews:
+            if towed[boat] and rng.random() < setup.altered_share:
+                state[boat] += setup.altered_sd * rng.standard_normal()
+            towed[boat] = True
+            change = 0.01 * rng.standard_normal()
+            rows.append(
+                _tow(
+                    setup,
+                    season,
+                    boat,
+                    boats,
+                    state[boat],
+                    ln_weight[boat] + change,
+                    change,
+                    ln_factor[season],
+                    gps_offset[season],
+                    rng,
+                )
+            )
+    tows = pl.DataFrame(rows, infer_schema_length=None).with_columns(
+        (pl.col("season").cast(pl.String) + "-" + pl.int_range(pl.len()).cast(pl.String)).alias(
+            "tow_id"
+        )
+    )
+    return World(tows, {s: x for s, x in ln_factor.items() if s < ANCHORED_FROM})
+
+
+def _true_ln_factor(season, rng):
+    if season <= 2011:
+        return float(np.log1p(rng.uniform(0.0, 0.06)))
+    return 0.015 * float(rng.standard_normal()) if season < ANCHORED_FROM else 0.0
+
+
+def _boats(n, rng):
+    kind = rng.integers(TYPES, size=n)
+    ln_weight = np.log(900) + 0.05 * kind + 0.06 * rng.standard_normal(n)
+    ln_length = np.log(8) + 0.02 * kind + 0.02 * rng.standard_normal(n)
+    r = rng.uniform(0.18, 0.42, n)
+    ln_cw = np.log(35) + 0.5 * (ln_weight - np.log(1000)) + 0.3 * (ln_length - np.log(8))
+    ln_cw = ln_cw + 0.03 * np.cos(kind) + 0.05 * rng.standard_normal(n)
+    return {"kind": kind, "ln_weight": ln_weight, "ln_length": ln_length, "r": r, "ln_cw": ln_cw}
+
+
+def _schedule(setup):
+    """Boats that are due, longest waiting first, then new ones, as long as there are."""
+    due, newcomers = {}, list(range(setup.boats))
+    for season in SEASONS:
+        waiting = [b for _, b in sorted((when, b) for b, when in due.items() if when <= season)]
+        crews = waiting[: setup.tows_a_season]
+        while len(crews) < setup.tows_a_season and newcomers:
+            crews.append(newcomers.pop(0))
+        for place, boat in enumerate(crews):
+            due[boat] = season + RETOW_YEARS[place % len(RETOW_YEARS)]
+        yield season, crews
+
+
+def _tow(setup, season, boat, boats, ln_cw, ln_weight, change, ln_factor, gps_offset, rng):
+    anchored = season >= ANCHORED_FROM
+    r, q = boats["r"][boat], boats["r"][boat] / (1 - boats["r"][boat])
+    wander = 0.0 if anchored else setup.wander * rng.standard_normal()
+    y2 = np.exp(2 * (0.0 if anchored else ln_factor + wander))
+    level = ln_cw + 0.4 * change + setup.ageing_per_year * (season - 2009)
+    q_log = r * y2 / (1 - r * y2)
+    level += np.log(y2) - np.log((1 - r * y2) / (1 - r))
+    if setup.force_step and setup.force_step[0] == season:
+        level += np.log1p(setup.force_step[1])
+    level += (
+        setup.tow_noise * rng.standard_normal() + 0.41 * setup.run_noise * rng.standard_normal()
+    )
+    gps = None
+    if GPS_FROM <= season < ANCHORED_FROM:
+        gps = ln_factor + wander + gps_offset + setup.gps_run_error * rng.standard_normal()
+    q_guess = q * (1 + setup.kappa_error * rng.standard_normal())
+    return {
+        "season": season,
+        "part": 0,
+        "log": "log1",
+        "fsn_no": f"FSN{100 + boat}",
+        "rowers": 8,
+        "crew_class": "H",
+        "ln_cw": level,
+        "kappa": 2 * (1 + q_guess),
+        "ln_cw_sd": 0.41 * setup.run_noise,
+        "weight_kg": float(np.exp(ln_weight)),
+        "waterline_length_m": float(np.exp(boats["ln_length"][boat])),
+        "boat_type": f"type {boats['kind'][boat]}",
+        "altered": False,
+        "declared_speed_m_s": 2.5,
+        "gps_ln_ratio": gps,
+        "gps_sd": 0.01,
+        "anchored": anchored,
+        "q": q_log + 2.5 * setup.run_noise * rng.standard_normal(),
+        "q_sd": 2.5 * setup.run_noise,
+    }
+
+
+def register(world):
+    """Season factors, the last tow of every line, and the budget of every tow."""
+    found = season_log.estimate_season_factors(world.tows)
+    logs = found.factors.select("season", "part", "log", log_sd="ln_sd", log_dof="dof")
+    era = pl.when(pl.col("season") < 2012).then(2009).otherwise(2012)
+    wander = era.replace_strict(found.wander_sd, return_dtype=pl.Float64)
+    anchored = pl.col("anchored")
+    tows = world.tows.join(logs, on=["season", "part", "log"], how="left").with_columns(
+        pl.col("log_sd").fill_null(0.0),
+        pl.col("log_dof").fill_null(np.inf),
+        pl.when(anchored).then(0.0).otherwise(wander).alias("wander_sd"),
+        anchored.alias("calibrated"),
+        pl.col("ln_cw_sd").alias("random_ratio"),
+        pl.lit(200.0).alias("random_dof"),
+        pl.lit(0.025).alias("air_ratio"),
+        pl.lit(0.05).alias("air_per_coefficient"),
+        (pl.col("season") >= 2018).alias("temperature_known"),
+    )
+    last = world.tows.sort("season", "tow_id").unique("fsn_no", keep="last", maintain_order=True)
+    lines = last.select("fsn_no", "tow_id", pl.col("ln_cw").exp().alias("cw_kg_m"))
+    return found, lines, uncertainty.budget(tows)
+
+
+def run_noise(rng, runs, seconds):
+    """Relative noise of 1-s blocks: surge of the tow line, wander, fast noise (method.md 6.1)."""
+    steps_s = 10
+    time_s = np.arange(seconds * steps_s) / steps_s
+
+    def coloured(memory_s):
+        keep = np.exp(-1 / (steps_s * memory_s))
+        drive = np.sqrt(1 - keep**2) * rng.standard_normal((runs, time_s.size))
+        drive[:, 0] /= np.sqrt(1 - keep**2)
+        return lfilter([1.0], [1.0, -keep], drive, axis=1)
+
+    turn = 2 * np.pi * time_s
+    surge = coloured(5.0) * np.cos(turn) + coloured(5.0) * np.sin(turn)
+    noise = 0.06 * surge + 0.02 * coloured(3.0) + 0.05 * coloured(0.05)
+    return noise.reshape(runs, seconds, steps_s).mean(axis=2)
+
+
+def as_blocks(noise, samples=50):
+    """Blocks of runs whose F/v^2 is 40 kg/m but for the noise."""
+    n = np.full(noise.shape, float(samples))
+    runs = pl.DataFrame({"run": np.arange(len(noise))})
+    return RunBlocks(runs, n, {"log1_cw": n * 40.0 * (1.0 + noise)})
+
+
+def run_point_ratios(runs, seconds, total=3600):
+    """Estimated / true sd of a run mean, for each season of `runs` runs."""
+    noise = run_noise(np.random.default_rng(6), total, seconds)
+    truth = noise.mean(axis=1).std()
+    season = np.arange(total) // runs
+    blocks = as_blocks(noise)
+    sd = uncertainty.run_point_uncertainty(blocks, blocks.n > 0, season)
+    return sd[::runs] / truth

@@ -1,0 +1,370 @@
+"""Every check fires when it should and keeps quiet when not; statuses follow from them.
+
+The world here: five like boats, towed in 2012 and again in 2014, all of it sound.
+"""
+
+import datetime as dt
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import polars as pl
+import pytest
+
+from pipeline.assessment import assess, with_status
+from pipeline.checks import CHECKS, CODES
+from pipeline.method import MethodFileError, parse_method, shipped_method
+
+METHOD = "some-method"
+V0 = 2.5
+A, B = 30.0, 5.0
+CW = A / (1 - (V0 / B) ** 2)
+BOATS = range(1, 6)
+SUBJECT = "boat1-2012"
+LATER = "boat1-2014"
+
+
+@dataclass(frozen=True)
+class World:
+    curves: pl.DataFrame
+    run_points: pl.DataFrame
+    tows: pl.DataFrame
+
+    def changed(self, table: str, tow_id: str, **columns: Any) -> "World":
+        """The world with some values of one tow replaced, by a value or an expression."""
+        frame: pl.DataFrame = getattr(self, table)
+        mine = pl.col("tow_id") == tow_id
+        values = {
+            name: pl.when(mine)
+            .then(value if isinstance(value, pl.Expr) else pl.lit(value, frame.schema[name]))
+            .otherwise(pl.col(name))
+            for name, value in columns.items()
+        }
+        return replace(self, **{table: frame.with_columns(**values)})
+
+    def assessed(self) -> pl.DataFrame:
+        return assess(self.curves, self.run_points, self.tows)
+
+    def flagged(self, tow_id: str) -> set[str]:
+        return set(self.assessed().filter("flagged", tow_id=tow_id)["check"])
+
+
+def _tow(boat: int, season: int) -> dict[str, Any]:
+    return {
+        "tow_id": f"boat{boat}-{season}",
+        "season": season,
+        "tow_date": dt.date(season, 3, boat),
+        "fsn_no": f"FSN{boat}",
+        "boat_type": "Kuikensloep",
+        "rowers": 8,
+        "crew_class": "H",
+        "declared_speed_m_s": V0,
+        "waterline_length_m": 8.0,
+        "beam_m": 2.2,
+        "bow_height_m": 0.9,
+        "weight_kg": 1000.0 + 5.0 * boat,
+        "weight_after_kg": 1008.0 + 5.0 * boat,
+        "crew_weight_kg": 760.0,
+        "altered": False,
+        "freeboard_lowest_m": 0.40,
+        "freeboard_bow_m": 0.80,
+        "freeboard_stern_m": 0.60,
+    }
+
+
+def _curve(tow: Mapping[str, Any]) -> dict[str, Any]:
+    names = ("tow_id", "fsn_no", "season", "rowers", "crew_class", "declared_speed_m_s")
+    return {
+        "method": METHOD,
+        **{name: tow[name] for name in names},
+        "a_kg_m": A,
+        "b_m_s": B,
+        "cw_kg_m": CW,
+        "b_capped": False,
+        "power_w": CW * V0**3 / 8,
+        "residual_sd_ratio": 0.01,
+        "calibration_factor": 1.005,
+        "runs_used": 6,
+    }
+
+
+def _run_points(tow_id: str) -> list[dict[str, Any]]:
+    return [
+        {
+            "tow_id": tow_id,
+            "run": run,
+            "direction": 1 if run <= 3 else -1,
+            "target_speed_ratio": ratio,
+            "speed_m_s": 1.01 * ratio * V0,
+            "speed_factor": 1.005,
+            "cw_kg_m": 40.0 + 0.1 * run,
+            "cw_sd": 3.5,
+            "fitted_cw_kg_m": 40.2,
+            "log2_ratio": 0.997,
+            "used": True,
+        }
+        for run, ratio in enumerate([0.9, 1.0, 1.1] * 2, start=1)
+    ]
+
+
+@pytest.fixture(scope="module")
+def sound() -> World:
+    tows = [_tow(boat, season) for boat in BOATS for season in (2012, 2014)]
+    points = [point for tow in tows for point in _run_points(tow["tow_id"])]
+    integers = {"season": pl.Int32, "rowers": pl.Int32, "run": pl.Int8, "direction": pl.Int8}
+    curves = pl.DataFrame([_curve(tow) for tow in tows], schema_overrides=integers)
+    return World(
+        curves.cast({"runs_used": pl.Int8}),
+        pl.DataFrame(points, schema_overrides=integers),
+        pl.DataFrame(tows, schema_overrides=integers),
+    )
+
+
+def test_a_sound_world_is_checked_throughout_and_nothing_fires(sound: World) -> None:
+    found = sound.assessed()
+    assert set(found["check"]) == set(CODES)
+    assert found.filter("flagged").is_empty()
+    assert found.height == found.select("method", "tow_id", "check").n_unique()
+
+
+no_curve = {"a_kg_m": None, "b_m_s": None, "cw_kg_m": None, "power_w": None}
+gone = {"residual_sd_ratio": None}
+run1 = pl.col("run") == 1
+back = pl.col("direction") == -1
+lower_cw = pl.col("cw_kg_m") * 0.95
+heavier = {"a_kg_m": 1.08 * A, "cw_kg_m": 1.08 * CW}
+
+# check: (table, tow, changes, observed, limit, what fires as well)
+CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
+    "no_curve": ("curves", SUBJECT, no_curve | gone, 0, 1, set()),
+    "few_runs": ("curves", SUBJECT, {"runs_used": 5}, 5, 6, set()),
+    "unbalanced_runs": ("run_points", SUBJECT, {"used": ~run1}, 1, 0, set()),
+    "residual_large": ("curves", SUBJECT, {"residual_sd_ratio": 0.035}, 0.035, 0.03, set()),
+    "out_and_back_differ": (
+        "run_points", SUBJECT, {"cw_kg_m": pl.when(back).then(lower_cw).otherwise("cw_kg_m")},
+        40.2 / (40.5 * 0.95) - 1, 0.03, set(),
+    ),
+    "unusual_calibration": ("curves", SUBJECT, {"calibration_factor": 0.975}, 0.975, 0.98, set()),
+    "b_at_cap": ("curves", SUBJECT, {"b_capped": True}, 1, 0, set()),
+    "b_not_determined": ("curves", SUBJECT, {"b_m_s": None}, 1, 0, set()),
+    "log2_differs": (
+        "run_points", SUBJECT, {"log2_ratio": pl.when(run1).then(0.99).otherwise(1.0)},
+        0.01 * 1.01 * 0.9 * V0 / 1.005, 0.01, set(),
+    ),
+    "large_scatter_in_run": (
+        "run_points", SUBJECT, {"cw_sd": pl.when(run1).then(4.2).otherwise(3.5)},
+        4.2 / 40.1, 0.10, set(),
+    ),
+    "off_target_speed": (
+        "run_points", SUBJECT, {"speed_m_s": pl.when(run1).then(2.40).otherwise("speed_m_s")},
+        2.40 / 2.25 - 1, 0.05, set(),
+    ),
+    "range_not_covered": (
+        "run_points", SUBJECT, {"used": pl.col("target_speed_ratio") < 1.1},
+        1.1 - 1.01, 0.05, set(),
+    ),
+    "power_outside_range": ("curves", SUBJECT, {"power_w": 95.0}, 95, 90, set()),
+    "slow_tow": ("curves", SUBJECT, {"power_w": 59.0}, 59, 60, {"power_outside_range"}),
+    "heavier_after": ("tows", SUBJECT, {"weight_after_kg": 1030.0}, 1030 / 1005 - 1, 0.02, set()),
+    "weight_changed": (
+        "tows", LATER, {"weight_kg": 980.0}, 980 / 1005 - 1, -0.02, {"heavier_after"},
+    ),
+    "length_changed": ("tows", LATER, {"waterline_length_m": 8.1}, 0.0125, 0.01, set()),
+    "beam_changed": ("tows", LATER, {"beam_m": 2.1}, 2.1 / 2.2 - 1, -0.02, set()),
+    "bow_height_changed": ("tows", LATER, {"bow_height_m": 0.96}, 0.96 / 0.9 - 1, 0.05, set()),
+    "freeboard_changed": ("tows", LATER, {"freeboard_stern_m": 0.56}, 0.04, 0.03, set()),
+    "curve_changed": (
+        "curves", LATER, heavier, 0.08, 0.05, {"curve_change_unexplained"},
+    ),
+    "curve_change_unexplained": ("curves", LATER, heavier, 0.08, 0.05, {"curve_changed"}),
+    "pulled_askew": (
+        "curves", SUBJECT, heavier,
+        1.08 * (1775 / 1765) ** 0.5 - 1, 0.05, set(),  # boat 3 is the median, 10 kg heavier
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("check", CODES)
+def test_a_check_fires_with_what_was_observed_and_its_limit(sound: World, check: str) -> None:
+    table, tow_id, changes, observed, limit, others = CASES[check]
+    spoiled = sound.changed(table, tow_id, **changes)
+    assert spoiled.flagged(tow_id) == {check} | others
+    row = spoiled.assessed().row(by_predicate=_row(tow_id, check), named=True)
+    assert row["observed"] == pytest.approx(observed, abs=2e-4)
+    assert row["limit"] == limit
+
+
+def _row(tow_id: str, check: str) -> pl.Expr:
+    return (pl.col("tow_id") == tow_id) & (pl.col("check") == check)
+
+
+def checks_of(world: World, tow_id: str) -> set[str]:
+    return set(world.assessed().filter(tow_id=tow_id)["check"])
+
+
+def test_women_have_their_own_power(sound: World) -> None:
+    women = sound.changed("curves", SUBJECT, crew_class="D", power_w=45.0)
+    assert women.flagged(SUBJECT) == set()
+    assert women.changed("curves", SUBJECT, power_w=60.0).flagged(SUBJECT) == {
+        "power_outside_range"
+    }
+    assert "slow_tow" in women.changed("curves", SUBJECT, power_w=33.0).flagged(SUBJECT)
+
+
+def test_what_is_not_known_is_not_checked(sound: World) -> None:
+    unknown = sound.changed(
+        "tows", LATER, weight_after_kg=None, freeboard_lowest_m=None, freeboard_bow_m=None,
+        freeboard_stern_m=None,
+    ).changed("curves", LATER, calibration_factor=None)  # fmt: skip
+    missing = {"heavier_after", "freeboard_changed", "unusual_calibration", "pulled_askew"}
+    assert checks_of(unknown, LATER) == set(CODES) - missing
+    first = {"weight_changed", "length_changed", "beam_changed", "bow_height_changed"}
+    first |= {"freeboard_changed", "curve_changed", "curve_change_unexplained"}
+    assert checks_of(sound, SUBJECT) == set(CODES) - first
+
+
+def test_a_reported_alteration_explains_what_changed(sound: World) -> None:
+    altered = sound.changed("tows", LATER, altered=True, weight_kg=1100.0, beam_m=2.4)
+    altered = altered.changed("tows", LATER, weight_after_kg=1100.0)
+    assert altered.changed("curves", LATER, **heavier).flagged(LATER) == {"curve_changed"}
+
+
+def test_more_weight_explains_more_resistance(sound: World) -> None:
+    load = 1.08**2 * (1005.0 + 760.0) - 760.0
+    later = sound.changed("tows", LATER, weight_kg=load, weight_after_kg=load)
+    found = later.changed("curves", LATER, **heavier)
+    assert found.flagged(LATER) == {"curve_changed", "weight_changed"}
+
+
+def test_the_curve_is_compared_at_the_earlier_declared_speed(sound: World) -> None:
+    faster = sound.changed("curves", LATER, declared_speed_m_s=2.7, cw_kg_m=A / (1 - 0.54**2))
+    row = faster.assessed().row(by_predicate=_row(LATER, "curve_changed"), named=True)
+    assert row["observed"] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_an_earlier_tow_without_a_curve_is_passed_over(sound: World) -> None:
+    without = sound.changed("curves", SUBJECT, **no_curve)
+    assert "curve_changed" not in checks_of(without, LATER)
+
+
+def test_another_crew_has_its_own_curve_but_the_same_boat(sound: World) -> None:
+    other = sound.changed("curves", LATER, rowers=6).changed("tows", LATER, rowers=6)
+    found = checks_of(other, LATER)
+    assert "curve_changed" not in found
+    assert "weight_changed" in found
+
+
+def test_askew_pulling_is_suspected_only_without_a_steering_aid(sound: World) -> None:
+    found = sound.changed("curves", LATER, **heavier).assessed()
+    assert found.filter(check="pulled_askew")["tow_id"].str.ends_with("2012").all()
+
+
+def test_a_log_that_errs_all_season_is_not_askew_pulling(sound: World) -> None:
+    in_2012 = pl.col("season") == 2012
+    worn = sound.curves.with_columns(
+        pl.when(in_2012).then(pl.col(c) * 1.2).otherwise(c).alias(c) for c in ("a_kg_m", "cw_kg_m")
+    )
+    found = assess(worn, sound.run_points, sound.tows).filter(check="pulled_askew")
+    assert found.height == len(BOATS)
+    assert not found["flagged"].any()
+
+
+def test_a_few_like_boats_or_an_unknown_type_are_no_measure(sound: World) -> None:
+    few = pl.col("fsn_no").is_in(["FSN1", "FSN2", "FSN3"])
+    for tows in (
+        sound.tows.with_columns(boat_type=pl.when(few).then(pl.col("boat_type"))),
+        sound.tows.drop("boat_type"),
+    ):
+        found = assess(sound.curves, sound.run_points, tows)
+        assert "pulled_askew" not in set(found["check"])
+
+
+def test_the_order_of_the_rows_does_not_matter(sound: World) -> None:
+    spoiled = sound.changed("curves", LATER, **heavier)
+    shuffled = assess(
+        spoiled.curves.reverse(), spoiled.run_points.reverse(), spoiled.tows.reverse()
+    )
+    key = ["tow_id", "check"]
+    expected = spoiled.assessed().sort(key)
+    assert shuffled.sort(key).drop("observed").equals(expected.drop("observed"))
+    difference = shuffled.sort(key)["observed"] - expected["observed"]
+    assert difference.abs().max() == pytest.approx(0.0, abs=1e-12)
+
+
+# Status
+
+
+def status_of(world: World, *rejecting: tuple[int, str]) -> tuple[str, list[str]]:
+    curves = with_status(world.curves, world.assessed(), rejecting)
+    assert curves.select(world.curves.columns).equals(world.curves)
+    row = curves.row(by_predicate=pl.col("tow_id") == SUBJECT, named=True)
+    return row["status"], row["flags"]
+
+
+def test_nothing_found_is_accepted(sound: World) -> None:
+    assert status_of(sound) == ("accepted", [])
+
+
+def test_a_note_is_no_flag(sound: World) -> None:
+    noted = sound.changed("curves", SUBJECT, b_capped=True, power_w=95.0)
+    assert status_of(noted) == ("accepted", [])
+
+
+def test_flags_are_listed_in_the_order_of_the_table(sound: World) -> None:
+    flagged = sound.changed("curves", SUBJECT, residual_sd_ratio=0.04, runs_used=5, power_w=50.0)
+    assert status_of(flagged) == ("flagged", ["few_runs", "residual_large", "slow_tow"])
+
+
+def test_without_a_curve_a_tow_is_rejected(sound: World) -> None:
+    none = sound.changed("curves", SUBJECT, **no_curve, residual_sd_ratio=None, runs_used=3)
+    assert status_of(none) == ("rejected", ["no_curve", "few_runs"])
+
+
+def test_a_method_rejects_and_the_numbers_stay(sound: World) -> None:
+    few = sound.changed("curves", SUBJECT, runs_used=5)
+    assert status_of(few, (2012, "few_runs")) == ("rejected", ["few_runs"])
+    assert status_of(few, (2014, "few_runs"), (2012, "slow_tow")) == ("flagged", ["few_runs"])
+    assert status_of(sound, (2012, "few_runs")) == ("accepted", [])
+
+
+def test_a_note_that_rejects_is_listed(sound: World) -> None:
+    capped = sound.changed("curves", SUBJECT, b_capped=True)
+    assert status_of(capped, (2012, "b_at_cap")) == ("rejected", ["b_at_cap"])
+
+
+# The table and the method
+
+
+def test_every_check_has_a_meaning_a_source_and_a_limit_for_each_class() -> None:
+    assert len(set(CODES)) == len(CODES)
+    for check in CHECKS:
+        assert check.meaning
+        assert check.source
+        for crew_class in ("H", "D"):
+            assert check.limits(crew_class) != (None, None)
+
+
+def _method(text: str) -> str:
+    return f'name = "strict"\ntitle = "t"\nextends = "rebased-2015"\n{text}'
+
+
+def test_a_method_says_which_checks_reject() -> None:
+    text = _method(
+        '[steps.assessment]\nreject = ["few_runs"]\n'
+        '[[overrides]]\nrange = "2014:"\nassessment = { reject = ["few_runs", "slow_tow"] }\n'
+    )
+    strict = parse_method(text, "strict.toml")
+    assert strict.for_season(2012).assessment.reject == ("few_runs",)
+    assert strict.for_season(2014).assessment.reject == ("few_runs", "slow_tow")
+    assert shipped_method("rebased-2015").for_season(2014).assessment.reject == ()
+    assert strict.content_hash != shipped_method("rebased-2015").content_hash
+
+
+def test_an_unknown_check_is_an_error_that_lists_the_known() -> None:
+    text = _method('[steps.assessment]\nreject = ["few_run"]\n')
+    with pytest.raises(MethodFileError) as raised:
+        parse_method(text, "strict.toml")
+    message = str(raised.value)
+    assert message.startswith("strict.toml, line 5: assessment.reject: must be one of no_curve, ")
+    assert "few_runs, " in message
+    assert message.endswith("not 'few_run' (season 2009)")

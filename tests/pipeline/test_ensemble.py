@@ -1,0 +1,93 @@
+"""Members of a register: as uncertain as the budget says, and together where tows share errors."""
+
+import numpy as np
+import polars as pl
+import pytest
+
+from pipeline import ensemble, uncertainty
+from tests.pipeline.season_worlds import HARD, register, simulate
+
+MANY = 20_000
+
+
+@pytest.fixture(scope="module")
+def world():
+    return simulate(HARD, 1)
+
+
+@pytest.fixture(scope="module")
+def drawn(world):
+    found, lines, held = register(world)
+    return found, lines, held, ensemble.register_ensemble(lines, held, found)
+
+
+def of_tows(world, tow_ids):
+    return pl.DataFrame({"tow_id": tow_ids, "cw_kg_m": np.linspace(30, 50, len(tow_ids))})
+
+
+def test_members_spread_as_the_budget_says(drawn):
+    _, lines, held, members = drawn
+    u = lines.join(uncertainty.combine(held), on="tow_id", maintain_order="left")["u_ratio"]
+    ratio = np.log(members).std(axis=0, ddof=1) / u.to_numpy()
+    assert members.shape == (200, lines.height)
+    # Four standard errors of a deviation from 200 members.
+    assert np.abs(ratio - 1).max() < 4 / np.sqrt(2 * 199)
+    centre = np.log(members).mean(axis=0) - np.log(lines["cw_kg_m"].to_numpy())
+    assert np.abs(centre / u.to_numpy()).max() < 4 / np.sqrt(200)
+
+
+def test_tows_of_one_season_err_together_as_far_as_they_share(world):
+    found, _, held = register(world)
+    lines = of_tows(world, world.tows.filter(pl.col("season") == 2010)["tow_id"][:2].to_list())
+    members = ensemble.register_ensemble(lines, held, found, MANY)
+    total = lines.join(uncertainty.combine(held), on="tow_id", maintain_order="left")
+    shared, u = total["u_shared_ratio"].to_numpy(), total["u_ratio"].to_numpy()
+    expected = shared.prod() / u.prod()
+    correlation = np.corrcoef(np.log(members).T)[0, 1]
+    assert expected > 0.05
+    assert correlation == pytest.approx(expected, abs=4 / np.sqrt(MANY))
+
+
+def test_season_factors_err_together_as_they_were_estimated(world):
+    found, _, held = register(world)
+    only_log = held.filter(pl.col("component") == "season_log")
+    first = world.tows.filter(pl.col("season").is_in([2009, 2010])).unique(
+        "season", keep="first", maintain_order=True
+    )
+    members = ensemble.register_ensemble(
+        of_tows(world, first["tow_id"].to_list()), only_log, found, MANY
+    )
+    sd = np.sqrt(np.diag(found.covariance))
+    expected = found.covariance[0, 1] / (sd[0] * sd[1])
+    correlation = np.corrcoef(np.log(members).T)[0, 1]
+    assert expected > 0.1
+    assert correlation == pytest.approx(expected, abs=4 / np.sqrt(MANY))
+
+
+def test_a_line_keeps_its_members_when_others_go(drawn):
+    found, lines, held, members = drawn
+    kept = lines.head(3)
+    mine = held.filter(pl.col("tow_id").is_in(kept["tow_id"].implode()))
+    assert (ensemble.register_ensemble(kept, mine, found) == members[:, :3]).all()
+
+
+def test_another_seed_gives_other_members(drawn):
+    found, lines, held, members = drawn
+    assert (ensemble.register_ensemble(lines, held, found) == members).all()
+    assert (ensemble.register_ensemble(lines, held, found, seed=1) != members).all()
+
+
+def test_without_season_factors_the_members_can_still_be_drawn(world):
+    anchored = world.tows.filter(pl.col("season") >= 2014)
+    found, lines, held = register(type(world)(anchored, {}))
+    assert found.factors.is_empty()
+    assert np.isfinite(ensemble.register_ensemble(lines, held, found)).all()
+
+
+def test_frame_has_a_row_per_member_and_line(drawn):
+    _, lines, _, members = drawn
+    frame = ensemble.as_frame(lines, members)
+    assert frame.columns == ["member", *lines.columns]
+    assert frame.height == members.size
+    row = frame.filter((pl.col("member") == 7) & (pl.col("fsn_no") == lines["fsn_no"][4]))
+    assert row["cw_kg_m"].to_list() == [members[6, 4]]

@@ -1,0 +1,275 @@
+"""Season log factors from worlds at the level of tows, whose truth is known."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import polars as pl
+import pytest
+from scipy.stats import binom
+
+from pipeline import curve
+from pipeline.errors import BrokenPromiseError
+from pipeline.season_log import (
+    GROUP,
+    Prior,
+    Settings,
+    estimate_season_factors,
+    log_or_force,
+    scale_effect,
+)
+from tests.pipeline.season_worlds import ANCHORED_FROM, CLEAN, HARD, simulate
+
+PERFECT = replace(
+    CLEAN, tow_noise=0.0, run_noise=1e-6, gps_run_error=0.0, gps_season_error=0.0, kappa_error=0.0
+)
+WORLDS = 20
+USUAL = Settings()
+
+
+def errors_and_cover(setup, worlds=WORLDS, settings=USUAL):
+    errors, covered = [], []
+    for seed in range(worlds):
+        world = simulate(setup, 1000 + seed)
+        factors = estimate_season_factors(world.tows, settings).factors
+        column = {name: factors[name].to_numpy() for name in ("factor", "lo", "hi")}
+        truth = np.exp([world.ln_factor[s] for s in factors["season"]])
+        errors.append(column["factor"] - truth)
+        covered.append((column["lo"] <= truth) & (truth <= column["hi"]))
+    return np.array(errors), np.array(covered)
+
+
+def moved(tows, expression, by):
+    return tows.with_columns(
+        pl.when(expression).then(pl.col("ln_cw") + by).otherwise("ln_cw").alias("ln_cw")
+    )
+
+
+@pytest.mark.parametrize("factor", [0.94, 1.0, 1.06])
+def test_scale_effect_is_that_of_refitting_the_hyperbola(factor):
+    a, b, v0 = 31.6, 4.44, 2.35
+    a_log, b_log = a * factor**2, b / factor
+    by_log = curve.cw(a_log, curve.s_of_b(b_log), v0)
+    shift, slope = scale_effect(math.log(factor), (v0 / b) ** 2)
+    assert shift == pytest.approx(math.log(by_log / curve.cw(a, curve.s_of_b(b), v0)), abs=1e-12)
+    above, below = (scale_effect(math.log(factor) + x, (v0 / b) ** 2)[0] for x in (1e-6, -1e-6))
+    assert slope == pytest.approx((above - below) / 2e-6, rel=1e-6)
+
+
+def test_without_noise_the_factors_are_exact():
+    world = simulate(PERFECT, 1)
+    found = estimate_season_factors(world.tows).factors
+    truth = np.exp([world.ln_factor[s] for s in found["season"]])
+    assert found["factor"].to_list() == pytest.approx(truth.tolist(), abs=1e-4)
+
+
+def test_clean_worlds_recover_2009_to_2011():
+    errors, covered = errors_and_cover(CLEAN)
+    assert np.sqrt((errors[:, :3] ** 2).mean(axis=0)) == pytest.approx(0.0, abs=0.005)
+    # Too few or too many have a chance of one in a thousand each if the intervals were exact.
+    low, high = binom.ppf([0.001, 0.999], covered.size, 0.95)
+    assert low <= covered.sum() <= high
+
+
+def test_hard_worlds_recover_2009_to_2011():
+    errors, covered = errors_and_cover(HARD)
+    assert np.sqrt((errors[:, :3] ** 2).mean(axis=0)) == pytest.approx(0.0, abs=0.008)
+    low, high = binom.ppf([0.001, 0.999], covered.size, 0.95)
+    assert low <= covered.sum() <= high
+
+
+def test_ageing_passes_for_a_log_error_unless_it_is_in_the_model():
+    ageing = replace(PERFECT, ageing_per_year=0.005)
+    none = Settings(ageing_per_year=Prior(0.0, 1e-6), gps_season_sd=0.1)
+    with_it, _ = errors_and_cover(ageing, 1)
+    without, _ = errors_and_cover(ageing, 1, none)
+    assert abs(with_it[0, 0]) < 0.001
+    assert abs(without[0, 0]) > 0.005
+
+
+def test_wander_within_the_season_is_found_and_widens_the_interval():
+    found = estimate_season_factors(simulate(replace(CLEAN, wander=0.015), 2).tows)
+    calm = estimate_season_factors(simulate(CLEAN, 2).tows)
+    assert found.wander_sd[2009] == pytest.approx(0.015, abs=0.006)
+    assert (found.factors["ln_sd"] > 1.3 * calm.factors["ln_sd"]).all()
+
+
+def test_a_boat_altered_unreported_hardly_moves_a_thin_network():
+    tows = simulate(replace(CLEAN, boats=20, tows_a_season=6), 3).tows
+    boat = tows.filter(pl.col("season") == 2010)["fsn_no"][0]
+    mine = (pl.col("fsn_no") == boat) & (pl.col("season") > 2010)
+    before = estimate_season_factors(tows).factors
+    after = estimate_season_factors(moved(tows, mine, math.log(1.15))).factors
+    assert ((after["factor"] - before["factor"]).abs() < 0.005).all()
+    inside = (after["lo"] <= before["factor"]) & (before["factor"] <= after["hi"])
+    assert inside.all()
+
+
+def test_a_reported_alteration_starts_a_new_boat():
+    tows = simulate(CLEAN, 4).tows
+    boat = tows.filter(pl.col("season") == 2009)["fsn_no"][0]
+    later = (pl.col("fsn_no") == boat) & (pl.col("season") > 2009)
+    first = tows.filter(later)["season"].min()
+    reported = moved(tows, later, 0.5).with_columns(
+        (later & (pl.col("season") == first)).alias("altered")
+    )
+    unmoved = reported.with_columns(tows["ln_cw"])
+    found, expected = (estimate_season_factors(t).factors for t in (reported, unmoved))
+    assert found["factor"].to_list() == pytest.approx(expected["factor"].to_list(), abs=1e-7)
+
+
+def test_a_season_without_any_repeat_or_gps_is_not_determined():
+    tows = simulate(CLEAN, 5).tows
+    alone = tows.with_columns(
+        pl.when(pl.col("season") == 2010)
+        .then("once " + pl.col("fsn_no"))
+        .otherwise("fsn_no")
+        .alias("fsn_no")
+    )
+    found = estimate_season_factors(alone)
+    row = found.factors.filter(pl.col("season") == 2010).row(0, named=True)
+    assert row["source"] == "not determined"
+    assert (row["factor"], row["lo"], row["hi"], row["n_links"]) == (None, None, None, 0)
+    assert row["component"] > 0
+    assert row["factor_no_boats"] is not None  # the other estimate still says something
+    assert (found.factors.filter(pl.col("season") != 2010)["source"] == "estimated").all()
+    assert found.covariance.shape == (4, 4)
+
+
+def test_with_gps_alone_a_season_has_a_factor_from_gps():
+    tows = simulate(CLEAN, 5).tows.filter(pl.col("season").is_between(2009, 2011))
+    once = tows.unique("fsn_no", keep="first", maintain_order=True)
+    source = dict(estimate_season_factors(once).factors.select("season", "source").iter_rows())
+    assert source == {2009: "not determined", 2010: "not determined", 2011: "gps"}
+
+
+def test_a_season_that_hangs_on_one_boat_says_so():
+    tows = simulate(CLEAN, 6).tows
+    boat = tows.filter(pl.col("season") == 2010)["fsn_no"][0]
+    alone = (pl.col("season") == 2010) & (pl.col("fsn_no") != boat)
+    renamed = pl.when(alone).then("once " + pl.col("fsn_no")).otherwise("fsn_no").alias("fsn_no")
+    whole = estimate_season_factors(tows).factors
+    found = estimate_season_factors(tows.with_columns(renamed)).factors
+    row = found.filter(pl.col("season") == 2010).row(0, named=True)
+    assert (row["n_links"], row["critical_boats"], row["influence_boat"]) == (1, 1, boat)
+    assert row["influence"] is None
+    width = found["hi"] - found["lo"]
+    assert width[1] > 3 * (whole["hi"] - whole["lo"])[1]
+
+
+def test_influence_is_the_change_when_that_boat_is_left_out():
+    tows = simulate(HARD, 7).tows
+    boat = "FSN103"
+    mine = (pl.col("fsn_no") == boat) & (pl.col("season") == 2009)
+    spoiled = moved(tows, mine, 0.25)
+    gentle = Settings(t_dof=1e9)  # plain least squares: weights do not change without the boat
+    found = estimate_season_factors(spoiled, gentle).factors
+    left = estimate_season_factors(spoiled.filter(pl.col("fsn_no") != boat), gentle).factors
+    assert found["influence_boat"][0] == boat
+    change = abs(found["factor"][0] - left["factor"][0])
+    # Leaving it out also lowers the variances that the weights come from.
+    assert found["influence"][0] == pytest.approx(change, rel=0.35)
+
+
+def test_parts_of_a_season_have_factors_of_their_own():
+    world = simulate(replace(CLEAN, boats=150, tows_a_season=40), 8)
+    replaced = (pl.col("season") == 2011) & (pl.int_range(pl.len()).over("season") >= 20)
+    tows = world.tows.with_columns(replaced.cast(pl.Int64).alias("part"))
+    shift = pl.col("ln_cw") + pl.col("kappa") * pl.when(pl.col("part") == 1).then(0.03).otherwise(0)
+    tows = tows.with_columns(
+        shift.alias("ln_cw"),
+        pl.when(pl.col("part") == 1)
+        .then(pl.col("gps_ln_ratio") + 0.03)
+        .otherwise("gps_ln_ratio")
+        .alias("gps_ln_ratio"),
+    )
+    found = estimate_season_factors(tows).factors.filter(pl.col("season") == 2011)
+    assert found["part"].to_list() == [0, 1]
+    ratio = found["factor"][1] / found["factor"][0]
+    assert math.log(ratio) == pytest.approx(0.03, abs=0.006)
+
+
+def test_without_boat_identity_the_second_estimate_agrees():
+    errors, beyond = [], []
+    for seed in range(10):
+        world = simulate(CLEAN, seed)
+        found = estimate_season_factors(world.tows).factors
+        truth = np.exp([world.ln_factor[s] for s in found["season"]])
+        errors.append(found["factor_no_boats"].to_numpy() - truth)
+        beyond.append(np.abs(found["agreement"].to_numpy()) > 3)
+    assert np.sqrt(np.mean(np.square(errors))) < 0.006
+    assert not np.any(beyond)
+
+
+def test_a_fleet_altered_in_one_winter_shows_as_disagreement():
+    """All old boats became heavier to tow in 2014: repeat tows take that for a log error."""
+    tows = simulate(replace(CLEAN, boats=150, tows_a_season=40), 9).tows
+    late, new = pl.col("season") >= ANCHORED_FROM, pl.int_range(pl.len()) % 2 == 0
+    tows = tows.with_columns(
+        pl.lit(None, pl.Float64).alias("gps_ln_ratio"),
+        pl.when(late & new).then("new " + pl.col("fsn_no")).otherwise("fsn_no").alias("fsn_no"),
+    )
+    fouled = late & ~pl.col("fsn_no").str.starts_with("new")
+    before = estimate_season_factors(tows).factors
+    found = estimate_season_factors(moved(tows, fouled, 0.15)).factors
+    assert (before["agreement"].abs() < 2).all()
+    assert (found["agreement"].abs() > 2).all()
+
+
+@pytest.mark.parametrize("seasons", [(2014, 2018), (2009, 2010), (1900, 1901)])
+def test_archives_that_say_nothing_give_no_factor(seasons):
+    tows = simulate(CLEAN, 10).tows.filter(pl.col("season").is_between(*seasons))
+    found = estimate_season_factors(tows)
+    assert found.factors["factor"].null_count() == found.factors.height
+    assert found.covariance.shape == (0, 0)
+
+
+@pytest.mark.parametrize(
+    ("column", "value"), [("ln_cw", None), ("ln_cw", float("nan")), ("kappa", 0.0)]
+)
+def test_a_tow_without_a_sound_curve_is_refused(column, value):
+    tows = simulate(CLEAN, 1).tows
+    spoiled = pl.when(pl.col("tow_id") == tows["tow_id"][7]).then(value).otherwise(column)
+    with pytest.raises(BrokenPromiseError, match=f"{column} of tow {tows['tow_id'][7]}"):
+        estimate_season_factors(tows.with_columns(spoiled.cast(pl.Float64).alias(column)))
+
+
+def test_the_order_of_the_rows_does_not_matter():
+    tows = simulate(HARD, 11).tows
+    found = estimate_season_factors(tows).factors
+    assert found.equals(estimate_season_factors(tows.reverse()).factors)
+
+
+@pytest.mark.parametrize(
+    ("cause", "setup"),
+    [
+        ("log", replace(CLEAN, log_factors=((2010, 1.06),))),
+        ("force", replace(CLEAN, log_factors=((2010, 1.0),), force_step=(2010, 0.16))),
+        ("force", replace(CLEAN, log_factors=((2010, 1.06),), force_step=(2010, 0.16))),
+        ("none", replace(CLEAN, log_factors=((2010, 1.0),))),
+    ],
+)
+def test_a_planted_step_gets_its_name(cause, setup):
+    for seed in range(5):
+        tows = simulate(setup, seed).tows
+        told = log_or_force(tows, estimate_season_factors(tows))
+        assert told.filter(pl.col("season") == 2010)["cause"].to_list() == [cause]
+        calm = told.filter(pl.col("season") >= ANCHORED_FROM)
+        assert set(calm["cause"]) == {"none"}
+
+
+def test_a_step_is_not_told_from_two_boats():
+    tows = simulate(replace(CLEAN, boats=2, tows_a_season=2), 1).tows
+    told = log_or_force(tows, estimate_season_factors(tows))
+    assert set(told["cause"]) == {"not told"}
+    assert told.columns[:3] == list(GROUP)
+
+
+def test_weakest_mode_is_ageing_like_and_belongs_to_its_variance():
+    found = estimate_season_factors(simulate(HARD, 12).tows)
+    mode = found.factors["weakest_mode"].to_numpy()
+    assert np.linalg.norm(mode) == pytest.approx(1.0)
+    assert (mode > 0).all()  # all seasons off together, the earliest most
+    assert mode @ found.covariance @ mode == pytest.approx(found.weakest_mode_sd**2)
+    sd = np.sqrt(np.diag(found.covariance))
+    assert sd == pytest.approx(found.factors["ln_sd"].to_numpy())

@@ -1,0 +1,241 @@
+"""The steady window: what is cut and why, on runs made of blocks with known disturbances."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import polars as pl
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pipeline.arrays import FloatArray
+from pipeline.blocks import RunBlocks
+from pipeline.method import Window
+from pipeline.steady import HAND_COLUMNS, Windows, choose_windows
+
+SECONDS = 50
+SAMPLES = 20
+STEADY = Window(rule="steady")
+BY_HAND = Window(rule="by_hand")
+Hand = tuple[int, int, str] | None
+
+
+class Run:
+    """A run in means of each second: 2.5 m/s, 250 N, wind of 4 m/s, and a little noise."""
+
+    def __init__(self, seconds: int = SECONDS, seed: int = 1) -> None:
+        rng = np.random.default_rng(seed)
+        self.speed = 2.5 + rng.normal(0, 0.003, seconds)
+        self.force = 250 + rng.normal(0, 1.0, seconds)
+        self.wind_x = 4 + rng.normal(0, 0.1, seconds)
+        self.wind_y = rng.normal(0, 0.1, seconds)
+
+
+def blocks_of(runs: Sequence[Run], hand: Sequence[Hand] | None = None) -> RunBlocks:
+    shape = (len(runs), max(len(run.speed) for run in runs))
+
+    def stacked(rows: Sequence[FloatArray]) -> FloatArray:
+        array = np.zeros(shape)
+        for row, values in zip(array, rows, strict=True):
+            row[: len(values)] = values * SAMPLES
+        return array
+
+    sums = {
+        "log1_v": stacked([run.speed for run in runs]),
+        "force": stacked([run.force for run in runs]),
+        "wind_x": stacked([run.wind_x for run in runs]),
+        "wind_y": stacked([run.wind_y for run in runs]),
+    }
+    frame = pl.DataFrame({"tow_id": ["t"] * len(runs), "run": range(1, len(runs) + 1)})
+    if hand is not None:
+        given = [(None, None, None) if window is None else window for window in hand]
+        names = list(HAND_COLUMNS.values())
+        schema = dict(zip(names, (pl.Int16(), pl.Int16(), pl.String()), strict=True))
+        frame = frame.hstack(pl.DataFrame(given, schema=schema, orient="row"))
+    return RunBlocks(frame, stacked([np.ones(len(run.speed)) for run in runs]), sums)
+
+
+def window_of(run: Run, rule: Window = STEADY) -> tuple[int, int, str]:
+    found = choose_windows(blocks_of([run]), rule)
+    assert found.found[0]
+    return int(found.start_s[0]), int(found.end_s[0]), found.reasons[0]
+
+
+def test_a_clean_run_is_kept_whole() -> None:
+    assert window_of(Run()) == (0, SECONDS, "")
+
+
+def test_a_ramp_at_the_start_is_cut_with_its_tail() -> None:
+    run = Run()
+    run.speed[:8] -= np.linspace(0.3, 0.04, 8)
+    start, end, reason = window_of(run)
+    assert 8 <= start <= 14
+    assert end == SECONDS
+    assert reason == "speed_drift"
+
+
+def test_a_ramp_at_the_end_is_cut_with_its_tail() -> None:
+    run = Run()
+    run.speed[-8:] -= np.linspace(0.04, 0.3, 8)
+    start, end, reason = window_of(run)
+    assert start == 0
+    assert SECONDS - 14 <= end <= SECONDS - 8
+    assert reason == "speed_drift"
+
+
+def test_a_force_peak_near_the_start_is_cut() -> None:
+    run = Run()
+    run.force[4:6] += 60
+    start, end, reason = window_of(run)
+    assert 6 <= start <= 8
+    assert end == SECONDS
+    assert reason == "force_peak"
+
+
+def test_a_gust_near_the_end_is_cut() -> None:
+    run = Run()
+    run.wind_y[43:46] += 5
+    start, end, reason = window_of(run)
+    assert start == 0
+    assert 41 <= end <= 43
+    assert reason == "gust"
+
+
+def test_several_disturbances_are_all_named() -> None:
+    run = Run()
+    run.force[2:4] += 60
+    run.wind_y[46:48] += 5
+    assert window_of(run)[2] == "force_peak,gust"
+
+
+def test_a_disturbance_in_the_middle_cannot_be_cut_out() -> None:
+    run = Run()
+    run.force[24:26] += 60
+    start, end, _ = window_of(run)
+    assert start < 24
+    assert end > 26
+
+
+def test_ends_that_differ_are_cut_though_no_ramp_or_peak_is_seen() -> None:
+    run = Run()
+    run.speed[-8:] += np.linspace(0.005, 0.06, 8)
+    start, end, reason = window_of(run)
+    assert (start, reason) == (0, "ends_differ")
+    assert 42 <= end < SECONDS
+
+
+def assert_none(found: Windows, run: int = 0) -> None:
+    assert not found.found[run]
+    assert not found.mask[run].any()
+    assert found.start_s[run] == found.end_s[run] == 0
+
+
+def test_speed_that_rises_all_the_time_leaves_no_window() -> None:
+    run = Run()
+    run.speed += np.linspace(-0.4, 0.4, SECONDS)
+    found = choose_windows(blocks_of([run]), STEADY)
+    assert_none(found)
+    assert found.reasons[0] != ""
+
+
+@pytest.mark.parametrize("rule", [STEADY, BY_HAND])
+def test_a_run_shorter_than_the_minimum_has_no_window(rule: Window) -> None:
+    found = choose_windows(blocks_of([Run(29), Run(30), Run()]), rule)
+    assert_none(found)
+    assert found.end_s.tolist() == [0, 30, SECONDS]
+
+
+def test_a_run_without_blocks_has_no_window() -> None:
+    found = choose_windows(blocks_of([Run(0), Run()]), Window(rule="all"))
+    assert_none(found)
+    assert found.end_s[1] == SECONDS
+
+
+def test_the_minimum_is_the_methods() -> None:
+    run = Run()
+    run.speed[:8] -= np.linspace(0.3, 0.04, 8)
+    run.speed[-8:] -= np.linspace(0.04, 0.3, 8)
+    assert_none(choose_windows(blocks_of([run]), STEADY))
+    start, end, _ = window_of(run, Window(rule="steady", minimum_s=20))
+    assert 8 <= start < end <= SECONDS - 8
+
+
+def test_the_rule_all_keeps_everything() -> None:
+    run = Run(20)
+    run.speed[:10] -= 0.4
+    assert window_of(run, Window(rule="all")) == (0, 20, "")
+
+
+disturbed = st.tuples(
+    st.integers(0, 2**20),
+    st.integers(0, 60),
+    st.lists(
+        st.tuples(
+            st.sampled_from(["speed", "force", "wind_x", "wind_y"]),
+            st.integers(0, 59),
+            st.integers(1, 20),
+            st.floats(-3, 3),
+        ),
+        max_size=4,
+    ),
+)
+SIZES = {"speed": 0.1, "force": 30.0, "wind_x": 2.0, "wind_y": 2.0}
+
+
+def disturbed_run(draw: tuple[int, int, list[tuple[str, int, int, float]]]) -> Run:
+    seed, seconds, disturbances = draw
+    run = Run(seconds, seed)
+    for channel, start, length, size in disturbances:
+        getattr(run, channel)[start : start + length] += size * SIZES[channel]
+    return run
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(disturbed, min_size=1, max_size=5), st.integers(20, 40))
+def test_a_window_is_contiguous_inside_the_run_and_never_too_short(
+    draws: list[tuple[int, int, list[tuple[str, int, int, float]]]], minimum_s: int
+) -> None:
+    runs = [disturbed_run(draw) for draw in [*draws, (0, 60, [])]]
+    blocks = blocks_of(runs)
+    rule = Window(rule="steady", minimum_s=minimum_s)
+    found = choose_windows(blocks, rule)
+    second = np.arange(blocks.seconds)
+    between = (second >= found.start_s[:, None]) & (second < found.end_s[:, None])
+    assert np.array_equal(found.mask, between)
+    assert not (found.mask & (blocks.n == 0)).any()
+    length = found.mask.sum(axis=1)
+    assert ((length == 0) | (length >= minimum_s)).all()
+    assert np.array_equal(found.found, length > 0)
+    whole = length == (blocks.n > 0).sum(axis=1)
+    assert all(reason == "" for reason, kept in zip(found.reasons, whole, strict=True) if kept)
+
+
+# By hand
+
+
+def test_a_window_given_by_hand_holds_and_says_why() -> None:
+    blocks = blocks_of([Run(), Run()], [(5, 45, "zwaan"), None])
+    found = choose_windows(blocks, BY_HAND)
+    assert (found.start_s[0], found.end_s[0]) == (5, 45)
+    assert found.reasons == ("by_hand: zwaan", "")
+    assert (found.start_s[1], found.end_s[1]) == (0, SECONDS)
+
+
+def test_a_window_by_hand_may_hold_what_the_rule_would_cut() -> None:
+    run = Run()
+    run.force[4:6] += 60
+    found = choose_windows(blocks_of([run], [(0, 50, "piek verklaard")]), BY_HAND)
+    assert (found.start_s[0], found.end_s[0]) == (0, 50)
+
+
+@pytest.mark.parametrize("rule", [STEADY, Window(rule="all")])
+def test_other_rules_do_not_look_at_windows_by_hand(rule: Window) -> None:
+    found = choose_windows(blocks_of([Run()], [(5, 45, "zwaan")]), rule)
+    assert (found.end_s[0], found.reasons[0]) == (SECONDS, "")
+
+
+def test_a_window_by_hand_is_as_long_as_any_other() -> None:
+    found = choose_windows(blocks_of([Run(), Run()], [(5, 34, "kort"), (5, 35, "net")]), BY_HAND)
+    assert_none(found)
+    assert found.reasons[0] == "by_hand: kort"
+    assert found.found[1]

@@ -1,0 +1,163 @@
+"""Uncertainty of run points and the budget of a tow."""
+
+import numpy as np
+import polars as pl
+import pytest
+from scipy import stats
+
+from pipeline.uncertainty import (
+    COMPONENTS,
+    Assumed,
+    budget,
+    combine,
+    residual_scatter,
+    run_point_uncertainty,
+)
+from tests.pipeline.season_worlds import as_blocks, run_noise, run_point_ratios
+
+
+def tows(**changed):
+    usual = {
+        "tow_id": "2014-001", "season": 2014, "part": 0, "log": "log1", "kappa": 2.86,
+        "random_ratio": 0.0061, "random_dof": 96.0, "calibrated": True, "log_sd": 0.0,
+        "log_dof": np.inf, "wander_sd": 0.0, "air_ratio": 0.025, "air_per_coefficient": 0.05,
+        "temperature_known": False,
+    }  # fmt: skip
+    return pl.DataFrame([usual | changed])
+
+
+def u_of(held, component):
+    return held.filter(pl.col("component") == component)["u_ratio"][0]
+
+
+def test_pooled_over_36_runs_the_estimate_is_near_the_truth():
+    ratio = run_point_ratios(36, 50)
+    assert ratio.mean() == pytest.approx(1.0, abs=0.06)
+    assert ratio.std() < 0.12
+    assert ratio.min() > 0.7
+
+
+def test_samples_are_not_independent():
+    """As if they were, a mean of 50 s at 1 kHz would seem 20 times as sure."""
+    noise = run_noise(np.random.default_rng(1), 72, 50)
+    blocks = as_blocks(noise)
+    sd = run_point_uncertainty(blocks, blocks.n > 0, np.zeros(72, int))
+    assert sd[0] > 10 * 0.08 / np.sqrt(50_000)
+
+
+def test_white_noise_gives_the_error_of_a_mean():
+    noise = 0.03 * np.random.default_rng(2).standard_normal((600, 50))
+    blocks = as_blocks(noise)
+    window = blocks.n > 0
+    window[:300, 40:] = False
+    sd = run_point_uncertainty(blocks, window, np.zeros(600, int))
+    assert sd[0] == pytest.approx(0.03 / np.sqrt(40), rel=0.08)
+    assert sd[-1] == pytest.approx(0.03 / np.sqrt(50), rel=0.08)
+
+
+def test_a_windy_season_does_not_disturb_a_calm_one():
+    rng = np.random.default_rng(3)
+    noise = rng.standard_normal((120, 50)) * np.repeat([0.01, 0.05], 60)[:, None]
+    blocks = as_blocks(noise)
+    season = np.repeat([2011, 2014], 60)
+    sd = run_point_uncertainty(blocks, blocks.n > 0, season)
+    assert sd[-1] / sd[0] == pytest.approx(5.0, rel=0.3)
+    alone = as_blocks(noise[:60])
+    assert sd[:60] == pytest.approx(run_point_uncertainty(alone, alone.n > 0, season[:60]))
+
+
+def test_windows_too_short_or_empty_tell_nothing():
+    blocks = as_blocks(run_noise(np.random.default_rng(4), 40, 50))
+    window = blocks.n > 0
+    window[0] = False
+    window[1, 8:] = False
+    sd = run_point_uncertainty(blocks, window, np.zeros(40, int))
+    assert np.isinf(sd[:2]).all()
+    assert np.isfinite(sd[2:]).all()
+    short = as_blocks(np.zeros((4, 6)))
+    assert np.isinf(run_point_uncertainty(short, short.n > 0, np.zeros(4, int))).all()
+
+
+def test_residuals_are_pooled_over_the_season_with_their_degrees_of_freedom():
+    rng = np.random.default_rng(5)
+    season = np.repeat([2010, 2014], 500)
+    speed = np.tile([0.9, 1.0, 1.1], 2)
+    design = np.column_stack([np.ones(6), speed])
+    noise = rng.standard_normal((1000, 6)) * np.where(season == 2010, 0.02, 0.01)[:, None]
+    residual = noise - noise @ np.linalg.pinv(design).T @ design.T
+    used = np.ones_like(residual, bool)
+    sd, dof = residual_scatter(residual, used, season)
+    assert sd[[0, -1]] == pytest.approx([0.02, 0.01], rel=0.05)
+    assert dof.tolist() == [2000.0] * 1000
+    used[:500, 2:] = False
+    sd, dof = residual_scatter(residual, used, season)
+    assert np.isinf(sd[0])
+    assert dof[0] == 0
+
+
+def test_budget_is_that_of_the_research_note():
+    """method.md 8.4, r = 0.3: the printed figures in per cent, to their last digit."""
+    held = budget(tows())
+    assert held["component"].to_list() == list(COMPONENTS)
+    printed = {
+        "calibration": 0.57, "stream_drift": 0.86, "force": 0.30, "wind": 0.58,
+        "anemometer": 0.25, "random": 0.61, "mass": 0.60, "temperature": 0.60,
+        "straightness": 0.20,
+    }  # fmt: skip
+    found = {name: 100 * u_of(held, name) for name in printed}
+    assert found == pytest.approx(printed, abs=0.006)
+    assert 100 * combine(held)["u_ratio"][0] == pytest.approx(1.6, abs=0.06)
+
+
+def test_a_tow_without_dgps_has_wander_and_the_season_in_place_of_calibration():
+    held = budget(tows(calibrated=False, log_sd=0.0035, log_dof=25.0, wander_sd=0.012, season=2010))
+    assert u_of(held, "stream_drift") == 0
+    assert u_of(held, "calibration") == pytest.approx(2.86 * 0.012)
+    assert u_of(held, "season_log") == pytest.approx(2.86 * 0.0035)
+    total = combine(held).row(0, named=True)
+    assert total["u_single_ratio"] > 2 * total["u_shared_ratio"]
+    both = np.hypot(total["u_single_ratio"], total["u_shared_ratio"])
+    assert total["u_ratio"] == pytest.approx(both)
+
+
+def test_keys_say_what_tows_have_in_common():
+    rows = [tows(), tows(tow_id="2014-002"), tows(tow_id="2015-001", season=2015)]
+    held = budget(pl.concat(rows))
+    keys = dict(held.group_by("component").agg(pl.col("key").n_unique()).iter_rows())
+    one_each = {"random", "calibration", "stream_drift", "mass", "straightness"}
+    assert {name for name, count in keys.items() if count == 3} == one_each
+    assert {name for name, count in keys.items() if count == 1} == {"wind"}
+    season = {"force", "anemometer", "temperature", "season_log"}
+    assert {name for name, count in keys.items() if count == 2} == season
+
+
+def test_a_recorded_temperature_is_the_tows_own():
+    known, unknown = budget(tows(temperature_known=True)), budget(tows())
+    assert u_of(known, "temperature") < 0.2 * u_of(unknown, "temperature")
+    kind = pl.col("component") == "temperature"
+    assert known.filter(kind)["shared"].to_list() == ["single"]
+    assert unknown.filter(kind)["shared"].to_list() == ["season"]
+
+
+def test_interval_takes_few_degrees_of_freedom_into_account():
+    held = budget(tows(random_ratio=0.05, random_dof=4.0))
+    total = combine(held).row(0, named=True)
+    assert 4.0 < total["dof"] < 5.5
+    quantile = np.log(total["hi_ratio"]) / total["u_ratio"]
+    assert quantile == pytest.approx(stats.t.ppf(0.975, total["dof"]))
+    assert total["lo_ratio"] == pytest.approx(1 / total["hi_ratio"])
+    many = combine(budget(tows(random_dof=np.inf))).row(0, named=True)
+    assert np.log(many["hi_ratio"]) / many["u_ratio"] == pytest.approx(1.95996, abs=1e-4)
+
+
+def test_repeat_tows_replace_what_was_assumed_of_their_scatter():
+    assumed = Assumed().as_repeats_show(tow_sd=0.005, kappa=2.86, air_ratio=0.025)
+    held = budget(tows(temperature_known=True), assumed)
+    unseen_components = ["random", "wind", "season_log"]
+    seen = ~pl.col("component").is_in(unseen_components)
+    assert np.linalg.norm(held.filter(seen)["u_ratio"]) == pytest.approx(0.005)
+    usual = budget(tows(temperature_known=True))
+    unseen = held.filter(~seen)
+    assert unseen["u_ratio"].to_list() == usual.filter(~seen)["u_ratio"].to_list()
+    again = assumed.as_repeats_show(tow_sd=0.005, kappa=2.86, air_ratio=0.025)
+    assert again.mass_ratio == pytest.approx(assumed.mass_ratio)

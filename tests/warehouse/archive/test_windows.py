@@ -1,0 +1,187 @@
+"""Windows given by hand: what is read, what is faulty, and how they reach a curve."""
+
+import datetime as dt
+from pathlib import Path
+
+import polars as pl
+import pytest
+
+from pipeline.method import Method, parse_method
+from tests.warehouse.archive.conftest import TOWS, Archive
+from warehouse import intake, tables
+from warehouse.store import Store
+
+WINDOWS = "sleeplijsten/vensters_2014.csv"
+HEADER = "sleep_id;run;van [s];tot [s];reden\n"
+GOOD = "2014-001;2;5;45;zwaan voor de boeg\n"
+TODAY = dt.date(2020, 1, 1)
+BY_HAND = """
+name = "hand"
+title = "Met de hand"
+extends = "rebased-2015"
+seasons = "2014:"
+[steps]
+window = { rule = "by_hand" }
+assessment = { reject = ["few_runs"] }
+"""
+
+
+@pytest.fixture
+def method() -> Method:
+    return parse_method(BY_HAND, "hand.toml")
+
+
+def give(archive: Archive, rows: str, path: str = WINDOWS) -> None:
+    (archive.root / path).write_text(HEADER + rows, "utf-8")
+
+
+def bring_in(archive: Archive, store: Store) -> None:
+    """A rebuild as far as the tables about the archive, only where something changed."""
+    intake.index(store, archive.root)
+    for season in intake.stale_seasons(store, archive.root):
+        intake.read_season(store, archive.root, season, lambda tow_id, set_aside: None)
+        intake.collect_blocks(store, season)
+    if tables.archive_is_stale(store):
+        tables.collect_archive(store, TODAY)
+
+
+def test_windows_are_read_as_written(archive: Archive) -> None:
+    give(archive, GOOD + "2014-003;6;0;31;begin gestoord\n")
+    scan = archive.scan()
+    assert scan.faults == []
+    assert scan.index.windows.rows() == [
+        ("2014-001", 2, 5, 45, "zwaan voor de boeg", WINDOWS, 2),
+        ("2014-003", 6, 0, 31, "begin gestoord", WINDOWS, 3),
+    ]
+    assert WINDOWS in scan.index.files["path"].to_list()
+
+
+def test_an_archive_needs_no_windows(archive: Archive) -> None:
+    assert archive.scan().index.windows.is_empty()
+
+
+def test_a_run_of_the_second_file(archive: Archive) -> None:
+    text = (archive.root / "meetdata_2014/eerste boot 8h 2014.csv").read_text()
+    (archive.root / "meetdata_2014/tweede.csv").write_text(text.replace(";2", ";2,", 1))
+    archive.replace(TOWS, "eerste boot 8h 2014;;", "eerste boot 8h 2014;tweede;")
+    give(archive, "2014-001;b2;5;45;zwaan\n")
+    assert archive.scan().index.windows["run"].to_list() == [12]
+
+
+@pytest.mark.parametrize(
+    ("row", "code", "said"),
+    [
+        ("2014-001;2;45;5;zwaan", "bad_window_row", "ends after it begins"),
+        ("2014-001;2;45;45;zwaan", "bad_window_row", "ends after it begins"),
+        ("2014-001;2;4,5;45;zwaan", "bad_window_row", "whole"),
+        ("2014-001;2;-1;45;zwaan", "bad_window_row", "0 to 600"),
+        ("2014-001;2;5;;zwaan", "bad_window_row", "'tot [s]' is empty"),
+        ("2014-001;2;5;45;", "bad_window_row", "'reden' is empty"),
+        ("2014-001;7;5;45;zwaan", "bad_window_row", "runs are 1 to 6"),
+        ("2014-001;2;5;45", "bad_window_row", "4 fields"),
+        ("2014-009;2;5;45;zwaan", "window_unknown_tow", "2014-009"),
+        ("2014-001;b2;5;45;zwaan", "window_unknown_run", "no run b2"),
+    ],
+)
+def test_a_faulty_row_costs_no_tow_and_no_other_row(
+    archive: Archive, row: str, code: str, said: str
+) -> None:
+    give(archive, f"{row}\n2014-003;6;0;31;begin\n")
+    scan = archive.scan()
+    (fault,) = scan.faults
+    assert (fault.reason_code, fault.path, fault.tow_id, fault.line) == (code, WINDOWS, None, 2)
+    assert said in fault.message
+    assert scan.index.windows["tow_id"].to_list() == ["2014-003"]
+    assert len(scan.good) == 3
+
+
+def test_two_windows_for_one_run_cost_both(archive: Archive) -> None:
+    give(archive, GOOD + GOOD + "2014-003;6;0;31;begin\n")
+    scan = archive.scan()
+    found = [(f.reason_code, f.line) for f in scan.faults]
+    assert found == [("window_given_twice", 2), ("window_given_twice", 3)]
+    assert scan.index.windows["tow_id"].to_list() == ["2014-003"]
+
+
+def test_a_window_of_another_year_is_unknown(archive: Archive) -> None:
+    give(archive, GOOD, "sleeplijsten/vensters_2013.csv")
+    (fault,) = archive.scan().faults
+    assert fault.reason_code == "window_unknown_tow"
+
+
+def test_a_list_that_cannot_be_read_is_one_fault(archive: Archive) -> None:
+    (archive.root / WINDOWS).write_text("sleep_id;run;van [s];tot [s]\n" + GOOD)
+    (fault,) = archive.scan().faults
+    assert (fault.reason_code, fault.path) == ("missing_column", WINDOWS)
+
+
+def test_a_window_of_a_tow_that_is_set_aside_is_no_fault_of_its_own(archive: Archive) -> None:
+    archive.replace(TOWS, "FSN1;", "FSN9;")
+    give(archive, GOOD)
+    scan = archive.scan()
+    assert [f.reason_code for f in scan.faults] == ["unknown_boat"]
+    assert scan.index.windows.is_empty()
+
+
+def test_a_window_beyond_its_run_is_set_aside_when_the_run_is_read(
+    archive: Archive, tmp_path: Path
+) -> None:
+    store = Store(tmp_path / "data")
+    give(archive, GOOD + "2014-003;6;10;51;te lang\n")
+    bring_in(archive, store)
+    assert store.read("hand_windows").rows() == [("2014-001", 2, 5, 45, "zwaan voor de boeg")]
+    (fault,) = store.read("quarantine").to_dicts()
+    assert (fault["reason_code"], fault["line"]) == ("window_outside_run", 3)
+    assert "lasts 50 s" in fault["message"]
+    assert tables.unaccounted_tows(store) == []
+    assert store.read("tows").height == 3
+
+
+def run_2(store: Store, method: Method) -> dict[str, object]:
+    found = tables.apply_method(store, method, tables.run_blocks(store))["run_points"]
+    return found.row(
+        by_predicate=(pl.col("tow_id") == "2014-001") & (pl.col("run") == 2), named=True
+    )
+
+
+def test_a_window_reaches_the_run_point_and_a_changed_one_does_so_again(
+    archive: Archive, tmp_path: Path, method: Method
+) -> None:
+    store = Store(tmp_path / "data")
+    bring_in(archive, store)
+    searched = run_2(store, method)
+    assert not tables.method_is_stale(store, method)
+
+    give(archive, GOOD)
+    bring_in(archive, store)
+    assert tables.method_is_stale(store, method)
+    given = run_2(store, method)
+    assert (given["window_start_s"], given["window_end_s"]) == (5.0, 45.0)
+    assert given["cut_reason"] == "by_hand: zwaan voor de boeg"
+    assert given["used"]
+    assert given["cw_kg_m"] != searched["cw_kg_m"]
+
+    bring_in(archive, store)
+    assert not tables.method_is_stale(store, method)
+    (archive.root / WINDOWS).unlink()
+    bring_in(archive, store)
+    assert tables.method_is_stale(store, method)
+    assert run_2(store, method) == searched
+
+
+def test_a_tow_that_a_flag_rejects_keeps_its_numbers_and_leaves_the_register(
+    archive: Archive, tmp_path: Path, method: Method
+) -> None:
+    store = Store(tmp_path / "data")
+    give(archive, "2014-001;2;5;34;te kort, dus telt de run niet\n")
+    bring_in(archive, store)
+    found = tables.apply_method(store, method, tables.run_blocks(store))
+    curve = found["curves"].row(by_predicate=pl.col("tow_id") == "2014-001", named=True)
+    assert curve["status"] == "rejected"
+    assert "few_runs" in curve["flags"]
+    assert curve["cw_kg_m"] == pytest.approx(40.0, rel=0.05)
+    few = found["assessments"].filter(tow_id="2014-001", check="few_runs").to_dicts()[0]
+    assert (few["observed"], few["limit"], few["flagged"]) == (5.0, 6.0, True)
+    tables.make_registers(store, [method])
+    status = dict(store.read("register").select("fsn_no", "status").rows())
+    assert status == {"FSN1": "rejected", "FSN2": "valid", "FSN3": "valid"}
