@@ -86,6 +86,12 @@ class Views:
         """Curves with the day, name and what was on board."""
         return self.frame(_CURVES)
 
+    def flagged(self) -> pl.DataFrame:
+        """Checks that found something beyond its limit."""
+        return self.frame(
+            'SELECT * FROM assessments WHERE flagged ORDER BY method, tow_id, "check"'
+        )
+
     def run_points(self) -> pl.DataFrame:
         """Run points with the boat and season they belong to."""
         return self.frame(

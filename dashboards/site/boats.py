@@ -10,8 +10,12 @@ from warehouse.views import Views
 OF_THE_TOW = {"tow_id": "tow_id"}
 OF_THE_CURVE = {"tow_id": "tow_id", "method": "method"}
 FOLLOWS = ["tow_id", "method"]
-EXTRA = ("assessments", "uncertainty_budget", "hand_windows")
-"""Tables about tows that are shown as they are, where there are any."""
+EXTRA = {
+    "assessments": ("tow_id", "method", "check", "severity", "observed", "limit", "unit"),
+    "uncertainty_budget": ("tow_id", "method", "component", "shared", "u_ratio"),
+    "hand_windows": ("tow_id", "run", "start_s", "end_s", "reason"),
+}
+"""Tables about tows that are shown where there are any, with the columns shown."""
 
 
 def boat_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
@@ -58,7 +62,7 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
     }
     for name in EXTRA:
         if views.has(name):
-            rows = views.table(name)
+            rows = views.flagged() if name == "assessments" else views.table(name)
             found[name] = rows.join(boat_of, on="tow_id", maintain_order="left")
     return found
 
@@ -161,12 +165,11 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
         Section("boat_traces", "boat_traces_note", [traces], [runs]),
         Section("boat_out_back", "boat_out_back_note", sides),
     ]
-    for name in EXTRA:
+    for name, columns in EXTRA.items():
         rows = own.get(name)
         if rows is not None and rows.height:
-            columns = [c for c in rows.columns if c != "fsn_no"]
             follows = [c for c in FOLLOWS if c in columns]
-            found.append(Section(name, tables=[Table(name, rows, columns, name, follows)]))
+            found.append(Section(name, f"{name}_note", tables=[Table(name, rows, columns, name, follows)]))
     lineage = Table("lineage", own["lineage"], LINEAGE_COLUMNS, "boat_lineage")
     if own["lineage"].height:
         found.append(Section("boat_lineage", "boat_lineage_note", tables=[lineage]))

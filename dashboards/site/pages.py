@@ -174,6 +174,12 @@ def _type_tables(views: Views) -> list[Section]:
     return found
 
 
+SEASON_LINKS = (
+    *("method", "season", "part", "log", "source", "n_tows", "n_links", "factor", "lo", "hi"),
+    *("influence", "influence_boat", "factor_no_boats", "agreement"),
+)
+
+
 def _corrections(views: Views, methods: list[str]) -> Page:
     sections, data = [], {}
     if views.has("log_factors"):
@@ -200,7 +206,7 @@ def _corrections(views: Views, methods: list[str]) -> Page:
     return Page(
         "corrections.html",
         "corrections",
-        [*sections, *_whole(views, "season_links", "season_links")],
+        [*sections, *_whole(views, "season_links", "season_links", SEASON_LINKS)],
         selects=[_method(methods)],
         data={name: [frame] for name, frame in data.items()},
     )

@@ -39,7 +39,7 @@ KEPT: Final = 9
 
 CODES: Final = {
     *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "flag"),
-    *("quantity", "explaining", "candidates", "severity", "check", "boat_type_code"),
+    *("quantity", "explaining", "candidates", "severity", "check", "shared"),
 }
 """Columns that hold codes of the warehouse, shown as words."""
 
