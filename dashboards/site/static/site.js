@@ -181,7 +181,8 @@
   // A chart wider than its page is made narrower; small multiples keep their size and scroll.
   function fitWidth(spec, figure) {
     const room = figure.parentElement.clientWidth - 130;
-    if (typeof spec.width === "number" && spec.width > room) spec.width = Math.max(room, 190);
+    const least = spec.layer?.some((layer) => layer.mark?.type === "text") ? 520 : 190; // legible
+    if (typeof spec.width === "number" && spec.width > room) spec.width = Math.max(room, least);
     if (room < 420) {
       const parts = spec.vconcat ?? [spec];
       for (const part of parts) if (part.columns) part.columns = 1;
