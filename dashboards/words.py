@@ -116,9 +116,11 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
     ),
     "boat_traces": ("Wat de instrumenten zeiden", "What the instruments said"),
     "boat_traces_note": (
-        "Gemiddelden per seconde; snelheid: doorgetrokken log 1, gestreept GPS. Het grijze vlak is het venster dat telt; de rest is weggesneden "
+        "Gemiddelden per seconde; snelheid: doorgetrokken log 1, gestreept GPS. Het grijze "
+        "vlak is het venster dat telt; de rest is weggesneden "
         "om de reden die in de tabel staat.",
-        "Means per second; speed: solid log 1, dashed GPS. The grey area is the window that counts; the rest is cut for the "
+        "Means per second; speed: solid log 1, dashed GPS. The grey area is the window "
+        "that counts; the rest is cut for the "
         "reason in the table.",
     ),
     "boat_runs": ("Runs", "Runs"),

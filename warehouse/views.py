@@ -36,7 +36,10 @@ class Views:
         return self
 
     def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, tb: TracebackType | None
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        tb: TracebackType | None,
     ) -> None:
         self._db.close()
 
@@ -49,7 +52,7 @@ class Views:
         return self.row_counts().get(table, 0) > 0
 
     def row_counts(self) -> dict[str, int]:
-        """Rows by table, sorted by name; counted once, the file does not change while it is open."""
+        """Rows by table, sorted by name; counted once."""
         if not self._rows:
             names = self.frame("SELECT table_name FROM duckdb_tables() ORDER BY 1")["table_name"]
             self._rows = {name: self._count(name) for name in names}
@@ -234,7 +237,9 @@ def _lines(rows: pl.DataFrame) -> pl.DataFrame:
         }
         finite = [pl.when(pl.col(c).is_finite()).then(pl.col(c)).alias(c) for c in numbers]
         frames.append(
-            rows.select("method", "tow_id").with_columns(**{c: pl.Series(v) for c, v in numbers.items()}).with_columns(finite)
+            rows.select("method", "tow_id")
+            .with_columns(**{c: pl.Series(v) for c, v in numbers.items()})
+            .with_columns(finite)
         )
     return pl.concat(frames).drop_nulls("cw_kg_m").sort("method", "tow_id", "speed_m_s")
 

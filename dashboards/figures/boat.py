@@ -3,8 +3,19 @@
 import altair as alt
 import polars as pl
 
-from dashboards.figures.style import BACK, GREY, HEIGHT, OKABE_ITO, OUT, WIDTH
-from dashboards.figures.style import colour, number, shape, stroke, tips
+from dashboards.figures.style import (
+    BACK,
+    GREY,
+    HEIGHT,
+    OKABE_ITO,
+    OUT,
+    WIDTH,
+    colour,
+    number,
+    shape,
+    stroke,
+    tips,
+)
 from dashboards.words import Say
 
 DIRECTION = "datum.value == 1 ? '{out}' : '{back}'"
@@ -47,7 +58,9 @@ def resistance_curve(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     point = whole.transform_filter("datum.kind == 'point'")
     declared = whole.transform_filter("datum.kind == 'declared'")
     low, high = alt.Y("cw_lo_kg_m:Q", title=say("cw")), alt.Y2("cw_hi_kg_m:Q")
-    point_tips = tips(("run:O", say("run")), ("speed_m_s:Q", say("speed")), ("cw_kg_m:Q", say("cw")))
+    point_tips = tips(
+        ("run:O", say("run")), ("speed_m_s:Q", say("speed")), ("cw_kg_m:Q", say("cw"))
+    )
     declared_tips = tips(("speed_m_s:Q", say("tow_speed")), ("cw_kg_m:Q", say("cw_declared")))
     return alt.layer(
         line.mark_area(color=OKABE_ITO[5], opacity=0.35).encode(x, low, high),
@@ -179,8 +192,12 @@ def wind(frame: pl.DataFrame, say: Say) -> alt.Chart:
         alt.Chart(frame)
         .mark_point(size=80, filled=True, opacity=0.9)
         .encode(
-            alt.X("wind_angle_deg:Q", title=say("wind_angle"), scale=angles,
-                  axis=alt.Axis(values=[0, 45, 90, 135, 180, 225, 270, 315, 360])),
+            alt.X(
+                "wind_angle_deg:Q",
+                title=say("wind_angle"),
+                scale=angles,
+                axis=alt.Axis(values=[0, 45, 90, 135, 180, 225, 270, 315, 360]),
+            ),
             number(alt.Y, "wind_m_s", say("wind"), zero=True),
             _direction_colour(say),
             _direction_shape(say),

@@ -3,7 +3,17 @@
 import altair as alt
 import polars as pl
 
-from dashboards.figures.style import GREY, HEIGHT, OKABE_ITO, WIDTH, colour, number, shape, stroke, tips
+from dashboards.figures.style import (
+    GREY,
+    HEIGHT,
+    OKABE_ITO,
+    WIDTH,
+    colour,
+    number,
+    shape,
+    stroke,
+    tips,
+)
 from dashboards.words import Say
 
 
@@ -45,22 +55,41 @@ def season_ladder(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
         say: gives texts.
     """
     order = alt.EncodingSortField("position", order="ascending")
-    names = {s: say(f"code.{s}") for s in (
-        "speed", "window", "runs", "calibration", "run_point", "wind", "temperature", "curve")}
-    label = f"({str(names)})[datum.value] || datum.value"
+    names = {
+        s: say(f"code.{s}")
+        for s in (
+            "speed",
+            "window",
+            "runs",
+            "calibration",
+            "run_point",
+            "wind",
+            "temperature",
+            "curve",
+        )
+    }
+    label = f"({names!s})[datum.value] || datum.value"
     base = alt.Chart(frame).encode(
-        alt.X("step:N", title=say("step"), sort=order,
-              axis=alt.Axis(labelExpr=label, labelAngle=0, orient="top")),
+        alt.X(
+            "step:N",
+            title=say("step"),
+            sort=order,
+            axis=alt.Axis(labelExpr=label, labelAngle=0, orient="top"),
+        ),
         alt.Y("season:O", title=say("season")),
     )
     shades = alt.Scale(
-        domain=[0.8, 1.0, 1.2], range=[OKABE_ITO[5], "#ffffff", OKABE_ITO[4]], clamp=True, interpolate="rgb"
+        domain=[0.8, 1.0, 1.2],
+        range=[OKABE_ITO[5], "#ffffff", OKABE_ITO[4]],
+        clamp=True,
+        interpolate="rgb",
     )
     return alt.layer(
         base.mark_rect(stroke="#dddddd").encode(
             alt.Color("factor:Q", title=say("factor"), scale=shades),
-            tooltip=tips(("season:O", say("season")), ("step:N", say("step")),
-                         ("factor:Q", say("factor"))),
+            tooltip=tips(
+                ("season:O", say("season")), ("step:N", say("step")), ("factor:Q", say("factor"))
+            ),
         ),
         base.mark_text(color="black").encode(alt.Text("factor:Q", format=".3f")),
     ).properties(width=WIDTH, height=HEIGHT)

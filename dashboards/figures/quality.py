@@ -26,7 +26,9 @@ def statuses(frame: pl.DataFrame, say: Say) -> alt.Chart:
                 legend=alt.Legend(labelExpr=f"({names})[datum.value] || datum.value"),
             ),
             tooltip=tips(
-                ("season:O", say("season")), ("status:N", say("status")), ("number:Q", say("number"))
+                ("season:O", say("season")),
+                ("status:N", say("status")),
+                ("number:Q", say("number")),
             ),
         )
         .properties(width=WIDTH, height=240)

@@ -60,8 +60,11 @@ def components(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
     names = {c: say(f"code.{c}") for c in ("boat", "season", "boat_season", "run")}
     scopes = {c: say(f"code.{c}") for c in ("fleet", "within_type")}
     base = alt.Chart().encode(
-        alt.X("component:N", title=say("component"),
-              axis=alt.Axis(labelExpr=f"({names})[datum.value] || datum.value", labelAngle=0)),
+        alt.X(
+            "component:N",
+            title=say("component"),
+            axis=alt.Axis(labelExpr=f"({names})[datum.value] || datum.value", labelAngle=0),
+        ),
         xOffset="method:N",
     )
     return (
@@ -81,8 +84,11 @@ def components(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
         )
         .properties(width=300, height=240)
         .facet(
-            alt.Facet("scope:N", title=None, header=alt.Header(
-                labelExpr=f"({scopes})[datum.value] || datum.value")),
+            alt.Facet(
+                "scope:N",
+                title=None,
+                header=alt.Header(labelExpr=f"({scopes})[datum.value] || datum.value"),
+            ),
             columns=2,
         )
     )
@@ -135,6 +141,6 @@ def register_changes(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
             ),
         )
     )
-    return alt.layer(
-        one.encode(x=alt.datum(1.0)), one.encode(y=alt.datum(1.0)), points
-    ).properties(width=WIDTH, height=HEIGHT)
+    return alt.layer(one.encode(x=alt.datum(1.0)), one.encode(y=alt.datum(1.0)), points).properties(
+        width=WIDTH, height=HEIGHT
+    )

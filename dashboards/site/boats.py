@@ -23,9 +23,7 @@ def boat_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
     frames = _frames(views)
     by_boat = {name: _by_boat(frame) for name, frame in frames.items()}
     for fsn_no in frames["boats"]["fsn_no"]:
-        own = {
-            name: by_boat[name].get(fsn_no, frame.head(0)) for name, frame in frames.items()
-        }
+        own = {name: by_boat[name].get(fsn_no, frame.head(0)) for name, frame in frames.items()}
         yield _page(fsn_no, own, methods)
 
 
@@ -169,7 +167,9 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
         rows = own.get(name)
         if rows is not None and rows.height:
             follows = [c for c in FOLLOWS if c in columns]
-            found.append(Section(name, f"{name}_note", tables=[Table(name, rows, columns, name, follows)]))
+            found.append(
+                Section(name, f"{name}_note", tables=[Table(name, rows, columns, name, follows)])
+            )
     lineage = Table("lineage", own["lineage"], LINEAGE_COLUMNS, "boat_lineage")
     if own["lineage"].height:
         found.append(Section("boat_lineage", "boat_lineage_note", tables=[lineage]))

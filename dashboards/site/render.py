@@ -20,7 +20,7 @@ from markupsafe import Markup
 
 from dashboards.figures import FIGURES
 from dashboards.site.pages import MENU, all_pages
-from dashboards.site.parts import Page, boat_path
+from dashboards.site.parts import boat_path
 from dashboards.words import LANGUAGES, both, speaker
 from warehouse.files import TEMPORARY_PREFIX
 from warehouse.store import Store

@@ -203,7 +203,7 @@
 
   // Dragging over a scatter chooses boats for the list.
   function link(figure, view) {
-    if (!view.getState({ data: () => true, signals: () => false }).data.brush_store) return;
+    if (!view.getState({ data: (name) => name === "brush_store" }).data.brush_store) return;
     view.addDataListener("brush_store", (_, chosen) => {
       if (!chosen.length) { select(null); return; }
       const { fields, values } = chosen[0];
