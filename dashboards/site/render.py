@@ -236,7 +236,7 @@ def _code(value: Any) -> Markup:
 def _causes(value: str) -> Markup:
     """What a change is attributed to, each with its factor."""
     parts = [
-        Markup("{} ×{:.4f}").format(_text(f"code.{cause['cause']}"), cause["factor"])
+        Markup("{} \u00d7 {:.4f}").format(_text(f"code.{cause['cause']}"), cause["factor"])
         for cause in json.loads(value)
     ]
     return Markup(", ").join(parts)
