@@ -4,6 +4,7 @@ import dagster as dg
 
 from assets import archive, tables
 from assets.resources import Progress, Quiet, Setup
+from assets.site import site
 
 INDEX, READ, COLLECT, APPLY, STUDY, FINISH = (
     "index_archive",
@@ -25,7 +26,7 @@ jobs = [
     dg.define_asset_job(
         FINISH,
         dg.AssetSelection.assets(
-            tables.register_tables, tables.consistency_tables, tables.warehouse_database
+            tables.register_tables, tables.consistency_tables, tables.warehouse_database, site
         ),
     ),
 ]
@@ -44,6 +45,7 @@ def build_defs(setup: Setup, progress: Progress) -> dg.Definitions:
             tables.register_tables,
             tables.consistency_tables,
             tables.warehouse_database,
+            site,
         ],
         jobs=jobs,
         resources={"setup": setup, "progress": dg.ResourceDefinition.hardcoded_resource(progress)},

@@ -14,6 +14,7 @@ import dagster as dg
 
 from assets.definitions import APPLY, COLLECT, FINISH, INDEX, READ, STUDY, build_defs
 from assets.resources import Progress, Setup
+from assets.site import site_is_stale
 from warehouse import intake, tables
 from warehouse.files import written_beside
 from warehouse.store import Store
@@ -100,9 +101,10 @@ def _finish(jobs: "_Jobs", setup: Setup, progress: Progress) -> bool:
     if not (
         tables.register_is_stale(setup.store, chosen)
         or tables.database_is_stale(setup.store, chosen)
+        or site_is_stale(setup.store)
     ):
         return False
-    progress.step("making registers and the database")
+    progress.step("making registers, the database and the site")
     jobs.run(FINISH)
     return True
 

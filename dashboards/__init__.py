@@ -1,1 +1,1 @@
-"""Who shows: figures and pages made from finished tables. Computes nothing new."""
+"""Who shows: figures and the site of plain files. Reads finished tables, computes nothing new."""

@@ -27,6 +27,7 @@ ASSETS = [
     "run_points",
     "samples",
     "season_links",
+    "site",
     "slow_tows",
     "speed_trend",
     "tow_runs",

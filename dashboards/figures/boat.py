@@ -1,0 +1,207 @@
+"""Figures of one boat: its curve, history, traces, wind, and out against back."""
+
+import altair as alt
+import polars as pl
+
+from dashboards.figures.style import (
+    BACK,
+    GREY,
+    HEIGHT,
+    OKABE_ITO,
+    OUT,
+    WIDTH,
+    colour,
+    number,
+    shape,
+    stroke,
+    tips,
+)
+from dashboards.words import Say
+
+DIRECTION = "datum.value == 1 ? '{out}' : '{back}'"
+
+
+def _direction_legend(say: Say) -> alt.Legend:
+    return alt.Legend(labelExpr=DIRECTION.format(out=say("out"), back=say("back")))
+
+
+def _direction_colour(say: Say) -> alt.Color:
+    return alt.Color(
+        "direction:N",
+        title=say("direction"),
+        scale=alt.Scale(domain=[1, -1], range=[OUT, BACK]),
+        legend=_direction_legend(say),
+    )
+
+
+def _direction_shape(say: Say) -> alt.Shape:
+    return alt.Shape(
+        "direction:N",
+        title=say("direction"),
+        scale=alt.Scale(domain=[1, -1], range=["circle", "triangle-up"]),
+        legend=_direction_legend(say),
+    )
+
+
+def resistance_curve(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+    """The curve with its run points, 95 % band, and interval at the declared speed.
+
+    Args:
+        frame: rows of `kind` line, point and declared, with `speed_m_s, cw_kg_m, cw_lo_kg_m,
+            cw_hi_kg_m, run, direction, used`.
+        say: gives texts.
+    """
+    x = number(alt.X, "speed_m_s", say("speed"), axis=alt.Axis(tickCount=8))
+    y = number(alt.Y, "cw_kg_m", say("cw"))
+    whole = alt.Chart(frame)
+    line = whole.transform_filter("datum.kind == 'line'")
+    point = whole.transform_filter("datum.kind == 'point'")
+    declared = whole.transform_filter("datum.kind == 'declared'")
+    low, high = alt.Y("cw_lo_kg_m:Q", title=say("cw")), alt.Y2("cw_hi_kg_m:Q")
+    point_tips = tips(
+        ("run:O", say("run")), ("speed_m_s:Q", say("speed")), ("cw_kg_m:Q", say("cw"))
+    )
+    declared_tips = tips(("speed_m_s:Q", say("tow_speed")), ("cw_kg_m:Q", say("cw_declared")))
+    return alt.layer(
+        line.mark_area(color=OKABE_ITO[5], opacity=0.35).encode(x, low, high),
+        line.mark_line(color="black").encode(x, y),
+        declared.mark_rule(color="black", strokeWidth=3).encode(x, low, high),
+        declared.mark_point(shape="stroke", color="black", size=300, strokeWidth=2).encode(
+            x, y, tooltip=declared_tips
+        ),
+        point.mark_point(size=90, strokeWidth=2).encode(
+            x,
+            y,
+            _direction_colour(say),
+            _direction_shape(say),
+            fillOpacity=alt.condition("datum.used", alt.value(0.9), alt.value(0)),
+            fill=_direction_colour(say),
+            tooltip=point_tips,
+        ),
+    ).properties(width=WIDTH, height=HEIGHT)
+
+
+def history(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+    """Cw at the declared speed of every tow under every method, with intervals.
+
+    Args:
+        frame: rows of `curves` with `tow_date` and `crew`.
+        say: gives texts.
+    """
+    base = alt.Chart(frame).encode(
+        alt.X("tow:O", title=say("tow"), axis=alt.Axis(labelAngle=-30)),
+        xOffset="method:N",
+    )
+    y = number(alt.Y, "cw_kg_m", say("cw_declared"))
+    return alt.layer(
+        base.mark_rule(strokeWidth=2).encode(
+            alt.Y("cw_lo_kg_m:Q", title=say("cw_declared"), scale=alt.Scale(zero=False)),
+            alt.Y2("cw_hi_kg_m:Q"),
+            stroke=stroke("method"),
+        ),
+        base.mark_point(filled=True, size=70, opacity=1).encode(
+            y,
+            colour("method", say("method")),
+            shape("method", say("method")),
+            tooltip=tips(
+                ("method:N", say("method")),
+                ("tow:N", say("tow")),
+                ("cw_kg_m:Q", say("cw")),
+                ("a_kg_m:Q", say("a")),
+                ("b_m_s:Q", say("b")),
+            ),
+        ),
+    ).properties(width=WIDTH, height=HEIGHT)
+
+
+def traces(frame: pl.DataFrame, say: Say) -> alt.VConcatChart:
+    """Speed, force and wind over each run, with the window that counts.
+
+    Args:
+        frame: rows of `kind` trace (`run, second, speed_m_s, gps_m_s, force_n, wind_m_s`) and
+            window (`run, window_start_s, window_end_s`).
+        say: gives texts.
+    """
+    rows = [
+        (("speed_m_s", OKABE_ITO[0], [1, 0]), ("gps_m_s", OKABE_ITO[1], [3, 2])),
+        (("force_n", OKABE_ITO[2], [1, 0]),),
+        (("wind_m_s", OKABE_ITO[6], [1, 0]),),
+    ]
+    titles = (say("speed_short"), say("force"), say("wind"))
+    return alt.vconcat(
+        *(_trace_row(frame, say, fields, title) for fields, title in zip(rows, titles, strict=True))
+    )
+
+
+def _trace_row(
+    frame: pl.DataFrame, say: Say, fields: tuple[tuple[str, str, list[int]], ...], title: str
+) -> alt.FacetChart:
+    x = alt.X("second:Q", title=say("time"))
+    window = (
+        alt.Chart()
+        .transform_filter("datum.kind == 'window'")
+        .mark_rect(color=GREY, opacity=0.22)
+        .encode(alt.X("window_start_s:Q", title=say("time")), alt.X2("window_end_s:Q"))
+    )
+    lines = [
+        alt.Chart()
+        .transform_filter("datum.kind == 'trace'")
+        .mark_line(color=ink, strokeDash=dash, strokeWidth=1.3)
+        .encode(x, number(alt.Y, field, title), tooltip=tips((f"{field}:Q", title)))
+        for field, ink, dash in fields
+    ]
+    return (
+        alt.layer(window, *lines, data=frame)
+        .properties(width=180, height=110)
+        .facet(alt.Facet("run:O", title=say("run")), columns=3)
+    )
+
+
+def out_and_back(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+    """Cw of the runs before and after the air correction, out and back.
+
+    Args:
+        frame: rows with `stage` (gross or net), `speed_m_s, cw_kg_m, direction, run`.
+        say: gives texts.
+    """
+    label = f"datum.value == 'gross' ? '{say('gross')}' : '{say('net')}'"
+    return (
+        alt.Chart(frame)
+        .mark_point(size=80, filled=True, opacity=0.9)
+        .encode(
+            number(alt.X, "speed_m_s", say("speed")),
+            number(alt.Y, "cw_kg_m", say("cw")),
+            _direction_colour(say),
+            _direction_shape(say),
+            tooltip=tips(("run:O", say("run")), ("cw_kg_m:Q", say("cw"))),
+        )
+        .properties(width=280, height=240)
+        .facet(alt.Facet("stage:N", title=None, header=alt.Header(labelExpr=label)), columns=2)
+    )
+
+
+def wind(frame: pl.DataFrame, say: Say) -> alt.Chart:
+    """Mean apparent wind of each run, by its angle: 0 and 360 are from ahead.
+
+    Args:
+        frame: rows of `run_points`.
+        say: gives texts.
+    """
+    angles = alt.Scale(domain=[0, 360])
+    return (
+        alt.Chart(frame)
+        .mark_point(size=80, filled=True, opacity=0.9)
+        .encode(
+            alt.X(
+                "wind_angle_deg:Q",
+                title=say("wind_angle"),
+                scale=angles,
+                axis=alt.Axis(values=[0, 45, 90, 135, 180, 225, 270, 315, 360]),
+            ),
+            number(alt.Y, "wind_m_s", say("wind"), zero=True),
+            _direction_colour(say),
+            _direction_shape(say),
+            tooltip=tips(("run:O", say("run")), ("wind_m_s:Q", say("wind"))),
+        )
+        .properties(width=WIDTH, height=200)
+    )

@@ -1,0 +1,242 @@
+"""From pages to files: HTML with the tables, data for the charts, and what all pages share.
+
+Everything that comes from the archive is escaped: by Jinja in HTML, and in data blocks so that
+no text can end the block.
+"""
+
+import datetime as dt
+import json
+import shutil
+import tempfile
+from collections.abc import Callable, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any, Final
+
+import jinja2
+import polars as pl
+import vl_convert
+from markupsafe import Markup
+
+from dashboards.figures import FIGURES
+from dashboards.site.pages import MENU, all_pages
+from dashboards.site.parts import boat_path
+from dashboards.words import LANGUAGES, both, speaker
+from warehouse.files import TEMPORARY_PREFIX
+from warehouse.store import Store
+from warehouse.views import Views
+
+HERE: Final = Path(__file__).parent
+OWN_FILES: Final = ("site.css", "site.js")
+DIGITS: Final = (
+    ("_kg_m", 2), ("_m_s", 2), ("_deg", 0), ("_kg", 0), ("_w", 1), ("_s", 0), ("cw_sd", 2),
+    ("_m", 2), ("_sd", 1),
+)  # fmt: skip
+"""Decimals shown by the ending of a column's name; 4 otherwise."""
+
+KEPT: Final = 9
+"""Significant digits in downloads and charts; the database holds all."""
+
+CODES: Final = {
+    *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "flag"),
+    *("quantity", "explaining", "candidates", "severity", "check", "shared"),
+}
+"""Columns that hold codes of the warehouse, shown as words."""
+
+
+def build_site(store: Store) -> dict[str, int]:
+    """Makes all pages from the database and swaps them in.
+
+    Returns:
+        Files and bytes of the site.
+    """
+    target = store.root / "site"
+    beside = Path(tempfile.mkdtemp(prefix=TEMPORARY_PREFIX, dir=store.root))
+    try:
+        with Views(store) as views:
+            _write(views, beside)
+        written = [f for f in beside.rglob("*") if f.is_file()]
+        size = {"files": len(written), "bytes": sum(f.stat().st_size for f in written)}
+        beside.chmod(0o755)
+        _swap(beside, target)
+    finally:
+        shutil.rmtree(beside, ignore_errors=True)
+    return size
+
+
+def _swap(beside: Path, target: Path) -> None:
+    """Puts a folder in place of another: two renames, and the old one is removed after."""
+    old = beside.with_name(beside.name + "-old")
+    if target.exists():
+        target.rename(old)
+    beside.rename(target)
+    shutil.rmtree(old, ignore_errors=True)
+
+
+def _write(views: Views, folder: Path) -> None:
+    static = folder / "static"
+    static.mkdir()
+    for name in OWN_FILES:
+        shutil.copyfile(HERE / "static" / name, static / name)
+    (static / "vega.js").write_text(vega_bundle(), encoding="utf-8")
+    (static / "charts.js").write_text(chart_specifications(), encoding="utf-8")
+    about, comments = views.about(), _by_column(views.comments())
+    template = _environment(comments).get_template("page.html.j2")
+    (folder / "boats").mkdir()
+    for page in all_pages(views):
+        text = template.render(page=page, menu=MENU, about=about)
+        (folder / page.path).write_text(text, encoding="utf-8")
+
+
+def _by_column(comments: dict[str, str]) -> dict[str, str]:
+    """The meaning of a column by its name alone: names mean the same in every table."""
+    return {name.split(".", 1)[1]: text for name, text in comments.items()}
+
+
+@cache
+def vega_bundle() -> str:
+    """Vega, Vega-Lite and Vega-Embed in one script, as Altair's own converter ships them."""
+    return str(vl_convert.javascript_bundle())
+
+
+@cache
+def chart_specifications() -> str:
+    """A script with every figure's Vega-Lite in every language, without data."""
+    found = {
+        language: {
+            name: specification(figure, speaker(language)) for name, figure in FIGURES.items()
+        }
+        for language in LANGUAGES
+    }
+    return f"window.HERIJK_FIGURES = {as_json(found)};\n"
+
+
+def specification(figure: Callable[..., Any], say: Callable[[str], str]) -> dict[str, Any]:
+    """A figure's Vega-Lite with the data left to the page: a dataset called `rows`."""
+    spec: dict[str, Any] = figure(pl.DataFrame({"kind": ["x"]}), say).to_dict()
+    (placeholder,) = spec.pop("datasets")
+    spec.pop("$schema")
+    text = json.dumps(spec).replace(f'"{placeholder}"', '"rows"')
+    return dict(json.loads(text))
+
+
+def as_json(value: Any) -> str:
+    """JSON that may stand inside a script element: no text in it can close the element."""
+    text = json.dumps(value, separators=(",", ":"), ensure_ascii=False, default=str)
+    return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+
+
+def _data(frames: Sequence[pl.DataFrame]) -> Markup:
+    """Frames as columns, for a data block; a column of texts as its values and their places."""
+    found = [{c.name: _column(c) for c in frame} for frame in frames]
+    return Markup(as_json(found))  # noqa: S704 - as_json escapes
+
+
+def _column(column: pl.Series) -> list[Any] | dict[str, list[Any]]:
+    if column.dtype.is_float():
+        return column.round_sig_figs(KEPT).to_list()
+    if column.dtype != pl.String:
+        return column.to_list()
+    values = column.unique(maintain_order=True)
+    places = {value: place for place, value in enumerate(values)}
+    return {"values": values.to_list(), "places": [places[value] for value in column]}
+
+
+def _environment(comments: dict[str, str]) -> jinja2.Environment:
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(HERE / "templates"),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )
+    environment.globals.update(
+        t=_text, both=both, data=_data, rows=_rows, is_number=_is_number, comments=comments
+    )
+    return environment
+
+
+def _text(key: str) -> Markup:
+    """A text in both languages; the style sheet hides the one that is not chosen."""
+    nl, en = both(key)
+    if nl == en:
+        return Markup("{}").format(nl)
+    return Markup('<span lang="nl">{}</span><span lang="en">{}</span>').format(nl, en)
+
+
+def _is_number(frame: pl.DataFrame, column: str) -> bool:
+    return frame.schema[column].is_numeric()
+
+
+def _rows(frame: pl.DataFrame, columns: list[str], root: str) -> list[list[Markup]]:
+    """Cells of a table, column by column because most columns are of one kind."""
+    made = [_cells(frame[c], root) for c in columns]
+    return [list(row) for row in zip(*made, strict=True)]
+
+
+def _cells(column: pl.Series, root: str) -> list[Markup]:
+    name = column.name
+    if column.dtype.is_float():
+        digits = next((d for ending, d in DIGITS if name.endswith(ending)), 4)
+        return [_number(value, digits) for value in column]
+    if column.dtype.is_integer() and name != "direction":
+        return [_integer(value) for value in column]
+    show = _shower(name, root)
+    return [_EMPTY if value is None else _shown(value, show) for value in column]
+
+
+_EMPTY = Markup('<td data-v=""></td>')
+
+
+def _number(value: float | None, digits: int) -> Markup:
+    if value is None:
+        return Markup('<td class="n" data-v=""></td>')
+    return Markup(f'<td class="n" data-v="{value:.{KEPT}g}">{value:.{digits}f}</td>')  # noqa: S704 - a number
+
+
+def _integer(value: int | None) -> Markup:
+    text = "" if value is None else str(value)
+    return Markup(f'<td class="i" data-v="{text}">{text}</td>')  # noqa: S704 - a number
+
+
+def _shown(value: Any, show: Callable[[Any], Markup]) -> Markup:
+    plain = ", ".join(value) if isinstance(value, pl.Series | list) else str(value)
+    return Markup('<td data-v="{}">{}</td>').format(plain, show(value))
+
+
+def _shower(name: str, root: str) -> Callable[[Any], Markup]:
+    """How values of a column are shown."""
+    if name == "direction":
+        return lambda value: _text("out" if value == 1 else "back")
+    if name == "causes":
+        return _causes
+    if name in CODES:
+        return _code
+    if name == "fsn_no":
+        return lambda value: Markup('<a href="{}{}">{}</a>').format(root, boat_path(value), value)
+    if name in {"sha256", "content_hash", "method_hash"}:
+        return lambda value: Markup('<code title="{}">{}</code>').format(value, value[:12])
+    return _plain
+
+
+def _plain(value: Any) -> Markup:
+    if isinstance(value, bool):
+        return _text("yes" if value else "no")
+    if isinstance(value, dt.datetime):
+        return Markup("{}").format(value.isoformat(" "))
+    return Markup("{}").format(value)
+
+
+def _code(value: Any) -> Markup:
+    """A code, or several with commas or as a list, in words."""
+    codes = value.split(",") if isinstance(value, str) else list(value)
+    return Markup(", ").join(_text(f"code.{code}") for code in codes if code)
+
+
+def _causes(value: str) -> Markup:
+    """What a change is attributed to, each with its factor."""
+    parts = [
+        Markup("{} \u00d7 {:.4f}").format(_text(f"code.{cause['cause']}"), cause["factor"])
+        for cause in json.loads(value)
+    ]
+    return Markup(", ").join(parts)

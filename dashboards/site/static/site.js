@@ -1,0 +1,266 @@
+"use strict";
+// Language, tables and charts of every page. Data stand in the page; nothing is fetched.
+(() => {
+  const root = document.documentElement;
+  const all = (selector, within = document) => [...within.querySelectorAll(selector)];
+  const form = document.querySelector(".selects");
+  const choice = (name) => form?.elements[name]?.value ?? "";
+
+  // -- Language ---------------------------------------------------------------------------------
+  const LOCALES = {
+    nl: { decimal: ",", thousands: ".", grouping: [3], currency: ["€ ", ""], minus: "-" },
+    en: { decimal: ".", thousands: ",", grouping: [3], currency: ["€", ""], minus: "-" },
+  };
+  // A browser may refuse storage to pages from disk; the choice then lasts as long as the page.
+  const stored = {
+    get: () => { try { return localStorage.getItem("herijk-language"); } catch { return null; } },
+    set: (value) => { try { localStorage.setItem("herijk-language", value); } catch { /* none */ } },
+  };
+
+  function setLanguage(language) {
+    root.lang = language;
+    all("[data-language]").forEach((button) =>
+      button.setAttribute("aria-pressed", String(button.dataset.language === language)));
+    all("[data-nl]").forEach((element) => {
+      const text = element.dataset[language];
+      if (element.tagName === "OPTION") element.textContent = text;
+      else element.setAttribute("aria-label", text);
+    });
+    const mark = LOCALES[language].decimal;
+    all("td.n").forEach((cell) => { cell.textContent = cell.textContent.replace(/[.,]/, mark); });
+    all("figure[data-figure]").forEach(redraw);
+  }
+
+  // -- Downloads --------------------------------------------------------------------------------
+  // Text that a spreadsheet would take for a formula is kept text.
+  function csvCell(value) {
+    if (value === null || value === undefined) return "";
+    let text = String(value);
+    if (/^[=+\-@\t\r]/.test(text) && !Number.isFinite(Number(text))) text = `'${text}`;
+    return /[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+  }
+
+  function download(name, header, rows) {
+    const text = [header, ...rows].map((row) => row.map(csvCell).join(",")).join("\r\n") + "\r\n";
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob(["\ufeff", text], { type: "text/csv" }));
+    link.download = `${name}.csv`;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  }
+
+  // -- Tables -----------------------------------------------------------------------------------
+  const tables = all(".table");
+  let selected = null; // boats chosen in a chart, or null
+
+  function filter(table) {
+    const words = (table.querySelector(".search")?.value ?? "").toLowerCase().split(/\s+/);
+    const linked = table.querySelector("table.linked");
+    const follows = JSON.parse(table.dataset.follows);
+    let shown = 0;
+    for (const row of table.querySelectorAll("tbody tr")) {
+      const fits = follows.every((name) => matches(name, row.getAttribute(`data-f-${name}`)));
+      const found = words.every((word) => row.textContent.toLowerCase().includes(word));
+      const picked = !linked || selected === null || selected.has(row.dataset.boat);
+      row.hidden = !(fits && found && picked);
+      if (!row.hidden) shown += 1;
+    }
+    table.querySelector(".count b").textContent = shown;
+    const clear = table.querySelector(".clear");
+    if (clear) clear.hidden = selected === null;
+  }
+
+  // A value fits a selector; `boat_type` has two, to see two types side by side.
+  function matches(name, value) {
+    const wanted = [choice(name), choice(`${name}_2`)].filter((text) => text !== "");
+    return wanted.length === 0 || wanted.includes(String(value));
+  }
+
+  function sort(table, header) {
+    const place = [...header.parentElement.children].indexOf(header);
+    const down = header.getAttribute("aria-sort") === "ascending";
+    all("th", table).forEach((other) => other.removeAttribute("aria-sort"));
+    header.setAttribute("aria-sort", down ? "descending" : "ascending");
+    const body = table.querySelector("tbody");
+    const numeric = header.classList.contains("n");
+    const compare = new Intl.Collator("nl", { numeric: true }).compare;
+    const rows = [...body.rows].map((row) => [row.cells[place].dataset.v, row]);
+    rows.sort(([a], [b]) => {
+      if (a === "" || b === "") return (a === "") - (b === "");
+      const order = numeric ? Number(a) - Number(b) : compare(a, b);
+      return down ? -order : order;
+    });
+    body.append(...rows.map(([, row]) => row));
+  }
+
+  for (const table of tables) {
+    table.querySelector(".search")?.addEventListener("input", () => filter(table));
+    table.querySelector(".clear")?.addEventListener("click", () => select(null));
+    all("th", table).forEach((header) =>
+      header.querySelector("button").addEventListener("click", () => sort(table, header)));
+    table.querySelector(".csv").addEventListener("click", () => {
+      const rows = all("tbody tr", table).filter((row) => !row.hidden);
+      download(table.dataset.table, all("th", table).map((h) => h.dataset.c),
+        rows.map((row) => [...row.cells].map((cell) => cell.dataset.v)));
+    });
+    table.querySelector("table.linked")?.addEventListener("click", (event) => {
+      const row = event.target.closest("tbody tr");
+      if (row) mark(row.dataset.boat);
+    });
+  }
+
+  // -- Charts -----------------------------------------------------------------------------------
+  const frames = new Map();
+
+  // Columns to rows; a column of texts holds its values once, and the place of each.
+  function asRows(columns) {
+    const names = Object.keys(columns);
+    const values = names.map((name) => {
+      const column = columns[name];
+      return Array.isArray(column) ? column : column.places.map((place) => column.values[place]);
+    });
+    return (values[0] ?? []).map((_, i) =>
+      Object.fromEntries(names.map((name, j) => [name, values[j][i]])));
+  }
+
+  function rowsOf(name) {
+    if (!frames.has(name)) {
+      const block = document.querySelector(`script[data-name="${name}"]`);
+      frames.set(name, JSON.parse(block.textContent).flatMap(asRows));
+    }
+    return frames.get(name);
+  }
+
+  function shownRows(figure) {
+    const follows = Object.entries(JSON.parse(figure.dataset.follows));
+    return rowsOf(figure.dataset.data).filter((row) => follows.every(([column, name]) =>
+      (row[column] ?? null) === null || matches(name, row[column])));
+  }
+
+  // What the selectors say, so that a chart names its tow and method, also in print.
+  function picked(figure) {
+    const names = Object.values(JSON.parse(figure.dataset.follows));
+    return names.map(choice).filter((text) => text !== "").join(", ");
+  }
+
+  const views = new Map(); // figure -> its Vega view
+  const visible = new Set();
+
+  async function draw(figure) {
+    const place = figure.querySelector(".chart");
+    const turn = (figure.turn = (figure.turn ?? 0) + 1);
+    const spec = structuredClone(window.HERIJK_FIGURES[root.lang][figure.dataset.figure]);
+    spec.datasets = { rows: shownRows(figure) };
+    fitWidth(spec, figure);
+    figure.querySelector(".picked").textContent = picked(figure);
+    views.get(figure)?.finalize();
+    views.delete(figure);
+    try {
+      const made = await window.vegaEmbed(place, spec, {
+        actions: false,
+        renderer: "svg",
+        formatLocale: LOCALES[root.lang],
+        loader: { target: "_self" },
+        config: {
+          axis: { labelFontSize: 12, titleFontSize: 12, labelLimit: 200 },
+          legend: { labelFontSize: 12, titleFontSize: 12, labelLimit: 220 },
+          header: { labelFontSize: 12, titleFontSize: 12 },
+        },
+      });
+      if (turn !== figure.turn) { made.finalize(); return; }
+      views.set(figure, made);
+      link(figure, made.view);
+      describe(figure, place);
+    } catch (error) {
+      place.textContent = String(error);
+      place.classList.add("broken");
+    }
+    place.classList.add("drawn");
+  }
+
+  // A chart wider than its page is made narrower; small multiples keep their size and scroll.
+  function fitWidth(spec, figure) {
+    const room = figure.parentElement.clientWidth - 130;
+    const least = spec.layer?.some((layer) => layer.mark?.type === "text") ? 520 : 190; // legible
+    if (typeof spec.width === "number" && spec.width > room) spec.width = Math.max(room, least);
+    if (room < 420) {
+      const parts = spec.vconcat ?? [spec];
+      for (const part of parts) if (part.columns) part.columns = 1;
+      spec.config = { ...spec.config, legend: { ...spec.config?.legend, orient: "bottom", columns: 1 } };
+    }
+  }
+
+  function describe(figure, place) {
+    const picture = place.querySelector("svg");
+    if (!picture) return;
+    picture.setAttribute("role", "img");
+    picture.setAttribute("aria-label", figure.dataset[root.lang]);
+  }
+
+  function redraw(figure) {
+    if (visible.has(figure)) draw(figure);
+  }
+
+  // Dragging over a scatter chooses boats for the list.
+  function link(figure, view) {
+    if (!view.getState({ data: (name) => name === "brush_store" }).data.brush_store) return;
+    view.addDataListener("brush_store", (_, chosen) => {
+      if (!chosen.length) { select(null); return; }
+      const { fields, values } = chosen[0];
+      const inside = (row) => fields.every((field, i) => {
+        const [low, high] = [...values[i]].sort((a, b) => a - b);
+        return row[field.field] !== null && row[field.field] >= low && row[field.field] <= high;
+      });
+      select(new Set(shownRows(figure).filter(inside).map((row) => row.fsn_no)));
+    });
+  }
+
+  function select(boats) {
+    selected = boats;
+    tables.forEach(filter);
+  }
+
+  // Clicking a row of the list makes its point large in every scatter.
+  function mark(boat) {
+    all("table.linked tbody tr").forEach((row) =>
+      row.classList.toggle("chosen", row.dataset.boat === boat));
+    for (const { view } of views.values()) {
+      if ("chosen" in view.getState().signals) view.signal("chosen", boat).runAsync();
+    }
+  }
+
+  function start(figure) {
+    visible.add(figure);
+    draw(figure);
+  }
+
+  const charts = all("figure[data-figure]");
+  for (const figure of charts) {
+    figure.querySelector(".csv").addEventListener("click", () => {
+      const rows = shownRows(figure);
+      const columns = [...new Set(rows.flatMap(Object.keys))].filter((c) => c !== "page");
+      download(figure.dataset.figure, columns, rows.map((row) => columns.map((c) => row[c])));
+    });
+  }
+  const watcher = new IntersectionObserver((entries) => {
+    for (const entry of entries) {
+      if (entry.isIntersecting) { watcher.unobserve(entry.target); start(entry.target); }
+    }
+  }, { rootMargin: "400px" });
+
+  // -- Begin ------------------------------------------------------------------------------------
+  all("[data-language]").forEach((button) => button.addEventListener("click", () => {
+    stored.set(button.dataset.language);
+    setLanguage(button.dataset.language);
+  }));
+  form?.addEventListener("change", () => {
+    selected = null;
+    tables.forEach(filter);
+    charts.forEach(redraw);
+  });
+  window.addEventListener("beforeprint", () =>
+    charts.filter((figure) => !visible.has(figure)).forEach(start));
+  setLanguage(stored.get() === "en" ? "en" : "nl");
+  tables.forEach(filter);
+  charts.forEach((figure) => watcher.observe(figure));
+})();

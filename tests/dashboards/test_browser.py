@@ -1,0 +1,221 @@
+"""The site in a real browser, opened from disk: no error, no request, everything works.
+
+Needs Chromium. Where it is not installed the tests are skipped, except in CI (`HERIJK_CI` set),
+where that is a failure. Screenshots go to `ci-output/`.
+"""
+
+import csv
+import io
+import os
+import shutil
+
+import pytest
+
+from dashboards.site.pages import MENU
+from dashboards.site.parts import boat_path
+from tests.architecture.repository import ROOT
+from tests.dashboards.conftest import ATTACK
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+FLAGS = [
+    *("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync"),
+    *("--disable-background-networking", "--disable-component-update"),
+]
+SHOTS = ROOT / "ci-output"
+WIDTHS = {"desktop": (1280, 900), "phone": (390, 844)}
+
+pytestmark = pytest.mark.skipif(
+    CHROMIUM is None and "HERIJK_CI" not in os.environ,
+    reason="no Chromium on this machine: install the package chromium to run the browser tests",
+)
+
+
+@pytest.fixture(scope="module")
+def browser(site):
+    """A browser, started after the site is built and closed with this module.
+
+    Playwright keeps an event loop running in this thread, in which Dagster could not run its own.
+    """
+    assert (site / "index.html").exists()
+    assert CHROMIUM is not None, "CI has to test in a browser: install the package chromium"
+    from playwright.sync_api import sync_playwright  # noqa: PLC0415 - not needed when skipped
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        yield browser
+        browser.close()
+
+
+class Visitor:
+    """A page of the browser that notes what it should not see."""
+
+    def __init__(self, page, site):
+        self.page, self.site, self.faults = page, site, []
+        page.on("pageerror", lambda error: self.faults.append(str(error)))
+        page.on("console", self._said)
+        page.on("request", self._asked)
+        page.on("dialog", lambda dialog: (self.faults.append("dialog"), dialog.dismiss()))
+
+    def _said(self, message):
+        if message.type == "error":
+            self.faults.append(message.text)
+
+    def _asked(self, request):
+        if not request.url.startswith(("file:", "data:", "blob:")):
+            self.faults.append(request.url)
+
+    def open(self, path):
+        self.page.goto((self.site / path).as_uri())
+        self.page.wait_for_function("!document.querySelector('.count b:empty')")
+        return self.page
+
+    def draw_all(self):
+        """Draws charts further down too, as printing does."""
+        self.page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
+        self.page.wait_for_function(
+            "[...document.querySelectorAll('figure .chart')].every(c => c.querySelector('svg'))"
+        )
+
+
+@pytest.fixture
+def visitor(browser, site):
+    with browser.new_context(accept_downloads=True, viewport={"width": 1280, "height": 900}) as c:
+        visitor = Visitor(c.new_page(), site)
+        visitor.page.set_default_timeout(10_000)
+        yield visitor
+        assert visitor.faults == []
+
+
+def shown(page, table):
+    return page.locator(f"[data-table={table}] tbody tr:visible")
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+@pytest.mark.parametrize("name", [*(f"{name}.html" for name in MENU), "boat"])
+def test_every_page_opens_and_draws(visitor, attacked, name, width):
+    columns, rows = WIDTHS[width]
+    visitor.page.set_viewport_size({"width": columns, "height": rows})
+    page = visitor.open(boat_path(attacked) if name == "boat" else name)
+    visitor.draw_all()
+    assert page.evaluate("document.documentElement.scrollWidth") <= columns
+    assert page.locator(".broken").count() == 0
+    SHOTS.mkdir(exist_ok=True)
+    page.screenshot(path=SHOTS / f"{name.removesuffix('.html')}-{width}.png", full_page=True)
+    if width == "desktop":
+        page.pdf(path=SHOTS / f"{name.removesuffix('.html')}.pdf", print_background=True)
+
+
+def test_an_attack_is_shown_as_a_name(visitor, attacked):
+    page = visitor.open(boat_path(attacked))
+    assert page.locator("h1").inner_text() == ATTACK
+
+
+def test_language_switches_and_is_kept(visitor):
+    page = visitor.open("register.html")
+    first = shown(page, "register").first.locator("td.n").first
+    assert page.locator("h1").inner_text() == "Register"
+    assert "Zoek" in page.locator(".tools").inner_text()
+    assert "," in first.inner_text()
+    page.get_by_role("button", name="English").click()
+    assert "Search" in page.locator(".tools").inner_text()
+    assert "," not in first.inner_text()
+    page = visitor.open("types.html")
+    assert page.locator("h1").inner_text() == "Types"
+
+
+def test_search_sort_and_edition(visitor):
+    page = visitor.open("register.html")
+    lines = shown(page, "register").count()
+    name = shown(page, "register").nth(1).locator("td").first.inner_text()
+    page.get_by_role("searchbox").fill(name)
+    assert 0 < shown(page, "register").count() < lines
+    assert name in shown(page, "register").first.inner_text()
+    page.get_by_role("searchbox").fill("")
+    for direction in (1, -1):
+        page.locator("th[data-c=cw_kg_m] button").click()
+        cells = page.locator("tr:visible td:nth-child(12)").evaluate_all(
+            "cells => cells.map(c => c.dataset.v).filter(Boolean).map(Number)"
+        )
+        assert cells == sorted(cells, reverse=direction < 0)
+    assert page.locator("th[data-c=cw_kg_m]").get_attribute("aria-sort") == "descending"
+    page.locator("select[name=edition]").select_option("concept-as-published")
+    followed = page.locator("tr:visible[data-f-edition]").evaluate_all(
+        "rows => [...new Set(rows.map(r => r.dataset.fEdition))]"
+    )
+    assert followed == ["concept-as-published"]
+
+
+def test_a_table_downloads_what_it_shows(visitor):
+    page = visitor.open("register.html")
+    with page.expect_download() as caught:
+        page.locator("[data-table=register] .csv").click()
+    text = caught.value.path().read_text("utf-8-sig")
+    rows = list(csv.DictReader(io.StringIO(text)))
+    assert len(rows) == shown(page, "register").count()
+    assert {"fsn_no", "a_kg_m", "b_m_s", "cw_kg_m"} <= rows[0].keys()
+
+
+def test_a_chart_downloads_its_data(visitor, attacked):
+    page = visitor.open(boat_path(attacked))
+    with page.expect_download() as caught:
+        page.locator("figure[data-figure=resistance_curve] .csv").click()
+    rows = list(csv.DictReader(io.StringIO(caught.value.path().read_text("utf-8-sig"))))
+    assert {row["kind"] for row in rows} == {"line", "point", "declared"}
+    assert {row["tow_id"] for row in rows} == {page.locator("select[name=tow_id]").input_value()}
+
+
+def test_choosing_a_method_changes_the_curve(visitor, attacked):
+    page = visitor.open(boat_path(attacked))
+    chart = page.locator("figure[data-figure=resistance_curve] .chart")
+    chart.locator("svg").wait_for()
+    before = chart.inner_html()
+    page.locator("select[name=method]").select_option("as-published")
+    page.wait_for_function(
+        "old => document.querySelector('figure[data-figure=resistance_curve] .chart').innerHTML"
+        " !== old",
+        arg=before,
+    )
+    assert "as-published" in page.locator("figure .picked").first.inner_text()
+
+
+def test_dragging_over_the_scatter_fills_the_list_and_a_point_leads_to_its_boat(visitor):
+    page = visitor.open("types.html")
+    chart = page.locator("figure[data-figure=b_weight]").first
+    chart.locator("svg").wait_for()
+    chart.scroll_into_view_if_needed()
+    boats = shown(page, "type_boats").count()
+    area = chart.locator(".background").first.bounding_box()
+    page.mouse.move(area["x"] + 15, area["y"] + 15)
+    page.mouse.down()
+    page.mouse.move(area["x"] + area["width"] / 2, area["y"] + area["height"] - 15, steps=5)
+    page.mouse.up()
+    page.wait_for_function("!document.querySelector('.clear').hidden")
+    assert 0 < shown(page, "type_boats").count() < boats
+    page.locator(".clear").click()
+    assert shown(page, "type_boats").count() == boats
+    chart.locator("svg .mark-symbol.role-mark path").first.click(force=True)
+    page.wait_for_url("**/boats/*.html")
+    assert page.locator("figure[data-figure=resistance_curve]").count() == 1
+
+
+def test_the_list_marks_its_boat_in_the_scatter(visitor):
+    page = visitor.open("types.html")
+    chart = page.locator("figure[data-figure=b_weight] svg").first
+    chart.wait_for()
+    before = chart.inner_html()
+    shown(page, "type_boats").first.locator("td").first.click()
+    page.wait_for_function(
+        "old => document.querySelector('figure[data-figure=b_weight] svg').innerHTML !== old",
+        arg=before,
+    )
+    assert page.locator("tr.chosen").count() >= 1
+
+
+def test_everything_is_reached_by_keyboard(visitor):
+    page = visitor.open("register.html")
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.className") == "skip"
+    page.locator("th[data-c=name] button").focus()
+    page.keyboard.press("Enter")
+    assert page.locator("th[data-c=name]").get_attribute("aria-sort") == "ascending"
+    assert page.locator("table:not(:has(caption))").count() == 0
