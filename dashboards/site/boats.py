@@ -115,8 +115,10 @@ LINEAGE_COLUMNS = ("edition", "crew", "tow_id", "path", "sha256", "method_hash",
 
 def _page(fsn_no: str, own: dict[str, pl.DataFrame], methods: Sequence[str]) -> Page:
     facts = Section("facts", tables=[Table("boat", own["boats"], FACT_COLUMNS, "facts")])
+    name = own["boats"]["name"][0]
     tows = own["curves"]["tow_id"].unique(maintain_order=True).to_list()
-    sections = [facts, *(_sections(own) if tows else [])]
+    if not tows:
+        return Page(boat_path(fsn_no), "boat", [facts], name=name)
     selects = [
         Select("tow_id", "tow", tows, tows[-1]),
         Select("method", "method", methods, default_method(methods)),
@@ -124,10 +126,10 @@ def _page(fsn_no: str, own: dict[str, pl.DataFrame], methods: Sequence[str]) -> 
     return Page(
         boat_path(fsn_no),
         "boat",
-        sections,
-        name=own["boats"]["name"][0],
-        selects=selects if tows else [],
-        data=_data(own) if tows else {},
+        [facts, *_sections(own)],
+        name=name,
+        selects=selects,
+        data=_data(own),
     )
 
 
