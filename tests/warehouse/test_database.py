@@ -73,6 +73,9 @@ def test_every_table_and_column_says_what_it_means(built: Workbench):
     assert comments["curves", "cw_kg_m"] == "Cw at the declared speed [kg/m]"
 
 
+ENOUGH_VERSIONS = 4
+
+
 def test_readers_never_see_an_error_or_half_of_a_database(tmp_path):
     path, stop = tmp_path / "warehouse.duckdb", threading.Event()
     seen: list[tuple[int, int]] = []
@@ -100,17 +103,18 @@ def test_readers_never_see_an_error_or_half_of_a_database(tmp_path):
                 return
 
     build(0)
-    readers = [threading.Thread(target=poll) for _ in range(2)]
-    for reader in readers:
-        reader.start()
-    for version in range(1, 9):
+    # One reader: connections of one process to one path share a database while any of them is open.
+    reader = threading.Thread(target=poll)
+    reader.start()
+    for version in range(1, 1000):
         build(version)
+        if errors or len({held for held, _ in seen}) > ENOUGH_VERSIONS:
+            break
     stop.set()
-    for reader in readers:
-        reader.join()
+    reader.join()
     assert errors == []
     assert {count for _, count in seen} == {1000}
-    assert len({version for version, _ in seen}) > 1
+    assert len({version for version, _ in seen}) > ENOUGH_VERSIONS
 
 
 def test_a_reader_that_has_the_old_database_open_keeps_it(tmp_path):
