@@ -40,8 +40,9 @@ $(READY): requirements.lock pyproject.toml
 demo: $(READY) $(DEMO)/archief
 	@$(BIN)/herijk rebuild --archive $(DEMO)/archief --data $(DEMO)/data
 	@echo
-	@echo "These were simulated boats. The archive is $(DEMO)/archief, the tables are in"
-	@echo "$(DEMO)/data/warehouse.duckdb. Where the numbers of one boat come from:"
+	@echo "These were simulated boats. The archive is $(DEMO)/archief. Open the site in a browser:"
+	@echo "  $(DEMO)/data/site/index.html"
+	@echo "Where the numbers of one boat come from:"
 	@echo "  $(BIN)/herijk audit FSN106 --data $(DEMO)/data"
 
 # The archive is put in place when it is complete, so a folder that is there is whole.

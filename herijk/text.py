@@ -57,7 +57,7 @@ def rebuild(report: Report) -> str:
     if report["by_season"]:
         parts.append(_by_season(report["by_season"]))
         parts.append(_biggest(report["biggest_changes"]))
-    parts.append(f"Tables: {report['database']}")
+    parts.append(f"Tables: {report['database']}\nSite: {report['site']}")
     return "\n\n".join(parts)
 
 

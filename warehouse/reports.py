@@ -21,6 +21,7 @@ def rebuild_report(store: Store) -> Report:
     with open_database(store.database) as db:
         return {
             "database": str(store.database),
+            "site": str(store.root / "site" / "index.html"),
             "simulated": is_simulated(db),
             "seasons": rows(
                 db, "SELECT season, count(*) AS tows FROM tows GROUP BY season ORDER BY season"
