@@ -15,6 +15,7 @@ from dashboards.figures.style import (
     tips,
 )
 from dashboards.words import Say
+from pipeline.ladder import STEP_ORDER
 
 
 def _at_one(frame: pl.DataFrame, channel: str) -> alt.Chart:
@@ -55,19 +56,7 @@ def season_ladder(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
         say: gives texts.
     """
     order = alt.EncodingSortField("position", order="ascending")
-    names = {
-        s: say(f"code.{s}")
-        for s in (
-            "speed",
-            "window",
-            "runs",
-            "calibration",
-            "run_point",
-            "wind",
-            "temperature",
-            "curve",
-        )
-    }
+    names = {step: say(f"code.{step}") for step in STEP_ORDER}
     label = f"({names!s})[datum.value] || datum.value"
     base = alt.Chart(frame).encode(
         alt.X(

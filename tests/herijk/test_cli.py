@@ -2,35 +2,14 @@
 
 import json
 import re
-import sys
 
 import pytest
 from typer.main import get_command
 
-from herijk.cli import app, main
+from herijk.cli import app
 from tests.conftest import METHODS
 
 COMMANDS = ("simulate", "rebuild", "methods", "audit")
-
-
-@pytest.fixture
-def herijk(monkeypatch, capsys):
-    """Runs the command in this process; gives exit status, stdout and stderr."""
-
-    def run(*arguments):
-        monkeypatch.setattr(sys, "argv", ["herijk", *map(str, arguments)])
-        capsys.readouterr()
-        try:
-            main()
-        except SystemExit as stop:
-            status = stop.code or 0
-        else:
-            status = 0
-        printed = capsys.readouterr()
-        assert "Traceback" not in printed.err
-        return status, printed.out, printed.err
-
-    return run
 
 
 @pytest.mark.parametrize("command", [(), *((name,) for name in COMMANDS), ("methods", "show")])

@@ -1,11 +1,9 @@
 """The commands about editions: what they print, and their exit status."""
 
 import json
-import sys
 
 import pytest
 
-from herijk.cli import main
 from tests.warehouse.edition_bench import EditionBench
 
 DECISION = ("--decision", "ALV 12-5-2014")
@@ -19,26 +17,6 @@ def bench(tmp_path_factory):
     for edition, method in (("2014-1", "as-published"), ("2014-2", "rebased")):
         made.publish(edition, method)
     return made
-
-
-@pytest.fixture
-def herijk(monkeypatch, capsys):
-    """Runs the command in this process; gives exit status, stdout and stderr."""
-
-    def run(*arguments):
-        monkeypatch.setattr(sys, "argv", ["herijk", *map(str, arguments)])
-        capsys.readouterr()
-        try:
-            main()
-        except SystemExit as stop:
-            status = stop.code or 0
-        else:
-            status = 0
-        printed = capsys.readouterr()
-        assert "Traceback" not in printed.err
-        return status, printed.out, printed.err
-
-    return run
 
 
 def test_publish_tells_where_the_edition_is_and_only_once(herijk, bench, tmp_path):
