@@ -76,6 +76,27 @@ def option_effects(method: Method, tows: pl.DataFrame, blocks: RunBlocks) -> pl.
     return pl.concat([*frames, spread]).sort("tow_id", "option")
 
 
+def beside_uncertainty(effects: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
+    """Adds how sure each tow is, to hold the spread over options against.
+
+    Args:
+        effects: rows of `option_effects`.
+        curves: the method's own rows of the table `curves`.
+
+    Returns:
+        The rows with `cw_interval_ratio` and `b_interval_ratio`, half the width of the 95 %
+        intervals on the logarithm; null where there is no (upper) bound.
+    """
+    half = {
+        f"{name}_interval_ratio": (pl.col(high) / pl.col(low)).log() / 2.0
+        for name, low, high in (
+            ("cw", "cw_lo_kg_m", "cw_hi_kg_m"),
+            ("b", "b_lo_m_s", "b_hi_m_s"),
+        )
+    }
+    return effects.join(curves.select("tow_id", **half), on="tow_id", how="left")
+
+
 def _chosen(steps: Steps, corner: tuple[int, ...]) -> Steps:
     for choice, side in zip(CHOICES, corner, strict=True):
         step = getattr(steps, choice.step).model_copy(update={choice.option: choice.values[side]})

@@ -299,6 +299,8 @@ class OptionEffects(dy.Schema):
     b_effect_ratio = _number("1", "the same for B", nullable=True)
     cw_sd_ratio = _number("1", "spread of Cw over all combinations", nullable=True, min=0)
     b_sd_ratio = _number("1", "the same for B", nullable=True, min=0)
+    cw_interval_ratio = _number("1", "half the 95 % interval of ln Cw", nullable=True, min=0)
+    b_interval_ratio = _number("1", "the same for B; empty: no bound", nullable=True, min=0)
 
 
 class TypeConsistency(dy.Schema):

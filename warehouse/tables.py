@@ -17,7 +17,7 @@ from pipeline.consistency import consistency_tables
 from pipeline.errors import MissingKnowledgeError
 from pipeline.ladder import ladder
 from pipeline.method import Method
-from pipeline.options import option_effects
+from pipeline.options import beside_uncertainty, option_effects
 from pipeline.recompute import recompute
 from pipeline.register import LINE, draft_name, draft_register
 from pipeline.steady import HAND_COLUMNS
@@ -240,7 +240,9 @@ def make_studies(store: Store, methods: Sequence[Method], blocks: RunBlocks) -> 
         for other in methods[1:]
     ]
     studied = [
-        option_effects(m, tows, blocks).with_columns(pl.lit(m.name).alias("method"))
+        beside_uncertainty(
+            option_effects(m, tows, blocks), store.read("curves", m.name)
+        ).with_columns(pl.lit(m.name).alias("method"))
         for m in methods
         if m.name == STUDIED_METHOD
     ]
