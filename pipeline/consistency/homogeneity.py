@@ -15,7 +15,7 @@ from scipy.special import fdtrc, fdtri
 from pipeline import curve
 from pipeline.arrays import FloatArray
 from pipeline.consistency import mixed
-from pipeline.consistency.observed import LINE, UNKNOWN_TYPE, Observed, newest, q_at
+from pipeline.consistency.observed import LINE, TOW_SCHEMA, UNKNOWN_TYPE, Observed, newest, q_at
 
 LEVEL: Final = 0.05
 FEWEST_BOATS: Final = 3
@@ -211,13 +211,7 @@ def pooled_curves(observed: Observed) -> pl.DataFrame:
         for (_, boat_type), boats in newest(observed).groups("method", "boat_type")
         for frame in _poolings(boats, boat_type)
     ]
-    schema = {
-        "method": pl.String(),
-        "tow_id": pl.String(),
-        "fsn_no": pl.String(),
-        "rowers": pl.Int32(),
-        "crew_class": pl.String(),
-        "boat_type": pl.String(),
+    schema = TOW_SCHEMA | {
         "pooling": pl.String(),
         "standard_speed_m_s": pl.Float64(),
     }

@@ -17,6 +17,7 @@ from pipeline.arrays import BoolArray, FloatArray
 from pipeline.consistency import mixed
 from pipeline.consistency.observed import (
     LINE,
+    TOW_SCHEMA,
     UNKNOWN_TYPE,
     Observed,
     curve_at,
@@ -204,13 +205,7 @@ def type_outliers(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
         if boat_type != UNKNOWN_TYPE
         for quantity in ("ln_cw_standard", "q")
     ]
-    schema = {
-        "method": pl.String(),
-        "tow_id": pl.String(),
-        "fsn_no": pl.String(),
-        "rowers": pl.Int32(),
-        "crew_class": pl.String(),
-        "boat_type": pl.String(),
+    schema = TOW_SCHEMA | {
         "season": pl.Int32(),
         "quantity": pl.String(),
         "standard_speed_m_s": pl.Float64(),

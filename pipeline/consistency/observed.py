@@ -24,6 +24,17 @@ VALID_RATIO: Final = (0.85, 1.15)
 FEWEST_POINTS: Final = 3
 
 
+TOW_SCHEMA: Final = {
+    "method": pl.String(),
+    "tow_id": pl.String(),
+    "fsn_no": pl.String(),
+    "rowers": pl.Int32(),
+    "crew_class": pl.String(),
+    "boat_type": pl.String(),
+}
+"""What names a tow, and with it a boat and crew, in the tables of this package."""
+
+
 @dataclass(frozen=True)
 class Observed:
     """Tows and their run points, row by row.

@@ -14,6 +14,7 @@ from pipeline.arrays import FloatArray
 from pipeline.consistency import mixed
 from pipeline.consistency.observed import (
     LINE,
+    TOW_SCHEMA,
     UNKNOWN_TYPE,
     Observed,
     curve_at,
@@ -42,13 +43,7 @@ def predicted_cw(observed: Observed) -> pl.DataFrame:
     speed = pl.col("declared_speed_m_s").median().over("method", "boat_type", "crew_class")
     boats = Observed(boats.table.with_columns(speed.alias("standard_speed_m_s")), boats.points)
     parts = [_predicted(fleet) for _, fleet in boats.groups("method")]
-    schema = {
-        "method": pl.String(),
-        "tow_id": pl.String(),
-        "fsn_no": pl.String(),
-        "rowers": pl.Int32(),
-        "crew_class": pl.String(),
-        "boat_type": pl.String(),
+    schema = TOW_SCHEMA | {
         "standard_speed_m_s": pl.Float64(),
         "cw_kg_m": pl.Float64(),
         "cw_sd_ratio": pl.Float64(),
