@@ -38,6 +38,7 @@ METHOD_TABLES: Final = (
     "log_factors",
     "season_links",
     "uncertainty_budget",
+    "curve_points",
     "assessments",
 )
 METHOD_FILES: Final = ("ensemble",)

@@ -10,6 +10,7 @@ ASSETS = [
     "blocks",
     "boats",
     "correction_steps",
+    "curve_points",
     "curves",
     "ensemble",
     "hand_windows",
