@@ -38,7 +38,7 @@ class Settings:
     tow_sd: float = 0.01
     wander_sd: float = 0.003
     gps_sd: float = 0.01
-    prior_dof: float = 1.0
+    prior_dof: float = 0.1
     gps_season_sd: float = 0.003
     gps_noise_m_s: float = 0.1
     t_dof: float = 8.0
