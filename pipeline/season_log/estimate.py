@@ -13,6 +13,7 @@ from pipeline.season_log.assumed import USUAL, Settings
 from pipeline.season_log.joint import AGEING, Fit, Rows, fit_jointly, leave_boats_out
 from pipeline.season_log.left_out import LeftOut
 from pipeline.season_log.network import GROUP, Network
+from pipeline.season_log.scatter import tow_scatter
 from pipeline.season_log.without_boats import Second, without_boats
 
 LEVEL: Final = 0.95
@@ -33,7 +34,8 @@ class SeasonFactors:
         covariance: covariance of ln factor between the rows of `factors` that are determined, in
             their order.
         wander_sd: standard deviation of ln factor from tow to tow, by first season of the era.
-        tow_sd: standard deviation of ln Cw of a calibrated tow beyond its random part.
+        tow_sd: standard deviation of ln Cw of a calibrated tow beyond its random part, without
+            boats that changed.
         ageing_per_year: change of ln Cw per year, with `ageing_sd`.
         weakest_mode_sd: standard deviation of the combination of ln factors that is known worst.
     """
@@ -77,7 +79,11 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
     _refuse_unknown(tows)
     network = Network.of(tows)
     rows = Rows.of(network, settings)
-    fit = fit_jointly(rows, settings)
+    # Ageing, weight and length first, with whatever scatter fits; then the scatter of tows, apart
+    # from wander and changed boats; then everything with it.
+    first = fit_jointly(rows, settings)
+    tow_sd = tow_scatter(*rows.anchored_pairs(first.solution), settings)
+    fit = fit_jointly(rows, settings, tow_sd)
     spread = leave_boats_out(rows, fit, settings)
     ageing = fit.ageing_per_year, float(np.sqrt(spread.covariance[AGEING, AGEING]))
     second = without_boats(network, ageing, settings)
@@ -91,7 +97,7 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
         factors=_described(_numbers(network, fit, spread, mode), network, second),
         covariance=covariance,
         wander_sd=dict(zip(settings.era_starts, wander_sd, strict=True)),
-        tow_sd=float(np.sqrt(fit.variances[0])) * as_sd,
+        tow_sd=tow_sd,
         ageing_per_year=ageing[0],
         ageing_sd=ageing[1],
         weakest_mode_sd=mode_sd,
