@@ -17,11 +17,9 @@ from pipeline.batch import Batch
 from pipeline.calibration import gps_factor
 from pipeline.method import Steps
 from pipeline.outcome import Outcome, TowFactor
-from pipeline.season_log import LINE, SeasonFactors, estimate_season_factors
+from pipeline.season_log import GROUP, LINE, SeasonFactors, estimate_season_factors
+from pipeline.speed import log_part
 from pipeline.sureness import pooled_scatter
-
-WHOLE_SEASON: Final = 0
-"""Part of a season; an archive does not yet say when a log was replaced within one."""
 
 FEWEST_OF_TYPE: Final = 5
 """A type's own bend is taken from so many anchored tows on."""
@@ -30,7 +28,9 @@ LEAST_SPREAD: Final = 1e-6
 """Variance of the bend between boats of a type: none at all would leave nothing to divide by."""
 
 GPS: Final = "gps_per_tow"
-FACTOR_KEY: Final = ("season", "log")
+
+OTHER_LOG: Final = {"log1": "log2", "log2": "log1"}
+"""The log beside the one in use; none where their mean is used."""
 
 
 def is_estimated(steps: Steps) -> bool:
@@ -62,14 +62,20 @@ def _tow_rows(outcomes: Sequence[Outcome]) -> pl.DataFrame:
     return pl.concat([_rows(o, reference) for o in outcomes]).drop_nulls("ln_cw")
 
 
-def factor_of_tows(batch: Batch, steps: Steps, found: SeasonFactors | None) -> TowFactor:
-    """The estimated factor of each tow's season and log."""
-    if found is None or not is_estimated(steps):
+def factor_of_tows(batch: Batch, steps: Steps, factors: pl.DataFrame | None) -> TowFactor:
+    """The estimated factor of each tow's log, in its part of the season.
+
+    Args:
+        batch: the tows.
+        steps: what is asked of them.
+        factors: rows of `SeasonFactors.factors`, or of the table `season_links`.
+    """
+    if factors is None or not is_estimated(steps):
         nothing = np.full(batch.size, np.nan)
         return TowFactor(nothing, nothing, nothing)
-    held = batch.tows.select("season", pl.lit(_log(steps)).alias("log")).join(
-        found.factors.select(*FACTOR_KEY, "factor", "ln_sd", "dof"),
-        on=FACTOR_KEY,
+    held = batch.tows.select(*log_group(steps)).join(
+        factors.select(*GROUP, "factor", "ln_sd", "dof"),
+        on=GROUP,
         how="left",
         maintain_order="left",
     )
@@ -77,8 +83,10 @@ def factor_of_tows(batch: Batch, steps: Steps, found: SeasonFactors | None) -> T
     return TowFactor(*columns)
 
 
-def _log(steps: Steps) -> str:
-    return steps.speed.source
+def log_group(steps: Steps) -> tuple[pl.Expr, pl.Expr, pl.Expr]:
+    """What names the log of a tow: `GROUP`, from the columns of `tows`."""
+    source = steps.speed.source
+    return pl.col("season"), log_part(source), pl.lit(source).alias("log")
 
 
 def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
@@ -100,16 +108,18 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
         "ln_cw_sd": np.where(sure, np.sqrt(errors.c0_variance_kg2_m2) / safe, 1.0),
         "q": safe_r / (1.0 - safe_r),
         "q_sd": np.where(sure, np.sqrt(errors.q_variance), 1.0),
+        "other_ln_ratio": _other_ln_ratio(o),
         "gps_ln_ratio": np.where(has_gps & (not calibrated), gps, np.nan),
         "gps_sd": np.where(has_gps & (not calibrated), gps_sd, np.nan),
     }
-    names = ("tow_id", "season", *LINE, "altered", "declared_speed_m_s")
+    names = ("tow_id", *LINE, "altered", "declared_speed_m_s")
     return batch.tows.select(
         *names,
         pl.col("weight_kg", "waterline_length_m").cast(pl.Float64),
         _boat_type(batch.tows),
-        pl.lit(WHOLE_SEASON).alias("part"),
-        pl.lit(_log(steps)).alias("log"),
+        *log_group(steps),
+        pl.lit(OTHER_LOG.get(steps.speed.source)).alias("other_log"),
+        log_part(OTHER_LOG.get(steps.speed.source, "mean")).alias("other_part"),
         pl.lit(calibrated).alias("anchored"),
         *(pl.Series(name, values).fill_nan(None) for name, values in numbers.items()),
     )
@@ -119,6 +129,18 @@ def _water_points(o: Outcome) -> curve.Points:
     """Run points of the water alone: the still-air part does not scale with the log's error."""
     water = o.batch.by_tow(o.cw_kg_m - o.still_air_kg_m)
     return curve.Points(o.points.speed_m_s, water, o.points.used & (water > 0))
+
+
+def _other_ln_ratio(o: Outcome) -> FloatArray:
+    """Gives ln(log in use / other log), mean over each tow's runs; NaN where there is none."""
+    source = o.steps.speed.source
+    if source not in OTHER_LOG:
+        return np.full(o.batch.size, np.nan)
+    mean = {log: o.batch.blocks.mean(f"{log}_v", o.windows.mask) for log in ("log1", "log2")}
+    turning = o.used & (mean["log1"] > 0) & (mean["log2"] > 0)
+    ratio = mean[source] / np.where(turning, mean[OTHER_LOG[source]], 1.0)
+    ln_ratio = np.log(np.where(turning, ratio, 1.0))
+    return np.where(o.batch.any(turning), o.batch.mean(ln_ratio, turning), np.nan)
 
 
 def _boat_type(tows: pl.DataFrame) -> pl.Expr:

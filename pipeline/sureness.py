@@ -17,6 +17,7 @@ from pipeline import curve
 from pipeline.arrays import FloatArray
 from pipeline.outcome import Outcome
 from pipeline.season_log import SeasonFactors
+from pipeline.speed import log_part
 from pipeline.uncertainty import Assumed, budget, combine, residual_scatter, run_point_uncertainty
 
 ARCHIVE_COEFFICIENT_SD: Final = 0.01
@@ -145,7 +146,7 @@ def _budget_of_batch(o: Outcome, found: SeasonFactors | None, speed_ratio: float
     rows = batch.tows.select(
         "tow_id",
         "season",
-        pl.lit(0).alias("part"),
+        log_part(o.steps.speed.source),
         pl.lit(o.steps.speed.source).alias("log"),
         pl.lit(2.0 / (1.0 - r)).alias("kappa"),
         pl.Series("random_ratio", random),

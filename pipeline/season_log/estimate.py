@@ -38,6 +38,7 @@ class SeasonFactors:
             boats that changed.
         ageing_per_year: change of ln Cw per year, with `ageing_sd`.
         weakest_mode_sd: standard deviation of the combination of ln factors that is known worst.
+        tows: what it was estimated from.
     """
 
     factors: pl.DataFrame
@@ -47,6 +48,25 @@ class SeasonFactors:
     ageing_per_year: float
     ageing_sd: float
     weakest_mode_sd: float
+    tows: pl.DataFrame
+
+    def of_season(self, season: int, log: str) -> tuple[float, float, float, str] | None:
+        """Factor, bounds and source of a season; None where not determined.
+
+        Where the log was replaced it is the mean over the tows of its determined parts.
+        """
+        known = self.factors.drop_nulls("factor")
+        mine = (known["season"] == season) & (known["log"] == log)
+        parts = known.filter(mine)
+        if parts.height < 2:
+            return next(parts.select("factor", "lo", "hi", "source").iter_rows(), None)
+        count = np.where(mine, known["n_tows"].to_numpy(), 0)
+        share = count / count.sum()
+        ln_factor = share @ known["factor"].log().to_numpy()
+        sd = np.sqrt(share @ self.covariance @ share)
+        half = sd * stdtrit(parts["dof"].to_numpy().min(), 0.5 * (1.0 + LEVEL))
+        factor, lo, hi = np.exp(ln_factor + np.array([0.0, -half, half])).tolist()
+        return factor, lo, hi, ESTIMATED if (parts["source"] == ESTIMATED).any() else GPS
 
 
 def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> SeasonFactors:
@@ -101,6 +121,7 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
         ageing_per_year=ageing[0],
         ageing_sd=ageing[1],
         weakest_mode_sd=mode_sd,
+        tows=tows,
     )
 
 
