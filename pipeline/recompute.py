@@ -65,17 +65,16 @@ def recompute(method: Method, tows: pl.DataFrame, blocks: RunBlocks) -> Recomput
     """
     plans = [(batch, steps) for batch, (steps,) in batches([method], tows, blocks)]
     known: KnownWindows = {}
-    found = season_factors(plans, known)
+    asked = any(is_estimated(held.steps) for held in method.ranges)
+    found = season_factors(plans, known) if asked else None
     factors = None if found is None else found.factors
     return as_tables(method, tows, evaluate(plans, known, factors), found)
 
 
 def season_factors(
     plans: Sequence[tuple[Batch, Steps]], known_windows: KnownWindows
-) -> SeasonFactors | None:
-    """The log factors that the given steps ask to estimate; None if they ask for none."""
-    if not any(is_estimated(steps) for _, steps in plans):
-        return None
+) -> SeasonFactors:
+    """The log factors that the given steps ask to estimate, and how far tows scatter."""
     before = evaluate([(batch, without_factor(steps)) for batch, steps in plans], known_windows)
     return find_season_factors(before)
 
@@ -83,9 +82,10 @@ def season_factors(
 def log_factors(
     plans: Sequence[tuple[Batch, Steps]], known_windows: KnownWindows
 ) -> pl.DataFrame | None:
-    """The factors alone, as `evaluate` wants them."""
-    found = season_factors(plans, known_windows)
-    return None if found is None else found.factors
+    """The factors alone, as `evaluate` wants them; None if the steps ask for none."""
+    if not any(is_estimated(steps) for _, steps in plans):
+        return None
+    return season_factors(plans, known_windows).factors
 
 
 def batches(

@@ -189,7 +189,7 @@ def _with_kappa(rows: pl.DataFrame) -> pl.DataFrame:
     def typed(frame: pl.DataFrame) -> pl.DataFrame:
         return frame.join(
             usual, on="boat_type", how="left", nulls_equal=True, maintain_order="left"
-        ).with_columns(pl.col("q_type").fill_null(fleet))
+        ).with_columns(pl.col("q_type").fill_null(pl.lit(fleet, pl.Float64)))
 
     deviation = (pl.col("q") - pl.col("q_type")).alias("deviation")
     seen = typed(anchored).with_columns(deviation)
