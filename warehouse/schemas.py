@@ -92,6 +92,8 @@ class Tows(dy.Schema):
     freeboard_bow_m = _number("m", "freeboard at the bow", nullable=True)
     freeboard_stern_m = _number("m", "freeboard at the stern", nullable=True)
     remark = _text("remark in the tow list", nullable=True)
+    log1_part = dy.Int32(description="times log 1 had been replaced that season", min=0)
+    log2_part = dy.Int32(description="times log 2 had been replaced that season", min=0)
     samples_path = _text("samples file in the archive")
     samples_sha256 = _text("its content hash", regex="^[0-9a-f]{64}$")
     second_path = _text("second samples file, if two tows were combined", nullable=True)
@@ -220,7 +222,7 @@ class SeasonLinks(dy.Schema):
     season = dy.Int32(primary_key=True, description="year of the tow list")
     part = dy.Int32(primary_key=True, description="part of the season, until a log was replaced")
     log = _text("speed source", primary_key=True)
-    source = _text("estimated, gps, or not determined")
+    source = _text("estimated, gps, other log (by the ratio of both), or not determined")
     n_tows = dy.Int32(description="tows of the season", min=0)
     n_links = dy.Int32(description="boats also towed in other seasons", min=0)
     component = dy.Int32(description="connected part of the network; 0 has the dGPS anchor", min=0)
@@ -231,6 +233,7 @@ class SeasonLinks(dy.Schema):
     lo = _number("1", "lower end of its 95 % interval", nullable=True)
     hi = _number("1", "upper end", nullable=True)
     ln_sd = _number("1", "standard deviation of ln factor", nullable=True)
+    dof = _number("1", "its degrees of freedom", nullable=True)
     influence = _number("1", "largest change when one boat is left out", nullable=True)
     influence_boat = _text("that boat", nullable=True)
     weakest_mode = _number("1", "share in what is known worst", nullable=True)
@@ -238,6 +241,24 @@ class SeasonLinks(dy.Schema):
     lo_no_boats = _number("1", "lower end of its 95 % interval", nullable=True)
     hi_no_boats = _number("1", "upper end", nullable=True)
     agreement = _number("1", "difference of the two in standard deviations", nullable=True)
+
+
+class SeasonSteps(dy.Schema):
+    """Whether a season's step against the boats' other tows is the log's or the load cell's."""
+
+    method = _method(primary_key=True)
+    season = dy.Int32(primary_key=True, description="year of the tow list")
+    part = dy.Int32(primary_key=True, description="part of the season, until a log was replaced")
+    log = _text("speed source", primary_key=True)
+    n_boats = dy.Int32(description="boats also towed in other seasons", min=0)
+    level_step = _number("1", "step of ln Cw, by the log as it reads", nullable=True)
+    level_step_sd = _number("1", "its standard deviation", nullable=True)
+    force_step = _number("1", "the part of it in ln force, as the bend shows", nullable=True)
+    force_step_sd = _number("1", "its standard deviation", nullable=True)
+    cause = _text(
+        "log, force (a log error may have come with it), none (no step), or not told",
+        regex="^(log|force|none|not told)$",
+    )
 
 
 class UncertaintyBudget(dy.Schema):
@@ -577,6 +598,7 @@ TABLES: Final[dict[str, type[dy.Schema]]] = {
     "assessments": Assessments,
     "log_factors": LogFactors,
     "season_links": SeasonLinks,
+    "season_steps": SeasonSteps,
     "uncertainty_budget": UncertaintyBudget,
     "ensemble": Ensemble,
     "register": Register,

@@ -29,6 +29,7 @@ ASSETS = [
     "run_points",
     "samples",
     "season_links",
+    "season_steps",
     "site",
     "slow_tows",
     "speed_trend",
