@@ -6,12 +6,11 @@ decide. How it is said in words is `herijk.audit_text`.
 """
 
 from collections.abc import Sequence
-from math import comb, exp
 from typing import Any, Final
 
 import duckdb
 
-from pipeline.consistency import ERAS, Era
+from pipeline.consistency import ERAS
 from pipeline.consistency.homogeneity import LEVEL
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.errors import MissingKnowledgeError
@@ -140,6 +139,7 @@ def _type_under(db: duckdb.DuckDBPyConnection, boat_type: str, method: str) -> R
         "outside": rows(db, _OUTSIDE, *own),
         "slow_tows": rows(db, _SLOW, *own),
         "repeats": _repeats(rows(db, _PAIRS, *own)),
+        "eras": [_era(db, *own, era.name) for era in ERAS[:-1]],
         "prediction": rows(db, _PREDICTION, *own)[0],
         "disagreeing": rows(db, _DISAGREEING, *own),
     }
@@ -174,7 +174,7 @@ def _trend(trend: Report) -> Report:
 
 
 def _repeats(pairs: list[Report]) -> Report:
-    """Repeat pairs of a type: how they spread, and whether an era stands apart."""
+    """Repeat pairs of a type: how they spread, and how many disagree."""
     squares = [pair["ln_ratio"] ** 2 for pair in pairs]
     known = [abs(pair["e_n"]) for pair in pairs if pair["e_n"] is not None]
     return {
@@ -182,47 +182,15 @@ def _repeats(pairs: list[Report]) -> Report:
         "sd_ratio": (sum(squares) / len(pairs) / 2) ** 0.5 if pairs else None,
         "n_e_n": len(known),
         "n_disagree": sum(e_n > 1 for e_n in known),
-        "eras": [_era(pairs, era) for era in ERAS],
     }
 
 
-def _era(pairs: list[Report], era: Era) -> Report:
-    """Tows of an era against the next tow of the same boat and crew in a later era.
-
-    The last era has no later one: its pairs lie within it.
-    """
-    last = era == ERAS[-1]
-    ratios = [
-        pair["ln_ratio"]
-        for pair in pairs
-        if era.first <= pair["season_before"] <= era.last and (last or pair["season"] > era.last)
-    ]
-    found = median_interval(ratios)
-    counted = {"era": era.name, "against": era.name if last else "later", "n": len(ratios)}
-    if found is None:
-        return (
-            counted | dict.fromkeys(("shift_ratio", "lo", "hi", "apart")) | {"reason": "few_pairs"}
-        )
-    median, lo, hi = (exp(value) for value in found)
-    apart = lo > 1.0 or hi < 1.0
-    return counted | {"shift_ratio": median, "lo": lo, "hi": hi, "apart": apart, "reason": ""}
-
-
-def median_interval(values: Sequence[float]) -> tuple[float, float, float] | None:
-    """Median with its 95 % interval from order statistics, None for fewer than six values.
-
-    Free of any distribution (David & Nagaraja 2003, Order Statistics, 7.1), so that a few tows
-    pulled askew or unreported alterations do not decide.
-    """
-    ordered, n = sorted(values), len(values)
-    outside, k = 0.0, 0
-    while k < n and outside + comb(n, k) * 0.5**n <= 0.025:
-        outside += comb(n, k) * 0.5**n
-        k += 1
-    if k == 0:
-        return None
-    middle = 0.5 * (ordered[(n - 1) // 2] + ordered[n // 2])
-    return middle, ordered[k - 1], ordered[n - k]
+def _era(db: duckdb.DuckDBPyConnection, method: str, boat_type: str, era: str) -> Report:
+    """Whether an era stands apart; the table has no row where a type has no pair at all."""
+    found = rows(db, _ERA, method, boat_type, era)
+    if found:
+        return found[0]
+    return {"era": era, "n": 0, "apart": None, "reason": "few_pairs"}
 
 
 def _fleet(db: duckdb.DuckDBPyConnection, method: str) -> Report:
@@ -238,6 +206,7 @@ def _fleet(db: duckdb.DuckDBPyConnection, method: str) -> Report:
             "ORDER BY component",
             method,
         ),
+        "eras": {row["era"]: row for row in rows(db, _ERAS_OF_ALL, method)},
         "prediction_error": error[0] if error else None,
     }
 
@@ -278,6 +247,12 @@ _PAIRS = f"""
 SELECT p.* FROM repeat_pairs AS p JOIN boats AS b USING (fsn_no)
 WHERE p.method = ? AND {_TYPE} = ? ORDER BY p.tow_id
 """  # noqa: S608
+
+_ERA = "SELECT * FROM era_shifts WHERE method = ? AND boat_type = ? AND era = ?"
+
+_ERAS_OF_ALL = """
+SELECT * FROM era_shifts WHERE method = ? AND boat_type = 'all' ORDER BY era
+"""
 
 _PREDICTION = """
 SELECT count(*) AS n, count(predicted_cw_kg_m) AS n_predicted,

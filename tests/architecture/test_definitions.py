@@ -11,6 +11,7 @@ ASSETS = [
     "boats",
     "correction_steps",
     "curves",
+    "era_shifts",
     "hand_windows",
     "lineage",
     "log_factors",
