@@ -158,7 +158,7 @@ def main():
     coverage(n)
     outliers(n)
     pooling(n)
-    components(max(n // 20, 20))
+    components(max(n // 5, 20))
     prediction(max(n // 10, 20))
 
 

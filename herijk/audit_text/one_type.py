@@ -143,16 +143,20 @@ def _silent(silent: list[tuple[str, str, str]]) -> list[str]:
 
 def _closest(under: Report) -> list[str]:
     """Spread about the line on weight: does Cw at one speed lie closer together than A and B?"""
+    closest = under["closest"]
+    if closest["reason"]:
+        return [nothing(closest)]
+    verdict = {
+        True: "Cw lies closer together than both",
+        False: "Cw lies further apart",
+        None: "these differ no more than chance lets them",
+    }[closest["cw_closest"]]
     found = {letter: line_of(under, q, "weight_kg") for q, letter in QUANTITIES.items()}
-    for line in found.values():
-        if line["reason"]:
-            return [nothing(line)]
-    spread = {letter: line["residual_sd_ratio"] for letter, line in found.items()}
-    closer = "lies closer" if spread["Cw"] < min(spread["A"], spread["B"]) else "lies no closer"
-    return [
-        f"about weight Cw spreads {share(spread['Cw'], 1)} (n {found['Cw']['n']}), A "
-        f"{share(spread['A'], 1)}, B {share(spread['B'], 1)}: Cw {closer} together."
-    ]
+    spreads = ", ".join(
+        f"{letter} {share(line['residual_sd_ratio'], 1)} (n {line['n']})"
+        for letter, line in found.items()
+    )
+    return [f"spread about weight: {spreads}: {verdict}."]
 
 
 def _equal_bends(under: Report) -> list[str]:
@@ -216,7 +220,10 @@ def _shared(under: Report) -> list[str]:
 
 def _judged(under: Report) -> str:
     counts = {row["quantity"]: row["n"] for row in under["judged"]}
-    return f"n {counts.get('ln_cw_standard', 0)} by Cw, n {counts.get('bend', 0)} by the bend"
+    return ", ".join(
+        f"n {counts[code]} by {words}" if code in counts else f"too few boats to judge {words}"
+        for code, words in (("ln_cw_standard", "Cw"), ("bend", "the bend"))
+    )
 
 
 def _outside(under: Report) -> list[str]:

@@ -1,6 +1,7 @@
 """The page of two types side by side, and what differs."""
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 from herijk.audit_text.words import (
     AGAINST,
@@ -18,116 +19,122 @@ from herijk.audit_text.words import (
 )
 from herijk.text import table
 
-Cell = Callable[[Report], tuple[bool | None, str]]
-"""From the figures of a type: its verdict, and the words."""
-
-Figure = tuple[str, Cell]
+Cell = Callable[[Report], str]
+"""The words in a cell, from the figures of a type."""
 
 
-def _headline(eras: list[str]) -> list[Figure]:
-    """Rows of the table: their label, and what stands in their cells."""
-    lines: list[Figure] = [
-        (f"{letter} against {against}", _line_cell(quantity, explaining))
+class Row(NamedTuple):
+    """A row of the table: its label, its name among the differences, and its cells."""
+
+    label: str
+    name: str
+    cell: Cell
+
+
+def _headline(eras: list[str]) -> list[Row]:
+    lines = [
+        Row(f"{letter} against {against}", f"{quantity} {explaining}", _line(quantity, explaining))
         for explaining, (against, _, _) in AGAINST.items()
         for quantity, letter in QUANTITIES.items()
     ]
     return [
         *lines,
-        ("spread about weight", _spread_cell),
-        ("equal bends possible", _bends_cell),
-        ("q per 10 % tow speed", _trend_cell),
-        ("boats outside", _outside_cell),
-        ("slow tows", lambda u: (None, f"{len(u['slow_tows'])} of n {u['bends']['n']}")),
-        *((f"{era}, next tow", _era_cell(i)) for i, era in enumerate(eras)),
-        ("repeats: s_R", _repeat_cell),
-        ("off from dimensions", _prediction_cell),
+        Row("spread about weight", "closest", _spread),
+        Row("equal bends possible", "bends", _bends),
+        Row("q per 10 % tow speed", "speed_trend", _trend),
+        Row("boats outside", "", _outside),
+        Row("slow tows", "", lambda u: f"{len(u['slow_tows'])} of n {u['bends']['n']}"),
+        *(Row(f"{era}, next tow", era, _era(i)) for i, era in enumerate(eras)),
+        Row("repeats: s_R", "", _repeat),
+        Row("off from dimensions", "", _prediction),
     ]
 
 
-def _no_cell(row: Report) -> str:
+def _nothing(row: Report) -> str:
     return f"- {row['reason'].replace('_', ' ')}, n {row['n']}"
 
 
-def _line_cell(quantity: str, explaining: str) -> Cell:
-    def cell(under: Report) -> tuple[bool | None, str]:
+def _line(quantity: str, explaining: str) -> Cell:
+    def cell(under: Report) -> str:
         line = line_of(under, quantity, explaining)
         if line["reason"]:
-            return None, _no_cell(line)
-        return line["follows"], f"{yes(line['follows'])}, {share(line['r2'])}, n {line['n']}"
+            return _nothing(line)
+        slope = f"{AGAINST[explaining][1] * line['slope']:+.2f}"
+        return f"{yes(line['follows'])}, {slope}, {share(line['r2'])}, n {line['n']}"
 
     return cell
 
 
-def _spread_cell(under: Report) -> tuple[bool | None, str]:
+def _spread(under: Report) -> str:
+    closest = under["closest"]
+    if closest["reason"]:
+        return _nothing(closest)
     found = [line_of(under, quantity, "weight_kg") for quantity in QUANTITIES]
-    if any(line["reason"] for line in found):
-        return None, "-"
     b, a, cw = (line["residual_sd_ratio"] for line in found)
-    return cw < min(a, b), f"B {100 * b:.1f}, A {100 * a:.1f}, Cw {100 * cw:.1f} %"
+    return f"B {100 * b:.1f}, A {100 * a:.1f}, Cw {100 * cw:.1f} %, n {closest['n']}"
 
 
-def _bends_cell(under: Report) -> tuple[bool | None, str]:
+def _bends(under: Report) -> str:
     test = under["bends"]
     if test["reason"]:
-        return None, _no_cell(test)
+        return _nothing(test)
     word = {True: "yes", False: "no", None: "not claimed"}[test["equal_possible"]]
-    return (
-        test["equal_possible"],
-        f"{word}, p {test['p_value']:.3f}, noise {share(test['noise_share'])}",
-    )
+    return f"{word}, p {test['p_value']:.3f}, noise {share(test['noise_share'])}, n {test['n']}"
 
 
-def _trend_cell(under: Report) -> tuple[bool | None, str]:
+def _trend(under: Report) -> str:
     trend = under["speed_trend"]
     if trend["reason"]:
-        return None, _no_cell(trend)
-    return trend["follows"], f"{yes(trend['follows'])}, {0.1 * trend['slope']:+.3f}, n {trend['n']}"
+        return _nothing(trend)
+    return f"{yes(trend['follows'])}, {0.1 * trend['slope']:+.3f}, n {trend['n']}"
 
 
-def _outside_cell(under: Report) -> tuple[bool | None, str]:
+def _outside(under: Report) -> str:
     judged = max((row["n"] for row in under["judged"]), default=0)
-    return bool(under["outside"]) if judged else None, f"{len(under['outside'])} of n {judged}"
+    return f"{len(under['outside'])} of n {judged}"
 
 
-def _era_cell(index: int) -> Cell:
-    def cell(under: Report) -> tuple[bool | None, str]:
+def _era(index: int) -> Cell:
+    def cell(under: Report) -> str:
         era = under["eras"][index]
         if era["reason"]:
-            return None, _no_cell(era)
-        return era["apart"], f"{apart(era)}, {change(era['shift_ratio'])} %, n {era['n']}"
+            return _nothing(era)
+        return f"{apart(era)}, {change(era['shift_ratio'])} %, n {era['n']}"
 
     return cell
 
 
-def _repeat_cell(under: Report) -> tuple[bool | None, str]:
+def _repeat(under: Report) -> str:
     pairs = under["repeats"]
-    return None, f"{share(pairs['sd_ratio'], 1)}, n {pairs['n_pairs']} pairs"
+    return f"{share(pairs['sd_ratio'], 1)}, n {pairs['n_pairs']} pairs"
 
 
-def _prediction_cell(under: Report) -> tuple[bool | None, str]:
+def _prediction(under: Report) -> str:
     own = under["prediction"]
-    return None, f"{share(own['rmse_ratio'], 1)}, n {own['n_predicted']}"
+    return f"{share(own['rmse_ratio'], 1)}, n {own['n_predicted']}"
 
 
 def two_types(report: Report) -> list[str]:
     """The parts of the page."""
     types, methods = report["types"], report["methods"]
-    eras = types[0]["under"][methods[0]]["eras"]
-    cells, differences = [], []
-    for label, cell in _headline([era["era"] for era in eras]):
-        for method in methods:
-            found = [cell(one["under"][method]) for one in types]
-            words = [said for _, said in found]
-            cells.append((label if method == methods[0] else "", method, *words))
-            verdicts = {verdict for verdict, _ in found}
-            if verdicts == {True, False}:
-                said = "; ".join(f"{t['boat_type']} {w}" for t, w in zip(types, words, strict=True))
-                differences.append(wrapped(f"{label}, {method}: {said}"))
     names = [one["boat_type"] for one in types]
+    eras = [era["era"] for era in types[0]["under"][methods[0]]["eras"]]
+    cells, differing = [], []
+    for row in _headline(eras):
+        for method in methods:
+            words = [row.cell(one["under"][method]) for one in types]
+            cells.append((row.label if method == methods[0] else "", method, *words))
+            if row.name in report["differences"][method]:
+                said = "; ".join(f"{n} {w}" for n, w in zip(names, words, strict=True))
+                differing.append(wrapped(f"{row.label}, {method}: {said}"))
     intro = [f"{one['boat_type']}: {heading(one)}" for one in types]
-    intro.append(f"{NOTE} Per cent after a verdict: share of the spread that the line explains.")
+    intro.append(
+        f"{NOTE} Beside a verdict stand the slope, per 100 kg or 0.1 m/s, and the share of the "
+        "spread that the line explains."
+    )
+    title = "What differs: slopes and shifts by more than both intervals together, and verdicts"
     return [
         "\n".join(wrapped(line, 0, 0) for line in intro),
         table(("", "method", *names), cells),
-        section("What differs:", differences or ["  no verdict differs between the two"]),
+        section(title, differing or ["  nothing"]),
     ]

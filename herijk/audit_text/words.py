@@ -26,6 +26,8 @@ EXPLANATIONS: Final = {
     "weight": "unusual weight",
     "length": "unusual length",
     "season": "its season lies to the same side",
+    "log": "unusual calibration of its log",
+    "altered": "altered before this tow",
     "slow_tow": "slow tow",
     "askew": "perhaps pulled askew",
     "b_at_cap": "B at its cap",
@@ -44,9 +46,9 @@ MOST_LISTED: Final = 4
 WIDTH: Final = 100
 
 NOTE: Final = (
-    "n counts the newest tow of each boat and crew; two crews of one boat have its own share of a "
-    "difference in common. Intervals are 95 %; a trend or shift is named where its interval leaves "
-    "out zero: 'none seen' is no proof that there is none."
+    "n counts the newest tow of each boat and crew; two crews of one boat are not taken for two "
+    "boats. Intervals are 95 %; a trend or shift is named where its interval leaves out zero: "
+    "'none seen' is no proof that there is none."
 )
 
 

@@ -288,6 +288,8 @@ def _candidates(
     checks = {
         "weight": _unusual(_explaining(boats, "weight_kg")),
         "length": _unusual(_explaining(boats, "waterline_length_m")),
+        "log": table["flags"].list.contains("unusual_calibration").to_numpy(),
+        "altered": table["altered"].to_numpy(),
         "slow_tow": is_slow(table),
         "askew": differ | (high & unchecked),
         "b_at_cap": table["b_capped"].to_numpy(),

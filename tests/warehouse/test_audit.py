@@ -8,6 +8,7 @@ import pytest
 from pipeline.errors import MissingKnowledgeError
 from tests.conftest import METHODS
 from warehouse.audit import audit
+from warehouse.audit_types import closest, differences
 
 
 def change(bench, *statements):
@@ -81,6 +82,63 @@ def test_repeats_of_a_type_are_those_of_its_boats(built):
     found = under(built, "Kuikensloep")["repeats"]
     assert found["n_pairs"] == len(own) > 0
     assert found["sd_ratio"] == pytest.approx(np.sqrt((own**2).mean() / 2))
+
+
+def of(first, second):
+    """Figures of two types with the given slopes and verdicts, as far as they are compared."""
+    return [
+        {
+            "lines": [{"quantity": "b_m_s", "explaining": "weight_kg", "reason": ""} | slope],
+            "speed_trend": {"reason": "few_boats"},
+            "eras": [],
+            "bends": {"equal_possible": bends},
+            "closest": {"cw_closest": None},
+        }
+        for slope, bends in (first, second)
+    ]
+
+
+def slope(value, half):
+    return {"slope": value, "slope_lo": value - half, "slope_hi": value + half}
+
+
+def test_types_differ_where_their_slopes_lie_further_apart_than_both_intervals():
+    # One follows weight and in the other no trend is seen: no difference by that alone.
+    assert differences(*of((slope(1.0, 0.9), None), (slope(0.5, 0.9), None))) == []
+    assert differences(*of((slope(1.0, 0.3), None), (slope(0.5, 0.3), None))) == ["b_m_s weight_kg"]
+    assert differences(*of((slope(1.0, 0.3), None), (slope(0.5, 0.41), None))) == []
+
+
+def test_types_differ_by_a_verdict_only_where_both_have_one():
+    same = slope(0.0, 1.0)
+    assert differences(*of((same, True), (same, False))) == ["bends"]
+    assert differences(*of((same, True), (same, None))) == []
+    assert differences(of((same, True), (same, True))[0]) == []
+
+
+def spread(n_boats, **sds):
+    """Lines on weight with these spreads about them."""
+    return [
+        {"quantity": q, "explaining": "weight_kg", "reason": "", "n": n_boats, "n_boats": n_boats,
+         "residual_sd_ratio": sd}
+        for q, sd in sds.items()
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("n_boats", "b", "a", "cw", "verdict"),
+    [
+        (12, 0.06, 0.06, 0.03, True),
+        (4, 0.06, 0.06, 0.03, None),
+        (12, 0.06, 0.04, 0.03, None),
+        (12, 0.02, 0.06, 0.05, False),
+    ],
+)
+def test_cw_lies_closest_only_where_chance_would_not_make_it(n_boats, b, a, cw, verdict):
+    lines = spread(n_boats, b_m_s=b, a_kg_m=a, cw_standard_kg_m=cw)
+    assert closest(lines)["cw_closest"] is verdict
+    missing = [line | {"reason": "few_boats"} for line in lines]
+    assert (closest(missing)["cw_closest"], closest(missing)["reason"]) == (None, "few_boats")
 
 
 def test_eras_are_those_of_the_table(built):
