@@ -92,8 +92,8 @@ def _away_from_zero(line: Report) -> bool | None:
 def closest(lines: list[Report]) -> Report:
     """Whether Cw at one speed spreads less about the line on weight than A and than B.
 
-    `cw_closest` is None where the variances differ no more than an F test at 5 % lets them. The three come from the
-    same runs, so the test is on the safe side.
+    `cw_closest` is None where the variances differ no more than an F test at 5 % lets them. The
+    three come from the same runs, so the test is on the safe side.
     """
     found = {line["quantity"]: line for line in lines if line["explaining"] == "weight_kg"}
     three = [found.get(name) for name in ("cw_standard_kg_m", "a_kg_m", "b_m_s")]

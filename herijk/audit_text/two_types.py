@@ -15,7 +15,6 @@ from herijk.audit_text.words import (
     section,
     share,
     wrapped,
-    yes,
 )
 from herijk.text import table
 
@@ -50,6 +49,10 @@ def _headline(eras: list[str]) -> list[Row]:
     ]
 
 
+def _trend_seen(line: Report) -> str:
+    return "follows" if line["follows"] else "none seen"
+
+
 def _nothing(row: Report) -> str:
     return f"- {row['reason'].replace('_', ' ')}, n {row['n']}"
 
@@ -60,7 +63,7 @@ def _line(quantity: str, explaining: str) -> Cell:
         if line["reason"]:
             return _nothing(line)
         slope = f"{AGAINST[explaining][1] * line['slope']:+.2f}"
-        return f"{yes(line['follows'])}, {slope}, {share(line['r2'])}, n {line['n']}"
+        return f"{_trend_seen(line)}, {slope}, {share(line['r2'])}, n {line['n']}"
 
     return cell
 
@@ -86,7 +89,7 @@ def _trend(under: Report) -> str:
     trend = under["speed_trend"]
     if trend["reason"]:
         return _nothing(trend)
-    return f"{yes(trend['follows'])}, {0.1 * trend['slope']:+.3f}, n {trend['n']}"
+    return f"{_trend_seen(trend)}, {0.1 * trend['slope']:+.3f}, n {trend['n']}"
 
 
 def _outside(under: Report) -> str:
