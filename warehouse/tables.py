@@ -64,6 +64,7 @@ CONSISTENCY_TABLES: Final = (
     "speed_trend",
     "slow_tows",
     "repeat_pairs",
+    "era_shifts",
     "reproducibility",
     "variance_components",
     "predicted_cw",

@@ -13,6 +13,7 @@ ASSETS = [
     "curve_points",
     "curves",
     "ensemble",
+    "era_shifts",
     "hand_windows",
     "lineage",
     "log_factors",
