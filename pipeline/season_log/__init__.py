@@ -6,9 +6,10 @@ repeat tows determine it well (research, method.md 8.1). It is the ubercalibrati
 boats are the stars, seasons the nights, tows calibrated on dGPS the absolute anchor.
 
 Belongs here: the joint estimate (`joint`), how sure it is (`left_out`) and what it rests on
-(`network`); the second estimate without boat identity (`without_boats`); the test whether a step is
-the log's or the load cell's (`cause`). Does not: how Cw of a tow is computed, prescribed
-corrections (never data here) and what is done with the factors.
+(`network`); which boats would tie the seasons together better (`ties`); the second estimate without
+boat identity (`without_boats`); the test whether a step is the log's or the load cell's (`cause`).
+Does not: how Cw of a tow is computed, prescribed corrections (never data here) and what is done
+with the factors.
 
 The model, for tow k of boat i in season j, with lambda = ln(true speed / log speed):
 
@@ -25,6 +26,7 @@ from pipeline.season_log.cause import log_or_force
 from pipeline.season_log.estimate import SeasonFactors, estimate_season_factors
 from pipeline.season_log.network import GROUP, LINE
 from pipeline.season_log.scale import scale_effect
+from pipeline.season_log.ties import retow_choice
 
 __all__ = [
     "GROUP",
@@ -34,5 +36,6 @@ __all__ = [
     "Settings",
     "estimate_season_factors",
     "log_or_force",
+    "retow_choice",
     "scale_effect",
 ]

@@ -36,6 +36,7 @@ class SeasonFactors:
         tow_sd: standard deviation of ln Cw of a calibrated tow beyond its random part.
         ageing_per_year: change of ln Cw per year, with `ageing_sd`.
         weakest_mode_sd: standard deviation of the combination of ln factors that is known worst.
+        tows: what it was estimated from.
     """
 
     factors: pl.DataFrame
@@ -45,6 +46,7 @@ class SeasonFactors:
     ageing_per_year: float
     ageing_sd: float
     weakest_mode_sd: float
+    tows: pl.DataFrame
 
 
 def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> SeasonFactors:
@@ -95,6 +97,7 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
         ageing_per_year=ageing[0],
         ageing_sd=ageing[1],
         weakest_mode_sd=mode_sd,
+        tows=tows,
     )
 
 
