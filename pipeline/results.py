@@ -29,7 +29,11 @@ LEVEL = 0.95
 
 @dataclass(frozen=True)
 class Recomputed:
-    """The tables of one method, named as in the warehouse."""
+    """The tables of one method, named as in the warehouse, and the season factors behind them.
+
+    Attributes:
+        factors: with their covariance, for the ensemble; None if the method estimates none.
+    """
 
     run_points: pl.DataFrame
     curves: pl.DataFrame
@@ -37,6 +41,7 @@ class Recomputed:
     assessments: pl.DataFrame
     uncertainty_budget: pl.DataFrame
     season_links: pl.DataFrame
+    factors: SeasonFactors | None
 
 
 def as_tables(
@@ -71,6 +76,7 @@ def as_tables(
             name, pl.exclude("dof"), pl.when(pl.col("dof").is_finite()).then("dof").alias("dof")
         ),
         season_links=_season_links(found).select(name, pl.all()),
+        factors=found,
     )
 
 

@@ -242,6 +242,20 @@ class UncertaintyBudget(dy.Schema):
     dof = _number("1", "degrees of freedom; empty: not limited", nullable=True)
 
 
+class Ensemble(dy.Schema):
+    """Equally likely values of Cw, with the errors that tows share drawn together.
+
+    Kept in the lake, a file per method, and not in the database.
+    """
+
+    method = _method(primary_key=True)
+    tow_id = _tow_id(primary_key=True)
+    member = dy.Int16(
+        primary_key=True, description="equal numbers of different tows belong together", min=1
+    )
+    cw_kg_m = _number("kg/m", "Cw at the declared speed", min_exclusive=0)
+
+
 class Register(dy.Schema):
     """One line per edition, boat and crew."""
 
@@ -552,6 +566,7 @@ TABLES: Final[dict[str, type[dy.Schema]]] = {
     "log_factors": LogFactors,
     "season_links": SeasonLinks,
     "uncertainty_budget": UncertaintyBudget,
+    "ensemble": Ensemble,
     "register": Register,
     "register_changes": RegisterChanges,
     "correction_steps": CorrectionSteps,

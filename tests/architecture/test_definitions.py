@@ -11,6 +11,7 @@ ASSETS = [
     "boats",
     "correction_steps",
     "curves",
+    "ensemble",
     "hand_windows",
     "lineage",
     "log_factors",
