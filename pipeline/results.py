@@ -19,7 +19,8 @@ from pipeline.assessment import assess, with_status
 from pipeline.method import Method
 from pipeline.outcome import Outcome
 from pipeline.race import power_per_rower_w
-from pipeline.season_log import SeasonFactors
+from pipeline.season_log import SeasonFactors, retow_choice
+from pipeline.season_log.ties import TIE_SCHEMA
 from pipeline.speed import log_factor
 from pipeline.sureness import budget_of, cw_bounds, run_point_ratio, scatter_of
 from pipeline.wind import mean_wind_angle_deg
@@ -41,6 +42,7 @@ class Recomputed:
     assessments: pl.DataFrame
     uncertainty_budget: pl.DataFrame
     season_links: pl.DataFrame
+    retow_choice: pl.DataFrame
     factors: SeasonFactors | None
 
 
@@ -76,6 +78,7 @@ def as_tables(
             name, pl.exclude("dof"), pl.when(pl.col("dof").is_finite()).then("dof").alias("dof")
         ),
         season_links=_season_links(found).select(name, pl.all()),
+        retow_choice=_retow_choice(found).select(name, pl.all()),
         factors=found,
     )
 
@@ -206,6 +209,11 @@ def _season_links(found: SeasonFactors | None) -> pl.DataFrame:
     if found is None:
         return pl.DataFrame(schema=LINK_SCHEMA)
     return found.factors.select(pl.col(name).cast(kind) for name, kind in LINK_SCHEMA.items())
+
+
+def _retow_choice(found: SeasonFactors | None) -> pl.DataFrame:
+    """The boats that would make estimated factors surer; no rows where nothing was estimated."""
+    return pl.DataFrame(schema=TIE_SCHEMA) if found is None else retow_choice(found)
 
 
 LINK_SCHEMA = (

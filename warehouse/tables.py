@@ -27,6 +27,7 @@ from warehouse import intake
 from warehouse.archive import outside_run
 from warehouse.code import code_version
 from warehouse.database import build_database
+from warehouse.due import due_made_from, due_rows
 from warehouse.editions.published import published_made_from, published_tables
 from warehouse.schemas import TABLES, Quarantine, conform
 from warehouse.store import Store, fingerprint, table_digest
@@ -37,6 +38,7 @@ METHOD_TABLES: Final = (
     "curves",
     "log_factors",
     "season_links",
+    "retow_choice",
     "uncertainty_budget",
     "assessments",
 )
@@ -50,6 +52,7 @@ STUDIED_METHOD: Final = "rebased"
 
 REGISTER_TABLES: Final = (
     "register",
+    "due_list",
     "register_changes",
     "lineage",
     "methods",
@@ -276,7 +279,8 @@ def register_made_from(store: Store, methods: Sequence[Method]) -> str:
     """What the registers, and everything derived from curves, are made from."""
     curves = {m.name: [store.made_from("curves", m.name), str(m.validity)] for m in methods}
     archive = [store.made_from(t) for t in ("tows", "boats")]
-    return fingerprint(curves, archive, published_made_from(store), code_version())
+    beside = [published_made_from(store), due_made_from(store)]
+    return fingerprint(curves, archive, beside, code_version())
 
 
 def register_is_stale(store: Store, methods: Sequence[Method]) -> bool:
@@ -304,7 +308,7 @@ def _of_methods(store: Store, table: str, methods: Sequence[Method]) -> pl.DataF
 
 
 def make_registers(store: Store, methods: Sequence[Method]) -> dict[str, int]:
-    """A draft register per method and what changes between them, and the published editions.
+    """A draft register per method, its due list, what changes, and the published editions.
 
     Validity is judged on the day of the archive's last tow, not today: so the same archive gives
     the same tables. Drafts are compared with the first method's.
@@ -324,6 +328,7 @@ def make_registers(store: Store, methods: Sequence[Method]) -> dict[str, int]:
     changes = [register_changes(drafts[0], draft) for draft in drafts[1:]]
     found = {
         "register": register,
+        "due_list": due_rows(store, methods, curves),
         "register_changes": pl.concat(changes) if changes else _empty("register_changes"),
         "lineage": _lineage(register, tows, methods),
         "methods": _methods(methods),

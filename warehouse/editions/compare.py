@@ -29,7 +29,6 @@ from warehouse.code import code_version
 from warehouse.editions.folder import Edition, read_edition
 from warehouse.editions.inputs import (
     INPUTS_HASH,
-    archive_root,
     same_tows,
     tows_of_today,
     unchanged_tows,
@@ -107,7 +106,7 @@ def race_effects(store: Store, old: Edition, new: Edition, rules: RaceRules) -> 
     Raises:
         MissingKnowledgeError: the rules ask for what is not known.
     """
-    root = archive_root(store)
+    root = intake.archive_root(store)
     results = None if root is None else read_races(root)[0]
     if results is None or results.is_empty():
         return None

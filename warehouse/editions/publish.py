@@ -21,6 +21,7 @@ from pipeline.errors import MissingKnowledgeError
 from pipeline.method import Method, RegisterRule, method_text
 from pipeline.register import LINE, valid_until
 from warehouse import decisions as decided
+from warehouse import intake
 from warehouse.archive import read_published_registers
 from warehouse.code import code_version
 from warehouse.editions import notes, sheets
@@ -49,7 +50,6 @@ from warehouse.editions.folder import (
 from warehouse.editions.inputs import (
     INPUTS_HASH,
     REGISTER,
-    archive_root,
     input_files,
     inputs_digest,
     tows_of_today,
@@ -269,7 +269,7 @@ def _parquet(frame: pl.DataFrame) -> bytes:
 
 def _printed_lines(store: Store, season: int) -> tuple[pl.DataFrame, pl.DataFrame]:
     """Lines of the register printed in a season, and the file they come from."""
-    root = archive_root(store)
+    root = intake.archive_root(store)
     if root is None:
         raise MissingKnowledgeError(
             "the archive is not where it was at the last rebuild; rebuild with --archive DIR"

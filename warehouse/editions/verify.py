@@ -16,6 +16,7 @@ from pydantic import ValidationError
 from pipeline.errors import BrokenPromiseError, HerijkError
 from pipeline.register import LINE
 from pipeline.steady import HAND_COLUMNS
+from warehouse import intake
 from warehouse.archive import FileHashes, index_archive
 from warehouse.code import code_version
 from warehouse.editions import sheets
@@ -36,7 +37,6 @@ from warehouse.editions.folder import (
 from warehouse.editions.inputs import (
     LIST,
     NOT_INPUT,
-    archive_root,
     unchanged_tows,
 )
 from warehouse.editions.lines import MEASURED, NUMBERS, lines_made_again
@@ -222,7 +222,7 @@ def _line_name(row: dict[str, Any]) -> str:
 
 def _archive(store: Store, path: Path, about: About) -> Iterator[Finding]:
     name = path.name
-    root = archive_root(store) if store.made_from("about_archive") is not None else None
+    root = intake.archive_root(store) if store.made_from("about_archive") is not None else None
     if root is None:
         yield Finding(
             name,
