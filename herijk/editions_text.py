@@ -20,6 +20,9 @@ CAUSES = {
 }
 
 
+KINDS = {"recomputed": "recomputed", "as_printed": "as printed"}
+
+
 def published(report: Report) -> str:
     """An edition that was just published."""
     lines = report["tables"]["register"]["rows"]
@@ -132,11 +135,16 @@ def verify(report: Report) -> str:
     """What was checked and what is wrong."""
     if not report["editions"] and not report["findings"]:
         return "No edition was published yet; nothing to verify."
+    rows = [
+        (e["edition"], KINDS[e["kind"]], e["lines"], e["made_again"], e["equal"])
+        for e in report["editions"]
+    ]
+    head = ("edition", "kind", "lines", "made again", "equal")
     parts = [
-        table(
-            ("edition", "kind", "lines made again"),
-            [(e["edition"], e["kind"], e["lines_made_again"]) for e in report["editions"]],
-        )
+        f"{table(head, rows)}\nMade again: measured lines from the blocks of the archive, carried "
+        "lines from the printed edition, printed lines\nfrom the register in the archive. Lines of "
+        "boats that were never towed hold nothing to make. From blocks means\nthat samples files "
+        "are compared by their hash, not read again."
     ]
     if report["findings"]:
         rows = [

@@ -287,6 +287,10 @@ class Register(dy.Schema):
     cw_lo_kg_m = _number("kg/m", "lower end of its 95 % interval", nullable=True)
     cw_hi_kg_m = _number("kg/m", "upper end", nullable=True)
     status = _text("valid, or why there is no valid curve")
+    verification_code = _text(
+        "ten letters and digits that follow from all that made the line; drafts have none",
+        nullable=True,
+    )
 
 
 class DueList(dy.Schema):

@@ -220,14 +220,14 @@ def apply_method(store: Store, method: Method, blocks: RunBlocks) -> dict[str, p
     made_from = method_made_from(store, method)
     result = recompute(method, typed_tows(store), blocks)
     tables = {name: getattr(result, name) for name in METHOD_TABLES}
-    tables["ensemble"] = _ensemble(method, result)
+    tables["ensemble"] = ensemble_of(method, result)
     found = {name: conform(name, frame) for name, frame in tables.items()}
     for name, frame in found.items():
         store.write(name, frame, made_from, method.name)
     return found
 
 
-def _ensemble(method: Method, result: Recomputed) -> pl.DataFrame:
+def ensemble_of(method: Method, result: Recomputed) -> pl.DataFrame:
     """Equally likely values of every curve's Cw, 200 rows a tow."""
     tows = result.curves.drop_nulls("cw_kg_m").select("tow_id", "cw_kg_m")
     members = register_ensemble(tows, result.uncertainty_budget, result.factors)
@@ -352,7 +352,8 @@ def _of(curves: pl.DataFrame, method: Method) -> pl.DataFrame:
 
 def _as_edition(method: Method, register: pl.DataFrame) -> pl.DataFrame:
     edition, name = pl.lit(draft_name(method.name)), pl.lit(method.name)
-    return register.select(edition.alias("edition"), name.alias("method"), pl.all())
+    code = pl.lit(None, pl.String).alias("verification_code")
+    return register.select(edition.alias("edition"), name.alias("method"), pl.all(), code)
 
 
 def _lineage(register: pl.DataFrame, tows: pl.DataFrame, methods: Sequence[Method]) -> pl.DataFrame:

@@ -33,7 +33,7 @@ from warehouse.editions.inputs import (
     tows_of_today,
     unchanged_tows,
 )
-from warehouse.editions.lines import MEASURED, lines_made_again
+from warehouse.editions.lines import MEASURED, made_again
 from warehouse.store import Store
 from warehouse.tables import runs_with_windows
 
@@ -125,7 +125,7 @@ def _code_parts(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
         return NO_PARTS
     if len(unchanged_tows(store, old)) < old.tables["tows"].height:
         return NO_PARTS
-    again = lines_made_again(store, old).with_columns(pl.lit("again").alias("edition"))
+    again = made_again(store, old).lines.with_columns(pl.lit("again").alias("edition"))
     return register_changes(old.register, again).select(
         *LINE,
         pl.lit(CODE).alias("cause"),
