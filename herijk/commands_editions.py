@@ -17,7 +17,7 @@ from pipeline.method import shipped_method, shipped_text
 from pipeline.replay import FATIGUES, STREAMS, RaceRules
 from warehouse.due import due_report
 from warehouse.editions import compare
-from warehouse.editions.folder import read_about
+from warehouse.editions.folder import read_edition
 from warehouse.editions.lineage import lineage as find_lineage
 from warehouse.editions.publish import Terms, publish_printed
 from warehouse.editions.publish import publish as publish_edition
@@ -90,8 +90,13 @@ def publish(
         folder = publish_printed(store, printed, terms)
     else:
         folder = publish_edition(store, shipped_method(str(method)), terms, carry)
-    about = read_about(folder).model_dump(mode="json")
-    show(about | {"folder": str(folder)}, text.published, as_json)
+    made = read_edition(store, folder.name)
+    counts = made.register["status"].value_counts().sort("count", "status", descending=True)
+    found = made.about.model_dump(mode="json") | {
+        "folder": str(folder),
+        "statuses": dict(counts.rows()),
+    }
+    show(found, text.published, as_json)
 
 
 def diff(
@@ -117,7 +122,8 @@ def diff(
     races = compare.race_effects(store, found.old, found.new, rules)
     report = compare.report(found) | {
         "race_rules": vars(rules),
-        "races": None if races is None else races.to_dicts(),
+        "races": None if races is None else races.results.to_dicts(),
+        "winners": None if races is None else races.winners.to_dicts(),
     }
     show(report, text.diff, as_json)
 

@@ -51,7 +51,14 @@ def test_wrong_arguments_are_status_2(herijk, bench, arguments):
 def test_diff_names_gain_loss_causes_and_races(herijk, bench):
     status, out, err = herijk("diff", "2014-1", "2014-2", "--data", bench.data)
     assert (status, err) == (0, "")
-    for part in ("Gain", "Lose", "method: temperature", "in 2 h", "Races (fatigue extend"):
+    for part in (
+        "Gain",
+        "Lose",
+        "method: water temperature",
+        "in 2 h",
+        "Races (fatigue extend",
+        "Winners",
+    ):
         assert part in out
     status, out, _ = herijk("diff", "2014-1", "2014-2", "--data", bench.data, "--json")
     report = json.loads(out)

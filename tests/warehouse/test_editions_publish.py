@@ -43,7 +43,10 @@ FILES = {
     "edition.json",
     "method.toml",
     "decisions.json",
+    "bericht.md",
+    "notice.md",
     "toelichting.md",
+    "release_notes.md",
     *(f"{name}.parquet" for name in TABLES if name != CHANGES),
 }
 """Files of the first edition."""
@@ -184,18 +187,93 @@ def test_the_data_package_tool_would_see_a_changed_number(published_copy):
     assert not frictionless.validate(str(file.parent / "datapackage.json")).valid
 
 
-def test_the_notes_say_what_changes(published):
-    text = (folder(published, "2014-2") / "toelichting.md").read_text(encoding="utf-8")
-    for part in (
+NOTICES = {
+    "bericht.md": (
         "GESIMULEERD",
+        "**Besluit.** besluit van de ALV. Vastgesteld op 1 juni 2014.",
+        "**Vanaf wanneer.** Het register 2014-2 geldt vanaf 1 juni 2014.",
         "ten opzichte van 2014-1",
-        "besluit van de ALV",
-        "## Bezwaar",
-        "ensemble",
-    ):
+        "P = Cw · v³ / n",
+        "(rebased, ",
+        "heren",
+        "dames",
+        "groter dan de onzekerheid",
+        "**Bezwaar.**",
+        "**De 10 grootste wijzigingen**",
+    ),
+    "notice.md": (
+        "SIMULATED",
+        "**Decision.** besluit van de ALV. Published on 1 June 2014.",
+        "Register 2014-2 counts from 1 June 2014.",
+        "against 2014-1",
+        "P = Cw · v³ / n",
+        "(rebased, ",
+        "men",
+        "women",
+        "larger than the uncertainty",
+        "**Objections.**",
+        "**The 10 largest changes**",
+    ),
+}
+WORDS_A_PAGE = 500
+"""A page of A4 in print."""
+
+
+@pytest.mark.parametrize("name", NOTICES)
+def test_the_notice_says_what_a_member_needs_on_one_page(published, name):
+    text = (folder(published, "2014-2") / name).read_text(encoding="utf-8")
+    for part in NOTICES[name]:
         assert part in text
-    first = (folder(published) / "toelichting.md").read_text(encoding="utf-8")
-    assert "eerste uitgave" in first
+    rows = [line for line in text.splitlines() if line.startswith("| FSN")]
+    assert len(rows) == 10
+    assert len(text.replace("|", " ").split()) < WORDS_A_PAGE
+    assert "None" not in text
+
+
+def test_the_numbers_of_a_notice_are_written_as_its_readers_write_them(published):
+    path = folder(published, "2014-2")
+    dutch, english = (
+        [line for line in (path / name).read_text(encoding="utf-8").splitlines() if "| FSN" in line]
+        for name in NOTICES
+    )
+    assert [line.replace(",", ".") for line in dutch] == english
+    assert dutch != english
+
+
+def test_the_largest_changes_are_those_of_the_table(published):
+    text = (folder(published, "2014-2") / "notice.md").read_text(encoding="utf-8")
+    changes = edition_of(published, "2014-2").tables[CHANGES].drop_nulls("cw_ratio")
+    by_size = changes.filter(change="changed").sort(
+        pl.col("cw_ratio").log().abs(), "fsn_no", descending=[True, False]
+    )
+    rows = [line.split(" | ") for line in text.splitlines() if line.startswith("| FSN")]
+    assert [row[0].removeprefix("| ") for row in rows] == by_size["fsn_no"].head(10).to_list()
+    shown = [f"{100 * (ratio - 1):+.2f} %" for ratio in by_size["power_ratio"].head(10)]
+    assert [row[5] for row in rows] == shown
+
+
+def test_the_release_notes_say_what_changes_and_why(published):
+    path = folder(published, "2014-2")
+    for name, parts in {
+        "toelichting.md": ("GESIMULEERD", "ten opzichte", "## Bezwaar", "200 even", "oorzaken"),
+        "release_notes.md": (
+            "SIMULATED",
+            "gainst 2014-1",
+            "## Objections",
+            "200 equally",
+            "causes",
+        ),
+    }.items():
+        text = (path / name).read_text(encoding="utf-8")
+        for part in parts:
+            assert part.lower() in text.lower()
+    for name, first in {
+        "toelichting.md": "eerste uitgave",
+        "bericht.md": "eerste uitgave",
+        "release_notes.md": "first edition",
+        "notice.md": "first edition",
+    }.items():
+        assert first in (folder(published) / name).read_text(encoding="utf-8")
 
 
 # Verification codes
@@ -392,4 +470,4 @@ def test_a_printed_line_is_rebased_in_closed_form_where_nothing_was_measured(wit
     lines = diff(with_printed.store, "gedrukt-2012", "2014-1").lines
     causes = {row["fsn_no"]: json.loads(row["causes"]) for row in lines.iter_rows(named=True)}
     assert [c["cause"] for c in causes["FSN900"]] == ["closed_form"]
-    assert [c["cause"] for c in causes[measured["fsn_no"]]] == ["printed"]
+    assert [c["cause"] for c in causes[measured["fsn_no"]]] == ["printed_and_tow"]

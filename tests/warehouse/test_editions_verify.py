@@ -34,7 +34,12 @@ def test_untouched_editions_pass_and_come_out_equal_when_made_again(published):
     assert not report["wrong"]
     for one in report["editions"]:
         register = read_edition(published.store, one["edition"]).register
-        assert one["equal"] == one["made_again"] == register.filter(pl.col("status") != "never_towed").height > 0
+        assert (
+            one["equal"]
+            == one["made_again"]
+            == register.filter(pl.col("status") != "never_towed").height
+            > 0
+        )
 
 
 def test_a_changed_digit_in_the_csv_is_named_by_line_and_column(published_copy):

@@ -36,6 +36,9 @@ XLSX: Final = "register.xlsx"
 INPUTS: Final = "inputs.csv"
 PACKAGE: Final = "datapackage.json"
 NOTES: Final = "toelichting.md"
+NOTES_EN: Final = "release_notes.md"
+NOTICE: Final = "bericht.md"
+NOTICE_EN: Final = "notice.md"
 CHANGES: Final = "register_changes"
 TABLES: Final = (
     "register",

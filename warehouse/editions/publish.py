@@ -29,7 +29,6 @@ from warehouse.editions.folder import (
     DECISIONS,
     INPUTS,
     METHOD,
-    NOTES,
     PACKAGE,
     TABLES,
     XLSX,
@@ -240,14 +239,13 @@ def _write(store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str,
     if about.previous is not None:
         previous = compare(store, read_edition(store, about.previous), edition)
         tables[CHANGES] = previous.lines
-    text = notes.release_notes(edition, previous)
+    written = texts | notes.texts(edition, previous)
     fields = [*sheets.REGISTER_FIELDS, CODE_FIELD]
     contents = {
         CSV: sheets.csv_bytes(edition.register, fields),
         XLSX: sheets.xlsx_bytes(edition.register, fields, about),
         INPUTS: sheets.csv_bytes(files, sheets.INPUT_FIELDS),
-        NOTES: text.encode("utf-8"),
-        **{name: content.encode("utf-8") for name, content in texts.items()},
+        **{name: text.encode("utf-8") for name, text in written.items()},
         **{f"{name}.parquet": _parquet(tables[name]) for name in TABLES if name in tables},
     }
     contents[PACKAGE] = sheets.package_bytes(about, contents, notes.summary(edition))
