@@ -17,7 +17,7 @@ def published(report: Report) -> str:
     compared = (
         f"Compared with {report['previous']}: herijk diff {report['previous']} {report['edition']}"
         if report["previous"]
-        else "The first edition: there is no earlier one to compare with."
+        else "There is no earlier edition to compare it with."
     )
     return "\n".join(
         [
@@ -233,7 +233,7 @@ def _number(value: float | None) -> str:
 
 
 def _per_cent(ratio: float | None) -> str:
-    return "-" if ratio is None else f"{100 * (ratio - 1):+.2f} %"
+    return ENGLISH.per_cent(ratio)
 
 
 def _seconds(value: float | None) -> str:

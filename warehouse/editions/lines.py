@@ -95,9 +95,7 @@ def made_again(store: Store, edition: Edition) -> Again:
     )
     if about.carried_from is not None:
         printed = read_edition(store, about.carried_from)
-        lines = with_carried(
-            lines, printed, found.log_factors, about.valid_from, edition.method.validity
-        )
+        lines = with_carried(lines, printed, found.log_factors, about.valid_from, edition.method)
     members = tables.ensemble_of(edition.method, found)
     return Again(lines, members.join(edition.tables["ensemble"], on="tow_id", how="semi"))
 

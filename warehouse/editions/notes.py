@@ -132,7 +132,7 @@ def _changes(found: Report | None, language: Language) -> dict[str, Any]:
 def _group(group: Report, language: Language) -> str:
     if not group["lines"]:
         return language.count(0)
-    of_class = ", ".join(f"{group['of_class'][c]} {words}" for c, words in language.crews.items())
+    of_class = ", ".join(f"{words} {group['of_class'][c]}" for c, words in language.crews.items())
     median = {"nl": "mediaan", "en": "median"}[language.code]
     return (
         f"{language.count(group['lines'])} ({of_class}; {median} "

@@ -12,8 +12,9 @@ import polars as pl
 
 from pipeline.curve import cw, rebase, s_of_b
 from pipeline.errors import MissingKnowledgeError
-from pipeline.method import RegisterRule
+from pipeline.method import Method
 from pipeline.register import LINE, valid_until
+from pipeline.speed import log_factor
 from warehouse import intake
 from warehouse.archive import read_published_registers
 from warehouse.editions.folder import Edition
@@ -65,15 +66,22 @@ def with_carried(
     printed: Edition,
     log_factors: pl.DataFrame,
     valid_from: dt.date,
-    rule: RegisterRule,
+    method: Method,
 ) -> pl.DataFrame:
     """Lines of the warehouse, with a printed one that still counts in place of each not valid.
+
+    Args:
+        lines: those of the method.
+        printed: an edition as printed.
+        log_factors: what the method found, for seasons with tows in the warehouse.
+        valid_from: day from which the lines are to count.
+        method: prescribes the factor of other seasons, and how long a tow counts.
 
     Raises:
         MissingKnowledgeError: the edition is not a printed one.
     """
     counts = pl.lit(valid_from).is_between("tow_date", "valid_until")
-    carried = _carried(printed, log_factors, rule).filter(counts & pl.col("cw_kg_m").is_finite())
+    carried = _carried(printed, log_factors, method).filter(counts & pl.col("cw_kg_m").is_finite())
     taken = carried.join(lines.filter(pl.col("status") == "valid"), on=LINE, how="anti")
     return pl.concat([lines.join(taken, on=LINE, how="anti"), taken], how="diagonal_relaxed")
 
@@ -102,7 +110,7 @@ def _row_hashes(lines: pl.DataFrame) -> pl.Series:
     return pl.Series(INPUTS_HASH, [fingerprint(row) for row in values.rows()], pl.String)
 
 
-def _carried(printed: Edition, log_factors: pl.DataFrame, rule: RegisterRule) -> pl.DataFrame:
+def _carried(printed: Edition, log_factors: pl.DataFrame, method: Method) -> pl.DataFrame:
     """Printed lines re-based in closed form: A / y^2 and B y with the log factor y of the season.
 
     Raises:
@@ -114,19 +122,32 @@ def _carried(printed: Edition, log_factors: pl.DataFrame, rule: RegisterRule) ->
             "can be carried over"
         )
     usable = ("tow_date", "declared_speed_m_s", "a_kg_m", "b_m_s")
-    lines = (
-        printed.register.drop_nulls(usable)
-        .with_columns(pl.col("tow_date").dt.year().alias("season"))
-        .join(log_factors.select("season", "factor"), on="season", how="left")
-    )
-    y = lines["factor"].fill_null(1.0).to_numpy()
+    lines = printed.register.drop_nulls(usable)
+    known = dict(log_factors.select("season", "factor").rows())
+    y = np.array([_season_factor(day.year, known, method) for day in lines["tow_date"]])
     a, b = rebase(lines["a_kg_m"], lines["b_m_s"], y)
     return lines.select(
         *LINE,
         *("tow_date", "declared_speed_m_s", "status", INPUTS_HASH),
-        valid_until(pl.col("tow_date"), rule).alias("valid_until"),
+        valid_until(pl.col("tow_date"), method.validity).alias("valid_until"),
         pl.Series("a_kg_m", a),
         pl.Series("b_m_s", b),
         pl.Series("cw_kg_m", cw(a, s_of_b(b), lines["declared_speed_m_s"])),
         pl.Series("basis", np.where(y == 1.0, AS_PRINTED, REBASED), pl.String),
     )
+
+
+def _season_factor(season: int, known: dict[int, float], method: Method) -> float:
+    """True speed / the speed that was printed.
+
+    1 where the method calibrates every tow on GPS: in those seasons the printed number was
+    calibrated too. Else what was found for the season; without tows of it, what is prescribed.
+    """
+    try:
+        steps = method.for_season(season)
+    except MissingKnowledgeError:
+        return 1.0  # the method says nothing about it, so the line stays as printed
+    if steps.calibration.rule != "none":
+        return 1.0
+    unknown = np.array([np.nan])
+    return known.get(season, float(log_factor(steps.speed, unknown, unknown)[0]))

@@ -153,7 +153,7 @@ def recomputed_edition(
     if carry is not None:
         printed = read_edition(store, carry)
         factors = tables["log_factors"]
-        lines = with_carried(lines, printed, factors, terms.valid_from, method.validity)
+        lines = with_carried(lines, printed, factors, terms.valid_from, method)
     tables["ensemble"] = read_ensemble(store, method.name).join(
         lines.drop_nulls("cw_kg_m"), on="tow_id", how="semi"
     )

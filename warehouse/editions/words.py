@@ -43,7 +43,10 @@ class Language:
 
     def per_cent(self, ratio: float | None) -> str:
         """A ratio as a change in per cent."""
-        return "-" if ratio is None else f"{100 * (ratio - 1):+.2f} %".replace(".", self.decimal)
+        if ratio is None:
+            return "-"
+        change = round(100 * (ratio - 1), 2) + 0.0  # never -0.00
+        return f"{change:+.2f} %".replace(".", self.decimal)
 
     def seconds(self, value: float | None) -> str:
         """Seconds with their sign."""
