@@ -94,9 +94,8 @@ except BrokenPromiseError as error:
 
 def in_small_disk(script, folder):
     """Runs a script with a disk of 16 kB mounted at the folder, in a namespace of its own."""
-    mount = (
-        f'mount -t tmpfs -o size=16k tmpfs {folder} && exec {sys.executable} -c "$SCRIPT" {folder}'
-    )
+    mount = f"mount -t tmpfs -o size=16k tmpfs {folder}"
+    run = f'exec {sys.executable} -c "$SCRIPT" {folder}'
     return subprocess.run(
         ["unshare", "-rm", "sh", "-c", f"{mount} && {run}"],
         check=False,
