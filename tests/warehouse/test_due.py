@@ -62,3 +62,9 @@ def test_a_race_and_a_decision_change_the_list_at_the_next_rebuild(bench):
     assert raced["speed_reason"] != NOT_RACED
     assert due["tow_id"][1] not in after["tow_id"].to_list()
     assert not bench.rebuild().database
+
+
+def test_a_draft_has_no_verification_code(built):
+    assert (
+        built.table("register")["verification_code"].null_count() == built.table("register").height
+    )

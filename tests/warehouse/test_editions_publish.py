@@ -18,6 +18,7 @@ import pytest
 
 from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from pipeline.method import parse_method, shipped_method
+from pipeline.register import LINE
 from tests.warehouse.edition_bench import terms
 from warehouse.decisions import FILE_NAME
 from warehouse.editions import sheets
@@ -89,6 +90,9 @@ def test_all_editions_as_rows_of_the_warehouse(published):
         ("2014-1", heights[0]),
         ("2014-2", heights[1]),
     ]
+    codes = tables["register"].select("edition", *LINE, "verification_code")
+    own = edition_of(published, "2014-2").register
+    assert codes.filter(edition="2014-2").equals(own.select(codes.columns))
     assert set(tables["register_changes"]["to_edition"]) == {"2014-2"}
     assert set(tables["lineage"]["edition"]) == {"2014-1", "2014-2"}
     assert published_made_from(published.store).keys() == {"2014-1", "2014-2"}
