@@ -22,7 +22,7 @@ from pipeline.race import power_per_rower_w
 from pipeline.season_log import SeasonFactors, retow_choice
 from pipeline.season_log.ties import TIE_SCHEMA
 from pipeline.speed import log_factor
-from pipeline.sureness import budget_of, cw_bounds, run_point_ratio, scatter_of
+from pipeline.sureness import budget_of, curve_points, cw_bounds, run_point_ratio, scatter_of
 from pipeline.wind import mean_wind_angle_deg
 
 LEVEL = 0.95
@@ -41,6 +41,7 @@ class Recomputed:
     log_factors: pl.DataFrame
     assessments: pl.DataFrame
     uncertainty_budget: pl.DataFrame
+    curve_points: pl.DataFrame
     season_links: pl.DataFrame
     retow_choice: pl.DataFrame
     factors: SeasonFactors | None
@@ -77,6 +78,7 @@ def as_tables(
         uncertainty_budget=budget.select(
             name, pl.exclude("dof"), pl.when(pl.col("dof").is_finite()).then("dof").alias("dof")
         ),
+        curve_points=curve_points(outcomes, found).select(name, pl.all()),
         season_links=_season_links(found).select(name, pl.all()),
         retow_choice=_retow_choice(found).select(name, pl.all()),
         factors=found,

@@ -40,6 +40,7 @@ METHOD_TABLES: Final = (
     "season_links",
     "retow_choice",
     "uncertainty_budget",
+    "curve_points",
     "assessments",
 )
 METHOD_FILES: Final = ("ensemble",)

@@ -10,6 +10,7 @@ ASSETS = [
     "blocks",
     "boats",
     "correction_steps",
+    "curve_points",
     "curves",
     "due_list",
     "ensemble",
