@@ -178,9 +178,21 @@ def verify(report: Report) -> str:
             for f in report["findings"]
         ]
         parts.append(table(("edition", "", "kind", "where", "what"), rows))
-    wrong = sum(f["wrong"] for f in report["findings"])
-    parts.append(f"{wrong} things are wrong." if wrong else "Everything is as it was published.")
+    parts.append(_verdict(report["findings"]))
     return "\n\n".join(parts)
+
+
+def _verdict(findings: list[Report]) -> str:
+    wrong = sum(f["wrong"] for f in findings)
+    if wrong:
+        return f"{wrong} {'thing is' if wrong == 1 else 'things are'} wrong."
+    otherwise = sum(f["kind"] == "differs" for f in findings)
+    if otherwise:
+        return (
+            f"Nothing was altered. The code of today makes {otherwise} of these otherwise; what "
+            "was published stands."
+        )
+    return "Everything is as it was published."
 
 
 def lineage(report: Report) -> str:
