@@ -43,8 +43,8 @@ class Recomputed:
     uncertainty_budget: pl.DataFrame
     curve_points: pl.DataFrame
     season_links: pl.DataFrame
-    season_steps: pl.DataFrame
     retow_choice: pl.DataFrame
+    season_steps: pl.DataFrame
     factors: SeasonFactors | None
 
 
@@ -81,8 +81,8 @@ def as_tables(
         ),
         curve_points=curve_points(outcomes, found).select(name, pl.all()),
         season_links=_season_links(found).select(name, pl.all()),
-        season_steps=_season_steps(found).select(name, pl.all()),
         retow_choice=_retow_choice(found).select(name, pl.all()),
+        season_steps=_season_steps(found).select(name, pl.all()),
         factors=found,
     )
 

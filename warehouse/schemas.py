@@ -243,6 +243,19 @@ class SeasonLinks(dy.Schema):
     agreement = _number("1", "difference of the two in standard deviations", nullable=True)
 
 
+class RetowChoice(dy.Schema):
+    """Which few boats to tow again, with dGPS, so that the season factors are surest."""
+
+    method = _method(primary_key=True)
+    position = dy.Int32(primary_key=True, description="1 tells most, given none of the others")
+    fsn_no = _fsn_no()
+    rowers = _rowers()
+    crew_class = _crew_class()
+    seasons = _text("seasons without dGPS in which it was towed as it is now")
+    factor_sd_before_ratio = _number("1", "typical uncertainty of a season's factor before", min=0)
+    factor_sd_after_ratio = _number("1", "the same when this boat is towed too", min=0)
+
+
 class SeasonSteps(dy.Schema):
     """Whether a season's step against the boats' other tows is the log's or the load cell's."""
 
@@ -259,19 +272,6 @@ class SeasonSteps(dy.Schema):
         "log, force (a log error may have come with it), none (no step), or not told",
         regex="^(log|force|none|not told)$",
     )
-
-
-class RetowChoice(dy.Schema):
-    """Which few boats to tow again, with dGPS, so that the season factors are surest."""
-
-    method = _method(primary_key=True)
-    position = dy.Int32(primary_key=True, description="1 tells most, given none of the others")
-    fsn_no = _fsn_no()
-    rowers = _rowers()
-    crew_class = _crew_class()
-    seasons = _text("seasons without dGPS in which it was towed as it is now")
-    factor_sd_before_ratio = _number("1", "typical uncertainty of a season's factor before", min=0)
-    factor_sd_after_ratio = _number("1", "the same when this boat is towed too", min=0)
 
 
 class UncertaintyBudget(dy.Schema):
@@ -666,8 +666,8 @@ TABLES: Final[dict[str, type[dy.Schema]]] = {
     "assessments": Assessments,
     "log_factors": LogFactors,
     "season_links": SeasonLinks,
-    "season_steps": SeasonSteps,
     "retow_choice": RetowChoice,
+    "season_steps": SeasonSteps,
     "uncertainty_budget": UncertaintyBudget,
     "ensemble": Ensemble,
     "register": Register,
