@@ -47,11 +47,18 @@ PER_RUN_ITERATIONS = 4
 PER_TOW_GRID = np.linspace(*PER_TOW_BOUNDS, 41)
 ARCHIVE_GRID = np.linspace(0.0, 1.2, 13)
 
-KnownWindows: TypeAlias = dict[tuple[int, Window], Windows]
+KnownWindows: TypeAlias = dict[tuple[tuple[int, ...], Window], Windows]
+"""Windows of all tows of some seasons under a rule, found before."""
+
 Texts: TypeAlias = np.ndarray[tuple[int, ...], np.dtype[np.str_]]
 
 
-def recompute(method: Method, tows: pl.DataFrame, blocks: RunBlocks) -> Recomputed:
+def recompute(
+    method: Method,
+    tows: pl.DataFrame,
+    blocks: RunBlocks,
+    known_windows: KnownWindows | None = None,
+) -> Recomputed:
     """Run points, curves, log factors and assessments of all tows under a method.
 
     Args:
@@ -59,12 +66,13 @@ def recompute(method: Method, tows: pl.DataFrame, blocks: RunBlocks) -> Recomput
         tows: rows of the warehouse's `tows`, with `boat_type` where it is known, so that a tow can
             be compared with like boats.
         blocks: their runs; `blocks.runs` has the columns of `tow_runs`.
+        known_windows: windows found before for the same tows; added to.
 
     Raises:
         MissingKnowledgeError: the method says nothing about a season of `tows`.
     """
     plans = [(batch, steps) for batch, (steps,) in batches([method], tows, blocks)]
-    known: KnownWindows = {}
+    known = {} if known_windows is None else known_windows
     found = season_factors(plans, known)
     return as_tables(method, tows, evaluate(plans, known, found), found)
 
@@ -106,13 +114,13 @@ def evaluate(
 
     Args:
         plans: batches with their steps; what is searched over the archive is searched over them.
-        known_windows: windows found before for the same batches, by place and rule; added to.
+        known_windows: windows found before for the same tows; added to.
         found: log factors, for steps that ask for estimated ones.
     """
     windows = {} if known_windows is None else known_windows
     prepared = []
-    for place, (batch, steps) in enumerate(plans):
-        key = (place, steps.window)
+    for batch, steps in plans:
+        key = (batch.seasons, steps.window)
         if key not in windows:
             windows[key] = choose_windows(batch.blocks, steps.window)
         factor = factor_of_tows(batch, steps, found)

@@ -5,9 +5,9 @@ is `pipeline.recompute`'s.
 """
 
 import datetime as dt
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Self
+from typing import Final, Self
 
 import polars as pl
 
@@ -21,11 +21,14 @@ from pipeline.consistency import (
 )
 from pipeline.errors import MissingKnowledgeError
 from pipeline.method import Method
-from pipeline.recompute import recompute
+from pipeline.recompute import KnownWindows, recompute
 from pipeline.register import draft_name, draft_register
 from pipeline.results import Recomputed
 from warehouse.store import Store
 from warehouse.tables import run_blocks, typed_tows
+
+MOST_WINDOWS: Final = 100
+"""Window rules remembered, of 0.4 MB each for a thousand tows."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +41,7 @@ class History:
         crews: listed boats with their crews, also those never towed.
         blocks: the runs of `tows`.
         simulated: the archive says that it is simulated.
+        windows: windows found so far; half of the time of a recompute goes into them.
     """
 
     tows: pl.DataFrame
@@ -45,6 +49,7 @@ class History:
     crews: pl.DataFrame
     blocks: RunBlocks
     simulated: bool
+    windows: KnownWindows = field(default_factory=dict)
 
     @classmethod
     def of(cls, store: Store) -> Self:
@@ -78,7 +83,9 @@ class History:
         Raises:
             MissingKnowledgeError: the method says nothing about a season.
         """
-        made = recompute(method, self.tows, self.blocks)
+        if len(self.windows) > MOST_WINDOWS:
+            self.windows.clear()
+        made = recompute(method, self.tows, self.blocks, self.windows)
         lines = draft_register(
             made.curves, self.tows, self.crews, self.last_day, method.validity
         )
