@@ -156,6 +156,23 @@ def audit(
     show(audit_report(Store(data), names, method), audit_text.audit, as_json)
 
 
+@app.command()
+def workbench(
+    data: DataFolder = Path("data"),
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="Port on this machine; 0 for any that is free.")
+    ] = 8765,
+) -> None:
+    """Change a method's options in a browser and see at once what happens to all boats."""
+    from dashboards.workbench.bench import Bench  # noqa: PLC0415 - Altair takes a second to import
+    from dashboards.workbench.server import address, listen, run  # noqa: PLC0415 - the web stack
+
+    held = listen(port)
+    bench = Bench(Store(data))
+    typer.echo(f"The workbench is at {address(held)} (on this machine only); Ctrl-C stops it.")
+    run(bench, held)
+
+
 @app.command("log-error")
 def log_error(
     data: DataFolder = Path("data"),

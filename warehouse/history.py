@@ -86,9 +86,7 @@ class History:
         if len(self.windows) > MOST_WINDOWS:
             self.windows.clear()
         made = recompute(method, self.tows, self.blocks, self.windows)
-        lines = draft_register(
-            made.curves, self.tows, self.crews, self.last_day, method.validity
-        )
+        lines = draft_register(made.curves, self.tows, self.crews, self.last_day, method.validity)
         edition = pl.lit(draft_name(method.name)).alias("edition")
         return Draft(self, method, made, lines.with_columns(edition))
 
