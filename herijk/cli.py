@@ -7,6 +7,7 @@ as text, in `herijk.text`.
 
 import re
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Final
 
@@ -24,6 +25,7 @@ from warehouse import reports
 from warehouse.archive.write import write_simulated_archive
 from warehouse.audit import audit as audit_report
 from warehouse.editions.folder import edition_names, method_of_edition
+from warehouse.history import History
 from warehouse.rebase import rebase as rebase_history
 from warehouse.store import Store
 
@@ -165,12 +167,13 @@ def workbench(
 ) -> None:
     """Change a method's options in a browser and see at once what happens to all boats."""
     from dashboards.workbench.bench import Bench  # noqa: PLC0415 - Altair takes a second to import
-    from dashboards.workbench.server import address, listen, run  # noqa: PLC0415 - the web stack
+    from dashboards.workbench.server import address, listen, serving  # noqa: PLC0415 - same
 
-    held = listen(port)
-    bench = Bench(Store(data))
+    held, store = listen(port), Store(data)
+    bench = Bench(store, History.of(store))
     typer.echo(f"The workbench is at {address(held)} (on this machine only); Ctrl-C stops it.")
-    run(bench, held)
+    with suppress(KeyboardInterrupt):
+        serving(bench).run(sockets=[held])
 
 
 @app.command("log-error")

@@ -102,15 +102,16 @@ class Named(Wish):
 class Bench:
     """All of history, ready to be recomputed.
 
-    Raises:
-        MissingKnowledgeError: nothing was rebuilt in this data folder.
+    Args:
+        store: where editions are read and method files are saved.
+        history: all tows.
     """
 
-    def __init__(self, store: Store) -> None:
-        self.history = History.of(store)
+    def __init__(self, store: Store, history: History) -> None:
+        self.history = history
         self._store = store
-        self._seasons = self.history.tows["season"].unique().sort().to_list()
-        self._draft = lru_cache(DRAFTS_KEPT)(self.history.under)
+        self._seasons = history.tows["season"].unique().sort().to_list()
+        self._draft = lru_cache(DRAFTS_KEPT)(history.under)
 
     @property
     def methods_folder(self) -> Path:

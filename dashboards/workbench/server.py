@@ -7,7 +7,6 @@ nothing is fetched from elsewhere, and the page may not be framed.
 
 import socket
 from collections.abc import Callable
-from contextlib import suppress
 from pathlib import Path
 from threading import Lock
 from typing import Any, Final, TypeVar
@@ -166,6 +165,7 @@ def listen(port: int) -> socket.socket:
     held.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         held.bind((LOOPBACK, port))
+        held.listen()
     except OSError as error:
         held.close()
         raise MissingKnowledgeError(
@@ -180,8 +180,7 @@ def address(held: socket.socket) -> str:
     return f"http://{LOOPBACK}:{held.getsockname()[1]}/"
 
 
-def run(bench: Bench, held: socket.socket) -> None:
-    """Serves until it is interrupted."""
-    config = uvicorn.Config(application(bench), log_level="warning", access_log=False)
-    with suppress(KeyboardInterrupt):
-        uvicorn.Server(config).run(sockets=[held])
+def serving(bench: Bench) -> uvicorn.Server:
+    """The server, to be run on a socket of `listen`."""
+    config = uvicorn.Config(application(bench), ws="none", log_level="warning", access_log=False)
+    return uvicorn.Server(config)
