@@ -80,10 +80,15 @@ def recompute(
 def season_factors(
     plans: Sequence[tuple[Batch, Steps]], known_windows: KnownWindows
 ) -> SeasonFactors | None:
-    """The log factors that the given steps ask to estimate; None if they ask for none."""
+    """The log factors that the given steps ask to estimate; None if they ask for none.
+
+    None too if not a single tow has a curve from which to estimate.
+    """
     if not any(is_estimated(steps) for _, steps in plans):
         return None
     before = evaluate([(batch, without_factor(steps)) for batch, steps in plans], known_windows)
+    if not any(np.isfinite(outcome.cw_at_declared).any() for outcome in before):
+        return None
     return find_season_factors(before)
 
 

@@ -114,9 +114,7 @@ def test_an_option_of_a_new_kind_appears_too(rule, kind):
 def test_every_option_and_value_has_a_text_in_every_language():
     keys = [f"{step}.{option}" for step, option in CONTROLS]
     keys += [f"step.{step}" for step, _ in CONTROLS]
-    keys += [
-        f"choice.{v}" for c in CONTROLS.values() if c["kind"] == "choice" for v in c["values"]
-    ]
+    keys += [f"choice.{v}" for c in CONTROLS.values() if c["kind"] == "choice" for v in c["values"]]
     assert [key for key in keys if key not in texts.TEXTS] == []
     assert all(len(both) == len(LANGUAGES) and all(both) for both in texts.TEXTS.values())
 

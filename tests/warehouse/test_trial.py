@@ -15,9 +15,9 @@ from warehouse.trial import Trial
 UNTOWABLE = """
 name = "none"
 title = "no run is long enough"
-extends = "rebased-2015"
+extends = "{base}"
 [steps]
-window = { minimum_s = 50.0, speed_drift_m_s = 0.0001, force_ends_ratio = 0.0001 }
+window = {{ minimum_s = 50.0, speed_drift_m_s = 0.0001, force_ends_ratio = 0.0001 }}
 """
 
 
@@ -98,8 +98,9 @@ def test_a_boat_has_its_curves_under_both_methods(trial, built):
         assert own.filter(kind="point").height == 6
 
 
-def test_a_method_that_no_tow_survives_is_shown_too(history, trial):
-    nothing = history.under(parse_method(UNTOWABLE, "none.toml"))
+@pytest.mark.parametrize("base", ["rebased-2015", "rebased"])
+def test_a_method_that_no_tow_survives_is_shown_too(history, trial, base):
+    nothing = history.under(parse_method(UNTOWABLE.format(base=base), "none.toml"))
     both = Trial(trial.before, nothing)
     summary = both.summary()
     assert summary["removed"] == summary["lines"] > 0

@@ -189,13 +189,19 @@
   let busy = false; // one is on its way
   let since = 0; // when the last change was made
 
-  function complain(message = "", where = "") {
-    byId("refused").hidden = !message;
-    byId("refused").replaceChildren(...(message ? [say("refused"), ` ${message}`] : []));
-    all("[data-option]").forEach((element) =>
-      element.classList.toggle("wrong", element.dataset.option === where));
-    all("[data-option] input").forEach((input) => input.setAttribute("aria-invalid",
-      String(input.closest("[data-option]").classList.contains("wrong"))));
+  const complaints = new Map(); // path -> why the last question there has no answer
+
+  function complain(path, message = "", where = "") {
+    complaints.set(path, message);
+    const texts = [...complaints.values()].filter(Boolean);
+    byId("refused").hidden = !texts.length;
+    byId("refused").replaceChildren(...texts.map((text) => make("p", {}, say("refused"), ` ${text}`)));
+    if (path !== "answer") return;
+    for (const element of all("[data-option]")) {
+      const wrong = element.dataset.option === where;
+      element.classList.toggle("wrong", wrong);
+      all("input", element).forEach((input) => input.setAttribute("aria-invalid", String(wrong)));
+    }
   }
 
   // What the server says, or null after telling why there is nothing.
@@ -205,12 +211,12 @@
       response = await fetch(path, { method: "POST", body: JSON.stringify(body),
         headers: { "Content-Type": "application/json" } });
     } catch {
-      complain(word("gone"));
+      complain(path, word("gone"));
       return null;
     }
-    if (!response.ok) { complain(word("failed")); return null; }
+    if (!response.ok) { complain(path, word("failed")); return null; }
     const found = await response.json();
-    complain(found.refused, found.where);
+    complain(path, found.refused, found.where);
     return found.refused ? null : found;
   }
 
@@ -387,11 +393,13 @@
     en: { decimal: ".", thousands: ",", grouping: [3], currency: ["€", ""], minus: "-" },
   };
 
+  const toBoat = (row) => ({ ...row, page: "#boat" }); // a point of a boat leads to the boat
+
   const ROWS = {
-    changed: () => answer.register.filter((row) => row.change === "changed"),
+    changed: () => answer.register.filter((row) => row.change === "changed").map(toBoat),
     types: (side) => answer.types.filter((row) =>
       row.method === (side === "before" ? answer.before : start.trial)
-      && ["", row.boat_type].includes(byId("boat_type").value)),
+      && ["", row.boat_type].includes(byId("boat_type").value)).map(toBoat),
     boat_figure: () => answer.boat_figure.filter((row) => row.tow_id === byId("tow").value),
   };
 
