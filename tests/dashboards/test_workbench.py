@@ -11,11 +11,11 @@ import urllib.request
 import pytest
 from polars.testing import assert_frame_equal
 
+from dashboards.words import LANGUAGES
 from dashboards.workbench import texts
 from dashboards.workbench.bench import TRIAL, Base, Bench, Named, Question
 from dashboards.workbench.form import _kind, controls, option_names
 from dashboards.workbench.server import address, listen, serving
-from dashboards.words import LANGUAGES
 from pipeline.checks import CODES
 from pipeline.errors import HerijkError, MissingKnowledgeError
 from pipeline.method import MethodFileError, Steps, parse_method
