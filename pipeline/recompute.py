@@ -58,6 +58,7 @@ def recompute(
     tows: pl.DataFrame,
     blocks: RunBlocks,
     known_windows: KnownWindows | None = None,
+    with_bands: bool = True,
 ) -> Recomputed:
     """Run points, curves, log factors and assessments of all tows under a method.
 
@@ -67,6 +68,7 @@ def recompute(
             be compared with like boats.
         blocks: their runs; `blocks.runs` has the columns of `tow_runs`.
         known_windows: windows found before for the same tows; added to.
+        with_bands: make `curve_points`, a third of the work; without, it is empty.
 
     Raises:
         MissingKnowledgeError: the method says nothing about a season of `tows`.
@@ -74,7 +76,7 @@ def recompute(
     plans = [(batch, steps) for batch, (steps,) in batches([method], tows, blocks)]
     known = {} if known_windows is None else known_windows
     found = season_factors(plans, known)
-    return as_tables(method, tows, evaluate(plans, known, found), found)
+    return as_tables(method, tows, evaluate(plans, known, found), found, with_bands)
 
 
 def season_factors(

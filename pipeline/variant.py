@@ -14,12 +14,14 @@ from pipeline.method import (
     SeasonSteps,
     Steps,
     joined,
-    method_text,
-    override_lines,
     parse_method,
-    range_text,
     shipped_method,
     shipped_methods,
+)
+from pipeline.method_writing import (
+    method_text,
+    override_lines,
+    range_text,
     step_lines,
     toml_value,
 )

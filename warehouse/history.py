@@ -78,14 +78,14 @@ class History:
         return day
 
     def under(self, method: Method) -> "Draft":
-        """All tows recomputed, and the register that follows.
+        """All tows recomputed, without the bands of their curves, and the register that follows.
 
         Raises:
             MissingKnowledgeError: the method says nothing about a season.
         """
         if len(self.windows) > MOST_WINDOWS:
             self.windows.clear()
-        made = recompute(method, self.tows, self.blocks, self.windows)
+        made = recompute(method, self.tows, self.blocks, self.windows, with_bands=False)
         lines = draft_register(made.curves, self.tows, self.crews, self.last_day, method.validity)
         edition = pl.lit(draft_name(method.name)).alias("edition")
         return Draft(self, method, made, lines.with_columns(edition))

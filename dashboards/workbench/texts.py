@@ -48,9 +48,11 @@ TEXTS: Final[dict[str, tuple[str, str]]] = {
         "The workbench no longer answers. Start it again with herijk workbench.",
     ),
     "left_out": (
-        "Niet bij elke wijziging berekend: de rechte lijnen en uitschieters per type en de "
+        "Niet bij elke wijziging berekend: de band om een kromme over haar hele bereik (haar "
+        "interval bij de opgegeven snelheid wel), de rechte lijnen en uitschieters per type en de "
         "oorzaken van spreiding. Die staan op de site na een herrekening.",
-        "Not computed at every change: the lines and outliers per type and the causes of spread. "
+        "Not computed at every change: the band round a curve over its whole range (its interval "
+        "at the declared speed is), the lines and outliers per type and the causes of spread. "
         "They are on the site after a rebuild.",
     ),
     # Results

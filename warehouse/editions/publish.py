@@ -18,7 +18,8 @@ import polars as pl
 
 from pipeline.curve import cw, rebase, s_of_b
 from pipeline.errors import MissingKnowledgeError
-from pipeline.method import Method, RegisterRule, method_text
+from pipeline.method import Method, RegisterRule
+from pipeline.method_writing import method_text
 from pipeline.register import LINE, valid_until
 from warehouse import decisions as decided
 from warehouse.archive import read_published_registers
