@@ -54,11 +54,9 @@ def application(bench: Bench) -> Starlette:
     page = _page(bench)
     files = {
         "vega.js": vega_bundle(),
-        "charts.js": chart_specifications(),
+        "figures.js": chart_specifications(),
         "site.css": (SITE / "site.css").read_text(encoding="utf-8"),
-        "workbench.css": (HERE / "static" / "workbench.css").read_text(encoding="utf-8"),
-        "workbench.js": (HERE / "static" / "workbench.js").read_text(encoding="utf-8"),
-    }
+    } | {f.name: f.read_text(encoding="utf-8") for f in (HERE / "static").iterdir()}
 
     async def index(_: Request) -> Response:
         return HTMLResponse(page, headers=HEADERS)
