@@ -30,9 +30,11 @@ def rebase(store: Store, method: Method, against: Method) -> Report:
         MissingKnowledgeError: there is no sound tow, or a method does not cover a season.
     """
     history = History.of(store)
-    rungs = ladder(against, method, history.tows, history.blocks).filter(pl.col("step") != START)
-    old, new = (history.under(m).register for m in (against, method))
-    changes = register_changes(old, new)
+    old, new = (history.under(m) for m in (against, method))
+    links = old.made.season_links, new.made.season_links
+    rungs = ladder(against, method, history.tows, history.blocks, links)
+    rungs = rungs.filter(pl.col("step") != START)
+    changes = register_changes(old.register, new.register)
     return {
         "method": method.name,
         "method_hash": method.content_hash,
@@ -40,7 +42,7 @@ def rebase(store: Store, method: Method, against: Method) -> Report:
         "simulated": history.simulated,
         "by_season": _by_season(rungs, history.tows).to_dicts(),
         "changes": changes["change"].value_counts(sort=True).to_dicts(),
-        "boats": _most_affected(changes, new, rungs, history.boats).to_dicts(),
+        "boats": _most_affected(changes, new.register, rungs, history.boats).to_dicts(),
     }
 
 
