@@ -19,7 +19,8 @@ from pipeline.assessment import assess, with_status
 from pipeline.method import Method
 from pipeline.outcome import Outcome
 from pipeline.race import power_per_rower_w
-from pipeline.season_log import SeasonFactors, log_or_force, other_log_factors
+from pipeline.season_log import SeasonFactors, log_or_force, other_log_factors, retow_choice
+from pipeline.season_log.ties import TIE_SCHEMA
 from pipeline.speed import log_factor
 from pipeline.sureness import budget_of, curve_points, cw_bounds, run_point_ratio, scatter_of
 from pipeline.wind import mean_wind_angle_deg
@@ -43,6 +44,7 @@ class Recomputed:
     curve_points: pl.DataFrame
     season_links: pl.DataFrame
     season_steps: pl.DataFrame
+    retow_choice: pl.DataFrame
     factors: SeasonFactors | None
 
 
@@ -83,6 +85,7 @@ def as_tables(
         else pl.DataFrame(),
         season_links=_season_links(found).select(name, pl.all()),
         season_steps=_season_steps(found).select(name, pl.all()),
+        retow_choice=_retow_choice(found).select(name, pl.all()),
         factors=found,
     )
 
@@ -227,6 +230,11 @@ STEP_SCHEMA = (
     | dict.fromkeys(("level_step", "level_step_sd", "force_step", "force_step_sd"), pl.Float64())
     | {"cause": pl.String()}
 )
+
+
+def _retow_choice(found: SeasonFactors | None) -> pl.DataFrame:
+    """The boats that would make estimated factors surer; no rows where nothing was estimated."""
+    return pl.DataFrame(schema=TIE_SCHEMA) if found is None else retow_choice(found)
 
 
 LINK_SCHEMA = (

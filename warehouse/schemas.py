@@ -261,6 +261,19 @@ class SeasonSteps(dy.Schema):
     )
 
 
+class RetowChoice(dy.Schema):
+    """Which few boats to tow again, with dGPS, so that the season factors are surest."""
+
+    method = _method(primary_key=True)
+    position = dy.Int32(primary_key=True, description="1 tells most, given none of the others")
+    fsn_no = _fsn_no()
+    rowers = _rowers()
+    crew_class = _crew_class()
+    seasons = _text("seasons without dGPS in which it was towed as it is now")
+    factor_sd_before_ratio = _number("1", "typical uncertainty of a season's factor before", min=0)
+    factor_sd_after_ratio = _number("1", "the same when this boat is towed too", min=0)
+
+
 class UncertaintyBudget(dy.Schema):
     """What makes Cw at the declared speed uncertain, per method, tow and component."""
 
@@ -306,6 +319,34 @@ class Register(dy.Schema):
     cw_lo_kg_m = _number("kg/m", "lower end of its 95 % interval", nullable=True)
     cw_hi_kg_m = _number("kg/m", "upper end", nullable=True)
     status = _text("valid, or why there is no valid curve")
+    verification_code = _text(
+        "ten letters and digits that follow from all that made the line; drafts have none",
+        nullable=True,
+    )
+
+
+class DueList(dy.Schema):
+    """Until when each boat and crew's tow counts, and the speed of its next tow."""
+
+    method = _method(primary_key=True)
+    fsn_no = _fsn_no(primary_key=True)
+    rowers = _rowers(primary_key=True)
+    crew_class = _crew_class(primary_key=True)
+    as_of = dy.Date(description="day on which it was judged: that of the last tow or race")
+    status = _text("valid, or why there is no valid curve")
+    tow_id = _tow_id(nullable=True)
+    tow_date = dy.Date(description="day of the tow", nullable=True)
+    valid_until = dy.Date(description="last day it counts", nullable=True)
+    declared_speed_m_s = _speed("speed that was declared for it", nullable=True)
+    power_w = _number("W", "power a rower at that speed", nullable=True)
+    raced_speed_m_s = _speed("fastest race of the past year, through the water", nullable=True)
+    lowest_speed_m_s = _speed("speed at 70 W a rower (men) or 40 W (women)", nullable=True)
+    highest_speed_m_s = _speed("speed at 90 W or 55 W", nullable=True)
+    tow_speed_m_s = _speed("speed proposed for the next tow", nullable=True)
+    speed_reason = _text("why that speed")
+    beyond_curve = dy.Bool(
+        description="it lies outside 85-115 % of the last declared speed", nullable=True
+    )
 
 
 class RegisterChanges(dy.Schema):
@@ -626,9 +667,11 @@ TABLES: Final[dict[str, type[dy.Schema]]] = {
     "log_factors": LogFactors,
     "season_links": SeasonLinks,
     "season_steps": SeasonSteps,
+    "retow_choice": RetowChoice,
     "uncertainty_budget": UncertaintyBudget,
     "ensemble": Ensemble,
     "register": Register,
+    "due_list": DueList,
     "register_changes": RegisterChanges,
     "correction_steps": CorrectionSteps,
     "option_effects": OptionEffects,

@@ -27,6 +27,7 @@ from warehouse import intake
 from warehouse.archive import outside_run
 from warehouse.code import code_version
 from warehouse.database import build_database
+from warehouse.due import due_made_from, due_rows
 from warehouse.editions.published import published_made_from, published_tables
 from warehouse.schemas import TABLES, Quarantine, conform
 from warehouse.store import Store, fingerprint, table_digest
@@ -38,6 +39,7 @@ METHOD_TABLES: Final = (
     "log_factors",
     "season_links",
     "season_steps",
+    "retow_choice",
     "uncertainty_budget",
     "curve_points",
     "assessments",
@@ -52,6 +54,7 @@ STUDIED_METHOD: Final = "rebased"
 
 REGISTER_TABLES: Final = (
     "register",
+    "due_list",
     "register_changes",
     "lineage",
     "methods",
@@ -220,14 +223,14 @@ def apply_method(store: Store, method: Method, blocks: RunBlocks) -> dict[str, p
     made_from = method_made_from(store, method)
     result = recompute(method, typed_tows(store), blocks)
     tables = {name: getattr(result, name) for name in METHOD_TABLES}
-    tables["ensemble"] = _ensemble(method, result)
+    tables["ensemble"] = ensemble_of(method, result)
     found = {name: conform(name, frame) for name, frame in tables.items()}
     for name, frame in found.items():
         store.write(name, frame, made_from, method.name)
     return found
 
 
-def _ensemble(method: Method, result: Recomputed) -> pl.DataFrame:
+def ensemble_of(method: Method, result: Recomputed) -> pl.DataFrame:
     """Equally likely values of every curve's Cw, 200 rows a tow."""
     tows = result.curves.drop_nulls("cw_kg_m").select("tow_id", "cw_kg_m")
     members = register_ensemble(tows, result.uncertainty_budget, result.factors)
@@ -280,7 +283,8 @@ def register_made_from(store: Store, methods: Sequence[Method]) -> str:
     """What the registers, and everything derived from curves, are made from."""
     curves = {m.name: [store.made_from("curves", m.name), str(m.validity)] for m in methods}
     archive = [store.made_from(t) for t in ("tows", "boats")]
-    return fingerprint(curves, archive, published_made_from(store), code_version())
+    beside = [published_made_from(store), due_made_from(store)]
+    return fingerprint(curves, archive, beside, code_version())
 
 
 def register_is_stale(store: Store, methods: Sequence[Method]) -> bool:
@@ -308,7 +312,7 @@ def _of_methods(store: Store, table: str, methods: Sequence[Method]) -> pl.DataF
 
 
 def make_registers(store: Store, methods: Sequence[Method]) -> dict[str, int]:
-    """A draft register per method and what changes between them, and the published editions.
+    """A draft register per method, its due list, what changes, and the published editions.
 
     Validity is judged on the day of the archive's last tow, not today: so the same archive gives
     the same tables. Drafts are compared with the first method's.
@@ -328,6 +332,7 @@ def make_registers(store: Store, methods: Sequence[Method]) -> dict[str, int]:
     changes = [register_changes(drafts[0], draft) for draft in drafts[1:]]
     found = {
         "register": register,
+        "due_list": due_rows(store, methods, curves),
         "register_changes": pl.concat(changes) if changes else _empty("register_changes"),
         "lineage": _lineage(register, tows, methods),
         "methods": _methods(methods),
@@ -351,7 +356,8 @@ def _of(curves: pl.DataFrame, method: Method) -> pl.DataFrame:
 
 def _as_edition(method: Method, register: pl.DataFrame) -> pl.DataFrame:
     edition, name = pl.lit(draft_name(method.name)), pl.lit(method.name)
-    return register.select(edition.alias("edition"), name.alias("method"), pl.all())
+    code = pl.lit(None, pl.String).alias("verification_code")
+    return register.select(edition.alias("edition"), name.alias("method"), pl.all(), code)
 
 
 def _lineage(register: pl.DataFrame, tows: pl.DataFrame, methods: Sequence[Method]) -> pl.DataFrame:
