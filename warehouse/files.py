@@ -31,6 +31,22 @@ def written_beside(path: Path) -> Iterator[Path]:
         beside.unlink(missing_ok=True)
 
 
+def write_new(path: Path, text: str) -> None:
+    """Writes a text file that was not there, whole or not at all.
+
+    Raises:
+        FileExistsError: there is one already; it is left as it is.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.NamedTemporaryFile("wb", prefix=TEMPORARY_PREFIX, dir=path.parent) as beside:
+        beside.write(text.encode())
+        beside.flush()
+        os.fsync(beside.fileno())
+        Path(beside.name).chmod(0o644)
+        path.hardlink_to(beside.name)
+    _sync(path.parent)
+
+
 def _sync(path: Path) -> None:
     handle = os.open(path, os.O_RDONLY)
     try:

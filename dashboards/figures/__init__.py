@@ -12,13 +12,14 @@ from typing import Final
 import altair as alt
 import polars as pl
 
-from dashboards.figures import boat, corrections, quality, reproducibility, types
+from dashboards.figures import boat, compared, corrections, quality, reproducibility, types
 from dashboards.words import Say
 
 Figure = Callable[[pl.DataFrame, Say], alt.TopLevelMixin]
 
 FIGURES: Final[dict[str, Figure]] = {
     "resistance_curve": boat.resistance_curve,
+    "curves_compared": compared.curves_compared,
     "history": boat.history,
     "traces": boat.traces,
     "out_and_back": boat.out_and_back,

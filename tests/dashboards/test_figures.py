@@ -12,6 +12,7 @@ FRAME = pl.DataFrame({"kind": ["line"], "method": ["rebased"], "cw_kg_m": [30.0]
 
 AXES = {
     "resistance_curve": {"speed_m_s", "cw_kg_m", "cw_lo_kg_m"},
+    "curves_compared": {"speed_m_s", "cw_kg_m", "cw_lo_kg_m"},
     "history": {"tow", "cw_kg_m", "cw_lo_kg_m"},
     "traces": {"second", "window_start_s", "speed_m_s", "gps_m_s", "force_n", "wind_m_s"},
     "out_and_back": {"speed_m_s", "cw_kg_m"},
