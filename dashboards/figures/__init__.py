@@ -23,10 +23,15 @@ FIGURES: Final[dict[str, Figure]] = {
     "traces": boat.traces,
     "out_and_back": boat.out_and_back,
     "wind": boat.wind,
+    "budget": boat.budget,
     "b_weight": types.b_against_weight,
     "b_speed": types.b_against_speed,
     "cw_weight": types.cw_against_weight,
     "cw_speed": types.cw_against_speed,
+    "pair_b_weight": types.pair_b_against_weight,
+    "pair_b_speed": types.pair_b_against_speed,
+    "pair_cw_weight": types.pair_cw_against_weight,
+    "pair_cw_speed": types.pair_cw_against_speed,
     "log_factors": corrections.log_factors,
     "ladder": corrections.season_ladder,
     "season_change": corrections.season_change,
@@ -36,6 +41,7 @@ FIGURES: Final[dict[str, Figure]] = {
     "components": reproducibility.components,
     "predicted": reproducibility.predicted,
     "changes": reproducibility.register_changes,
+    "race_ranks": reproducibility.race_ranks,
     "statuses": quality.statuses,
 }
 """Every figure by name."""

@@ -1,8 +1,12 @@
 """What the figures share: colours, shapes, sizes, titles, and links to a boat."""
 
+import json
+from collections.abc import Iterable, Sequence
 from typing import Any, Final
 
 import altair as alt
+
+from dashboards.words import Say
 
 OKABE_ITO: Final = (
     "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999",
@@ -44,3 +48,42 @@ def tips(*pairs: tuple[str, str]) -> list[alt.Tooltip]:
         alt.Tooltip(field, title=title, **({"format": ".5~g"} if field.endswith(":Q") else {}))
         for field, title in pairs
     ]
+
+
+def by_method(
+    base: alt.Chart,
+    say: Say,
+    value: tuple[str, str],
+    ends: tuple[str, str],
+    more: Sequence[tuple[str, str]] = (),
+    zero: bool = False,
+) -> list[alt.Chart]:
+    """A value with its interval for every method, side by side: a bar and a point.
+
+    Args:
+        base: the chart with its x encoded.
+        say: gives texts.
+        value: column of the point, and the title of the y axis.
+        ends: columns of the lower and upper end of the bar.
+        more: what the tooltip shows besides method and value.
+        zero: whether the y axis begins at zero.
+    """
+    (field, title), (low, high) = value, ends
+    beside = base.encode(xOffset="method:N")
+    bar = beside.mark_rule(strokeWidth=2).encode(
+        number(alt.Y, low, title, zero), alt.Y2(f"{high}:Q"), stroke=stroke("method")
+    )
+    limits = [(f"{low}:Q", say("lowest")), (f"{high}:Q", say("highest"))]
+    point = beside.mark_point(filled=True, size=65, opacity=1).encode(
+        number(alt.Y, field, title, zero),
+        colour("method", say("method")),
+        shape("method", say("method")),
+        tooltip=tips(("method:N", say("method")), *more, (f"{field}:Q", title), *limits),
+    )
+    return [bar, point]
+
+
+def named(codes: Iterable[str], say: Say) -> str:
+    """A Vega expression that gives codes on an axis their text, and leaves others as they are."""
+    texts = {code: say(f"code.{code}") for code in codes}
+    return f"({json.dumps(texts)})[datum.value] || datum.value"

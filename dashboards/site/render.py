@@ -19,6 +19,7 @@ import vl_convert
 from markupsafe import Markup
 
 from dashboards.figures import FIGURES
+from dashboards.site.downloads import copy_sheets
 from dashboards.site.pages import MENU, all_pages
 from dashboards.site.parts import boat_path
 from dashboards.words import LANGUAGES, both, speaker
@@ -30,16 +31,30 @@ HERE: Final = Path(__file__).parent
 OWN_FILES: Final = ("site.css", "site.js")
 DIGITS: Final = (
     ("_kg_m", 2), ("_m_s", 2), ("_deg", 0), ("_kg", 0), ("_w", 1), ("_s", 0), ("cw_sd", 2),
-    ("_m", 2), ("_sd", 1),
+    ("_m", 2), ("_sd", 1), ("dof", 1),
 )  # fmt: skip
 """Decimals shown by the ending of a column's name; 4 otherwise."""
+
+POLICY: Final = "; ".join(
+    (
+        "default-src 'none'",
+        "script-src 'self' file:",
+        "style-src 'self' file: 'unsafe-inline'",
+        "img-src 'self' file: data:",
+        "base-uri 'none'",
+        "form-action 'none'",
+    )
+)
+"""What a browser lets a page load: the site's own files and nothing else; no eval, no connection.
+`file:` because to some browsers a page from disk is no `'self'`; inline styles are Vega's."""
 
 KEPT: Final = 9
 """Significant digits in downloads and charts; the database holds all."""
 
 CODES: Final = {
-    *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "flag"),
-    *("quantity", "explaining", "candidates", "severity", "check", "shared"),
+    *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "code"),
+    *("quantity", "explaining", "candidates", "severity", "check", "shared", "kind", "scope"),
+    "option",
 }
 """Columns that hold codes of the warehouse, shown as words."""
 
@@ -55,6 +70,7 @@ def build_site(store: Store) -> dict[str, int]:
     try:
         with Views(store) as views:
             _write(views, beside)
+        copy_sheets(store, beside)
         written = [f for f in beside.rglob("*") if f.is_file()]
         size = {"files": len(written), "bytes": sum(f.stat().st_size for f in written)}
         beside.chmod(0o755)
@@ -151,7 +167,13 @@ def _environment(comments: dict[str, str]) -> jinja2.Environment:
         undefined=jinja2.StrictUndefined,
     )
     environment.globals.update(
-        t=_text, both=both, data=_data, rows=_rows, is_number=_is_number, comments=comments
+        policy=POLICY,
+        t=_text,
+        both=both,
+        data=_data,
+        rows=_rows,
+        is_number=_is_number,
+        comments=comments,
     )
     return environment
 
@@ -206,17 +228,21 @@ def _shown(value: Any, show: Callable[[Any], Markup]) -> Markup:
 
 def _shower(name: str, root: str) -> Callable[[Any], Markup]:
     """How values of a column are shown."""
-    if name == "direction":
-        return lambda value: _text("out" if value == 1 else "back")
-    if name == "causes":
-        return _causes
-    if name in CODES:
-        return _code
     if name == "fsn_no":
         return lambda value: Markup('<a href="{}{}">{}</a>').format(root, boat_path(value), value)
-    if name in {"sha256", "content_hash", "method_hash"}:
-        return lambda value: Markup('<code title="{}">{}</code>').format(value, value[:12])
-    return _plain
+    return SHOWERS.get(name, _code if name in CODES else _plain)
+
+
+def _direction(value: int) -> Markup:
+    return _text("out" if value == 1 else "back")
+
+
+def _type(value: str) -> Markup:
+    return _text("code.unknown") if value == "unknown" else _plain(value)
+
+
+def _hash(value: str) -> Markup:
+    return Markup('<code title="{}">{}</code>').format(value, value[:12])
 
 
 def _plain(value: Any) -> Markup:
@@ -234,9 +260,20 @@ def _code(value: Any) -> Markup:
 
 
 def _causes(value: str) -> Markup:
-    """What a change is attributed to, each with its factor."""
+    """What a change is attributed to (a method's step by its name), each with its factor."""
     parts = [
-        Markup("{} \u00d7 {:.4f}").format(_text(f"code.{cause['cause']}"), cause["factor"])
+        Markup('{} <span class="n">{:.4f}</span>').format(
+            _text(f"code.{cause.get('step', cause['cause'])}"), cause["factor"]
+        )
         for cause in json.loads(value)
     ]
-    return Markup(", ").join(parts)
+    return Markup(" \u00d7 ").join(parts)
+
+
+SHOWERS: Final[dict[str, Callable[[Any], Markup]]] = {
+    "direction": _direction,
+    "causes": _causes,
+    "boat_type": _type,
+    **dict.fromkeys(("sha256", "content_hash", "method_hash", "seal"), _hash),
+}
+"""Columns shown in a way of their own."""

@@ -64,7 +64,11 @@ AS_PRINTED, REBASED = "printed", "printed_rebased"
 PRINTED_METHOD: Final = "as-printed"
 NO_VALID_CURVE: Final = "no_valid_curve"
 LINE_SCHEMA: Final = {
-    **{name: column.dtype for name, column in Register.columns().items()},
+    **{
+        name: column.dtype
+        for name, column in Register.columns().items()
+        if name != sheets.CODE_FIELD.column
+    },
     **dict.fromkeys(BOAT_FACTS, pl.String()),
     **dict.fromkeys(TOW_FACTS[:-1], pl.Float64()),
     INPUTS_HASH: pl.String(),
@@ -221,9 +225,10 @@ def _complete(
         .select(pl.col(name).cast(dtype) for name, dtype in LINE_SCHEMA.items())
         .sort(LINE)
     )
-    conform("register", full)
     codes = sheets.verification_codes(full, method_hash)
-    return full.with_columns(pl.Series(sheets.CODE_FIELD.column, codes, pl.String))
+    coded = full.with_columns(pl.Series(sheets.CODE_FIELD.column, codes, pl.String))
+    conform("register", coded)
+    return coded
 
 
 def _write(store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str, str]) -> Path:

@@ -27,7 +27,7 @@
       else element.setAttribute("aria-label", text);
     });
     const mark = LOCALES[language].decimal;
-    all("td.n").forEach((cell) => { cell.textContent = cell.textContent.replace(/[.,]/, mark); });
+    all("td.n, span.n").forEach((cell) => { cell.textContent = cell.textContent.replace(/[.,]/, mark); });
     all("figure[data-figure]").forEach(redraw);
   }
 
@@ -158,6 +158,7 @@
     try {
       const made = await window.vegaEmbed(place, spec, {
         actions: false,
+        ast: true, // expressions are interpreted: the page forbids eval
         renderer: "svg",
         formatLocale: LOCALES[root.lang],
         loader: { target: "_self" },
@@ -185,7 +186,7 @@
     if (typeof spec.width === "number" && spec.width > room) spec.width = Math.max(room, least);
     if (room < 420) {
       const parts = spec.vconcat ?? [spec];
-      for (const part of parts) if (part.columns) part.columns = 1;
+      for (const part of parts) if (part.columns) part.columns = Math.min(part.columns, 2);
       spec.config = { ...spec.config, legend: { ...spec.config?.legend, orient: "bottom", columns: 1 } };
     }
   }
