@@ -30,6 +30,7 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
         "GESIMULEERD: deze sloepen bestaan niet. De getallen komen uit een nagebootst archief.",
         "SIMULATED: these boats do not exist. The numbers come from a simulated archive.",
     ),
+    "simulated_short": ("GESIMULEERD", "SIMULATED"),
     "no_script": (
         "Zonder JavaScript staan de tabellen er wel, maar de grafieken niet.",
         "Without JavaScript the tables are here, but the charts are not.",

@@ -9,6 +9,8 @@ from dashboards.figures.style import (
     WIDTH,
     by_method,
     colour,
+    method_colour,
+    method_shape,
     named,
     number,
     shape,
@@ -43,8 +45,8 @@ def repeat_pairs(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
         .encode(
             alt.X("season:O", title=say("season")),
             number(alt.Y, "ln_ratio", say("ln_ratio")),
-            colour("method", say("method")),
-            shape("method", say("method")),
+            method_colour(say),
+            method_shape(say),
             xOffset="method:N",
             href="page:N",
             tooltip=tips(

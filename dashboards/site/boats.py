@@ -96,7 +96,7 @@ def _seconds(traces: pl.DataFrame) -> pl.DataFrame:
 LINE_COLUMNS = (
     *("edition", "rowers", "crew_class", "tow_id", "tow_date", "valid_until", "status"),
     *("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),
-    "verification_code",
+    *("verification_code", "method"),
 )
 CURVE_COLUMNS = (
     *("tow_id", "tow_date", "rowers", "crew_class", "method", "declared_speed_m_s", "a_kg_m"),

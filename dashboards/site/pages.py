@@ -75,7 +75,7 @@ def _index(views: Views) -> Page:
 REGISTER_COLUMNS = (
     *("name", "fsn_no", "boat_type", "rowers", "crew_class", "tow_date", "valid_until", "status"),
     *("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),
-    *("method", "verification_code"),
+    *("verification_code", "method"),
 )
 EDITION_COLUMNS = (
     *("edition", "kind", "method", "valid_from", "published_on", "decision", "previous"),

@@ -23,7 +23,7 @@ from dashboards.site.downloads import copy_sheets
 from dashboards.site.pages import MENU, all_pages
 from dashboards.site.parts import boat_path
 from dashboards.words import LANGUAGES, both, speaker
-from warehouse.files import TEMPORARY_PREFIX
+from warehouse.files import TEMPORARY_PREFIX, put_in_place
 from warehouse.store import Store
 from warehouse.views import Views
 
@@ -59,6 +59,10 @@ CODES: Final = {
 """Columns that hold codes of the warehouse, shown as words."""
 
 
+LONG: Final = {"flags", "cut_reason", "causes", "message", "meaning", "decision", "candidates"}
+"""Columns of texts that may take several lines."""
+
+
 def build_site(store: Store) -> dict[str, int]:
     """Makes all pages from the database and swaps them in.
 
@@ -74,19 +78,10 @@ def build_site(store: Store) -> dict[str, int]:
         written = [f for f in beside.rglob("*") if f.is_file()]
         size = {"files": len(written), "bytes": sum(f.stat().st_size for f in written)}
         beside.chmod(0o755)
-        _swap(beside, target)
+        put_in_place(beside, target)
     finally:
         shutil.rmtree(beside, ignore_errors=True)
     return size
-
-
-def _swap(beside: Path, target: Path) -> None:
-    """Puts a folder in place of another: two renames, and the old one is removed after."""
-    old = beside.with_name(beside.name + "-old")
-    if target.exists():
-        target.rename(old)
-    beside.rename(target)
-    shutil.rmtree(old, ignore_errors=True)
 
 
 def _write(views: Views, folder: Path) -> None:
@@ -204,7 +199,10 @@ def _cells(column: pl.Series, root: str) -> list[Markup]:
     if column.dtype.is_integer() and name != "direction":
         return [_integer(value) for value in column]
     show = _shower(name, root)
-    return [_EMPTY if value is None else _shown(value, show) for value in column]
+    cell = Markup(
+        '<td class="w" data-v="{}">{}</td>' if name in LONG else '<td data-v="{}">{}</td>'
+    )
+    return [_EMPTY if value is None else _shown(value, show, cell) for value in column]
 
 
 _EMPTY = Markup('<td data-v=""></td>')
@@ -221,9 +219,9 @@ def _integer(value: int | None) -> Markup:
     return Markup(f'<td class="i" data-v="{text}">{text}</td>')  # noqa: S704 - a number
 
 
-def _shown(value: Any, show: Callable[[Any], Markup]) -> Markup:
+def _shown(value: Any, show: Callable[[Any], Markup], cell: Markup) -> Markup:
     plain = ", ".join(value) if isinstance(value, pl.Series | list) else str(value)
-    return Markup('<td data-v="{}">{}</td>').format(plain, show(value))
+    return cell.format(plain, show(value))
 
 
 def _shower(name: str, root: str) -> Callable[[Any], Markup]:

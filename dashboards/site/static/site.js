@@ -70,7 +70,7 @@
     if (clear) clear.hidden = selected === null;
   }
 
-  // A value fits a selector; `boat_type` has two, to see two types side by side.
+  // A value fits a selector, or its second: to see two types side by side.
   function matches(name, value) {
     const wanted = [choice(name), choice(`${name}_2`)].filter((text) => text !== "");
     return wanted.length === 0 || wanted.includes(String(value));
@@ -140,9 +140,10 @@
   // What the selectors say, so that a chart names its tow and method, also in print.
   function picked(figure) {
     const names = Object.values(JSON.parse(figure.dataset.follows));
-    return names.map(choice).filter((text) => text !== "").join(", ");
+    return names.flatMap((name) => [choice(name), choice(`${name}_2`)]).filter(Boolean).join(", ");
   }
 
+  const LABELS = 150; // room for axis and legend beside a chart [px]
   const views = new Map(); // figure -> its Vega view
   const visible = new Set();
 
@@ -179,16 +180,21 @@
     place.classList.add("drawn");
   }
 
-  // A chart wider than its page is made narrower; small multiples keep their size and scroll.
+  // A chart wider than its page is made narrower, with its labels; so are small multiples.
   function fitWidth(spec, figure) {
-    const room = figure.parentElement.clientWidth - 130;
-    const least = spec.layer?.some((layer) => layer.mark?.type === "text") ? 520 : 190; // legible
-    if (typeof spec.width === "number" && spec.width > room) spec.width = Math.max(room, least);
-    if (room < 420) {
-      const parts = spec.vconcat ?? [spec];
-      for (const part of parts) if (part.columns) part.columns = Math.min(part.columns, 2);
-      spec.config = { ...spec.config, legend: { ...spec.config?.legend, orient: "bottom", columns: 1 } };
+    const room = figure.parentElement.clientWidth;
+    const isNarrow = room < 550;
+    if (typeof spec.width === "number" && spec.width + LABELS > room) {
+      const least = spec.layer?.some((layer) => layer.mark?.type === "text") ? 640 : 0; // legible
+      spec.width = Math.max(room, least);
+      spec.autosize = { type: "fit-x", contains: "padding" };
     }
+    if (!isNarrow) return;
+    for (const part of (spec.vconcat ?? [spec]).filter((part) => part.columns)) {
+      part.columns = part.spec.width > 200 ? 1 : 2;
+      part.spec.width = Math.floor((room - LABELS / 2) / part.columns) - 20;
+    }
+    spec.config = { ...spec.config, legend: { ...spec.config?.legend, orient: "bottom", columns: 1 } };
   }
 
   function describe(figure, place) {
