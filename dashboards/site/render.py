@@ -199,12 +199,12 @@ def _cells(column: pl.Series, root: str) -> list[Markup]:
     if column.dtype.is_integer() and name != "direction":
         return [_integer(value) for value in column]
     show = _shower(name, root)
-    cell = Markup(
-        '<td class="w" data-v="{}">{}</td>' if name in LONG else '<td data-v="{}">{}</td>'
-    )
+    cell = _LONG_CELL if name in LONG else _CELL
     return [_EMPTY if value is None else _shown(value, show, cell) for value in column]
 
 
+_CELL = Markup('<td data-v="{}">{}</td>')
+_LONG_CELL = Markup('<td class="w" data-v="{}">{}</td>')
 _EMPTY = Markup('<td data-v=""></td>')
 
 
