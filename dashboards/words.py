@@ -266,8 +266,8 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
         "Only what lies beyond its limit; all checks stand in the table assessments.",
     ),
     "uncertainty_budget_note": (
-        "Relatieve standaardonzekerheid van Cw door elke oorzaak, en wie haar delen.",
-        "Relative standard uncertainty of Cw by each cause, and who share it.",
+        "Relatieve standaardonzekerheid van Cw door elke oorzaak; wie haar delen staat in de CSV.",
+        "Relative standard uncertainty of Cw by each cause; who share it stands in the CSV.",
     ),
     "hand_windows_note": (
         "Vensters die iemand zelf heeft gekozen, met de reden.",

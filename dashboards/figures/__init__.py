@@ -11,6 +11,7 @@ from typing import Final
 
 import altair as alt
 import polars as pl
+import vl_convert
 
 from dashboards.figures import boat, corrections, quality, reproducibility, types
 from dashboards.words import Say
@@ -45,3 +46,9 @@ FIGURES: Final[dict[str, Figure]] = {
     "statuses": quality.statuses,
 }
 """Every figure by name."""
+
+
+def png(name: str, frame: pl.DataFrame, say: Say) -> bytes:
+    """A figure as a picture, for places that show no Vega."""
+    text = FIGURES[name](frame, say).to_json()
+    return bytes(vl_convert.vegalite_to_png(text))

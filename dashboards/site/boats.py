@@ -9,11 +9,8 @@ from warehouse.views import Views
 
 OF_THE_CURVE = {"tow_id": "tow_id", "method": "method"}
 FOLLOWS = ["tow_id", "method"]
-CHARTS = {"uncertainty_budget": [Chart("budget", "budget", "uncertainty_budget", OF_THE_CURVE)]}
-"""Charts above a table of `EXTRA`."""
 EXTRA = {
     "assessments": ("tow_id", "method", "check", "severity", "observed", "limit", "unit"),
-    "uncertainty_budget": ("tow_id", "method", "component", "shared", "u_ratio", "dof"),
     "hand_windows": ("tow_id", "run", "start_s", "end_s", "reason"),
 }
 """Tables about tows that are shown where there are any, with the columns shown."""
@@ -58,6 +55,9 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
         "trace": _seconds(views.table("trace_seconds").join(boat_of, on="tow_id")),
         "window": _kind(windows, "window", "method", "run", "window_start_s", "window_end_s"),
         "lineage": lineage,
+        "budget": views.table("uncertainty_budget")
+        .select(*FOLLOWS, "component", "shared", "u_ratio", "dof")
+        .join(boat_of, on="tow_id", maintain_order="left"),
     }
     for name in EXTRA:
         if views.has(name):
@@ -145,7 +145,7 @@ def _data(own: dict[str, pl.DataFrame]) -> dict[str, list[pl.DataFrame]]:
         "stages": [own["stages"].drop("fsn_no")],
         "runs": [own["runs"].select(wind)],
         "curves": [own["curves"].select(history)],
-        "budget": [own["uncertainty_budget"].select(*FOLLOWS, "component", "u_ratio")],
+        "budget": [own["budget"].drop("fsn_no")],
     }
 
 
@@ -153,6 +153,7 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
     curve = Chart("resistance_curve", "curve", "boat_curve", OF_THE_CURVE)
     history = Chart("history", "curves", "boat_history")
     traces = Chart("traces", "traces", "boat_traces", OF_THE_CURVE)
+    budget = Chart("budget", "budget", "uncertainty_budget", OF_THE_CURVE)
     sides = [
         Chart("out_and_back", "stages", "boat_out_back", OF_THE_CURVE),
         Chart("wind", "runs", "wind", OF_THE_CURVE),
@@ -167,13 +168,14 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
         Section("boat_history", "boat_history_note", [history], [curves]),
         Section("boat_traces", "boat_traces_note", [traces], [runs]),
         Section("boat_out_back", "boat_out_back_note", sides),
+        Section("uncertainty_budget", "uncertainty_budget_note", [budget]),
     ]
     for name, columns in EXTRA.items():
         rows = own.get(name)
         if rows is not None and rows.height:
             follows = [c for c in FOLLOWS if c in columns]
             table = Table(name, rows, columns, name, follows)
-            found.append(Section(name, f"{name}_note", CHARTS.get(name, ()), [table]))
+            found.append(Section(name, f"{name}_note", tables=[table]))
     lineage = Table("lineage", own["lineage"], LINEAGE_COLUMNS, "boat_lineage")
     if own["lineage"].height:
         found.append(Section("boat_lineage", "boat_lineage_note", tables=[lineage]))

@@ -16,7 +16,7 @@ from typing import Any, Final
 import jinja2
 import polars as pl
 import vl_convert
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from dashboards.figures import FIGURES
 from dashboards.site.downloads import copy_sheets
@@ -203,9 +203,11 @@ def _cells(column: pl.Series, root: str) -> list[Markup]:
     return [_EMPTY if value is None else _shown(value, show, cell) for value in column]
 
 
+_SAME_CELL = Markup("<td>{}</td>")
+"""A cell whose text is its value; others have the value in `data-v`."""
 _CELL = Markup('<td data-v="{}">{}</td>')
 _LONG_CELL = Markup('<td class="w" data-v="{}">{}</td>')
-_EMPTY = Markup('<td data-v=""></td>')
+_EMPTY = Markup("<td></td>")
 
 
 def _number(value: float | None, digits: int) -> Markup:
@@ -216,12 +218,15 @@ def _number(value: float | None, digits: int) -> Markup:
 
 def _integer(value: int | None) -> Markup:
     text = "" if value is None else str(value)
-    return Markup(f'<td class="i" data-v="{text}">{text}</td>')  # noqa: S704 - a number
+    return Markup(f'<td class="i">{text}</td>')  # noqa: S704 - a number
 
 
 def _shown(value: Any, show: Callable[[Any], Markup], cell: Markup) -> Markup:
     plain = ", ".join(value) if isinstance(value, pl.Series | list) else str(value)
-    return cell.format(plain, show(value))
+    shown = show(value)
+    if shown == escape(plain):
+        return _SAME_CELL.format(shown)
+    return cell.format(plain, shown)
 
 
 def _shower(name: str, root: str) -> Callable[[Any], Markup]:

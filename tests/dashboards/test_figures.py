@@ -5,7 +5,7 @@ import json
 import polars as pl
 import pytest
 
-from dashboards.figures import FIGURES
+from dashboards.figures import FIGURES, png
 from dashboards.words import LANGUAGES, WORDS, both, speaker
 
 FRAME = pl.DataFrame({"kind": ["line"], "method": ["rebased"], "cw_kg_m": [30.0]})
@@ -88,6 +88,11 @@ def test_a_figure_carries_the_rows_it_was_given():
     spec = FIGURES["resistance_curve"](frame, speaker("en")).to_dict()
     (rows,) = spec["datasets"].values()
     assert rows == frame.to_dicts()
+
+
+def test_a_figure_is_also_a_picture():
+    frame = pl.DataFrame({"season": [2010], "status": ["accepted"], "number": [3]})
+    assert png("statuses", frame, speaker("nl")).startswith(b"\x89PNG")
 
 
 def test_every_text_is_there_in_every_language():

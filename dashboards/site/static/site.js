@@ -76,6 +76,9 @@
     return wanted.length === 0 || wanted.includes(String(value));
   }
 
+  // What a cell holds: its text, unless it says otherwise.
+  const valueOf = (cell) => cell.dataset.v ?? cell.textContent;
+
   function sort(table, header) {
     const place = [...header.parentElement.children].indexOf(header);
     const down = header.getAttribute("aria-sort") === "ascending";
@@ -84,7 +87,7 @@
     const body = table.querySelector("tbody");
     const numeric = header.classList.contains("n");
     const compare = new Intl.Collator("nl", { numeric: true }).compare;
-    const rows = [...body.rows].map((row) => [row.cells[place].dataset.v, row]);
+    const rows = [...body.rows].map((row) => [valueOf(row.cells[place]), row]);
     rows.sort(([a], [b]) => {
       if (a === "" || b === "") return (a === "") - (b === "");
       const order = numeric ? Number(a) - Number(b) : compare(a, b);
@@ -101,7 +104,7 @@
     table.querySelector(".csv").addEventListener("click", () => {
       const rows = all("tbody tr", table).filter((row) => !row.hidden);
       download(table.dataset.table, all("th", table).map((h) => h.dataset.c),
-        rows.map((row) => [...row.cells].map((cell) => cell.dataset.v)));
+        rows.map((row) => [...row.cells].map(valueOf)));
     });
     table.querySelector("table.linked")?.addEventListener("click", (event) => {
       const row = event.target.closest("tbody tr");
