@@ -26,7 +26,11 @@ jobs = [
     dg.define_asset_job(
         FINISH,
         dg.AssetSelection.assets(
-            tables.register_tables, tables.consistency_tables, tables.warehouse_database, site
+            tables.register_tables,
+            tables.consistency_tables,
+            tables.summary_tables,
+            tables.warehouse_database,
+            site,
         ),
     ),
 ]
@@ -44,6 +48,7 @@ def build_defs(setup: Setup, progress: Progress) -> dg.Definitions:
             tables.study_tables,
             tables.register_tables,
             tables.consistency_tables,
+            tables.summary_tables,
             tables.warehouse_database,
             site,
         ],

@@ -18,6 +18,7 @@ from assets.site import site_is_stale
 from warehouse import intake, tables
 from warehouse.files import written_beside
 from warehouse.store import Store
+from warehouse.summaries import summaries_are_stale
 
 INSTANCE_SETTINGS = """\
 telemetry:
@@ -100,6 +101,7 @@ def _finish(jobs: "_Jobs", setup: Setup, progress: Progress) -> bool:
     chosen = setup.chosen_methods
     if not (
         tables.register_is_stale(setup.store, chosen)
+        or summaries_are_stale(setup.store, [method.name for method in chosen])
         or tables.database_is_stale(setup.store, chosen)
         or site_is_stale(setup.store)
     ):

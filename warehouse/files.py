@@ -1,5 +1,6 @@
 """Writing files so that nothing half-written is ever visible: beside, sync, rename."""
 
+import ctypes
 import os
 import tempfile
 from collections.abc import Iterator
@@ -8,6 +9,10 @@ from pathlib import Path
 
 TEMPORARY_PREFIX = ".herijk-"
 """Begins the name of every file that is still being written."""
+
+
+AT_FDCWD, RENAME_EXCHANGE = -100, 2
+"""Of `renameat2(2)`: paths are relative to where we are; exchange the two."""
 
 
 @contextmanager
@@ -45,6 +50,34 @@ def write_new(path: Path, text: str) -> None:
         Path(beside.name).chmod(0o644)
         path.hardlink_to(beside.name)
     _sync(path.parent)
+
+
+def put_in_place(beside: Path, target: Path) -> None:
+    """Puts a folder under the name of another at once; the older one is `beside` after that.
+
+    All files are synced before. Linux exchanges two names in one step, so that a reader finds the
+    old folder or the new one, never none. Where that is not known, the older folder is set aside
+    first, and for a moment there is none.
+    """
+    for file in beside.rglob("*"):
+        _sync(file)
+    if not target.exists():
+        beside.rename(target)
+    elif not _exchange(beside, target):
+        old = beside.with_name(f"{beside.name}-old")
+        target.rename(old)
+        beside.rename(target)
+        old.rename(beside)
+    _sync(target.parent)
+
+
+def _exchange(one: Path, other: Path) -> bool:
+    """Exchanges two names in one step; False where system or file system cannot."""
+    renameat2 = getattr(ctypes.CDLL(None, use_errno=True), "renameat2", None)
+    if renameat2 is None:
+        return False
+    failed = renameat2(AT_FDCWD, os.fsencode(one), AT_FDCWD, os.fsencode(other), RENAME_EXCHANGE)
+    return not failed
 
 
 def _sync(path: Path) -> None:

@@ -8,6 +8,7 @@ table means stands in `warehouse.schemas`; the database that readers use is `war
 
 import hashlib
 import json
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -84,9 +85,10 @@ class Store:
         """A table or partition as written."""
         return pl.read_parquet(self.table_path(table, partition), hive_partitioning=False)
 
-    def read_all(self, table: str) -> pl.DataFrame:
-        """All partitions of a table, one below the other."""
-        return pl.concat([self.read(table, p) for p in self.partitions(table)])
+    def read_all(self, table: str, partitions: Iterable[str] | None = None) -> pl.DataFrame:
+        """Partitions of a table, one below the other: the given ones, or all."""
+        chosen = self.partitions(table) if partitions is None else partitions
+        return pl.concat([self.read(table, p) for p in chosen])
 
     def made_from(self, table: str, partition: str | None = None) -> str | None:
         """Fingerprint of what a table was made from; None if there is no such table."""
