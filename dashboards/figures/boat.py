@@ -1,5 +1,8 @@
 """Figures of one boat: curve, history, traces, wind, out against back, and uncertainty."""
 
+import json
+from collections.abc import Sequence
+
 import altair as alt
 import polars as pl
 
@@ -16,6 +19,7 @@ from dashboards.figures.style import (
     tips,
 )
 from dashboards.words import Say
+from pipeline.steady import CUT_REASONS
 
 COMPONENTS = (
     *("anemometer", "calibration", "force", "mass", "random", "season_log", "straightness"),
@@ -104,7 +108,7 @@ def traces(frame: pl.DataFrame, say: Say) -> alt.VConcatChart:
 
     Args:
         frame: rows of `kind` trace (`run, second, speed_m_s, gps_m_s, force_n, wind_m_s`) and
-            window (`run, window_start_s, window_end_s`).
+            window (`run, window_start_s, window_end_s, cut_reason`).
         say: gives texts.
     """
     rows = [
@@ -113,13 +117,33 @@ def traces(frame: pl.DataFrame, say: Say) -> alt.VConcatChart:
         (("wind_m_s", OKABE_ITO[6], [1, 0]),),
     ]
     titles = (say("speed_short"), say("force"), say("wind"))
+    first, *others = zip(rows, titles, strict=True)
     return alt.vconcat(
-        *(_trace_row(frame, say, fields, title) for fields, title in zip(rows, titles, strict=True))
+        _trace_row(frame, say, *first, [_cut_reason(say)]),
+        *(_trace_row(frame, say, *row) for row in others),
+    )
+
+
+def _cut_reason(say: Say) -> alt.Chart:
+    """Why the rest of a run was cut, in words, a line a reason."""
+    text = "datum.cut_reason"
+    for code in CUT_REASONS:
+        text = f"replace({text}, '{code}', {json.dumps(say(f'code.{code}'))})"
+    return (
+        alt.Chart()
+        .transform_filter("datum.kind == 'window' && datum.cut_reason")
+        .transform_calculate(why=text)
+        .mark_text(align="left", baseline="top", fontSize=10, lineBreak=",")
+        .encode(x=alt.value(3), y=alt.value(3), text="why:N")
     )
 
 
 def _trace_row(
-    frame: pl.DataFrame, say: Say, fields: tuple[tuple[str, str, list[int]], ...], title: str
+    frame: pl.DataFrame,
+    say: Say,
+    fields: tuple[tuple[str, str, list[int]], ...],
+    title: str,
+    above: Sequence[alt.Chart] = (),
 ) -> alt.FacetChart:
     x = alt.X("second:Q", title=say("time"))
     window = (
@@ -136,7 +160,7 @@ def _trace_row(
         for field, ink, dash in fields
     ]
     return (
-        alt.layer(window, *lines, data=frame)
+        alt.layer(window, *lines, *above, data=frame)
         .properties(width=150, height=110)
         .facet(alt.Facet("run:O", title=say("run")), columns=6)
     )

@@ -53,7 +53,7 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
         "declared": _kind(declared, "declared", "method", *NUMBERS),
         "stages": _stages(points),
         "trace": _seconds(views.table("trace_seconds").join(boat_of, on="tow_id")),
-        "window": _kind(windows, "window", "method", "run", "window_start_s", "window_end_s"),
+        "window": _kind(windows, "window", "method", "run", *WINDOW),
         "lineage": lineage,
         "budget": views.table("uncertainty_budget")
         .select(*FOLLOWS, "component", "shared", "u_ratio", "dof")
@@ -67,6 +67,7 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
 
 
 POINT = ["run", "direction", "speed_m_s", "cw_kg_m", "used"]
+WINDOW = ["window_start_s", "window_end_s", "cut_reason"]
 NUMBERS = ["speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"]
 
 

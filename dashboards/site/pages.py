@@ -9,7 +9,10 @@ from dashboards.site.downloads import DOWNLOADS, SHEETS
 from dashboards.site.parts import Chart, Page, Section, Select, Table, boat_path, default_method
 from warehouse.views import Views
 
-MENU = ("index", "register", "types", "corrections", "reproducibility", "changes", "quality")
+MENU = (
+    *("index", "register", "due", "types", "corrections", "reproducibility", "changes"),
+    "quality",
+)
 
 
 def all_pages(views: Views) -> Iterator[Page]:
@@ -17,6 +20,7 @@ def all_pages(views: Views) -> Iterator[Page]:
     methods = method_names(views)
     yield _index(views)
     yield _register(views)
+    yield _due(views, methods)
     yield _types(views, methods)
     yield _corrections(views, methods)
     yield _reproducibility(views, methods)
@@ -112,6 +116,28 @@ def _newest(editions: Sequence[str]) -> str:
     return published[-1] if published else default_method(editions)
 
 
+DUE_COLUMNS = (
+    *("valid_until", "name", "fsn_no", "boat_type", "rowers", "crew_class", "status", "tow_id"),
+    *("declared_speed_m_s", "power_w", "raced_speed_m_s", "lowest_speed_m_s"),
+    *("highest_speed_m_s", "tow_speed_m_s", "speed_reason", "beyond_curve", "as_of"),
+)
+CHOICE_COLUMNS = (
+    *("position", "name", "fsn_no", "rowers", "crew_class", "seasons", "valid_until"),
+    *("tow_speed_m_s", "factor_sd_before_ratio", "factor_sd_after_ratio"),
+)
+
+
+def _due(views: Views, methods: Sequence[str]) -> Page:
+    """Who has to tow again, at what speed, and which tows would tell most."""
+    due = Table("due_list", views.due_list(), DUE_COLUMNS, "due_list", ["method"], search=True)
+    sections = [Section("due_list", "due_list_note", tables=[due])]
+    choice = views.retow_choice()
+    if choice.height:
+        table = Table("retow_choice", choice, CHOICE_COLUMNS, "retow_choice", ["method"])
+        sections.append(Section("retow_choice", "retow_choice_note", tables=[table]))
+    return Page("due.html", "due", sections, selects=[_method(methods)])
+
+
 QUANTITIES = ("b_weight", "b_speed", "cw_weight", "cw_speed")
 SIDES = ("before", "after")
 PAIR = ("kromhout", "kuiken")
@@ -198,9 +224,13 @@ def _type_tables(views: Views) -> list[Section]:
     return found
 
 
-SEASON_LINKS = (
+LINK_COLUMNS = (
     *("method", "season", "part", "log", "source", "n_tows", "n_links", "factor", "lo", "hi"),
     *("influence", "influence_boat", "factor_no_boats", "agreement"),
+)
+STEP_COLUMNS = (
+    *("method", "season", "part", "log", "n_boats", "level_step", "level_step_sd", "force_step"),
+    *("force_step_sd", "cause"),
 )
 
 
@@ -217,6 +247,10 @@ def _corrections(views: Views, methods: list[str]) -> Page:
         )
         chart = Chart("log_factors", "log_factors", "log_factors")
         sections.append(Section("log_factors", "log_factors_note", [chart], [table]))
+    for name, columns in (("season_links", LINK_COLUMNS), ("season_steps", STEP_COLUMNS)):
+        if views.has(name):
+            table = Table(name, views.table(name), columns, name, ["method"])
+            sections.append(Section(name, f"{name}_note", tables=[table]))
     if views.has("correction_steps"):
         data["ladder"] = views.table("season_ladder")
         data["season_change"] = views.table("season_changes")
@@ -230,7 +264,7 @@ def _corrections(views: Views, methods: list[str]) -> Page:
     return Page(
         "corrections.html",
         "corrections",
-        [*sections, *_whole(views, "season_links", "season_links", SEASON_LINKS)],
+        sections,
         selects=[_method(methods)],
         data={name: [frame] for name, frame in data.items()},
     )
@@ -259,6 +293,12 @@ def _reproducibility(views: Views, methods: list[str]) -> Page:
             lambda: views.table("reproducibility"),
             "method scope n_pairs sd_ratio lo hi share_within_1pct share_within_2pct",
         ),
+        "era_shifts": (
+            "eras",
+            "eras_note",
+            lambda: views.table("era_shifts").drop_nulls("shift_ratio"),
+            "method boat_type era n shift_ratio lo hi apart ageing_per_year",
+        ),
         "repeat_pairs": (
             "repeats",
             "repeats_note",
@@ -280,6 +320,7 @@ def _reproducibility(views: Views, methods: list[str]) -> Page:
     }
     figures = {
         "reproducibility": Chart("reproducibility", "reproducibility", "repro"),
+        "era_shifts": Chart("eras", "era_shifts", "eras"),
         "repeat_pairs": Chart("repeats", "repeat_pairs", "repeats"),
         "variance_components": Chart("components", "variance_components", "components"),
         "predicted_cw": Chart("predicted", "predicted_cw", "predicted", {"method": "method"}),
@@ -288,7 +329,7 @@ def _reproducibility(views: Views, methods: list[str]) -> Page:
     for name, (title, note, read, columns) in parts.items():
         frame = read() if views.has(name) else pl.DataFrame()
         if frame.height:
-            data[name] = frame
+            data[name] = frame if name != "era_shifts" else frame.filter(boat_type="all")
             table = Table(name, frame, columns.split(), title, ["method"])
             sections.append(Section(title, note, [figures[name]], [table]))
     return Page(

@@ -103,6 +103,16 @@ class Page:
     data: Mapping[str, Sequence[pl.DataFrame]] = field(default_factory=dict)
 
     @property
+    def chosen(self) -> dict[str, str]:
+        """What each selector says at first."""
+        return {select.name: select.chosen for select in self.selects}
+
+    @property
+    def has_charts(self) -> bool:
+        """Whether the page needs Vega."""
+        return any(section.charts for section in self.sections)
+
+    @property
     def root(self) -> str:
         """The way from this page to the site's root."""
         return "../" * self.path.count("/")

@@ -10,6 +10,7 @@ import shutil
 import tempfile
 from collections.abc import Callable, Sequence
 from functools import cache
+from itertools import repeat
 from pathlib import Path
 from typing import Any, Final
 
@@ -21,8 +22,8 @@ from markupsafe import Markup, escape
 from dashboards.figures import FIGURES
 from dashboards.site.downloads import copy_sheets
 from dashboards.site.pages import MENU, all_pages
-from dashboards.site.parts import boat_path
-from dashboards.words import LANGUAGES, both, speaker
+from dashboards.site.parts import Page, Table, boat_path
+from dashboards.words import LANGUAGES, WORDS, Say, both, speaker
 from warehouse.files import TEMPORARY_PREFIX, put_in_place
 from warehouse.store import Store
 from warehouse.views import Views
@@ -48,13 +49,16 @@ POLICY: Final = "; ".join(
 """What a browser lets a page load: the site's own files and nothing else; no eval, no connection.
 `file:` because to some browsers a page from disk is no `'self'`; inline styles are Vega's."""
 
+DECIMAL: Final = ","
+"""A page is written in Dutch; `site.js` changes numbers where English is chosen."""
+
 KEPT: Final = 9
 """Significant digits in downloads and charts; the database holds all."""
 
 CODES: Final = {
     *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "code"),
     *("quantity", "explaining", "candidates", "severity", "check", "shared", "kind", "scope"),
-    "option",
+    *("option", "speed_reason", "cause", "log"),
 }
 """Columns that hold codes of the warehouse, shown as words."""
 
@@ -112,14 +116,21 @@ def vega_bundle() -> str:
 
 @cache
 def chart_specifications() -> str:
-    """A script with every figure's Vega-Lite in every language, without data."""
+    """A script with every figure's Vega-Lite and words in every language, without data."""
     found = {
         language: {
             name: specification(figure, speaker(language)) for name, figure in FIGURES.items()
         }
         for language in LANGUAGES
     }
-    return f"window.HERIJK_FIGURES = {as_json(found)};\n"
+    words = {language: _words_of_charts(speaker(language)) for language in LANGUAGES}
+    return f"window.HERIJK_FIGURES = {as_json(found)};\nwindow.HERIJK_WORDS = {as_json(words)};\n"
+
+
+def _words_of_charts(say: Say) -> dict[str, str]:
+    """Names of columns and codes, and yes and no, for the table of a chart."""
+    named = {key: say(key) for key in WORDS if key.startswith(("column.", "code."))}
+    return named | {"true": say("yes"), "false": say("no")}
 
 
 def specification(figure: Callable[..., Any], say: Callable[[str], str]) -> dict[str, Any]:
@@ -185,10 +196,27 @@ def _is_number(frame: pl.DataFrame, column: str) -> bool:
     return frame.schema[column].is_numeric()
 
 
-def _rows(frame: pl.DataFrame, columns: list[str], root: str) -> list[list[Markup]]:
-    """Cells of a table, column by column because most columns are of one kind."""
-    made = [_cells(frame[c], root) for c in columns]
-    return [list(row) for row in zip(*made, strict=True)]
+def _rows(page: Page, table: Table) -> tuple[Markup, Markup]:
+    """The rows that the selectors show at first, and all others.
+
+    A browser lays out only the first; `site.js` brings in others when they are chosen.
+    """
+    frame, follows = table.frame, list(table.follows)
+    # Column by column, because the cells of a column are made in one way.
+    cells = zip(*(_cells(frame[c], page.root) for c in table.columns), strict=True)
+    boats = frame["fsn_no"] if table.linked else repeat(None)
+    keys = frame.select(follows).rows() if follows else repeat(())
+    first, others = [], []
+    for row, boat, key in zip(cells, boats, keys, strict=False):
+        marks = [_BOAT.format(boat)] if boat is not None else []
+        marks += [_FOLLOWED.format(n, v) for n, v in zip(follows, key, strict=True)]
+        is_first = all(page.chosen[n] in ("", v) for n, v in zip(follows, key, strict=True))
+        (first if is_first else others).append(f"<tr{''.join(marks)}>{''.join(row)}</tr>")
+    return Markup("\n".join(first)), Markup("\n".join(others))  # noqa: S704 - made of escaped parts
+
+
+_BOAT = Markup(' data-boat="{}"')
+_FOLLOWED = Markup(' data-f-{}="{}"')
 
 
 def _cells(column: pl.Series, root: str) -> list[Markup]:
@@ -213,7 +241,8 @@ _EMPTY = Markup("<td></td>")
 def _number(value: float | None, digits: int) -> Markup:
     if value is None:
         return Markup('<td class="n" data-v=""></td>')
-    return Markup(f'<td class="n" data-v="{value:.{KEPT}g}">{value:.{digits}f}</td>')  # noqa: S704 - a number
+    shown = f"{value:.{digits}f}".replace(".", DECIMAL)
+    return Markup(f'<td class="n" data-v="{value:.{KEPT}g}">{shown}</td>')  # noqa: S704 - a number
 
 
 def _integer(value: int | None) -> Markup:
@@ -265,8 +294,9 @@ def _code(value: Any) -> Markup:
 def _causes(value: str) -> Markup:
     """What a change is attributed to (a method's step by its name), each with its factor."""
     parts = [
-        Markup('{} <span class="n">{:.4f}</span>').format(
-            _text(f"code.{cause.get('step', cause['cause'])}"), cause["factor"]
+        Markup('{} <span class="n">{}</span>').format(
+            _text(f"code.{cause.get('step', cause['cause'])}"),
+            f"{cause['factor']:.4f}".replace(".", DECIMAL),
         )
         for cause in json.loads(value)
     ]
