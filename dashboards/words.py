@@ -41,7 +41,7 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
     "download": ("Download als CSV", "Download as CSV"),
     "as_table": ("Als tabel", "As a table"),
     "search": ("Zoek", "Search"),
-    "rows": ("regels", "rows"),
+    "rows": ("Regels:", "Rows:"),
     "all": ("alle", "all"),
     "choose": ("Toon", "Show"),
     "clear": ("Wis keuze", "Clear selection"),
@@ -143,10 +143,10 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
     "boat_traces_note": (
         "Gemiddelden per seconde; snelheid: doorgetrokken log 1, gestreept GPS. Het grijze "
         "vlak is het venster dat telt; de rest is weggesneden "
-        "om de reden die in de tabel staat.",
+        "om de reden die erboven staat.",
         "Means per second; speed: solid log 1, dashed GPS. The grey area is the window "
         "that counts; the rest is cut for the "
-        "reason in the table.",
+        "reason above it.",
     ),
     "boat_runs": ("Runs", "Runs"),
     "boat_out_back": ("Heen tegen terug, en de wind", "Out against back, and the wind"),
@@ -312,8 +312,8 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
         "Only what lies beyond its limit; all checks stand in the table assessments.",
     ),
     "uncertainty_budget_note": (
-        "Relatieve standaardonzekerheid van Cw door elke oorzaak; wie haar delen staat in de CSV.",
-        "Relative standard uncertainty of Cw by each cause; who share it stands in the CSV.",
+        "Relatieve standaardonzekerheid van Cw door elke oorzaak; wie haar delen staat in de tabel.",
+        "Relative standard uncertainty of Cw by each cause; who share it stands in the table.",
     ),
     "hand_windows_note": (
         "Vensters die iemand zelf heeft gekozen, met de reden.",

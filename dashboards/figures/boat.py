@@ -119,23 +119,24 @@ def traces(frame: pl.DataFrame, say: Say) -> alt.VConcatChart:
     titles = (say("speed_short"), say("force"), say("wind"))
     first, *others = zip(rows, titles, strict=True)
     return alt.vconcat(
-        _trace_row(frame, say, *first, [_cut_reason(say)]),
+        _trace_row(frame, say, *first, _cut_reasons(say)),
         *(_trace_row(frame, say, *row) for row in others),
     )
 
 
-def _cut_reason(say: Say) -> alt.Chart:
-    """Why the rest of a run was cut, in words, a line a reason."""
+def _cut_reasons(say: Say) -> list[alt.Chart]:
+    """Why the rest of a run was cut, in words, a line a reason, readable over the traces."""
     text = "datum.cut_reason"
     for code in CUT_REASONS:
         text = f"replace({text}, '{code}', {json.dumps(say(f'code.{code}'))})"
-    return (
+    why = (
         alt.Chart()
         .transform_filter("datum.kind == 'window' && datum.cut_reason")
         .transform_calculate(why=text)
-        .mark_text(align="left", baseline="top", fontSize=10, lineBreak=",")
         .encode(x=alt.value(3), y=alt.value(3), text="why:N")
     )
+    look = {"align": "left", "baseline": "top", "fontSize": 10, "lineBreak": ","}
+    return [why.mark_text(**look, stroke="white", strokeWidth=3), why.mark_text(**look)]
 
 
 def _trace_row(
@@ -148,7 +149,7 @@ def _trace_row(
     x = alt.X("second:Q", title=say("time"))
     window = (
         alt.Chart()
-        .transform_filter("datum.kind == 'window'")
+        .transform_filter("datum.kind == 'window' && isValid(datum.window_start_s)")
         .mark_rect(color=GREY, opacity=0.22)
         .encode(alt.X("window_start_s:Q", title=say("time")), alt.X2("window_end_s:Q"))
     )

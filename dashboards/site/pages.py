@@ -117,9 +117,9 @@ def _newest(editions: Sequence[str]) -> str:
 
 
 DUE_COLUMNS = (
-    *("valid_until", "name", "fsn_no", "boat_type", "rowers", "crew_class", "status", "tow_id"),
-    *("declared_speed_m_s", "power_w", "raced_speed_m_s", "lowest_speed_m_s"),
-    *("highest_speed_m_s", "tow_speed_m_s", "speed_reason", "beyond_curve", "as_of"),
+    *("valid_until", "name", "fsn_no", "boat_type", "rowers", "crew_class", "status"),
+    *("tow_speed_m_s", "speed_reason", "beyond_curve", "declared_speed_m_s", "power_w"),
+    *("raced_speed_m_s", "lowest_speed_m_s", "highest_speed_m_s", "tow_id", "as_of"),
 )
 CHOICE_COLUMNS = (
     *("position", "name", "fsn_no", "rowers", "crew_class", "seasons", "valid_until"),

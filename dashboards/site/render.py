@@ -32,7 +32,7 @@ HERE: Final = Path(__file__).parent
 OWN_FILES: Final = ("site.css", "site.js")
 DIGITS: Final = (
     ("_kg_m", 2), ("_m_s", 2), ("_deg", 0), ("_kg", 0), ("_w", 1), ("_s", 0), ("cw_sd", 2),
-    ("_m", 2), ("_sd", 1), ("dof", 1),
+    ("_m", 2), ("step_sd", 4), ("_sd", 1), ("dof", 1), ("before_ratio", 6), ("after_ratio", 6),
 )  # fmt: skip
 """Decimals shown by the ending of a column's name; 4 otherwise."""
 
@@ -63,7 +63,10 @@ CODES: Final = {
 """Columns that hold codes of the warehouse, shown as words."""
 
 
-LONG: Final = {"flags", "cut_reason", "causes", "message", "meaning", "decision", "candidates"}
+LONG: Final = {
+    *("flags", "cut_reason", "reason", "speed_reason", "causes", "message", "meaning", "decision"),
+    "candidates",
+}
 """Columns of texts that may take several lines."""
 
 
@@ -270,7 +273,11 @@ def _direction(value: int) -> Markup:
 
 
 def _type(value: str) -> Markup:
-    return _text("code.unknown") if value == "unknown" else _plain(value)
+    return _text(f"code.{value}") if value in ("unknown", "all") else _plain(value)
+
+
+def _unit(value: str) -> Markup:
+    return _plain("" if value == "1" else value)
 
 
 def _hash(value: str) -> Markup:
@@ -307,6 +314,7 @@ SHOWERS: Final[dict[str, Callable[[Any], Markup]]] = {
     "direction": _direction,
     "causes": _causes,
     "boat_type": _type,
+    "unit": _unit,
     **dict.fromkeys(("sha256", "content_hash", "method_hash", "seal"), _hash),
 }
 """Columns shown in a way of their own."""
