@@ -243,8 +243,8 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
     "run_reasons": ("Runs die niet tellen", "Runs that do not count"),
     "set_aside": ("Terzijde gelegd", "Set aside"),
     "set_aside_note": (
-        "Bestanden en proeven die niet gebruikt zijn, met de reden.",
-        "Files and tows not used, with the reason.",
+        "Bestanden, regels en proeven die niet gebruikt zijn, met de reden.",
+        "Files, lines and tows not used, with the reason.",
     ),
     "checks": ("Wat de controles vonden", "What the checks found"),
     "checks_note": (
@@ -275,8 +275,8 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
     ),
     "downloads": ("Downloads", "Downloads"),
     "downloads_note": (
-        "Het register van elke editie zoals uitgegeven, met de toelichting.",
-        "The register of every edition as published, with the release notes (in Dutch).",
+        "Het register van elke editie zoals uitgegeven, met de toelichting in twee talen.",
+        "The register of every edition as published, with the release notes in Dutch and English.",
     ),
     "types_pair": ("Twee typen naast elkaar", "Two types side by side"),
     "types_pair_note": (
@@ -312,7 +312,7 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
         "Only what lies beyond its limit; all checks stand in the table assessments.",
     ),
     "uncertainty_budget_note": (
-        "Relatieve standaardonzekerheid van Cw door elke oorzaak; wie haar delen staat in de tabel.",
+        "Relatieve standaardonzekerheid van Cw door elke oorzaak; de tabel zegt wie haar delen.",
         "Relative standard uncertainty of Cw by each cause; who share it stands in the table.",
     ),
     "hand_windows_note": (

@@ -175,7 +175,7 @@ def _types(views: Views, methods: list[str]) -> Page:
             Select("pair", "pair_first", types, first),
             Select("pair_2", "pair_second", types, second),
         ],
-        data={"type_boats": [boats.drop("a_kg_m", "tow_id")]},
+        data={"type_boats": [boats.select("method", "page", *columns)]},
     )
 
 
