@@ -167,7 +167,6 @@ def test_a_chart_downloads_its_data(visitor, attacked):
 def test_the_uncertainty_can_be_read_without_its_chart(visitor, attacked, built):
     page = visitor.open(boat_path(attacked))
     figure = page.locator("figure[data-figure=budget]")
-    figure.locator("svg").first.wait_for()
     figure.locator("summary").click()
     tow, method = (page.locator(f"select[name={n}]").input_value() for n in ("tow_id", "method"))
     budget = built.table("uncertainty_budget").filter(tow_id=tow, method=method)
