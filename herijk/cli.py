@@ -16,7 +16,7 @@ from herijk import audit_text, commands_editions, text
 from herijk.arguments import AsJson, DataFolder, show
 from herijk.method_text import method_in_words
 from herijk.progress import TerminalProgress
-from pipeline.errors import HerijkError, MissingKnowledgeError
+from pipeline.errors import BrokenPromiseError, HerijkError, MissingKnowledgeError
 from pipeline.method import Method, parse_method, shipped_method, shipped_methods, shipped_text
 from pipeline.register import draft_name
 from pipeline.simulate import WorldSettings, simulate_world
@@ -79,15 +79,23 @@ def rebuild(
     as_json: AsJson = False,
 ) -> None:
     """From the archive to registers and tables; only what changed is done again."""
-    from assets.rebuild import rebuild as run  # noqa: PLC0415 - Dagster takes a second to import
+    from assets.notify import notifier_of  # noqa: PLC0415 - Dagster takes a second to import
+    from assets.rebuild import rebuild as run  # noqa: PLC0415
+    from assets.report import failed_checks, tell  # noqa: PLC0415
+    from assets.settings import read_settings  # noqa: PLC0415
 
     chosen = method or list(shipped_methods())
     for name in chosen:
         shipped_text(name)
     with TerminalProgress() as progress:
         done = run(archive, data, chosen, progress, seasons)
-    report = reports.rebuild_report(Store(data)) | {"done": vars(done)}
+    report = reports.rebuild_report(Store(data)) | {"done": done.work, "since": done.report}
     show(report, text.rebuild, as_json)
+    notifier = notifier_of(str(data), read_settings(data))
+    for problem in tell(notifier, done.report):
+        typer.echo(f"herijk: {problem}", err=True)
+    if failed := failed_checks(done.report):
+        raise BrokenPromiseError(f"a check failed: {'; '.join(failed)}")
 
 
 @methods_app.callback()

@@ -20,9 +20,9 @@ from markupsafe import Markup
 
 from dashboards.figures import FIGURES
 from dashboards.site.pages import MENU, all_pages
-from dashboards.site.parts import boat_path
+from dashboards.site.parts import Page, boat_path
 from dashboards.words import LANGUAGES, both, speaker
-from warehouse.files import TEMPORARY_PREFIX
+from warehouse.files import TEMPORARY_PREFIX, swap_folder
 from warehouse.store import Store
 from warehouse.views import Views
 
@@ -39,7 +39,7 @@ KEPT: Final = 9
 
 CODES: Final = {
     *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "flag"),
-    *("quantity", "explaining", "candidates", "severity", "check", "shared"),
+    *("quantity", "explaining", "candidates", "severity", "check", "shared", "what", "outcome"),
 }
 """Columns that hold codes of the warehouse, shown as words."""
 
@@ -58,19 +58,10 @@ def build_site(store: Store) -> dict[str, int]:
         written = [f for f in beside.rglob("*") if f.is_file()]
         size = {"files": len(written), "bytes": sum(f.stat().st_size for f in written)}
         beside.chmod(0o755)
-        _swap(beside, target)
+        swap_folder(beside, target)
     finally:
         shutil.rmtree(beside, ignore_errors=True)
     return size
-
-
-def _swap(beside: Path, target: Path) -> None:
-    """Puts a folder in place of another: two renames, and the old one is removed after."""
-    old = beside.with_name(beside.name + "-old")
-    if target.exists():
-        target.rename(old)
-    beside.rename(target)
-    shutil.rmtree(old, ignore_errors=True)
 
 
 def _write(views: Views, folder: Path) -> None:
@@ -86,6 +77,12 @@ def _write(views: Views, folder: Path) -> None:
     for page in all_pages(views):
         text = template.render(page=page, menu=MENU, about=about)
         (folder / page.path).write_text(text, encoding="utf-8")
+
+
+def render_page(views: Views, page: Page) -> str:
+    """A page by itself, for one that lies outside the site."""
+    template = _environment(_by_column(views.comments())).get_template("page.html.j2")
+    return template.render(page=page, menu=MENU, about=views.about())
 
 
 def _by_column(comments: dict[str, str]) -> dict[str, str]:

@@ -28,7 +28,6 @@ from warehouse.editions.folder import (
     Edition,
     edition_names,
     editions_folder,
-    file_sha256,
     read_about,
     read_edition,
     read_table,
@@ -40,6 +39,7 @@ from warehouse.editions.inputs import (
     unchanged_tows,
 )
 from warehouse.editions.lines import MEASURED, NUMBERS, lines_made_again
+from warehouse.files import file_sha256
 from warehouse.store import Store, table_digest
 
 SAME_NUMBER: Final = 1e-9
