@@ -21,7 +21,7 @@ from pipeline.outcome import Outcome
 from pipeline.race import power_per_rower_w
 from pipeline.season_log import SeasonFactors
 from pipeline.speed import log_factor
-from pipeline.sureness import budget_of, cw_bounds, run_point_ratio, scatter_of
+from pipeline.sureness import budget_of, curve_points, cw_bounds, run_point_ratio, scatter_of
 from pipeline.wind import mean_wind_angle_deg
 
 LEVEL = 0.95
@@ -29,14 +29,20 @@ LEVEL = 0.95
 
 @dataclass(frozen=True)
 class Recomputed:
-    """The tables of one method, named as in the warehouse."""
+    """The tables of one method, named as in the warehouse, and the season factors behind them.
+
+    Attributes:
+        factors: with their covariance, for the ensemble; None if the method estimates none.
+    """
 
     run_points: pl.DataFrame
     curves: pl.DataFrame
     log_factors: pl.DataFrame
     assessments: pl.DataFrame
     uncertainty_budget: pl.DataFrame
+    curve_points: pl.DataFrame
     season_links: pl.DataFrame
+    factors: SeasonFactors | None
 
 
 def as_tables(
@@ -70,7 +76,9 @@ def as_tables(
         uncertainty_budget=budget.select(
             name, pl.exclude("dof"), pl.when(pl.col("dof").is_finite()).then("dof").alias("dof")
         ),
+        curve_points=curve_points(outcomes, found).select(name, pl.all()),
         season_links=_season_links(found).select(name, pl.all()),
+        factors=found,
     )
 
 

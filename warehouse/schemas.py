@@ -178,6 +178,17 @@ class Curves(dy.Schema):
     flags = dy.List(dy.String(), description="codes of what a person should look at")
 
 
+class CurvePoints(dy.Schema):
+    """Curves over the speeds at which they are valid, 85 to 115 % of the declared speed."""
+
+    method = _method(primary_key=True)
+    tow_id = _tow_id(primary_key=True)
+    speed_m_s = _speed("speed through the water", primary_key=True)
+    cw_kg_m = _number("kg/m", "Cw at this speed", min_exclusive=0)
+    cw_lo_kg_m = _number("kg/m", "lower end of its 95 % interval", min_exclusive=0)
+    cw_hi_kg_m = _number("kg/m", "upper end", min_exclusive=0)
+
+
 class Assessments(dy.Schema):
     """What each check found, one row per method, tow and check; a check not made has no row."""
 
@@ -240,6 +251,20 @@ class UncertaintyBudget(dy.Schema):
     effect_ratio = _number("1", "change of ln Cw by one standard deviation of it")
     u_ratio = _number("1", "relative standard uncertainty", min=0)
     dof = _number("1", "degrees of freedom; empty: not limited", nullable=True)
+
+
+class Ensemble(dy.Schema):
+    """Equally likely values of Cw, with the errors that tows share drawn together.
+
+    Kept in the lake, a file per method, and not in the database.
+    """
+
+    method = _method(primary_key=True)
+    tow_id = _tow_id(primary_key=True)
+    member = dy.Int16(
+        primary_key=True, description="equal numbers of different tows belong together", min=1
+    )
+    cw_kg_m = _number("kg/m", "Cw at the declared speed", min_exclusive=0)
 
 
 class Register(dy.Schema):
@@ -548,10 +573,12 @@ TABLES: Final[dict[str, type[dy.Schema]]] = {
     "hand_windows": HandWindows,
     "run_points": RunPoints,
     "curves": Curves,
+    "curve_points": CurvePoints,
     "assessments": Assessments,
     "log_factors": LogFactors,
     "season_links": SeasonLinks,
     "uncertainty_budget": UncertaintyBudget,
+    "ensemble": Ensemble,
     "register": Register,
     "register_changes": RegisterChanges,
     "correction_steps": CorrectionSteps,

@@ -14,12 +14,14 @@ import polars as pl
 from pipeline.blocks import RunBlocks, stack_blocks
 from pipeline.changes import register_changes
 from pipeline.consistency import consistency_tables
+from pipeline.ensemble import as_frame, register_ensemble
 from pipeline.errors import MissingKnowledgeError
 from pipeline.ladder import ladder
 from pipeline.method import Method
 from pipeline.options import beside_uncertainty, option_effects
 from pipeline.recompute import recompute
 from pipeline.register import LINE, draft_name, draft_register
+from pipeline.results import Recomputed
 from pipeline.steady import HAND_COLUMNS
 from warehouse import intake
 from warehouse.archive import outside_run
@@ -37,8 +39,13 @@ METHOD_TABLES: Final = (
     "log_factors",
     "season_links",
     "uncertainty_budget",
+    "curve_points",
     "assessments",
 )
+METHOD_FILES: Final = ("ensemble",)
+"""Tables of a method that stay in the lake, next to the database: 200 rows a tow would make up most
+of it, and few readers want them."""
+
 STUDY_TABLES: Final = ("correction_steps", "option_effects")
 STUDIED_METHOD: Final = "rebased"
 """The method whose options of judgement are studied."""
@@ -182,7 +189,8 @@ def method_made_from(store: Store, method: Method) -> str:
 def method_is_stale(store: Store, method: Method) -> bool:
     """Whether a method has to be applied again."""
     made_from = method_made_from(store, method)
-    return any(store.made_from(t, method.name) != made_from for t in METHOD_TABLES)
+    names = (*METHOD_TABLES, *METHOD_FILES)
+    return any(store.made_from(t, method.name) != made_from for t in names)
 
 
 def runs_with_windows(store: Store) -> pl.DataFrame:
@@ -203,17 +211,26 @@ def typed_tows(store: Store) -> pl.DataFrame:
 
 
 def apply_method(store: Store, method: Method, blocks: RunBlocks) -> dict[str, pl.DataFrame]:
-    """Run points, curves, log factors and assessments of all tows under one method.
+    """Run points, curves, log factors, assessments and members of all tows under one method.
 
     Returns:
         The tables written, by name.
     """
     made_from = method_made_from(store, method)
     result = recompute(method, typed_tows(store), blocks)
-    found = {name: conform(name, getattr(result, name)) for name in METHOD_TABLES}
+    tables = {name: getattr(result, name) for name in METHOD_TABLES}
+    tables["ensemble"] = _ensemble(method, result)
+    found = {name: conform(name, frame) for name, frame in tables.items()}
     for name, frame in found.items():
         store.write(name, frame, made_from, method.name)
     return found
+
+
+def _ensemble(method: Method, result: Recomputed) -> pl.DataFrame:
+    """Equally likely values of every curve's Cw, 200 rows a tow."""
+    tows = result.curves.drop_nulls("cw_kg_m").select("tow_id", "cw_kg_m")
+    members = register_ensemble(tows, result.uncertainty_budget, result.factors)
+    return as_frame(tows, members).with_columns(pl.lit(method.name).alias("method"))
 
 
 def studies_made_from(store: Store, methods: Sequence[Method]) -> str:
