@@ -23,7 +23,7 @@ from warehouse import archive
 from warehouse.archive import SeasonProfile, check_samples, fault_from, read_tow_samples
 from warehouse.code import source_hash
 from warehouse.files import file_sha256
-from warehouse.store import Store, fingerprint, read_parquet, write_parquet
+from warehouse.store import Store, count_rows, fingerprint, read_parquet, write_parquet
 
 SEASON_INDEX_SCHEMA: Final = {
     "tow_id": pl.String(),
@@ -37,7 +37,8 @@ SEASON_INDEX_SCHEMA: Final = {
 }
 """One row a listed tow: where its samples and blocks lie, or the fault that was found."""
 
-WORKERS: Final = 2
+WORKERS: Final = min(2, pl.thread_pool_size())
+"""Tows read at the same time: no more than Polars may use threads."""
 
 SAMPLES_FORM: Final = {
     "compression": "zstd",
@@ -128,8 +129,7 @@ def _bring_in(
     except DefectiveInputError as error:
         _check_unchanged(root, tow)
         return row | dataclasses.asdict(fault_from(error, tow["samples_path"], tow["tow_id"]))
-    count = pl.scan_parquet(path).select(pl.len()).collect().item()
-    return row | {"blocks_key": blocks_key, "samples": count}
+    return row | {"blocks_key": blocks_key, "samples": count_rows(path)}
 
 
 class ArchiveChangedError(UnavailableError):

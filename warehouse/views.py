@@ -164,9 +164,7 @@ class Views:
             `tow_id, run, second, speed_m_s` (log 1)`, gps_m_s, force_n, wind_m_s, wind_angle_deg`.
         """
         frames = [
-            pl.scan_parquet(self._store.table_path("blocks", season), hive_partitioning=False)
-            .select(*_TRACE)
-            .collect()
+            self._store.read("blocks", season).select(*_TRACE)
             for season in self._store.partitions("blocks")
         ]
         return pl.concat([f for f in frames if f.height])

@@ -17,7 +17,7 @@ from pipeline.recompute import recompute
 from pipeline.register import LINE, draft_register
 from warehouse import decisions as decided
 from warehouse import intake
-from warehouse.editions.folder import DECISIONS, Edition, editions_folder
+from warehouse.editions.folder import DECISIONS, Edition
 from warehouse.editions.inputs import INPUTS_HASH, tows_of_today
 from warehouse.store import Store
 from warehouse.tables import runs_with_windows
@@ -61,7 +61,7 @@ def lines_made_again(store: Store, edition: Edition) -> pl.DataFrame:
     blocks = stack_blocks(intake.all_blocks(store), runs)
     curves = recompute(edition.method, tows, blocks).curves
     nobody = pl.DataFrame(schema={name: edition.register.schema[name] for name in LINE})
-    text = (editions_folder(store) / edition.about.edition / DECISIONS).read_text(encoding="utf-8")
+    text = (store.editions / edition.about.edition / DECISIONS).read_text(encoding="utf-8")
     decisions = TypeAdapter(tuple[decided.Decision, ...]).validate_json(text)
     return method_lines(
         {"curves": curves, "tows": tows},
