@@ -10,16 +10,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 from pathlib import PurePosixPath
-from typing import Final
 
 import obstore
-from obstore import ReadableFile
 from obstore.exceptions import AlreadyExistsError, BaseError
 from obstore.store import S3Store
 
 from pipeline.errors import UnavailableError
-
-FOOTER_BYTES: Final = 1 << 16
 
 
 @dataclass(frozen=True)
@@ -98,12 +94,13 @@ class BucketPath:
         """The content as text; raises as `read_bytes`."""
         return self.read_bytes().decode(encoding)
 
-    @contextmanager
-    def opened(self) -> Iterator[ReadableFile]:
-        """The object as a file that fetches only what is read; raises as `read_bytes`."""
+    def read_end(self, size: int) -> bytes:
+        """The last bytes, all where there are fewer; raises as `read_bytes`."""
         with _explained(self):
-            client = _client(self.bucket)
-            yield obstore.open_reader(client, str(self.key), buffer_size=FOOTER_BYTES)
+            found = obstore.get(
+                _client(self.bucket), str(self.key), options={"range": {"suffix": size}}
+            )
+            return found.bytes().to_bytes()
 
     def write_bytes(self, content: bytes) -> None:
         """Puts an object, in the place of an older one."""

@@ -25,6 +25,9 @@ from warehouse.obstacles import is_obstacle
 from warehouse.storage import Locations, Place, place, read_locations, written_whole
 
 FINGERPRINT_KEY: Final = "herijk.fingerprint"
+_FOOTER_BYTES: Final = 1 << 16
+"""Enough for most footers, so that one request brings them."""
+
 TABLE_FORM: Final = {"compression": "zstd"}
 
 
@@ -172,8 +175,11 @@ def _footer(path: Place) -> pq.FileMetaData:
     """What stands at the end of a Parquet file; the rest is not fetched."""
     if isinstance(path, Path):
         return pq.read_metadata(path)
-    with path.opened() as file:
-        return pq.read_metadata(file)
+    end = path.read_end(_FOOTER_BYTES)
+    size = int.from_bytes(end[-8:-4], "little") + 8  # the footer, its length and the mark "PAR1"
+    if size > len(end):
+        end = path.read_end(size)
+    return pq.read_metadata(pa.BufferReader(end))
 
 
 @contextmanager
