@@ -19,7 +19,6 @@ import time
 from pathlib import Path
 
 import polars as pl
-from distributed import Client
 from polars.testing import assert_frame_equal
 
 from assets.cluster import read_seasons
@@ -50,7 +49,6 @@ def read_there(archive, data, workers, kill=False):
     store = Store(data)
     intake.index(store, archive)
     with _instance(store) as instance, dask_cluster(workers, store.dagster_home) as cluster:
-        warm_up(cluster)
         killer = threading.Thread(target=kill_one, args=(store, cluster), daemon=True)
         if kill:
             killer.start()
@@ -59,13 +57,6 @@ def read_there(archive, data, workers, kill=False):
         seconds = time.perf_counter() - start
     assert read.failed == {}, read.failed
     return seconds, store
-
-
-def warm_up(cluster):
-    """Waits until all workers have imported what they need."""
-    with Client(cluster.address) as client:
-        client.wait_for_workers(len(cluster.workers))
-        client.run(__import__, "assets.cluster")
 
 
 def kill_one(store, cluster):

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from unittest import mock
 
+from distributed import Client
 from moto.server import ThreadedMotoServer
 
 ROOT = Path(__file__).parents[1]
@@ -63,7 +64,7 @@ class Cluster:
 
 @contextmanager
 def dask_cluster(workers: int, dagster_home: Path) -> Iterator[Cluster]:
-    """A scheduler and workers as processes of their own, stopped afterwards."""
+    """A scheduler and workers as processes of their own, all ready; stopped afterwards."""
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         settings = {
@@ -86,7 +87,11 @@ def dask_cluster(workers: int, dagster_home: Path) -> Iterator[Cluster]:
         start("scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(file))
         address = _wait_for(file)
         options = (address, "--nthreads", "1", "--no-nanny", "--local-directory", str(folder))
-        yield Cluster(address, [start("worker", *options) for _ in range(workers)])
+        cluster = Cluster(address, [start("worker", *options) for _ in range(workers)])
+        with Client(address) as client:
+            client.wait_for_workers(workers, timeout=PATIENCE_S)
+            client.run(__import__, "assets.cluster")  # imports take seconds, which nobody measures
+        yield cluster
 
 
 def _wait_for(file: Path) -> str:

@@ -5,6 +5,7 @@ import threading
 import time
 
 import dagster as dg
+import dask
 import pytest
 from polars.testing import assert_frame_equal
 
@@ -35,23 +36,27 @@ def remote(built, tmp_path):
         yield store
 
 
-def kill_when_something_is_read(store, worker):
-    """Kills a worker as soon as the first tow is in the lake."""
-    while next((store.lake / "samples").iterdir(), None) is None:
-        time.sleep(0.01)
-    worker.send_signal(signal.SIGKILL)
+def kill_when_the_other_is_done(store, worker, done):
+    """Kills a worker when a season is read; notes which were then."""
+    while not store.partitions("blocks"):
+        time.sleep(0.05)
+    done += store.partitions("blocks")
+    worker.kill()
 
 
-def test_two_workers_of_which_one_is_killed_give_the_same_tables(built, remote, instance):
+def test_the_step_of_a_killed_worker_goes_to_another_and_tables_are_the_same(
+    built, remote, instance
+):
+    done = []
     with dask_cluster(2, remote.dagster_home) as cluster:
-        killer = threading.Thread(
-            target=kill_when_something_is_read, args=(remote, cluster.workers[0]), daemon=True
-        )
-        killer.start()
+        stuck = cluster.workers[0]
+        stuck.send_signal(signal.SIGSTOP)  # it will be given a step and not finish it
+        arguments = (remote, stuck, done)
+        threading.Thread(target=kill_when_the_other_is_done, args=arguments, daemon=True).start()
         folders = (built.archive, remote.root)
         read = read_seasons(instance, cluster.address, folders, SEASONS, {})
-        killer.join()
-        assert cluster.workers[0].wait() == -signal.SIGKILL
+        assert stuck.wait() == -signal.SIGKILL
+    assert len(done) == 1
     assert read.failed == {}
     for table in SEASON_TABLES:
         for season in map(str, SEASONS):
@@ -62,3 +67,19 @@ def test_two_workers_of_which_one_is_killed_give_the_same_tables(built, remote, 
     for asset in ("samples", "blocks"):
         assert instance.get_materialized_partitions(dg.AssetKey(asset)) == set(map(str, SEASONS))
     assert {check.check_name for check in read.checks} == {"most_tows_sound"}
+
+
+def test_a_season_that_a_worker_cannot_read_is_told(built, remote, instance):
+    with dask_cluster(1, remote.dagster_home) as cluster:
+        folders = (built.archive / "nowhere", remote.root)
+        read = read_seasons(instance, cluster.address, folders, SEASONS[:1], {})
+    assert list(read.failed) == SEASONS[:1]
+    assert "nowhere" in read.failed[2009]
+
+
+def test_a_cluster_that_is_not_there_is_told_with_the_way_out(built, remote, instance):
+    with (
+        dask.config.set({"distributed.comm.timeouts.connect": "0.2s"}),
+        pytest.raises(UnavailableError, match="tcp://127.0.0.1:1 did not finish"),
+    ):
+        read_seasons(instance, "tcp://127.0.0.1:1", (built.archive, remote.root), SEASONS, {})
