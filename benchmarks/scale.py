@@ -34,13 +34,17 @@ RATE_HZ = 1000
 
 
 def read_here(archive, store):
-    """Seconds to read every season in this process, into a folder."""
+    """Seconds, and of them those of a processor, to read every season here into a folder."""
     intake.index(store, archive)
-    start = time.perf_counter()
+    start, used = time.perf_counter(), time.process_time()
     for season in SEASONS:
         intake.read_season(store, archive, season, lambda *_: None)
         intake.collect_blocks(store, season)
-    return time.perf_counter() - start
+    return time.perf_counter() - start, time.process_time() - used
+
+
+def megabytes(folder, pattern):
+    return sum(file.stat().st_size for file in folder.rglob(pattern)) / 1e6
 
 
 def read_there(archive, data, workers, kill=False):
@@ -82,12 +86,20 @@ def main():
         archive = root / "archive"
         write_simulated_archive(archive, simulate_world(WorldSettings(SEASONS, tows, RATE_HZ)))
         here = Store(root / "here")
-        here_s = read_here(archive, here)
+        here_s, processor_s = read_here(archive, here)
         print(
             f"{platform.machine()}, {os.cpu_count()} cores, python {platform.python_version()}, "
             f"polars {pl.__version__}; {number} tows at {RATE_HZ} Hz; date {time.strftime('%F')}"
         )
         print(f"here, into a folder, two threads: {here_s:.1f} s, {number / here_s:.2f} tows/s")
+        print(f"processor: {processor_s / number:.2f} s a tow")
+        sizes = {
+            "text": megabytes(archive, "*.csv*"),
+            "samples": megabytes(here.lake / "samples", "*.parquet"),
+            "blocks": megabytes(here.lake / "blocks", "*.parquet"),
+            "tables": megabytes(here.lake / "tables", "*.parquet"),
+        }
+        print("MB a tow: " + ", ".join(f"{n} {mb / number:.2f}" for n, mb in sizes.items()))
         seconds = {1: [], 2: []}
         for repeat in range(repeats):
             for workers, found in seconds.items():

@@ -11,6 +11,7 @@ from polars.testing import assert_frame_equal
 
 from assets import rebuild
 from assets.cluster import read_seasons
+from pipeline.errors import UnavailableError
 from tests.elsewhere import dask_cluster, lie_in_bucket, s3_server
 from warehouse import intake
 from warehouse.intake import SEASON_TABLES
@@ -80,6 +81,6 @@ def test_a_season_that_a_worker_cannot_read_is_told(built, remote, instance):
 def test_a_cluster_that_is_not_there_is_told_with_the_way_out(built, remote, instance):
     with (
         dask.config.set({"distributed.comm.timeouts.connect": "0.2s"}),
-        pytest.raises(UnavailableError, match="tcp://127.0.0.1:1 did not finish"),
+        pytest.raises(UnavailableError, match=r"tcp://127\.0\.0\.1:1 did not finish"),
     ):
         read_seasons(instance, "tcp://127.0.0.1:1", (built.archive, remote.root), SEASONS, {})
