@@ -108,7 +108,7 @@ def study_tables(setup: Setup):
     ],
 )
 def register_tables(setup: Setup):
-    """Draft registers, what changes between them, how equal boats are, and lineage."""
+    """Draft registers, who is due, what changes between registers, and lineage."""
     yield from _results(tables.make_registers(setup.store, setup.chosen_methods))
 
 
