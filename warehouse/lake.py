@@ -23,7 +23,7 @@ from warehouse import archive
 from warehouse.archive import SeasonProfile, check_samples, fault_from, read_tow_samples
 from warehouse.code import source_hash
 from warehouse.files import file_sha256
-from warehouse.store import Store, fingerprint, read_parquet, write_parquet
+from warehouse.store import Store, count_rows, fingerprint, read_parquet, write_parquet
 
 SEASON_INDEX_SCHEMA: Final = {
     "tow_id": pl.String(),
@@ -128,8 +128,7 @@ def _bring_in(
     except DefectiveInputError as error:
         _check_unchanged(root, tow)
         return row | dataclasses.asdict(fault_from(error, tow["samples_path"], tow["tow_id"]))
-    count = pl.scan_parquet(path).select(pl.len()).collect().item()
-    return row | {"blocks_key": blocks_key, "samples": count}
+    return row | {"blocks_key": blocks_key, "samples": count_rows(path)}
 
 
 class ArchiveChangedError(UnavailableError):
