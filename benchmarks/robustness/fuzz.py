@@ -41,13 +41,14 @@ from warehouse.editions.folder import ABOUT, read_about
 
 SLOW_S: Final = 2.0
 WORDS: Final = (
-    b"NaN", b"inf", b"-inf", b"1e999", b"-1e-999", b"", b";", b";;;;;;", b"\t", b",", b"\n", b"\r\n",
-    b"\r", b"\x00", b"\xff\xfe", b"\xef\xbb\xbf", b'"', b'""', b'"\n"', b"'", b"=1+1", b"@SUM(A1)",
-    b"../../etc/passwd", b"/etc/passwd", b"..\\x", b"<script>", b"1.2.3", b"1,2,3", b"1e5", b"0x10",
-    b"1_000", "\u0661\u0662".encode(), "\u2212".encode(), b"--1", b"+", b"9" * 400, b"1" * 40,
-    b"[km/h]", b"[m]", b"[", b"]", b"run", b"log1 [m/s]", b"7", b"0", b"-1", b"1.5", b" " * 1000,
-    b"[[profile]]\n", b"[[set_aside]]\n", b"seasons = ", b"{}", b"[]", b"\x1a", b"\x80\x81\x8d",
-)  # fmt: skip
+    *(b"NaN", b"inf", b"-inf", b"1e999", b"-1e-999", b"1.2.3", b"1,2,3", b"1e5", b"0x10"),
+    *(b"1_000", b"--1", b"+", b"9" * 400, b"1" * 40, b"7", b"0", b"-1", b"1.5", b" " * 1000),
+    *("\u0661\u0662".encode(), "\u2212".encode(), b"\x00", b"\xff\xfe", b"\xef\xbb\xbf"),
+    *(b"", b";", b";;;;;;", b"\t", b",", b"\n", b"\r\n", b"\r", b'"', b'""', b'"\n"', b"'"),
+    *(b"=1+1", b"@SUM(A1)", b"../../etc/passwd", b"/etc/passwd", b"..\\x", b"<script>"),
+    *(b"[km/h]", b"[m]", b"[", b"]", b"run", b"log1 [m/s]", b"[[profile]]\n", b"seasons = "),
+    *(b"[[set_aside]]\n", b"{}", b"[]", b"\x1a", b"\x80\x81\x8d"),
+)
 """What people and programs really write wrong."""
 
 _NUMBER: Final = re.compile(r"[+-]?([0-9]+([.,][0-9]*)?|[.,][0-9]+)([eE][+-]?[0-9]+)?", re.ASCII)
@@ -182,7 +183,7 @@ def _unpacked(path: Path, data: bytes) -> bytes | None:
 def archive_reader(root: Path) -> Callable[[Path, bytes], None]:
     """Indexes the archive in which the file lies."""
 
-    def read(path: Path, data: bytes) -> None:
+    def read(*_: object) -> None:
         found = index_archive(root, FileHashes().hash_file)
         for tow in found.tows.iter_rows(named=True):
             for name in ("samples_path", "second_path"):
@@ -273,7 +274,9 @@ def _try(folder: Path, target: Target, data: bytes, number: int, found: Findings
         outcome = "refused"
     except (Exception, pl.exceptions.PanicException) as error:
         outcome = "FAILED"
-        found.failures.append(f"input {number}, {path.name}: {type(error).__name__}: {error}"[:300])
+        what = f"input {number}, {path.name}: {type(error).__name__}: {error}"[:300]
+        print(what, file=sys.stderr, flush=True)
+        found.failures.append(what)
     seconds = time.process_time() - begin
     found.slowest_s = max(found.slowest_s, seconds)
     if seconds > SLOW_S:

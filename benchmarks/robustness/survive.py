@@ -64,7 +64,7 @@ def digests(data: Path) -> str:
     with duckdb.connect(Store(data).database, read_only=True) as db:
         db.execute("SET threads = 1")
         names = [row[0] for row in db.execute("SHOW TABLES").fetchall()]
-        frames = {name: db.sql(f'SELECT * FROM "{name}"').pl() for name in names}
+        frames = {name: db.sql(f'SELECT * FROM "{name}"').pl() for name in names}  # noqa: S608
     return fingerprint({name: table_digest(frame) for name, frame in sorted(frames.items())})
 
 
@@ -160,8 +160,12 @@ def survive(root: Path, kills: int, seed: int, tell: Callable[[str], None] = pri
         if outcome.kills % 10 == 0:
             tell(f"{outcome.kills} of {kills} kills, {outcome.different} with other tables")
     said, _ = reader.communicate("stop\n", timeout=120)
-    outcome.reads.update(dict((k, int(n)) for k, n in (li.split("\t") for li in said.splitlines())))
+    outcome.reads.update({what: int(n) for what, n in map(_cells, said.splitlines())})
     return outcome
+
+
+def _cells(line: str) -> list[str]:
+    return line.split("\t")
 
 
 def _kill_one(ground: Ground, after_s: float, outcome: Outcome) -> None:

@@ -101,7 +101,7 @@ def test_hidden_files_and_links_are_not_followed(ticks, archive, tmp_path):
 
 
 def test_the_daemon_queues_a_run_for_each_change(archive, tmp_path, monkeypatch):
-    """A real instance on disk, the real code location in its own process, and ticks by the minute."""
+    """A real instance on disk, the code location in its own process, and ticks by the minute."""
     (tmp_path / "home").mkdir()
     shutil.copyfile(INSTANCE_SETTINGS, tmp_path / "home" / "dagster.yaml")
     for name, value in (
