@@ -1,7 +1,6 @@
 """The same jobs step by step in processes of their own give the tables of one process."""
 
 import dagster as dg
-import pytest
 
 from assets.jobs import APPLY, COLLECT, FINISH, INDEX, READ, STUDY, job_defs
 from assets.rebuild import prepare_home

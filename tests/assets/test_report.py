@@ -106,7 +106,7 @@ def web():
     posted = []
 
     class Handler(BaseHTTPRequestHandler):
-        def do_POST(self):  # noqa: N802 - the library's name
+        def do_POST(self):
             posted.append(json.loads(self.rfile.read(int(self.headers["Content-Length"]))))
             self.send_response(204 if self.path == "/good" else 500)
             self.end_headers()
