@@ -17,15 +17,11 @@ from pipeline import curve
 from pipeline.arrays import FloatArray
 from pipeline.outcome import Outcome
 from pipeline.season_log import SeasonFactors
-from pipeline.season_log.assumed import USUAL
+from pipeline.speed import log_part
 from pipeline.uncertainty import Assumed, budget, combine, residual_scatter, run_point_uncertainty
 
 ARCHIVE_COEFFICIENT_SD: Final = 0.01
 """Of the one coefficient found for the whole archive (research, method.md 0.9; measured here)."""
-
-WITHOUT_CHANGED_BOATS: Final = float(np.sqrt(1.0 - 2.0 / USUAL.t_dof))
-"""Scale / standard deviation of the t distribution of repeat tows: its tails are boats that changed
-without a report, which is no error of a tow."""
 
 CURVE_SPEED_RATIOS: Final = np.linspace(0.85, 1.15, 13)
 """Speeds of the points of a curve / declared speed: the range in which a curve is valid."""
@@ -150,7 +146,7 @@ def _budget_of_batch(o: Outcome, found: SeasonFactors | None, speed_ratio: float
     rows = batch.tows.select(
         "tow_id",
         "season",
-        pl.lit(0).alias("part"),
+        log_part(o.steps.speed.source),
         pl.lit(o.steps.speed.source).alias("log"),
         pl.lit(2.0 / (1.0 - r)).alias("kappa"),
         pl.Series("random_ratio", random),
@@ -192,8 +188,7 @@ def _assumed(o: Outcome, found: SeasonFactors | None, bend: float, air: FloatArr
         assumed = replace(assumed, wind_coefficient=ARCHIVE_COEFFICIENT_SD)
     if found is None:
         return assumed
-    tow_sd = WITHOUT_CHANGED_BOATS * found.tow_sd
     sound = np.isfinite(o.cw_at_declared)
     air_ratio = air[sound] / o.cw_at_declared[sound]
     usual_air = float(np.sqrt(np.mean(air_ratio**2))) if sound.any() else 0.0
-    return assumed.as_repeats_show(tow_sd, 2.0 * (1.0 + bend), usual_air)
+    return assumed.as_repeats_show(found.tow_sd, 2.0 * (1.0 + bend), usual_air)

@@ -104,6 +104,8 @@ def _tow_row(world: World, tow: Tow) -> dict[str, object]:
         "freeboard_lowest_m": None,
         "freeboard_bow_m": None,
         "freeboard_stern_m": None,
+        "log1_part": 0,
+        "log2_part": 0,
     }
 
 

@@ -92,6 +92,8 @@ class Tows(dy.Schema):
     freeboard_bow_m = _number("m", "freeboard at the bow", nullable=True)
     freeboard_stern_m = _number("m", "freeboard at the stern", nullable=True)
     remark = _text("remark in the tow list", nullable=True)
+    log1_part = dy.Int32(description="times log 1 had been replaced that season", min=0)
+    log2_part = dy.Int32(description="times log 2 had been replaced that season", min=0)
     samples_path = _text("samples file in the archive")
     samples_sha256 = _text("its content hash", regex="^[0-9a-f]{64}$")
     second_path = _text("second samples file, if two tows were combined", nullable=True)
@@ -220,7 +222,7 @@ class SeasonLinks(dy.Schema):
     season = dy.Int32(primary_key=True, description="year of the tow list")
     part = dy.Int32(primary_key=True, description="part of the season, until a log was replaced")
     log = _text("speed source", primary_key=True)
-    source = _text("estimated, gps, or not determined")
+    source = _text("estimated, gps, other log (by the ratio of both), or not determined")
     n_tows = dy.Int32(description="tows of the season", min=0)
     n_links = dy.Int32(description="boats also towed in other seasons", min=0)
     component = dy.Int32(description="connected part of the network; 0 has the dGPS anchor", min=0)
@@ -231,6 +233,7 @@ class SeasonLinks(dy.Schema):
     lo = _number("1", "lower end of its 95 % interval", nullable=True)
     hi = _number("1", "upper end", nullable=True)
     ln_sd = _number("1", "standard deviation of ln factor", nullable=True)
+    dof = _number("1", "its degrees of freedom", nullable=True)
     influence = _number("1", "largest change when one boat is left out", nullable=True)
     influence_boat = _text("that boat", nullable=True)
     weakest_mode = _number("1", "share in what is known worst", nullable=True)
@@ -238,6 +241,24 @@ class SeasonLinks(dy.Schema):
     lo_no_boats = _number("1", "lower end of its 95 % interval", nullable=True)
     hi_no_boats = _number("1", "upper end", nullable=True)
     agreement = _number("1", "difference of the two in standard deviations", nullable=True)
+
+
+class SeasonSteps(dy.Schema):
+    """Whether a season's step against the boats' other tows is the log's or the load cell's."""
+
+    method = _method(primary_key=True)
+    season = dy.Int32(primary_key=True, description="year of the tow list")
+    part = dy.Int32(primary_key=True, description="part of the season, until a log was replaced")
+    log = _text("speed source", primary_key=True)
+    n_boats = dy.Int32(description="boats also towed in other seasons", min=0)
+    level_step = _number("1", "step of ln Cw, by the log as it reads", nullable=True)
+    level_step_sd = _number("1", "its standard deviation", nullable=True)
+    force_step = _number("1", "the part of it in ln force, as the bend shows", nullable=True)
+    force_step_sd = _number("1", "its standard deviation", nullable=True)
+    cause = _text(
+        "log, force (a log error may have come with it), none (no step), or not told",
+        regex="^(log|force|none|not told)$",
+    )
 
 
 class UncertaintyBudget(dy.Schema):
@@ -346,7 +367,9 @@ class TypeConsistency(dy.Schema):
     slope_lo = _number("quantity / explaining", "lower end of its 95 % interval", nullable=True)
     slope_hi = _number("quantity / explaining", "upper end", nullable=True)
     r2 = _number("1", "share of the spread that is explained", nullable=True, min=0, max=1)
-    residual_sd_ratio = _number("1", "spread about the line / mean", nullable=True, min=0)
+    residual_sd_ratio = _number(
+        "1", "spread about the line / mean; of ln Cw itself", nullable=True, min=0
+    )
     between_sd_ratio = _number("1", "true spread about the line / mean", nullable=True, min=0)
     noise_sd_ratio = _number("1", "spread by run noise alone / mean", nullable=True, min=0)
     reason = _text("why there is no line: no_type, few_boats, equal_values; else empty")
@@ -362,9 +385,9 @@ class TypeOutliers(dy.Schema):
     crew_class = _crew_class()
     boat_type = _text("type of boat")
     season = _season()
-    quantity = _text("ln_cw_standard or q", primary_key=True)
+    quantity = _text("ln_cw_standard, or bend: (v/B)^2 there", primary_key=True)
     standard_speed_m_s = _speed("common speed: median declared speed of the type")
-    value = _number("1", "quantity of this tow; Cw in kg/m before the logarithm")
+    value = _number("1", "quantity of this tow, at the standard speed")
     expected = _number("1", "the same as the type's other boats predict it")
     deviation_sd = _number("1", "difference in standard deviations of a prediction")
     outside = dy.Bool(description="differs at 5 % over all boats of the type together")
@@ -447,6 +470,10 @@ class SlowTows(dy.Schema):
     power_ratio_120 = _number("1", "power ratio at 120 % of that speed", nullable=True)
     power_ratio_120_lo = _number("1", "lower end of its 95 % interval", nullable=True)
     power_ratio_120_hi = _number("1", "upper end", nullable=True)
+    rowed_speed_m_s = _speed("median declared speed of like crews", nullable=True)
+    power_ratio_rowed = _number("1", "power ratio at that speed", nullable=True)
+    power_ratio_rowed_lo = _number("1", "lower end of its 95 % interval", nullable=True)
+    power_ratio_rowed_hi = _number("1", "upper end", nullable=True)
 
 
 class RepeatPairs(dy.Schema):
@@ -464,6 +491,24 @@ class RepeatPairs(dy.Schema):
     e_n = _number("1", "difference / both 95 % intervals (ISO 13528)", nullable=True)
 
 
+class EraShifts(dy.Schema):
+    """Do seasons with other instruments stand apart? Next tow of the same boat, in a later era."""
+
+    method = _method(primary_key=True)
+    boat_type = _text("type of boat, or all", primary_key=True)
+    era = _text("seasons of the older tow", primary_key=True)
+    n = dy.Int32(description="pairs of tows", min=0)
+    shift_ratio = _number("1", "new / old Cw without ageing, median", nullable=True, min=0)
+    lo = _number("1", "lower end of its 95 % interval", nullable=True, min=0)
+    hi = _number("1", "upper end", nullable=True, min=0)
+    apart = dy.Bool(description="the interval leaves out 1", nullable=True)
+    n_ageing = dy.Int32(description="pairs of all types within the last era", min=0)
+    ageing_per_year = _number("1", "change of ln Cw a year taken out; empty: none", nullable=True)
+    ageing_lo = _number("1", "lower end of its 95 % interval", nullable=True)
+    ageing_hi = _number("1", "upper end", nullable=True)
+    reason = _text("why there is no shift: few_pairs; else empty")
+
+
 class Reproducibility(dy.Schema):
     """How well repeat tows of unaltered boats agree."""
 
@@ -479,6 +524,7 @@ class Reproducibility(dy.Schema):
     share_e_n_above_1 = _number("1", "share of pairs that disagree; 5 % expected", nullable=True)
     run_sd_ratio = _number("1", "scatter of a run about its curve", nullable=True, min=0)
     within_sd_ratio = _number("1", "s_r: what that does to a tow's Cw", nullable=True, min=0)
+    distinct_categories = _number("1", "classes told apart: 1.41 s_boat / s_R", nullable=True)
 
 
 class VarianceComponents(dy.Schema):
@@ -510,7 +556,9 @@ class PredictedCw(dy.Schema):
     boat_type = _text("type of boat, or unknown")
     standard_speed_m_s = _speed("median declared speed of type and crew class")
     cw_kg_m = _number("kg/m", "Cw of the tow at that speed")
-    cw_sd_ratio = _number("1", "its standard uncertainty by run noise", min=0)
+    cw_sd_ratio = _number(
+        "1", "its standard uncertainty: of the runs, or of its interval if wider", min=0
+    )
     predicted_cw_kg_m = _number("kg/m", "Cw as the other boats predict it", nullable=True)
     predicted_lo_kg_m = _number("kg/m", "lower end of its 95 % interval", nullable=True)
     predicted_hi_kg_m = _number("kg/m", "upper end", nullable=True)
@@ -527,7 +575,7 @@ class PredictionError(dy.Schema):
     n = dy.Int32(description="boats and crews predicted", min=0)
     n_boats = dy.Int32(description="boats", min=0)
     rmse_ratio = _number("1", "root mean square of ln tow / predicted", min=0)
-    tow_sd_ratio = _number("1", "of which run noise of the tow", min=0)
+    tow_sd_ratio = _number("1", "of which uncertainty of the tow itself", min=0)
     share_disagreeing = _number("1", "share beyond both uncertainties", min=0, max=1)
 
 
@@ -577,6 +625,7 @@ TABLES: Final[dict[str, type[dy.Schema]]] = {
     "assessments": Assessments,
     "log_factors": LogFactors,
     "season_links": SeasonLinks,
+    "season_steps": SeasonSteps,
     "uncertainty_budget": UncertaintyBudget,
     "ensemble": Ensemble,
     "register": Register,
@@ -590,6 +639,7 @@ TABLES: Final[dict[str, type[dy.Schema]]] = {
     "speed_trend": SpeedTrend,
     "slow_tows": SlowTows,
     "repeat_pairs": RepeatPairs,
+    "era_shifts": EraShifts,
     "reproducibility": Reproducibility,
     "variance_components": VarianceComponents,
     "predicted_cw": PredictedCw,

@@ -38,6 +38,7 @@ METHOD_TABLES: Final = (
     "curves",
     "log_factors",
     "season_links",
+    "season_steps",
     "uncertainty_budget",
     "curve_points",
     "assessments",
@@ -64,6 +65,7 @@ CONSISTENCY_TABLES: Final = (
     "speed_trend",
     "slow_tows",
     "repeat_pairs",
+    "era_shifts",
     "reproducibility",
     "variance_components",
     "predicted_cw",
@@ -251,15 +253,16 @@ def make_studies(store: Store, methods: Sequence[Method], blocks: RunBlocks) -> 
         Rows per table.
     """
     tows, first = store.read("tows"), methods[0]
+    links = {m.name: store.read("season_links", m.name) for m in methods}
     ladders = [
-        ladder(first, other, tows, blocks).with_columns(
+        ladder(first, other, tows, blocks, (links[first.name], links[other.name])).with_columns(
             pl.lit(first.name).alias("from_method"), pl.lit(other.name).alias("to_method")
         )
         for other in methods[1:]
     ]
     studied = [
         beside_uncertainty(
-            option_effects(m, tows, blocks), store.read("curves", m.name)
+            option_effects(m, tows, blocks, links[m.name]), store.read("curves", m.name)
         ).with_columns(pl.lit(m.name).alias("method"))
         for m in methods
         if m.name == STUDIED_METHOD

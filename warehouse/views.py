@@ -99,6 +99,14 @@ class Views:
         """The newest tow of each boat and crew of a known type, under every method."""
         return self.frame(_TYPE_BOATS)
 
+    def shared_bends(self) -> pl.DataFrame:
+        """B of every boat as it is, shared in part, and shared wholly with its type."""
+        return self.frame(
+            "SELECT p.*, b.name, p.fsn_no || ' ' || p.rowers || p.crew_class AS crew "
+            "FROM pooled_curves AS p LEFT JOIN boats AS b USING (fsn_no) "
+            "WHERE p.boat_type != 'unknown' ORDER BY method, tow_id, pooling"
+        )
+
     def season_ladder(self) -> pl.DataFrame:
         """Mean factor of each step per season: the geometric mean, so that steps multiply."""
         return self.frame(_SEASON_LADDER)
@@ -211,9 +219,11 @@ ORDER BY c.fsn_no, t.tow_date, c.tow_id, c.method
 _TYPE_BOATS = """
 SELECT p.method, p.fsn_no, b.name, p.boat_type, p.rowers, p.crew_class, p.tow_id, c.season,
        t.weight_kg, c.declared_speed_m_s, c.a_kg_m, c.b_m_s, c.b_lo_m_s, c.b_hi_m_s, c.cw_kg_m,
-       c.cw_lo_kg_m, c.cw_hi_kg_m
+       c.cw_lo_kg_m, c.cw_hi_kg_m, exp(o.value) AS cw_standard_kg_m
 FROM pooled_curves AS p JOIN curves AS c USING (method, tow_id) JOIN tows AS t USING (tow_id)
 LEFT JOIN boats AS b ON b.fsn_no = p.fsn_no
+LEFT JOIN type_outliers AS o
+       ON o.method = p.method AND o.tow_id = p.tow_id AND o.quantity = 'ln_cw_standard'
 WHERE p.pooling = 'own' AND p.boat_type != 'unknown'
 ORDER BY p.method, p.boat_type, b.name, p.fsn_no, p.rowers, p.crew_class
 """
