@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import dagster as dg
+from pydantic import Field
 
 from assets.notify import Notifier
 from assets.rebuild import rebuild
@@ -48,7 +49,7 @@ class LogProgress:
 class Which(dg.Config):
     """Seasons to read; none for all."""
 
-    seasons: list[int] = []
+    seasons: list[int] = Field(default_factory=list)
 
 
 @dg.op

@@ -16,6 +16,7 @@ from dagster_dask import dask_executor
 from distributed.scheduler import KilledWorker
 
 from assets import archive
+from assets.jobs import QUIET_LOG
 from assets.resources import Quiet, Setup
 from pipeline.errors import UnavailableError
 
@@ -113,6 +114,7 @@ def read_seasons(
             _step(season): {"config": {"archive": archive_root, "data": data, "season": season}}
             for season in seasons
         },
+        **QUIET_LOG,
         "execution": {"config": {"cluster": {"existing": {"address": address}}}},
     }
     try:

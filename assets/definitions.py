@@ -1,6 +1,7 @@
 """The Dagster code location: everything that `dg` and `herijk serve` load."""
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
 
 import dagster as dg
@@ -10,13 +11,17 @@ from assets.jobs import job_defs
 from assets.notify import notifier_of
 from assets.resources import Quiet, Setup
 from assets.settings import Settings, read_settings
+from pipeline.method import shipped_methods
 
 
-def build_defs(archive: str, data: str, settings: Settings) -> dg.Definitions:
+def build_defs(
+    archive: str, data: str, methods: Sequence[str], settings: Settings
+) -> dg.Definitions:
     """The jobs of a rebuild, and what starts them when nobody asks."""
     setup = Setup(
         archive=archive,
         data=data,
+        methods=list(methods),
         set_aside_share=settings.set_aside_share,
         factor_jump=settings.factor_jump,
     )
@@ -34,5 +39,6 @@ def build_defs(archive: str, data: str, settings: Settings) -> dg.Definitions:
 defs = build_defs(
     os.environ.get("HERIJK_ARCHIVE", "archive"),
     os.environ.get("HERIJK_DATA", "data"),
+    shipped_methods(),
     read_settings(Path(os.environ.get("HERIJK_DATA", "data"))),
 )

@@ -15,7 +15,18 @@ from typing import Any, Final
 
 import dagster as dg
 
-from assets.jobs import APPLY, CHECK, COLLECT, FINISH, INDEX, READ, STEPS, STUDY, job_defs
+from assets.jobs import (
+    APPLY,
+    CHECK,
+    COLLECT,
+    FINISH,
+    INDEX,
+    QUIET_LOG,
+    READ,
+    STEPS,
+    STUDY,
+    job_defs,
+)
 from assets.report import write_report
 from assets.resources import Progress, Setup
 from assets.settings import read_settings
@@ -32,8 +43,6 @@ from warehouse.store import DamagedFileError, Store
 
 INSTANCE_SETTINGS = Path(__file__).with_name("dagster.yaml")
 """Dagster's settings for a new data folder."""
-
-QUIET_LOG = {"loggers": {"console": {"config": {"log_level": "CRITICAL"}}}}
 
 STEP_TAG: Final = "herijk/step"
 """Marks runs that live and die with the process of a rebuild."""

@@ -53,8 +53,6 @@ def read_settings(data: Path) -> Settings:
         return Settings()
     try:
         return Settings.model_validate(tomllib.loads(path.read_text(encoding="utf-8")))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise MissingKnowledgeError(f"{path}: not valid TOML: {error}") from error
     except ValidationError as error:
         first = error.errors()[0]
         known = ", ".join(Settings.model_fields)
@@ -62,3 +60,5 @@ def read_settings(data: Path) -> Settings:
         raise MissingKnowledgeError(
             f"{path}: {where}: {first['msg']}; it may hold {known}"
         ) from error
+    except (ValueError, RecursionError) as error:
+        raise MissingKnowledgeError(f"{path}: not valid TOML: {error}") from error

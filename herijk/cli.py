@@ -24,6 +24,7 @@ from warehouse import reports
 from warehouse.archive.write import write_simulated_archive
 from warehouse.audit import audit as audit_report
 from warehouse.editions.folder import edition_names, method_of_edition
+from warehouse.obstacles import obstacles_explained
 from warehouse.rebase import rebase as rebase_history
 from warehouse.store import Store
 
@@ -96,6 +97,28 @@ def rebuild(
         typer.echo(f"herijk: {problem}", err=True)
     if failed := failed_checks(done.report):
         raise BrokenPromiseError(f"a check failed: {'; '.join(failed)}")
+
+
+@app.command()
+def serve(
+    archive: Annotated[Path, typer.Option(help="The archive folder.", metavar="DIR")],
+    data: DataFolder = Path("data"),
+    host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
+    port: Annotated[
+        int, typer.Option(min=1, max=65534, help="Port of Dagster's page; the site has the next.")
+    ] = 3000,
+) -> None:
+    """Rebuild by itself: schedules and sensor, with Dagster's page and the site, until stopped."""
+    from assets.rebuild import prepare_home  # noqa: PLC0415 - Dagster takes a second to import
+    from assets.settings import read_settings  # noqa: PLC0415
+    from herijk.serving import Served, serve_until_stopped  # noqa: PLC0415
+
+    read_settings(data)
+    with obstacles_explained(data):
+        home = prepare_home(Store(data))
+        serve_until_stopped(
+            Served(archive, data, host, port), home, lambda line: typer.echo(line, err=True)
+        )
 
 
 @methods_app.callback()

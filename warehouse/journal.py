@@ -31,7 +31,7 @@ from warehouse.editions.compare import (
 )
 from warehouse.editions.inputs import INPUTS_HASH, same_tows, with_input_hashes
 from warehouse.files import file_sha256, written_beside
-from warehouse.schemas import TABLES, RegisterChanges
+from warehouse.schemas import TABLES
 from warehouse.store import Store
 
 NEEDED: Final = (
@@ -99,7 +99,7 @@ def _nothing() -> News:
     keys = {name: TABLES[name].create_empty() for name in ("tows", "quarantine", "log_factors")}
     what = pl.lit(None, pl.String).alias("what")
     tows, faults = (keys[name].with_columns(what) for name in ("tows", "quarantine"))
-    return News(False, tows, faults, keys["log_factors"], _NO_LINES)
+    return News(False, tows, faults, keys["log_factors"], _no_lines())
 
 
 def is_reported(store: Store) -> bool:
@@ -206,12 +206,13 @@ def _factors(was: pl.DataFrame, now: pl.DataFrame) -> pl.DataFrame:
 
 def _lines(was: Tables, now: Tables) -> pl.DataFrame:
     drafts = [_draft_lines(was, now, method) for method in now["methods"]["method"]]
-    return pl.concat([d for d in drafts if d is not None] or [_NO_LINES], how="diagonal_relaxed")
+    found = [draft for draft in drafts if draft is not None]
+    return pl.concat(found or [_no_lines()], how="diagonal_relaxed")
 
 
-_NO_LINES: Final = RegisterChanges.create_empty().with_columns(
-    pl.lit(None, pl.Boolean).alias("exceeds_interval")
-)
+def _no_lines() -> pl.DataFrame:
+    unknown = pl.lit(None, pl.Boolean).alias("exceeds_interval")
+    return TABLES["register_changes"].create_empty().with_columns(unknown)
 
 
 def _draft_lines(was: Tables, now: Tables, method: str) -> pl.DataFrame | None:

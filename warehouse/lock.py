@@ -19,8 +19,8 @@ from pipeline.errors import UnavailableError
 from warehouse.files import TEMPORARY_PREFIX
 
 LOCK_FILE: Final = "rebuild.lock"
-_NOT_OURS: Final = {"editions", "dagster"}
-"""Folders of the data folder in which others write."""
+_NOT_OURS: Final = {"audit", "dagster", "editions", "outbox"}
+"""Folders of the data folder in which others write, without the lock."""
 
 _held: set[Path] = set()
 """Folders this process writes in already: a step inside a rebuild needs no lock of its own."""
