@@ -12,7 +12,7 @@ from polars.testing import assert_frame_equal
 from assets import rebuild
 from assets.cluster import read_seasons
 from pipeline.errors import UnavailableError
-from tests.elsewhere import dask_cluster, lie_in_bucket, s3_server
+from tests.elsewhere import dask_cluster, lie_in_bucket
 from warehouse import intake
 from warehouse.intake import SEASON_TABLES
 from warehouse.store import Store
@@ -20,21 +20,26 @@ from warehouse.store import Store
 SEASONS = [2009, 2014]
 
 
-@pytest.fixture
-def instance(tmp_path):
+@pytest.fixture(scope="module")
+def remote(built, s3, tmp_path_factory):
+    """A data folder with its lake in a bucket that holds the archive's lists and no season yet."""
+    data = tmp_path_factory.mktemp("remote")
+    lie_in_bucket(data, "cluster")
+    intake.index(Store(data), built.archive)
+    return Store(data)
+
+
+@pytest.fixture(scope="module")
+def instance(remote):
     """Dagster's records on disk, where workers find them too."""
-    with rebuild._instance(Store(tmp_path / "data")) as found:
+    with rebuild._instance(remote) as found:
         yield found
 
 
-@pytest.fixture
-def remote(built, tmp_path):
-    """A data folder with its lake in a bucket that holds the archive's lists and no season yet."""
-    with s3_server():
-        lie_in_bucket(tmp_path / "data", "cluster")
-        store = Store(tmp_path / "data")
-        intake.index(store, built.archive)
-        yield store
+@pytest.fixture(scope="module")
+def cluster(remote):
+    with dask_cluster(2, remote.dagster_home) as found:
+        yield found
 
 
 def kill_when_the_other_is_done(store, worker, done):
@@ -46,17 +51,15 @@ def kill_when_the_other_is_done(store, worker, done):
 
 
 def test_the_step_of_a_killed_worker_goes_to_another_and_tables_are_the_same(
-    built, remote, instance
+    built, remote, instance, cluster
 ):
-    done = []
-    with dask_cluster(2, remote.dagster_home) as cluster:
-        stuck = cluster.workers[0]
-        stuck.send_signal(signal.SIGSTOP)  # it will be given a step and not finish it
-        arguments = (remote, stuck, done)
-        threading.Thread(target=kill_when_the_other_is_done, args=arguments, daemon=True).start()
-        folders = (built.archive, remote.root)
-        read = read_seasons(instance, cluster.address, folders, SEASONS, {})
-        assert stuck.wait() == -signal.SIGKILL
+    done, stuck = [], cluster.workers[0]
+    stuck.send_signal(signal.SIGSTOP)  # it will be given a step and not finish it
+    arguments = (remote, stuck, done)
+    threading.Thread(target=kill_when_the_other_is_done, args=arguments, daemon=True).start()
+    folders = (built.archive, remote.root)
+    read = read_seasons(instance, cluster.address, folders, SEASONS, {})
+    assert stuck.wait() == -signal.SIGKILL
     assert len(done) == 1
     assert read.failed == {}
     for table in SEASON_TABLES:
@@ -70,10 +73,9 @@ def test_the_step_of_a_killed_worker_goes_to_another_and_tables_are_the_same(
     assert {check.check_name for check in read.checks} == {"most_tows_sound"}
 
 
-def test_a_season_that_a_worker_cannot_read_is_told(built, remote, instance):
-    with dask_cluster(1, remote.dagster_home) as cluster:
-        folders = (built.archive / "nowhere", remote.root)
-        read = read_seasons(instance, cluster.address, folders, SEASONS[:1], {})
+def test_a_season_that_a_worker_cannot_read_is_told(built, remote, instance, cluster):
+    folders = (built.archive / "nowhere", remote.root)
+    read = read_seasons(instance, cluster.address, folders, SEASONS[:1], {})
     assert list(read.failed) == SEASONS[:1]
     assert "nowhere" in read.failed[2009]
 

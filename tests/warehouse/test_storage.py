@@ -11,9 +11,9 @@ from polars.testing import assert_frame_equal
 from pipeline.errors import BrokenPromiseError, MissingKnowledgeError, UnavailableError
 from pipeline.method import shipped_method
 from tests.conftest import Workbench
-from tests.elsewhere import BUCKET, lie_in_bucket, s3_server
+from tests.elsewhere import BUCKET, lie_in_bucket
 from warehouse import storage
-from warehouse.bucket import BucketPath, _client
+from warehouse.bucket import BucketPath
 from warehouse.editions.folder import edition_names, read_edition, write_folder
 from warehouse.editions.publish import Terms, publish
 from warehouse.editions.verify import verify
@@ -22,21 +22,14 @@ from warehouse.store import DamagedFileError, Store, count_rows, read_parquet, w
 FRAME = pl.DataFrame({"tow_id": ["a", "b"], "cw_kg_m": [1.5, 2.5]})
 
 
-@pytest.fixture(scope="module")
-def server():
-    with s3_server():
-        yield
-    _client.cache_clear()
-
-
 @pytest.fixture
-def root(server, request) -> BucketPath:
+def root(s3, request) -> BucketPath:
     """A prefix in the bucket that only this test uses."""
     return BucketPath.parse(f"s3://{BUCKET}/{request.node.name}")
 
 
 @pytest.fixture
-def moved(built, server, tmp_path, request) -> Workbench:
+def moved(built, s3, tmp_path, request) -> Workbench:
     """The small archive's data folder, with lake and editions in the bucket."""
     data = tmp_path / "data"
     lie_in_bucket(data, request.node.name)
