@@ -99,6 +99,7 @@ def main():
             "blocks": megabytes(here.lake / "blocks", "*.parquet"),
             "tables": megabytes(here.lake / "tables", "*.parquet"),
         }
+        sizes["blocks in memory"] = here.read_all("blocks").estimated_size() / 1e6
         print("MB a tow: " + ", ".join(f"{n} {mb / number:.2f}" for n, mb in sizes.items()))
         seconds = {1: [], 2: []}
         for repeat in range(repeats):
