@@ -74,10 +74,10 @@ def test_the_step_of_a_killed_worker_goes_to_another_and_tables_are_the_same(
 
 
 def test_a_season_that_a_worker_cannot_read_is_told(built, remote, instance, cluster):
-    folders = (built.archive / "nowhere", remote.root)
-    read = read_seasons(instance, cluster.address, folders, SEASONS[:1], {})
-    assert list(read.failed) == SEASONS[:1]
-    assert "nowhere" in read.failed[2009]
+    elsewhere = remote.root / "without-settings"  # so the worker looks for a lake in it
+    read = read_seasons(instance, cluster.address, (built.archive, elsewhere), [2009], {})
+    assert list(read.failed) == [2009]
+    assert "without-settings/lake/tables/listed_tows.parquet" in read.failed[2009]
 
 
 def test_a_cluster_that_is_not_there_is_told_with_the_way_out(built, remote, instance):
