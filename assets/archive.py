@@ -1,5 +1,7 @@
 """From archive files to blocks: the heavy part, partitioned by season."""
 
+import datetime as dt
+
 import dagster as dg
 import polars as pl
 
@@ -7,8 +9,13 @@ from assets.partitions import seasons
 from assets.resources import Progress, Setup
 from warehouse import intake
 
+LOOKED_AT = dg.FreshnessPolicy.time_window(
+    warn_window=dt.timedelta(hours=26), fail_window=dt.timedelta(hours=50)
+)
+"""Every rebuild looks through the archive, also when it finds no change."""
 
-@dg.asset(group_name="archive", kinds={"parquet"}, code_version="1")
+
+@dg.asset(group_name="archive", kinds={"parquet"}, code_version="1", freshness_policy=LOOKED_AT)
 def archive_index(setup: Setup) -> dg.MaterializeResult:
     """Boats, tow lists and files of the archive, with what is wrong in the lists."""
     found = intake.index(setup.store, setup.archive_root)

@@ -2,7 +2,7 @@
 
 import shutil
 from collections.abc import Collection, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from unittest import mock
@@ -50,8 +50,13 @@ class Workbench:
         self, methods: Sequence[str] = METHODS, seasons: Collection[int] | None = None
     ) -> Done:
         """A rebuild in this process; Dagster's records are kept in memory to save time."""
-        with mock.patch.object(assets.rebuild, "_instance", _dagster_in_memory):
+        with self.records_in_memory():
             return assets.rebuild.rebuild(self.archive, self.data, methods, Quiet(), seasons)
+
+    @staticmethod
+    def records_in_memory() -> AbstractContextManager[object]:
+        """Inside, rebuilds keep no records of Dagster's on disk."""
+        return mock.patch.object(assets.rebuild, "_instance", _dagster_in_memory)
 
     def table(self, name: str) -> pl.DataFrame:
         """A table as a reader of the database gets it."""

@@ -8,16 +8,22 @@ table means stands in `warehouse.schemas`; the database that readers use is `war
 
 import hashlib
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 import polars as pl
+import pyarrow as pa  # type: ignore[import-untyped]
+import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
+from pipeline.errors import BrokenPromiseError
 from warehouse.files import written_beside
+from warehouse.obstacles import is_obstacle
 
 FINGERPRINT_KEY: Final = "herijk.fingerprint"
+TABLE_FORM: Final = {"compression": "zstd"}
 
 
 def fingerprint(*parts: Any) -> str:
@@ -83,7 +89,7 @@ class Store:
 
     def read(self, table: str, partition: str | None = None) -> pl.DataFrame:
         """A table or partition as written."""
-        return pl.read_parquet(self.table_path(table, partition), hive_partitioning=False)
+        return read_parquet(self.table_path(table, partition))
 
     def read_all(self, table: str, partitions: Iterable[str] | None = None) -> pl.DataFrame:
         """Partitions of a table, one below the other: the given ones, or all."""
@@ -91,18 +97,86 @@ class Store:
         return pl.concat([self.read(table, p) for p in chosen])
 
     def made_from(self, table: str, partition: str | None = None) -> str | None:
-        """Fingerprint of what a table was made from; None if there is no such table."""
+        """Fingerprint of what a table was made from; None if it is not there or is damaged."""
         path = self.table_path(table, partition)
         if not path.exists():
             return None
-        return pl.read_parquet_metadata(path).get(FINGERPRINT_KEY)
+        try:
+            return pl.read_parquet_metadata(path).get(FINGERPRINT_KEY)
+        except _UNREADABLE as error:
+            if is_obstacle(error):
+                raise
+            return None
 
     def remove(self, table: str, partition: str) -> None:
         """Removes a partition whose season or method is no more."""
         self.table_path(table, partition).unlink(missing_ok=True)
 
 
-def write_parquet(frame: pl.DataFrame, path: Path, metadata: dict[str, str] | None = None) -> None:
-    """Writes a frame as Parquet, whole or not at all."""
+class DamagedFileError(BrokenPromiseError):
+    """A file that Herijk wrote cannot be read any more; it can be made again."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(
+            f"{path} is damaged. It can be made again: run herijk rebuild; when that comes back, "
+            "look at the disk"
+        )
+        self.path = path
+
+
+_UNREADABLE: Final = (
+    pa.ArrowException,
+    pl.exceptions.PolarsError,
+    pl.exceptions.PanicException,
+    OSError,
+    ValueError,
+)
+
+
+def read_parquet(path: Path) -> pl.DataFrame:
+    """A frame that was written with `write_parquet`, its checksums verified.
+
+    Raises:
+        FileNotFoundError: it is not there.
+        DamagedFileError: it was changed since, by a failing disk or by hand.
+    """
+    with _damage_named(path):
+        table = pq.read_table(path, partitioning=None, page_checksum_verification=True)
+        return pl.DataFrame(pl.from_arrow(table))
+
+
+def count_rows(path: Path) -> int:
+    """Rows of a frame that was written with `write_parquet`; raises as `read_parquet`."""
+    with _damage_named(path):
+        return int(pq.read_metadata(path).num_rows)
+
+
+@contextmanager
+def _damage_named(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except FileNotFoundError:
+        raise
+    except _UNREADABLE as error:
+        if is_obstacle(error):
+            raise
+        raise DamagedFileError(path) from error
+
+
+def write_parquet(
+    frame: pl.DataFrame,
+    path: Path,
+    metadata: dict[str, str] | None = None,
+    form: Mapping[str, Any] = TABLE_FORM,
+) -> None:
+    """Writes a frame as Parquet, whole or not at all, with a checksum of every page.
+
+    Without checksums a changed byte can be read as another number.
+    """
     with written_beside(path) as beside:
-        frame.write_parquet(beside, compression="zstd", metadata=metadata)
+        pq.write_table(
+            frame.to_arrow().replace_schema_metadata(metadata),
+            beside,
+            write_page_checksum=True,
+            **form,
+        )

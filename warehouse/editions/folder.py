@@ -230,12 +230,6 @@ def read_table(path: Path, name: str) -> pl.DataFrame:
         ) from error
 
 
-def file_sha256(path: Path) -> str:
-    """SHA-256 of a file's content, in hex."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
-
-
 def write_folder(store: Store, edition: str, contents: Mapping[str, bytes]) -> Path:
     """Makes an edition of the given files, by name.
 

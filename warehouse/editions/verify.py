@@ -29,7 +29,6 @@ from warehouse.editions.folder import (
     Edition,
     edition_names,
     editions_folder,
-    file_sha256,
     read_about,
     read_edition,
     read_table,
@@ -41,6 +40,7 @@ from warehouse.editions.inputs import (
 )
 from warehouse.editions.lines import NUMBERS, Again, made_again
 from warehouse.editions.printed import AS_PRINTED
+from warehouse.files import file_sha256
 from warehouse.store import Store, table_digest
 
 SAME_NUMBER: Final = 1e-9
