@@ -29,6 +29,7 @@ ASSETS = [
     tables.study_tables,
     tables.register_tables,
     tables.consistency_tables,
+    tables.summary_tables,
     tables.warehouse_database,
     site,
 ]
@@ -45,7 +46,11 @@ JOBS = [
     dg.define_asset_job(
         FINISH,
         dg.AssetSelection.assets(
-            tables.register_tables, tables.consistency_tables, tables.warehouse_database, site
+            tables.register_tables,
+            tables.consistency_tables,
+            tables.summary_tables,
+            tables.warehouse_database,
+            site,
         )
         - AFTERWARDS,
     ),

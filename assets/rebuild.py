@@ -40,6 +40,7 @@ from warehouse.lock import only_writer
 from warehouse.obstacles import obstacles_explained
 from warehouse.storage import Place
 from warehouse.store import DamagedFileError, Store
+from warehouse.summaries import summaries_are_stale
 
 INSTANCE_SETTINGS = Path(__file__).with_name("dagster.yaml")
 """Dagster's settings for a new data folder."""
@@ -182,6 +183,7 @@ class _Rebuild:
         chosen = self.setup.chosen_methods
         if (
             tables.register_is_stale(self.store, chosen)
+            or summaries_are_stale(self.store, [method.name for method in chosen])
             or tables.database_is_stale(self.store, chosen)
             or site_is_stale(self.store)
         ):

@@ -1,5 +1,6 @@
 """The site of plain files, made from the database that is in place."""
 
+import base64
 from pathlib import Path
 
 import dagster as dg
@@ -9,6 +10,7 @@ from assets.resources import Setup
 from assets.tables import warehouse_database
 from warehouse.code import source_hash
 from warehouse.store import Store, fingerprint
+from warehouse.views import Views
 
 SITE_TABLE = "site"
 """An empty table that remembers what the site was made from."""
@@ -34,4 +36,21 @@ def site(setup: Setup) -> dg.MaterializeResult:
 
     size = build_site(setup.store)
     setup.store.write(SITE_TABLE, pl.DataFrame(), site_made_from(setup.store))
-    return dg.MaterializeResult(metadata=size)
+    index = setup.store.root / "site" / "index.html"
+    return dg.MaterializeResult(
+        metadata={
+            **size,
+            "index": dg.MetadataValue.path(str(index.resolve())),
+            "reproducibility": dg.MetadataValue.md(_reproducibility(setup.store)),
+        }
+    )
+
+
+def _reproducibility(store: Store) -> str:
+    """The figure that says best whether a rebuild made things better, as a picture."""
+    from dashboards.figures import png  # noqa: PLC0415 - Altair takes a second to import
+    from dashboards.words import speaker  # noqa: PLC0415
+
+    with Views(store) as views:
+        picture = png("reproducibility", views.table("reproducibility"), speaker("nl"))
+    return f"![reproducibility](data:image/png;base64,{base64.b64encode(picture).decode()})"

@@ -10,6 +10,7 @@ from assets.partitions import methods
 from assets.resources import Setup
 from pipeline.method import shipped_method
 from warehouse import tables
+from warehouse.summaries import SUMMARY_TABLES, SUMMED, SUMMED_OF_METHODS, make_summaries
 
 
 def _results(rows: dict[str, int]) -> list[dg.MaterializeResult]:
@@ -126,6 +127,23 @@ def register_tables(setup: Setup):
 def consistency_tables(setup: Setup):
     """Are equal boats equal: the statistics of every boat type under every method."""
     yield from _results(tables.make_consistency(setup.store, setup.chosen_methods))
+
+
+@dg.multi_asset(
+    specs=[
+        dg.AssetSpec(
+            name,
+            deps=[*SUMMED, *SUMMED_OF_METHODS, all_blocks],
+            group_name="summaries",
+            kinds={"parquet"},
+        )
+        for name in SUMMARY_TABLES
+    ],
+)
+def summary_tables(setup: Setup):
+    """What many tows have in common, and races replayed under every edition."""
+    names = [method.name for method in setup.chosen_methods]
+    yield from _results(make_summaries(setup.store, names))
 
 
 @dg.asset(

@@ -30,6 +30,7 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
         "GESIMULEERD: deze sloepen bestaan niet. De getallen komen uit een nagebootst archief.",
         "SIMULATED: these boats do not exist. The numbers come from a simulated archive.",
     ),
+    "simulated_short": ("GESIMULEERD", "SIMULATED"),
     "no_script": (
         "Zonder JavaScript staan de tabellen er wel, maar de grafieken niet.",
         "Without JavaScript the tables are here, but the charts are not.",
@@ -164,11 +165,11 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
     "boat_curve": ("Weerstandskromme", "Resistance curve"),
     "boat_curve_note": (
         "De lijn is Cw = A / (1 - (v/B)^2) over het geldige bereik, 85 tot 115 % van de opgegeven "
-        "snelheid; de band is het 95 %-interval uit de spreiding van de runs. De streep bij de "
-        "opgegeven snelheid is het interval van het register. Open tekens tellen niet mee.",
+        "snelheid; de band is het 95 %-interval, met alles wat in de onzekerheid zit. De streep is "
+        "het interval bij de opgegeven snelheid. Open tekens tellen niet mee.",
         "The line is Cw = A / (1 - (v/B)^2) over the valid range, 85 to 115 % of the declared "
-        "speed; the band is the 95 % interval from the scatter of the runs. The bar at the "
-        "declared speed is the register's interval. Open marks do not count.",
+        "speed; the band is its 95 % interval, with all that the uncertainty is made of. The bar "
+        "is the interval at the declared speed. Open marks do not count.",
     ),
     "boat_history": ("Door de jaren", "Through the years"),
     "boat_history_note": (
@@ -208,8 +209,8 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
     "types_list": ("Sloepen", "Boats"),
     "before": ("Voor", "Before"),
     "after": ("Na", "After"),
-    "type_first": ("Eerste type", "First type"),
-    "type_second": ("Tweede type", "Second type"),
+    "pair_first": ("Vergelijk", "Compare"),
+    "pair_second": ("met", "with"),
     "types_lines": ("Hangt het af van gewicht of snelheid?", "Does it follow weight or speed?"),
     "types_lines_note": (
         "Een rechte lijn per type. Een helling waarvan het interval 0 bevat, is niet aangetoond.",
@@ -282,10 +283,43 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
         "Bestanden en proeven die niet gebruikt zijn, met de reden.",
         "Files and tows not used, with the reason.",
     ),
+    "checks": ("Wat de controles vonden", "What the checks found"),
+    "checks_note": (
+        "Op hoeveel proeven elke controle is gedaan, en hoe vaak iets buiten zijn grens lag.",
+        "On how many tows each check was made, and how often something lay beyond its limit.",
+    ),
+    "rebuilt": ("Wat de herrekening deed", "What the rebuild did"),
+    "rebuilt_note": (
+        "Proeven per seizoen die in de sleeplijst staan en die gebruikt zijn; de methoden die zijn "
+        "toegepast; en de tabellen die daaruit zijn gemaakt.",
+        "Tows per season that the tow list holds and that were used; the methods applied; and the "
+        "tables made of them.",
+    ),
+    "seasons": ("Seizoenen", "Seasons"),
     "nothing_set_aside": ("Niets is terzijde gelegd.", "Nothing was set aside."),
     "no_changes": ("Er zijn geen gewijzigde regels.", "There are no changed lines."),
     "editions": ("Uitgegeven edities", "Published editions"),
     "races": ("Wedstrijden opnieuw gerekend", "Races computed again"),
+    "races_note": (
+        "Plaats en vermogen per roeier van elke uitslag onder de oude en de nieuwe editie. Op de "
+        "lijn blijft de plaats gelijk.",
+        "Place and power a rower of every result under the old and the new edition. On the line "
+        "the place stays the same.",
+    ),
+    "no_races": (
+        "Het archief bevat geen wedstrijden om opnieuw te rekenen.",
+        "The archive holds no races to compute again.",
+    ),
+    "downloads": ("Downloads", "Downloads"),
+    "downloads_note": (
+        "Het register van elke editie zoals uitgegeven, met de toelichting.",
+        "The register of every edition as published, with the release notes (in Dutch).",
+    ),
+    "types_pair": ("Twee typen naast elkaar", "Two types side by side"),
+    "types_pair_note": (
+        "Dezelfde assen voor beide typen; links de methode onder Voor, rechts die onder Na.",
+        "The same axes for both types; left the method under Before, right the one under After.",
+    ),
     "season_links": ("Herhalingen tussen seizoenen", "Repeats between seasons"),
     "assessments": ("Controles", "Checks"),
     "assessments_note": (
@@ -293,8 +327,8 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
         "Only what lies beyond its limit; all checks stand in the table assessments.",
     ),
     "uncertainty_budget_note": (
-        "Relatieve standaardonzekerheid van Cw door elke oorzaak, en wie haar delen.",
-        "Relative standard uncertainty of Cw by each cause, and who share it.",
+        "Relatieve standaardonzekerheid van Cw door elke oorzaak; wie haar delen staat in de CSV.",
+        "Relative standard uncertainty of Cw by each cause; who share it stands in the CSV.",
     ),
     "hand_windows_note": (
         "Vensters die iemand zelf heeft gekozen, met de reden.",
@@ -349,6 +383,15 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
     "tow_cw": ("Cw van de proef [kg/m]", "Cw of the tow [kg/m]"),
     "time_ratio": ("Tijd nieuw / oud", "Time new / old"),
     "window": ("Venster [s]", "Window [s]"),
+    "lowest": ("laagste", "lowest"),
+    "highest": ("hoogste", "highest"),
+    "u_ratio": ("Standaardonzekerheid / Cw", "Standard uncertainty / Cw"),
+    "old_rank": ("Plaats oud", "Place before"),
+    "new_rank": ("Plaats nieuw", "Place after"),
+    "old_power": ("Vermogen oud [W/roeier]", "Power before [W/rower]"),
+    "new_power": ("Vermogen nieuw [W/roeier]", "Power after [W/rower]"),
+    "race": ("Wedstrijd", "Race"),
+    "class": ("Klasse", "Class"),
     # Columns
     "column.edition": ("Editie", "Edition"),
     "column.method": ("Methode", "Method"),
@@ -476,6 +519,26 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
     "column.influence_boat": ("van sloep", "of boat"),
     "column.factor_no_boats": ("Zonder sloepen", "Without boats"),
     "column.agreement": ("Verschil [sd]", "Difference [sd]"),
+    "column.verification_code": ("Controlecode", "Verification code"),
+    "column.kind": ("Soort", "Kind"),
+    "column.valid_from": ("Geldig vanaf", "Valid from"),
+    "column.published_on": ("Uitgegeven op", "Published on"),
+    "column.decision": ("Besluit", "Decision"),
+    "column.previous": ("Vergeleken met", "Compared with"),
+    "column.seal": ("Zegel", "Seal"),
+    "column.race": ("Wedstrijd", "Race"),
+    "column.race_date": ("Datum", "Date"),
+    "column.rowing_time_s": ("Roeitijd [s]", "Time rowed [s]"),
+    "column.old_power_w": ("Oud [W/roeier]", "Before [W/rower]"),
+    "column.new_power_w": ("Nieuw [W/roeier]", "After [W/rower]"),
+    "column.old_rank": ("Plaats oud", "Place before"),
+    "column.new_rank": ("Plaats nieuw", "Place after"),
+    "column.podium_changed": ("Podium anders", "Podium changed"),
+    "column.code": ("Wat", "What"),
+    "column.beyond": ("Buiten de grens", "Beyond the limit"),
+    "column.listed": ("In de lijst", "Listed"),
+    "column.meaning": ("Betekenis (Engels)", "Meaning"),
+    "column.dof": ("Vrijheidsgraden", "Degrees of freedom"),
     "column.flagged": ("Over de grens", "Beyond"),
     # Codes
     "code.accepted": ("goed", "accepted"),
@@ -520,7 +583,7 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
     "code.few_runs": ("weinig runs", "few runs"),
     "code.off_target_speed": ("andere snelheid dan bedoeld", "off target speed"),
     "code.out_and_back_differ": ("heen en terug verschillen", "out and back differ"),
-    "code.ln_cw_standard": ("Cw bij standaardsnelheid", "Cw at standard speed"),
+    "code.ln_cw_standard": ("ln Cw bij standaardsnelheid", "ln Cw at standard speed"),
     "code.cw_standard_kg_m": ("Cw bij standaardsnelheid", "Cw at standard speed"),
     "code.q": ("bocht q", "bend q"),
     "code.bend": ("bocht (v/B)²", "bend (v/B)²"),
@@ -569,6 +632,19 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
     "code.power_outside_range": ("vermogen ongewoon", "power outside range"),
     "code.residual_large": ("punten ver van de kromme", "large residual"),
     "code.unusual_calibration": ("ijking ongewoon", "unusual calibration"),
+    "code.recomputed": ("herrekend", "recomputed"),
+    "code.as_printed": ("zoals gedrukt", "as printed"),
+    "code.window.speed_drift_m_s": ("venster 0,04 m/s i.p.v. 0,02", "window 0.04 m/s, not 0.02"),
+    "code.speed.operation": ("delen i.p.v. malen", "divide, not multiply"),
+    "code.run_point.estimator": ("runpunt uit gemiddelden", "run point from means"),
+    "code.wind.coefficients": ("luchtcoëfficiënt uit archief", "air coefficient from archive"),
+    "code.wind.averaging_s": ("wind gemiddeld over 3 s", "wind averaged over 3 s"),
+    "code.curve.b": ("B zonder bovengrens", "B without cap"),
+    "code.printed": ("gedrukt", "printed"),
+    "code.closed_form": ("omgerekend", "closed form"),
+    "code.excluded": ("uitgesloten", "excluded"),
+    "code.never_towed": ("niet gesleept", "never towed"),
+    "code.no_valid_curve": ("geen geldige kromme", "no valid curve"),
     "code.unknown": ("onbekend", "unknown"),
 }
 

@@ -7,6 +7,7 @@ as text, in `herijk.text`.
 
 import re
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Final
 
@@ -24,6 +25,7 @@ from warehouse import reports
 from warehouse.archive.write import write_simulated_archive
 from warehouse.audit import audit as audit_report
 from warehouse.editions.folder import edition_names, method_of_edition
+from warehouse.history import History
 from warehouse.obstacles import obstacles_explained
 from warehouse.rebase import rebase as rebase_history
 from warehouse.store import Store
@@ -195,6 +197,24 @@ def audit(
     folder = plots or store.root / "audit" / file_name(" ".join(names))
     drawn = write_audit_plots(store, report, folder)
     show(report | {"plots": [str(path) for path in drawn]}, audit_text.audit, as_json)
+
+
+@app.command()
+def workbench(
+    data: DataFolder = Path("data"),
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="Port on this machine; 0 for any that is free.")
+    ] = 8765,
+) -> None:
+    """Change a method's options in a browser and see at once what happens to all boats."""
+    from dashboards.workbench.bench import Bench  # noqa: PLC0415 - Altair takes a second to import
+    from dashboards.workbench.server import address, listen, serving  # noqa: PLC0415 - same
+
+    held, store = listen(port), Store(data)
+    bench = Bench(store, History.of(store))
+    typer.echo(f"The workbench is at {address(held)} (on this machine only); Ctrl-C stops it.")
+    with suppress(KeyboardInterrupt):
+        serving(bench).run(sockets=[held])
 
 
 @app.command("log-error")

@@ -40,6 +40,11 @@ class Batch:
         """Number of tows."""
         return self.tows.height
 
+    @property
+    def seasons(self) -> tuple[int, ...]:
+        """Seasons of the tows, sorted."""
+        return tuple(self.tows["season"].unique().sort())
+
     def of_tow(self, column: str) -> FloatArray:
         """A number of each tow, shape (tows,); NaN where it is not known."""
         return self.tows[column].cast(pl.Float64).to_numpy()

@@ -147,11 +147,14 @@ class RunBlocks:
         return int(self.n.shape[1])
 
     def take(self, rows: BoolArray) -> "RunBlocks":
-        """The runs marked in `rows`, shape (runs,)."""
+        """The runs marked in `rows`, shape (runs,); neighbours are not copied."""
+        places = np.flatnonzero(rows)
+        first, last = (int(places[0]), int(places[-1]) + 1) if len(places) else (0, 0)
+        chosen = slice(first, last) if last - first == len(places) else places
         return RunBlocks(
             self.runs.filter(pl.Series(rows)),
-            self.n[rows],
-            {name: values[rows] for name, values in self.sums.items()},
+            self.n[chosen],
+            {name: values[chosen] for name, values in self.sums.items()},
         )
 
     def total(self, name: str, window: BoolArray) -> FloatArray:

@@ -12,11 +12,18 @@ import itertools
 import json
 import re
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from importlib import resources
 from typing import Annotated, Any, Final, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    ValidationError,
+    WithJsonSchema,
+)
 from pydantic_core import PydanticCustomError
 
 from pipeline.checks import CODES
@@ -111,7 +118,14 @@ def _known_check(code: str) -> str:
 class Assessment(_Options):
     """Which checks of the assessment reject a tow, by their code (`pipeline.checks`)."""
 
-    reject: tuple[Annotated[str, AfterValidator(_known_check)], ...] = ()
+    reject: tuple[
+        Annotated[
+            str,
+            AfterValidator(_known_check),
+            WithJsonSchema({"type": "string", "enum": sorted(CODES)}),
+        ],
+        ...,
+    ] = ()
 
 
 class Steps(_Options):
@@ -227,34 +241,6 @@ def parse_method(text: str, file_name: str, text_of: Callable[[str], str] = ship
         ranges=_ranges(reader, layers, seasons),
         validity=_register_rule(reader, head, text_of),
     )
-
-
-def method_text(method: Method) -> str:
-    """A method as TOML that stands alone: every option of every season, nothing inherited.
-
-    Reading it gives a method with the same content hash and register rule.
-    """
-    years = {k: v for k, v in method.validity.model_dump().items() if v is not None}
-    seasons = _range_text(method.ranges[0].first, method.ranges[-1].last)
-    lines = [
-        f"name = {json.dumps(method.name)}",
-        f"title = {json.dumps(method.title, ensure_ascii=False)}",
-        f"description = {json.dumps(method.description, ensure_ascii=False)}",
-        f"seasons = {json.dumps(seasons)}",
-        "",
-        "[register]",
-        *(f"{key} = {json.dumps(value)}" for key, value in years.items()),
-    ]
-    for held in method.ranges:
-        lines += ["", "[[overrides]]", f"range = {json.dumps(_range_text(held.first, held.last))}"]
-        for step, options in held.steps.model_dump(mode="json", exclude_none=True).items():
-            inner = ", ".join(f"{key} = {json.dumps(value)}" for key, value in options.items())
-            lines.append(f"{step} = {{ {inner} }}")
-    return "\n".join(lines) + "\n"
-
-
-def _range_text(first: int, last: int) -> str:
-    return f"{first}:" if last == LAST_SEASON else f"{first}:{last}"
 
 
 class _Head(_Options):
@@ -425,12 +411,20 @@ def _ranges(reader: _Reader, layers: list[_Layer], seasons: _Range) -> tuple[Sea
     for layer in layers:
         edges |= {layer.held.first, layer.held.last + 1}
     inside = sorted(e for e in edges if seasons.first <= e <= seasons.last + 1)
+    return joined(
+        SeasonSteps(first=first, last=end - 1, steps=_steps_of_season(reader, layers, first))
+        for first, end in itertools.pairwise(inside)
+    )
+
+
+def joined(ranges: Iterable[SeasonSteps]) -> tuple[SeasonSteps, ...]:
+    """Neighbouring ranges with equal steps together, so that equal methods have equal hashes."""
     found: list[SeasonSteps] = []
-    for first, end in itertools.pairwise(inside):
-        steps = _steps_of_season(reader, layers, first)
-        if found and found[-1].steps == steps:
-            first = found.pop().first  # noqa: PLW2901 - the range begins where its equal began
-        found.append(SeasonSteps(first=first, last=end - 1, steps=steps))
+    for held in ranges:
+        if found and found[-1].steps == held.steps:
+            found[-1] = SeasonSteps(first=found[-1].first, last=held.last, steps=held.steps)
+        else:
+            found.append(held)
     return tuple(found)
 
 

@@ -47,11 +47,19 @@ PER_RUN_ITERATIONS = 4
 PER_TOW_GRID = np.linspace(*PER_TOW_BOUNDS, 41)
 ARCHIVE_GRID = np.linspace(0.0, 1.2, 13)
 
-KnownWindows: TypeAlias = dict[tuple[int, Window], Windows]
+KnownWindows: TypeAlias = dict[tuple[tuple[int, ...], Window], Windows]
+"""Windows of all tows of some seasons under a rule, found before."""
+
 Texts: TypeAlias = np.ndarray[tuple[int, ...], np.dtype[np.str_]]
 
 
-def recompute(method: Method, tows: pl.DataFrame, blocks: RunBlocks) -> Recomputed:
+def recompute(
+    method: Method,
+    tows: pl.DataFrame,
+    blocks: RunBlocks,
+    known_windows: KnownWindows | None = None,
+    with_bands: bool = True,
+) -> Recomputed:
     """Run points, curves, log factors and assessments of all tows under a method.
 
     Args:
@@ -59,23 +67,30 @@ def recompute(method: Method, tows: pl.DataFrame, blocks: RunBlocks) -> Recomput
         tows: rows of the warehouse's `tows`, with `boat_type` where it is known, so that a tow can
             be compared with like boats.
         blocks: their runs; `blocks.runs` has the columns of `tow_runs`.
+        known_windows: windows found before for the same tows; added to.
+        with_bands: make `curve_points`, a third of the work; without, it is empty.
 
     Raises:
         MissingKnowledgeError: the method says nothing about a season of `tows`.
     """
     plans = [(batch, steps) for batch, (steps,) in batches([method], tows, blocks)]
-    known: KnownWindows = {}
+    known = {} if known_windows is None else known_windows
     asked = any(is_estimated(held.steps) for held in method.ranges)
     found = season_factors(plans, known) if asked else None
     factors = None if found is None else found.factors
-    return as_tables(method, tows, evaluate(plans, known, factors), found)
+    return as_tables(method, tows, evaluate(plans, known, factors), found, with_bands)
 
 
 def season_factors(
     plans: Sequence[tuple[Batch, Steps]], known_windows: KnownWindows
-) -> SeasonFactors:
-    """The log factors that the given steps ask to estimate, and how far tows scatter."""
+) -> SeasonFactors | None:
+    """The log factors that the given steps ask to estimate, and how far tows scatter.
+
+    None if not a single tow has a curve from which to estimate.
+    """
     before = evaluate([(batch, without_factor(steps)) for batch, steps in plans], known_windows)
+    if not any(np.isfinite(outcome.cw_at_declared).any() for outcome in before):
+        return None
     return find_season_factors(before)
 
 
@@ -85,7 +100,8 @@ def log_factors(
     """The factors alone, as `evaluate` wants them; None if the steps ask for none."""
     if not any(is_estimated(steps) for _, steps in plans):
         return None
-    return season_factors(plans, known_windows).factors
+    found = season_factors(plans, known_windows)
+    return None if found is None else found.factors
 
 
 def batches(
@@ -115,14 +131,14 @@ def evaluate(
 
     Args:
         plans: batches with their steps; what is searched over the archive is searched over them.
-        known_windows: windows found before for the same batches, by place and rule; added to.
+        known_windows: windows found before for the same tows; added to.
         factors: rows of `SeasonFactors.factors` or of the table `season_links`, for steps that
             ask for estimated log factors.
     """
     windows = {} if known_windows is None else known_windows
     prepared = []
-    for place, (batch, steps) in enumerate(plans):
-        key = (place, steps.window)
+    for batch, steps in plans:
+        key = (batch.seasons, steps.window)
         if key not in windows:
             windows[key] = choose_windows(batch.blocks, steps.window)
         factor = factor_of_tows(batch, steps, factors)

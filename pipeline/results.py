@@ -43,8 +43,8 @@ class Recomputed:
     uncertainty_budget: pl.DataFrame
     curve_points: pl.DataFrame
     season_links: pl.DataFrame
-    season_steps: pl.DataFrame
     retow_choice: pl.DataFrame
+    season_steps: pl.DataFrame
     factors: SeasonFactors | None
 
 
@@ -53,6 +53,7 @@ def as_tables(
     tows: pl.DataFrame,
     outcomes: Sequence[Outcome],
     found: SeasonFactors | None,
+    with_bands: bool = True,
 ) -> Recomputed:
     """The tables of a method from its batches; tows are assessed when all curves are there."""
     name = pl.lit(method.name).alias("method")
@@ -79,10 +80,12 @@ def as_tables(
         uncertainty_budget=budget.select(
             name, pl.exclude("dof"), pl.when(pl.col("dof").is_finite()).then("dof").alias("dof")
         ),
-        curve_points=curve_points(outcomes, found).select(name, pl.all()),
+        curve_points=curve_points(outcomes, found).select(name, pl.all())
+        if with_bands
+        else pl.DataFrame(),
         season_links=_season_links(found).select(name, pl.all()),
-        season_steps=_season_steps(found).select(name, pl.all()),
         retow_choice=_retow_choice(found).select(name, pl.all()),
+        season_steps=_season_steps(found).select(name, pl.all()),
         factors=found,
     )
 

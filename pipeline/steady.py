@@ -205,10 +205,11 @@ def _search(present: BoolArray, faults: _Faults, rule: Window) -> tuple[IntArray
     runs, seconds = present.shape
     start, length = np.zeros(runs, np.int64), np.zeros(runs, np.int64)
     value = np.full(runs, -np.inf)
-    good = np.cumsum(present & ~faults.ramp, axis=1, dtype=np.float64)
-    price = np.cumsum(faults.price_s(), axis=1)
+    good = _running_sum((present & ~faults.ramp).astype(np.float64))
+    price = _running_sum(faults.price_s())
+    sums = _Sums.of(faults)
     for size in range(seconds, int(np.ceil(rule.minimum_s)) - 1, -1):
-        ends = _unsteadiness(faults, size, rule)
+        ends = _unsteadiness(sums, size, rule)
         accepted = (_span(good, size) == size) & (ends <= WORST_ENDS)
         worth = size - _span(price, size) - ENDS_PRICE_S * np.maximum(ends - 1.0, 0.0)
         worth = np.where(accepted, worth, -np.inf)
@@ -220,39 +221,71 @@ def _search(present: BoolArray, faults: _Faults, rule: Window) -> tuple[IntArray
     return start, length
 
 
-def _unsteadiness(faults: _Faults, size: int, rule: Window) -> FloatArray:
+@dataclass(frozen=True)
+class _Sums:
+    """Running sums of what steadiness is judged by, for windows of every size.
+
+    Attributes:
+        speed, speed_time: of the speed less its mean over the run, and of that times the second.
+        speed_ends, force_ends: mean of `END_SECONDS` from every second on.
+        force_median: of each run, shape (runs, 1).
+    """
+
+    speed: FloatArray
+    speed_time: FloatArray
+    speed_ends: FloatArray
+    force_ends: FloatArray
+    force_median: FloatArray
+
+    @classmethod
+    def of(cls, faults: _Faults) -> "_Sums":
+        centred = faults.speed - faults.speed.mean(axis=1, keepdims=True)
+        time = np.arange(centred.shape[1], dtype=np.float64)
+        speed_ends, force_ends = (
+            _span(_running_sum(v), END_SECONDS) / END_SECONDS for v in (faults.speed, faults.force)
+        )
+        return cls(
+            _running_sum(centred),
+            _running_sum(centred * time),
+            speed_ends,
+            force_ends,
+            faults.force_median[:, None],
+        )
+
+
+def _unsteadiness(sums: _Sums, size: int, rule: Window) -> FloatArray:
     """How far the worst steadiness criterion is from its limit (1), for every window of a size.
 
     The criteria: drift of speed by a fitted line over the window, difference of mean speed and
     of mean force between its first and last `END_SECONDS`.
     """
-    speed, force = faults.speed, faults.force
-    drift = np.abs(_slope(speed, size)) * size / rule.speed_drift_m_s
-    speed_ends = np.abs(_ends_difference(speed, size)) / rule.speed_drift_m_s
-    force_limit = rule.force_ends_ratio * np.abs(faults.force_median[:, None])
-    force_ends = np.abs(_ends_difference(force, size)) / np.maximum(force_limit, 1e-9)
+    drift = np.abs(_slope(sums, size)) * size / rule.speed_drift_m_s
+    speed_ends = np.abs(_ends_difference(sums.speed_ends, size)) / rule.speed_drift_m_s
+    force_limit = rule.force_ends_ratio * np.abs(sums.force_median)
+    force_ends = np.abs(_ends_difference(sums.force_ends, size)) / np.maximum(force_limit, 1e-9)
     return np.maximum(np.maximum(drift, speed_ends), force_ends)
 
 
-def _span(cumulative: FloatArray, size: int) -> FloatArray:
-    """Sums over every span of `size` blocks from a cumulative sum along axis 1."""
-    total = np.pad(cumulative, ((0, 0), (1, 0)))
-    return np.asarray(total[:, size:] - total[:, :-size])
+def _running_sum(values: FloatArray) -> FloatArray:
+    """Sum of each row up to every place, beginning with 0: one column more than `values`."""
+    return np.pad(np.cumsum(values, axis=1), ((0, 0), (1, 0)))
 
 
-def _slope(values: FloatArray, size: int) -> FloatArray:
-    """Slope of the least-squares line through every span of `size` blocks, per block."""
-    centred = values - values.mean(axis=1, keepdims=True)
-    time = np.arange(values.shape[1], dtype=np.float64)
-    sum_v, sum_tv = _span(np.cumsum(centred, 1), size), _span(np.cumsum(centred * time, 1), size)
+def _span(running: FloatArray, size: int) -> FloatArray:
+    """Sums over every span of `size` blocks from a running sum."""
+    return np.asarray(running[:, size:] - running[:, :-size])
+
+
+def _slope(sums: _Sums, size: int) -> FloatArray:
+    """Slope of the least-squares line through the speed of every span, per block."""
+    sum_v, sum_tv = _span(sums.speed, size), _span(sums.speed_time, size)
     mean_time = np.arange(sum_v.shape[1]) + (size - 1) / 2
     return np.asarray((sum_tv - mean_time * sum_v) / (size * (size**2 - 1) / 12))
 
 
-def _ends_difference(values: FloatArray, size: int) -> FloatArray:
+def _ends_difference(ends: FloatArray, size: int) -> FloatArray:
     """Mean of the last minus mean of the first `END_SECONDS` of every span of `size` blocks."""
-    ends = _span(np.cumsum(values, 1), END_SECONDS) / END_SECONDS
-    starts = values.shape[1] - size + 1
+    starts = ends.shape[1] - size + END_SECONDS
     return np.asarray(ends[:, size - END_SECONDS :][:, :starts] - ends[:, :starts])
 
 

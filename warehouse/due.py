@@ -14,8 +14,7 @@ from pipeline.due import due_list
 from pipeline.errors import MissingKnowledgeError
 from pipeline.method import Method
 from pipeline.register import draft_register
-from warehouse import decisions, intake
-from warehouse.archive import read_races
+from warehouse import decisions
 from warehouse.database import is_simulated, open_database, rows
 from warehouse.store import Store, table_digest
 
@@ -27,9 +26,9 @@ URGENCIES: Final = (EXPIRED, THIS_YEAR, NEVER, LATER)
 
 def due_made_from(store: Store) -> list[object]:
     """What the due list is made from, beside curves, tows and boats: races and decisions."""
-    races = store.read("listed_files").filter(pl.col("path").str.starts_with("wedstrijden/"))
     decided = decisions.read_decisions(store.root / decisions.FILE_NAME)
-    return [table_digest(races.sort("path")), [d.model_dump(mode="json") for d in decided]]
+    races = table_digest(store.read("listed_races"))
+    return [races, [d.model_dump(mode="json") for d in decided]]
 
 
 def due_rows(store: Store, methods: Sequence[Method], curves: pl.DataFrame) -> pl.DataFrame:
@@ -38,12 +37,7 @@ def due_rows(store: Store, methods: Sequence[Method], curves: pl.DataFrame) -> p
     Looked at on the day of the last tow or race, not today: the same archive gives the same table.
     """
     tows, boats = store.read("tows"), store.read("boats")
-    root = intake.archive_root(store)
-    if root is None:
-        raise MissingKnowledgeError(
-            "the archive is not where it was at the last rebuild; rebuild with --archive DIR"
-        )
-    results = read_races(root)[0]
+    results = store.read("listed_races")
     as_of: dt.date = max(*tows["tow_date"], *results["race_date"])
     decided = decisions.decision_table(decisions.read_decisions(store.root / decisions.FILE_NAME))
     crews = store.read("listed_boats")

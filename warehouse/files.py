@@ -3,15 +3,17 @@
 import ctypes
 import hashlib
 import os
-import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Final
 
 TEMPORARY_PREFIX = ".herijk-"
 """Begins the name of every file that is still being written."""
+
+
+AT_FDCWD, RENAME_EXCHANGE = -100, 2
+"""Of `renameat2(2)`: paths are relative to where we are; exchange the two."""
 
 
 @contextmanager
@@ -41,34 +43,48 @@ def file_sha256(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-_EXCHANGE: Final = 2
-_FROM_HERE: Final = -100
-"""RENAME_EXCHANGE and AT_FDCWD of Linux."""
+def write_new(path: Path, text: str) -> None:
+    """Writes a text file that was not there, whole or not at all.
 
-
-def swap_folder(beside: Path, target: Path) -> None:
-    """Puts a folder in place of another, in one step where the system can (Linux).
-
-    Elsewhere it takes two renames, and for a moment there is no such folder.
+    Raises:
+        FileExistsError: there is one already; it is left as it is.
     """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.NamedTemporaryFile("wb", prefix=TEMPORARY_PREFIX, dir=path.parent) as beside:
+        beside.write(text.encode())
+        beside.flush()
+        os.fsync(beside.fileno())
+        Path(beside.name).chmod(0o644)
+        path.hardlink_to(beside.name)
+    _sync(path.parent)
+
+
+def put_in_place(beside: Path, target: Path) -> None:
+    """Puts a folder under the name of another at once; the older one is `beside` after that.
+
+    All files are synced before. Linux exchanges two names in one step, so that a reader finds the
+    old folder or the new one, never none. Where that is not known, the older folder is set aside
+    first, and for a moment there is none.
+    """
+    for file in beside.rglob("*"):
+        _sync(file)
     if not target.exists():
         beside.rename(target)
     elif not _exchange(beside, target):
-        old = beside.with_name(beside.name + "-old")
+        old = beside.with_name(f"{beside.name}-old")
         target.rename(old)
         beside.rename(target)
-        beside = old
+        old.rename(beside)
     _sync(target.parent)
-    shutil.rmtree(beside, ignore_errors=True)
 
 
 def _exchange(one: Path, other: Path) -> bool:
-    """Lets two paths change names; False where the system or the disk cannot."""
-    rename = getattr(ctypes.CDLL(None), "renameat2", None)
-    if rename is None:
+    """Exchanges two names in one step; False where system or file system cannot."""
+    renameat2 = getattr(ctypes.CDLL(None, use_errno=True), "renameat2", None)
+    if renameat2 is None:
         return False
-    paths = (os.fsencode(one), os.fsencode(other))
-    return bool(rename(_FROM_HERE, paths[0], _FROM_HERE, paths[1], _EXCHANGE) == 0)
+    failed = renameat2(AT_FDCWD, os.fsencode(one), AT_FDCWD, os.fsencode(other), RENAME_EXCHANGE)
+    return not failed
 
 
 def _sync(path: Path) -> None:

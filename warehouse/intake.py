@@ -15,7 +15,7 @@ import polars as pl
 
 from pipeline.errors import MissingKnowledgeError
 from warehouse import lake
-from warehouse.archive import ArchiveIndex, FileHashes, Profiles, index_archive
+from warehouse.archive import ArchiveIndex, FileHashes, Profiles, index_archive, read_races
 from warehouse.archive.profile import read_profiles
 from warehouse.store import Store, fingerprint
 
@@ -47,6 +47,7 @@ def index(store: Store, root: Path) -> ArchiveIndex:
     about = {"simulated": [found.profiles.simulated], "root": [str(root.resolve())]}
     store.write("about_archive", pl.DataFrame(about), made_from="")
     store.write("listed_files", found.files, made_from="")
+    store.write("listed_races", read_races(root)[0], made_from="")
     return found
 
 

@@ -11,10 +11,9 @@ import polars as pl
 from pipeline.changes import register_changes
 from pipeline.ladder import START, ladder
 from pipeline.method import Method
-from pipeline.recompute import recompute
-from pipeline.register import LINE, draft_name, draft_register
+from pipeline.register import LINE
+from warehouse.history import History
 from warehouse.store import Store
-from warehouse.tables import run_blocks, typed_tows
 
 Report = dict[str, Any]
 MOST_AFFECTED = 15
@@ -30,27 +29,20 @@ def rebase(store: Store, method: Method, against: Method) -> Report:
     Raises:
         MissingKnowledgeError: there is no sound tow, or a method does not cover a season.
     """
-    tows, boats, crews = typed_tows(store), store.read("boats"), store.read("listed_boats")
-    blocks = run_blocks(store)
-    old, new = (recompute(m, tows, blocks) for m in (against, method))
-    links = old.season_links, new.season_links
-    rungs = ladder(against, method, tows, blocks, links).filter(pl.col("step") != START)
-    on_date = max(tows["tow_date"])
-    drafts = [
-        draft_register(made.curves, tows, crews, on_date, m.validity).with_columns(
-            pl.lit(draft_name(m.name)).alias("edition")
-        )
-        for m, made in ((against, old), (method, new))
-    ]
-    changes = register_changes(*drafts)
+    history = History.of(store)
+    old, new = (history.under(m) for m in (against, method))
+    links = old.made.season_links, new.made.season_links
+    rungs = ladder(against, method, history.tows, history.blocks, links)
+    rungs = rungs.filter(pl.col("step") != START)
+    changes = register_changes(old.register, new.register)
     return {
         "method": method.name,
         "method_hash": method.content_hash,
         "against": against.name,
-        "simulated": bool(store.read("about_archive")["simulated"][0]),
-        "by_season": _by_season(rungs, tows).to_dicts(),
+        "simulated": history.simulated,
+        "by_season": _by_season(rungs, history.tows).to_dicts(),
         "changes": changes["change"].value_counts(sort=True).to_dicts(),
-        "boats": _most_affected(changes, drafts[1], rungs, boats).to_dicts(),
+        "boats": _most_affected(changes, new.register, rungs, history.boats).to_dicts(),
     }
 
 

@@ -87,15 +87,9 @@ ORDER BY season, log, part
 """
 
 _BY_SEASON = """
-SELECT new.method, new.season, count(*) AS tows,
-       median(new.cw_kg_m / old.cw_kg_m) AS median_ratio,
-       min(new.cw_kg_m / old.cw_kg_m) AS lowest_ratio,
-       max(new.cw_kg_m / old.cw_kg_m) AS highest_ratio,
-       (SELECT min(from_edition) FROM register_changes) AS compared_with
-FROM curves AS new JOIN curves AS old USING (tow_id)
-WHERE 'concept-' || old.method = (SELECT min(from_edition) FROM register_changes)
-  AND new.method != old.method AND new.cw_kg_m IS NOT NULL AND old.cw_kg_m IS NOT NULL
-GROUP BY new.method, new.season ORDER BY new.method, new.season
+SELECT method, season, tows, median_ratio, lowest_ratio, highest_ratio,
+       'concept-' || from_method AS compared_with
+FROM season_changes ORDER BY method, season
 """
 
 _BIGGEST_CHANGES = """

@@ -63,6 +63,14 @@ class Boats(dy.Schema):
     weight_kg = _number("kg", "empty boat with oars", min_exclusive=0, nullable=True)
 
 
+class Seasons(dy.Schema):
+    """What a rebuild read of each season."""
+
+    season = dy.Int32(primary_key=True, description="year of the tow list")
+    listed = dy.Int32(description="tows in the tow list that could be read", min=0)
+    tows = dy.Int32(description="of which used; the others are in quarantine", min=0)
+
+
 class Tows(dy.Schema):
     """Tows accepted into the warehouse, one row each."""
 
@@ -243,6 +251,19 @@ class SeasonLinks(dy.Schema):
     agreement = _number("1", "difference of the two in standard deviations", nullable=True)
 
 
+class RetowChoice(dy.Schema):
+    """Which few boats to tow again, with dGPS, so that the season factors are surest."""
+
+    method = _method(primary_key=True)
+    position = dy.Int32(primary_key=True, description="1 tells most, given none of the others")
+    fsn_no = _fsn_no()
+    rowers = _rowers()
+    crew_class = _crew_class()
+    seasons = _text("seasons without dGPS in which it was towed as it is now")
+    factor_sd_before_ratio = _number("1", "typical uncertainty of a season's factor before", min=0)
+    factor_sd_after_ratio = _number("1", "the same when this boat is towed too", min=0)
+
+
 class SeasonSteps(dy.Schema):
     """Whether a season's step against the boats' other tows is the log's or the load cell's."""
 
@@ -259,19 +280,6 @@ class SeasonSteps(dy.Schema):
         "log, force (a log error may have come with it), none (no step), or not told",
         regex="^(log|force|none|not told)$",
     )
-
-
-class RetowChoice(dy.Schema):
-    """Which few boats to tow again, with dGPS, so that the season factors are surest."""
-
-    method = _method(primary_key=True)
-    position = dy.Int32(primary_key=True, description="1 tells most, given none of the others")
-    fsn_no = _fsn_no()
-    rowers = _rowers()
-    crew_class = _crew_class()
-    seasons = _text("seasons without dGPS in which it was towed as it is now")
-    factor_sd_before_ratio = _number("1", "typical uncertainty of a season's factor before", min=0)
-    factor_sd_after_ratio = _number("1", "the same when this boat is towed too", min=0)
 
 
 class UncertaintyBudget(dy.Schema):
@@ -349,6 +357,21 @@ class DueList(dy.Schema):
     )
 
 
+class Editions(dy.Schema):
+    """The published editions: what each is and by whose decision."""
+
+    edition = _text("edition", primary_key=True)
+    kind = _text("recomputed, or as_printed", regex="^(recomputed|as_printed)$")
+    method = _text("name of the method; empty as printed", nullable=True)
+    method_hash = _text("its content hash", nullable=True, regex="^[0-9a-f]{64}$")
+    valid_from = dy.Date(description="day from which it counts")
+    published_on = dy.Date(description="day of publication")
+    decision = _text("by whom and where it was decided")
+    previous = _text("edition that it was compared with", nullable=True)
+    code_version = _text("version of the code that made it")
+    seal = _text("SHA-256 over all that the edition says of itself", regex="^[0-9a-f]{64}$")
+
+
 class RegisterChanges(dy.Schema):
     """What differs between two editions, per boat and crew."""
 
@@ -362,6 +385,24 @@ class RegisterChanges(dy.Schema):
     power_ratio = _number("1", "new / old power at that speed", nullable=True)
     time_ratio = _number("1", "new / old time at equal power", nullable=True)
     causes = _text("what made the change, with its factor on Cw, as JSON")
+
+
+class RaceChanges(dy.Schema):
+    """Races replayed under two editions: power, rank and podium of every result."""
+
+    from_edition = _text("old edition", primary_key=True)
+    to_edition = _text("new edition", primary_key=True)
+    race = _text("name of the race", primary_key=True)
+    race_date = dy.Date(primary_key=True, description="day of the race")
+    fsn_no = _fsn_no(primary_key=True)
+    rowers = _rowers(primary_key=True)
+    crew_class = _crew_class(primary_key=True)
+    rowing_time_s = _number("s", "time rowed", min_exclusive=0)
+    old_power_w = _number("W", "power a rower by the old edition", nullable=True)
+    new_power_w = _number("W", "the same by the new one", nullable=True)
+    old_rank = dy.Int32(description="place in race and class by the old edition", nullable=True)
+    new_rank = dy.Int32(description="the same by the new one", nullable=True)
+    podium_changed = dy.Bool(description="among the first three in one of the two only")
 
 
 class CorrectionSteps(dy.Schema):
@@ -388,6 +429,41 @@ class OptionEffects(dy.Schema):
     b_sd_ratio = _number("1", "the same for B", nullable=True, min=0)
     cw_interval_ratio = _number("1", "half the 95 % interval of ln Cw", nullable=True, min=0)
     b_interval_ratio = _number("1", "the same for B; empty: no bound", nullable=True, min=0)
+
+
+class SeasonChanges(dy.Schema):
+    """Cw of each method / Cw of the first method, of the same tows, per season."""
+
+    method = _method(primary_key=True)
+    from_method = _text("first method, held against")
+    season = dy.Int32(primary_key=True, description="year of the tow list")
+    tows = dy.Int32(description="tows with a curve under both", min=1)
+    median_ratio = _number("1", "median of the ratio", min_exclusive=0)
+    lowest_ratio = _number("1", "lowest ratio of a tow", min_exclusive=0)
+    highest_ratio = _number("1", "highest ratio of a tow", min_exclusive=0)
+
+
+class SeasonLadder(dy.Schema):
+    """The ladder per season: what each step does to Cw on average."""
+
+    from_method = _text("method the ladder begins with", primary_key=True)
+    to_method = _text("method it ends with", primary_key=True)
+    season = dy.Int32(primary_key=True, description="year of the tow list")
+    position = dy.Int8(primary_key=True, description="place of the step", min=1)
+    step = _text("step of the method that was exchanged")
+    tows = dy.Int32(description="tows", min=1)
+    factor = _number("1", "geometric mean of the factor on Cw; they multiply", min_exclusive=0)
+
+
+class OptionSummary(dy.Schema):
+    """How much each option of judgement moves Cw over all tows."""
+
+    method = _method(primary_key=True)
+    option = _text("option of a step", primary_key=True)
+    tows = dy.Int32(description="tows", min=1)
+    median_ratio = _number("1", "median of Cw with the second value / with the first")
+    lo_ratio = _number("1", "5 % of the tows lie below")
+    hi_ratio = _number("1", "5 % of the tows lie above")
 
 
 class TypeConsistency(dy.Schema):
@@ -620,6 +696,39 @@ class PredictionError(dy.Schema):
     share_disagreeing = _number("1", "share beyond both uncertainties", min=0, max=1)
 
 
+class QualityCounts(dy.Schema):
+    """How many curves have each status and flag, and how many runs do not count, and why."""
+
+    method = _method(primary_key=True)
+    kind = _text("status, flag or run", primary_key=True, regex="^(status|flag|run)$")
+    code = _text("the status, flag or reason", primary_key=True)
+    scope = _text("a season, or all", primary_key=True)
+    number = dy.Int32(description="how many", min=1)
+
+
+class CheckCounts(dy.Schema):
+    """How often each check was made, and found something beyond its limit."""
+
+    method = _method(primary_key=True)
+    check = _text("code of the check", primary_key=True)
+    severity = _text("flag or note", regex="^(flag|note)$")
+    tows = dy.Int32(description="tows on which it was made", min=1)
+    beyond = dy.Int32(description="of which beyond the limit", min=0)
+
+
+class TraceSeconds(dy.Schema):
+    """Means over every second of every run: what the instruments said."""
+
+    tow_id = _tow_id(primary_key=True)
+    run = dy.Int8(primary_key=True, description="run", min=1, max=16)
+    second = dy.Int16(primary_key=True, description="second of the run, from 0", min=0)
+    speed_m_s = _speed("log 1: speed through the water as the log said")
+    gps_m_s = _speed("speed over ground; empty without GPS", nullable=True)
+    force_n = _number("N", "tow force")
+    wind_m_s = _number("m/s", "apparent wind speed")
+    wind_angle_deg = _number("deg", "circular mean of the apparent wind", min=0, max=360)
+
+
 class Quarantine(dy.Schema):
     """Files and tows set aside, each with the reason in a plain sentence."""
 
@@ -657,6 +766,7 @@ class Lineage(dy.Schema):
 
 TABLES: Final[dict[str, type[dy.Schema]]] = {
     "boats": Boats,
+    "seasons": Seasons,
     "tows": Tows,
     "tow_runs": TowRuns,
     "hand_windows": HandWindows,
@@ -666,15 +776,23 @@ TABLES: Final[dict[str, type[dy.Schema]]] = {
     "assessments": Assessments,
     "log_factors": LogFactors,
     "season_links": SeasonLinks,
-    "season_steps": SeasonSteps,
     "retow_choice": RetowChoice,
+    "season_steps": SeasonSteps,
     "uncertainty_budget": UncertaintyBudget,
     "ensemble": Ensemble,
     "register": Register,
     "due_list": DueList,
+    "editions": Editions,
     "register_changes": RegisterChanges,
+    "race_changes": RaceChanges,
     "correction_steps": CorrectionSteps,
     "option_effects": OptionEffects,
+    "season_changes": SeasonChanges,
+    "season_ladder": SeasonLadder,
+    "option_summary": OptionSummary,
+    "quality_counts": QualityCounts,
+    "check_counts": CheckCounts,
+    "trace_seconds": TraceSeconds,
     "type_consistency": TypeConsistency,
     "type_outliers": TypeOutliers,
     "type_homogeneity": TypeHomogeneity,

@@ -9,7 +9,7 @@ stands in `warehouse.schemas`; the database that readers use is `warehouse.datab
 
 import hashlib
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -110,9 +110,10 @@ class Store:
         """A table or partition as written."""
         return read_parquet(self.table_path(table, partition))
 
-    def read_all(self, table: str) -> pl.DataFrame:
-        """All partitions of a table, one below the other."""
-        return pl.concat([self.read(table, p) for p in self.partitions(table)])
+    def read_all(self, table: str, partitions: Iterable[str] | None = None) -> pl.DataFrame:
+        """Partitions of a table, one below the other: the given ones, or all."""
+        chosen = self.partitions(table) if partitions is None else partitions
+        return pl.concat([self.read(table, p) for p in chosen])
 
     def made_from(self, table: str, partition: str | None = None) -> str | None:
         """Fingerprint of what a table was made from; None if it is not there or is damaged."""

@@ -6,7 +6,7 @@ and writes it. `stale_*` and `*_made_from` say what has to be done again. Nothin
 
 import dataclasses
 import datetime as dt
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 import polars as pl
@@ -32,15 +32,16 @@ from warehouse.editions.published import published_made_from, published_tables
 from warehouse.files import file_sha256
 from warehouse.schemas import TABLES, Quarantine, conform
 from warehouse.store import Store, fingerprint, table_digest
+from warehouse.summaries import SUMMARY_TABLES
 
-ARCHIVE_TABLES: Final = ("boats", "tows", "tow_runs", "hand_windows", "quarantine")
+ARCHIVE_TABLES: Final = ("boats", "seasons", "tows", "tow_runs", "hand_windows", "quarantine")
 METHOD_TABLES: Final = (
     "run_points",
     "curves",
     "log_factors",
     "season_links",
-    "season_steps",
     "retow_choice",
+    "season_steps",
     "uncertainty_budget",
     "curve_points",
     "assessments",
@@ -56,6 +57,7 @@ STUDIED_METHOD: Final = "rebased"
 REGISTER_TABLES: Final = (
     "register",
     "due_list",
+    "editions",
     "register_changes",
     "lineage",
     "methods",
@@ -75,7 +77,13 @@ CONSISTENCY_TABLES: Final = (
     "prediction_error",
 )
 
-WHOLE_TABLES: Final = (*ARCHIVE_TABLES, *STUDY_TABLES, *REGISTER_TABLES, *CONSISTENCY_TABLES)
+WHOLE_TABLES: Final = (
+    *ARCHIVE_TABLES,
+    *STUDY_TABLES,
+    *REGISTER_TABLES,
+    *CONSISTENCY_TABLES,
+    *SUMMARY_TABLES,
+)
 """Tables in one piece; those of `METHOD_TABLES` have a partition per method."""
 
 
@@ -113,6 +121,7 @@ def collect_archive(store: Store, today: dt.date) -> dict[str, int]:
     beyond = _outside_run(store, windows)
     found = {
         "boats": store.read("listed_boats"),
+        "seasons": _seasons(store.read_all("season_tows"), sound),
         "tows": tows,
         "tow_runs": runs,
         "hand_windows": windows.join(
@@ -125,6 +134,14 @@ def collect_archive(store: Store, today: dt.date) -> dict[str, int]:
     for name, frame in found.items():
         store.write(name, conform(name, frame), made_from)
     return {name: frame.height for name, frame in found.items()}
+
+
+def _seasons(listed: pl.DataFrame, sound: pl.DataFrame) -> pl.DataFrame:
+    """How many tows each season lists, and how many of them can be used."""
+    is_sound = pl.col("tow_id").is_in(sound["tow_id"].implode())
+    return listed.group_by("season").agg(
+        pl.len().cast(pl.Int32).alias("listed"), is_sound.sum().cast(pl.Int32).alias("tows")
+    )
 
 
 def _nothing_sound(faults: pl.DataFrame) -> MissingKnowledgeError:
@@ -300,16 +317,13 @@ def make_consistency(store: Store, methods: Sequence[Method]) -> dict[str, int]:
     Returns:
         Rows per table.
     """
-    curves, run_points = (_of_methods(store, t, methods) for t in ("curves", "run_points"))
+    names = [m.name for m in methods]
+    curves, run_points = (store.read_all(t, names) for t in ("curves", "run_points"))
     found = consistency_tables(curves, store.read("tows"), store.read("boats"), run_points)
     made_from = register_made_from(store, methods)
     for name in CONSISTENCY_TABLES:
         store.write(name, conform(name, found[name]), made_from)
     return {name: found[name].height for name in CONSISTENCY_TABLES}
-
-
-def _of_methods(store: Store, table: str, methods: Sequence[Method]) -> pl.DataFrame:
-    return pl.concat([store.read(table, m.name) for m in methods])
 
 
 def make_registers(store: Store, methods: Sequence[Method]) -> dict[str, int]:
@@ -322,7 +336,7 @@ def make_registers(store: Store, methods: Sequence[Method]) -> dict[str, int]:
         Rows per table.
     """
     tows, crews = store.read("tows"), store.read("listed_boats")
-    curves = _of_methods(store, "curves", methods)
+    curves = store.read_all("curves", [m.name for m in methods])
     on_date = max(tows["tow_date"])
     drafts = [
         _as_edition(m, draft_register(_of(curves, m), tows, crews, on_date, m.validity))
@@ -337,6 +351,7 @@ def make_registers(store: Store, methods: Sequence[Method]) -> dict[str, int]:
         "register_changes": pl.concat(changes) if changes else _empty("register_changes"),
         "lineage": _lineage(register, tows, methods),
         "methods": _methods(methods),
+        "editions": _empty("editions"),
     }
     made_from = register_made_from(store, methods)
     for name, frame in found.items():
@@ -403,16 +418,29 @@ def make_database(store: Store, methods: Sequence[Method]) -> dict[str, int]:
     """
     found = {t: store.read(t) for t in WHOLE_TABLES}
     for table in METHOD_TABLES:
-        found[table] = conform(table, _of_methods(store, table, methods))
+        found[table] = conform(table, store.read_all(table, [m.name for m in methods]))
     about = {
         "simulated": str(store.read("about_archive")["simulated"][0]).lower(),
         "code_version": code_version(),
     }
     found["about"] = pl.DataFrame({"key": list(about), "value": list(about.values())})
+    found["contents"] = _contents(found)
     build_database(store.database, found)
     made = pl.DataFrame({"sha256": [file_sha256(store.database)]})
     store.write("database", made, database_made_from(store, methods))
     return {name: frame.height for name, frame in found.items()}
+
+
+def _contents(found: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
+    """Every table with its rows and meaning, for those who open the database."""
+    names = sorted(set(found) & set(TABLES))
+    return pl.DataFrame(
+        {
+            "table": names,
+            "rows": [found[name].height for name in names],
+            "meaning": [TABLES[name].__doc__ for name in names],
+        }
+    )
 
 
 def database_is_stale(store: Store, methods: Sequence[Method]) -> bool:

@@ -1,11 +1,10 @@
-"""What people look at, as frames: tables of the database joined and summed for a page or chart.
+"""What people look at, as frames: tables of the database, joined and sorted for a page or chart.
 
-Reads the database and the blocks; writes nothing. A number about a boat is taken from its table;
-only the means of each second, which no table holds, are made here from the blocks.
+Reads the database; writes and computes nothing: every number here stands in a table.
 """
 
 from types import TracebackType
-from typing import Final, Self
+from typing import Self
 
 import duckdb
 import polars as pl
@@ -20,10 +19,9 @@ class Views:
     def __init__(self, store: Store) -> None:
         if not store.database.exists():
             raise MissingKnowledgeError(f"{store.database} is not there; make it with rebuild")
-        self._store = store
-        self._rows: dict[str, int] = {}
+        self._contents: dict[str, int] = {}
         self._db = duckdb.connect(store.database, read_only=True)
-        self._db.execute("SET threads = 1")  # sums in one order: same tables, same bytes
+        self._db.execute("SET threads = 1")  # rows in one order: same tables, same bytes
 
     def __enter__(self) -> Self:
         return self
@@ -45,14 +43,10 @@ class Views:
         return self.row_counts().get(table, 0) > 0
 
     def row_counts(self) -> dict[str, int]:
-        """Rows by table, sorted by name; counted once."""
-        if not self._rows:
-            names = self.frame("SELECT table_name FROM duckdb_tables() ORDER BY 1")["table_name"]
-            self._rows = {name: self._count(name) for name in names}
-        return self._rows
-
-    def _count(self, table: str) -> int:
-        return int(self.frame(f'SELECT count(*) AS n FROM "{table}"')["n"][0])  # noqa: S608
+        """Rows by table, as the database says of itself."""
+        if not self._contents:
+            self._contents = dict(self.frame('SELECT "table", rows FROM contents').iter_rows())
+        return self._contents
 
     def table(self, name: str) -> pl.DataFrame:
         """A whole table, in the order in which it was written."""
@@ -107,18 +101,6 @@ class Views:
             "WHERE p.boat_type != 'unknown' ORDER BY method, tow_id, pooling"
         )
 
-    def season_ladder(self) -> pl.DataFrame:
-        """Mean factor of each step per season: the geometric mean, so that steps multiply."""
-        return self.frame(_SEASON_LADDER)
-
-    def option_spread(self) -> pl.DataFrame:
-        """How much each option of judgement moves Cw: median and the middle 90 % of tows."""
-        return self.frame(_OPTION_SPREAD)
-
-    def season_change(self) -> pl.DataFrame:
-        """Cw of each method / Cw of the first method: median and range per season."""
-        return self.frame(_SEASON_CHANGE)
-
     def repeat_pairs(self) -> pl.DataFrame:
         """Repeat tows with the boat's name."""
         return self.frame(
@@ -140,64 +122,38 @@ class Views:
             "WHERE outside ORDER BY method, abs(deviation_sd) DESC, tow_id, quantity"
         )
 
+    def counts(self, kind: str) -> pl.DataFrame:
+        """Counts of one kind over all seasons: `method, code, number`."""
+        return self.frame(
+            f"SELECT method, code, number FROM quality_counts WHERE kind = '{kind}' "  # noqa: S608
+            "AND scope = 'all' ORDER BY method, number DESC, code"
+        )
+
     def status_counts(self) -> pl.DataFrame:
         """Curves per method, season and status."""
         return self.frame(
-            "SELECT method, season, status, count(*) AS number FROM curves "
-            "GROUP BY ALL ORDER BY ALL"
+            "SELECT method, CAST(scope AS INTEGER) AS season, code AS status, number "
+            "FROM quality_counts WHERE kind = 'status' AND scope != 'all' ORDER BY ALL"
         )
 
-    def flag_counts(self) -> pl.DataFrame:
-        """How often each flag is raised, per method."""
+    def checks(self) -> pl.DataFrame:
+        """How often each check was made and found something, most often first."""
+        return self.frame('SELECT * FROM check_counts ORDER BY method, beyond DESC, "check"')
+
+    def races(self) -> pl.DataFrame:
+        """Races replayed under two editions, with the boat's name."""
         return self.frame(
-            "SELECT method, flag, count(*) AS number FROM "
-            "(SELECT method, unnest(flags) AS flag FROM curves) GROUP BY ALL ORDER BY ALL"
+            "SELECT r.*, b.name FROM race_changes AS r LEFT JOIN boats AS b USING (fsn_no) "
+            "ORDER BY from_edition, to_edition, race_date, race, crew_class, new_rank, fsn_no"
         )
-
-    def run_reason_counts(self) -> pl.DataFrame:
-        """Why runs do not count, per method."""
-        return self.frame(
-            "SELECT method, reason, count(*) AS number FROM run_points WHERE NOT used "
-            "GROUP BY ALL ORDER BY ALL"
-        )
-
-    def curve_lines(self) -> pl.DataFrame:
-        """Every curve over its valid range with its 95 % band: the table `curve_points`."""
-        return self.table("curve_points")
-
-    def traces(self) -> pl.DataFrame:
-        """Means over every second of every run: what the instruments said.
-
-        Returns:
-            `tow_id, run, second, speed_m_s` (log 1)`, gps_m_s, force_n, wind_m_s, wind_angle_deg`.
-        """
-        frames = [
-            self._store.read("blocks", season).select(*_TRACE)
-            for season in self._store.partitions("blocks")
-        ]
-        return pl.concat([f for f in frames if f.height])
-
-
-def _mean(name: str) -> pl.Expr:
-    return pl.col(name) / pl.col("n")
-
-
-_TRACE: Final = (
-    pl.col("tow_id", "run", "second"),
-    _mean("log1_v").alias("speed_m_s"),
-    pl.when(pl.col("gps_n") > 0).then(pl.col("gps") / pl.col("gps_n")).alias("gps_m_s"),
-    _mean("force").alias("force_n"),
-    _mean("wind_v").alias("wind_m_s"),
-    (pl.arctan2("wind_sin", "wind_cos").degrees() % 360.0).alias("wind_angle_deg"),
-)
 
 
 _REGISTER = """
 SELECT r.edition, r.fsn_no, b.name, b.boat_type, r.rowers, r.crew_class, r.tow_date, r.valid_until,
        r.status, r.declared_speed_m_s, r.a_kg_m, r.b_m_s, r.cw_kg_m, r.cw_lo_kg_m, r.cw_hi_kg_m,
-       r.tow_id, r.method
+       r.tow_id, r.method, r.verification_code
 FROM register AS r LEFT JOIN boats AS b USING (fsn_no)
-ORDER BY edition, b.name, fsn_no, rowers, crew_class
+ORDER BY edition, lower(b.name), fsn_no, rowers, crew_class
 """
 
 _CHANGES = """
@@ -205,7 +161,7 @@ SELECT c.from_edition, c.to_edition, c.fsn_no, b.name, b.boat_type, c.rowers, c.
        c.change, c.cw_ratio, c.power_ratio, c.time_ratio, c.causes
 FROM register_changes AS c LEFT JOIN boats AS b USING (fsn_no)
 WHERE c.change != 'same'
-ORDER BY from_edition, to_edition, b.name, fsn_no, rowers, crew_class
+ORDER BY from_edition, to_edition, lower(b.name), fsn_no, rowers, crew_class
 """
 
 _CURVES = """
@@ -223,30 +179,5 @@ LEFT JOIN boats AS b ON b.fsn_no = p.fsn_no
 LEFT JOIN type_outliers AS o
        ON o.method = p.method AND o.tow_id = p.tow_id AND o.quantity = 'ln_cw_standard'
 WHERE p.pooling = 'own' AND p.boat_type != 'unknown'
-ORDER BY p.method, p.boat_type, b.name, p.fsn_no, p.rowers, p.crew_class
-"""
-
-_SEASON_LADDER = """
-SELECT s.from_method, s.to_method, t.season, s.position, s.step,
-       exp(avg(ln(s.factor))) AS factor, count(*) AS tows
-FROM correction_steps AS s JOIN tows AS t USING (tow_id)
-WHERE s.position > 0 GROUP BY ALL ORDER BY ALL
-"""
-
-_OPTION_SPREAD = """
-SELECT method, option, count(*) AS tows, median(cw_effect_ratio) AS median_ratio,
-       quantile_cont(cw_effect_ratio, 0.05) AS lo_ratio,
-       quantile_cont(cw_effect_ratio, 0.95) AS hi_ratio
-FROM option_effects WHERE cw_effect_ratio IS NOT NULL GROUP BY ALL ORDER BY ALL
-"""
-
-_SEASON_CHANGE = """
-SELECT new.method, new.season, count(*) AS tows,
-       median(new.cw_kg_m / old.cw_kg_m) AS median_ratio,
-       min(new.cw_kg_m / old.cw_kg_m) AS lowest_ratio,
-       max(new.cw_kg_m / old.cw_kg_m) AS highest_ratio
-FROM curves AS new JOIN curves AS old USING (tow_id)
-WHERE old.method = (SELECT min(from_method) FROM correction_steps) AND new.method != old.method
-  AND new.cw_kg_m IS NOT NULL AND old.cw_kg_m IS NOT NULL
-GROUP BY ALL ORDER BY ALL
+ORDER BY p.method, p.boat_type, lower(b.name), p.fsn_no, p.rowers, p.crew_class
 """

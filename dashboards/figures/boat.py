@@ -1,4 +1,4 @@
-"""Figures of one boat: its curve, history, traces, wind, and out against back."""
+"""Figures of one boat: curve, history, traces, wind, out against back, and uncertainty."""
 
 import altair as alt
 import polars as pl
@@ -10,14 +10,17 @@ from dashboards.figures.style import (
     OKABE_ITO,
     OUT,
     WIDTH,
-    colour,
+    by_method,
+    named,
     number,
-    shape,
-    stroke,
     tips,
 )
 from dashboards.words import Say
 
+COMPONENTS = (
+    *("anemometer", "calibration", "force", "mass", "random", "season_log", "straightness"),
+    *("stream_drift", "temperature", "wind"),
+)
 DIRECTION = "datum.value == 1 ? '{out}' : '{back}'"
 
 
@@ -88,30 +91,12 @@ def history(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
         frame: rows of `curves` with `tow_date` and `crew`.
         say: gives texts.
     """
-    base = alt.Chart(frame).encode(
-        alt.X("tow:O", title=say("tow"), axis=alt.Axis(labelAngle=-30)),
-        xOffset="method:N",
+    base = alt.Chart(frame).encode(alt.X("tow:O", title=say("tow"), axis=alt.Axis(labelAngle=-30)))
+    value, ends = ("cw_kg_m", say("cw_declared")), ("cw_lo_kg_m", "cw_hi_kg_m")
+    more = (("tow:N", say("tow")), ("a_kg_m:Q", say("a")), ("b_m_s:Q", say("b")))
+    return alt.layer(*by_method(base, say, value, ends, more)).properties(
+        width=WIDTH, height=HEIGHT
     )
-    y = number(alt.Y, "cw_kg_m", say("cw_declared"))
-    return alt.layer(
-        base.mark_rule(strokeWidth=2).encode(
-            alt.Y("cw_lo_kg_m:Q", title=say("cw_declared"), scale=alt.Scale(zero=False)),
-            alt.Y2("cw_hi_kg_m:Q"),
-            stroke=stroke("method"),
-        ),
-        base.mark_point(filled=True, size=70, opacity=1).encode(
-            y,
-            colour("method", say("method")),
-            shape("method", say("method")),
-            tooltip=tips(
-                ("method:N", say("method")),
-                ("tow:N", say("tow")),
-                ("cw_kg_m:Q", say("cw")),
-                ("a_kg_m:Q", say("a")),
-                ("b_m_s:Q", say("b")),
-            ),
-        ),
-    ).properties(width=WIDTH, height=HEIGHT)
 
 
 def traces(frame: pl.DataFrame, say: Say) -> alt.VConcatChart:
@@ -152,8 +137,8 @@ def _trace_row(
     ]
     return (
         alt.layer(window, *lines, data=frame)
-        .properties(width=180, height=110)
-        .facet(alt.Facet("run:O", title=say("run")), columns=3)
+        .properties(width=150, height=110)
+        .facet(alt.Facet("run:O", title=say("run")), columns=6)
     )
 
 
@@ -204,4 +189,24 @@ def wind(frame: pl.DataFrame, say: Say) -> alt.Chart:
             tooltip=tips(("run:O", say("run")), ("wind_m_s:Q", say("wind"))),
         )
         .properties(width=WIDTH, height=200)
+    )
+
+
+def budget(frame: pl.DataFrame, say: Say) -> alt.Chart:
+    """What makes Cw uncertain, the largest first; `frame` is `uncertainty_budget`."""
+    label = named(COMPONENTS, say)
+    return (
+        alt.Chart(frame)
+        .mark_bar(color=OKABE_ITO[0])
+        .encode(
+            alt.X("u_ratio:Q", title=say("u_ratio")),
+            alt.Y(
+                "component:N",
+                title=say("component"),
+                sort="-x",
+                axis=alt.Axis(labelExpr=label, labelLimit=220),
+            ),
+            tooltip=tips(("component:N", say("component")), ("u_ratio:Q", say("u_ratio"))),
+        )
+        .properties(width=480, height=alt.Step(20))
     )

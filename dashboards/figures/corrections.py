@@ -8,14 +8,14 @@ from dashboards.figures.style import (
     HEIGHT,
     OKABE_ITO,
     WIDTH,
-    colour,
+    by_method,
+    named,
     number,
-    shape,
-    stroke,
     tips,
 )
 from dashboards.words import Say
 from pipeline.ladder import STEP_ORDER
+from pipeline.options import CHOICES
 
 
 def _at_one(frame: pl.DataFrame, channel: str) -> alt.Chart:
@@ -25,39 +25,39 @@ def _at_one(frame: pl.DataFrame, channel: str) -> alt.Chart:
 
 def log_factors(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     """True speed / log speed per season and method, with 95 % intervals; `frame` is the table."""
-    base = alt.Chart(frame).encode(
-        alt.X("season:O", title=say("season")),
-        xOffset="method:N",
+    more = (("season:O", say("season")), ("source:N", say("source")))
+    return _per_season(frame, say, ("factor", say("factor")), ("lo", "hi"), more)
+
+
+def season_change(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+    """Cw re-based / as published: median and range per season; `frame` is `season_changes`."""
+    value, ends = ("median_ratio", say("ratio_cw")), ("lowest_ratio", "highest_ratio")
+    return _per_season(
+        frame, say, value, ends, (("season:O", say("season")), ("tows:Q", say("number")))
     )
-    y = number(alt.Y, "factor", say("factor"))
-    interval = number(alt.Y, "lo", say("factor")), alt.Y2("hi:Q")
-    return alt.layer(
-        _at_one(frame, "y"),
-        base.mark_rule(strokeWidth=2).encode(*interval, stroke=stroke("method")),
-        base.mark_point(filled=True, size=60, opacity=1).encode(
-            y,
-            colour("method", say("method")),
-            shape("method", say("method")),
-            tooltip=tips(
-                ("method:N", say("method")),
-                ("season:O", say("season")),
-                ("factor:Q", say("factor")),
-                ("source:N", say("source")),
-            ),
-        ),
-    ).properties(width=WIDTH, height=HEIGHT)
+
+
+def _per_season(
+    frame: pl.DataFrame,
+    say: Say,
+    value: tuple[str, str],
+    ends: tuple[str, str],
+    more: tuple[tuple[str, str], ...],
+) -> alt.LayerChart:
+    base = alt.Chart(frame).encode(alt.X("season:O", title=say("season")))
+    layers = by_method(base, say, value, ends, more)
+    return alt.layer(_at_one(frame, "y"), *layers).properties(width=WIDTH, height=HEIGHT)
 
 
 def season_ladder(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     """Factor on Cw of each step in each season, as a coloured table with its numbers.
 
     Args:
-        frame: `Views.season_ladder` of one pair of methods, with `step_name` per language.
+        frame: `season_ladder` of one pair of methods.
         say: gives texts.
     """
     order = alt.EncodingSortField("position", order="ascending")
-    names = {step: say(f"code.{step}") for step in STEP_ORDER}
-    label = f"({names!s})[datum.value] || datum.value"
+    label = named(STEP_ORDER, say)
     base = alt.Chart(frame).encode(
         alt.X(
             "step:N",
@@ -84,34 +84,11 @@ def season_ladder(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     ).properties(width=WIDTH, height=HEIGHT)
 
 
-def season_change(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
-    """Cw re-based / as published: median and range per season; `frame` is `season_change`."""
-    base = alt.Chart(frame).encode(
-        alt.X("season:O", title=say("season")),
-        xOffset="method:N",
-    )
-    span = number(alt.Y, "lowest_ratio", say("ratio_cw")), alt.Y2("highest_ratio:Q")
-    return alt.layer(
-        _at_one(frame, "y"),
-        base.mark_rule(strokeWidth=2).encode(*span, stroke=stroke("method")),
-        base.mark_point(filled=True, size=60, opacity=1).encode(
-            number(alt.Y, "median_ratio", say("ratio_cw")),
-            colour("method", say("method")),
-            shape("method", say("method")),
-            tooltip=tips(
-                ("method:N", say("method")),
-                ("season:O", say("season")),
-                ("median_ratio:Q", say("ratio_cw")),
-                ("tows:Q", say("number")),
-            ),
-        ),
-    ).properties(width=WIDTH, height=HEIGHT)
-
-
 def option_study(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
-    """What other choices of judgement do to Cw; `frame` is `Views.option_spread`."""
+    """What other choices of judgement do to Cw; `frame` is `option_summary`."""
+    label = named([c.name for c in CHOICES], say)
     base = alt.Chart(frame).encode(
-        alt.Y("option:N", title=say("option"), axis=alt.Axis(labelLimit=220))
+        alt.Y("option:N", title=say("option"), axis=alt.Axis(labelExpr=label, labelLimit=260))
     )
     return alt.layer(
         _at_one(frame, "x"),

@@ -3,7 +3,7 @@
 import altair as alt
 import polars as pl
 
-from dashboards.figures.style import OKABE_ITO, WIDTH, tips
+from dashboards.figures.style import OKABE_ITO, WIDTH, named, tips
 from dashboards.words import Say
 
 STATUSES = ["accepted", "flagged", "rejected"]
@@ -11,7 +11,6 @@ STATUSES = ["accepted", "flagged", "rejected"]
 
 def statuses(frame: pl.DataFrame, say: Say) -> alt.Chart:
     """Curves per season by status, of one method; `frame` is `Views.status_counts`."""
-    names = {s: say(f"code.{s}") for s in STATUSES}
     shades = alt.Scale(domain=STATUSES, range=[OKABE_ITO[5], OKABE_ITO[4], OKABE_ITO[6]])
     return (
         alt.Chart(frame)
@@ -23,7 +22,7 @@ def statuses(frame: pl.DataFrame, say: Say) -> alt.Chart:
                 "status:N",
                 title=say("status"),
                 scale=shades,
-                legend=alt.Legend(labelExpr=f"({names})[datum.value] || datum.value"),
+                legend=alt.Legend(labelExpr=named(STATUSES, say)),
             ),
             tooltip=tips(
                 ("season:O", say("season")),

@@ -3,53 +3,46 @@
 import altair as alt
 import polars as pl
 
-from dashboards.figures.style import GREY, HEIGHT, WIDTH, colour, number, shape, stroke, tips
+from dashboards.figures.style import (
+    GREY,
+    HEIGHT,
+    WIDTH,
+    by_method,
+    colour,
+    method_colour,
+    method_shape,
+    named,
+    number,
+    shape,
+    tips,
+)
 from dashboards.words import Say
 
 
 def spread(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     """Standard deviation of one tow per era and method; `frame` is `reproducibility`."""
     base = alt.Chart(frame).encode(
-        alt.X("scope:N", title=say("scope"), axis=alt.Axis(labelAngle=0)),
-        xOffset="method:N",
+        alt.X(
+            "scope:N",
+            title=say("scope"),
+            axis=alt.Axis(labelAngle=0, labelExpr=named(["all"], say)),
+        )
     )
-    interval = number(alt.Y, "lo", say("sd_ratio"), zero=True), alt.Y2("hi:Q")
-    return alt.layer(
-        base.mark_rule(strokeWidth=2).encode(*interval, stroke=stroke("method")),
-        base.mark_point(filled=True, size=70, opacity=1).encode(
-            number(alt.Y, "sd_ratio", say("sd_ratio"), zero=True),
-            colour("method", say("method")),
-            shape("method", say("method")),
-            tooltip=tips(
-                ("method:N", say("method")),
-                ("scope:N", say("scope")),
-                ("sd_ratio:Q", say("sd_ratio")),
-                ("n_pairs:Q", say("number")),
-            ),
-        ),
-    ).properties(width=WIDTH, height=HEIGHT)
+    value, more = (
+        ("sd_ratio", say("sd_ratio")),
+        (("scope:N", say("scope")), ("n_pairs:Q", say("number"))),
+    )
+    layers = by_method(base, say, value, ("lo", "hi"), more, zero=True)
+    return alt.layer(*layers).properties(width=WIDTH, height=HEIGHT)
 
 
 def era_shifts(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     """Next tow of the same boats against the tows of an era; `frame` is `era_shifts`."""
-    base = alt.Chart(frame).encode(
-        alt.X("era:N", title=say("scope"), axis=alt.Axis(labelAngle=0)), xOffset="method:N"
-    )
-    ends = number(alt.Y, "lo", say("shift_ratio")), alt.Y2("hi:Q")
-    return alt.layer(
-        alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3]).encode(y=alt.datum(1.0)),
-        base.mark_rule(strokeWidth=2).encode(*ends, stroke=stroke("method")),
-        base.mark_point(filled=True, size=70, opacity=1).encode(
-            number(alt.Y, "shift_ratio", say("shift_ratio")),
-            colour("method", say("method")),
-            shape("method", say("method")),
-            tooltip=tips(
-                ("method:N", say("method")),
-                ("shift_ratio:Q", say("shift_ratio")),
-                ("n:Q", say("number")),
-            ),
-        ),
-    ).properties(width=WIDTH, height=HEIGHT)
+    base = alt.Chart(frame).encode(alt.X("era:N", title=say("scope"), axis=alt.Axis(labelAngle=0)))
+    same = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3]).encode(y=alt.datum(1.0))
+    value, more = ("shift_ratio", say("shift_ratio")), (("n:Q", say("number")),)
+    layers = by_method(base, say, value, ("lo", "hi"), more)
+    return alt.layer(same, *layers).properties(width=WIDTH, height=HEIGHT)
 
 
 def repeat_pairs(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
@@ -61,8 +54,8 @@ def repeat_pairs(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
         .encode(
             alt.X("season:O", title=say("season")),
             number(alt.Y, "ln_ratio", say("ln_ratio")),
-            colour("method", say("method")),
-            shape("method", say("method")),
+            method_colour(say),
+            method_shape(say),
             xOffset="method:N",
             href="page:N",
             tooltip=tips(
@@ -79,40 +72,21 @@ def repeat_pairs(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
 
 def components(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
     """Spread by cause; `frame` is `variance_components`."""
-    names = {c: say(f"code.{c}") for c in ("boat", "season", "boat_season", "run")}
-    scopes = {c: say(f"code.{c}") for c in ("fleet", "within_type")}
     base = alt.Chart().encode(
         alt.X(
             "component:N",
             title=say("component"),
-            axis=alt.Axis(labelExpr=f"({names})[datum.value] || datum.value", labelAngle=0),
-        ),
-        xOffset="method:N",
+            axis=alt.Axis(
+                labelExpr=named(["boat", "season", "boat_season", "run"], say), labelAngle=0
+            ),
+        )
     )
+    layers = by_method(base, say, ("sd_ratio", say("sd_ratio")), ("lo", "hi"), zero=True)
+    header = alt.Header(labelExpr=named(["fleet", "within_type"], say))
     return (
-        alt.layer(
-            base.mark_rule(strokeWidth=2).encode(
-                number(alt.Y, "lo", say("sd_ratio"), zero=True),
-                alt.Y2("hi:Q"),
-                stroke=stroke("method"),
-            ),
-            base.mark_point(filled=True, size=60, opacity=1).encode(
-                number(alt.Y, "sd_ratio", say("sd_ratio"), zero=True),
-                colour("method", say("method")),
-                shape("method", say("method")),
-                tooltip=tips(("method:N", say("method")), ("sd_ratio:Q", say("sd_ratio"))),
-            ),
-            data=frame,
-        )
+        alt.layer(*layers, data=frame)
         .properties(width=300, height=240)
-        .facet(
-            alt.Facet(
-                "scope:N",
-                title=None,
-                header=alt.Header(labelExpr=f"({scopes})[datum.value] || datum.value"),
-            ),
-            columns=2,
-        )
+        .facet(alt.Facet("scope:N", title=None, header=header), columns=2)
     )
 
 
@@ -166,3 +140,33 @@ def register_changes(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     return alt.layer(one.encode(x=alt.datum(1.0)), one.encode(y=alt.datum(1.0)), points).properties(
         width=WIDTH, height=HEIGHT
     )
+
+
+def race_ranks(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+    """Place of every result under the old and the new edition; `frame` is `race_changes`."""
+    same = (
+        alt.Chart(frame)
+        .mark_line(color=GREY, strokeDash=[4, 3])
+        .encode(alt.X("old_rank:Q", title=say("old_rank")), alt.Y("old_rank:Q", title=""))
+    )
+    points = (
+        alt.Chart(frame)
+        .mark_point(size=60, filled=True, opacity=0.85, cursor="pointer")
+        .encode(
+            alt.X("old_rank:Q", title=say("old_rank"), axis=alt.Axis(tickMinStep=1, format="d")),
+            alt.Y("new_rank:Q", title=say("new_rank"), axis=alt.Axis(tickMinStep=1, format="d")),
+            colour("crew_class", say("class")),
+            shape("crew_class", say("class")),
+            href="page:N",
+            tooltip=tips(
+                ("race:N", say("race")),
+                ("name:N", say("name")),
+                ("fsn_no:N", "FSN"),
+                ("old_rank:Q", say("old_rank")),
+                ("new_rank:Q", say("new_rank")),
+                ("old_power_w:Q", say("old_power")),
+                ("new_power_w:Q", say("new_power")),
+            ),
+        )
+    )
+    return alt.layer(same, points).properties(width=480, height=360)

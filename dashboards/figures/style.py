@@ -1,8 +1,13 @@
 """What the figures share: colours, shapes, sizes, titles, and links to a boat."""
 
+import json
+from collections.abc import Iterable, Sequence
 from typing import Any, Final
 
 import altair as alt
+
+from dashboards.words import Say
+from pipeline.method import shipped_methods
 
 OKABE_ITO: Final = (
     "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999",
@@ -23,9 +28,18 @@ def colour(field: str, title: str, **more: Any) -> alt.Color:
     return alt.Color(f"{field}:N", title=title, scale=alt.Scale(range=list(OKABE_ITO)), **more)
 
 
-def stroke(field: str) -> alt.Stroke:
-    """The colour of an interval: as its point's, which has the legend."""
-    return alt.Stroke(f"{field}:N", scale=alt.Scale(range=list(OKABE_ITO)), legend=None)
+def method_colour(say: Say) -> alt.Color:
+    """A method by colour: every method that ships has the same in every figure."""
+    return alt.Color("method:N", title=say("method"), scale=_of_methods(OKABE_ITO))
+
+
+def method_shape(say: Say) -> alt.Shape:
+    """The same method by shape."""
+    return alt.Shape("method:N", title=say("method"), scale=_of_methods(SHAPES))
+
+
+def _of_methods(looks: Sequence[str]) -> alt.Scale:
+    return alt.Scale(domain=list(shipped_methods()), range=list(looks))
 
 
 def shape(field: str, title: str, **more: Any) -> alt.Shape:
@@ -44,3 +58,42 @@ def tips(*pairs: tuple[str, str]) -> list[alt.Tooltip]:
         alt.Tooltip(field, title=title, **({"format": ".5~g"} if field.endswith(":Q") else {}))
         for field, title in pairs
     ]
+
+
+def by_method(
+    base: alt.Chart,
+    say: Say,
+    value: tuple[str, str],
+    ends: tuple[str, str],
+    more: Sequence[tuple[str, str]] = (),
+    zero: bool = False,
+) -> list[alt.Chart]:
+    """A value with its interval for every method, side by side: a bar and a point.
+
+    Args:
+        base: the chart with its x encoded.
+        say: gives texts.
+        value: column of the point, and the title of the y axis.
+        ends: columns of the lower and upper end of the bar.
+        more: what the tooltip shows besides method and value.
+        zero: whether the y axis begins at zero.
+    """
+    (field, title), (low, high) = value, ends
+    beside = base.encode(xOffset="method:N")
+    bar = beside.mark_rule(strokeWidth=2).encode(
+        number(alt.Y, low, title, zero), alt.Y2(f"{high}:Q"), method_colour(say)
+    )
+    limits = [(f"{low}:Q", say("lowest")), (f"{high}:Q", say("highest"))]
+    point = beside.mark_point(filled=True, size=65, opacity=1).encode(
+        number(alt.Y, field, title, zero),
+        method_colour(say),
+        method_shape(say),
+        tooltip=tips(("method:N", say("method")), *more, (f"{field}:Q", title), *limits),
+    )
+    return [bar, point]
+
+
+def named(codes: Iterable[str], say: Say) -> str:
+    """A Vega expression that gives codes on an axis their text, and leaves others as they are."""
+    texts = {code: say(f"code.{code}") for code in codes}
+    return f"({json.dumps(texts)})[datum.value] || datum.value"

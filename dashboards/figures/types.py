@@ -4,28 +4,27 @@ Each is a scatter with a selection by dragging (`brush`, read by the page to fil
 parameter `chosen` that the list sets, and points that link to their boat.
 """
 
+from typing import Any
+
 import altair as alt
 import polars as pl
 
-from dashboards.figures.style import colour, number, shape, tips
+from dashboards.figures.style import OKABE_ITO, colour, number, shape, tips
 from dashboards.words import Say
 
+Axes = tuple[tuple[str, str], tuple[str, str]]
 
-def _scatter(frame: pl.DataFrame, say: Say, x: tuple[str, str], y: tuple[str, str]) -> alt.Chart:
-    brush = alt.selection_interval(name="brush")
-    chosen = alt.param(name="chosen", value="")
-    is_chosen = "datum.fsn_no == chosen"
+
+def _points(frame: pl.DataFrame, say: Say, axes: Axes, more: dict[str, Any]) -> alt.Chart:
+    """Boats as points that link to their page; `axes` are column and title of x and y."""
+    x, y = axes
     return (
         alt.Chart(frame)
         .mark_point(filled=True, strokeWidth=2, cursor="pointer")
         .encode(
             number(alt.X, *x),
             number(alt.Y, *y),
-            colour("boat_type", say("type"), legend=alt.Legend(orient="top", columns=3)),
-            shape("boat_type", say("type"), legend=alt.Legend(orient="top", columns=3)),
             href="page:N",
-            size=alt.condition(is_chosen, alt.value(320), alt.value(70)),
-            opacity=alt.condition(brush, alt.value(0.9), alt.value(0.2)),
             tooltip=tips(
                 ("name:N", say("name")),
                 ("fsn_no:N", "FSN"),
@@ -34,20 +33,57 @@ def _scatter(frame: pl.DataFrame, say: Say, x: tuple[str, str], y: tuple[str, st
                 (f"{x[0]}:Q", x[1]),
                 (f"{y[0]}:Q", y[1]),
             ),
+            **more,
         )
-        .add_params(brush, chosen)
-        .properties(width=360, height=280)
     )
+
+
+def _scatter(frame: pl.DataFrame, say: Say, axes: Axes) -> alt.Chart:
+    brush = alt.selection_interval(name="brush")
+    chosen = alt.param(name="chosen", value="")
+    legend = alt.Legend(orient="top", columns=3)
+    more = {
+        "color": colour("boat_type", say("type"), legend=legend),
+        "shape": shape("boat_type", say("type"), legend=legend),
+        "size": alt.condition("datum.fsn_no == chosen", alt.value(320), alt.value(70)),
+        "opacity": alt.condition(brush, alt.value(0.9), alt.value(0.2)),
+    }
+    points = _points(frame, say, axes, more).add_params(brush, chosen)
+    return points.properties(width=400, height=280)
+
+
+def _pair(frame: pl.DataFrame, say: Say, axes: Axes) -> alt.FacetChart:
+    """Two types side by side on the same axes."""
+    points = _points(frame, say, axes, {"color": alt.value(OKABE_ITO[0])})
+    return points.properties(width=220, height=220).facet(
+        alt.Facet("boat_type:N", title=None), columns=2
+    )
+
+
+def _weight(say: Say) -> tuple[str, str]:
+    return "weight_kg", say("weight")
+
+
+def _speed(say: Say) -> tuple[str, str]:
+    return "declared_speed_m_s", say("tow_speed")
+
+
+def _b(say: Say) -> tuple[str, str]:
+    return "b_m_s", say("b")
+
+
+def _cw(say: Say) -> tuple[str, str]:
+    return "cw_kg_m", say("cw_declared")
 
 
 def b_against_weight(frame: pl.DataFrame, say: Say) -> alt.Chart:
     """B against weight; `frame` is `Views.type_boats` with `page`."""
-    return _scatter(frame, say, ("weight_kg", say("weight")), ("b_m_s", say("b")))
+    return _scatter(frame, say, (_weight(say), _b(say)))
 
 
 def b_against_speed(frame: pl.DataFrame, say: Say) -> alt.Chart:
     """B against tow speed."""
-    return _scatter(frame, say, ("declared_speed_m_s", say("tow_speed")), ("b_m_s", say("b")))
+    return _scatter(frame, say, (_speed(say), _b(say)))
 
 
 def a_against_weight(frame: pl.DataFrame, say: Say) -> alt.Chart:
@@ -87,10 +123,29 @@ def shared_bend(frame: pl.DataFrame, say: Say) -> alt.Chart:
 
 def cw_against_weight(frame: pl.DataFrame, say: Say) -> alt.Chart:
     """Cw at the declared speed against weight."""
-    return _scatter(frame, say, ("weight_kg", say("weight")), ("cw_kg_m", say("cw_declared")))
+    return _scatter(frame, say, (_weight(say), _cw(say)))
 
 
 def cw_against_speed(frame: pl.DataFrame, say: Say) -> alt.Chart:
     """Cw at the declared speed against that speed."""
-    x = ("declared_speed_m_s", say("tow_speed"))
-    return _scatter(frame, say, x, ("cw_kg_m", say("cw_declared")))
+    return _scatter(frame, say, (_speed(say), _cw(say)))
+
+
+def pair_b_against_weight(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+    """B against weight, two types side by side; `frame` holds boats of two types."""
+    return _pair(frame, say, (_weight(say), _b(say)))
+
+
+def pair_b_against_speed(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+    """B against tow speed, two types side by side."""
+    return _pair(frame, say, (_speed(say), _b(say)))
+
+
+def pair_cw_against_weight(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+    """Cw at the declared speed against weight, two types side by side."""
+    return _pair(frame, say, (_weight(say), _cw(say)))
+
+
+def pair_cw_against_speed(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+    """Cw at the declared speed against that speed, two types side by side."""
+    return _pair(frame, say, (_speed(say), _cw(say)))

@@ -7,12 +7,10 @@ import polars as pl
 from dashboards.site.parts import Chart, Page, Section, Select, Table, boat_path, default_method
 from warehouse.views import Views
 
-OF_THE_TOW = {"tow_id": "tow_id"}
 OF_THE_CURVE = {"tow_id": "tow_id", "method": "method"}
 FOLLOWS = ["tow_id", "method"]
 EXTRA = {
     "assessments": ("tow_id", "method", "check", "severity", "observed", "limit", "unit"),
-    "uncertainty_budget": ("tow_id", "method", "component", "shared", "u_ratio"),
     "hand_windows": ("tow_id", "run", "start_s", "end_s", "reason"),
 }
 """Tables about tows that are shown where there are any, with the columns shown."""
@@ -40,7 +38,7 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
         tow=pl.format("{} · {}{}", "tow_id", "rowers", "crew_class")
     )
     declared = curves.drop_nulls("cw_kg_m").with_columns(speed_m_s="declared_speed_m_s")
-    lines = views.curve_lines().join(boat_of, on="tow_id")
+    lines = views.table("curve_points").join(boat_of, on="tow_id")
     windows = points.drop_nulls("window_start_s")
     lineage = views.table("lineage").with_columns(
         pl.format("{}{}", "rowers", "crew_class").alias("crew")
@@ -54,9 +52,12 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
         "point": _kind(points.drop_nulls("cw_kg_m"), "point", "method", *POINT),
         "declared": _kind(declared, "declared", "method", *NUMBERS),
         "stages": _stages(points),
-        "trace": _seconds(views.traces().join(boat_of, on="tow_id")),
+        "trace": _seconds(views.table("trace_seconds").join(boat_of, on="tow_id")),
         "window": _kind(windows, "window", "method", "run", "window_start_s", "window_end_s"),
         "lineage": lineage,
+        "budget": views.table("uncertainty_budget")
+        .select(*FOLLOWS, "component", "shared", "u_ratio", "dof")
+        .join(boat_of, on="tow_id", maintain_order="left"),
     }
     for name in EXTRA:
         if views.has(name):
@@ -95,6 +96,7 @@ def _seconds(traces: pl.DataFrame) -> pl.DataFrame:
 LINE_COLUMNS = (
     *("edition", "rowers", "crew_class", "tow_id", "tow_date", "valid_until", "status"),
     *("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),
+    *("verification_code", "method"),
 )
 CURVE_COLUMNS = (
     *("tow_id", "tow_date", "rowers", "crew_class", "method", "declared_speed_m_s", "a_kg_m"),
@@ -143,6 +145,7 @@ def _data(own: dict[str, pl.DataFrame]) -> dict[str, list[pl.DataFrame]]:
         "stages": [own["stages"].drop("fsn_no")],
         "runs": [own["runs"].select(wind)],
         "curves": [own["curves"].select(history)],
+        "budget": [own["budget"].drop("fsn_no")],
     }
 
 
@@ -150,6 +153,7 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
     curve = Chart("resistance_curve", "curve", "boat_curve", OF_THE_CURVE)
     history = Chart("history", "curves", "boat_history")
     traces = Chart("traces", "traces", "boat_traces", OF_THE_CURVE)
+    budget = Chart("budget", "budget", "uncertainty_budget", OF_THE_CURVE)
     sides = [
         Chart("out_and_back", "stages", "boat_out_back", OF_THE_CURVE),
         Chart("wind", "runs", "wind", OF_THE_CURVE),
@@ -164,14 +168,14 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
         Section("boat_history", "boat_history_note", [history], [curves]),
         Section("boat_traces", "boat_traces_note", [traces], [runs]),
         Section("boat_out_back", "boat_out_back_note", sides),
+        Section("uncertainty_budget", "uncertainty_budget_note", [budget]),
     ]
     for name, columns in EXTRA.items():
         rows = own.get(name)
         if rows is not None and rows.height:
             follows = [c for c in FOLLOWS if c in columns]
-            found.append(
-                Section(name, f"{name}_note", tables=[Table(name, rows, columns, name, follows)])
-            )
+            table = Table(name, rows, columns, name, follows)
+            found.append(Section(name, f"{name}_note", tables=[table]))
     lineage = Table("lineage", own["lineage"], LINEAGE_COLUMNS, "boat_lineage")
     if own["lineage"].height:
         found.append(Section("boat_lineage", "boat_lineage_note", tables=[lineage]))

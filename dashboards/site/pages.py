@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 import polars as pl
 
 from dashboards.site.boats import boat_pages
+from dashboards.site.downloads import DOWNLOADS, SHEETS
 from dashboards.site.parts import Chart, Page, Section, Select, Table, boat_path, default_method
 from warehouse.views import Views
 
@@ -49,8 +50,6 @@ def _method(methods: Sequence[str]) -> Select:
 
 
 def _index(views: Views) -> Page:
-    counts = views.row_counts()
-    tables = pl.DataFrame({"table": list(counts), "rows": list(counts.values())})
     pages = [(f"{name}.html", name, f"about_{name}") for name in MENU[1:]]
     return Page(
         "index.html",
@@ -69,11 +68,6 @@ def _index(views: Views) -> Page:
                     )
                 ],
             ),
-            Section(
-                "tables",
-                "tables_note",
-                tables=[Table("tables", tables, ["table", "rows"], "tables")],
-            ),
         ],
     )
 
@@ -81,6 +75,11 @@ def _index(views: Views) -> Page:
 REGISTER_COLUMNS = (
     *("name", "fsn_no", "boat_type", "rowers", "crew_class", "tow_date", "valid_until", "status"),
     *("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),
+    *("verification_code", "method"),
+)
+EDITION_COLUMNS = (
+    *("edition", "kind", "method", "valid_from", "published_on", "decision", "previous"),
+    *("method_hash", "code_version", "seal"),
 )
 
 
@@ -93,10 +92,18 @@ def _register(views: Views) -> Page:
         "register",
         [
             Section("register", "register_note", tables=[table]),
-            *_whole(views, "editions", "editions"),
+            *_whole(views, "editions", "editions", EDITION_COLUMNS),
+            *_downloads(views),
         ],
         selects=[Select("edition", "edition", editions, _newest(editions))],
     )
+
+
+def _downloads(views: Views) -> list[Section]:
+    """The sheets of every published edition, which `render` puts beside the pages."""
+    names = views.table("editions")["edition"].to_list()
+    files = [(f"{DOWNLOADS}/{name}/{file}", f"{name} {file}") for name in names for file in SHEETS]
+    return [Section("downloads", "downloads_note", files=files)] if files else []
 
 
 def _newest(editions: Sequence[str]) -> str:
@@ -105,16 +112,17 @@ def _newest(editions: Sequence[str]) -> str:
     return published[-1] if published else default_method(editions)
 
 
+QUANTITIES = ("b_weight", "b_speed", "cw_weight", "cw_speed")
+SIDES = ("before", "after")
+PAIR = ("kromhout", "kuiken")
+"""Two types of which many boats are said to be equal: shown side by side at first."""
+
+
 def _types(views: Views, methods: list[str]) -> Page:
     if not views.has("pooled_curves"):
         return Page("types.html", "types", [])
     boats = _with_page(views.type_boats())
-    figures = ("b_weight", "b_speed", "cw_weight", "cw_speed")
-    charts = [
-        Chart(figure, "type_boats", side, {"method": side, "boat_type": "boat_type"})
-        for figure in figures
-        for side in ("before", "after")
-    ]
+    types = boats["boat_type"].unique().sort().to_list()
     columns = (
         *("name", "fsn_no", "boat_type", "rowers", "crew_class", "season", "weight_kg"),
         *("declared_speed_m_s", "b_m_s", "b_lo_m_s", "b_hi_m_s", "cw_kg_m", "cw_lo_kg_m"),
@@ -124,23 +132,39 @@ def _types(views: Views, methods: list[str]) -> Page:
         "type_boats", boats.with_columns(after="method"), columns, "types_list",
         ["after", "boat_type"], search=True, linked=True,
     )  # fmt: skip
-    types = boats["boat_type"].unique().sort().to_list()
+    first, second = _pair(types)
     return Page(
         "types.html",
         "types",
         [
-            Section("types_charts", "types_note", charts),
+            Section("types_charts", "types_note", _before_after("", "boat_type")),
             Section("types_list", tables=[table]),
+            Section("types_pair", "types_pair_note", _before_after("pair_", "pair")),
             *_type_tables(views),
         ],
         selects=[
             Select("before", "before", methods, methods[0]),
             Select("after", "after", methods, default_method(methods)),
             Select("boat_type", "type", types, "", with_all=True),
-            Select("boat_type_2", "type_second", types, "", with_all=True),
+            Select("pair", "pair_first", types, first),
+            Select("pair_2", "pair_second", types, second),
         ],
         data={"type_boats": [boats.drop("a_kg_m", "tow_id")]},
     )
+
+
+def _before_after(prefix: str, of_type: str) -> list[Chart]:
+    return [
+        Chart(f"{prefix}{name}", "type_boats", side, {"method": side, "boat_type": of_type})
+        for name in QUANTITIES
+        for side in SIDES
+    ]
+
+
+def _pair(types: Sequence[str]) -> tuple[str, str]:
+    """The types of `PAIR` where the archive has them, else the first and last."""
+    known = [next((t for t in types if t.lower().startswith(name)), None) for name in PAIR]
+    return known[0] or types[0], known[1] or types[-1]
 
 
 def _type_tables(views: Views) -> list[Section]:
@@ -194,13 +218,13 @@ def _corrections(views: Views, methods: list[str]) -> Page:
         chart = Chart("log_factors", "log_factors", "log_factors")
         sections.append(Section("log_factors", "log_factors_note", [chart], [table]))
     if views.has("correction_steps"):
-        data["ladder"] = views.season_ladder()
-        data["season_change"] = views.season_change()
+        data["ladder"] = views.table("season_ladder")
+        data["season_change"] = views.table("season_changes")
         sections += [_ladder(data["ladder"]), _season_change(data["season_change"])]
     if views.has("option_effects"):
-        data["options"] = views.option_spread()
+        data["options"] = views.table("option_summary")
         columns = ["option", "tows", "median_ratio", "lo_ratio", "hi_ratio"]
-        table = Table("options", data["options"], columns, "options")
+        table = Table("option_summary", data["options"], columns, "options")
         chart = Chart("options", "options", "options")
         sections.append(Section("options", "options_note", [chart], [table]))
     return Page(
@@ -222,7 +246,7 @@ def _ladder(frame: pl.DataFrame) -> Section:
 
 def _season_change(frame: pl.DataFrame) -> Section:
     columns = ["method", "season", "tows", "median_ratio", "lowest_ratio", "highest_ratio"]
-    table = Table("season_change", frame, columns, "season_change", ["method"])
+    table = Table("season_changes", frame, columns, "season_change", ["method"])
     chart = Chart("season_change", "season_change", "season_change")
     return Section("season_change", "season_change_note", [chart], [table])
 
@@ -288,14 +312,27 @@ def _changes(views: Views) -> Page:
     table = Table("changes", changes, columns, "changes_list", ["to_edition"], search=True)
     chart = Chart("changes", "changes", "changes_list", {"to_edition": "to_edition"})
     drawn = _with_page(changes.drop("causes")).drop_nulls("cw_ratio")
-    races = [s for t in ("race_replays", "races") for s in _whole(views, t, "races")]
     return Page(
         "changes.html",
         "changes",
-        [Section("changes_list", "changes_note", [chart], [table]), *races],
+        [Section("changes_list", "changes_note", [chart], [table]), _races(views)],
         selects=[Select("to_edition", "edition", editions, _newest(editions))],
-        data={"changes": [drawn]},
+        data={"changes": [drawn], "races": [_with_page(views.races())]},
     )
+
+
+def _races(views: Views) -> Section:
+    races = views.races()
+    if races.is_empty():
+        return Section("races", empty="no_races")
+    columns = (
+        *("from_edition", "to_edition", "race", "race_date", "crew_class", "name", "fsn_no"),
+        *("rowers", "rowing_time_s", "old_power_w", "new_power_w", "old_rank", "new_rank"),
+        "podium_changed",
+    )
+    table = Table("race_changes", races, columns, "races", ["to_edition"], search=True)
+    chart = Chart("race_ranks", "races", "races", {"to_edition": "to_edition"})
+    return Section("races", "races_note", [chart], [table])
 
 
 def _quality(views: Views, methods: list[str]) -> Page:
@@ -310,13 +347,15 @@ def _quality(views: Views, methods: list[str]) -> Page:
         ),
         _set_aside(views),
     ]
-    for name, title, note, frame in (
-        ("flags", "flags", "flags_note", views.flag_counts()),
-        ("run_reasons", "run_reasons", None, views.run_reason_counts()),
-    ):
+    for kind, title, note in (("flag", "flags", "flags_note"), ("run", "run_reasons", None)):
+        frame = views.counts(kind)
         if frame.height:
-            table = Table(name, frame, frame.columns, title, ["method"])
+            table = Table(title, frame, ["method", "code", "number"], title, ["method"])
             sections.append(Section(title, note, tables=[table]))
+    checks = views.checks()
+    columns = ["method", "check", "severity", "tows", "beyond"]
+    table = Table("check_counts", checks, columns, "checks", ["method"])
+    sections += [Section("checks", "checks_note", tables=[table]), _rebuilt(views)]
     return Page(
         "quality.html",
         "quality",
@@ -332,3 +371,21 @@ def _set_aside(views: Views) -> Section:
     columns = ["path", "tow_id", "line", "reason_code", "message", "first_seen"]
     table = Table("quarantine", views.table("quarantine"), columns, "set_aside", search=True)
     return Section("set_aside", "set_aside_note", tables=[table])
+
+
+def _rebuilt(views: Views) -> Section:
+    """What the rebuild read, applied and made."""
+    shown = {
+        "seasons": ("season", "listed", "tows"),
+        "methods": ("method", "title", "content_hash"),
+        "contents": ("table", "rows", "meaning"),
+    }
+    captions = {"contents": "tables"}
+    return Section(
+        "rebuilt",
+        "rebuilt_note",
+        tables=[
+            Table(name, views.table(name), columns, captions.get(name, name))
+            for name, columns in shown.items()
+        ],
+    )

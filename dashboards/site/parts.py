@@ -65,13 +65,20 @@ class Select:
 
 @dataclass(frozen=True)
 class Section:
-    """A heading, a note, and what stands under them."""
+    """A heading, a note, and what stands under them.
+
+    Attributes:
+        links: path of a page, key of its name and key of a sentence about it.
+        files: path of a file to download, and its name, which is data.
+        empty: key of what is said where there is nothing to show.
+    """
 
     title: str
     note: str | None = None
     charts: Sequence[Chart] = ()
     tables: Sequence[Table] = ()
     links: Sequence[tuple[str, str, str]] = ()
+    files: Sequence[tuple[str, str]] = ()
     empty: str | None = None
 
 

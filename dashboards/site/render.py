@@ -16,13 +16,14 @@ from typing import Any, Final
 import jinja2
 import polars as pl
 import vl_convert
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from dashboards.figures import FIGURES
+from dashboards.site.downloads import copy_sheets
 from dashboards.site.pages import MENU, all_pages
 from dashboards.site.parts import Page, boat_path
 from dashboards.words import LANGUAGES, both, speaker
-from warehouse.files import TEMPORARY_PREFIX, swap_folder
+from warehouse.files import TEMPORARY_PREFIX, put_in_place
 from warehouse.store import Store
 from warehouse.views import Views
 
@@ -30,18 +31,36 @@ HERE: Final = Path(__file__).parent
 OWN_FILES: Final = ("site.css", "site.js")
 DIGITS: Final = (
     ("_kg_m", 2), ("_m_s", 2), ("_deg", 0), ("_kg", 0), ("_w", 1), ("_s", 0), ("cw_sd", 2),
-    ("_m", 2), ("_sd", 1),
+    ("_m", 2), ("_sd", 1), ("dof", 1),
 )  # fmt: skip
 """Decimals shown by the ending of a column's name; 4 otherwise."""
+
+POLICY: Final = "; ".join(
+    (
+        "default-src 'none'",
+        "script-src 'self' file:",
+        "style-src 'self' file: 'unsafe-inline'",
+        "img-src 'self' file: data:",
+        "base-uri 'none'",
+        "form-action 'none'",
+    )
+)
+"""What a browser lets a page load: the site's own files and nothing else; no eval, no connection.
+`file:` because to some browsers a page from disk is no `'self'`; inline styles are Vega's."""
 
 KEPT: Final = 9
 """Significant digits in downloads and charts; the database holds all."""
 
 CODES: Final = {
-    *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "flag"),
-    *("quantity", "explaining", "candidates", "severity", "check", "shared", "what", "outcome"),
+    *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "code"),
+    *("quantity", "explaining", "candidates", "severity", "check", "shared", "kind", "scope"),
+    *("option", "flag", "what", "outcome"),
 }
 """Columns that hold codes of the warehouse, shown as words."""
+
+
+LONG: Final = {"flags", "cut_reason", "causes", "message", "meaning", "decision", "candidates"}
+"""Columns of texts that may take several lines."""
 
 
 def build_site(store: Store) -> dict[str, int]:
@@ -55,10 +74,11 @@ def build_site(store: Store) -> dict[str, int]:
     try:
         with Views(store) as views:
             _write(views, beside)
+        copy_sheets(store, beside)
         written = [f for f in beside.rglob("*") if f.is_file()]
         size = {"files": len(written), "bytes": sum(f.stat().st_size for f in written)}
         beside.chmod(0o755)
-        swap_folder(beside, target)
+        put_in_place(beside, target)
     finally:
         shutil.rmtree(beside, ignore_errors=True)
     return size
@@ -148,7 +168,13 @@ def _environment(comments: dict[str, str]) -> jinja2.Environment:
         undefined=jinja2.StrictUndefined,
     )
     environment.globals.update(
-        t=_text, both=both, data=_data, rows=_rows, is_number=_is_number, comments=comments
+        policy=POLICY,
+        t=_text,
+        both=both,
+        data=_data,
+        rows=_rows,
+        is_number=_is_number,
+        comments=comments,
     )
     return environment
 
@@ -179,10 +205,15 @@ def _cells(column: pl.Series, root: str) -> list[Markup]:
     if column.dtype.is_integer() and name != "direction":
         return [_integer(value) for value in column]
     show = _shower(name, root)
-    return [_EMPTY if value is None else _shown(value, show) for value in column]
+    cell = _LONG_CELL if name in LONG else _CELL
+    return [_EMPTY if value is None else _shown(value, show, cell) for value in column]
 
 
-_EMPTY = Markup('<td data-v=""></td>')
+_SAME_CELL = Markup("<td>{}</td>")
+"""A cell whose text is its value; others have the value in `data-v`."""
+_CELL = Markup('<td data-v="{}">{}</td>')
+_LONG_CELL = Markup('<td class="w" data-v="{}">{}</td>')
+_EMPTY = Markup("<td></td>")
 
 
 def _number(value: float | None, digits: int) -> Markup:
@@ -193,27 +224,34 @@ def _number(value: float | None, digits: int) -> Markup:
 
 def _integer(value: int | None) -> Markup:
     text = "" if value is None else str(value)
-    return Markup(f'<td class="i" data-v="{text}">{text}</td>')  # noqa: S704 - a number
+    return Markup(f'<td class="i">{text}</td>')  # noqa: S704 - a number
 
 
-def _shown(value: Any, show: Callable[[Any], Markup]) -> Markup:
+def _shown(value: Any, show: Callable[[Any], Markup], cell: Markup) -> Markup:
     plain = ", ".join(value) if isinstance(value, pl.Series | list) else str(value)
-    return Markup('<td data-v="{}">{}</td>').format(plain, show(value))
+    shown = show(value)
+    if shown == escape(plain):
+        return _SAME_CELL.format(shown)
+    return cell.format(plain, shown)
 
 
 def _shower(name: str, root: str) -> Callable[[Any], Markup]:
     """How values of a column are shown."""
-    if name == "direction":
-        return lambda value: _text("out" if value == 1 else "back")
-    if name == "causes":
-        return _causes
-    if name in CODES:
-        return _code
     if name == "fsn_no":
         return lambda value: Markup('<a href="{}{}">{}</a>').format(root, boat_path(value), value)
-    if name in {"sha256", "content_hash", "method_hash"}:
-        return lambda value: Markup('<code title="{}">{}</code>').format(value, value[:12])
-    return _plain
+    return SHOWERS.get(name, _code if name in CODES else _plain)
+
+
+def _direction(value: int) -> Markup:
+    return _text("out" if value == 1 else "back")
+
+
+def _type(value: str) -> Markup:
+    return _text("code.unknown") if value == "unknown" else _plain(value)
+
+
+def _hash(value: str) -> Markup:
+    return Markup('<code title="{}">{}</code>').format(value, value[:12])
 
 
 def _plain(value: Any) -> Markup:
@@ -231,9 +269,20 @@ def _code(value: Any) -> Markup:
 
 
 def _causes(value: str) -> Markup:
-    """What a change is attributed to, each with its factor."""
+    """What a change is attributed to (a method's step by its name), each with its factor."""
     parts = [
-        Markup("{} \u00d7 {:.4f}").format(_text(f"code.{cause['cause']}"), cause["factor"])
+        Markup('{} <span class="n">{:.4f}</span>').format(
+            _text(f"code.{cause.get('step', cause['cause'])}"), cause["factor"]
+        )
         for cause in json.loads(value)
     ]
-    return Markup(", ").join(parts)
+    return Markup(" \u00d7 ").join(parts)
+
+
+SHOWERS: Final[dict[str, Callable[[Any], Markup]]] = {
+    "direction": _direction,
+    "causes": _causes,
+    "boat_type": _type,
+    **dict.fromkeys(("sha256", "content_hash", "method_hash", "seal"), _hash),
+}
+"""Columns shown in a way of their own."""

@@ -92,7 +92,7 @@ except UnavailableError as error:
 """
 
 
-@pytest.mark.parametrize(("limit", "soft", "words"), [("NOFILE", 24, "may not open more files")])
+@pytest.mark.parametrize(("limit", "soft", "words"), [("NOFILE", 14, "may not open more files")])
 def test_without_file_handles_it_stops_with_the_way_out(bench, built, limit, soft, words):
     spoil(samples_files(bench, 2009)[3])
     done = subprocess.run(

@@ -41,7 +41,7 @@ def test_a_report_names_what_was_set_aside_and_what_that_did_to_the_drafts(bench
 
 def test_a_changed_speed_is_named_as_the_cause_of_its_line(bench):
     bench.rebuild()
-    row = bench.table("tows").filter(season=2014).row(0, named=True)
+    row = bench.store.read("listed_tows").filter(season=2014).row(0, named=True)
     lines = (bench.archive / row["list_path"]).read_text("utf-8").split("\n")
     old = lines[row["list_line"] - 1]
     speed = f"{row['declared_speed_m_s']:.2f}".replace(".", ",")

@@ -1,24 +1,42 @@
-"""The site of the small archive, with a boat whose name is an attack."""
+"""The site of the small archive with two editions and boats whose names are attacks."""
 
+import datetime as dt
 import shutil
 
 import duckdb
 import pytest
 
 from dashboards.site import build_site
+from pipeline.method import shipped_method
+from tests.conftest import METHODS, Workbench
+from warehouse.editions.publish import Terms, publish
 from warehouse.store import Store
 
 ATTACK = "</script><script>alert(1)</script>"
+FORMULA = "=1+1"
+EDITIONS = ("2015-1", "2026-1")
+PUBLISHED_ON = dt.date(2026, 5, 9)
 
 
 @pytest.fixture(scope="session")
 def store(built, tmp_path_factory):
-    """A copy of the built data in which the first boat has the name `ATTACK`, with its site."""
-    root = tmp_path_factory.mktemp("site")
-    shutil.copytree(built.data, root / "data")
-    store = Store(root / "data")
+    """A copy of the built data with editions and attacks, and its site.
+
+    The first boat towed is called `ATTACK`, the last one `FORMULA`.
+    """
+    data = tmp_path_factory.mktemp("site") / "data"
+    shutil.copytree(built.data, data)
+    store = Store(data)
+    for edition, method in zip(EDITIONS, METHODS, strict=True):
+        terms = Terms(edition, dt.date(2015, 1, 1), "SKC <8 mei>", PUBLISHED_ON)
+        publish(store, shipped_method(method), terms)
+    Workbench(built.archive, data).rebuild()
     with duckdb.connect(store.database) as db:
-        db.sql(f"UPDATE boats SET name = '{ATTACK}' WHERE fsn_no = (SELECT min(fsn_no) FROM tows)")  # noqa: S608
+        for name, which in ((ATTACK, "min"), (FORMULA, "max")):
+            db.execute(
+                f"UPDATE boats SET name = ? WHERE fsn_no = (SELECT {which}(fsn_no) FROM tows)",  # noqa: S608
+                [name],
+            )
     build_site(store)
     return store
 

@@ -14,7 +14,7 @@ import pytest
 from dashboards.site.pages import MENU
 from dashboards.site.parts import boat_path
 from tests.architecture.repository import ROOT
-from tests.dashboards.conftest import ATTACK
+from tests.dashboards.conftest import ATTACK, EDITIONS, FORMULA
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 FLAGS = [
@@ -114,10 +114,10 @@ def test_language_switches_and_is_kept(visitor):
     page = visitor.open("register.html")
     first = shown(page, "register").first.locator("td.n").first
     assert page.locator("h1").inner_text() == "Register"
-    assert "Zoek" in page.locator(".tools").inner_text()
+    assert "Zoek" in page.locator("[data-table=register] .tools").inner_text()
     assert "," in first.inner_text()
     page.get_by_role("button", name="English").click()
-    assert "Search" in page.locator(".tools").inner_text()
+    assert "Search" in page.locator("[data-table=register] .tools").inner_text()
     assert "," not in first.inner_text()
     page = visitor.open("types.html")
     assert page.locator("h1").inner_text() == "Types"
@@ -162,6 +162,27 @@ def test_a_chart_downloads_its_data(visitor, attacked):
     rows = list(csv.DictReader(io.StringIO(caught.value.path().read_text("utf-8-sig"))))
     assert {row["kind"] for row in rows} == {"line", "point", "declared"}
     assert {row["tow_id"] for row in rows} == {page.locator("select[name=tow_id]").input_value()}
+
+
+def test_a_name_is_no_formula_in_a_download(visitor):
+    page = visitor.open("register.html")
+    with page.expect_download() as caught:
+        page.locator("[data-table=register] .csv").click()
+    names = [
+        r["name"] for r in csv.DictReader(io.StringIO(caught.value.path().read_text("utf-8-sig")))
+    ]
+    assert f"'{FORMULA}" in names
+    assert ATTACK in names
+
+
+def test_races_follow_the_edition(visitor):
+    page = visitor.open("changes.html")
+    page.locator("select[name=to_edition]").select_option(EDITIONS[1])
+    assert shown(page, "race_changes").count() > 0
+    editions = page.locator(
+        "[data-table=race_changes] tr:visible td:nth-child(2)"
+    ).all_inner_texts()
+    assert set(editions) == {EDITIONS[1]}
 
 
 def test_choosing_a_method_changes_the_curve(visitor, attacked):

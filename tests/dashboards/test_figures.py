@@ -5,13 +5,14 @@ import json
 import polars as pl
 import pytest
 
-from dashboards.figures import FIGURES
+from dashboards.figures import FIGURES, png
 from dashboards.words import LANGUAGES, WORDS, both, speaker
 
 FRAME = pl.DataFrame({"kind": ["line"], "method": ["rebased"], "cw_kg_m": [30.0]})
 
 AXES = {
     "resistance_curve": {"speed_m_s", "cw_kg_m", "cw_lo_kg_m"},
+    "curves_compared": {"speed_m_s", "cw_kg_m", "cw_lo_kg_m"},
     "history": {"tow", "cw_kg_m", "cw_lo_kg_m"},
     "traces": {"second", "window_start_s", "speed_m_s", "gps_m_s", "force_n", "wind_m_s"},
     "out_and_back": {"speed_m_s", "cw_kg_m"},
@@ -25,6 +26,12 @@ AXES = {
     "cw_standard_speed": {"declared_speed_m_s", "cw_standard_kg_m"},
     "shared_bend": {"b_m_s", "crew"},
     "eras": {"era", "shift_ratio", "lo"},
+    "pair_b_weight": {"weight_kg", "b_m_s"},
+    "pair_b_speed": {"declared_speed_m_s", "b_m_s"},
+    "pair_cw_weight": {"weight_kg", "cw_kg_m"},
+    "pair_cw_speed": {"declared_speed_m_s", "cw_kg_m"},
+    "budget": {"u_ratio", "component"},
+    "race_ranks": {"old_rank", "new_rank"},
     "log_factors": {"season", "factor", "lo"},
     "ladder": {"step", "season"},
     "season_change": {"season", "median_ratio", "lowest_ratio"},
@@ -87,6 +94,11 @@ def test_a_figure_carries_the_rows_it_was_given():
     spec = FIGURES["resistance_curve"](frame, speaker("en")).to_dict()
     (rows,) = spec["datasets"].values()
     assert rows == frame.to_dicts()
+
+
+def test_a_figure_is_also_a_picture():
+    frame = pl.DataFrame({"season": [2010], "status": ["accepted"], "number": [3]})
+    assert png("statuses", frame, speaker("nl")).startswith(b"\x89PNG")
 
 
 def test_every_text_is_there_in_every_language():

@@ -90,8 +90,9 @@ def test_two_types_stand_side_by_side_with_what_differs(bench):
         found = re.search(
             rf"equal bends possible, {method}: (.*?)(?:\n  \S|\Z)", different, re.DOTALL
         )
-        answers = r"Kuikensloep yes, p 0.400.*Stersloep\s+no,\s+p\s+0.001"
-        assert re.match(answers, found[1], re.DOTALL)
+        assert re.match(
+            r"Kuikensloep yes, p 0.400.*Stersloep\s+no,\s+p\s+0.001", found[1], re.DOTALL
+        )
 
 
 def test_a_boats_page_has_its_place_history_and_second_opinion(built):

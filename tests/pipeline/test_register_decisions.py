@@ -5,7 +5,8 @@ import datetime as dt
 import polars as pl
 import pytest
 
-from pipeline.method import MethodFileError, RegisterRule, method_text, parse_method, shipped_method
+from pipeline.method import MethodFileError, RegisterRule, parse_method, shipped_method
+from pipeline.method_writing import method_text
 from pipeline.register import DECISION_SCHEMA, draft_register
 
 NUMBERS = ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")

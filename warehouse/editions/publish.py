@@ -15,7 +15,8 @@ from typing import Final
 import polars as pl
 
 from pipeline.errors import MissingKnowledgeError
-from pipeline.method import Method, method_text
+from pipeline.method import Method
+from pipeline.method_writing import method_text
 from pipeline.register import LINE
 from warehouse import decisions as decided
 from warehouse.code import code_version

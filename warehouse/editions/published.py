@@ -7,6 +7,7 @@ import polars as pl
 
 from warehouse.editions.folder import (
     CHANGES,
+    Edition,
     edition_names,
     read_about,
     read_edition,
@@ -22,14 +23,17 @@ def published_made_from(store: Store) -> dict[str, str]:
 
 
 def published_tables(store: Store) -> dict[str, pl.DataFrame]:
-    """Rows of `register`, `register_changes` and `lineage` of every published edition.
+    """Rows of `editions`, and of `register`, `register_changes` and `lineage` of every edition.
 
     Raises:
         BrokenPromiseError: a file of an edition is missing or damaged.
     """
-    rows: dict[str, list[pl.DataFrame]] = {name: [] for name in ("register", CHANGES, "lineage")}
+    rows: dict[str, list[pl.DataFrame]] = {
+        name: [] for name in ("editions", "register", CHANGES, "lineage")
+    }
     for name in edition_names(store):
         edition = read_edition(store, name)
+        rows["editions"].append(_edition_row(edition))
         rows["register"].append(edition.register)
         if CHANGES in edition.tables:
             rows[CHANGES].append(edition.tables[CHANGES])
@@ -39,3 +43,11 @@ def published_tables(store: Store) -> dict[str, pl.DataFrame]:
         table: pl.concat([TABLES[table].create_empty(), *(conform(table, f) for f in frames)])
         for table, frames in rows.items()
     }
+
+
+def _edition_row(edition: Edition) -> pl.DataFrame:
+    """What an edition says of itself."""
+    about = edition.about.model_dump(include=set(TABLES["editions"].column_names()))
+    return pl.DataFrame([about]).cast(
+        {"previous": pl.String, "method": pl.String, "method_hash": pl.String}
+    )

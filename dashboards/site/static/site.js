@@ -27,7 +27,7 @@
       else element.setAttribute("aria-label", text);
     });
     const mark = LOCALES[language].decimal;
-    all("td.n").forEach((cell) => { cell.textContent = cell.textContent.replace(/[.,]/, mark); });
+    all("td.n, span.n").forEach((cell) => { cell.textContent = cell.textContent.replace(/[.,]/, mark); });
     all("figure[data-figure]").forEach(redraw);
   }
 
@@ -70,11 +70,14 @@
     if (clear) clear.hidden = selected === null;
   }
 
-  // A value fits a selector; `boat_type` has two, to see two types side by side.
+  // A value fits a selector, or its second: to see two types side by side.
   function matches(name, value) {
     const wanted = [choice(name), choice(`${name}_2`)].filter((text) => text !== "");
     return wanted.length === 0 || wanted.includes(String(value));
   }
+
+  // What a cell holds: its text, unless it says otherwise.
+  const valueOf = (cell) => cell.dataset.v ?? cell.textContent;
 
   function sort(table, header) {
     const place = [...header.parentElement.children].indexOf(header);
@@ -84,7 +87,7 @@
     const body = table.querySelector("tbody");
     const numeric = header.classList.contains("n");
     const compare = new Intl.Collator("nl", { numeric: true }).compare;
-    const rows = [...body.rows].map((row) => [row.cells[place].dataset.v, row]);
+    const rows = [...body.rows].map((row) => [valueOf(row.cells[place]), row]);
     rows.sort(([a], [b]) => {
       if (a === "" || b === "") return (a === "") - (b === "");
       const order = numeric ? Number(a) - Number(b) : compare(a, b);
@@ -101,7 +104,7 @@
     table.querySelector(".csv").addEventListener("click", () => {
       const rows = all("tbody tr", table).filter((row) => !row.hidden);
       download(table.dataset.table, all("th", table).map((h) => h.dataset.c),
-        rows.map((row) => [...row.cells].map((cell) => cell.dataset.v)));
+        rows.map((row) => [...row.cells].map(valueOf)));
     });
     table.querySelector("table.linked")?.addEventListener("click", (event) => {
       const row = event.target.closest("tbody tr");
@@ -140,9 +143,10 @@
   // What the selectors say, so that a chart names its tow and method, also in print.
   function picked(figure) {
     const names = Object.values(JSON.parse(figure.dataset.follows));
-    return names.map(choice).filter((text) => text !== "").join(", ");
+    return names.flatMap((name) => [choice(name), choice(`${name}_2`)]).filter(Boolean).join(", ");
   }
 
+  const LABELS = 150; // room for axis and legend beside a chart [px]
   const views = new Map(); // figure -> its Vega view
   const visible = new Set();
 
@@ -158,6 +162,7 @@
     try {
       const made = await window.vegaEmbed(place, spec, {
         actions: false,
+        ast: true, // expressions are interpreted: the page forbids eval
         renderer: "svg",
         formatLocale: LOCALES[root.lang],
         loader: { target: "_self" },
@@ -178,16 +183,21 @@
     place.classList.add("drawn");
   }
 
-  // A chart wider than its page is made narrower; small multiples keep their size and scroll.
+  // A chart wider than its page is made narrower, with its labels; so are small multiples.
   function fitWidth(spec, figure) {
-    const room = figure.parentElement.clientWidth - 130;
-    const least = spec.layer?.some((layer) => layer.mark?.type === "text") ? 520 : 190; // legible
-    if (typeof spec.width === "number" && spec.width > room) spec.width = Math.max(room, least);
-    if (room < 420) {
-      const parts = spec.vconcat ?? [spec];
-      for (const part of parts) if (part.columns) part.columns = 1;
-      spec.config = { ...spec.config, legend: { ...spec.config?.legend, orient: "bottom", columns: 1 } };
+    const room = figure.parentElement.clientWidth;
+    const isNarrow = room < 550;
+    if (typeof spec.width === "number" && spec.width + LABELS > room) {
+      const least = spec.layer?.some((layer) => layer.mark?.type === "text") ? 640 : 0; // legible
+      spec.width = Math.max(room, least);
+      spec.autosize = { type: "fit-x", contains: "padding" };
     }
+    if (!isNarrow) return;
+    for (const part of (spec.vconcat ?? [spec]).filter((part) => part.columns)) {
+      part.columns = part.spec.width > 200 ? 1 : 2;
+      part.spec.width = Math.floor((room - LABELS / 2) / part.columns) - 20;
+    }
+    spec.config = { ...spec.config, legend: { ...spec.config?.legend, orient: "bottom", columns: 1 } };
   }
 
   function describe(figure, place) {

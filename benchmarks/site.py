@@ -1,0 +1,95 @@
+"""Time and size of the site, and how soon its pages can be used.
+
+    PYTHONPATH=. python benchmarks/site.py [DATA]
+
+DATA is a data folder that a rebuild made; without it a small one is simulated. A large one:
+
+    herijk simulate big --seasons 2009:2018 --tows-per-season 100 --rate 10
+    herijk rebuild --archive big --data DATA
+
+Pages are timed in Chromium, from the start of loading until tables are filtered and the first
+chart is drawn: the largest boat pages, and all others.
+"""
+
+import shutil
+import statistics
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from playwright.sync_api import sync_playwright
+
+from assets.rebuild import rebuild
+from assets.resources import Quiet
+from dashboards.site import build_site
+from dashboards.site.pages import MENU
+from pipeline.method import shipped_methods
+from pipeline.simulate import WorldSettings, simulate_world
+from warehouse.archive.write import write_simulated_archive
+from warehouse.store import Store
+from warehouse.views import Views
+
+READY = "document.querySelector('.chart.drawn') || !document.querySelector('.chart')"
+COUNTED = "!document.querySelector('.count b:empty')"
+REPEATS = 3
+BOATS = 5
+SMALL = WorldSettings((2009, 2014, 2018), 10, 10)
+
+
+def simulated(folder: Path) -> Path:
+    """A small data folder of simulated tows, rebuilt by all methods."""
+    write_simulated_archive(folder / "archive", simulate_world(SMALL))
+    rebuild(folder / "archive", folder / "data", shipped_methods(), Quiet())
+    return folder / "data"
+
+
+def page_times(site: Path, names: list[str]) -> dict[str, float]:
+    """Seconds until each page can be used, the best of a few."""
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
+        found = {name: min(_load(browser, site / name) for _ in range(REPEATS)) for name in names}
+        browser.close()
+    return found
+
+
+def _load(browser, path: Path) -> float:
+    page = browser.new_page(viewport={"width": 1280, "height": 900})
+    start = time.perf_counter()
+    page.goto(path.as_uri())
+    page.wait_for_function(COUNTED)
+    page.wait_for_function(READY)
+    seconds = time.perf_counter() - start
+    page.close()
+    return seconds
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        measure(Path(sys.argv[1]) if len(sys.argv) > 1 else simulated(Path(folder)))
+
+
+def measure(data: Path) -> None:
+    """Builds the site of a data folder and opens its pages."""
+    store = Store(data)
+    with Views(store) as views:
+        rows = views.row_counts()
+    print(f"{rows['boats']} boats, {rows['tows']} tows, {rows['curves']} curves")
+    wall, cpu = time.perf_counter(), time.process_time()
+    size = build_site(store)
+    wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
+    print(f"built in {wall:.1f} s ({cpu:.1f} s of processor), "
+          f"{size['files']} files, {size['bytes'] / 1e6:.1f} MB")  # fmt: skip
+    site = store.root / "site"
+    boats = sorted(site.glob("boats/*.html"), key=lambda f: f.stat().st_size)[-BOATS:]
+    names = [*(f"{name}.html" for name in MENU), *(str(f.relative_to(site)) for f in boats)]
+    times = page_times(site, names)
+    for name, seconds in times.items():
+        print(f"  {name:24s} {(site / name).stat().st_size / 1e3:8.0f} kB {seconds:6.2f} s")
+    slowest, middle = max(times.values()), statistics.median(times.values())
+    print(f"usable after {slowest:.2f} s at most, {middle:.2f} s median")
+
+
+if __name__ == "__main__":
+    main()

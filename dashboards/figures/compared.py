@@ -1,0 +1,45 @@
+"""Figures of two methods laid over each other."""
+
+import altair as alt
+import polars as pl
+
+from dashboards.figures.style import HEIGHT, OKABE_ITO, WIDTH, number, tips
+from dashboards.words import Say
+
+
+def curves_compared(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+    """A tow's curve and run points under two methods, with the interval at the declared speed.
+
+    Args:
+        frame: rows of `kind` line, point and declared (`warehouse.trial.Trial.boat_figure`).
+        say: gives texts.
+    """
+    x = number(alt.X, "speed_m_s", say("speed"), axis=alt.Axis(tickCount=8))
+    y = number(alt.Y, "cw_kg_m", say("cw"))
+    low, high = alt.Y("cw_lo_kg_m:Q", title=say("cw")), alt.Y2("cw_hi_kg_m:Q")
+    ink = alt.Scale(range=[OKABE_ITO[1], OKABE_ITO[0]])
+    colour = alt.Color("method:N", title=say("method"), scale=ink, sort=None)
+    dash = alt.StrokeDash("method:N", title=say("method"), scale=alt.Scale(range=[[5, 4], [1, 0]]))
+    mark = alt.Shape("method:N", title=say("method"), scale=alt.Scale(range=["square", "circle"]))
+    base = alt.Chart(frame)
+    line = base.transform_filter("datum.kind == 'line'")
+    point = base.transform_filter("datum.kind == 'point'")
+    declared = base.transform_filter("datum.kind == 'declared'")
+    return alt.layer(
+        line.mark_line(strokeWidth=2).encode(x, y, colour, dash),
+        declared.mark_rule(strokeWidth=3, opacity=0.6).encode(x, low, high, colour),
+        point.mark_point(size=70, strokeWidth=2).encode(
+            x,
+            y,
+            colour,
+            mark,
+            fill=alt.Fill("method:N", scale=ink, legend=None),
+            fillOpacity=alt.condition("datum.used", alt.value(0.85), alt.value(0)),
+            tooltip=tips(
+                ("method:N", say("method")),
+                ("run:O", say("run")),
+                ("speed_m_s:Q", say("speed")),
+                ("cw_kg_m:Q", say("cw")),
+            ),
+        ),
+    ).properties(width=WIDTH, height=HEIGHT)

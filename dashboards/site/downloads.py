@@ -1,0 +1,20 @@
+"""The sheets of published editions, put beside the pages so that the site is complete by itself."""
+
+import shutil
+from pathlib import Path
+from typing import Final
+
+from warehouse.editions.folder import CSV, NOTES, XLSX, edition_names, edition_path
+from warehouse.store import Store
+
+DOWNLOADS: Final = "downloads"
+SHEETS: Final = (CSV, XLSX, NOTES)
+
+
+def copy_sheets(store: Store, folder: Path) -> None:
+    """Copies the sheets of every edition to `downloads/<edition>/`, byte for byte."""
+    for edition in edition_names(store):
+        target = folder / DOWNLOADS / edition
+        target.mkdir(parents=True)
+        for name in SHEETS:
+            shutil.copyfile(edition_path(store, edition) / name, target / name)

@@ -1,0 +1,211 @@
+// The workbench: a method on trial, questions about it to the server, and what the answers show.
+// One question at a time is on its way; of those that come meanwhile only the last is asked.
+import { draw, figures, forgetCharts } from "./charts.js";
+import { buildForm, markWrong } from "./controls.js";
+import { all, byId, make, number, pair, root, say, seasonsText, start, state, word } from "./page.js";
+import { download, fill, tables } from "./tables.js";
+
+// -- Questions ------------------------------------------------------------------------------------
+let asked = false; // a question waits
+let busy = false; // one is on its way
+let since = 0; // when the last change was made
+
+const complaints = new Map(); // path -> why the last question there has no answer
+
+function complain(path, message = "", where = "") {
+  complaints.set(path, message);
+  const texts = [...complaints.values()].filter(Boolean);
+  byId("refused").hidden = !texts.length;
+  byId("refused").replaceChildren(...texts.map((text) => make("p", {}, say("refused"), ` ${text}`)));
+  if (path === "answer") markWrong(where);
+}
+
+// What the server says, or null after telling why there is nothing.
+async function post(path, body) {
+  let response;
+  try {
+    response = await fetch(path, { method: "POST", body: JSON.stringify(body),
+      headers: { "Content-Type": "application/json" } });
+  } catch {
+    complain(path, word("gone"));
+    return null;
+  }
+  if (!response.ok) { complain(path, word("failed")); return null; }
+  const found = await response.json();
+  complain(path, found.refused, found.where);
+  return found.refused ? null : found;
+}
+
+async function ask() {
+  asked = true;
+  since = performance.now();
+  if (busy) return;
+  busy = true;
+  root.setAttribute("aria-busy", "true");
+  byId("state").replaceChildren(say("busy"));
+  while (asked) {
+    asked = false;
+    const found = await post("answer", { base: state.source, steps: state.steps, against: byId("against").value,
+      boat: byId("boat").value });
+    if (asked) continue;
+    if (found) { state.answer = found; await show(); }
+    const seconds = (performance.now() - since) / 1000;
+    root.dataset.seconds = seconds;
+    byId("state").replaceChildren(...(found ? [`${start.tows} `, say("tows_in_all"), ". ",
+      say("done_in"), ` ${number(seconds, 1)} s.`] : []));
+  }
+  busy = false;
+  root.setAttribute("aria-busy", "false");
+}
+
+let wantedBase = null;
+
+async function load(wanted) {
+  wantedBase = wanted;
+  const found = await post("base", wanted);
+  if (!found || wantedBase !== wanted) return; // another was chosen meanwhile
+  state.source = wanted;
+  state.base = found;
+  reset();
+}
+
+function reset() {
+  state.steps = state.base.ranges.map((range) => structuredClone(range.steps));
+  buildForm(ask);
+  ask();
+}
+
+// -- Answers --------------------------------------------------------------------------------------
+async function show() {
+  showChanges();
+  showSummary();
+  fillSelect(byId("tow"), [...new Set(state.answer.boat_curves.map((row) => row.tow_id))].reverse());
+  tables.forEach(fill);
+  for (const figure of figures) await draw(figure);
+}
+
+function showChanges() {
+  const items = state.answer.changed_options.map((d) => make("li", {},
+    make("b", {}, say(`step.${d.step}`)), ", ", say(`${d.step}.${d.option}`), ": ",
+    ...joined(d.before.map(valueOf)), " → ", valueOf(d.after), " (",
+    isWhole(d) ? say("all_seasons") : seasonsText(d.first, d.last), ")"));
+  byId("changed").replaceChildren(...(items.length ? items
+    : [make("li", {}, say("nothing_changed"))]));
+  byId("reset").hidden = !items.length;
+}
+
+const isWhole = (d) => d.first === state.base.ranges[0].first && d.last === state.base.ranges.at(-1).last;
+const joined = (parts) => parts.flatMap((part, i) => (i ? ["; ", part] : [part]));
+
+function valueOf(value) {
+  if (Array.isArray(value)) {
+    return value.length ? make("span", {}, ...joined(value.map((v) => say(`code.${v}`))))
+      : say("nothing");
+  }
+  return typeof value === "number" ? make("span", {}, `${value}`) : say(`choice.${value}`);
+}
+
+function showSummary() {
+  const s = state.answer.summary;
+  const [before, after] = [state.answer.before, start.trial].map((method) =>
+    state.answer.reproducibility.find((row) => row.method === method && row.scope === "all"));
+  const per_cent = (v) => (v === null ? "-" : `${number(100 * v, 1)} %`);
+  const tiles = [
+    ["count_changed", `${s.changed} / ${s.lines}`],
+    ["count_gains", `${s.gains}`],
+    ["count_loses", `${s.loses}`],
+    ...(s.added ? [["count_added", `${s.added}`]] : []),
+    ...(s.removed ? [["count_removed", `${s.removed}`]] : []),
+    ["median_cw", s.median_ratio === null ? "-" : number(s.median_ratio, 4)],
+    ...[["within_1", "share_within_1pct"], ["within_2", "share_within_2pct"],
+      ["sd_tow", "sd_ratio"]].map(([key, column]) =>
+      [key, per_cent(after?.[column] ?? null), per_cent(before?.[column] ?? null)]),
+  ];
+  byId("summary").replaceChildren(...tiles.map(([key, value, was]) => make("div",
+    { id: key }, make("dt", {}, say(key)), make("dd", {}, value,
+      ...(was ? [make("small", {}, " ", say("was"), ` ${was}`)] : [])))));
+}
+
+// -- Choices and buttons --------------------------------------------------------------------------
+function fillSelect(select, values, texts = values) {
+  const chosen = select.value;
+  select.replaceChildren(...values.map((value, i) => make("option", { value }, texts[i])));
+  if (values.includes(chosen)) select.value = chosen;
+}
+
+function group(key, names) {
+  const element = make("optgroup", {}, ...names.map((name) => make("option", { value: name }, name)));
+  [element.dataset.nl, element.dataset.en] = pair(key);
+  return element;
+}
+
+function fillSources() {
+  const groups = [["group_methods", start.methods], ["group_saved", start.saved]];
+  byId("base").replaceChildren(...groups.filter(([, n]) => n.length).map((g) => group(...g)));
+  const old = [["group_methods", start.methods], ["group_editions", start.editions]];
+  byId("against").replaceChildren(...old.filter(([, n]) => n.length).map((g) => group(...g)));
+  setLanguage(root.lang);
+}
+
+function setLanguage(language) {
+  root.lang = language;
+  localStorage.setItem("herijk-language", language);
+  all("[data-language]").forEach((button) =>
+    button.setAttribute("aria-pressed", String(button.dataset.language === language)));
+  all("[data-nl]").forEach((element) => {
+    const text = element.dataset[language];
+    if (element.tagName === "OPTGROUP") element.label = text;
+    else if (element.tagName === "OPTION") element.textContent = text;
+    else element.setAttribute("aria-label", text);
+  });
+  document.title = word("workbench");
+  if (state.answer) { forgetCharts(); show(); }
+}
+
+const wished = () => ({ base: state.source, steps: state.steps,
+  name: byId("name").value, title: byId("title").value, reason: byId("reason").value });
+
+const isNamed = () => ["name", "title", "reason"].every((id) => byId(id).reportValidity());
+
+byId("save").addEventListener("click", async () => {
+  byId("saved").replaceChildren();
+  if (!isNamed()) return;
+  const found = await post("save", wished());
+  if (!found) return;
+  byId("saved").replaceChildren(say("saved_as"), make("br"), make("code", {}, found.command));
+  start.saved = [...start.saved, byId("name").value].sort();
+  const { base: from, against } = Object.fromEntries(["base", "against"].map((id) => [id, byId(id).value]));
+  fillSources();
+  byId("base").value = from;
+  byId("against").value = against;
+});
+byId("download").addEventListener("click", async () => {
+  if (!isNamed()) return;
+  const found = await post("file", wished());
+  if (found) download(`${byId("name").value}.toml`, found.text, "application/toml");
+});
+byId("reset").addEventListener("click", reset);
+byId("form").addEventListener("submit", (event) => event.preventDefault());
+byId("base").addEventListener("change", () => load({ name: byId("base").value }));
+byId("open").addEventListener("change", async () => {
+  const [file] = byId("open").files;
+  if (file) load({ name: file.name, text: await file.text() });
+});
+byId("against").addEventListener("change", ask);
+byId("boat").addEventListener("change", ask);
+byId("tow").addEventListener("change", () => figures.forEach(draw));
+byId("boat_type").addEventListener("change", () => figures.forEach(draw));
+all("[data-language]").forEach((button) =>
+  button.addEventListener("click", () => setLanguage(button.dataset.language)));
+
+// -- Begin ----------------------------------------------------------------------------------------
+root.lang = localStorage.getItem("herijk-language") === "en" ? "en" : "nl";
+fillSelect(byId("boat"), start.boats.map((b) => b.fsn_no),
+  start.boats.map((b) => `${b.name ?? ""} (${b.fsn_no})`));
+const anyType = make("option", { value: "" });
+[anyType.dataset.nl, anyType.dataset.en] = pair("all");
+byId("boat_type").append(anyType, ...start.types.map((type) => make("option", { value: type }, type)));
+fillSources();
+byId("base").value = start.base;
+byId("against").value = start.against;
+load(state.source);

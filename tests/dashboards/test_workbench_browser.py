@@ -1,0 +1,234 @@
+"""The workbench in a real browser: no error, no request elsewhere, and the last change wins.
+
+Needs Chromium, like the tests of the site. Screenshots go to `ci-output/`.
+"""
+
+import threading
+
+import pytest
+
+from dashboards.workbench.bench import Base, Bench, Question
+from dashboards.workbench.server import address, listen, serving
+from pipeline.method import Steps, parse_method
+from tests.dashboards import test_browser as site
+from warehouse.history import History
+from warehouse.store import Store
+
+pytestmark = site.pytestmark
+
+IDLE = "document.documentElement.dataset.seconds && document.documentElement.ariaBusy !== 'true'"
+
+
+@pytest.fixture(scope="module")
+def bench(built, tmp_path_factory):
+    """A workbench that saves into a folder of its own."""
+    return Bench(Store(tmp_path_factory.mktemp("workbench")), History.of(built.store))
+
+
+@pytest.fixture(scope="module")
+def url(bench):
+    held = listen(0)
+    server = serving(bench)
+    thread = threading.Thread(target=server.run, kwargs={"sockets": [held]})
+    thread.start()
+    yield address(held)
+    server.should_exit = True
+    thread.join()
+
+
+@pytest.fixture(scope="module")
+def browser(url):
+    """A browser of this module; the archive is built before its event loop runs."""
+    assert site.CHROMIUM is not None, "CI has to test in a browser: install the package chromium"
+    from playwright.sync_api import sync_playwright  # noqa: PLC0415 - not needed when skipped
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=site.CHROMIUM, args=site.FLAGS)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def page(browser, url):
+    """The open workbench; what it should not do makes the test fail."""
+    faults = []
+    with browser.new_context(accept_downloads=True, viewport={"width": 1280, "height": 900}) as c:
+        page = c.new_page()
+        page.set_default_timeout(10_000)
+        page.on("pageerror", lambda error: faults.append(str(error)))
+        page.on("console", lambda m: faults.append(m.text) if m.type == "error" else None)
+        page.on("request", lambda r: None if is_own(r.url, url) else faults.append(r.url))
+        page.goto(url)
+        page.wait_for_function(IDLE)
+        yield page
+    assert faults == []
+
+
+def is_own(address_asked, url):
+    return address_asked.startswith((url, "data:", "blob:"))
+
+
+def option(page, name, place=0):
+    return page.locator(f"[data-option='{name}']").nth(place)
+
+
+def set_number(page, name, value):
+    option(page, name).get_by_role("spinbutton").fill(str(value))
+
+
+def median(page):
+    return page.locator("#median_cw dd").inner_text()
+
+
+def expected_median(bench, **changes):
+    """The median that the bench itself gives, with the default base and comparison."""
+    base = Base(name=bench.start()["base"])
+    steps = tuple(
+        Steps.model_validate(r["steps"] | {k: r["steps"][k] | v for k, v in changes.items()})
+        for r in bench.base(base)["ranges"]
+    )
+    asked = Question(base=base, steps=steps, against=bench.start()["against"], boat="")
+    return f"{bench.answer(asked)['summary']['median_ratio']:.4f}".replace(".", ",")
+
+
+@pytest.mark.parametrize("width", site.WIDTHS)
+def test_it_opens_and_draws_everything(page, width):
+    columns, rows = site.WIDTHS[width]
+    page.set_viewport_size({"width": columns, "height": rows})
+    page.reload()
+    page.wait_for_function(IDLE)
+    assert "GESIMULEERD" in page.locator(".simulated").inner_text()
+    assert page.locator("figure").count() == page.locator("figure svg[role=img]").count() > 0
+    assert page.evaluate("document.documentElement.scrollWidth") <= columns
+    site.SHOTS.mkdir(exist_ok=True)
+    page.screenshot(path=site.SHOTS / f"workbench-{width}.png", full_page=True)
+
+
+def test_a_slider_moved_by_keyboard_changes_all_boats(page, bench):
+    before = median(page)
+    assert before == expected_median(bench)
+    slider = option(page, "temperature.reference_c").get_by_role("slider")
+    slider.focus()
+    page.keyboard.press("PageDown")
+    page.wait_for_function(IDLE)
+    value = float(slider.input_value())
+    assert value < 15.0
+    after = expected_median(bench, temperature={"reference_c": value})
+    assert median(page) == after != before
+    assert "15 → " in page.locator("#changed").inner_text()
+    page.locator("#reset").click()
+    page.wait_for_function(IDLE)
+    assert median(page) == before
+
+
+def test_of_two_quick_changes_the_last_wins(page, bench):
+    asked = []
+    page.on("request", lambda r: asked.append(r.url) if r.url.endswith("/answer") else None)
+    for reference in (2, 4, 6, 8, 25):
+        set_number(page, "temperature.reference_c", reference)
+    page.wait_for_function(IDLE)
+    assert median(page) == expected_median(bench, temperature={"reference_c": 25.0})
+    assert 1 <= len(asked) <= 5
+
+
+def test_a_change_of_one_season_is_of_that_season(page):
+    page.locator("details.seasons").first.locator("summary").first.click()
+    season = page.get_by_role("group", name="2009-2011")
+    season.get_by_role("radio", name="voorgeschreven").check()
+    page.wait_for_function(IDLE)
+    assert "geschat → voorgeschreven (2009-2011)" in page.locator("#changed").inner_text()
+    assert option(page, "speed.correction").locator(".mixed").is_visible()
+
+
+def test_what_cannot_be_is_said_and_what_can_be_goes_on(page):
+    before = median(page)
+    set_number(page, "wind.side", 9)
+    alert = page.get_by_role("alert")
+    alert.wait_for()
+    assert "wind.side" in alert.inner_text()
+    wrong = option(page, "wind.side").get_by_role("spinbutton")
+    assert wrong.get_attribute("aria-invalid") == "true"
+    assert median(page) == before
+    set_number(page, "wind.side", 0.2)
+    page.wait_for_function(IDLE)
+    assert not alert.is_visible()
+
+
+def test_a_method_without_any_curve_is_shown(page):
+    set_number(page, "window.force_ends_ratio", 0.001)
+    set_number(page, "window.speed_drift_m_s", 0.0001)
+    page.wait_for_function(IDLE)
+    assert page.locator("#count_removed dd").inner_text() != "0"
+
+
+def test_a_line_and_a_point_lead_to_the_boat(page):
+    boat = page.locator("[data-table=register] .to-boat").nth(2)
+    number = boat.inner_text()
+    boat.click()
+    page.wait_for_function(IDLE)
+    assert page.locator("#boat").input_value() == number
+    assert page.locator("[data-table=boat_curves] tbody tr").count() >= 2
+    page.locator("figure[data-figure=changes] .mark-symbol.role-mark path").last.dispatch_event(
+        "click"
+    )
+    page.wait_for_function("old => document.getElementById('boat').value !== old", arg=number)
+
+
+def test_it_speaks_two_languages(page):
+    assert page.locator("#state").inner_text().startswith("40 proeven")
+    page.get_by_role("button", name="English").click()
+    page.wait_for_function("document.querySelector('figure svg').textContent.includes('after')")
+    assert "The register" in page.locator("#results").inner_text()
+    assert "," not in median(page)
+
+
+def test_every_control_has_a_name_for_who_cannot_see_it(page):
+    nameless = page.evaluate(
+        "[...document.querySelectorAll('input, select, textarea')].filter(e =>"
+        " !e.labels?.length && !e.ariaLabel && !document.getElementById("
+        "e.getAttribute('aria-labelledby'))).length"
+    )
+    assert nameless == 0
+    assert page.locator("fieldset:not(:has(> legend))").count() == 0
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.className") == "skip"
+
+
+def test_a_method_is_saved_once_and_downloaded(page, bench):
+    set_number(page, "curve.cap_hull_speeds", 1.5)
+    page.locator(".save > summary").click()
+    page.locator("#name").fill("lagere-grens")
+    page.locator("#title").fill("Lagere grens")
+    page.locator("#reason").fill("Een proef.")
+    page.locator("#save").click()
+    page.locator("#saved code").wait_for()
+    path = bench.methods_folder / "lagere-grens.toml"
+    assert str(path) in page.locator("#saved").inner_text()
+    method = parse_method(path.read_text(encoding="utf-8"), str(path))
+    assert method.for_season(2014).curve.cap_hull_speeds == 1.5
+    assert (method.title, method.description) == ("Lagere grens", "Een proef.")
+    with page.expect_download() as caught:
+        page.locator("#download").click()
+    assert caught.value.path().read_text("utf-8") == path.read_text("utf-8")
+    page.locator("#save").click()
+    assert "lagere-grens.toml" in page.get_by_role("alert").inner_text()
+    page.locator("#base").select_option("lagere-grens")
+    page.wait_for_function(IDLE)
+    assert option(page, "curve.cap_hull_speeds").get_by_role("spinbutton").input_value() == "1.5"
+
+
+def test_a_method_file_is_opened(page, tmp_path):
+    file = tmp_path / "mijn.toml"
+    file.write_text(
+        'name = "x"\ntitle = "X"\nextends = "rebased"\n[steps]\nwind = { side = 0.9 }\n'
+    )
+    page.locator("#open").set_input_files(file)
+    page.wait_for_function(IDLE)
+    page.wait_for_function(
+        "document.querySelector('[data-option=\"wind.side\"] [type=number]').value === '0.9'"
+    )
+    file.write_text("name =")
+    page.locator("#open").set_input_files([])
+    page.locator("#open").set_input_files(file)
+    page.get_by_role("alert").wait_for()
+    assert "mijn.toml" in page.get_by_role("alert").inner_text()

@@ -1,0 +1,89 @@
+"""Variants of a method: what is changed, and the file that says so."""
+
+import pytest
+
+from pipeline.method import MethodFileError, SeasonSteps, Steps, parse_method, shipped_method
+from pipeline.variant import Difference, cut_at, differences, variant, variant_text
+from tests.pipeline.methods import method, method_text
+
+SEASONS = range(2009, 2019)
+
+
+def changed(base, step, option, value, seasons=range(2000, 9999)):
+    """The ranges of a method with one option set in some seasons."""
+    found = []
+    for held in cut_at(base, SEASONS):
+        options = held.steps.model_dump()
+        if held.first in seasons:
+            options[step][option] = value
+        steps = Steps.model_validate(options)
+        found.append(SeasonSteps(first=held.first, last=held.last, steps=steps))
+    return found
+
+
+def test_ranges_are_cut_where_a_season_or_a_range_begins():
+    cut = cut_at(shipped_method("rebased-2015"), (2010, 2016, 1990))
+    assert [(held.first, held.last) for held in cut] == [
+        (2009, 2009), (2010, 2011), (2012, 2013), (2014, 2015), (2016, 9999),
+    ]  # fmt: skip
+
+
+def test_a_change_of_all_seasons_is_one_line():
+    base = shipped_method("rebased")
+    made = variant(base, "own", "Mijn", "omdat", changed(base, "curve", "cap_hull_speeds", 2.0))
+    assert variant_text(made) == (
+        'name = "own"\ntitle = "Mijn"\ndescription = "omdat"\nextends = "rebased"\n'
+        'seasons = "2009:"\n\n[steps]\ncurve = { cap_hull_speeds = 2.0 }\n'
+    )
+
+
+def test_a_change_of_neighbouring_seasons_is_one_override():
+    base = shipped_method("rebased-2015")
+    ranges = changed(base, "speed", "correction_ratio", 0.05, (2010, 2011, 2012))
+    made = variant(base, "own", "t", "", ranges)
+    assert differences(made, base) == [
+        Difference("speed", "correction_ratio", 2010, 2012, (0.06, 0.0), 0.05)
+    ]
+    assert '[[overrides]]\nrange = "2010:2012"\nspeed = { correction_ratio = 0.05 }' in (
+        variant_text(made)
+    )
+
+
+def test_nothing_changed_is_the_method_itself():
+    base = shipped_method("rebased")
+    made = variant(base, "own", "t", "", cut_at(base, SEASONS))
+    assert differences(made, base) == []
+    assert made.content_hash == base.content_hash
+    assert "[" not in variant_text(made)
+
+
+def test_a_variant_of_a_file_extends_what_the_file_extends():
+    text = (
+        'name = "mine"\ntitle = "t"\nextends = "rebased"\n[register]\nvalid_years = 3\n'
+        "[steps]\nwind = { side = 0.3 }\n"
+    )
+    base = parse_method(text, "mine.toml")
+    made = variant(base, "own", "t", "", changed(base, "wind", "ahead", 0.4))
+    written = variant_text(made)
+    assert 'extends = "rebased"' in written
+    assert "valid_years = 3" in written
+    assert "wind = { ahead = 0.4, side = 0.3 }" in written
+    assert parse_method(written, "own.toml") == made
+
+
+def test_a_variant_of_a_file_that_extends_nothing_is_written_out():
+    base = method(wind='{ model = "head" }')
+    made = variant(base, "own", "t", "", changed(base, "wind", "ahead", 0.4))
+    assert "extends" not in variant_text(made)
+    assert parse_method(variant_text(made), "own.toml") == made
+
+
+def test_a_file_that_borrows_the_name_of_a_shipped_method_is_not_extended():
+    base = parse_method(method_text("rebased"), "rebased.toml")
+    assert variant(base, "own", "t", "", base.ranges).extends is None
+
+
+def test_seasons_that_are_left_out_are_refused():
+    base = shipped_method("rebased")
+    with pytest.raises(MethodFileError, match="seasons"):
+        variant(base, "own", "t", "", cut_at(base, SEASONS)[:-1])

@@ -1,0 +1,51 @@
+"""A folder is put in place of another at once."""
+
+import threading
+
+from warehouse.files import put_in_place
+
+
+def filled(folder, text):
+    folder.mkdir()
+    (folder / "page.html").write_text(text, encoding="utf-8")
+    return folder
+
+
+def test_a_first_folder_gets_its_name(tmp_path):
+    put_in_place(filled(tmp_path / "beside", "new"), tmp_path / "site")
+    assert (tmp_path / "site" / "page.html").read_text("utf-8") == "new"
+
+
+def test_the_older_folder_is_beside_after(tmp_path):
+    target = filled(tmp_path / "site", "old")
+    put_in_place(filled(tmp_path / "beside", "new"), target)
+    assert (target / "page.html").read_text("utf-8") == "new"
+    assert (tmp_path / "beside" / "page.html").read_text("utf-8") == "old"
+
+
+def test_the_same_where_names_cannot_be_exchanged(tmp_path, monkeypatch):
+    monkeypatch.setattr("warehouse.files._exchange", lambda one, other: False)
+    target = filled(tmp_path / "site", "old")
+    put_in_place(filled(tmp_path / "beside", "new"), target)
+    assert (target / "page.html").read_text("utf-8") == "new"
+    assert sorted(f.name for f in tmp_path.iterdir()) == ["beside", "site"]
+
+
+def test_a_reader_always_finds_a_whole_folder(tmp_path):
+    target, beside = filled(tmp_path / "site", "0"), filled(tmp_path / "beside", "1")
+    missed, reads, stop = [], [0], threading.Event()
+
+    def read():
+        while not stop.is_set():
+            reads[0] += 1
+            if not (target / "page.html").exists():
+                missed.append(reads[0])
+
+    reader = threading.Thread(target=read)
+    reader.start()
+    for _ in range(50):
+        put_in_place(beside, target)
+    stop.set()
+    reader.join()
+    assert reads[0] > 50
+    assert missed == []

@@ -1,0 +1,112 @@
+"""Two drafts beside each other: counted, ordered, and the numbers of the warehouse."""
+
+import polars as pl
+import pytest
+from polars.testing import assert_frame_equal
+
+from pipeline.errors import MissingKnowledgeError
+from pipeline.method import parse_method, shipped_method
+from pipeline.register import LINE
+from tests.conftest import METHODS
+from warehouse.history import History
+from warehouse.store import Store
+from warehouse.trial import Trial
+
+UNTOWABLE = """
+name = "none"
+title = "no run is long enough"
+extends = "{base}"
+[steps]
+window = {{ minimum_s = 50.0, speed_drift_m_s = 0.0001, force_ends_ratio = 0.0001 }}
+"""
+
+
+@pytest.fixture(scope="module")
+def history(built):
+    return History.of(built.store)
+
+
+@pytest.fixture(scope="module")
+def trial(history):
+    return Trial(*(history.under(shipped_method(name)) for name in METHODS))
+
+
+def test_an_empty_data_folder_says_how_to_fill_it(tmp_path):
+    with pytest.raises(MissingKnowledgeError, match="herijk rebuild --archive"):
+        History.of(Store(tmp_path))
+
+
+def test_a_draft_is_the_register_of_the_warehouse(trial, built):
+    for draft in (trial.before, trial.after):
+        stored = built.table("register").filter(method=draft.method.name)
+        columns = [c for c in draft.register.columns if c in stored.columns]
+        assert_frame_equal(
+            draft.register.select(columns), stored.select(columns), check_row_order=False
+        )
+
+
+@pytest.mark.parametrize("table", ["reproducibility", "type_homogeneity"])
+def test_statistics_are_those_of_the_warehouse(trial, built, table):
+    found = getattr(trial, table)()
+    assert_frame_equal(found, built.table(table).select(found.columns), check_row_order=False)
+
+
+def test_remembered_windows_change_nothing(history):
+    method = shipped_method("rebased")
+    fresh = History(
+        history.tows, history.boats, history.crews, history.blocks, simulated=True
+    ).under(method)
+    again = history.under(method), history.under(method)
+    for draft in again:
+        assert_frame_equal(draft.made.curves, fresh.made.curves)
+
+
+def test_changes_are_counted_and_the_largest_stands_above(trial, built):
+    lines, summary = trial.register_lines, trial.summary()
+    stored = built.table("register_changes")
+    counts = dict(stored["change"].value_counts().iter_rows())
+    assert {name: summary[name] for name in ("same", "changed", "added", "removed")} == {
+        name: counts.get(name, 0) for name in ("same", "changed", "added", "removed")
+    }
+    assert summary["gains"] + summary["loses"] == summary["changed"] > 0
+    sizes = lines["cw_ratio"].drop_nulls().log().abs().to_list()
+    assert sizes == sorted(sizes, reverse=True)
+    assert_frame_equal(
+        lines.select(*LINE, "cw_ratio", "time_ratio").sort(LINE),
+        stored.select(*LINE, "cw_ratio", "time_ratio").sort(LINE),
+    )
+
+
+def test_a_method_against_itself_changes_nothing(trial):
+    same = Trial(trial.before, trial.before).summary()
+    assert same["same"] == same["lines"] > 0
+    assert (same["median_ratio"], same["gains"], same["loses"]) == (1.0, 0, 0)
+
+
+def test_a_boat_has_its_curves_under_both_methods(trial, built):
+    curves = built.table("curves").drop_nulls("cw_kg_m")
+    fsn_no, tow_id = curves.row(0, named=True)["fsn_no"], curves["tow_id"][0]
+    drawn = trial.boat_figure(fsn_no).filter(tow_id=tow_id)
+    assert set(drawn["method"]) == set(METHODS)
+    for method in METHODS:
+        own = drawn.filter(method=method)
+        stored = curves.filter(method=method, tow_id=tow_id).row(0, named=True)
+        assert own.filter(kind="declared")["cw_kg_m"].item() == stored["cw_kg_m"]
+        middle = own.filter(kind="line").sort("speed_m_s").row(6, named=True)
+        assert middle["speed_m_s"] == pytest.approx(stored["declared_speed_m_s"])
+        assert middle["cw_kg_m"] == pytest.approx(stored["cw_kg_m"])
+        assert own.filter(kind="point").height == 6
+
+
+@pytest.mark.parametrize("base", ["rebased-2015", "rebased"])
+def test_a_method_that_no_tow_survives_is_shown_too(history, trial, base):
+    nothing = history.under(parse_method(UNTOWABLE.format(base=base), "none.toml"))
+    both = Trial(trial.before, nothing)
+    summary = both.summary()
+    assert summary["removed"] == summary["lines"] > 0
+    assert summary["median_ratio"] is None
+    for frame in (both.season_change(), both.type_homogeneity(), both.reproducibility()):
+        assert isinstance(frame, pl.DataFrame)
+    fsn_no = history.tows["fsn_no"][0]
+    assert set(both.boat_figure(fsn_no)["method"]) == {trial.before.method.name}
+    assert both.type_boats().filter(method="none").is_empty()
