@@ -8,6 +8,7 @@ import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
 
+from dashboards.site.downloads import copy_sheets
 from pipeline.errors import BrokenPromiseError, MissingKnowledgeError, UnavailableError
 from pipeline.method import shipped_method
 from tests.conftest import Workbench
@@ -125,7 +126,7 @@ def test_a_store_in_a_bucket_keeps_tables_partitions_and_fingerprints(built, mov
     assert ours.partitions("blocks") == ["2014"]
 
 
-def test_an_edition_in_a_bucket_is_published_once_and_verified(moved):
+def test_an_edition_in_a_bucket_is_published_once_shown_and_verified(moved):
     store, method = moved.store, shipped_method("rebased-2015")
     terms = Terms("2026-1", dt.date(2026, 5, 8), "ALV 2026", dt.date(2026, 5, 1))
     publish(store, method, terms)
@@ -134,6 +135,9 @@ def test_an_edition_in_a_bucket_is_published_once_and_verified(moved):
     assert not verify(store)["wrong"]
     with pytest.raises(BrokenPromiseError, match="already published"):
         publish(store, method, terms)
+    copy_sheets(store, moved.data / "site")
+    shown = moved.data / "site" / "downloads" / "2026-1" / "register.csv"
+    assert shown.read_bytes() == (store.editions / "2026-1" / "register.csv").read_bytes()
     (store.editions / "2026-1" / "register.csv").write_bytes(b"other")
     assert verify(store)["wrong"]
 
