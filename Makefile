@@ -12,13 +12,14 @@ unexport PYTHONDONTWRITEBYTECODE
 export DAGSTER_DISABLE_TELEMETRY = 1
 export DAGSTER_DG_UPDATE_CHECK_ENABLED = 0
 
-.PHONY: help env demo test lint bench accuracy survive fuzz full-scale clean
+.PHONY: help env demo test lint bench scale accuracy survive fuzz full-scale clean
 
 help:
 	@echo "make demo   simulate an archive of ten seasons and rebuild its history"
 	@echo "make test   run all tests"
 	@echo "make lint   check style, types, imports and the Dagster definitions"
 	@echo "make bench  measure speed and memory"
+	@echo "make scale  measure one Dask worker against two, with an S3 server on this machine"
 	@echo "make accuracy  measure how near the truth the methods come, on simulated worlds"
 	@echo "make survive  kill 200 rebuilds at random moments and compare the tables after each"
 	@echo "make fuzz   throw 20,000 damaged files at the readers"
@@ -65,7 +66,10 @@ lint: $(READY)
 	@VIRTUAL_ENV="$(CURDIR)/.venv" $(BIN)/dg check defs --no-check-yaml
 
 bench: $(READY)
-	@for file in benchmarks/*.py; do echo "== $$file"; PYTHONPATH=. $(BIN)/python "$$file" || exit 1; done
+	@for file in $(filter-out benchmarks/scale.py,$(wildcard benchmarks/*.py)); do echo "== $$file"; PYTHONPATH=. $(BIN)/python "$$file" || exit 1; done
+
+scale: $(READY)
+	@PYTHONPATH=. $(BIN)/python benchmarks/scale.py
 
 accuracy: $(READY)
 	@for file in benchmarks/accuracy/*.py; do echo "== $$file"; PYTHONPATH=. $(BIN)/python "$$file" || exit 1; done

@@ -7,7 +7,7 @@ the data folder.
 import datetime as dt
 import os
 import shutil
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -15,24 +15,35 @@ from typing import Any, Final
 
 import dagster as dg
 
-from assets.jobs import APPLY, CHECK, COLLECT, FINISH, INDEX, READ, STEPS, STUDY, job_defs
+from assets.jobs import (
+    APPLY,
+    CHECK,
+    COLLECT,
+    FINISH,
+    INDEX,
+    QUIET_LOG,
+    READ,
+    STEPS,
+    STUDY,
+    job_defs,
+)
 from assets.report import write_report
 from assets.resources import Progress, Setup
 from assets.settings import read_settings
 from assets.site import site_is_stale
+from pipeline.errors import MissingKnowledgeError
 from warehouse import intake, tables
 from warehouse.files import written_beside
 from warehouse.journal import is_reported
 from warehouse.lake import ArchiveChangedError
 from warehouse.lock import only_writer
 from warehouse.obstacles import obstacles_explained
+from warehouse.storage import Place
 from warehouse.store import DamagedFileError, Store
 from warehouse.summaries import summaries_are_stale
 
 INSTANCE_SETTINGS = Path(__file__).with_name("dagster.yaml")
 """Dagster's settings for a new data folder."""
-
-QUIET_LOG = {"loggers": {"console": {"config": {"log_level": "CRITICAL"}}}}
 
 STEP_TAG: Final = "herijk/step"
 """Marks runs that live and die with the process of a rebuild."""
@@ -93,14 +104,14 @@ def rebuild(
     )
     with obstacles_explained(data), only_writer(data), _instance(setup.store) as instance:
         _bury_the_dead(instance)
-        work = _Rebuild(_Jobs(job_defs(setup, progress), instance), setup, progress)
+        work = _Rebuild(_Jobs(job_defs(setup, progress), instance), setup, progress, settings.dask)
         _mending(lambda: work.do(archive, seasons))
     return work.done
 
 
 def _mending(work: Callable[[], None]) -> None:
     """Does the work; begins again without a file that is damaged, or when the archive changed."""
-    damaged: set[Path] = set()
+    damaged: set[Place] = set()
     rounds_left = ROUNDS
     while True:
         try:
@@ -119,8 +130,8 @@ def _mending(work: Callable[[], None]) -> None:
 class _Rebuild:
     """One rebuild: knows what it did so far, also when it begins again."""
 
-    def __init__(self, jobs: "_Jobs", setup: Setup, progress: Progress) -> None:
-        self.jobs, self.setup, self.progress = jobs, setup, progress
+    def __init__(self, jobs: "_Jobs", setup: Setup, progress: Progress, dask: str | None) -> None:
+        self.jobs, self.setup, self.progress, self.dask = jobs, setup, progress, dask
         self.store, self.done = setup.store, Done()
 
     def do(self, archive: Path, seasons: Collection[int] | None) -> None:
@@ -140,12 +151,22 @@ class _Rebuild:
         intake.forget_unlisted_seasons(self.store)
         stale = intake.stale_seasons(self.store, archive, seasons)
         self.done.seasons = sorted({*self.done.seasons, *stale})
+        if self.dask is not None and stale:
+            stale = self._read_elsewhere(self.dask, stale)
         self.progress.expect(intake.count_listed(self.store, stale))
         for season in stale:
             self.jobs.run(READ, str(season))
         if tables.archive_is_stale(self.store):
             self.progress.step("collecting boats, tows and what was set aside")
             self.jobs.run(COLLECT)
+
+    def _read_elsewhere(self, address: str, seasons: Sequence[int]) -> list[int]:
+        """Has a Dask cluster read seasons; gives those to read here, where an error comes out."""
+        self.progress.step(f"reading {len(seasons)} seasons on the Dask cluster at {address}")
+        failed = self.jobs.run_on_dask(address, self.setup, seasons)
+        for season, why in failed.items():
+            self.progress.step(f"season {season} could not be read there ({why}); reading it here")
+        return list(failed)
 
     def _recompute(self) -> None:
         chosen = self.setup.chosen_methods
@@ -193,8 +214,24 @@ class _Jobs:
             run_config=QUIET_LOG,
             tags={STEP_TAG: job},
         )
-        found = result.get_asset_check_evaluations()
-        self._checks |= {check.asset_check_key: check for check in found}
+        self._keep(result.get_asset_check_evaluations())
+
+    def run_on_dask(self, address: str, setup: Setup, seasons: Sequence[int]) -> Mapping[int, str]:
+        """Has a cluster read seasons; gives why, for those that it could not read."""
+        try:
+            from assets.cluster import read_seasons  # noqa: PLC0415 - needs the extra dask
+        except ImportError as error:
+            raise MissingKnowledgeError(
+                f"to read on {address} a library is needed that is not there; install it with: "
+                "pip install 'herijk[dask]'"
+            ) from error
+        folders = setup.archive_root, setup.store.root
+        read = read_seasons(self.instance, address, folders, seasons, {STEP_TAG: READ})
+        self._keep(read.checks)
+        return read.failed
+
+    def _keep(self, checks: Iterable[dg.AssetCheckEvaluation]) -> None:
+        self._checks |= {check.asset_check_key: check for check in checks}
 
 
 def _bury_the_dead(instance: dg.DagsterInstance) -> None:

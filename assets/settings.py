@@ -1,4 +1,4 @@
-"""`beheer.toml`: when to rebuild and whom to tell, written by who runs it.
+"""`beheer.toml`: when to rebuild, whom to tell and who helps, written by who runs it.
 
 It lies in the data folder and may be left out. No setting in it can change a number.
 """
@@ -25,6 +25,8 @@ class Settings(BaseModel):
         webhook: an address to which each report is posted as JSON.
         set_aside_share: more of the tows set aside gives a warning.
         factor_jump: a log factor that moves more gives a warning; a ratio minus 1.
+        dask: scheduler of the Dask cluster that reads the seasons: `tcp://host:8786`; without it
+            they are read in the process of the rebuild.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -37,6 +39,7 @@ class Settings(BaseModel):
     webhook: str | None = Field(default=None, pattern=r"^https?://")
     set_aside_share: float = Field(default=0.1, ge=0, le=1)
     factor_jump: float = Field(default=0.01, gt=0)
+    dask: str | None = Field(default=None, pattern=r"^(tcp|tls)://")
 
 
 def read_settings(data: Path) -> Settings:

@@ -37,7 +37,8 @@ SEASON_INDEX_SCHEMA: Final = {
 }
 """One row a listed tow: where its samples and blocks lie, or the fault that was found."""
 
-WORKERS: Final = 2
+WORKERS: Final = min(2, pl.thread_pool_size())
+"""Tows read at the same time: no more than Polars may use threads."""
 
 SAMPLES_FORM: Final = {
     "compression": "zstd",

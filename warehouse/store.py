@@ -1,9 +1,10 @@
-"""Where everything lies under the data folder, and how tables are written there.
+"""Where everything of a data folder lies, and how tables are written there.
 
 The lake holds Parquet: the samples and the blocks of each tow, written once and named by content,
 and the tables, one file per table or per partition of it (a season, a method). Each table file
-carries the fingerprint of what it was made from, so that a rebuild does only what changed. What a
-table means stands in `warehouse.schemas`; the database that readers use is `warehouse.database`.
+carries the fingerprint of what it was made from, so that a rebuild does only what changed. Lake and
+editions may lie in a bucket instead of the data folder (`warehouse.storage`). What a table means
+stands in `warehouse.schemas`; the database that readers use is `warehouse.database`.
 """
 
 import hashlib
@@ -11,6 +12,7 @@ import json
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Final
 
@@ -19,10 +21,13 @@ import pyarrow as pa  # type: ignore[import-untyped]
 import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
 from pipeline.errors import BrokenPromiseError
-from warehouse.files import written_beside
 from warehouse.obstacles import is_obstacle
+from warehouse.storage import Locations, Place, place, read_locations, written_whole
 
 FINGERPRINT_KEY: Final = "herijk.fingerprint"
+_FOOTER_BYTES: Final = 1 << 16
+"""Enough for most footers, so that one request brings them."""
+
 TABLE_FORM: Final = {"compression": "zstd"}
 
 
@@ -46,6 +51,20 @@ class Store:
 
     root: Path
 
+    @cached_property
+    def _locations(self) -> Locations:
+        return read_locations(self.root)
+
+    @cached_property
+    def lake(self) -> Place:
+        """Samples, blocks and tables."""
+        return place(self._locations.lake, self.root / "lake")
+
+    @cached_property
+    def editions(self) -> Place:
+        """The published editions, each under its name."""
+        return place(self._locations.editions, self.root / "editions")
+
     @property
     def database(self) -> Path:
         """The DuckDB file with all tables."""
@@ -58,27 +77,27 @@ class Store:
 
     @property
     def file_hashes(self) -> Path:
-        """Content hashes of archive files already seen."""
+        """Content hashes of archive files already seen: a cache, of this machine only."""
         return self.root / "lake" / "file_hashes.json"
 
-    def samples_path(self, season: int, key: str) -> Path:
+    def samples_path(self, season: int, key: str) -> Place:
         """The samples of one tow."""
-        return self.root / "lake" / "samples" / f"season={season}" / f"{key}.parquet"
+        return self.lake / "samples" / f"season={season}" / f"{key}.parquet"
 
-    def blocks_path(self, season: int, key: str) -> Path:
+    def blocks_path(self, season: int, key: str) -> Place:
         """The blocks of one tow."""
-        return self.root / "lake" / "blocks" / f"season={season}" / f"{key}.parquet"
+        return self.lake / "blocks" / f"season={season}" / f"{key}.parquet"
 
-    def table_path(self, table: str, partition: str | None = None) -> Path:
+    def table_path(self, table: str, partition: str | None = None) -> Place:
         """A table, or one partition of it."""
-        folder = self.root / "lake" / "tables"
+        folder = self.lake / "tables"
         if partition is None:
             return folder / f"{table}.parquet"
         return folder / table / f"{partition}.parquet"
 
     def partitions(self, table: str) -> list[str]:
         """The partitions of a table that have been written, sorted."""
-        folder = self.root / "lake" / "tables" / table
+        folder = self.lake / "tables" / table
         return sorted(f.stem for f in folder.glob("[!.]*.parquet"))
 
     def write(
@@ -102,7 +121,8 @@ class Store:
         if not path.exists():
             return None
         try:
-            return pl.read_parquet_metadata(path).get(FINGERPRINT_KEY)
+            held = (_footer(path).metadata or {}).get(FINGERPRINT_KEY.encode())
+            return None if held is None else bytes(held).decode()
         except _UNREADABLE as error:
             if is_obstacle(error):
                 raise
@@ -116,7 +136,7 @@ class Store:
 class DamagedFileError(BrokenPromiseError):
     """A file that Herijk wrote cannot be read any more; it can be made again."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Place) -> None:
         super().__init__(
             f"{path} is damaged. It can be made again: run herijk rebuild; when that comes back, "
             "look at the disk"
@@ -133,7 +153,7 @@ _UNREADABLE: Final = (
 )
 
 
-def read_parquet(path: Path) -> pl.DataFrame:
+def read_parquet(path: Place) -> pl.DataFrame:
     """A frame that was written with `write_parquet`, its checksums verified.
 
     Raises:
@@ -141,18 +161,30 @@ def read_parquet(path: Path) -> pl.DataFrame:
         DamagedFileError: it was changed since, by a failing disk or by hand.
     """
     with _damage_named(path):
-        table = pq.read_table(path, partitioning=None, page_checksum_verification=True)
+        source = path if isinstance(path, Path) else pa.BufferReader(path.read_bytes())
+        table = pq.read_table(source, partitioning=None, page_checksum_verification=True)
         return pl.DataFrame(pl.from_arrow(table))
 
 
-def count_rows(path: Path) -> int:
+def count_rows(path: Place) -> int:
     """Rows of a frame that was written with `write_parquet`; raises as `read_parquet`."""
     with _damage_named(path):
-        return int(pq.read_metadata(path).num_rows)
+        return int(_footer(path).num_rows)
+
+
+def _footer(path: Place) -> pq.FileMetaData:
+    """What stands at the end of a Parquet file; the rest is not fetched."""
+    if isinstance(path, Path):
+        return pq.read_metadata(path)
+    end = path.read_end(_FOOTER_BYTES)
+    size = int.from_bytes(end[-8:-4], "little") + 8  # the footer, its length and the mark "PAR1"
+    if size > len(end):
+        end = path.read_end(size)
+    return pq.read_metadata(pa.BufferReader(end))
 
 
 @contextmanager
-def _damage_named(path: Path) -> Iterator[None]:
+def _damage_named(path: Place) -> Iterator[None]:
     try:
         yield
     except FileNotFoundError:
@@ -165,7 +197,7 @@ def _damage_named(path: Path) -> Iterator[None]:
 
 def write_parquet(
     frame: pl.DataFrame,
-    path: Path,
+    path: Place,
     metadata: dict[str, str] | None = None,
     form: Mapping[str, Any] = TABLE_FORM,
 ) -> None:
@@ -173,10 +205,10 @@ def write_parquet(
 
     Without checksums a changed byte can be read as another number.
     """
-    with written_beside(path) as beside:
+    with written_whole(path) as target:
         pq.write_table(
             frame.to_arrow().replace_schema_metadata(metadata),
-            beside,
+            target,
             write_page_checksum=True,
             **form,
         )
