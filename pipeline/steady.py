@@ -205,10 +205,10 @@ def _search(present: BoolArray, faults: _Faults, rule: Window) -> tuple[IntArray
     runs, seconds = present.shape
     start, length = np.zeros(runs, np.int64), np.zeros(runs, np.int64)
     value = np.full(runs, -np.inf)
-    good = np.cumsum(present & ~faults.ramp, axis=1, dtype=np.float64)
-    price = np.cumsum(faults.price_s(), axis=1)
+    good, price = _cumulated(present & ~faults.ramp), _cumulated(faults.price_s())
+    unsteadiness = _Unsteadiness.of(faults, rule)
     for size in range(seconds, int(np.ceil(rule.minimum_s)) - 1, -1):
-        ends = _unsteadiness(faults, size, rule)
+        ends = unsteadiness.of_size(size)
         accepted = (_span(good, size) == size) & (ends <= WORST_ENDS)
         worth = size - _span(price, size) - ENDS_PRICE_S * np.maximum(ends - 1.0, 0.0)
         worth = np.where(accepted, worth, -np.inf)
@@ -220,40 +220,74 @@ def _search(present: BoolArray, faults: _Faults, rule: Window) -> tuple[IntArray
     return start, length
 
 
-def _unsteadiness(faults: _Faults, size: int, rule: Window) -> FloatArray:
-    """How far the worst steadiness criterion is from its limit (1), for every window of a size.
+@dataclass(frozen=True)
+class _Unsteadiness:
+    """Cumulative sums from which every window's steadiness follows, shape (runs, seconds + 1).
 
-    The criteria: drift of speed by a fitted line over the window, difference of mean speed and
-    of mean force between its first and last `END_SECONDS`.
+    Attributes:
+        speed, speed_time: of the speed less its mean over the run, and of that times the second.
+        speed_ends, force_ends: mean over `END_SECONDS` from each second on, in limits.
+        drift_m_s: limit of the drift.
     """
-    speed, force = faults.speed, faults.force
-    drift = np.abs(_slope(speed, size)) * size / rule.speed_drift_m_s
-    speed_ends = np.abs(_ends_difference(speed, size)) / rule.speed_drift_m_s
-    force_limit = rule.force_ends_ratio * np.abs(faults.force_median[:, None])
-    force_ends = np.abs(_ends_difference(force, size)) / np.maximum(force_limit, 1e-9)
-    return np.maximum(np.maximum(drift, speed_ends), force_ends)
+
+    speed: FloatArray
+    speed_time: FloatArray
+    speed_ends: FloatArray
+    force_ends: FloatArray
+    drift_m_s: float
+
+    @classmethod
+    def of(cls, faults: _Faults, rule: Window) -> "_Unsteadiness":
+        centred = faults.speed - faults.speed.mean(axis=1, keepdims=True)
+        force_limit = rule.force_ends_ratio * np.abs(faults.force_median[:, None])
+        return cls(
+            speed=_cumulated(centred),
+            speed_time=_cumulated(centred * np.arange(centred.shape[1], dtype=np.float64)),
+            speed_ends=_end_means(faults.speed) / rule.speed_drift_m_s,
+            force_ends=_end_means(faults.force) / np.maximum(force_limit, 1e-9),
+            drift_m_s=rule.speed_drift_m_s,
+        )
+
+    def of_size(self, size: int) -> FloatArray:
+        """How far the worst criterion is from its limit (1), for every window of a size.
+
+        The criteria: drift of speed by a fitted line over the window, difference of mean speed
+        and of mean force between its first and last `END_SECONDS`.
+        """
+        drift = np.abs(self._slope(size)) * size / self.drift_m_s
+        speed_ends, force_ends = (
+            np.abs(_ends_difference(ends, size)) for ends in (self.speed_ends, self.force_ends)
+        )
+        return np.maximum(np.maximum(drift, speed_ends), force_ends)
+
+    def _slope(self, size: int) -> FloatArray:
+        """Slope of the least-squares line through every span of `size` blocks, per block."""
+        sum_v, sum_tv = _span(self.speed, size), _span(self.speed_time, size)
+        mean_time = np.arange(sum_v.shape[1]) + (size - 1) / 2
+        return np.asarray((sum_tv - mean_time * sum_v) / (size * (size**2 - 1) / 12))
 
 
-def _span(cumulative: FloatArray, size: int) -> FloatArray:
-    """Sums over every span of `size` blocks from a cumulative sum along axis 1."""
-    total = np.pad(cumulative, ((0, 0), (1, 0)))
-    return np.asarray(total[:, size:] - total[:, :-size])
+def _cumulated(values: FloatArray | BoolArray) -> FloatArray:
+    """Cumulative sums along axis 1, beginning with 0."""
+    total = np.zeros((values.shape[0], values.shape[1] + 1))
+    np.cumsum(values, axis=1, out=total[:, 1:])
+    return total
 
 
-def _slope(values: FloatArray, size: int) -> FloatArray:
-    """Slope of the least-squares line through every span of `size` blocks, per block."""
-    centred = values - values.mean(axis=1, keepdims=True)
-    time = np.arange(values.shape[1], dtype=np.float64)
-    sum_v, sum_tv = _span(np.cumsum(centred, 1), size), _span(np.cumsum(centred * time, 1), size)
-    mean_time = np.arange(sum_v.shape[1]) + (size - 1) / 2
-    return np.asarray((sum_tv - mean_time * sum_v) / (size * (size**2 - 1) / 12))
+def _span(cumulated: FloatArray, size: int) -> FloatArray:
+    """Sums over every span of `size` blocks."""
+    return np.asarray(cumulated[:, size:] - cumulated[:, :-size])
 
 
-def _ends_difference(values: FloatArray, size: int) -> FloatArray:
-    """Mean of the last minus mean of the first `END_SECONDS` of every span of `size` blocks."""
-    ends = _span(np.cumsum(values, 1), END_SECONDS) / END_SECONDS
-    starts = values.shape[1] - size + 1
-    return np.asarray(ends[:, size - END_SECONDS :][:, :starts] - ends[:, :starts])
+def _end_means(values: FloatArray) -> FloatArray:
+    """Mean over `END_SECONDS` from each second on."""
+    return _span(_cumulated(values), END_SECONDS) / END_SECONDS
+
+
+def _ends_difference(ends: FloatArray, size: int) -> FloatArray:
+    """Mean of the last less mean of the first `END_SECONDS` of every span of `size` blocks."""
+    last = ends[:, size - END_SECONDS :]
+    return np.asarray(last - ends[:, : last.shape[1]])
 
 
 def _reasons(present: BoolArray, mask: BoolArray, faults: _Faults) -> list[str]:
