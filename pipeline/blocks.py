@@ -257,17 +257,22 @@ def stack_blocks(blocks: pl.DataFrame, runs: pl.DataFrame) -> RunBlocks:
         BrokenPromiseError: a run without blocks.
     """
     runs = runs.sort("tow_id", "run").with_row_index("row")
-    placed = blocks.join(runs.select("tow_id", "run", "row"), on=["tow_id", "run"], how="inner")
-    missing = runs.filter(~pl.col("row").is_in(placed["row"].unique().implode()))
+    rows = runs.select("tow_id", "run", "row")
+    place = blocks.select("tow_id", "run").join(
+        rows, on=["tow_id", "run"], how="left", maintain_order="left"
+    )["row"]
+    missing = runs.filter(~pl.col("row").is_in(place.unique().implode()))
     if missing.height:
         tow, run = missing.row(0, named=True)["tow_id"], missing.row(0, named=True)["run"]
         raise BrokenPromiseError(
             f"tow {tow}, run {run}: no blocks, though its samples were read; "
             "rebuild with an empty data folder"
         )
-    row, second = placed["row"].to_numpy(), placed["second"].to_numpy()
+    if place.null_count():
+        blocks, place = blocks.filter(place.is_not_null()), place.drop_nulls()
+    row, second = place.to_numpy(), blocks["second"].to_numpy()
     shape = (runs.height, int(second.max()) + 1 if len(second) else 0)
-    arrays = {name: _place(placed[name], row, second, shape) for name in ("n", *SUM_NAMES)}
+    arrays = {name: _place(blocks[name], row, second, shape) for name in ("n", *SUM_NAMES)}
     return RunBlocks(runs.drop("row"), arrays.pop("n"), arrays)
 
 
