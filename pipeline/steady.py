@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d
+import scipy
 
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.blocks import RunBlocks
@@ -161,7 +161,9 @@ def _robust(values: FloatArray, present: BoolArray) -> tuple[FloatArray, FloatAr
 
 def _widened(values: FloatArray) -> FloatArray:
     """The largest value among each block and its neighbours within `PEAK_MARGIN_S`."""
-    return np.asarray(maximum_filter1d(values, 2 * PEAK_MARGIN_S + 1, axis=1, mode="nearest"))
+    return np.asarray(
+        scipy.ndimage.maximum_filter1d(values, 2 * PEAK_MARGIN_S + 1, axis=1, mode="nearest")
+    )
 
 
 def _ramps(speed: FloatArray, present: BoolArray, least_m_s: float) -> BoolArray:

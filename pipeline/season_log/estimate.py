@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 import polars as pl
-from scipy.special import stdtrit
+import scipy
 
 from pipeline.arrays import FloatArray, IntArray
 from pipeline.errors import BrokenPromiseError
@@ -194,5 +194,5 @@ def _described(table: pl.DataFrame, network: Network, second: Second) -> pl.Data
 
 
 def _half_width(sd: pl.Series, dof: pl.Series) -> pl.Series:
-    quantile = stdtrit(dof.fill_null(1.0).clip(1.0).to_numpy(), 0.5 * (1.0 + LEVEL))
+    quantile = scipy.special.stdtrit(dof.fill_null(1.0).clip(1.0).to_numpy(), 0.5 * (1.0 + LEVEL))
     return sd * pl.Series(quantile)
