@@ -51,13 +51,13 @@ all_blocks = dg.AssetDep(blocks, partition_mapping=dg.AllPartitionMapping())
             group_name="method",
             kinds={"parquet"},
         )
-        for name in tables.METHOD_TABLES
+        for name in (*tables.METHOD_TABLES, *tables.METHOD_FILES)
     ],
     partitions_def=methods,
     check_specs=[dg.AssetCheckSpec("every_tow_has_a_curve_row", asset="curves")],
 )
 def method_tables(context: dg.AssetExecutionContext, setup: Setup):
-    """Run points, curves, log factors and assessments of all tows under one method."""
+    """Run points, curves, log factors, assessments and members of all tows under one method."""
     store = setup.store
     method = shipped_method(context.partition_key)
     found = tables.apply_method(store, method, tables.run_blocks(store))
@@ -108,7 +108,7 @@ def study_tables(setup: Setup):
     ],
 )
 def register_tables(setup: Setup):
-    """Draft registers, what changes between them, how equal boats are, and lineage."""
+    """Draft registers, who is due, what changes between registers, and lineage."""
     yield from _results(tables.make_registers(setup.store, setup.chosen_methods))
 
 

@@ -44,9 +44,10 @@ def rebuilt(root, tows_per_season):
 
 
 def timed(what, function, *arguments):
-    start = time.perf_counter()
+    start, cpu = time.perf_counter(), time.process_time()
     result = function(*arguments)
-    print(f"{what:34} {time.perf_counter() - start:6.2f} s")
+    took, used = time.perf_counter() - start, time.process_time() - cpu
+    print(f"{what:34} {took:6.2f} s, {used:6.2f} s of processor")
     return result
 
 

@@ -146,14 +146,24 @@ def audit(
     ],
     data: DataFolder = Path("data"),
     method: Annotated[str | None, typer.Option(help="Show this method only.")] = None,
+    plots: Annotated[
+        Path | None,
+        typer.Option(help="Folder for the plots. Default: audit/NAME in --data.", metavar="DIR"),
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """Where a boat's numbers come from, step by step; or whether boats of a type are equal."""
+    from dashboards.audit_plots import file_name, write_audit_plots  # noqa: PLC0415 - Altair is slow
+
     if len(names) > MOST_TYPES:
         raise typer.BadParameter("give a boat, or one or two types; quote a name with blanks")
     if method is not None:
         shipped_text(method)
-    show(audit_report(Store(data), names, method), audit_text.audit, as_json)
+    store = Store(data)
+    report = audit_report(store, names, method)
+    folder = plots or store.root / "audit" / file_name(" ".join(names))
+    drawn = write_audit_plots(store, report, folder)
+    show(report | {"plots": [str(path) for path in drawn]}, audit_text.audit, as_json)
 
 
 @app.command("log-error")

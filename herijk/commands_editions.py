@@ -1,6 +1,7 @@
-"""The commands about editions: publish, diff, verify and lineage.
+"""The commands about editions, and about who has to tow before the next one.
 
-What they do stands in `warehouse.editions`; how a result looks as text, in `herijk.editions_text`.
+What they do stands in `warehouse.editions` and `warehouse.due`; how a result looks as text, in
+`herijk.editions_text` and `herijk.due_text`.
 """
 
 import datetime as dt
@@ -9,12 +10,14 @@ from typing import Annotated
 
 import typer
 
+from herijk import due_text
 from herijk import editions_text as text
 from herijk.arguments import AsJson, DataFolder, show
-from pipeline.method import shipped_method
+from pipeline.method import shipped_method, shipped_text
 from pipeline.replay import FATIGUES, STREAMS, RaceRules
+from warehouse.due import due_report
 from warehouse.editions import compare
-from warehouse.editions.folder import read_about
+from warehouse.editions.folder import read_edition
 from warehouse.editions.lineage import lineage as find_lineage
 from warehouse.editions.publish import Terms, publish_printed
 from warehouse.editions.publish import publish as publish_edition
@@ -24,7 +27,7 @@ from warehouse.store import Store
 
 def add_to(app: typer.Typer) -> None:
     """Adds these commands to the command line."""
-    for command in (publish, diff, verify, lineage):
+    for command in (publish, diff, verify, lineage, due):
         app.command()(command)
 
 
@@ -87,8 +90,13 @@ def publish(
         folder = publish_printed(store, printed, terms)
     else:
         folder = publish_edition(store, shipped_method(str(method)), terms, carry)
-    about = read_about(folder).model_dump(mode="json")
-    show(about | {"folder": str(folder)}, text.published, as_json)
+    made = read_edition(store, folder.name)
+    counts = made.register["status"].value_counts().sort("count", "status", descending=True)
+    found = made.about.model_dump(mode="json") | {
+        "folder": str(folder),
+        "statuses": dict(counts.rows()),
+    }
+    show(found, text.published, as_json)
 
 
 def diff(
@@ -114,7 +122,8 @@ def diff(
     races = compare.race_effects(store, found.old, found.new, rules)
     report = compare.report(found) | {
         "race_rules": vars(rules),
-        "races": None if races is None else races.to_dicts(),
+        "races": None if races is None else races.results.to_dicts(),
+        "winners": None if races is None else races.winners.to_dicts(),
     }
     show(report, text.diff, as_json)
 
@@ -135,3 +144,15 @@ def lineage(
 ) -> None:
     """From a printed line to the files, runs and seconds behind it."""
     show(find_lineage(Store(data), edition, fsn_no), text.lineage, as_json)
+
+
+def due(
+    data: DataFolder = Path("data"),
+    method: Annotated[
+        str, typer.Option(metavar="NAME", help="Method whose curves are asked for the speeds.")
+    ] = "rebased",
+    as_json: AsJson = False,
+) -> None:
+    """Whose tow expires when, at what speed to tow each next, and who would tell most."""
+    shipped_text(method)
+    show(due_report(Store(data), method), due_text.due, as_json)

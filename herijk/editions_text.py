@@ -3,34 +3,34 @@
 from typing import Any
 
 from herijk.text import SIMULATED, table
+from warehouse.editions.words import ENGLISH
 
 Report = dict[str, Any]
-CAUSES = {
-    "tow": "another tow counts",
-    "input": "data of the tow changed",
-    "other_input": "data of other tows changed",
-    "code": "the code changed",
-    "input_and_code": "data and code changed, not to be separated",
-    "code_or_other_input": "the code or data of other tows changed",
-    "method": "method",
-    "printed": "printed register: its method is not recorded",
-    "closed_form": "printed A and B re-based with the log factor",
-    "unseparated": "method with data or code, not to be separated",
-    "unexplained": "unexplained",
-}
+KINDS = {"recomputed": "recomputed", "as_printed": "as printed"}
 
 
 def published(report: Report) -> str:
     """An edition that was just published."""
     lines = report["tables"]["register"]["rows"]
     source = report["method"] or "as printed"
+    statuses = ", ".join(f"{n} {ENGLISH.statuses[s]}" for s, n in report["statuses"].items())
+    compared = (
+        f"Compared with {report['previous']}: herijk diff {report['previous']} {report['edition']}"
+        if report["previous"]
+        else "There is no earlier edition to compare it with."
+    )
     return "\n".join(
         [
             *([SIMULATED] if report["simulated"] else []),
-            f"Published {report['edition']}: {lines} lines, method {source}, valid from "
-            f"{report['valid_from']}.",
+            f"Published {report['edition']}: {lines} lines ({statuses}), method {source}, valid "
+            f"from {report['valid_from']}.",
             f"Decision: {report['decision']}",
-            f"Folder: {report['folder']} (release notes: toelichting.md)",
+            compared,
+            f"Folder: {report['folder']}",
+            "  register.xlsx, register.csv        the register",
+            "  bericht.md, notice.md              one page for the members, Dutch and English",
+            "  toelichting.md, release_notes.md   release notes, Dutch and English",
+            "It is never changed. To see that it stays so: herijk verify",
         ]
     )
 
@@ -57,7 +57,11 @@ def diff(report: Report) -> str:
         ]
         head = ("cause", "lines", "median", "lowest", "highest")
         parts.append("Causes, with their factor on Cw:\n" + table(head, rows))
-    parts.append("Every line:\n" + _lines(report["rows"]))
+    parts.append(
+        "Every line: A and Cw in kg/m, B in m/s, W a rower at the old declared speed, seconds that "
+        "the new register gives in\na two-hour race, rank at equal power among all boats of the "
+        "class:\n" + _lines(report["rows"])
+    )
     parts.append(_races(report))
     return "\n\n".join(parts)
 
@@ -73,8 +77,8 @@ def _group(group: Report) -> str:
 
 def _lines(rows: list[Report]) -> str:
     head = (
-        *("boat", "name", "crew", "change", "A", "", "B", "", "Cw", "", "W", ""),
-        *("Cw %", "in 2 h", "rank", "", "causes"),
+        *("boat", "name", "crew", "change", "A old", "new", "B old", "new", "Cw old", "new"),
+        *("W old", "new", "Cw %", "in 2 h", "rank", "new", "causes"),
     )
     return table(head, [_line(row) for row in rows])
 
@@ -108,8 +112,33 @@ def _races(report: Report) -> str:
     podium = sum(r["podium_changed"] for r in races)
     head = f"Races (fatigue {rules['fatigue']}, stream {rules['stream']}): "
     text = f"{head}{len(races)} results, {len(moved)} change rank, {podium} on or off the podium."
-    if not moved:
-        return text
+    parts = [text, f"Winners:\n{_winners(report['winners'])}"]
+    if moved:
+        parts.append(f"Ranks that change:\n{_moved(moved)}")
+    return "\n".join(parts)
+
+
+def _winners(winners: list[Report]) -> str:
+    rows = [
+        (
+            w["race"],
+            str(w["race_date"]),
+            ENGLISH.crews[w["crew_class"]],
+            w["old_winner"],
+            w["new_winner"],
+            "changes" if w["winner_changed"] else "the same",
+            "not known"
+            if w["change_probability"] is None
+            else f"{100 * w['change_probability']:.0f} %",
+        )
+        for w in winners
+    ]
+    head = ("race", "day", "class", "old winner", "new winner", "", "chance that another wins")
+    note = "  The chance: in how many of the equally likely new registers the old winner loses."
+    return f"{table(head, rows)}\n{note}"
+
+
+def _moved(moved: list[Report]) -> str:
     rows = [
         (
             r["race"],
@@ -125,18 +154,23 @@ def _races(report: Report) -> str:
         for r in moved
     ]
     columns = ("race", "day", "boat", "crew", "old W", "new W", "old rank", "new rank", "")
-    return f"{text}\n{table(columns, rows)}"
+    return table(columns, rows)
 
 
 def verify(report: Report) -> str:
     """What was checked and what is wrong."""
     if not report["editions"] and not report["findings"]:
         return "No edition was published yet; nothing to verify."
+    rows = [
+        (e["edition"], KINDS[e["kind"]], e["lines"], e["made_again"], e["equal"])
+        for e in report["editions"]
+    ]
+    head = ("edition", "kind", "lines", "made again", "equal")
     parts = [
-        table(
-            ("edition", "kind", "lines made again"),
-            [(e["edition"], e["kind"], e["lines_made_again"]) for e in report["editions"]],
-        )
+        f"{table(head, rows)}\nMade again: measured lines from the blocks of the archive, carried "
+        "lines from the printed edition, printed lines\nfrom the register in the archive. Lines of "
+        "boats that were never towed hold nothing to make. From blocks means\nthat samples files "
+        "are compared by their hash, not read again."
     ]
     if report["findings"]:
         rows = [
@@ -144,9 +178,21 @@ def verify(report: Report) -> str:
             for f in report["findings"]
         ]
         parts.append(table(("edition", "", "kind", "where", "what"), rows))
-    wrong = sum(f["wrong"] for f in report["findings"])
-    parts.append(f"{wrong} things are wrong." if wrong else "Everything is as it was published.")
+    parts.append(_verdict(report["findings"]))
     return "\n\n".join(parts)
+
+
+def _verdict(findings: list[Report]) -> str:
+    wrong = sum(f["wrong"] for f in findings)
+    if wrong:
+        return f"{wrong} {'thing is' if wrong == 1 else 'things are'} wrong."
+    otherwise = sum(f["kind"] == "differs" for f in findings)
+    if otherwise:
+        return (
+            f"Nothing was altered. The code of today makes {otherwise} of these otherwise; what "
+            "was published stands."
+        )
+    return "Everything is as it was published."
 
 
 def lineage(report: Report) -> str:
@@ -191,8 +237,7 @@ def _seconds_of(run: Report) -> str:
 
 
 def _cause(cause: Report) -> str:
-    words = CAUSES.get(cause["cause"], cause["cause"])
-    return f"{words}: {cause['step']}" if cause.get("step") else words
+    return ENGLISH.cause(cause["cause"], cause.get("step"))
 
 
 def _number(value: float | None) -> str:
@@ -200,7 +245,7 @@ def _number(value: float | None) -> str:
 
 
 def _per_cent(ratio: float | None) -> str:
-    return "-" if ratio is None else f"{100 * (ratio - 1):+.2f} %"
+    return ENGLISH.per_cent(ratio)
 
 
 def _seconds(value: float | None) -> str:

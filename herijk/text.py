@@ -140,6 +140,7 @@ def log_error(report: Report) -> str:
         "links",
         "without boats",
         "sd apart",
+        "step is of",
     )
     rows = [
         (
@@ -152,6 +153,7 @@ def log_error(report: Report) -> str:
             r["n_links"],
             _factor(r["factor_no_boats"]),
             "-" if r["agreement"] is None else f"{r['agreement']:+.1f}",
+            r["cause"],
         )
         for r in report["factors"]
     ]
@@ -164,9 +166,40 @@ def log_error(report: Report) -> str:
     parts.append("\n".join([f"  {'':4}  {scale}", *plots]))
     parts.append(
         "links: boats also towed in other seasons; without boats: a second estimate that does not\n"
-        "know which boat is which; sd apart: how far the two are, in standard deviations."
+        "know which boat is which; sd apart: how far the two are, in standard deviations; step is\n"
+        "of: whether the season differs by its log or by its load cell (force), as the bend of\n"
+        "the same boats' curves tells; prescribed: nothing ties the season to one with dGPS, so\n"
+        "its factor is not determined and the method's prescribed one is used."
     )
+    lacking = _seasons_between([r["season"] for r in report["factors"]])
+    if lacking:
+        parts.append(f"No sound tow in {lacking}: nothing is known of the log there.")
+    if report["parts"]:
+        parts += ["Each log, and each part of a season in which one was replaced:", _parts(report)]
     return "\n\n".join(parts)
+
+
+def _seasons_between(seasons: list[int]) -> str:
+    """Seasons that are missing between the first and the last."""
+    every = range(min(seasons, default=0), max(seasons, default=0))
+    return ", ".join(str(season) for season in every if season not in seasons)
+
+
+def _parts(report: Report) -> str:
+    head = ("season", "log", "part", "factor", "from", "to", "source", "tows", "links")
+    rows = [
+        (
+            r["season"],
+            r["log"],
+            r["part"] + 1,
+            *(_factor(r[name]) for name in ("factor", "lo", "hi")),
+            r["source"],
+            r["n_tows"],
+            r["n_links"],
+        )
+        for r in report["parts"]
+    ]
+    return table(head, rows)
 
 
 def _factor(value: float | None) -> str:

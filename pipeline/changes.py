@@ -13,7 +13,8 @@ import numpy as np
 import polars as pl
 
 from pipeline.arrays import FloatArray
-from pipeline.curve import cw, s_of_b
+from pipeline.curve import cw
+from pipeline.power import curve_of_lines, speed_at_power
 from pipeline.race import power_per_rower_w
 from pipeline.register import LINE
 
@@ -28,9 +29,6 @@ RACE_S: Final = 7200.0
 
 RANKING_POWER_W: Final = {"H": 80.0, "D": 47.5}
 """Power a rower at which boats are ranked: the middle of 70-90 W and 40-55 W (Sleepproef 2017)."""
-
-BISECTIONS: Final = 60
-FASTEST_M_S: Final = 20.0
 
 PART_SCHEMA: Final = {
     "fsn_no": pl.String(),
@@ -165,17 +163,6 @@ def _with_curve(register: pl.DataFrame) -> pl.DataFrame:
     return chosen.select(*LINE, "tow_id", *numbers, *optional)
 
 
-def _curve(lines: pl.DataFrame, suffix: str) -> tuple[FloatArray, FloatArray]:
-    """A and s of each line; where B is not determined, s follows from A, Cw and the speed."""
-    a, b, c, v = (
-        lines[f"{name}{suffix}"].to_numpy()
-        for name in ("a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s")
-    )
-    has_b = np.isfinite(b)
-    flat = (1.0 - a / c) / (v * v)
-    return a, np.where(has_b, s_of_b(np.where(has_b, b, 1.0)), flat)
-
-
 def _ratios(pairs: pl.DataFrame) -> tuple[FloatArray, FloatArray]:
     """New / old Cw at the old declared speed, and new / old time at the power of that speed.
 
@@ -185,31 +172,20 @@ def _ratios(pairs: pl.DataFrame) -> tuple[FloatArray, FloatArray]:
     both = pairs["both"].to_numpy()
     lines = pairs.filter("both")
     speed = lines["declared_speed_m_s"].to_numpy()
-    old, new = _curve(lines, ""), _curve(lines, "_new")
+    old, new = curve_of_lines(lines), curve_of_lines(lines, "_new")
     before, after = cw(*old, speed), cw(*new, speed)
     sound = np.isfinite(before) & np.isfinite(after)
     power = np.where(sound, before, 0.0) * speed**3
-    same_power_speed = np.where(sound, _speed_at_power(*new, power), 1.0)
+    same_power_speed = np.where(sound, speed_at_power(*new, power), 1.0)
     cw_ratio[both] = np.where(sound, after, np.nan) / np.where(sound, before, 1.0)
     time_ratio[both] = np.where(sound, speed / same_power_speed, np.nan)
     return cw_ratio, time_ratio
 
 
-def _speed_at_power(a_kg_m: FloatArray, s_s2_m2: FloatArray, power_w: FloatArray) -> FloatArray:
-    """The speed at which Cw(v) v^3 is the given power (of the whole crew), by bisection."""
-    low = np.zeros_like(power_w)
-    high = np.where(s_s2_m2 > 0, 1.0 / np.sqrt(np.where(s_s2_m2 > 0, s_s2_m2, 1.0)), FASTEST_M_S)
-    for _ in range(BISECTIONS):
-        middle = 0.5 * (low + high)
-        below = cw(a_kg_m, s_s2_m2, middle) * middle**3 < power_w
-        low, high = np.where(below, middle, low), np.where(below, high, middle)
-    return low
-
-
 def _ranked(register: pl.DataFrame) -> pl.DataFrame:
     lines = register.filter(pl.col("cw_kg_m").is_not_null())
     power = lines["crew_class"].replace_strict(RANKING_POWER_W, return_dtype=pl.Float64)
-    speed = _speed_at_power(*_curve(lines, ""), (power * lines["rowers"]).to_numpy())
+    speed = speed_at_power(*curve_of_lines(lines), (power * lines["rowers"]).to_numpy())
     rank = pl.col("speed").rank("min", descending=True).over("crew_class").cast(pl.Int32)
     return lines.with_columns(pl.Series("speed", speed)).with_columns(rank.alias("rank"))
 

@@ -2,8 +2,8 @@
 
 Is boat X really heavier than Y, does the winner change: whoever asks counts the members in which
 it holds. What tows share is drawn once per member and used for all of them, which intervals of
-single lines cannot show. Belongs here: the draws. Does not: the components (`uncertainty`) and
-what is asked of the members.
+single lines cannot show. Belongs here: the draws, and the counting. Does not: the components
+(`uncertainty`) and where members are kept (`warehouse.ensemble`).
 """
 
 from typing import Final
@@ -12,6 +12,7 @@ import numpy as np
 import polars as pl
 
 from pipeline.arrays import FloatArray
+from pipeline.errors import MissingKnowledgeError
 from pipeline.season_log import SeasonFactors
 from pipeline.uncertainty import log_key
 
@@ -22,7 +23,7 @@ SEED: Final = 2009
 def register_ensemble(
     lines: pl.DataFrame,
     budget: pl.DataFrame,
-    found: SeasonFactors,
+    found: SeasonFactors | None,
     members: int = MEMBERS,
     seed: int = SEED,
 ) -> FloatArray:
@@ -34,7 +35,8 @@ def register_ensemble(
     Args:
         lines: one row a line with `tow_id` (may occur more than once) and `cw_kg_m`.
         budget: rows of `uncertainty.budget`, at least of those tows.
-        found: the season factors, whose errors are drawn with their correlation.
+        found: the season factors, whose errors are drawn with their correlation; None where the
+            method estimates none.
         members: number of realisations.
         seed: of the draws; a part of the edition.
 
@@ -70,12 +72,63 @@ def as_frame(lines: pl.DataFrame, cw_kg_m: FloatArray) -> pl.DataFrame:
     ).select("member", pl.exclude("member"))
 
 
+def share_heavier(members: pl.DataFrame, tow_id: str, other: str) -> float:
+    """Share of the members in which one tow has the larger Cw at its declared speed.
+
+    Args:
+        members: rows of the table `ensemble` of one method.
+        tow_id, other: tows of two boats, or two of one boat.
+
+    Raises:
+        MissingKnowledgeError: one of them has no members: it has no curve under the method.
+    """
+    mine, theirs = (_members_of(members, t) for t in (tow_id, other))
+    return float((mine > theirs).mean())
+
+
+def share_first(members: pl.DataFrame, results: pl.DataFrame) -> pl.DataFrame:
+    """Share of the members in which each crew of a race has the highest power per rower.
+
+    Power is proportional to Cw, and the error of Cw at the declared speed is taken for that at the
+    speed rowed: sound within the range in which a curve is valid.
+
+    Args:
+        members: rows of the table `ensemble` of one method.
+        results: one row a crew: `tow_id` of its boat's curve, `cw_kg_m` of that curve at the
+            declared speed, and `power_w` by it.
+
+    Returns:
+        The rows of `results` with `share`, highest power first.
+
+    Raises:
+        MissingKnowledgeError: a tow has no members.
+    """
+    drawn = np.stack([_members_of(members, t) for t in results["tow_id"]])
+    per_cw = (results["power_w"] / results["cw_kg_m"]).to_numpy()
+    first = (per_cw[:, None] * drawn).argmax(axis=0)
+    share = np.bincount(first, minlength=results.height) / drawn.shape[1]
+    return results.with_columns(pl.Series("share", share)).sort("power_w", descending=True)
+
+
+def _members_of(members: pl.DataFrame, tow_id: str) -> FloatArray:
+    mine = members.filter(pl.col("tow_id") == tow_id).sort("member")
+    if mine.is_empty():
+        raise MissingKnowledgeError(
+            f"tow {tow_id} has no members in the ensemble: there is no curve for it; "
+            "look for its status in the table curves"
+        )
+    return mine["cw_kg_m"].to_numpy()
+
+
 def _errors(
-    budget: pl.DataFrame, found: SeasonFactors, members: int, seed: int
+    budget: pl.DataFrame, found: SeasonFactors | None, members: int, seed: int
 ) -> tuple[pl.DataFrame, FloatArray]:
     """Standard normal errors of every key, shape (keys, members), season factors correlated."""
     keys = budget.select("key").unique().sort("key").with_row_index("index")
-    errors = np.stack([_stream(seed, key).standard_normal(members) for key in keys["key"]])
+    independent = [_stream(seed, key).standard_normal(members) for key in keys["key"]]
+    errors = np.array(independent).reshape(-1, members)
+    if found is None:
+        return keys, errors
     determined = found.factors.filter(pl.col("factor").is_not_null()).select(
         log_key(pl.col("season"), pl.col("part"), pl.col("log")).alias("key")
     )

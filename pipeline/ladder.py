@@ -13,7 +13,7 @@ import polars as pl
 from pipeline.blocks import RunBlocks
 from pipeline.method import Method, Steps
 from pipeline.outcome import Outcome
-from pipeline.recompute import KnownWindows, batches, evaluate, season_factors
+from pipeline.recompute import KnownWindows, batches, evaluate, log_factors
 
 STEP_ORDER: Final = (
     "speed",
@@ -31,7 +31,11 @@ START: Final = "start"
 
 
 def ladder(
-    from_method: Method, to_method: Method, tows: pl.DataFrame, blocks: RunBlocks
+    from_method: Method,
+    to_method: Method,
+    tows: pl.DataFrame,
+    blocks: RunBlocks,
+    links: tuple[pl.DataFrame, pl.DataFrame] | None = None,
 ) -> pl.DataFrame:
     """The effect of each step on every tow's Cw at the declared speed.
 
@@ -42,6 +46,8 @@ def ladder(
         from_method, to_method: the ends of the ladder.
         tows: rows of the warehouse's `tows`.
         blocks: their runs.
+        links: log factors of both methods, where they were estimated before: their rows of the
+            table `season_links`.
 
     Returns:
         Sorted rows `tow_id`, `position` (0 is the start), `step`, `factor` (Cw after / before the
@@ -49,14 +55,14 @@ def ladder(
     """
     pairs = batches([from_method, to_method], tows, blocks)
     known: KnownWindows = {}
-    old_found, new_found = (
-        season_factors([(batch, steps[end]) for batch, steps in pairs], known) for end in (0, 1)
+    old_factors, new_factors = links or (
+        log_factors([(batch, steps[end]) for batch, steps in pairs], known) for end in (0, 1)
     )
     rungs = [
         evaluate(
             [(batch, _mixed(old, new, count)) for batch, (old, new) in pairs],
             known,
-            new_found if count else old_found,
+            new_factors if count else old_factors,
         )
         for count in range(len(STEP_ORDER) + 1)
     ]

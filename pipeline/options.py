@@ -15,7 +15,7 @@ import polars as pl
 from pipeline.arrays import FloatArray
 from pipeline.blocks import RunBlocks
 from pipeline.method import Method, Steps
-from pipeline.recompute import KnownWindows, batches, evaluate, season_factors
+from pipeline.recompute import KnownWindows, batches, evaluate, log_factors
 
 ALL_OPTIONS: Final = "all"
 
@@ -44,13 +44,17 @@ CHOICES: Final = (
 )
 
 
-def option_effects(method: Method, tows: pl.DataFrame, blocks: RunBlocks) -> pl.DataFrame:
+def option_effects(
+    method: Method, tows: pl.DataFrame, blocks: RunBlocks, links: pl.DataFrame | None = None
+) -> pl.DataFrame:
     """Spread of Cw and B over all combinations of `CHOICES`, and the effect of each choice.
 
     Args:
         method: the method whose other options hold.
         tows: rows of the warehouse's `tows`.
         blocks: their runs.
+        links: log factors of the method, where they were estimated before: its rows of the table
+            `season_links`.
 
     Returns:
         Sorted rows per tow and option: `tow_id`, `option`, `cw_effect_ratio` and `b_effect_ratio`
@@ -60,10 +64,12 @@ def option_effects(method: Method, tows: pl.DataFrame, blocks: RunBlocks) -> pl.
     """
     pairs = batches([method], tows, blocks)
     known: KnownWindows = {}
-    found = season_factors([(batch, steps) for batch, (steps,) in pairs], known)
+    factors = links
+    if factors is None:
+        factors = log_factors([(batch, steps) for batch, (steps,) in pairs], known)
     cw, slope, corners = [], [], list(itertools.product((0, 1), repeat=len(CHOICES)))
     for corner in corners:
-        outcomes = evaluate([(b, _chosen(steps, corner)) for b, (steps,) in pairs], known, found)
+        outcomes = evaluate([(b, _chosen(steps, corner)) for b, (steps,) in pairs], known, factors)
         cw.append(np.concatenate([np.log(o.cw_at_declared) for o in outcomes]))
         slope.append(np.concatenate([_ln_b(o.curves.b_m_s) for o in outcomes]))
     tow_ids = pl.concat([batch.tows["tow_id"] for batch, _ in pairs])

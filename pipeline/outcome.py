@@ -70,5 +70,9 @@ class Outcome:
     @property
     def cw_at_declared(self) -> FloatArray:
         """Cw at the declared speed of each tow, shape (tows,); NaN where there is no curve."""
-        cw = self.curves.cw_at(self.batch.of_tow("declared_speed_m_s"))
+        return self.cw_at(1.0)
+
+    def cw_at(self, speed_ratio: float) -> FloatArray:
+        """Cw of each tow at a speed / declared speed, shape (tows,); NaN where there is none."""
+        cw = self.curves.cw_at(speed_ratio * self.batch.of_tow("declared_speed_m_s"))
         return np.where(self.curves.converged & np.isfinite(cw), cw, np.nan)

@@ -65,18 +65,27 @@ def recompute(method: Method, tows: pl.DataFrame, blocks: RunBlocks) -> Recomput
     """
     plans = [(batch, steps) for batch, (steps,) in batches([method], tows, blocks)]
     known: KnownWindows = {}
-    found = season_factors(plans, known)
-    return as_tables(method, tows, evaluate(plans, known, found), found)
+    asked = any(is_estimated(held.steps) for held in method.ranges)
+    found = season_factors(plans, known) if asked else None
+    factors = None if found is None else found.factors
+    return as_tables(method, tows, evaluate(plans, known, factors), found)
 
 
 def season_factors(
     plans: Sequence[tuple[Batch, Steps]], known_windows: KnownWindows
-) -> SeasonFactors | None:
-    """The log factors that the given steps ask to estimate; None if they ask for none."""
-    if not any(is_estimated(steps) for _, steps in plans):
-        return None
+) -> SeasonFactors:
+    """The log factors that the given steps ask to estimate, and how far tows scatter."""
     before = evaluate([(batch, without_factor(steps)) for batch, steps in plans], known_windows)
     return find_season_factors(before)
+
+
+def log_factors(
+    plans: Sequence[tuple[Batch, Steps]], known_windows: KnownWindows
+) -> pl.DataFrame | None:
+    """The factors alone, as `evaluate` wants them; None if the steps ask for none."""
+    if not any(is_estimated(steps) for _, steps in plans):
+        return None
+    return season_factors(plans, known_windows).factors
 
 
 def batches(
@@ -100,14 +109,15 @@ def batches(
 def evaluate(
     plans: Sequence[tuple[Batch, Steps]],
     known_windows: KnownWindows | None = None,
-    found: SeasonFactors | None = None,
+    factors: pl.DataFrame | None = None,
 ) -> list[Outcome]:
     """What the given steps make of each batch.
 
     Args:
         plans: batches with their steps; what is searched over the archive is searched over them.
         known_windows: windows found before for the same batches, by place and rule; added to.
-        found: log factors, for steps that ask for estimated ones.
+        factors: rows of `SeasonFactors.factors` or of the table `season_links`, for steps that
+            ask for estimated log factors.
     """
     windows = {} if known_windows is None else known_windows
     prepared = []
@@ -115,7 +125,7 @@ def evaluate(
         key = (place, steps.window)
         if key not in windows:
             windows[key] = choose_windows(batch.blocks, steps.window)
-        factor = factor_of_tows(batch, steps, found)
+        factor = factor_of_tows(batch, steps, factors)
         prepared.append(_prepare(batch, steps, windows[key], factor))
     shared = _archive_coefficient([p for p in prepared if p.steps.wind.coefficients == "archive"])
     return [_finish(p, shared) for p in prepared]

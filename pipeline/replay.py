@@ -13,6 +13,7 @@ import polars as pl
 
 from pipeline.arrays import FloatArray
 from pipeline.curve import cw, s_of_b
+from pipeline.ensemble import share_first
 from pipeline.errors import MissingKnowledgeError
 from pipeline.race import (
     fatigue_factor,
@@ -30,6 +31,16 @@ STREAMS: Final = get_args(Stream)
 RACE: Final = ("race", "race_date")
 CLASSIFICATION: Final = (*RACE, "crew_class")
 PODIUM: Final = 3
+
+WINNER_SCHEMA: Final = {
+    "race": pl.String(),
+    "race_date": pl.Date(),
+    "crew_class": pl.String(),
+    "old_winner": pl.String(),
+    "new_winner": pl.String(),
+    "winner_changed": pl.Boolean(),
+    "change_probability": pl.Float64(),
+}
 
 NOT_IN_REGISTER = "not_in_register"
 ABOVE_B = "speed_not_below_b"
@@ -132,6 +143,67 @@ def race_changes(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
         pl.col("rank_new").alias("new_rank"),
         (before != after).alias("podium_changed"),
     ).sort(*CLASSIFICATION, "new_rank", "fsn_no", nulls_last=True)
+
+
+def winner_changes(
+    old: pl.DataFrame, new: pl.DataFrame, register: pl.DataFrame, members: pl.DataFrame
+) -> pl.DataFrame:
+    """Who wins each race and class under two registers, and how likely it is not the old winner.
+
+    How likely is the share of equally likely new registers in which another crew has the highest
+    power. A line without members (carried over from print) is taken as it stands.
+
+    Args:
+        old, new: `replay` of the same results under two registers.
+        register: lines of the new one, with `tow_id` and `cw_kg_m`.
+        members: rows of the table `ensemble` for its tows; may be empty, then nothing is known.
+
+    Returns:
+        One row a race and class: `old_winner`, `new_winner` (boat; null where nobody has a power),
+        `winner_changed` and `change_probability` (null where it is not known).
+    """
+    found = []
+    for key, results in new.group_by(CLASSIFICATION, maintain_order=True):
+        before = old.filter(*(pl.col(n) == k for n, k in zip(CLASSIFICATION, key, strict=True)))
+        winners = [_winner(results_of) for results_of in (before, results)]
+        found.append(
+            dict(zip(CLASSIFICATION, key, strict=True))
+            | {
+                "old_winner": None if winners[0] is None else winners[0][0],
+                "new_winner": None if winners[1] is None else winners[1][0],
+                "winner_changed": winners[0] != winners[1],
+                "change_probability": _change_probability(results, winners[0], register, members),
+            }
+        )
+    return pl.DataFrame(found, schema=WINNER_SCHEMA).sort(CLASSIFICATION)
+
+
+def _winner(results: pl.DataFrame) -> tuple[object, ...] | None:
+    first = results.filter(pl.col("rank") == 1).sort(LINE).select(LINE)
+    return None if first.is_empty() else first.row(0)
+
+
+def _change_probability(
+    results: pl.DataFrame,
+    old_winner: tuple[object, ...] | None,
+    register: pl.DataFrame,
+    members: pl.DataFrame,
+) -> float | None:
+    crews = results.drop_nulls("power_w").select(*LINE, "power_w")
+    if members.is_empty() or old_winner is None or old_winner not in crews.select(LINE).rows():
+        return None
+    lines = register.select(*LINE, "tow_id", "cw_kg_m").with_columns(
+        pl.col("tow_id").fill_null(pl.concat_str(LINE, separator=" "))
+    )
+    crews = crews.join(lines, on=LINE)
+    certain = crews.join(members, on="tow_id", how="anti").join(
+        members.select("member").unique(), how="cross"
+    )
+    columns = ["tow_id", "member", "cw_kg_m"]
+    drawn = pl.concat([members.select(columns), certain.select(columns)])
+    shares = share_first(drawn, crews)
+    mine = pl.all_horizontal(pl.col(n) == w for n, w in zip(LINE, old_winner, strict=True))
+    return 1.0 - float(shares.filter(mine)["share"][0])
 
 
 def _speed_m_s(results: pl.DataFrame, rules: RaceRules, legs: pl.DataFrame | None) -> FloatArray:

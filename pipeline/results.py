@@ -19,9 +19,10 @@ from pipeline.assessment import assess, with_status
 from pipeline.method import Method
 from pipeline.outcome import Outcome
 from pipeline.race import power_per_rower_w
-from pipeline.season_log import SeasonFactors
+from pipeline.season_log import SeasonFactors, log_or_force, other_log_factors, retow_choice
+from pipeline.season_log.ties import TIE_SCHEMA
 from pipeline.speed import log_factor
-from pipeline.sureness import budget_of, cw_bounds, run_point_ratio, scatter_of
+from pipeline.sureness import budget_of, curve_points, cw_bounds, run_point_ratio, scatter_of
 from pipeline.wind import mean_wind_angle_deg
 
 LEVEL = 0.95
@@ -29,14 +30,22 @@ LEVEL = 0.95
 
 @dataclass(frozen=True)
 class Recomputed:
-    """The tables of one method, named as in the warehouse."""
+    """The tables of one method, named as in the warehouse, and the season factors behind them.
+
+    Attributes:
+        factors: with their covariance, for the ensemble; None if the method estimates none.
+    """
 
     run_points: pl.DataFrame
     curves: pl.DataFrame
     log_factors: pl.DataFrame
     assessments: pl.DataFrame
     uncertainty_budget: pl.DataFrame
+    curve_points: pl.DataFrame
     season_links: pl.DataFrame
+    season_steps: pl.DataFrame
+    retow_choice: pl.DataFrame
+    factors: SeasonFactors | None
 
 
 def as_tables(
@@ -70,7 +79,11 @@ def as_tables(
         uncertainty_budget=budget.select(
             name, pl.exclude("dof"), pl.when(pl.col("dof").is_finite()).then("dof").alias("dof")
         ),
+        curve_points=curve_points(outcomes, found).select(name, pl.all()),
         season_links=_season_links(found).select(name, pl.all()),
+        season_steps=_season_steps(found).select(name, pl.all()),
+        retow_choice=_retow_choice(found).select(name, pl.all()),
+        factors=found,
     )
 
 
@@ -185,11 +198,9 @@ def _mean_factor(o: Outcome, season: int) -> FactorRow:
 def _factor_row(o: Outcome, season: int, found: SeasonFactors | None) -> FactorRow:
     speed = o.steps.speed
     if found is not None and speed.correction == "estimated":
-        known = found.factors.filter(
-            (pl.col("season") == season) & (pl.col("log") == speed.source)
-        ).drop_nulls("factor")
-        if known.height:
-            return (season, *known.select("factor", "lo", "hi", "source").row(0))
+        known = found.of_season(season, speed.source)
+        if known is not None:
+            return (season, *known)
     nothing = np.array([np.nan])
     factor = float(log_factor(speed, nothing, nothing)[0])
     return season, factor, None, None, "none" if factor == 1.0 else "prescribed"
@@ -199,13 +210,34 @@ def _season_links(found: SeasonFactors | None) -> pl.DataFrame:
     """What each estimated factor rests on; no rows where nothing was estimated."""
     if found is None:
         return pl.DataFrame(schema=LINK_SCHEMA)
-    return found.factors.select(pl.col(name).cast(kind) for name, kind in LINK_SCHEMA.items())
+    rows = pl.concat([found.factors, other_log_factors(found)], how="diagonal_relaxed")
+    return rows.select(pl.col(name).cast(kind) for name, kind in LINK_SCHEMA.items())
+
+
+def _season_steps(found: SeasonFactors | None) -> pl.DataFrame:
+    """Whether a season's step is the log's or the load cell's; no rows without an estimate."""
+    if found is None:
+        return pl.DataFrame(schema=STEP_SCHEMA)
+    told = log_or_force(found.tows, found)
+    return told.select(pl.col(name).cast(kind) for name, kind in STEP_SCHEMA.items())
+
+
+STEP_SCHEMA = (
+    {"season": pl.Int32(), "part": pl.Int32(), "log": pl.String(), "n_boats": pl.Int32()}
+    | dict.fromkeys(("level_step", "level_step_sd", "force_step", "force_step_sd"), pl.Float64())
+    | {"cause": pl.String()}
+)
+
+
+def _retow_choice(found: SeasonFactors | None) -> pl.DataFrame:
+    """The boats that would make estimated factors surer; no rows where nothing was estimated."""
+    return pl.DataFrame(schema=TIE_SCHEMA) if found is None else retow_choice(found)
 
 
 LINK_SCHEMA = (
     {"season": pl.Int32(), "part": pl.Int32(), "log": pl.String(), "source": pl.String()}
     | dict.fromkeys(("n_tows", "n_links", "component", "critical_boats"), pl.Int32())
-    | dict.fromkeys(("factor", "lo", "hi", "ln_sd", "influence"), pl.Float64())
+    | dict.fromkeys(("factor", "lo", "hi", "ln_sd", "dof", "influence"), pl.Float64())
     | {"influence_boat": pl.String()}
     | dict.fromkeys(
         ("weakest_mode", "factor_no_boats", "lo_no_boats", "hi_no_boats", "agreement"),

@@ -17,17 +17,20 @@ from pipeline.batch import Batch
 from pipeline.calibration import gps_factor
 from pipeline.method import Steps
 from pipeline.outcome import Outcome, TowFactor
-from pipeline.season_log import LINE, SeasonFactors, estimate_season_factors
-from pipeline.sureness import random_ratio
-
-WHOLE_SEASON: Final = 0
-"""Part of a season; an archive does not yet say when a log was replaced within one."""
+from pipeline.season_log import GROUP, LINE, SeasonFactors, estimate_season_factors
+from pipeline.speed import log_part
+from pipeline.sureness import pooled_scatter
 
 FEWEST_OF_TYPE: Final = 5
 """A type's own bend is taken from so many anchored tows on."""
 
+LEAST_SPREAD: Final = 1e-6
+"""Variance of the bend between boats of a type: none at all would leave nothing to divide by."""
+
 GPS: Final = "gps_per_tow"
-FACTOR_KEY: Final = ("season", "log")
+
+OTHER_LOG: Final = {"log1": "log2", "log2": "log1"}
+"""The log beside the one in use; none where their mean is used."""
 
 
 def is_estimated(steps: Steps) -> bool:
@@ -49,18 +52,30 @@ def find_season_factors(outcomes: Sequence[Outcome]) -> SeasonFactors:
     Args:
         outcomes: all batches under `without_factor`.
     """
-    rows = pl.concat([_rows(outcome) for outcome in outcomes])
-    return estimate_season_factors(_at_reference_speed(rows.drop_nulls("a_kg_m")))
+    return estimate_season_factors(_with_kappa(_tow_rows(outcomes)))
 
 
-def factor_of_tows(batch: Batch, steps: Steps, found: SeasonFactors | None) -> TowFactor:
-    """The estimated factor of each tow's season and log."""
-    if found is None or not is_estimated(steps):
+def _tow_rows(outcomes: Sequence[Outcome]) -> pl.DataFrame:
+    """One row a tow with a sound curve, at one speed per line: its median declared speed."""
+    declared = pl.concat([o.batch.tows.select(*LINE, "declared_speed_m_s") for o in outcomes])
+    reference = declared.group_by(LINE).agg(pl.col("declared_speed_m_s").median().alias("speed"))
+    return pl.concat([_rows(o, reference) for o in outcomes]).drop_nulls("ln_cw")
+
+
+def factor_of_tows(batch: Batch, steps: Steps, factors: pl.DataFrame | None) -> TowFactor:
+    """The estimated factor of each tow's log, in its part of the season.
+
+    Args:
+        batch: the tows.
+        steps: what is asked of them.
+        factors: rows of `SeasonFactors.factors`, or of the table `season_links`.
+    """
+    if factors is None or not is_estimated(steps):
         nothing = np.full(batch.size, np.nan)
         return TowFactor(nothing, nothing, nothing)
-    held = batch.tows.select("season", pl.lit(_log(steps)).alias("log")).join(
-        found.factors.select(*FACTOR_KEY, "factor", "ln_sd", "dof"),
-        on=FACTOR_KEY,
+    held = batch.tows.select(*log_group(steps)).join(
+        factors.select(*GROUP, "factor", "ln_sd", "dof"),
+        on=GROUP,
         how="left",
         maintain_order="left",
     )
@@ -68,40 +83,64 @@ def factor_of_tows(batch: Batch, steps: Steps, found: SeasonFactors | None) -> T
     return TowFactor(*columns)
 
 
-def _log(steps: Steps) -> str:
-    return steps.speed.source
+def log_group(steps: Steps) -> tuple[pl.Expr, pl.Expr, pl.Expr]:
+    """What names the log of a tow: `GROUP`, from the columns of `tows`."""
+    source = steps.speed.source
+    return pl.col("season"), log_part(source), pl.lit(source).alias("log")
 
 
-def _rows(o: Outcome) -> pl.DataFrame:
-    """One row a tow: its curve, how sure it is, and its GPS ratio."""
+def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
+    """One row a tow: its curve at its line's `speed`, how sure it is, and its GPS ratio."""
     batch, steps = o.batch, o.steps
-    water = _water_curves(o)
-    sound = water.converged & np.isfinite(water.cw_at(batch.of_tow("declared_speed_m_s")))
+    held = batch.tows.select(LINE).join(reference, on=LINE, how="left", maintain_order="left")
+    speed = held["speed"].to_numpy()
+    water = _water_points(o)
+    curves = curve.fit(water)
+    cw, r = curves.cw_at(speed), curves.s_s2_m2 * speed**2
+    errors = curve.covariance(water, curves, pooled_scatter(o), speed)
+    sound = curves.converged & np.isfinite(cw)
+    sure = sound & np.isfinite(errors.c0_variance_kg2_m2)
+    safe, safe_r = np.where(sound, cw, 1.0), np.where(sound, r, 0.0)
     calibrated = steps.calibration.rule == GPS
     gps, gps_sd, has_gps = _gps_ratio(o)
     numbers = {
-        "a_kg_m": np.where(sound, water.a_kg_m, np.nan),
-        "s_s2_m2": water.s_s2_m2,
-        "ln_cw_sd": random_ratio(o)[0],
+        "ln_cw": np.where(sound, np.log(safe), np.nan),
+        "ln_cw_sd": np.where(sure, np.sqrt(errors.c0_variance_kg2_m2) / safe, 1.0),
+        "q": safe_r / (1.0 - safe_r),
+        "q_sd": np.where(sure, np.sqrt(errors.q_variance), 1.0),
+        "other_ln_ratio": _other_ln_ratio(o),
         "gps_ln_ratio": np.where(has_gps & (not calibrated), gps, np.nan),
         "gps_sd": np.where(has_gps & (not calibrated), gps_sd, np.nan),
     }
-    names = ("tow_id", "season", *LINE, "altered", "declared_speed_m_s")
+    names = ("tow_id", *LINE, "altered", "declared_speed_m_s")
     return batch.tows.select(
         *names,
         pl.col("weight_kg", "waterline_length_m").cast(pl.Float64),
         _boat_type(batch.tows),
-        pl.lit(WHOLE_SEASON).alias("part"),
-        pl.lit(_log(steps)).alias("log"),
+        *log_group(steps),
+        pl.lit(OTHER_LOG.get(steps.speed.source)).alias("other_log"),
+        log_part(OTHER_LOG.get(steps.speed.source, "mean")).alias("other_part"),
         pl.lit(calibrated).alias("anchored"),
         *(pl.Series(name, values).fill_nan(None) for name, values in numbers.items()),
     )
 
 
-def _water_curves(o: Outcome) -> curve.Curves:
-    """Curves of the water alone: the still-air part does not scale with the log's error."""
+def _water_points(o: Outcome) -> curve.Points:
+    """Run points of the water alone: the still-air part does not scale with the log's error."""
     water = o.batch.by_tow(o.cw_kg_m - o.still_air_kg_m)
-    return curve.fit(curve.Points(o.points.speed_m_s, water, o.points.used & (water > 0)))
+    return curve.Points(o.points.speed_m_s, water, o.points.used & (water > 0))
+
+
+def _other_ln_ratio(o: Outcome) -> FloatArray:
+    """Gives ln(log in use / other log), mean over each tow's runs; NaN where there is none."""
+    source = o.steps.speed.source
+    if source not in OTHER_LOG:
+        return np.full(o.batch.size, np.nan)
+    mean = {log: o.batch.blocks.mean(f"{log}_v", o.windows.mask) for log in ("log1", "log2")}
+    turning = o.used & (mean["log1"] > 0) & (mean["log2"] > 0)
+    ratio = mean[source] / np.where(turning, mean[OTHER_LOG[source]], 1.0)
+    ln_ratio = np.log(np.where(turning, ratio, 1.0))
+    return np.where(o.batch.any(turning), o.batch.mean(ln_ratio, turning), np.nan)
 
 
 def _boat_type(tows: pl.DataFrame) -> pl.Expr:
@@ -133,24 +172,39 @@ def _gps_ratio(o: Outcome) -> tuple[FloatArray, FloatArray, np.ndarray]:
     return np.log(np.where(both, y, 1.0)), run_sd / np.sqrt(runs), both
 
 
-def _at_reference_speed(rows: pl.DataFrame) -> pl.DataFrame:
-    """Adds `ln_cw` at one speed per line, and `kappa` there.
+def _with_kappa(rows: pl.DataFrame) -> pl.DataFrame:
+    """Adds `kappa`, the elasticity of the line's true curve, from the bend of its anchored tows.
 
-    The bend of one tow is badly determined: kappa comes from the median bend of the anchored tows
-    of the boat's type, of the fleet where those are few. A tenth in kappa costs nothing (research,
-    method.md 8.1).
+    One tow's bend is uncertain, boats of a type differ: the mean of a line's own anchored tows is
+    drawn towards its type (the fleet, where that has few) as far as its uncertainty is large
+    against the spread between boats. Without this the difference between boats, times a log error
+    of 5 %, passes for wander of the log.
     """
-    speed = pl.col("declared_speed_m_s").median().over(LINE)
-    r = pl.col("s_s2_m2") * speed**2
-    placed = rows.with_columns(r.alias("r")).filter(pl.col("r") < 1.0)
-    placed = placed.with_columns(
-        (pl.col("a_kg_m") / (1.0 - pl.col("r"))).log().alias("ln_cw"),
-        (pl.col("r") / (1.0 - pl.col("r"))).alias("q"),
-    )
-    anchored = placed.filter("anchored")
-    trusted = anchored if anchored.height else placed
+    anchored = rows.filter("anchored")
+    trusted = anchored if anchored.height else rows
     by_type = trusted.group_by("boat_type").agg(pl.col("q").median().alias("q_type"), pl.len())
     usual = by_type.filter(pl.col("len") >= FEWEST_OF_TYPE).select("boat_type", "q_type")
-    return placed.join(
-        usual, on="boat_type", how="left", nulls_equal=True, maintain_order="left"
-    ).with_columns((2.0 + 2.0 * pl.col("q_type").fill_null(trusted["q"].median())).alias("kappa"))
+    fleet = trusted["q"].median()
+
+    def typed(frame: pl.DataFrame) -> pl.DataFrame:
+        return frame.join(
+            usual, on="boat_type", how="left", nulls_equal=True, maintain_order="left"
+        ).with_columns(pl.col("q_type").fill_null(pl.lit(fleet, pl.Float64)))
+
+    deviation = (pl.col("q") - pl.col("q_type")).alias("deviation")
+    seen = typed(anchored).with_columns(deviation)
+    # The median of a squared standard normal number is 0.455.
+    spread = seen.select((deviation**2).median() / 0.455 - (pl.col("q_sd") ** 2).median()).item()
+    own = seen.group_by(LINE).agg(
+        (pl.col("deviation") / pl.col("q_sd") ** 2).sum().alias("pull"),
+        (pl.col("q_sd") ** -2.0).sum().alias("weight"),
+    )
+    between = max(spread or 0.0, LEAST_SPREAD)
+    shift = pl.col("pull") / (pl.col("weight") + 1.0 / between)
+    q = pl.col("q_type") + shift.fill_null(0.0)
+    return (
+        typed(rows)
+        .join(own, on=LINE, how="left", maintain_order="left")
+        .with_columns((2.0 + 2.0 * q).alias("kappa"))
+        .drop("q_type", "pull", "weight")
+    )

@@ -7,9 +7,16 @@ season's prescribed one. How a season's factor is estimated instead stands in `p
 """
 
 import numpy as np
+import polars as pl
 
 from pipeline.arrays import FloatArray
 from pipeline.method import Speed
+
+
+def log_part(source: str) -> pl.Expr:
+    """Part of the season by the log that a method uses: a new one begins when it is replaced."""
+    parts = pl.col("log1_part"), pl.col("log2_part")
+    return {"log1": parts[0], "log2": parts[1], "mean": parts[0] + parts[1]}[source].alias("part")
 
 
 def log_factor(

@@ -17,15 +17,14 @@ from pipeline import curve
 from pipeline.arrays import FloatArray
 from pipeline.outcome import Outcome
 from pipeline.season_log import SeasonFactors
-from pipeline.season_log.assumed import USUAL
+from pipeline.speed import log_part
 from pipeline.uncertainty import Assumed, budget, combine, residual_scatter, run_point_uncertainty
 
 ARCHIVE_COEFFICIENT_SD: Final = 0.01
 """Of the one coefficient found for the whole archive (research, method.md 0.9; measured here)."""
 
-WITHOUT_CHANGED_BOATS: Final = float(np.sqrt(1.0 - 2.0 / USUAL.t_dof))
-"""Scale / standard deviation of the t distribution of repeat tows: its tails are boats that changed
-without a report, which is no error of a tow."""
+CURVE_SPEED_RATIOS: Final = np.linspace(0.85, 1.15, 13)
+"""Speeds of the points of a curve / declared speed: the range in which a curve is valid."""
 
 USUAL_BEND: Final = 0.4
 """q where the archive is not asked for it (research, method.md 0.7: r of 0.3)."""
@@ -36,15 +35,17 @@ def scatter_of(o: Outcome, pooled: bool) -> curve.Scatter:
     return pooled_scatter(o) if pooled else curve.own_scatter(o.free)
 
 
-def random_ratio(o: Outcome, pooled: bool = True) -> tuple[FloatArray, FloatArray]:
-    """Relative random uncertainty of Cw at the declared speed, and its degrees of freedom.
+def random_ratio(
+    o: Outcome, pooled: bool = True, speed_ratio: float = 1.0
+) -> tuple[FloatArray, FloatArray]:
+    """Relative random uncertainty of Cw at a speed / declared speed, and its degrees of freedom.
 
     From the scatter of the run points about their curves (`scatter_of`).
     """
     scatter = scatter_of(o, pooled)
-    declared = o.batch.of_tow("declared_speed_m_s")
-    errors = curve.covariance(o.points, o.free, scatter, declared)
-    cw = o.free.cw_at(declared)
+    speed = speed_ratio * o.batch.of_tow("declared_speed_m_s")
+    errors = curve.covariance(o.points, o.free, scatter, speed)
+    cw = o.free.cw_at(speed)
     known = np.isfinite(cw) & np.isfinite(errors.c0_variance_kg2_m2)
     variance = np.where(known, errors.c0_variance_kg2_m2, 1.0)
     return np.where(known, np.sqrt(variance) / np.where(known, cw, 1.0), 1.0), scatter.dof
@@ -73,17 +74,56 @@ def run_point_ratio(o: Outcome) -> FloatArray:
     return run_point_uncertainty(o.batch.blocks, o.windows.mask, season, o.steps.speed.source)
 
 
-def budget_of(outcomes: Sequence[Outcome], found: SeasonFactors | None) -> pl.DataFrame:
-    """Every component of the uncertainty of Cw at the declared speed, per tow with a curve.
+def budget_of(
+    outcomes: Sequence[Outcome], found: SeasonFactors | None, speed_ratio: float = 1.0
+) -> pl.DataFrame:
+    """Every component of the uncertainty of Cw at one speed, per tow with a curve.
+
+    Away from the declared speed the random part grows, and a speed error acts through the
+    elasticity there.
 
     Args:
         outcomes: all batches of a method.
         found: its season factors, if it has estimated ones.
+        speed_ratio: that speed / declared speed.
 
     Returns:
         Rows as `pipeline.uncertainty.budget` gives them, sorted by tow.
     """
-    return pl.concat([_budget_of_batch(o, found) for o in outcomes]).sort("tow_id", "component")
+    held = [_budget_of_batch(o, found, speed_ratio) for o in outcomes]
+    return pl.concat(held).sort("tow_id", "component")
+
+
+def curve_points(outcomes: Sequence[Outcome], found: SeasonFactors | None) -> pl.DataFrame:
+    """Curves over the speeds at which they are valid, with the 95 % interval of Cw at each.
+
+    Returns:
+        `tow_id, speed_m_s, cw_kg_m, cw_lo_kg_m, cw_hi_kg_m`: a row per tow and speed of
+        `CURVE_SPEED_RATIOS`, none at speeds from B on.
+    """
+    return pl.concat([_points_at(outcomes, found, ratio) for ratio in CURVE_SPEED_RATIOS])
+
+
+def _points_at(
+    outcomes: Sequence[Outcome], found: SeasonFactors | None, ratio: float
+) -> pl.DataFrame:
+    rows = pl.concat(
+        [
+            o.batch.tows.select(
+                "tow_id",
+                (ratio * pl.col("declared_speed_m_s")).alias("speed_m_s"),
+                pl.Series("cw_kg_m", o.cw_at(ratio)),
+            )
+            for o in outcomes
+        ]
+    )
+    return rows.join(cw_bounds(budget_of(outcomes, found, ratio)), on="tow_id").select(
+        "tow_id",
+        "speed_m_s",
+        "cw_kg_m",
+        (pl.col("cw_kg_m") * pl.col("lo_ratio")).alias("cw_lo_kg_m"),
+        (pl.col("cw_kg_m") * pl.col("hi_ratio")).alias("cw_hi_kg_m"),
+    )
 
 
 def cw_bounds(held: pl.DataFrame) -> pl.DataFrame:
@@ -91,12 +131,13 @@ def cw_bounds(held: pl.DataFrame) -> pl.DataFrame:
     return combine(held).select("tow_id", "lo_ratio", "hi_ratio")
 
 
-def _budget_of_batch(o: Outcome, found: SeasonFactors | None) -> pl.DataFrame:
-    batch, cw = o.batch, o.cw_at_declared
+def _budget_of_batch(o: Outcome, found: SeasonFactors | None, speed_ratio: float) -> pl.DataFrame:
+    batch, cw = o.batch, o.cw_at(speed_ratio)
     sound = np.isfinite(cw)
     safe = np.where(sound, cw, 1.0)
-    random, dof = random_ratio(o, pooled=found is not None)
-    kappa = np.full(batch.size, 2.0 * (1.0 + (USUAL_BEND if found is None else _median_bend(o))))
+    random, dof = random_ratio(o, found is not None, speed_ratio)
+    bend = USUAL_BEND if found is None else _median_bend(o)
+    r = bend / (1.0 + bend) * speed_ratio**2
     estimated = np.isfinite(o.estimated.factor)
     air = batch.mean(o.air_kg_m - o.still_air_kg_m, o.used)
     # A larger coefficient takes more off as felt and puts more back for still air.
@@ -105,9 +146,9 @@ def _budget_of_batch(o: Outcome, found: SeasonFactors | None) -> pl.DataFrame:
     rows = batch.tows.select(
         "tow_id",
         "season",
-        pl.lit(0).alias("part"),
+        log_part(o.steps.speed.source),
         pl.lit(o.steps.speed.source).alias("log"),
-        pl.Series("kappa", kappa),
+        pl.lit(2.0 / (1.0 - r)).alias("kappa"),
         pl.Series("random_ratio", random),
         pl.Series("random_dof", dof),
         pl.Series("calibrated", o.calibrated),
@@ -118,8 +159,7 @@ def _budget_of_batch(o: Outcome, found: SeasonFactors | None) -> pl.DataFrame:
         pl.Series("air_per_coefficient", per_coefficient / safe),
         pl.Series("temperature_known", o.temperature_known),
     ).filter(pl.Series(sound))
-    usual_air = float(np.sqrt(np.mean((air / safe)[sound] ** 2))) if sound.any() else 0.0
-    return budget(rows, _assumed(o, found, kappa, usual_air))
+    return budget(rows, _assumed(o, found, bend, air))
 
 
 def _median_bend(o: Outcome) -> float:
@@ -141,13 +181,14 @@ def _wander(o: Outcome, found: SeasonFactors | None) -> FloatArray:
     return wander
 
 
-def _assumed(
-    o: Outcome, found: SeasonFactors | None, kappa: FloatArray, air_ratio: float
-) -> Assumed:
+def _assumed(o: Outcome, found: SeasonFactors | None, bend: float, air: FloatArray) -> Assumed:
+    """What is assumed, or shown by repeat tows: of Cw at the declared speed, whatever is asked."""
     assumed = Assumed()
     if o.steps.wind.coefficients == "archive":
         assumed = replace(assumed, wind_coefficient=ARCHIVE_COEFFICIENT_SD)
     if found is None:
         return assumed
-    tow_sd = WITHOUT_CHANGED_BOATS * found.tow_sd
-    return assumed.as_repeats_show(tow_sd, float(np.median(kappa)), air_ratio)
+    sound = np.isfinite(o.cw_at_declared)
+    air_ratio = air[sound] / o.cw_at_declared[sound]
+    usual_air = float(np.sqrt(np.mean(air_ratio**2))) if sound.any() else 0.0
+    return assumed.as_repeats_show(found.tow_sd, 2.0 * (1.0 + bend), usual_air)

@@ -67,9 +67,9 @@ def recompute_world(
     """Tables of all methods, one below the other, and the truth of every tow."""
     measured = measure(settings)
     made = [recompute(method, measured.tows, measured.blocks) for method in methods]
-    names = [field.name for field in fields(Recomputed)]
+    names = [field.name for field in fields(Recomputed) if field.name != "factors"]
     tables = {name: pl.concat([getattr(one, name) for one in made]) for name in names}
-    return Recomputed(**tables), measured.truth
+    return Recomputed(**tables, factors=None), measured.truth
 
 
 def tow_rows(world: World) -> pl.DataFrame:
@@ -104,6 +104,8 @@ def _tow_row(world: World, tow: Tow) -> dict[str, object]:
         "freeboard_lowest_m": None,
         "freeboard_bow_m": None,
         "freeboard_stern_m": None,
+        "log1_part": 0,
+        "log2_part": 0,
     }
 
 

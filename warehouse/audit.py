@@ -1,20 +1,17 @@
 """Everything behind one boat, or behind one type of boat, as plain data.
 
 Reads only `warehouse.duckdb`. The statistics are made in `pipeline.consistency`; here rows are
-collected, counted and turned into verdicts that are true, false, or None where the figures do not
-decide. How it is said in words is `herijk.audit_text`.
+collected, in `warehouse.audit_types` also judged. How it is said in words is `herijk.audit_text`.
 """
 
 from collections.abc import Sequence
-from math import comb, exp
 from typing import Any, Final
 
 import duckdb
 
-from pipeline.consistency import ERAS, Era
-from pipeline.consistency.homogeneity import LEVEL
 from pipeline.consistency.observed import UNKNOWN_TYPE
 from pipeline.errors import MissingKnowledgeError
+from warehouse.audit_types import TYPE, type_facts, types_page
 from warehouse.database import is_simulated, open_database, rows
 from warehouse.store import Store
 
@@ -22,11 +19,6 @@ Report = dict[str, Any]
 
 TYPE_METHODS: Final = ("as-published", "rebased-2015", "rebased")
 """Methods on a type's page when none is asked for: before, by the rules of 2015, and now."""
-
-ENOUGH_POWER: Final = 0.8
-"""Chance of seeing a spread of B of 10 % from which on "equal bends are possible" is said."""
-
-_TYPE: Final = f"coalesce(b.boat_type, '{UNKNOWN_TYPE}')"
 
 
 def audit(store: Store, names: Sequence[str], method: str | None = None) -> Report:
@@ -51,7 +43,7 @@ def audit(store: Store, names: Sequence[str], method: str | None = None) -> Repo
         else:
             types = list(dict.fromkeys(_type_named(db, name) for name in names))
             chosen = methods if method else _usual(methods)
-            page = {"about": "types"} | _types_page(db, types, chosen)
+            page = {"about": "types"} | types_page(db, types, chosen)
         return {"simulated": is_simulated(db)} | page
 
 
@@ -80,7 +72,7 @@ def _boats_named(db: duckdb.DuckDBPyConnection, name: str) -> list[Report]:
 
 
 def _type_named(db: duckdb.DuckDBPyConnection, name: str) -> str:
-    query = f"SELECT {_TYPE} AS boat_type, count(*) AS n FROM boats AS b GROUP BY ALL ORDER BY ALL"  # noqa: S608
+    query = f"SELECT {TYPE} AS boat_type, count(*) AS n FROM boats AS b GROUP BY ALL ORDER BY ALL"  # noqa: S608
     types = rows(db, query)
     for row in types:
         if _plain(row["boat_type"]) == _plain(name):
@@ -98,201 +90,6 @@ def _type_named(db: duckdb.DuckDBPyConnection, name: str) -> str:
     )
 
 
-# A type ------------------------------------------------------------------------------------------
-
-
-def _types_page(db: duckdb.DuckDBPyConnection, types: list[str], methods: list[str]) -> Report:
-    return {
-        "methods": methods,
-        "types": [
-            _type_facts(db, name) | {"under": {m: _type_under(db, name, m) for m in methods}}
-            for name in types
-        ],
-        "fleet": {method: _fleet(db, method) for method in methods},
-    }
-
-
-def _type_facts(db: duckdb.DuckDBPyConnection, boat_type: str) -> Report:
-    """How many boats and tows there are of a type, and how they differ."""
-    return rows(
-        db,
-        f"""SELECT {_TYPE} AS boat_type, count(DISTINCT b.fsn_no) AS n_boats,
-                   count(DISTINCT t.fsn_no) AS n_towed, count(t.tow_id) AS n_tows,
-                   min(t.season) AS first_season, max(t.season) AS last_season,
-                   min(t.weight_kg) AS lightest_kg, max(t.weight_kg) AS heaviest_kg,
-                   min(t.declared_speed_m_s) AS slowest_m_s,
-                   max(t.declared_speed_m_s) AS fastest_m_s
-            FROM boats AS b LEFT JOIN tows AS t USING (fsn_no)
-            WHERE {_TYPE} = ? GROUP BY ALL""",  # noqa: S608
-        boat_type,
-    )[0]
-
-
-def _type_under(db: duckdb.DuckDBPyConnection, boat_type: str, method: str) -> Report:
-    """All statistics of a type under one method."""
-    own = (method, boat_type)
-    return {
-        "lines": [line | {"follows": _away_from_zero(line)} for line in rows(db, _LINES, *own)],
-        "bends": _bends(_one(db, "type_homogeneity", *own)),
-        "speed_trend": _trend(_one(db, "speed_trend", *own)),
-        "shared": rows(db, _SHARED, *own),
-        "judged": rows(db, _JUDGED, *own),
-        "outside": rows(db, _OUTSIDE, *own),
-        "slow_tows": rows(db, _SLOW, *own),
-        "repeats": _repeats(rows(db, _PAIRS, *own)),
-        "prediction": rows(db, _PREDICTION, *own)[0],
-        "disagreeing": rows(db, _DISAGREEING, *own),
-    }
-
-
-def _one(db: duckdb.DuckDBPyConnection, table: str, method: str, boat_type: str) -> Report:
-    """The one row of a method and type; there is none without a curve, or where types are asked."""
-    query = f"SELECT * FROM {table} WHERE method = ? AND boat_type = ?"  # noqa: S608
-    found = rows(db, query, method, boat_type)
-    reason = "no_type" if boat_type == UNKNOWN_TYPE else "no_curves"
-    return found[0] if found else {"n": 0, "reason": reason}
-
-
-def _away_from_zero(line: Report) -> bool | None:
-    """Whether the interval of a slope leaves out zero."""
-    if line["slope"] is None:
-        return None
-    return bool(line["slope_lo"] > 0 or line["slope_hi"] < 0)
-
-
-def _bends(test: Report) -> Report:
-    """The test of equal bends with its verdict: None where it could not have seen a difference."""
-    if test["reason"]:
-        return test | {"equal_possible": None}
-    different = test["p_value"] < LEVEL
-    strong = (test["power_at_10pct"] or 0.0) >= ENOUGH_POWER
-    return test | {"equal_possible": False if different else True if strong else None}
-
-
-def _trend(trend: Report) -> Report:
-    return trend | {"follows": None if trend["reason"] else _away_from_zero(trend)}
-
-
-def _repeats(pairs: list[Report]) -> Report:
-    """Repeat pairs of a type: how they spread, and whether an era stands apart."""
-    squares = [pair["ln_ratio"] ** 2 for pair in pairs]
-    known = [abs(pair["e_n"]) for pair in pairs if pair["e_n"] is not None]
-    return {
-        "n_pairs": len(pairs),
-        "sd_ratio": (sum(squares) / len(pairs) / 2) ** 0.5 if pairs else None,
-        "n_e_n": len(known),
-        "n_disagree": sum(e_n > 1 for e_n in known),
-        "eras": [_era(pairs, era) for era in ERAS],
-    }
-
-
-def _era(pairs: list[Report], era: Era) -> Report:
-    """Tows of an era against the next tow of the same boat and crew in a later era.
-
-    The last era has no later one: its pairs lie within it.
-    """
-    last = era == ERAS[-1]
-    ratios = [
-        pair["ln_ratio"]
-        for pair in pairs
-        if era.first <= pair["season_before"] <= era.last and (last or pair["season"] > era.last)
-    ]
-    found = median_interval(ratios)
-    counted = {"era": era.name, "against": era.name if last else "later", "n": len(ratios)}
-    if found is None:
-        return (
-            counted | dict.fromkeys(("shift_ratio", "lo", "hi", "apart")) | {"reason": "few_pairs"}
-        )
-    median, lo, hi = (exp(value) for value in found)
-    apart = lo > 1.0 or hi < 1.0
-    return counted | {"shift_ratio": median, "lo": lo, "hi": hi, "apart": apart, "reason": ""}
-
-
-def median_interval(values: Sequence[float]) -> tuple[float, float, float] | None:
-    """Median with its 95 % interval from order statistics, None for fewer than six values.
-
-    Free of any distribution (David & Nagaraja 2003, Order Statistics, 7.1), so that a few tows
-    pulled askew or unreported alterations do not decide.
-    """
-    ordered, n = sorted(values), len(values)
-    outside, k = 0.0, 0
-    while k < n and outside + comb(n, k) * 0.5**n <= 0.025:
-        outside += comb(n, k) * 0.5**n
-        k += 1
-    if k == 0:
-        return None
-    middle = 0.5 * (ordered[(n - 1) // 2] + ordered[n // 2])
-    return middle, ordered[k - 1], ordered[n - k]
-
-
-def _fleet(db: duckdb.DuckDBPyConnection, method: str) -> Report:
-    """What holds for all types together."""
-    error = rows(db, "SELECT * FROM prediction_error WHERE method = ?", method)
-    return {
-        "reproducibility": rows(
-            db, "SELECT * FROM reproducibility WHERE method = ? ORDER BY scope", method
-        ),
-        "components": rows(
-            db,
-            "SELECT * FROM variance_components WHERE method = ? AND scope = 'within_type' "
-            "ORDER BY component",
-            method,
-        ),
-        "prediction_error": error[0] if error else None,
-    }
-
-
-_LINES = """
-SELECT * FROM type_consistency WHERE method = ? AND boat_type = ? ORDER BY quantity, explaining
-"""
-
-_SHARED = """
-SELECT p.pooling, count(*) AS n, any_value(p.standard_speed_m_s) AS standard_speed_m_s,
-       count(p.b_m_s) AS n_b, median(p.b_m_s) AS median_b_m_s,
-       stddev_samp(p.b_m_s) / avg(p.b_m_s) AS b_sd_ratio,
-       max(abs(ln(p.cw_085_kg_m / o.cw_085_kg_m))) AS most_085,
-       max(abs(ln(p.cw_kg_m / o.cw_kg_m))) AS most_100,
-       max(abs(ln(p.cw_115_kg_m / o.cw_115_kg_m))) AS most_115,
-       arg_max(p.fsn_no, abs(ln(p.cw_115_kg_m / o.cw_115_kg_m))) AS most_fsn_no
-FROM pooled_curves AS p JOIN pooled_curves AS o USING (method, tow_id)
-WHERE o.pooling = 'own' AND method = ? AND p.boat_type = ? GROUP BY p.pooling ORDER BY p.pooling
-"""
-
-_JUDGED = """
-SELECT quantity, count(*) AS n, count(DISTINCT fsn_no) AS n_boats,
-       any_value(standard_speed_m_s) AS standard_speed_m_s
-FROM type_outliers WHERE method = ? AND boat_type = ? GROUP BY quantity ORDER BY quantity
-"""
-
-_OUTSIDE = """
-SELECT o.*, b.name FROM type_outliers AS o LEFT JOIN boats AS b USING (fsn_no)
-WHERE o.method = ? AND o.boat_type = ? AND o.outside ORDER BY abs(deviation_sd) DESC, tow_id
-"""
-
-_SLOW = """
-SELECT s.*, b.name FROM slow_tows AS s LEFT JOIN boats AS b USING (fsn_no)
-WHERE s.method = ? AND s.boat_type = ? ORDER BY power_w, tow_id
-"""
-
-_PAIRS = f"""
-SELECT p.* FROM repeat_pairs AS p JOIN boats AS b USING (fsn_no)
-WHERE p.method = ? AND {_TYPE} = ? ORDER BY p.tow_id
-"""  # noqa: S608
-
-_PREDICTION = """
-SELECT count(*) AS n, count(predicted_cw_kg_m) AS n_predicted,
-       sqrt(avg(ln_ratio * ln_ratio)) AS rmse_ratio, avg(ln_ratio) AS mean_ratio,
-       sqrt(avg(cw_sd_ratio * cw_sd_ratio)) AS tow_sd_ratio,
-       count(*) FILTER (WHERE disagrees) AS n_disagree
-FROM predicted_cw WHERE method = ? AND boat_type = ?
-"""
-
-_DISAGREEING = """
-SELECT p.*, b.name FROM predicted_cw AS p LEFT JOIN boats AS b USING (fsn_no)
-WHERE p.method = ? AND p.boat_type = ? AND p.disagrees ORDER BY abs(ln_ratio) DESC, tow_id
-"""
-
-
 # A boat ------------------------------------------------------------------------------------------
 
 
@@ -304,7 +101,7 @@ def _boat_page(db: duckdb.DuckDBPyConnection, boat: Report, methods: list[str]) 
         "methods": methods,
         "tows": [_tow(db, tow, methods) for tow in rows(db, _TOWS, fsn_no)],
         "in_type": _of_boat(db, "type_outliers", fsn_no, methods),
-        "type_size": _type_facts(db, boat["boat_type"] or UNKNOWN_TYPE),
+        "type_size": type_facts(db, boat["boat_type"] or UNKNOWN_TYPE),
         "pooled": _of_boat(db, "pooled_curves", fsn_no, methods),
         "slow_tows": _of_boat(db, "slow_tows", fsn_no, methods),
         "repeat_pairs": _of_boat(db, "repeat_pairs", fsn_no, methods),

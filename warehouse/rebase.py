@@ -32,13 +32,15 @@ def rebase(store: Store, method: Method, against: Method) -> Report:
     """
     tows, boats, crews = typed_tows(store), store.read("boats"), store.read("listed_boats")
     blocks = run_blocks(store)
-    rungs = ladder(against, method, tows, blocks).filter(pl.col("step") != START)
+    old, new = (recompute(m, tows, blocks) for m in (against, method))
+    links = old.season_links, new.season_links
+    rungs = ladder(against, method, tows, blocks, links).filter(pl.col("step") != START)
     on_date = max(tows["tow_date"])
     drafts = [
-        draft_register(
-            recompute(m, tows, blocks).curves, tows, crews, on_date, m.validity
-        ).with_columns(pl.lit(draft_name(m.name)).alias("edition"))
-        for m in (against, method)
+        draft_register(made.curves, tows, crews, on_date, m.validity).with_columns(
+            pl.lit(draft_name(m.name)).alias("edition")
+        )
+        for m, made in ((against, old), (method, new))
     ]
     changes = register_changes(*drafts)
     return {

@@ -53,14 +53,36 @@ def log_error_report(store: Store, method: str) -> Report:
             "simulated": is_simulated(db),
             "method": method,
             "factors": rows(db, _LOG_FACTORS, method),
+            "parts": rows(db, _LOG_PARTS, method),
         }
 
 
+# A season in which a log was replaced has a factor per part: its line here has the mean, and those
+# of the parts stand below.
 _LOG_FACTORS = """
+WITH own AS (
+    SELECT method, season, sum(n_tows) AS n_tows, sum(n_links) AS n_links,
+           max(component) AS component, CASE WHEN count(*) = 1 THEN max(influence) END AS influence,
+           CASE WHEN count(*) = 1 THEN max(influence_boat) END AS influence_boat,
+           CASE WHEN count(*) = 1 THEN max(factor_no_boats) END AS factor_no_boats,
+           CASE WHEN count(*) = 1 THEN max(agreement) END AS agreement
+    FROM season_links WHERE source != 'other log' GROUP BY method, season
+), step AS (
+    SELECT method, season, string_agg(DISTINCT cause, ', ' ORDER BY cause) AS cause
+    FROM season_steps GROUP BY method, season
+)
 SELECT f.season, f.factor, f.lo, f.hi, f.source, l.n_tows, l.n_links, l.component, l.influence,
-       l.influence_boat, l.factor_no_boats, l.agreement
-FROM log_factors AS f LEFT JOIN season_links AS l USING (method, season)
+       l.influence_boat, l.factor_no_boats, l.agreement, s.cause
+FROM log_factors AS f LEFT JOIN own AS l USING (method, season)
+LEFT JOIN step AS s USING (method, season)
 WHERE f.method = ? ORDER BY f.season
+"""
+
+_LOG_PARTS = """
+SELECT season, part, log, source, n_tows, n_links, factor, lo, hi FROM season_links
+WHERE method = ? AND (source = 'other log' OR season IN (
+    SELECT season FROM season_links WHERE part > 0 AND source != 'other log'))
+ORDER BY season, log, part
 """
 
 _BY_SEASON = """

@@ -92,6 +92,8 @@ class Tows(dy.Schema):
     freeboard_bow_m = _number("m", "freeboard at the bow", nullable=True)
     freeboard_stern_m = _number("m", "freeboard at the stern", nullable=True)
     remark = _text("remark in the tow list", nullable=True)
+    log1_part = dy.Int32(description="times log 1 had been replaced that season", min=0)
+    log2_part = dy.Int32(description="times log 2 had been replaced that season", min=0)
     samples_path = _text("samples file in the archive")
     samples_sha256 = _text("its content hash", regex="^[0-9a-f]{64}$")
     second_path = _text("second samples file, if two tows were combined", nullable=True)
@@ -178,6 +180,17 @@ class Curves(dy.Schema):
     flags = dy.List(dy.String(), description="codes of what a person should look at")
 
 
+class CurvePoints(dy.Schema):
+    """Curves over the speeds at which they are valid, 85 to 115 % of the declared speed."""
+
+    method = _method(primary_key=True)
+    tow_id = _tow_id(primary_key=True)
+    speed_m_s = _speed("speed through the water", primary_key=True)
+    cw_kg_m = _number("kg/m", "Cw at this speed", min_exclusive=0)
+    cw_lo_kg_m = _number("kg/m", "lower end of its 95 % interval", min_exclusive=0)
+    cw_hi_kg_m = _number("kg/m", "upper end", min_exclusive=0)
+
+
 class Assessments(dy.Schema):
     """What each check found, one row per method, tow and check; a check not made has no row."""
 
@@ -209,7 +222,7 @@ class SeasonLinks(dy.Schema):
     season = dy.Int32(primary_key=True, description="year of the tow list")
     part = dy.Int32(primary_key=True, description="part of the season, until a log was replaced")
     log = _text("speed source", primary_key=True)
-    source = _text("estimated, gps, or not determined")
+    source = _text("estimated, gps, other log (by the ratio of both), or not determined")
     n_tows = dy.Int32(description="tows of the season", min=0)
     n_links = dy.Int32(description="boats also towed in other seasons", min=0)
     component = dy.Int32(description="connected part of the network; 0 has the dGPS anchor", min=0)
@@ -220,6 +233,7 @@ class SeasonLinks(dy.Schema):
     lo = _number("1", "lower end of its 95 % interval", nullable=True)
     hi = _number("1", "upper end", nullable=True)
     ln_sd = _number("1", "standard deviation of ln factor", nullable=True)
+    dof = _number("1", "its degrees of freedom", nullable=True)
     influence = _number("1", "largest change when one boat is left out", nullable=True)
     influence_boat = _text("that boat", nullable=True)
     weakest_mode = _number("1", "share in what is known worst", nullable=True)
@@ -227,6 +241,37 @@ class SeasonLinks(dy.Schema):
     lo_no_boats = _number("1", "lower end of its 95 % interval", nullable=True)
     hi_no_boats = _number("1", "upper end", nullable=True)
     agreement = _number("1", "difference of the two in standard deviations", nullable=True)
+
+
+class SeasonSteps(dy.Schema):
+    """Whether a season's step against the boats' other tows is the log's or the load cell's."""
+
+    method = _method(primary_key=True)
+    season = dy.Int32(primary_key=True, description="year of the tow list")
+    part = dy.Int32(primary_key=True, description="part of the season, until a log was replaced")
+    log = _text("speed source", primary_key=True)
+    n_boats = dy.Int32(description="boats also towed in other seasons", min=0)
+    level_step = _number("1", "step of ln Cw, by the log as it reads", nullable=True)
+    level_step_sd = _number("1", "its standard deviation", nullable=True)
+    force_step = _number("1", "the part of it in ln force, as the bend shows", nullable=True)
+    force_step_sd = _number("1", "its standard deviation", nullable=True)
+    cause = _text(
+        "log, force (a log error may have come with it), none (no step), or not told",
+        regex="^(log|force|none|not told)$",
+    )
+
+
+class RetowChoice(dy.Schema):
+    """Which few boats to tow again, with dGPS, so that the season factors are surest."""
+
+    method = _method(primary_key=True)
+    position = dy.Int32(primary_key=True, description="1 tells most, given none of the others")
+    fsn_no = _fsn_no()
+    rowers = _rowers()
+    crew_class = _crew_class()
+    seasons = _text("seasons without dGPS in which it was towed as it is now")
+    factor_sd_before_ratio = _number("1", "typical uncertainty of a season's factor before", min=0)
+    factor_sd_after_ratio = _number("1", "the same when this boat is towed too", min=0)
 
 
 class UncertaintyBudget(dy.Schema):
@@ -240,6 +285,20 @@ class UncertaintyBudget(dy.Schema):
     effect_ratio = _number("1", "change of ln Cw by one standard deviation of it")
     u_ratio = _number("1", "relative standard uncertainty", min=0)
     dof = _number("1", "degrees of freedom; empty: not limited", nullable=True)
+
+
+class Ensemble(dy.Schema):
+    """Equally likely values of Cw, with the errors that tows share drawn together.
+
+    Kept in the lake, a file per method, and not in the database.
+    """
+
+    method = _method(primary_key=True)
+    tow_id = _tow_id(primary_key=True)
+    member = dy.Int16(
+        primary_key=True, description="equal numbers of different tows belong together", min=1
+    )
+    cw_kg_m = _number("kg/m", "Cw at the declared speed", min_exclusive=0)
 
 
 class Register(dy.Schema):
@@ -260,6 +319,34 @@ class Register(dy.Schema):
     cw_lo_kg_m = _number("kg/m", "lower end of its 95 % interval", nullable=True)
     cw_hi_kg_m = _number("kg/m", "upper end", nullable=True)
     status = _text("valid, or why there is no valid curve")
+    verification_code = _text(
+        "ten letters and digits that follow from all that made the line; drafts have none",
+        nullable=True,
+    )
+
+
+class DueList(dy.Schema):
+    """Until when each boat and crew's tow counts, and the speed of its next tow."""
+
+    method = _method(primary_key=True)
+    fsn_no = _fsn_no(primary_key=True)
+    rowers = _rowers(primary_key=True)
+    crew_class = _crew_class(primary_key=True)
+    as_of = dy.Date(description="day on which it was judged: that of the last tow or race")
+    status = _text("valid, or why there is no valid curve")
+    tow_id = _tow_id(nullable=True)
+    tow_date = dy.Date(description="day of the tow", nullable=True)
+    valid_until = dy.Date(description="last day it counts", nullable=True)
+    declared_speed_m_s = _speed("speed that was declared for it", nullable=True)
+    power_w = _number("W", "power a rower at that speed", nullable=True)
+    raced_speed_m_s = _speed("fastest race of the past year, through the water", nullable=True)
+    lowest_speed_m_s = _speed("speed at 70 W a rower (men) or 40 W (women)", nullable=True)
+    highest_speed_m_s = _speed("speed at 90 W or 55 W", nullable=True)
+    tow_speed_m_s = _speed("speed proposed for the next tow", nullable=True)
+    speed_reason = _text("why that speed")
+    beyond_curve = dy.Bool(
+        description="it lies outside 85-115 % of the last declared speed", nullable=True
+    )
 
 
 class RegisterChanges(dy.Schema):
@@ -321,7 +408,9 @@ class TypeConsistency(dy.Schema):
     slope_lo = _number("quantity / explaining", "lower end of its 95 % interval", nullable=True)
     slope_hi = _number("quantity / explaining", "upper end", nullable=True)
     r2 = _number("1", "share of the spread that is explained", nullable=True, min=0, max=1)
-    residual_sd_ratio = _number("1", "spread about the line / mean", nullable=True, min=0)
+    residual_sd_ratio = _number(
+        "1", "spread about the line / mean; of ln Cw itself", nullable=True, min=0
+    )
     between_sd_ratio = _number("1", "true spread about the line / mean", nullable=True, min=0)
     noise_sd_ratio = _number("1", "spread by run noise alone / mean", nullable=True, min=0)
     reason = _text("why there is no line: no_type, few_boats, equal_values; else empty")
@@ -337,9 +426,9 @@ class TypeOutliers(dy.Schema):
     crew_class = _crew_class()
     boat_type = _text("type of boat")
     season = _season()
-    quantity = _text("ln_cw_standard or q", primary_key=True)
+    quantity = _text("ln_cw_standard, or bend: (v/B)^2 there", primary_key=True)
     standard_speed_m_s = _speed("common speed: median declared speed of the type")
-    value = _number("1", "quantity of this tow; Cw in kg/m before the logarithm")
+    value = _number("1", "quantity of this tow, at the standard speed")
     expected = _number("1", "the same as the type's other boats predict it")
     deviation_sd = _number("1", "difference in standard deviations of a prediction")
     outside = dy.Bool(description="differs at 5 % over all boats of the type together")
@@ -422,6 +511,10 @@ class SlowTows(dy.Schema):
     power_ratio_120 = _number("1", "power ratio at 120 % of that speed", nullable=True)
     power_ratio_120_lo = _number("1", "lower end of its 95 % interval", nullable=True)
     power_ratio_120_hi = _number("1", "upper end", nullable=True)
+    rowed_speed_m_s = _speed("median declared speed of like crews", nullable=True)
+    power_ratio_rowed = _number("1", "power ratio at that speed", nullable=True)
+    power_ratio_rowed_lo = _number("1", "lower end of its 95 % interval", nullable=True)
+    power_ratio_rowed_hi = _number("1", "upper end", nullable=True)
 
 
 class RepeatPairs(dy.Schema):
@@ -439,6 +532,24 @@ class RepeatPairs(dy.Schema):
     e_n = _number("1", "difference / both 95 % intervals (ISO 13528)", nullable=True)
 
 
+class EraShifts(dy.Schema):
+    """Do seasons with other instruments stand apart? Next tow of the same boat, in a later era."""
+
+    method = _method(primary_key=True)
+    boat_type = _text("type of boat, or all", primary_key=True)
+    era = _text("seasons of the older tow", primary_key=True)
+    n = dy.Int32(description="pairs of tows", min=0)
+    shift_ratio = _number("1", "new / old Cw without ageing, median", nullable=True, min=0)
+    lo = _number("1", "lower end of its 95 % interval", nullable=True, min=0)
+    hi = _number("1", "upper end", nullable=True, min=0)
+    apart = dy.Bool(description="the interval leaves out 1", nullable=True)
+    n_ageing = dy.Int32(description="pairs of all types within the last era", min=0)
+    ageing_per_year = _number("1", "change of ln Cw a year taken out; empty: none", nullable=True)
+    ageing_lo = _number("1", "lower end of its 95 % interval", nullable=True)
+    ageing_hi = _number("1", "upper end", nullable=True)
+    reason = _text("why there is no shift: few_pairs; else empty")
+
+
 class Reproducibility(dy.Schema):
     """How well repeat tows of unaltered boats agree."""
 
@@ -454,6 +565,7 @@ class Reproducibility(dy.Schema):
     share_e_n_above_1 = _number("1", "share of pairs that disagree; 5 % expected", nullable=True)
     run_sd_ratio = _number("1", "scatter of a run about its curve", nullable=True, min=0)
     within_sd_ratio = _number("1", "s_r: what that does to a tow's Cw", nullable=True, min=0)
+    distinct_categories = _number("1", "classes told apart: 1.41 s_boat / s_R", nullable=True)
 
 
 class VarianceComponents(dy.Schema):
@@ -485,7 +597,9 @@ class PredictedCw(dy.Schema):
     boat_type = _text("type of boat, or unknown")
     standard_speed_m_s = _speed("median declared speed of type and crew class")
     cw_kg_m = _number("kg/m", "Cw of the tow at that speed")
-    cw_sd_ratio = _number("1", "its standard uncertainty by run noise", min=0)
+    cw_sd_ratio = _number(
+        "1", "its standard uncertainty: of the runs, or of its interval if wider", min=0
+    )
     predicted_cw_kg_m = _number("kg/m", "Cw as the other boats predict it", nullable=True)
     predicted_lo_kg_m = _number("kg/m", "lower end of its 95 % interval", nullable=True)
     predicted_hi_kg_m = _number("kg/m", "upper end", nullable=True)
@@ -502,7 +616,7 @@ class PredictionError(dy.Schema):
     n = dy.Int32(description="boats and crews predicted", min=0)
     n_boats = dy.Int32(description="boats", min=0)
     rmse_ratio = _number("1", "root mean square of ln tow / predicted", min=0)
-    tow_sd_ratio = _number("1", "of which run noise of the tow", min=0)
+    tow_sd_ratio = _number("1", "of which uncertainty of the tow itself", min=0)
     share_disagreeing = _number("1", "share beyond both uncertainties", min=0, max=1)
 
 
@@ -548,11 +662,16 @@ TABLES: Final[dict[str, type[dy.Schema]]] = {
     "hand_windows": HandWindows,
     "run_points": RunPoints,
     "curves": Curves,
+    "curve_points": CurvePoints,
     "assessments": Assessments,
     "log_factors": LogFactors,
     "season_links": SeasonLinks,
+    "season_steps": SeasonSteps,
+    "retow_choice": RetowChoice,
     "uncertainty_budget": UncertaintyBudget,
+    "ensemble": Ensemble,
     "register": Register,
+    "due_list": DueList,
     "register_changes": RegisterChanges,
     "correction_steps": CorrectionSteps,
     "option_effects": OptionEffects,
@@ -563,6 +682,7 @@ TABLES: Final[dict[str, type[dy.Schema]]] = {
     "speed_trend": SpeedTrend,
     "slow_tows": SlowTows,
     "repeat_pairs": RepeatPairs,
+    "era_shifts": EraShifts,
     "reproducibility": Reproducibility,
     "variance_components": VarianceComponents,
     "predicted_cw": PredictedCw,

@@ -14,17 +14,20 @@ import polars as pl
 from pipeline.blocks import RunBlocks, stack_blocks
 from pipeline.changes import register_changes
 from pipeline.consistency import consistency_tables
+from pipeline.ensemble import as_frame, register_ensemble
 from pipeline.errors import MissingKnowledgeError
 from pipeline.ladder import ladder
 from pipeline.method import Method
 from pipeline.options import beside_uncertainty, option_effects
 from pipeline.recompute import recompute
 from pipeline.register import LINE, draft_name, draft_register
+from pipeline.results import Recomputed
 from pipeline.steady import HAND_COLUMNS
 from warehouse import intake
 from warehouse.archive import outside_run
 from warehouse.code import code_version
 from warehouse.database import build_database
+from warehouse.due import due_made_from, due_rows
 from warehouse.editions.published import published_made_from, published_tables
 from warehouse.schemas import TABLES, Quarantine, conform
 from warehouse.store import Store, fingerprint, table_digest
@@ -35,15 +38,23 @@ METHOD_TABLES: Final = (
     "curves",
     "log_factors",
     "season_links",
+    "season_steps",
+    "retow_choice",
     "uncertainty_budget",
+    "curve_points",
     "assessments",
 )
+METHOD_FILES: Final = ("ensemble",)
+"""Tables of a method that stay in the lake, next to the database: 200 rows a tow would make up most
+of it, and few readers want them."""
+
 STUDY_TABLES: Final = ("correction_steps", "option_effects")
 STUDIED_METHOD: Final = "rebased"
 """The method whose options of judgement are studied."""
 
 REGISTER_TABLES: Final = (
     "register",
+    "due_list",
     "register_changes",
     "lineage",
     "methods",
@@ -56,6 +67,7 @@ CONSISTENCY_TABLES: Final = (
     "speed_trend",
     "slow_tows",
     "repeat_pairs",
+    "era_shifts",
     "reproducibility",
     "variance_components",
     "predicted_cw",
@@ -181,7 +193,8 @@ def method_made_from(store: Store, method: Method) -> str:
 def method_is_stale(store: Store, method: Method) -> bool:
     """Whether a method has to be applied again."""
     made_from = method_made_from(store, method)
-    return any(store.made_from(t, method.name) != made_from for t in METHOD_TABLES)
+    names = (*METHOD_TABLES, *METHOD_FILES)
+    return any(store.made_from(t, method.name) != made_from for t in names)
 
 
 def runs_with_windows(store: Store) -> pl.DataFrame:
@@ -202,17 +215,26 @@ def typed_tows(store: Store) -> pl.DataFrame:
 
 
 def apply_method(store: Store, method: Method, blocks: RunBlocks) -> dict[str, pl.DataFrame]:
-    """Run points, curves, log factors and assessments of all tows under one method.
+    """Run points, curves, log factors, assessments and members of all tows under one method.
 
     Returns:
         The tables written, by name.
     """
     made_from = method_made_from(store, method)
     result = recompute(method, typed_tows(store), blocks)
-    found = {name: conform(name, getattr(result, name)) for name in METHOD_TABLES}
+    tables = {name: getattr(result, name) for name in METHOD_TABLES}
+    tables["ensemble"] = ensemble_of(method, result)
+    found = {name: conform(name, frame) for name, frame in tables.items()}
     for name, frame in found.items():
         store.write(name, frame, made_from, method.name)
     return found
+
+
+def ensemble_of(method: Method, result: Recomputed) -> pl.DataFrame:
+    """Equally likely values of every curve's Cw, 200 rows a tow."""
+    tows = result.curves.drop_nulls("cw_kg_m").select("tow_id", "cw_kg_m")
+    members = register_ensemble(tows, result.uncertainty_budget, result.factors)
+    return as_frame(tows, members).with_columns(pl.lit(method.name).alias("method"))
 
 
 def studies_made_from(store: Store, methods: Sequence[Method]) -> str:
@@ -233,15 +255,16 @@ def make_studies(store: Store, methods: Sequence[Method], blocks: RunBlocks) -> 
         Rows per table.
     """
     tows, first = store.read("tows"), methods[0]
+    links = {m.name: store.read("season_links", m.name) for m in methods}
     ladders = [
-        ladder(first, other, tows, blocks).with_columns(
+        ladder(first, other, tows, blocks, (links[first.name], links[other.name])).with_columns(
             pl.lit(first.name).alias("from_method"), pl.lit(other.name).alias("to_method")
         )
         for other in methods[1:]
     ]
     studied = [
         beside_uncertainty(
-            option_effects(m, tows, blocks), store.read("curves", m.name)
+            option_effects(m, tows, blocks, links[m.name]), store.read("curves", m.name)
         ).with_columns(pl.lit(m.name).alias("method"))
         for m in methods
         if m.name == STUDIED_METHOD
@@ -260,7 +283,8 @@ def register_made_from(store: Store, methods: Sequence[Method]) -> str:
     """What the registers, and everything derived from curves, are made from."""
     curves = {m.name: [store.made_from("curves", m.name), str(m.validity)] for m in methods}
     archive = [store.made_from(t) for t in ("tows", "boats")]
-    return fingerprint(curves, archive, published_made_from(store), code_version())
+    beside = [published_made_from(store), due_made_from(store)]
+    return fingerprint(curves, archive, beside, code_version())
 
 
 def register_is_stale(store: Store, methods: Sequence[Method]) -> bool:
@@ -288,7 +312,7 @@ def _of_methods(store: Store, table: str, methods: Sequence[Method]) -> pl.DataF
 
 
 def make_registers(store: Store, methods: Sequence[Method]) -> dict[str, int]:
-    """A draft register per method and what changes between them, and the published editions.
+    """A draft register per method, its due list, what changes, and the published editions.
 
     Validity is judged on the day of the archive's last tow, not today: so the same archive gives
     the same tables. Drafts are compared with the first method's.
@@ -308,6 +332,7 @@ def make_registers(store: Store, methods: Sequence[Method]) -> dict[str, int]:
     changes = [register_changes(drafts[0], draft) for draft in drafts[1:]]
     found = {
         "register": register,
+        "due_list": due_rows(store, methods, curves),
         "register_changes": pl.concat(changes) if changes else _empty("register_changes"),
         "lineage": _lineage(register, tows, methods),
         "methods": _methods(methods),
@@ -331,7 +356,8 @@ def _of(curves: pl.DataFrame, method: Method) -> pl.DataFrame:
 
 def _as_edition(method: Method, register: pl.DataFrame) -> pl.DataFrame:
     edition, name = pl.lit(draft_name(method.name)), pl.lit(method.name)
-    return register.select(edition.alias("edition"), name.alias("method"), pl.all())
+    code = pl.lit(None, pl.String).alias("verification_code")
+    return register.select(edition.alias("edition"), name.alias("method"), pl.all(), code)
 
 
 def _lineage(register: pl.DataFrame, tows: pl.DataFrame, methods: Sequence[Method]) -> pl.DataFrame:

@@ -1,24 +1,17 @@
 """What people look at, as frames: tables of the database joined and summed for a page or chart.
 
 Reads the database and the blocks; writes nothing. A number about a boat is taken from its table;
-the two things that no table holds, the line of a curve with its band and the means of each second,
-are made here from the rows that do, by the same functions of `pipeline`.
+only the means of each second, which no table holds, are made here from the blocks.
 """
 
-import dataclasses
 from types import TracebackType
 from typing import Final, Self
 
 import duckdb
-import numpy as np
 import polars as pl
 
-from pipeline import curve
 from pipeline.errors import MissingKnowledgeError
 from warehouse.store import Store
-
-LINE_RATIOS: Final = np.linspace(0.85, 1.15, 13)
-"""Speeds of a curve's line / declared speed: the range in which a curve is valid."""
 
 
 class Views:
@@ -106,6 +99,14 @@ class Views:
         """The newest tow of each boat and crew of a known type, under every method."""
         return self.frame(_TYPE_BOATS)
 
+    def shared_bends(self) -> pl.DataFrame:
+        """B of every boat as it is, shared in part, and shared wholly with its type."""
+        return self.frame(
+            "SELECT p.*, b.name, p.fsn_no || ' ' || p.rowers || p.crew_class AS crew "
+            "FROM pooled_curves AS p LEFT JOIN boats AS b USING (fsn_no) "
+            "WHERE p.boat_type != 'unknown' ORDER BY method, tow_id, pooling"
+        )
+
     def season_ladder(self) -> pl.DataFrame:
         """Mean factor of each step per season: the geometric mean, so that steps multiply."""
         return self.frame(_SEASON_LADDER)
@@ -161,25 +162,8 @@ class Views:
         )
 
     def curve_lines(self) -> pl.DataFrame:
-        """Every curve over its valid range with the 95 % band that its runs' scatter gives.
-
-        What seasons share is not in the band: the curve's own interval at the declared speed, in
-        `curves`, may be wider.
-
-        Returns:
-            `method, tow_id, speed_m_s, cw_kg_m, cw_lo_kg_m, cw_hi_kg_m`, 13 rows a curve; a bound
-            is empty where it is not finite.
-        """
-        curves = self.frame(
-            "SELECT method, tow_id, declared_speed_m_s, a_kg_m, b_m_s FROM curves "
-            "WHERE a_kg_m IS NOT NULL ORDER BY method, tow_id"
-        )
-        points = self.frame(
-            "SELECT p.method, p.tow_id, list(p.speed_m_s ORDER BY run) AS speed_m_s, "
-            "list(p.cw_kg_m ORDER BY run) AS cw_kg_m, list(p.used ORDER BY run) AS used "
-            "FROM run_points AS p GROUP BY ALL"
-        )
-        return _lines(curves.join(points, on=["method", "tow_id"], maintain_order="left"))
+        """Every curve over its valid range with its 95 % band: the table `curve_points`."""
+        return self.table("curve_points")
 
     def traces(self) -> pl.DataFrame:
         """Means over every second of every run: what the instruments said.
@@ -210,57 +194,6 @@ _TRACE: Final = (
 )
 
 
-def _lines(rows: pl.DataFrame) -> pl.DataFrame:
-    """Lines with bands of curves that have their run points as lists."""
-    if rows.is_empty():
-        return pl.DataFrame(schema=_LINE_SCHEMA)
-    used, speed, cw_kg_m = (_padded(rows[c]) for c in ("used", "speed_m_s", "cw_kg_m"))
-    points = curve.Points(speed, cw_kg_m, used > 0)
-    free = curve.fit(points)
-    known = rows["b_m_s"].is_not_null().to_numpy()
-    curves = dataclasses.replace(
-        free,
-        a_kg_m=np.where(known, rows["a_kg_m"].to_numpy(), free.a_kg_m),
-        s_s2_m2=np.where(known, curve.s_of_b(rows["b_m_s"].fill_null(1.0)), free.s_s2_m2),
-    )
-    declared = rows["declared_speed_m_s"].to_numpy()
-    scatter = curve.own_scatter(free)
-    errors = curve.covariance(points, free, scatter, declared)
-    frames = []
-    for ratio in LINE_RATIOS:
-        band = curve.cw_interval(curves, errors, scatter.dof, ratio * declared)
-        numbers = {
-            "speed_m_s": ratio * declared,
-            "cw_kg_m": curves.cw_at(ratio * declared),
-            "cw_lo_kg_m": np.where(np.isfinite(band.hi), band.lo, np.inf),
-            "cw_hi_kg_m": band.hi,
-        }
-        finite = [pl.when(pl.col(c).is_finite()).then(pl.col(c)).alias(c) for c in numbers]
-        frames.append(
-            rows.select("method", "tow_id")
-            .with_columns(**{c: pl.Series(v) for c, v in numbers.items()})
-            .with_columns(finite)
-        )
-    return pl.concat(frames).drop_nulls("cw_kg_m").sort("method", "tow_id", "speed_m_s")
-
-
-_LINE_SCHEMA: Final = {
-    "method": pl.String(),
-    "tow_id": pl.String(),
-    **dict.fromkeys(("speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"), pl.Float64()),
-}
-
-
-def _padded(lists: pl.Series) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
-    """Lists as rows of one array, filled up with zeros."""
-    width = int(lists.list.len().max() or 1)  # type: ignore[arg-type]
-    columns = [
-        lists.list.get(i, null_on_oob=True).cast(pl.Float64).fill_null(0.0).to_numpy()
-        for i in range(width)
-    ]
-    return np.column_stack(columns)
-
-
 _REGISTER = """
 SELECT r.edition, r.fsn_no, b.name, b.boat_type, r.rowers, r.crew_class, r.tow_date, r.valid_until,
        r.status, r.declared_speed_m_s, r.a_kg_m, r.b_m_s, r.cw_kg_m, r.cw_lo_kg_m, r.cw_hi_kg_m,
@@ -286,9 +219,11 @@ ORDER BY c.fsn_no, t.tow_date, c.tow_id, c.method
 _TYPE_BOATS = """
 SELECT p.method, p.fsn_no, b.name, p.boat_type, p.rowers, p.crew_class, p.tow_id, c.season,
        t.weight_kg, c.declared_speed_m_s, c.a_kg_m, c.b_m_s, c.b_lo_m_s, c.b_hi_m_s, c.cw_kg_m,
-       c.cw_lo_kg_m, c.cw_hi_kg_m
+       c.cw_lo_kg_m, c.cw_hi_kg_m, exp(o.value) AS cw_standard_kg_m
 FROM pooled_curves AS p JOIN curves AS c USING (method, tow_id) JOIN tows AS t USING (tow_id)
 LEFT JOIN boats AS b ON b.fsn_no = p.fsn_no
+LEFT JOIN type_outliers AS o
+       ON o.method = p.method AND o.tow_id = p.tow_id AND o.quantity = 'ln_cw_standard'
 WHERE p.pooling = 'own' AND p.boat_type != 'unknown'
 ORDER BY p.method, p.boat_type, b.name, p.fsn_no, p.rowers, p.crew_class
 """

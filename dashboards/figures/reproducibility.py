@@ -30,6 +30,28 @@ def spread(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     ).properties(width=WIDTH, height=HEIGHT)
 
 
+def era_shifts(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+    """Next tow of the same boats against the tows of an era; `frame` is `era_shifts`."""
+    base = alt.Chart(frame).encode(
+        alt.X("era:N", title=say("scope"), axis=alt.Axis(labelAngle=0)), xOffset="method:N"
+    )
+    ends = number(alt.Y, "lo", say("shift_ratio")), alt.Y2("hi:Q")
+    return alt.layer(
+        alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3]).encode(y=alt.datum(1.0)),
+        base.mark_rule(strokeWidth=2).encode(*ends, stroke=stroke("method")),
+        base.mark_point(filled=True, size=70, opacity=1).encode(
+            number(alt.Y, "shift_ratio", say("shift_ratio")),
+            colour("method", say("method")),
+            shape("method", say("method")),
+            tooltip=tips(
+                ("method:N", say("method")),
+                ("shift_ratio:Q", say("shift_ratio")),
+                ("n:Q", say("number")),
+            ),
+        ),
+    ).properties(width=WIDTH, height=HEIGHT)
+
+
 def repeat_pairs(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     """Every pair of repeat tows, by the season of the newer; `frame` has `page`."""
     zero = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3]).encode(y=alt.datum(0.0))

@@ -50,6 +50,41 @@ def b_against_speed(frame: pl.DataFrame, say: Say) -> alt.Chart:
     return _scatter(frame, say, ("declared_speed_m_s", say("tow_speed")), ("b_m_s", say("b")))
 
 
+def a_against_weight(frame: pl.DataFrame, say: Say) -> alt.Chart:
+    """A against weight."""
+    return _scatter(frame, say, ("weight_kg", say("weight")), ("a_kg_m", say("a")))
+
+
+def cw_standard_against_weight(frame: pl.DataFrame, say: Say) -> alt.Chart:
+    """Cw at the type's standard speed against weight."""
+    y = ("cw_standard_kg_m", say("cw_standard"))
+    return _scatter(frame, say, ("weight_kg", say("weight")), y)
+
+
+def cw_standard_against_speed(frame: pl.DataFrame, say: Say) -> alt.Chart:
+    """Cw at the type's standard speed against tow speed."""
+    y = ("cw_standard_kg_m", say("cw_standard"))
+    return _scatter(frame, say, ("declared_speed_m_s", say("tow_speed")), y)
+
+
+def shared_bend(frame: pl.DataFrame, say: Say) -> alt.Chart:
+    """B of each boat: its own, drawn to its type's, and shared; `frame` is `Views.shared_bends`."""
+    names = {code: say(f"code.{code}") for code in ("own", "partial", "shared")}
+    legend = alt.Legend(labelExpr=f"({names})[datum.value] || datum.value")
+    return (
+        alt.Chart(frame)
+        .mark_point(filled=True, size=60, opacity=0.85)
+        .encode(
+            number(alt.X, "b_m_s", say("b")),
+            alt.Y("crew:N", title=say("boat")),
+            colour("pooling", say("pooling"), legend=legend),
+            shape("pooling", say("pooling"), legend=legend),
+            tooltip=tips(("crew:N", say("boat")), ("b_m_s:Q", say("b"))),
+        )
+        .properties(width=360)
+    )
+
+
 def cw_against_weight(frame: pl.DataFrame, say: Say) -> alt.Chart:
     """Cw at the declared speed against weight."""
     return _scatter(frame, say, ("weight_kg", say("weight")), ("cw_kg_m", say("cw_declared")))

@@ -1,9 +1,9 @@
 """Are equal boats equal? Statistics of boats of one type and of repeated tows.
 
 Belongs here: what a table of curves says about boats of a type (`lines`, `homogeneity`), about the
-speed of the tow (`tow_speed`), about repeats (`repeats`, `components`) and about a boat that was
-only measured (`prediction`). Does not belong here: how a curve is made, which differences matter
-to a race (`pipeline.changes`), and any judgement: tables say, people decide.
+speed of the tow (`tow_speed`), about repeats (`repeats`, `eras`, `components`) and about a boat
+that was only measured (`prediction`). Does not belong here: how a curve is made, which differences
+matter to a race (`pipeline.changes`), and any judgement: tables say, people decide.
 
 `observed` joins the tables and carries the measuring errors; `mixed` is the one statistical model.
 """
@@ -11,11 +11,12 @@ to a race (`pipeline.changes`), and any judgement: tables say, people decide.
 import polars as pl
 
 from pipeline.consistency.components import variance_components
+from pipeline.consistency.eras import ERAS, Era, era_shifts
 from pipeline.consistency.homogeneity import pooled_curves, type_homogeneity
 from pipeline.consistency.lines import type_consistency, type_outliers
 from pipeline.consistency.observed import Observed, observe
 from pipeline.consistency.prediction import predicted_cw, prediction_error
-from pipeline.consistency.repeats import ERAS, Era, repeat_pairs, reproducibility
+from pipeline.consistency.repeats import repeat_pairs, reproducibility, told_apart
 from pipeline.consistency.tow_speed import slow_tows, speed_trend
 
 __all__ = [
@@ -23,6 +24,7 @@ __all__ = [
     "Era",
     "Observed",
     "consistency_tables",
+    "era_shifts",
     "observe",
     "pooled_curves",
     "predicted_cw",
@@ -56,6 +58,7 @@ def consistency_tables(
     """
     observed = observe(curves, tows, boats, run_points)
     pairs = repeat_pairs(curves, tows)
+    components = variance_components(observed)
     predicted = predicted_cw(observed)
     return {
         "type_consistency": type_consistency(observed),
@@ -65,8 +68,9 @@ def consistency_tables(
         "speed_trend": speed_trend(observed),
         "slow_tows": slow_tows(observed),
         "repeat_pairs": pairs,
-        "reproducibility": reproducibility(pairs, observed, eras),
-        "variance_components": variance_components(observed),
+        "era_shifts": era_shifts(pairs, boats, eras),
+        "reproducibility": told_apart(reproducibility(pairs, observed, eras), components),
+        "variance_components": components,
         "predicted_cw": predicted,
         "prediction_error": prediction_error(predicted),
     }

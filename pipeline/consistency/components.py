@@ -32,7 +32,8 @@ NAMES: Final = {"boat": mixed.BOAT, "season": mixed.OTHER, "boat_season": mixed.
 def variance_components(observed: Observed) -> pl.DataFrame:
     """Standard deviations of ln Cw by cause, over the fleet and within types, per method.
 
-    A boat with a crew is compared at its median declared speed. `run` is what the scatter of the
+    A boat with a crew is compared at its median declared speed; that Cw grows with speed is taken
+    out, for boats are told apart at one speed. `run` is what the scatter of the
     runs does to the Cw of one tow; it is known from within the tows. The spread of boats divided
     by that of everything else says how many boats the test can tell apart.
 
@@ -114,8 +115,13 @@ def _compared(tows: Observed) -> tuple[FloatArray, FloatArray]:
 
 
 def _fixed(tows: Observed, scope: str) -> FloatArray:
-    """One level for the fleet, or one per type."""
-    if scope == FLEET or tows.table.is_empty():
-        return np.ones((tows.table.height, 1))
-    types = np.unique(tows.table["boat_type"].to_numpy().astype(str), return_inverse=True)[1]
-    return np.eye(int(types.max()) + 1)[types]
+    """One level for the fleet, or one per type; and a slope with the speed of comparison."""
+    if tows.table.is_empty():
+        return np.ones((0, 1))
+    levels = np.ones((tows.table.height, 1))
+    if scope == WITHIN_TYPE:
+        types = np.unique(tows.table["boat_type"].to_numpy().astype(str), return_inverse=True)[1]
+        levels = np.eye(int(types.max()) + 1)[types]
+    speed = np.log(tows.column("median_speed_m_s"))
+    within = speed - levels @ np.linalg.lstsq(levels, speed)[0]
+    return np.column_stack([levels, within]) if np.abs(within).max() > 1e-9 else levels

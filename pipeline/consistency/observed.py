@@ -181,6 +181,14 @@ def ln_cw_unit_variance(observed: Observed, speed_m_s: FloatArray | float) -> Fl
     )
 
 
+def bend_at(observed: Observed, speed_m_s: float) -> tuple[FloatArray, FloatArray]:
+    """Bend (v/B)^2 at a common speed and its variance for a run scatter of 1."""
+    r = observed.column("s_s2_m2") * speed_m_s**2
+    stretch = (speed_m_s / observed.column("declared_speed_m_s")) ** 2
+    stretch = stretch / (1.0 + observed.column("q")) ** 2
+    return r, stretch * stretch * observed.column("q_unit_variance")
+
+
 def q_at(observed: Observed, speed_m_s: float) -> tuple[FloatArray, FloatArray]:
     """Bend q at a common speed and its variance for a run scatter of 1; NaN where v >= B."""
     s, declared = observed.column("s_s2_m2"), observed.column("declared_speed_m_s")

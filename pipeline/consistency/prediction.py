@@ -23,6 +23,7 @@ from pipeline.consistency.observed import (
 )
 
 LEVEL: Final = 0.95
+NORMAL_95: Final = 1.959963984540054
 FEWEST_BOATS_PER_COLUMN: Final = 3
 MEASURES: Final = ("displacement_kg", "waterline_length_m", "beam_m", "standard_speed_m_s")
 
@@ -31,9 +32,10 @@ def predicted_cw(observed: Observed) -> pl.DataFrame:
     """Cw of each boat and crew by its newest tow, and as predicted from all other boats.
 
     The standard speed is the median declared speed of the type and crew class: known without a
-    tow, and within the speeds at which most curves count. A tow disagrees where the difference is
-    more than both 95 % uncertainties together (root of the sum of squares). The variances are
-    estimated once, with all boats.
+    tow, and within the speeds at which most curves count. A tow's uncertainty is that of its runs
+    at the standard speed or, where wider, that of its interval, which also knows of the log. A tow
+    disagrees where the difference is more than both 95 % uncertainties together (root of the sum of
+    squares). The variances are estimated once, with all boats.
 
     Returns:
         Rows of the table `predicted_cw`; tows without weight, or whose curve does not count at the
@@ -64,7 +66,7 @@ def _predicted(fleet: Observed) -> pl.DataFrame:
     fleet = fleet.take(np.flatnonzero(np.isfinite(cw) & weighed))
     speed = fleet.column("standard_speed_m_s")
     cw = curve_at(fleet, speed)
-    variance = ln_cw_unit_variance(fleet, speed) * fleet.column("run_sd_ratio") ** 2
+    variance = _tow_variance(fleet, speed)
     found = fleet.table.select(
         "method",
         "tow_id",
@@ -81,6 +83,13 @@ def _predicted(fleet: Observed) -> pl.DataFrame:
     return found.with_columns(
         *(pl.Series(name, values, pl.Float64).fill_nan(None) for name, values in numbers.items())
     ).with_columns(_disagrees(), pl.lit("" if enough else "few_boats").alias("reason"))
+
+
+def _tow_variance(fleet: Observed, speed_m_s: FloatArray) -> FloatArray:
+    """Variance of ln Cw of each tow: by its runs or by its interval, the larger, shape (rows,)."""
+    runs = ln_cw_unit_variance(fleet, speed_m_s) * fleet.column("run_sd_ratio") ** 2
+    half = 0.5 * np.log(fleet.column("cw_hi_kg_m") / fleet.column("cw_lo_kg_m"))
+    return np.fmax(runs, (half / NORMAL_95) ** 2)
 
 
 def _second_opinion(
@@ -111,7 +120,7 @@ def _nothing(rows: int) -> dict[str, FloatArray]:
 
 
 def _disagrees() -> pl.Expr:
-    both = 1.96 * (pl.col("cw_sd_ratio") ** 2 + pl.col("predicted_sd_ratio") ** 2).sqrt()
+    both = NORMAL_95 * (pl.col("cw_sd_ratio") ** 2 + pl.col("predicted_sd_ratio") ** 2).sqrt()
     return (pl.col("ln_ratio").abs() > both).alias("disagrees")
 
 
@@ -133,7 +142,7 @@ def _types(fleet: Observed) -> list[str]:
 
 
 def prediction_error(predicted: pl.DataFrame) -> pl.DataFrame:
-    """Cross-validated error of the prediction, next to the scatter of a tow, per method.
+    """Cross-validated error of the prediction, next to the uncertainty of a tow, per method.
 
     Args:
         predicted: rows of `predicted_cw`.

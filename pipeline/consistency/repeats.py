@@ -1,10 +1,9 @@
 """How far two tows of one unaltered boat agree: pairs, repeatability and reproducibility.
 
-ISO 5725 with the season as the laboratory: s_r within a tow, s_R between tows. How the spread
-divides over boat, season and the rest is in `components`.
+ISO 5725 with the season as the laboratory: s_r within a tow, s_R between tows. Which seasons stand
+apart is in `eras`, how the spread divides over boat, season and the rest in `components`.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -12,34 +11,12 @@ import polars as pl
 import scipy
 
 from pipeline.arrays import FloatArray
+from pipeline.consistency.components import DISTINCT, WITHIN_TYPE
+from pipeline.consistency.eras import ERAS, Era
 from pipeline.consistency.observed import LINE, Observed, bend_of_curve
 
 LEVEL: Final = 0.95
 ALL_PAIRS: Final = "all"
-
-
-@dataclass(frozen=True)
-class Era:
-    """Seasons with like instruments.
-
-    Attributes:
-        name: as it stands in tables.
-        first, last: seasons, both included.
-        steering_checked: whether a tow pulled askew would have been seen.
-    """
-
-    name: str
-    first: int
-    last: int
-    steering_checked: bool
-
-
-ERAS: Final = (
-    Era("2009-2011", 2009, 2011, steering_checked=False),
-    Era("2012-2013", 2012, 2013, steering_checked=False),
-    Era("2014-", 2014, 9999, steering_checked=True),
-)
-"""Worn logs, Doppler logs, dGPS (Sleepproef, R. Pot 2017); straight steering from 2014 on."""
 
 
 def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
@@ -131,6 +108,26 @@ def reproducibility(
     counts = {"n_pairs": pl.Int32(), "n_tows": pl.Int32()}
     schema = {"method": pl.String(), "scope": pl.String()} | counts
     return pl.DataFrame(rows, schema=schema | dict.fromkeys(numbers, pl.Float64()))
+
+
+def told_apart(reproducibility: pl.DataFrame, components: pl.DataFrame) -> pl.DataFrame:
+    """Adds `distinct_categories`: how many classes of boats of a type the test tells apart.
+
+    1.41 s_boat / s_R (Measurement Systems Analysis, AIAG), with s_boat from `variance_components`
+    within types.
+    """
+    boats = components.filter(pl.col("scope") == WITHIN_TYPE, pl.col("component") == "boat").select(
+        "method", pl.col("sd_ratio").alias("boat_sd_ratio")
+    )
+    return (
+        reproducibility.join(boats, on="method", how="left", maintain_order="left")
+        .with_columns(
+            pl.when(pl.col("sd_ratio") > 0)
+            .then(DISTINCT * pl.col("boat_sd_ratio") / pl.col("sd_ratio"))
+            .alias("distinct_categories")
+        )
+        .drop("boat_sd_ratio")
+    )
 
 
 def _spread(pairs: pl.DataFrame) -> dict[str, float | int | None]:

@@ -20,6 +20,8 @@ SLOW_POWER_W: Final = {"H": 60.0, "D": 34.0}
 
 ALL_TYPES: Final = "all"
 FEWEST_BOATS: Final = 4
+FEWEST_OTHERS: Final = 2
+ENDS: Final = ("", "_lo", "_hi")
 
 
 def is_slow(table: pl.DataFrame) -> BoolArray:
@@ -91,9 +93,10 @@ def _trend(parts: list[Observed]) -> dict[str, Any]:
 def slow_tows(observed: Observed) -> pl.DataFrame:
     """Tows made with too little power, and what their own bend does to race power.
 
-    The tow's own curve is compared, 10 and 20 % above its declared speed, with the curve of the
-    same runs that has the bend of the type's other boats. The interval is that of the tow's own
-    bend alone.
+    The tow's own curve is compared with the curve of the same runs that has the bend of the type's
+    other boats: 10 and 20 % above its declared speed, and at the speed that its crew will really
+    row, the median declared speed of the type's other crews of that class (inferred). The interval
+    is that of the tow's own bend alone.
 
     Returns:
         Rows of the table `slow_tows`; the ratios are empty where the type has no other boats.
@@ -111,8 +114,9 @@ def slow_tows(observed: Observed) -> pl.DataFrame:
         "boat_type": pl.String(),
         "declared_speed_m_s": pl.Float64(),
         "power_w": pl.Float64(),
+        "rowed_speed_m_s": pl.Float64(),
     }
-    ratios = (f"power_ratio_{above}{end}" for above in (110, 120) for end in ("", "_lo", "_hi"))
+    ratios = (f"power_ratio_{at}{end}" for at in ("110", "120", "rowed") for end in ENDS)
     empty = pl.DataFrame(schema=schema | dict.fromkeys(ratios, pl.Float64()))
     return pl.concat([empty, *parts]).sort("method", "tow_id")
 
@@ -120,33 +124,36 @@ def slow_tows(observed: Observed) -> pl.DataFrame:
 def _slow_of_type(boats: Observed, boat_type: str) -> pl.DataFrame:
     slow = is_slow(boats.table)
     chosen, others = (boats.take(np.flatnonzero(where)) for where in (slow, ~slow))
-    ratios = {}
-    for above in (110, 120):
-        ratio, half = np.full(slow.sum(), np.nan), np.full(slow.sum(), np.nan)
-        if boat_type != UNKNOWN_TYPE and others.table["fsn_no"].n_unique() >= 2 and slow.any():
-            ratio, half = _power_ratio(chosen, shared_bend(others), above / 100.0)
-        for end, values in (
-            ("", ratio),
-            ("_lo", ratio * np.exp(-half)),
-            ("_hi", ratio * np.exp(half)),
-        ):
-            ratios[f"power_ratio_{above}{end}"] = values
+    known = boat_type != UNKNOWN_TYPE and others.table["fsn_no"].n_unique() >= FEWEST_OTHERS
+    declared = chosen.column("declared_speed_m_s")
+    rowed = _rowed_speed(chosen, others) if known else np.full(len(declared), np.nan)
+    columns = {"rowed_speed_m_s": rowed}
+    for at, speed in (("110", 1.1 * declared), ("120", 1.2 * declared), ("rowed", rowed)):
+        ends = np.full((3, len(declared)), np.nan)
+        if known and len(declared):
+            ends = _power_ratio(chosen, shared_bend(others), speed)
+        columns |= {f"power_ratio_{at}{end}": ends[i] for i, end in enumerate(ENDS)}
     return chosen.table.select(
         "method", "tow_id", *LINE, "boat_type", "declared_speed_m_s", "power_w"
-    ).with_columns(pl.Series(k, v).fill_nan(None) for k, v in ratios.items())
+    ).with_columns(pl.Series(k, v, pl.Float64).fill_nan(None) for k, v in columns.items())
 
 
-def _power_ratio(tows: Observed, s_s2_m2: float, above: float) -> tuple[FloatArray, FloatArray]:
-    """Power by the own curve / by the shared bend, and half the width of its interval in ln."""
-    speed = above * tows.column("declared_speed_m_s")
-    s = np.full(len(speed), s_s2_m2)
-    shared = curve.cw(height_given_bend(tows.points, s), s, speed)
+def _rowed_speed(slow: Observed, others: Observed) -> FloatArray:
+    """Median declared speed of the others of the same crew class, NaN without any."""
+    median = others.table.group_by("crew_class").agg(pl.col("declared_speed_m_s").median())
+    by_class = dict(median.iter_rows())
+    return np.array([by_class.get(c, np.nan) for c in slow.table["crew_class"]], dtype=np.float64)
+
+
+def _power_ratio(tows: Observed, s_s2_m2: float, speed_m_s: FloatArray) -> FloatArray:
+    """Power by the own curve / by the shared bend with its interval, shape (3, rows)."""
+    s = np.full(len(speed_m_s), s_s2_m2)
+    shared = curve.cw(height_given_bend(tows.points, s), s, speed_m_s)
     own_s, q = tows.column("s_s2_m2"), tows.column("q")
-    own_a = tows.column("c0_kg_m") / (1.0 + q)
-    own = curve.cw(own_a, own_s, speed)
+    own = curve.cw(tows.column("c0_kg_m") / (1.0 + q), own_s, speed_m_s)
     known = np.isfinite(shared) & np.isfinite(own)
-    ratio = np.where(known, own, 1.0) / np.where(known, shared, 1.0)
-    x = above**2 - 1.0
+    ratio = np.where(known, own, np.nan) / np.where(known, shared, 1.0)
+    x = (speed_m_s / tows.column("declared_speed_m_s")) ** 2 - 1.0
     slope = x / np.maximum(1.0 - q * x, 0.05)
-    half = 1.96 * slope * np.sqrt(tows.column("q_unit_variance")) * tows.column("run_sd_ratio")
-    return np.where(known, ratio, np.nan), np.where(known, half, np.nan)
+    sd = np.abs(slope) * np.sqrt(tows.column("q_unit_variance")) * tows.column("run_sd_ratio")
+    return np.stack([ratio, ratio * np.exp(-1.96 * sd), ratio * np.exp(1.96 * sd)])

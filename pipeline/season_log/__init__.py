@@ -5,10 +5,12 @@ speed log. A speed error acts on Cw at a fixed speed with the elasticity kappa =
 repeat tows determine it well (research, method.md 8.1). It is the ubercalibration of astronomy:
 boats are the stars, seasons the nights, tows calibrated on dGPS the absolute anchor.
 
-Belongs here: the joint estimate (`joint`), how sure it is (`left_out`) and what it rests on
-(`network`); the second estimate without boat identity (`without_boats`); the test whether a step is
-the log's or the load cell's (`cause`). Does not: how Cw of a tow is computed, prescribed
-corrections (never data here) and what is done with the factors.
+Belongs here: the joint estimate (`joint`), how far tows scatter (`scatter`), how sure it all is
+(`left_out`) and what it rests on (`network`); which boats would tie the seasons together better
+(`ties`); the second estimate without boat identity (`without_boats`); the factor of the log that is
+not in use (`other_log`); the test whether a step is the log's or the load cell's (`cause`). Does
+not: how Cw of a tow is computed, prescribed corrections (never data here) and what is done with the
+factors.
 
 The model, for tow k of boat i in season j, with lambda = ln(true speed / log speed):
 
@@ -24,7 +26,9 @@ from pipeline.season_log.assumed import Prior, Settings
 from pipeline.season_log.cause import log_or_force
 from pipeline.season_log.estimate import SeasonFactors, estimate_season_factors
 from pipeline.season_log.network import GROUP, LINE
+from pipeline.season_log.other_log import other_log_factors
 from pipeline.season_log.scale import scale_effect
+from pipeline.season_log.ties import retow_choice
 
 __all__ = [
     "GROUP",
@@ -34,5 +38,7 @@ __all__ = [
     "Settings",
     "estimate_season_factors",
     "log_or_force",
+    "other_log_factors",
+    "retow_choice",
     "scale_effect",
 ]

@@ -23,6 +23,7 @@ class Settings:
         tow_sd, wander_sd, gps_sd: first guesses of the standard deviations of ln Cw of a tow beyond
             its random part, of ln of the log factor from tow to tow, and of ln(GPS / log) beyond
             its given uncertainty. They count as `prior_dof` observations.
+        changed_sd: standard deviation of the change of ln Cw of a boat altered without a report.
         gps_season_sd: uncertainty of a season's mean GPS / log that does not average out.
         gps_noise_m_s: sideways noise of a fix; the length of a noisy velocity is too long by up to
             noise^2 / (2 v^2). How much of that a receiver smooths away is unknown: half is taken.
@@ -36,9 +37,10 @@ class Settings:
     weight_elasticity: Prior = Prior(0.4, 0.4)
     length_elasticity: Prior = Prior(0.0, 1.0)
     tow_sd: float = 0.01
+    changed_sd: float = 0.08
     wander_sd: float = 0.003
     gps_sd: float = 0.01
-    prior_dof: float = 1.0
+    prior_dof: float = 0.1
     gps_season_sd: float = 0.003
     gps_noise_m_s: float = 0.1
     t_dof: float = 8.0

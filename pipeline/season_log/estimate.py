@@ -13,6 +13,7 @@ from pipeline.season_log.assumed import USUAL, Settings
 from pipeline.season_log.joint import AGEING, Fit, Rows, fit_jointly, leave_boats_out
 from pipeline.season_log.left_out import LeftOut
 from pipeline.season_log.network import GROUP, Network
+from pipeline.season_log.scatter import tow_scatter
 from pipeline.season_log.without_boats import Second, without_boats
 
 LEVEL: Final = 0.95
@@ -33,9 +34,11 @@ class SeasonFactors:
         covariance: covariance of ln factor between the rows of `factors` that are determined, in
             their order.
         wander_sd: standard deviation of ln factor from tow to tow, by first season of the era.
-        tow_sd: standard deviation of ln Cw of a calibrated tow beyond its random part.
+        tow_sd: standard deviation of ln Cw of a calibrated tow beyond its random part, without
+            boats that changed.
         ageing_per_year: change of ln Cw per year, with `ageing_sd`.
         weakest_mode_sd: standard deviation of the combination of ln factors that is known worst.
+        tows: what it was estimated from.
     """
 
     factors: pl.DataFrame
@@ -45,6 +48,25 @@ class SeasonFactors:
     ageing_per_year: float
     ageing_sd: float
     weakest_mode_sd: float
+    tows: pl.DataFrame
+
+    def of_season(self, season: int, log: str) -> tuple[float, float, float, str] | None:
+        """Factor, bounds and source of a season; None where not determined.
+
+        Where the log was replaced it is the mean over the tows of its determined parts.
+        """
+        known = self.factors.drop_nulls("factor")
+        mine = (known["season"] == season) & (known["log"] == log)
+        parts = known.filter(mine)
+        if parts.height < 2:
+            return next(parts.select("factor", "lo", "hi", "source").iter_rows(), None)
+        count = np.where(mine, known["n_tows"].to_numpy(), 0)
+        share = count / count.sum()
+        ln_factor = share @ known["factor"].log().to_numpy()
+        sd = np.sqrt(share @ self.covariance @ share)
+        half = sd * stdtrit(parts["dof"].to_numpy().min(), 0.5 * (1.0 + LEVEL))
+        factor, lo, hi = np.exp(ln_factor + np.array([0.0, -half, half])).tolist()
+        return factor, lo, hi, ESTIMATED if (parts["source"] == ESTIMATED).any() else GPS
 
 
 def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> SeasonFactors:
@@ -77,7 +99,11 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
     _refuse_unknown(tows)
     network = Network.of(tows)
     rows = Rows.of(network, settings)
-    fit = fit_jointly(rows, settings)
+    # Ageing, weight and length first, with whatever scatter fits; then the scatter of tows, apart
+    # from wander and changed boats; then everything with it.
+    first = fit_jointly(rows, settings)
+    tow_sd = tow_scatter(*rows.anchored_pairs(first.solution), settings)
+    fit = fit_jointly(rows, settings, tow_sd)
     spread = leave_boats_out(rows, fit, settings)
     ageing = fit.ageing_per_year, float(np.sqrt(spread.covariance[AGEING, AGEING]))
     second = without_boats(network, ageing, settings)
@@ -91,10 +117,11 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
         factors=_described(_numbers(network, fit, spread, mode), network, second),
         covariance=covariance,
         wander_sd=dict(zip(settings.era_starts, wander_sd, strict=True)),
-        tow_sd=float(np.sqrt(fit.variances[0])) * as_sd,
+        tow_sd=tow_sd,
         ageing_per_year=ageing[0],
         ageing_sd=ageing[1],
         weakest_mode_sd=mode_sd,
+        tows=tows,
     )
 
 

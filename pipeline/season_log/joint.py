@@ -96,6 +96,15 @@ class Rows:
             groups=groups,
         )
 
+    def anchored_pairs(self, solution: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Differences between a boat's consecutive anchored tows, and their random variance."""
+        later = np.flatnonzero(self.is_cw & (self.group < 0))[1:]
+        # Rows of Cw come first, sorted by boat and time.
+        later = later[(self.group[later - 1] < 0) & (self.boat[later] == self.boat[later - 1])]
+        level = self.value - self.fixed @ solution
+        variance = self.known_variance[later] + self.known_variance[later - 1]
+        return level[later] - level[later - 1], variance
+
     def linear(self, ln_factor: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Observed values, design and slope of h, linear about given ln factors."""
         value, slope = linear_scale(self.value, self.group, self.r, ln_factor)
@@ -170,12 +179,13 @@ class Fit:
         return float(self.solution[AGEING])
 
 
-def fit_jointly(rows: Rows, settings: Settings) -> Fit:
+def fit_jointly(rows: Rows, settings: Settings, tow_sd: float | None = None) -> Fit:
     """Weighted least squares, weights and variances by turns until nothing moves.
 
     Weights are those of the EM algorithm for t residuals; the variances solve the REML equations
     sum(d u r^2 / v^2) = sum(d (1 - h) / v), d the share of a component in a row's variance and h
-    the row's leverage, by multiplicative steps, which keep them positive.
+    the row's leverage, by multiplicative steps, which keep them positive. `tow_sd` is held where it
+    is given.
     """
     wander_sd = [settings.wander_sd] * len(settings.era_starts)
     start = np.array([settings.tow_sd, settings.gps_sd, *wander_sd]) ** 2
@@ -202,6 +212,8 @@ def fit_jointly(rows: Rows, settings: Settings) -> Fit:
         found += settings.prior_dof * start / variances**2
         expected += settings.prior_dof / variances
         step = found / expected
+        if tow_sd is not None:
+            step[0] = tow_sd**2 / variances[0]
         variances = variances * step
         if max(np.abs(solution - previous).max(), np.abs(step - 1.0).max() * 1e-3) < TOLERANCE:
             break

@@ -4,6 +4,7 @@ import json
 
 import pytest
 
+import pipeline.recompute
 from tests.warehouse.edition_bench import EditionBench
 
 DECISION = ("--decision", "ALV 12-5-2014")
@@ -51,7 +52,14 @@ def test_wrong_arguments_are_status_2(herijk, bench, arguments):
 def test_diff_names_gain_loss_causes_and_races(herijk, bench):
     status, out, err = herijk("diff", "2014-1", "2014-2", "--data", bench.data)
     assert (status, err) == (0, "")
-    for part in ("Gain", "Lose", "method: temperature", "in 2 h", "Races (fatigue extend"):
+    for part in (
+        "Gain",
+        "Lose",
+        "method: water temperature",
+        "in 2 h",
+        "Races (fatigue extend",
+        "Winners",
+    ):
         assert part in out
     status, out, _ = herijk("diff", "2014-1", "2014-2", "--data", bench.data, "--json")
     report = json.loads(out)
@@ -77,6 +85,21 @@ def test_verify_is_0_when_all_is_well_and_1_when_not(herijk, bench, tmp_path):
     assert status == 1
     assert "register.csv, line" in out
     assert "WRONG" in out
+
+
+def test_verify_under_other_code_says_that_what_was_published_stands(herijk, bench, monkeypatch):
+    original = pipeline.recompute.still_air_coefficient_kg_m
+    monkeypatch.setattr(
+        pipeline.recompute,
+        "still_air_coefficient_kg_m",
+        lambda area, drag: 1.5 * original(area, drag),
+    )
+    monkeypatch.setattr("warehouse.editions.verify.code_version", lambda: "0.2.0+other")
+    status, out, _ = herijk("verify", "--data", bench.data)
+    assert status == 0
+    assert "the code changed, from" in out
+    assert "what was published stands" in out
+    assert "Everything is as it was" not in out
 
 
 def test_verify_without_any_edition_says_so(herijk, tmp_path):

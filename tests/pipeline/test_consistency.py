@@ -92,6 +92,34 @@ def test_equal_errors_give_the_interval_of_ordinary_least_squares():
     assert found.hi[1] - found.value[1] == pytest.approx(half, rel=1e-3)
 
 
+BCG = np.array(
+    [
+        [4, 119, 11, 128, 44], [6, 300, 29, 274, 55], [3, 228, 11, 209, 42],
+        [62, 13536, 248, 12619, 52], [33, 5036, 47, 5761, 13], [180, 1361, 372, 1079, 44],
+        [8, 2537, 10, 619, 19], [505, 87886, 499, 87892, 13], [29, 7470, 45, 7232, 27],
+        [17, 1699, 65, 1600, 42], [186, 50448, 141, 27197, 18], [5, 2493, 3, 2338, 33],
+        [27, 16886, 29, 17825, 33],
+    ]
+)  # fmt: skip
+"""Thirteen trials of a vaccine [Colditz and others 1994, JAMA 271:698]: treated ill and well,
+untreated ill and well, latitude. The R package metafor prints its results in its manual."""
+
+
+def test_the_model_gives_the_printed_results_of_another_program():
+    ill, well, ill_without, well_without, latitude = BCG.T.astype(float)
+    n, n_without = ill + well, ill_without + well_without
+    ln_risk = np.log(ill / n / (ill_without / n_without))
+    variance = 1 / ill - 1 / n + 1 / ill_without - 1 / n_without
+    level = mixed.fit(mixed.Problem.of(ln_risk, np.ones(13), variance, range(13)), (mixed.BOAT,))
+    assert level.sd[0] ** 2 == pytest.approx(0.3132, abs=5e-5)
+    assert level.beta[0] == pytest.approx(-0.7145, abs=5e-5)
+    x = np.column_stack([np.ones(13), latitude])
+    line = mixed.fit(mixed.Problem.of(ln_risk, x, variance, range(13)), (mixed.BOAT,))
+    # metafor stops iterating at a change of 1e-5.
+    assert line.sd[0] ** 2 == pytest.approx(0.0764, abs=6e-5)
+    assert line.beta == pytest.approx([0.2515, -0.0291], abs=5e-5)
+
+
 def test_leaving_a_boat_out_equals_fitting_without_it():
     problem = grouped_data()
     sd = (2.0, 1.0, 0.5)
@@ -214,10 +242,22 @@ def test_a_boat_pulled_askew_lies_outside_and_is_named():
         assert found["candidates"].to_list() == [candidates]
 
 
-def test_no_boat_is_called_outside_too_often():
-    found = type_outliers(observe(*fleet(17, TRIALS, height_sd=0.02)), ERAS)
-    alarms = found.filter(pl.col("quantity") == "q").group_by("method").agg(pl.col("outside").any())
-    assert alarms["outside"].mean() <= 0.05 + 4 * np.sqrt(0.05 * 0.95 / TRIALS)
+@pytest.mark.parametrize("b_cv", [0.0, 0.05])
+def test_no_boat_is_called_outside_too_often(b_cv):
+    found = type_outliers(observe(*fleet(17, TRIALS, height_sd=0.02, b_cv=b_cv)), ERAS)
+    for _, rows in found.group_by("quantity"):
+        alarms = rows.group_by("method").agg(pl.col("outside").any())
+        assert alarms["outside"].mean() <= 0.05 + 4 * np.sqrt(0.05 * 0.95 / TRIALS)
+
+
+def test_the_spread_about_the_line_of_ln_cw_is_that_of_cw():
+    found = type_consistency(observe(*fleet(26, 40, boats=12, height_sd=0.05, noise=0.01)))
+    lines = found.filter(pl.col("quantity") == "ln_cw_standard")
+    # Noise of a tow at the standard speed: near 1 % / sqrt(6) in the middle of its runs.
+    assert lines["noise_sd_ratio"].mean() == pytest.approx(0.01 / np.sqrt(6), rel=0.3)
+    assert np.sqrt((lines["residual_sd_ratio"] ** 2).mean()) == pytest.approx(
+        np.hypot(0.05, 0.01 / np.sqrt(6)), rel=4 / np.sqrt(2 * 40 * 10)
+    )
 
 
 def test_a_bend_that_follows_tow_speed_is_seen_and_none_is_not_claimed():
@@ -245,6 +285,20 @@ def test_slow_tows_are_singled_out_with_their_effect_on_power():
     assert found["power_w"][0] < 60
     # The same hyperbola for all: a slow tow does no harm.
     assert found["power_ratio_120"][0] == pytest.approx(1.0, abs=0.005)
+    assert found["rowed_speed_m_s"][0] == 2.5
+    assert found["power_ratio_rowed"][0] == pytest.approx(1.0, abs=0.005)
+
+
+def test_a_slow_tow_whose_bend_is_too_steep_asks_too_much_power_where_it_is_rowed():
+    speeds = np.full(8, 2.5)
+    speeds[2] = 2.0
+    curves, tows, boats, points = fleet(19, boats=8, speeds_m_s=speeds, noise=1e-4)
+    steeper = pl.when(tow_id="2016-002").then((pl.col("speed_m_s") / 2.0) ** 0.5).otherwise(1.0)
+    points = points.with_columns(pl.col("cw_kg_m") * steeper)
+    found = slow_tows(observe(curves, tows, boats, points)).row(0, named=True)
+    # Cw grows by another (2.5 / 2)^0.5 = 12 %, and more as the hyperbola bends away.
+    assert found["power_ratio_rowed"] > 1.12
+    assert 1.0 < found["power_ratio_rowed_lo"] < found["power_ratio_rowed"]
 
 
 # Repeats
@@ -301,6 +355,26 @@ def test_variance_components_recover_the_truth():
         assert row["sd_ratio"] == pytest.approx(sd, rel=4 / np.sqrt(2 * dof))
         assert row["lo"] < row["sd_ratio"] < row["hi"]
     assert found["share"].sum() == pytest.approx(1.0)
+
+
+def test_boats_are_told_apart_at_one_speed():
+    # Cw grows with the speed of comparison; boats that differ in nothing else do not differ.
+    tables = fleet(
+        27, seasons=(2014, 2016, 2018), weights_kg=np.full(12, 1000.0),
+        speeds_m_s=np.linspace(2.1, 2.7, 12),
+    )  # fmt: skip
+    found = variance_components(observe(*tables)).filter(pl.col("component") == "boat")
+    assert found["sd_ratio"].max() < 0.01
+
+
+def test_the_classes_told_apart_are_the_boats_spread_over_that_of_their_tows():
+    tables = fleet(28, boats=40, seasons=(2014, 2016), height_sd=0.05, noise=0.02)
+    found = consistency_tables(*tables)
+    boats = found["variance_components"].filter(scope="within_type", component="boat")
+    row = found["reproducibility"].filter(scope="2014-").row(0, named=True)
+    expected = 1.41 * boats["sd_ratio"].item() / row["sd_ratio"]
+    assert row["distinct_categories"] == pytest.approx(expected)
+    assert found["reproducibility"].filter(scope="2009-2011")["distinct_categories"].item() is None
 
 
 # Degenerate input: nulls and a reason, never NaN, never a warning (warnings are errors here)

@@ -5,6 +5,7 @@ import polars as pl
 import pytest
 
 from pipeline import ensemble, uncertainty
+from pipeline.errors import MissingKnowledgeError
 from tests.pipeline.season_worlds import HARD, register, simulate
 
 MANY = 20_000
@@ -91,3 +92,48 @@ def test_frame_has_a_row_per_member_and_line(drawn):
     assert frame.height == members.size
     row = frame.filter((pl.col("member") == 7) & (pl.col("fsn_no") == lines["fsn_no"][4]))
     assert row["cw_kg_m"].to_list() == [members[6, 4]]
+
+
+def test_a_method_without_estimated_factors_has_members_too(world):
+    _, lines, held = register(world)
+    members = ensemble.register_ensemble(lines, held.filter(pl.col("component") == "random"), None)
+    u = held.filter(pl.col("component") == "random").join(lines, on="tow_id")["u_ratio"].mean()
+    assert np.log(members).std(axis=0, ddof=1).mean() == pytest.approx(u, rel=0.05)
+
+
+def test_who_is_heavier_is_told_apart_by_what_is_not_shared():
+    """Two tows that share a large error: as good as certain which is heavier."""
+    tows = pl.DataFrame({"tow_id": ["a", "b"], "cw_kg_m": [40.0, 40.4]})
+    held = pl.DataFrame(
+        {
+            "tow_id": ["a", "b", "a", "b"],
+            "key": ["season/2010", "season/2010", "random/a", "random/b"],
+            "effect_ratio": [0.05, 0.05, 0.002, 0.002],
+        }
+    )
+    drawn = ensemble.register_ensemble(tows, held, None)
+    members = ensemble.as_frame(tows, drawn)
+    # ln(40.4 / 40) is 3.5 standard deviations of the difference.
+    assert ensemble.share_heavier(members, "b", "a") > 0.99
+    apart = held.with_columns((pl.col("key") + "/" + pl.col("tow_id")).alias("key"))
+    alone = ensemble.as_frame(tows, ensemble.register_ensemble(tows, apart, None))
+    # ln(40.4 / 40) is 0.14 standard deviations, so 0.56 of the members, four errors either way.
+    assert ensemble.share_heavier(alone, "b", "a") == pytest.approx(0.56, abs=0.14)
+
+
+def test_the_winner_of_a_race_is_counted_over_the_members(world):
+    found, lines, held = register(world)
+    members = ensemble.as_frame(lines, ensemble.register_ensemble(lines, held, found))
+    crews = lines.head(3).with_columns(pl.Series("power_w", [80.0, 80.0, 50.0]))
+    share = ensemble.share_first(members, crews)
+    assert share["power_w"].to_list() == [80.0, 80.0, 50.0]
+    assert share["share"].sum() == pytest.approx(1.0)
+    assert share["share"][:2].to_list() == pytest.approx([0.5, 0.5], abs=4 * 0.5 / np.sqrt(200))
+    assert share["share"][2] == 0.0
+
+
+def test_a_tow_without_members_is_refused(world):
+    _, lines, _ = register(world)
+    members = ensemble.as_frame(lines.head(1), np.ones((3, 1)))
+    with pytest.raises(MissingKnowledgeError, match="no-such-tow has no members"):
+        ensemble.share_heavier(members, lines["tow_id"][0], "no-such-tow")

@@ -8,7 +8,7 @@ import pytest
 
 from pipeline.curve import cw, s_of_b
 from pipeline.errors import MissingKnowledgeError
-from pipeline.replay import RaceRules, race_changes, replay
+from pipeline.replay import RaceRules, race_changes, replay, winner_changes
 
 DAY = dt.date(2015, 6, 6)
 PLAIN = RaceRules(fatigue="none")
@@ -161,3 +161,73 @@ def test_another_register_changes_rank_and_podium():
     assert (by_boat["B3"]["old_rank"], by_boat["B3"]["new_rank"]) == (4, 1)
     assert [b for b in boats if by_boat[b]["podium_changed"]] == ["B2", "B3"]
     assert by_boat["B0"]["new_power_w"] == by_boat["B0"]["old_power_w"]
+
+
+# Who wins
+
+
+def ensemble(**of_tow):
+    """Members of tows: the given values of Cw."""
+    rows = [
+        {"tow_id": tow, "member": member, "cw_kg_m": value}
+        for tow, values in of_tow.items()
+        for member, value in enumerate(values, 1)
+    ]
+    return pl.DataFrame(
+        rows, schema={"tow_id": pl.String, "member": pl.Int16, "cw_kg_m": pl.Float64}
+    )
+
+
+def lines_with_tows(*lines):
+    """Lines of (boat, A, B, tow), with Cw at 2.5 m/s."""
+    held = register(*(line[:3] for line in lines))
+    values = [float(cw(a, s_of_b(b), 2.5)) for _, a, b, _ in lines]
+    tows = [line[3] for line in lines]
+    return held.with_columns(
+        pl.Series("tow_id", tows, pl.String), pl.Series("cw_kg_m", values, pl.Float64)
+    )
+
+
+def winners_of(old, new, members, rows):
+    found = winner_changes(replay(old, rows, PLAIN), replay(new, rows, PLAIN), new, members)
+    return found.row(0, named=True)
+
+
+def test_how_likely_another_wins_is_counted_in_the_members():
+    """X is 4 % heavier; in one of four members it is lighter than Y."""
+    rows = results(("X", 7600), ("Y", 7600))
+    lines = lines_with_tows(("X", 31.2, 5.0, "x"), ("Y", 30.0, 5.0, "y"))
+    x, y = lines["cw_kg_m"]
+    members = ensemble(x=[x, x, x, 0.9 * x], y=[y, y, y, y])
+    found = winners_of(lines, lines, members, rows)
+    assert (found["old_winner"], found["new_winner"]) == ("X", "X")
+    assert not found["winner_changed"]
+    assert found["change_probability"] == pytest.approx(0.25)
+
+
+def test_an_error_that_all_share_changes_no_winner():
+    rows = results(("X", 7600), ("Y", 7600))
+    lines = lines_with_tows(("X", 31.2, 5.0, "x"), ("Y", 30.0, 5.0, "y"))
+    shared = np.array([0.8, 0.9, 1.1, 1.2])
+    members = ensemble(x=lines["cw_kg_m"][0] * shared, y=lines["cw_kg_m"][1] * shared)
+    assert winners_of(lines, lines, members, rows)["change_probability"] == 0.0
+
+
+def test_a_new_register_that_surely_has_another_winner():
+    rows = results(("X", 7600), ("Y", 7600))
+    old = lines_with_tows(("X", 31.2, 5.0, "x"), ("Y", 30.0, 5.0, "y"))
+    new = lines_with_tows(("X", 29.0, 5.0, "x"), ("Y", 30.0, 5.0, None))
+    found = winners_of(old, new, ensemble(x=[new["cw_kg_m"][0]] * 3), rows)
+    assert (found["old_winner"], found["new_winner"], found["winner_changed"]) == ("X", "Y", True)
+    assert found["change_probability"] == 1.0
+
+
+@pytest.mark.parametrize("case", ["no members", "old winner gone"])
+def test_where_nothing_can_be_counted_nothing_is_said(case):
+    rows = results(("X", 7600), ("Y", 7600))
+    old = lines_with_tows(("X", 31.2, 5.0, "x"), ("Y", 30.0, 5.0, "y"))
+    new = old if case == "no members" else old.filter(fsn_no="Y")
+    members = ensemble() if case == "no members" else ensemble(y=[old["cw_kg_m"][1]])
+    found = winners_of(old, new, members, rows)
+    assert found["change_probability"] is None
+    assert found["winner_changed"] == (case == "old winner gone")

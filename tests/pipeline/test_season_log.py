@@ -16,6 +16,7 @@ from pipeline.season_log import (
     Settings,
     estimate_season_factors,
     log_or_force,
+    other_log_factors,
     scale_effect,
 )
 from tests.pipeline.season_worlds import ANCHORED_FROM, CLEAN, HARD, simulate
@@ -183,8 +184,15 @@ def test_parts_of_a_season_have_factors_of_their_own():
         .otherwise("gps_ln_ratio")
         .alias("gps_ln_ratio"),
     )
-    found = estimate_season_factors(tows).factors.filter(pl.col("season") == 2011)
+    whole = estimate_season_factors(tows)
+    found = whole.factors.filter(pl.col("season") == 2011)
     assert found["part"].to_list() == [0, 1]
+    factor, lo, hi, source = whole.of_season(2011, "log1")
+    share = (found["n_tows"] / found["n_tows"].sum()).to_numpy()
+    assert math.log(factor) == pytest.approx(share @ found["factor"].log().to_numpy())
+    assert found["factor"][0] < factor < found["factor"][1]
+    assert hi - lo < min(found["hi"] - found["lo"])
+    assert source == "estimated"
     ratio = found["factor"][1] / found["factor"][0]
     assert math.log(ratio) == pytest.approx(0.03, abs=0.006)
 
@@ -273,3 +281,25 @@ def test_weakest_mode_is_ageing_like_and_belongs_to_its_variance():
     assert mode @ found.covariance @ mode == pytest.approx(found.weakest_mode_sd**2)
     sd = np.sqrt(np.diag(found.covariance))
     assert sd == pytest.approx(found.factors["ln_sd"].to_numpy())
+
+
+def test_the_other_log_follows_by_the_ratio_of_both():
+    """Planted: log 2 reads 3 % lower than log 1, give or take 0.5 % from tow to tow."""
+    rng = np.random.default_rng(3)
+    tows = simulate(CLEAN, 3).tows.with_columns(
+        pl.lit("log2").alias("other_log"),
+        pl.lit(0).alias("other_part"),
+        pl.lit(0.03).alias("other_ln_ratio"),
+    )
+    noise = pl.Series(0.005 * rng.standard_normal(tows.height))
+    found = estimate_season_factors(
+        tows.with_columns((pl.col("other_ln_ratio") + noise).alias("other_ln_ratio"))
+    )
+    both = found.factors.join(other_log_factors(found), on="season", suffix="_other")
+    assert both.height == 5
+    assert set(both["log_other"]) == {"log2"}
+    ratio = (both["factor_other"] / both["factor"]).log()
+    # Four standard errors of a mean over 24 tows.
+    assert (ratio - 0.03).abs().max() < 4 * 0.005 / math.sqrt(24)
+    assert (both["ln_sd_other"] > both["ln_sd"]).all()
+    assert both["hi_other"].is_between(both["factor_other"], 1.2).all()

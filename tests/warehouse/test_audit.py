@@ -4,11 +4,11 @@ import duckdb
 import numpy as np
 import polars as pl
 import pytest
-from scipy import stats
 
 from pipeline.errors import MissingKnowledgeError
 from tests.conftest import METHODS
-from warehouse.audit import audit, median_interval
+from warehouse.audit import audit
+from warehouse.audit_types import closest, differences
 
 
 def change(bench, *statements):
@@ -24,26 +24,6 @@ def types_of(bench):
 
 def under(bench, boat_type, method="rebased-2015"):
     return audit(bench.store, [boat_type], method)["types"][0]["under"][method]
-
-
-@pytest.mark.parametrize("n", [6, 8, 9, 17, 40, 101])
-def test_the_interval_of_a_median_is_that_of_order_statistics(n):
-    values = np.random.default_rng(n).normal(size=n)
-    found = median_interval(values)
-    independent = stats.quantile_test(values, p=0.5).confidence_interval(0.95)
-    assert found == pytest.approx((np.median(values), independent.low, independent.high))
-
-
-@pytest.mark.parametrize("n", [0, 1, 5])
-def test_a_median_of_fewer_than_six_values_has_no_interval(n):
-    assert median_interval([0.1] * n) is None
-
-
-def test_an_outlier_does_not_move_a_shift():
-    values = [0.01 * k for k in range(-4, 5)]
-    assert median_interval([*values[:-1], 40.0]) == pytest.approx(
-        median_interval(values), abs=0.011
-    )
 
 
 def test_figures_of_a_type_are_those_of_the_tables(built):
@@ -104,24 +84,74 @@ def test_repeats_of_a_type_are_those_of_its_boats(built):
     assert found["sd_ratio"] == pytest.approx(np.sqrt((own**2).mean() / 2))
 
 
-def test_eras_count_pairs_into_later_eras_and_the_last_era_its_own(bench):
-    change(
-        bench,
-        "DELETE FROM repeat_pairs",
-        """INSERT INTO repeat_pairs
-           SELECT m.method, b.fsn_no, 8, 'H', b.fsn_no || x.season, b.fsn_no || x.season_before,
-                  x.season, x.season_before, x.ln_ratio, 0.5
-           FROM (VALUES ('rebased-2015'), ('as-published')) AS m(method)
-           CROSS JOIN (SELECT fsn_no FROM boats WHERE boat_type = 'Kuikensloep'
-                       ORDER BY fsn_no LIMIT 6) AS b
-           CROSS JOIN (VALUES (2010, 2009, 0.3), (2014, 2009, -0.16), (2018, 2014, 0.001))
-                AS x(season, season_before, ln_ratio)""",
-    )
-    first, second, last = under(bench, "Kuikensloep")["repeats"]["eras"]
-    assert (first["n"], first["apart"]) == (6, True)
-    assert first["shift_ratio"] == pytest.approx(np.exp(-0.16))
-    assert (second["n"], second["apart"], second["reason"]) == (0, None, "few_pairs")
-    assert (last["n"], last["era"], last["against"]) == (6, "2014-", "2014-")
+def of(first, second):
+    """Figures of two types with the given slopes and verdicts, as far as they are compared."""
+    return [
+        {
+            "lines": [{"quantity": "b_m_s", "explaining": "weight_kg", "reason": ""} | slope],
+            "speed_trend": {"reason": "few_boats"},
+            "eras": [],
+            "bends": {"equal_possible": bends},
+            "closest": {"cw_closest": None},
+        }
+        for slope, bends in (first, second)
+    ]
+
+
+def slope(value, half):
+    return {"slope": value, "slope_lo": value - half, "slope_hi": value + half}
+
+
+def test_types_differ_where_their_slopes_lie_further_apart_than_both_intervals():
+    # One follows weight and in the other no trend is seen: no difference by that alone.
+    assert differences(*of((slope(1.0, 0.9), None), (slope(0.5, 0.9), None))) == []
+    assert differences(*of((slope(1.0, 0.3), None), (slope(0.5, 0.3), None))) == ["b_m_s weight_kg"]
+    assert differences(*of((slope(1.0, 0.3), None), (slope(0.5, 0.41), None))) == []
+
+
+def test_types_differ_by_a_verdict_only_where_both_have_one():
+    same = slope(0.0, 1.0)
+    assert differences(*of((same, True), (same, False))) == ["bends"]
+    assert differences(*of((same, True), (same, None))) == []
+    assert differences(of((same, True), (same, True))[0]) == []
+
+
+def spread(n_boats, **sds):
+    """Lines on weight with these spreads about them."""
+    return [
+        {"quantity": q, "explaining": "weight_kg", "reason": "", "n": n_boats, "n_boats": n_boats,
+         "residual_sd_ratio": sd}
+        for q, sd in sds.items()
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("n_boats", "b", "a", "cw", "verdict"),
+    [
+        (12, 0.06, 0.06, 0.03, True),
+        (4, 0.06, 0.06, 0.03, None),
+        (12, 0.06, 0.04, 0.03, None),
+        (12, 0.02, 0.06, 0.05, False),
+    ],
+)
+def test_cw_lies_closest_only_where_chance_would_not_make_it(n_boats, b, a, cw, verdict):
+    lines = spread(n_boats, b_m_s=b, a_kg_m=a, cw_standard_kg_m=cw)
+    assert closest(lines)["cw_closest"] is verdict
+    missing = [line | {"reason": "few_boats"} for line in lines]
+    assert (closest(missing)["cw_closest"], closest(missing)["reason"]) == (None, "few_boats")
+
+
+def test_eras_are_those_of_the_table(built):
+    shifts = built.table("era_shifts")
+    for boat_type in [*types_of(built), "unknown"]:
+        for era in under(built, boat_type)["eras"]:
+            row = shifts.filter(method="rebased-2015", boat_type=boat_type, era=era["era"])
+            if row.height:
+                assert era == row.row(0, named=True)
+            else:
+                assert (era["n"], era["apart"], era["reason"]) == (0, None, "few_pairs")
+    everyone = audit(built.store, ["Vlet"])["fleet"]["rebased-2015"]["eras"]
+    assert everyone.keys() == {"2009-2011", "2012-2013"}
 
 
 @pytest.mark.parametrize("name", ["Kuikensloep", "kuikensloep", " KUIKEN SLOEP "])

@@ -1,5 +1,6 @@
 """Causes of a change: one file, one option, the code, another tow, each under its own name."""
 
+import datetime as dt
 import json
 import math
 import shutil
@@ -12,9 +13,11 @@ from pipeline.errors import MissingKnowledgeError
 from pipeline.method import parse_method, shipped_method
 from pipeline.register import LINE
 from pipeline.replay import RaceRules
+from tests.warehouse.edition_bench import terms
 from warehouse.decisions import FILE_NAME
 from warehouse.editions.compare import diff, race_effects, report
 from warehouse.editions.folder import read_edition
+from warehouse.editions.publish import publish_printed
 
 VARIANT = """
 name = "variant"
@@ -212,8 +215,9 @@ def test_races_are_replayed_under_both(bench_of_editions):
     old, new = (read_edition(bench.store, name) for name in "ab")
     found = race_effects(bench.store, old, new, RaceRules())
     assert found is not None
-    assert found.height == 6
-    assert found["old_power_w"].null_count() == 0
+    assert found.results.height == 6
+    assert found.results["old_power_w"].null_count() == 0
+    assert found.winners["change_probability"].is_between(0, 1).all()
     with pytest.raises(MissingKnowledgeError, match="needs distance, time and stream of each leg"):
         race_effects(bench.store, old, new, RaceRules(stream="net_speed_over_legs"))
 
@@ -229,3 +233,60 @@ def empty_races(bench):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()
     return folder
+
+
+# Printed registers
+
+HEAD = "fsn_nr;roeiers;klasse;A;B;Cw;roeisnelheid [m/s];sleepdatum"
+
+
+def publish_printed_row(bench, line, day):
+    """A register of 2014 with one line, towed on a day, published as edition `printed`."""
+    cells = (line["fsn_no"], line["rowers"], line["crew_class"], 31.6, 4.44, 43.89, 2.35, day)
+    file = bench.archive / "sloepregister" / "sloepregister_2014.csv"
+    file.write_text(f"{HEAD}\n{';'.join(map(str, cells))}\n", encoding="utf-8")
+    bench.rebuild()
+    publish_printed(bench.store, 2014, terms("printed", dt.date(2014, 5, 1)))
+
+
+def towed_twice(bench):
+    """The line of a boat and crew with more than one tow, under the edition `a`, and its tows."""
+    tows = bench.store.read("tows").sort("tow_date")
+    for row in read_edition(bench.store, "a").register.iter_rows(named=True):
+        mine = tows.filter(*(pl.col(name) == row[name] for name in LINE))
+        if mine.height > 1:
+            return row, mine
+    raise AssertionError
+
+
+def test_a_printed_line_of_the_same_tow_differs_by_what_was_printed(bench_of_editions):
+    bench = bench_of_editions
+    bench.publish("a")
+    line, tows = towed_twice(bench)
+    publish_printed_row(bench, line, tows["tow_date"][-1])
+    lines = diff(bench.store, "printed", "a").lines.filter(change="changed")
+    assert names(lines) == {("printed", None)}
+
+
+def test_a_printed_line_of_an_earlier_tow_is_told_apart_from_the_newer_tow(bench_of_editions):
+    bench = bench_of_editions
+    bench.publish("a")
+    line, tows = towed_twice(bench)
+    publish_printed_row(bench, line, tows["tow_date"][0])
+    lines = diff(bench.store, "printed", "a").lines.filter(change="changed")
+    assert names(lines) == {("printed", None), ("tow", None)}
+    assert_factors_multiply(lines)
+    curves = read_edition(bench.store, "a").tables["curves"]
+    before = curves.filter(tow_id=tows["tow_id"][0]).row(0, named=True)
+    on_curve = before["a_kg_m"] / (1 - (2.35 / before["b_m_s"]) ** 2)
+    ((_, _, factor), _) = causes(lines)[0]
+    assert factor == pytest.approx(on_curve / (31.6 / (1 - (2.35 / 4.44) ** 2)), rel=1e-9)
+
+
+def test_a_printed_line_of_a_tow_that_is_lost_says_that_both_may_be_why(bench_of_editions):
+    bench = bench_of_editions
+    bench.publish("a")
+    line, _ = towed_twice(bench)
+    publish_printed_row(bench, line, dt.date(2008, 3, 8))
+    lines = diff(bench.store, "printed", "a").lines.filter(change="changed")
+    assert names(lines) == {("printed_and_tow", None)}

@@ -1,7 +1,9 @@
 """Verify: every kind of tampering is found and named; what is whole passes."""
 
+import datetime as dt
 import io
 import json
+import shutil
 import zipfile
 
 import polars as pl
@@ -9,10 +11,12 @@ import pytest
 
 import pipeline.recompute
 from pipeline.errors import MissingKnowledgeError
-from pipeline.method import parse_method
+from pipeline.method import parse_method, shipped_method
+from tests.warehouse.edition_bench import terms
 from warehouse.editions.folder import editions_folder, read_about, read_edition
 from warehouse.editions.inputs import same_tows, unchanged_tows
 from warehouse.editions.lineage import lineage, lineage_rows
+from warehouse.editions.publish import publish_printed
 from warehouse.editions.verify import verify
 from warehouse.schemas import conform
 
@@ -34,7 +38,12 @@ def test_untouched_editions_pass_and_come_out_equal_when_made_again(published):
     assert not report["wrong"]
     for one in report["editions"]:
         register = read_edition(published.store, one["edition"]).register
-        assert one["lines_made_again"] == register.filter(basis="measured").height > 0
+        assert (
+            one["equal"]
+            == one["made_again"]
+            == register.filter(pl.col("status") != "never_towed").height
+            > 0
+        )
 
 
 def test_a_changed_digit_in_the_csv_is_named_by_line_and_column(published_copy):
@@ -272,3 +281,75 @@ def test_a_boat_or_edition_that_is_not_there_is_named(published):
         lineage(published.store, "2014-1", "FSN000")
     with pytest.raises(MissingKnowledgeError, match="published: 2014-1, 2014-2"):
         lineage(published.store, "2014-9", "FSN000")
+
+
+# Printed lines, and lines carried over from print
+
+PRINTED = """fsn_nr;roeiers;klasse;A;B;Cw;roeisnelheid [m/s];sleepdatum
+FSN900;8;H;32,62;5,59;41,63;2,60;2011-03-06
+FSN901;6;H;0,99;25,00;1,00;2,20;
+"""
+
+
+@pytest.fixture
+def carrying(bench_of_editions):
+    """A printed edition, and one that carries over its line."""
+    bench = bench_of_editions
+    file = bench.archive / "sloepregister" / "sloepregister_2012.csv"
+    file.write_text(PRINTED, encoding="utf-8")
+    bench.rebuild((shipped_method("corrected-2013"),))
+    publish_printed(bench.store, 2012, terms("printed", dt.date(2012, 5, 1)))
+    bench.publish("2014-1", "corrected-2013", carry="printed")
+    return bench
+
+
+def test_carried_and_printed_lines_are_made_again_too(carrying):
+    report = verify(carrying.store)
+    assert not report["wrong"]
+    for one in report["editions"]:
+        register = read_edition(carrying.store, one["edition"]).register
+        to_make = register.filter(pl.col("status") != "never_towed").height
+        assert one["equal"] == one["made_again"] == to_make
+    carried = read_edition(carrying.store, "2014-1").register.filter(basis="printed_rebased")
+    assert carried["fsn_no"].to_list() == ["FSN900"]
+
+
+@pytest.mark.parametrize(("edition", "boat"), [("2014-1", "FSN900"), ("printed", "FSN900")])
+def test_a_changed_carried_or_printed_line_comes_out_otherwise(carrying, edition, boat):
+    file = folder(carrying, edition) / "register.parquet"
+    register = pl.read_parquet(file)
+    mine = pl.col("fsn_no") == boat
+    changed = pl.when(mine).then(pl.col("a_kg_m") + 1).otherwise(pl.col("a_kg_m"))
+    register.with_columns(changed.alias("a_kg_m")).write_parquet(file)
+    findings, wrong = found(carrying, kind="differs", edition=edition)
+    assert wrong
+    assert [f["where"] for f in findings] == [f"{boat} 8H"]
+    assert "a_kg_m" in findings[0]["message"]
+
+
+def test_a_changed_printed_register_is_named_and_so_is_its_line(carrying):
+    file = carrying.archive / "sloepregister" / "sloepregister_2012.csv"
+    file.write_text(PRINTED.replace("32,62", "32,63"), encoding="utf-8")
+    findings, wrong = found(carrying, edition="printed")
+    assert wrong
+    assert {f["kind"] for f in findings} == {"swapped", "differs"}
+    assert any("the printed register in the archive says so now" in f["message"] for f in findings)
+
+
+def test_an_edition_whose_printed_source_is_gone_cannot_be_made_again(carrying):
+    shutil.rmtree(folder(carrying, "printed"))
+    findings, wrong = found(carrying, kind="unchecked")
+    assert wrong
+    assert "there is no edition printed" in findings[0]["message"]
+
+
+# The ensemble
+
+
+def test_a_changed_member_is_told_and_comes_out_otherwise(published_copy):
+    file = folder(published_copy, "2014-2") / "ensemble.parquet"
+    members = pl.read_parquet(file)
+    members.with_columns(pl.col("cw_kg_m") * 1.001).write_parquet(file)
+    findings, wrong = found(published_copy, where="ensemble.parquet")
+    assert wrong
+    assert [f["kind"] for f in findings] == ["altered", "differs"]

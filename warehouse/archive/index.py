@@ -152,7 +152,7 @@ def index_archive(root: Path, hash_file: Callable[[Path], str]) -> ArchiveIndex:
     good = _keep(lambda entry: _find_files(entry, by_name, hashes), good, faults)
     good = _keep(_unique_samples(good), good, faults)
     good = _keep(lambda entry: _join_boat(entry, boats), good, faults)
-    good = _keep(lambda entry: _check_day(entry, profiles), good, faults)
+    good = _keep(lambda entry: _place_day(entry, profiles), good, faults)
     runs = [run for entry in good for run in _runs(entry, profiles)]
     windows = _read_windows(root, hashes, entries, runs, faults)
     return ArchiveIndex(
@@ -475,11 +475,14 @@ def _join_boat(entry: _Entry, boats: Boats) -> None:
     entry.tow = tow_list.fill_dimensions(entry.tow, boat, entry.row)
 
 
-def _check_day(entry: _Entry, profiles: Profiles) -> None:
+def _place_day(entry: _Entry, profiles: Profiles) -> None:
+    """Note which logs were on board that day, unless it is set aside."""
     day = entry.tow["tow_date"]
     reason = profiles.reason_set_aside(day)
     if reason is not None:
         raise entry.fault("day_set_aside", f"{day} is set aside in {PROFILE_FILE}: {reason}.")
+    for log in ("log1", "log2"):
+        entry.tow[f"{log}_part"] = profiles.part_of_log(log, day)
 
 
 def _runs(entry: _Entry, profiles: Profiles) -> list[Mapping[str, Any]]:

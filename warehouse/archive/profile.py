@@ -60,6 +60,14 @@ class SetAside(_Strict):
     reason: Annotated[str, Field(min_length=1)]
 
 
+class LogReplaced(_Strict):
+    """The first day on which another log was on board than before, within a season."""
+
+    date: dt.date
+    log: Literal["log1", "log2"]
+    reason: Annotated[str, Field(min_length=1)]
+
+
 class _ProfileTable(_Strict):
     """One `[[profile]]` of `archief.toml`."""
 
@@ -88,6 +96,7 @@ class _File(_Strict):
     simulated: bool = False
     profile: list[_ProfileTable] = []
     set_aside: list[SetAside] = []
+    log_replaced: list[LogReplaced] = []
 
     @model_validator(mode="after")
     def _one_profile_per_season(self) -> "_File":
@@ -123,11 +132,13 @@ class Profiles:
         simulated: the archive says of itself that it was made by a simulator.
         tables: the season ranges that differ.
         set_aside: days whose tows are not used.
+        log_replaced: days from which another log was on board.
     """
 
     simulated: bool = False
     tables: tuple[_ProfileTable, ...] = ()
     set_aside: tuple[SetAside, ...] = ()
+    log_replaced: tuple[LogReplaced, ...] = ()
 
     def for_season(self, season: int) -> SeasonProfile:
         """Return the profile of a season; the project's default where none is given."""
@@ -144,6 +155,12 @@ class Profiles:
     def reason_set_aside(self, day: dt.date) -> str | None:
         """Return why a day is set aside, None when it is not."""
         return next((entry.reason for entry in self.set_aside if entry.date == day), None)
+
+    def part_of_log(self, log: str, day: dt.date) -> int:
+        """Return how often a log had been replaced since its season began: 0 with the first."""
+        since = dt.date(day.year, 1, 1)
+        replaced = (entry.date for entry in self.log_replaced if entry.log == log)
+        return sum(since <= date <= day for date in replaced)
 
 
 def _renamed(table: _ProfileTable) -> tuple[Column, ...]:
@@ -183,6 +200,7 @@ def read_profiles(root: Path) -> Profiles:
         simulated=parsed.simulated,
         tables=tuple(parsed.profile),
         set_aside=tuple(parsed.set_aside),
+        log_replaced=tuple(parsed.log_replaced),
     )
 
 

@@ -71,6 +71,8 @@ SCHEMA: Final[dict[str, pl.DataType]] = {
     "freeboard_bow_m": pl.Float64(),
     "freeboard_stern_m": pl.Float64(),
     "remark": pl.String(),
+    "log1_part": pl.Int32(),
+    "log2_part": pl.Int32(),
     "samples_path": pl.String(),
     "samples_sha256": pl.String(),
     "second_path": pl.String(),

@@ -22,23 +22,23 @@ from pipeline.changes import (
 )
 from pipeline.ladder import ladder
 from pipeline.register import LINE
-from pipeline.replay import RaceRules, race_changes, replay
+from pipeline.replay import RaceRules, race_changes, replay, winner_changes
 from warehouse import intake
 from warehouse.archive import read_races
 from warehouse.code import code_version
 from warehouse.editions.folder import Edition, read_edition
 from warehouse.editions.inputs import (
     INPUTS_HASH,
-    archive_root,
     same_tows,
     tows_of_today,
     unchanged_tows,
 )
-from warehouse.editions.lines import MEASURED, lines_made_again
+from warehouse.editions.lines import MEASURED, made_again
 from warehouse.store import Store
 from warehouse.tables import runs_with_windows
 
 PRINTED: Final = "printed"
+PRINTED_AND_TOW: Final = "printed_and_tow"
 CLOSED_FORM: Final = "closed_form"
 TOW: Final = "tow"
 INPUT: Final = "input"
@@ -84,8 +84,11 @@ def compare(store: Store, old: Edition, new: Edition) -> Comparison:
     """Compares two editions line by line, with causes whose factors multiply to the change."""
     code = _code_parts(store, old, new)
     steps = _steps(store, old, new)
-    parts = pl.concat([code, steps_of_lines(new.register, steps)], how="diagonal_relaxed")
-    grounds = _grounds(old, new, set(steps["tow_id"]), code_known=not code.is_empty())
+    printed = _printed_parts(old, new)
+    known = [code, printed, steps_of_lines(new.register, steps)]
+    parts = pl.concat(known, how="diagonal_relaxed")
+    separated = {*steps["tow_id"], *printed.select(LINE).rows()}
+    grounds = _grounds(old, new, separated, code_known=not code.is_empty())
     changes = register_changes(old.register, new.register, parts, grounds)
     names = pl.concat([new.register.select(*LINE, "name"), old.register.select(*LINE, "name")])
     lines = (
@@ -98,21 +101,37 @@ def compare(store: Store, old: Edition, new: Edition) -> Comparison:
     return Comparison(old, new, lines)
 
 
-def race_effects(store: Store, old: Edition, new: Edition, rules: RaceRules) -> pl.DataFrame | None:
-    """Power, rank and podium of every result in the archive under both editions.
+@dataclass(frozen=True)
+class RaceEffects:
+    """What two editions make of the races in the archive.
+
+    Attributes:
+        results: rows of `pipeline.replay.race_changes`.
+        winners: rows of `pipeline.replay.winner_changes`.
+    """
+
+    results: pl.DataFrame
+    winners: pl.DataFrame
+
+
+def race_effects(store: Store, old: Edition, new: Edition, rules: RaceRules) -> RaceEffects | None:
+    """Power, rank, podium and winner of every race in the archive under both editions.
 
     Returns:
-        Rows of `pipeline.replay.race_changes`; None where the archive is not there or has no races.
+        The effects; None where the archive is not there or has no races.
 
     Raises:
         MissingKnowledgeError: the rules ask for what is not known.
     """
-    root = archive_root(store)
+    root = intake.archive_root(store)
     results = None if root is None else read_races(root)[0]
     if results is None or results.is_empty():
         return None
     before, after = (replay(edition.register, results, rules) for edition in (old, new))
-    return race_changes(before, after)
+    members = new.tables.get("ensemble", pl.DataFrame())
+    return RaceEffects(
+        race_changes(before, after), winner_changes(before, after, new.register, members)
+    )
 
 
 def _code_parts(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
@@ -126,12 +145,38 @@ def _code_parts(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
         return NO_PARTS
     if len(unchanged_tows(store, old)) < old.tables["tows"].height:
         return NO_PARTS
-    again = lines_made_again(store, old).with_columns(pl.lit("again").alias("edition"))
+    again = made_again(store, old).lines.with_columns(pl.lit("again").alias("edition"))
     return register_changes(old.register, again).select(
         *LINE,
         pl.lit(CODE).alias("cause"),
         pl.lit(None, pl.String).alias("step"),
         pl.col("cw_ratio").fill_null(1.0).alias("factor"),
+    )
+
+
+def _printed_parts(old: Edition, new: Edition) -> pl.DataFrame:
+    """Where another tow counts than the printed one: what the new method makes of the printed tow.
+
+    Known where the new edition went by tows and has one of that day and line.
+    """
+    if old.method is not None or "curves" not in new.tables:
+        return NO_PARTS
+    tows = new.tables["tows"].select("tow_id", "tow_date")
+    curves = new.tables["curves"].join(tows, on="tow_id").with_columns(edition=pl.lit("printed"))
+    day = [*LINE, "tow_date"]
+    same_tow = curves.join(old.register, on=day, how="semi").unique(day, keep="none")
+    moved = same_tow.join(new.register, on="tow_id", how="anti")
+    if moved.is_empty():
+        return NO_PARTS
+    return (
+        register_changes(old.register, moved)
+        .drop_nulls("cw_ratio")
+        .select(
+            *LINE,
+            pl.lit(PRINTED).alias("cause"),
+            pl.lit(None, pl.String).alias("step"),
+            pl.col("cw_ratio").alias("factor"),
+        )
     )
 
 
@@ -149,9 +194,15 @@ def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     return ladder(old.method, new.method, tows, blocks)
 
 
-def _grounds(old: Edition, new: Edition, climbed: set[str], code_known: bool) -> pl.DataFrame:
-    """Per line the name of what its known parts do not explain."""
-    shared = [*LINE, "tow_id", INPUTS_HASH, "basis"]
+def _grounds(old: Edition, new: Edition, separated: set[object], code_known: bool) -> pl.DataFrame:
+    """Per line the name of what its known parts do not explain.
+
+    Args:
+        old, new: the editions.
+        separated: tows with a ladder, and lines whose printed tow was computed.
+        code_known: what the code changed is a known part.
+    """
+    shared = [*LINE, "tow_id", "tow_date", INPUTS_HASH, "basis"]
     pairs = old.register.select(shared).join(
         new.register.select(shared), on=LINE, suffix="_new", nulls_equal=True
     )
@@ -159,7 +210,7 @@ def _grounds(old: Edition, new: Edition, climbed: set[str], code_known: bool) ->
     same = None
     if "tows" in old.tables and "tows" in new.tables:
         same = same_tows(old.tables, new.tables)
-    grounds = [_ground(row, old, new, climbed, code, same) for row in pairs.iter_rows(named=True)]
+    grounds = [_ground(row, old, new, separated, code, same) for row in pairs.iter_rows(named=True)]
     return pairs.select(LINE).with_columns(pl.Series("ground", grounds, pl.String))
 
 
@@ -167,18 +218,17 @@ def _ground(
     line: Mapping[str, Any],
     old: Edition,
     new: Edition,
-    climbed: set[str],
+    separated: set[object],
     code: bool,
     same: frozenset[str] | None,
 ) -> str:
     if same is None or {line["basis"], line["basis_new"]} != {MEASURED}:
-        same_line = line[INPUTS_HASH] == line[f"{INPUTS_HASH}_new"]
-        return CLOSED_FORM if same_line else PRINTED
+        return _ground_of_printed(line, separated)
     if line["tow_id"] != line["tow_id_new"]:
         return TOW
     own = line["tow_id"] not in same
     others = not own and any(e.tables["tows"].height > len(same) for e in (old, new))
-    if old.about.method_hash != new.about.method_hash and line["tow_id_new"] not in climbed:
+    if old.about.method_hash != new.about.method_hash and line["tow_id_new"] not in separated:
         return UNSEPARATED if own or code else METHOD
     named = {
         (True, False, False): INPUT,
@@ -188,6 +238,15 @@ def _ground(
         (False, False, True): CODE,
     }
     return named.get((own, others, code), UNEXPLAINED)
+
+
+def _ground_of_printed(line: Mapping[str, Any], separated: set[object]) -> str:
+    if line[INPUTS_HASH] == line[f"{INPUTS_HASH}_new"]:
+        return CLOSED_FORM
+    if tuple(line[name] for name in LINE) in separated:
+        return TOW
+    days = {line["tow_date"], line["tow_date_new"]}
+    return PRINTED if len(days) == 1 or None in days else PRINTED_AND_TOW
 
 
 # Summary
@@ -227,6 +286,7 @@ def report(comparison: Comparison) -> Report:
 def _group(lines: pl.DataFrame) -> Report:
     return {
         "lines": lines.height,
+        "of_class": {c: lines.filter(crew_class=c).height for c in ("H", "D")},
         "median_power_ratio": lines["power_ratio"].median(),
         "median_seconds": lines["gain_in_two_hours_s"].median(),
         "most": _rows(lines.head(LARGEST)),

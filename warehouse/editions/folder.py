@@ -36,8 +36,20 @@ XLSX: Final = "register.xlsx"
 INPUTS: Final = "inputs.csv"
 PACKAGE: Final = "datapackage.json"
 NOTES: Final = "toelichting.md"
+NOTES_EN: Final = "release_notes.md"
+NOTICE: Final = "bericht.md"
+NOTICE_EN: Final = "notice.md"
 CHANGES: Final = "register_changes"
-TABLES: Final = ("register", "tows", "tow_runs", "curves", "run_points", "log_factors", CHANGES)
+TABLES: Final = (
+    "register",
+    "tows",
+    "tow_runs",
+    "curves",
+    "run_points",
+    "log_factors",
+    "ensemble",
+    CHANGES,
+)
 
 _NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,59}")
 _LOCK: Final = f"{TEMPORARY_PREFIX}lock"
@@ -59,6 +71,7 @@ class About(BaseModel):
         kind: `recomputed` from the archive, or `as_printed`: a register as the federation had it.
         method, method_hash: None for a register as printed.
         inputs_digest: of all tows that went in with their files, not only those of the lines.
+        carried_from: the printed edition of which lines were taken over, if any.
         previous: the edition that the release notes compare with.
     """
 
@@ -74,6 +87,7 @@ class About(BaseModel):
     decision: str
     simulated: bool
     inputs_digest: str
+    carried_from: str | None
     previous: str | None
     tables: dict[str, TableDigest] = {}
     files: dict[str, str] = {}

@@ -5,12 +5,10 @@ the whole archive); so both hashes are kept. Which files still are what they wer
 """
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Final
 
 import polars as pl
 
-from pipeline.errors import MissingKnowledgeError
 from warehouse.editions.folder import Edition
 from warehouse.store import Store, fingerprint, table_digest
 from warehouse.tables import runs_with_windows, typed_tows
@@ -81,18 +79,3 @@ def input_files(store: Store, tows: pl.DataFrame) -> pl.DataFrame:
         .select("path", "sha256", pl.lit(LIST).alias("kind"))
     )
     return pl.concat([samples, lists]).sort("path")
-
-
-def archive_root(store: Store) -> Path | None:
-    """Where the archive was when the warehouse was last rebuilt; None if it is not there now.
-
-    Raises:
-        MissingKnowledgeError: nothing was ever rebuilt in this data folder.
-    """
-    if store.made_from("about_archive") is None:
-        raise MissingKnowledgeError(
-            f"{store.root} holds no warehouse; make it with: herijk rebuild --archive DIR "
-            f"--data {store.root}"
-        )
-    root = Path(store.read("about_archive")["root"][0])
-    return root if root.is_dir() else None

@@ -5,6 +5,7 @@ numbers are left out where no valid curve is.
 """
 
 import datetime as dt
+from dataclasses import dataclass
 from typing import Final
 
 import polars as pl
@@ -16,9 +17,11 @@ from pipeline.method import RegisterRule
 from pipeline.recompute import recompute
 from pipeline.register import LINE, draft_register
 from warehouse import decisions as decided
-from warehouse import intake
-from warehouse.editions.folder import DECISIONS, Edition, editions_folder
+from warehouse import intake, tables
+from warehouse.editions import sheets
+from warehouse.editions.folder import DECISIONS, INPUTS, Edition, edition_path, read_edition
 from warehouse.editions.inputs import INPUTS_HASH, tows_of_today
+from warehouse.editions.printed import printed_lines, with_carried
 from warehouse.store import Store
 from warehouse.tables import runs_with_windows
 
@@ -28,45 +31,76 @@ MEASURED: Final = "measured"
 
 
 def method_lines(
-    tables: dict[str, pl.DataFrame],
+    of_method: dict[str, pl.DataFrame],
     crews: pl.DataFrame,
     valid_from: dt.date,
     rule: RegisterRule,
     decisions: pl.DataFrame,
 ) -> pl.DataFrame:
     """The lines of a method on a day, each with the facts of its tow; numbers only where valid."""
-    draft = draft_register(tables["curves"], tables["tows"], crews, valid_from, rule, decisions)
+    draft = draft_register(
+        of_method["curves"], of_method["tows"], crews, valid_from, rule, decisions
+    )
     valid = pl.col("status") == "valid"
     return draft.join(
-        tables["tows"].select("tow_id", *TOW_FACTS), on="tow_id", how="left"
+        of_method["tows"].select("tow_id", *TOW_FACTS), on="tow_id", how="left"
     ).with_columns(
         *(pl.when(valid).then(pl.col(name)).alias(name) for name in NUMBERS),
         pl.when(valid).then(pl.lit(MEASURED)).alias("basis"),
     )
 
 
-def lines_made_again(store: Store, edition: Edition) -> pl.DataFrame:
-    """The lines of a published edition as archive and code of today give them.
+@dataclass(frozen=True)
+class Again:
+    """A published edition as archive and code of today give it.
 
-    By its own method, decisions and day, on those of its tows that the warehouse still has.
+    Attributes:
+        lines: its lines, but for boats never towed, in which nothing is computed.
+        ensemble: the members of its lines; None for a register as printed.
+    """
+
+    lines: pl.DataFrame
+    ensemble: pl.DataFrame | None
+
+
+def made_again(store: Store, edition: Edition) -> Again:
+    """Makes a published edition again, by its own method, decisions and day.
+
+    Measured lines are computed from those of its tows that the warehouse still has; lines carried
+    over are re-based again from the printed edition; a printed register is read again.
 
     Raises:
-        MissingKnowledgeError: it was printed, or there is no warehouse.
+        MissingKnowledgeError: there is no warehouse, or the archive is not there.
+        BrokenPromiseError: the printed edition that lines were carried over from is damaged.
     """
-    if edition.method is None or store.made_from("tows") is None:
+    if store.made_from("tows") is None:
         raise MissingKnowledgeError("there is no warehouse to make it from; run herijk rebuild")
+    if edition.method is None:
+        return Again(printed_lines(store, _printed_file(store, edition)), None)
     mine = edition.tables["tows"].select("tow_id")
     tows = tows_of_today(store).join(mine, on="tow_id", how="semi")
     runs = runs_with_windows(store).join(mine, on="tow_id", how="semi")
     blocks = stack_blocks(intake.all_blocks(store), runs)
-    curves = recompute(edition.method, tows, blocks).curves
+    found = recompute(edition.method, tows, blocks)
     nobody = pl.DataFrame(schema={name: edition.register.schema[name] for name in LINE})
-    text = (editions_folder(store) / edition.about.edition / DECISIONS).read_text(encoding="utf-8")
+    text = (edition_path(store, edition.about.edition) / DECISIONS).read_text(encoding="utf-8")
     decisions = TypeAdapter(tuple[decided.Decision, ...]).validate_json(text)
-    return method_lines(
-        {"curves": curves, "tows": tows},
+    about = edition.about
+    lines = method_lines(
+        {"curves": found.curves, "tows": tows},
         nobody,
-        edition.about.valid_from,
+        about.valid_from,
         edition.method.validity,
         decided.decision_table(decisions),
     )
+    if about.carried_from is not None:
+        printed = read_edition(store, about.carried_from)
+        lines = with_carried(lines, printed, found.log_factors, about.valid_from, edition.method)
+    members = tables.ensemble_of(edition.method, found)
+    return Again(lines, members.join(edition.tables["ensemble"], on="tow_id", how="semi"))
+
+
+def _printed_file(store: Store, edition: Edition) -> str:
+    """The file that a register as printed was read from."""
+    listed = (edition_path(store, edition.about.edition) / INPUTS).read_bytes()
+    return str(sheets.read_csv_cells(listed)[1][0])

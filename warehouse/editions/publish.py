@@ -13,15 +13,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-import numpy as np
 import polars as pl
 
-from pipeline.curve import cw, rebase, s_of_b
 from pipeline.errors import MissingKnowledgeError
-from pipeline.method import Method, RegisterRule, method_text
-from pipeline.register import LINE, valid_until
+from pipeline.method import Method, method_text
+from pipeline.register import LINE
 from warehouse import decisions as decided
-from warehouse.archive import read_published_registers
 from warehouse.code import code_version
 from warehouse.editions import notes, sheets
 from warehouse.editions.compare import compare
@@ -32,7 +29,6 @@ from warehouse.editions.folder import (
     DECISIONS,
     INPUTS,
     METHOD,
-    NOTES,
     PACKAGE,
     TABLES,
     XLSX,
@@ -49,22 +45,22 @@ from warehouse.editions.folder import (
 from warehouse.editions.inputs import (
     INPUTS_HASH,
     REGISTER,
-    archive_root,
     input_files,
     inputs_digest,
     tows_of_today,
 )
 from warehouse.editions.lines import TOW_FACTS, method_lines
+from warehouse.editions.printed import printed_lines, printed_path, with_carried
+from warehouse.editions.sheets import CODE_FIELD
+from warehouse.ensemble import read_ensemble
 from warehouse.schemas import Register, conform
-from warehouse.store import Store, fingerprint, table_digest
+from warehouse.store import Store, table_digest
 from warehouse.tables import method_is_stale, runs_with_windows
 
 BOAT_FACTS: Final = ("ht_no", "name", "boat_type")
-AS_PRINTED, REBASED = "printed", "printed_rebased"
 PRINTED_METHOD: Final = "as-printed"
-NO_VALID_CURVE: Final = "no_valid_curve"
 LINE_SCHEMA: Final = {
-    **{name: column.dtype for name, column in Register.columns().items()},
+    **{n: column.dtype for n, column in Register.columns().items() if n != CODE_FIELD.column},
     **dict.fromkeys(BOAT_FACTS, pl.String()),
     **dict.fromkeys(TOW_FACTS[:-1], pl.Float64()),
     INPUTS_HASH: pl.String(),
@@ -127,8 +123,10 @@ def publish_printed(store: Store, season: int, terms: Terms) -> Path:
     """
     check_new_name(store, terms.edition)
     _check_decision(terms)
-    lines, files = _printed_lines(store, season)
-    register = _complete(store, lines, terms.edition, PRINTED_METHOD, None)
+    path = printed_path(store, season)
+    files = store.read("listed_files").filter(pl.col("path") == path)
+    files = files.select("path", "sha256", pl.lit(REGISTER).alias("kind"))
+    register = _complete(store, printed_lines(store, path), terms.edition, PRINTED_METHOD, None)
     about = _about(store, terms, None, inputs_digest="")
     return _write(store, Edition(about, {"register": register}, None), files, {})
 
@@ -153,11 +151,14 @@ def recomputed_edition(
     crews = store.read("listed_boats")
     lines = method_lines(tables, crews, terms.valid_from, method.validity, decisions)
     if carry is not None:
-        printed = _carried(read_edition(store, carry), tables["log_factors"], method.validity)
-        counts = pl.lit(terms.valid_from).is_between("tow_date", "valid_until")
-        lines = _with_carried(lines, printed.filter(counts & pl.col("cw_kg_m").is_finite()))
+        printed = read_edition(store, carry)
+        factors = tables["log_factors"]
+        lines = with_carried(lines, printed, factors, terms.valid_from, method)
+    tables["ensemble"] = read_ensemble(store, method.name).join(
+        lines.drop_nulls("cw_kg_m"), on="tow_id", how="semi"
+    )
     tables["register"] = _complete(store, lines, terms.edition, method.name, method.content_hash)
-    about = _about(store, terms, method, inputs_digest(tows))
+    about = _about(store, terms, method, inputs_digest(tows), carry)
     return Edition(about, tables, method)
 
 
@@ -192,7 +193,9 @@ def _check_decided_tows(decisions: pl.DataFrame, tows: pl.DataFrame) -> None:
         )
 
 
-def _about(store: Store, terms: Terms, method: Method | None, inputs_digest: str) -> About:
+def _about(
+    store: Store, terms: Terms, method: Method | None, inputs_digest: str, carry: str | None = None
+) -> About:
     return About(
         edition=terms.edition,
         kind="as_printed" if method is None else "recomputed",
@@ -204,6 +207,7 @@ def _about(store: Store, terms: Terms, method: Method | None, inputs_digest: str
         decision=terms.decision,
         simulated=bool(store.read("about_archive")["simulated"][0]),
         inputs_digest=inputs_digest,
+        carried_from=carry,
         previous=latest_before(store, terms.valid_from, terms.published_on),
     )
 
@@ -221,9 +225,10 @@ def _complete(
         .select(pl.col(name).cast(dtype) for name, dtype in LINE_SCHEMA.items())
         .sort(LINE)
     )
-    conform("register", full)
     codes = sheets.verification_codes(full, method_hash)
-    return full.with_columns(pl.Series(sheets.CODE_FIELD.column, codes, pl.String))
+    coded = full.with_columns(pl.Series(CODE_FIELD.column, codes, pl.String))
+    conform("register", coded)
+    return coded
 
 
 def _write(store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str, str]) -> Path:
@@ -234,14 +239,13 @@ def _write(store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str,
     if about.previous is not None:
         previous = compare(store, read_edition(store, about.previous), edition)
         tables[CHANGES] = previous.lines
-    text = notes.release_notes(edition, previous)
-    fields = [*sheets.REGISTER_FIELDS, sheets.CODE_FIELD]
+    written = texts | notes.texts(edition, previous)
+    fields = [*sheets.REGISTER_FIELDS, CODE_FIELD]
     contents = {
         CSV: sheets.csv_bytes(edition.register, fields),
         XLSX: sheets.xlsx_bytes(edition.register, fields, about),
         INPUTS: sheets.csv_bytes(files, sheets.INPUT_FIELDS),
-        NOTES: text.encode("utf-8"),
-        **{name: content.encode("utf-8") for name, content in texts.items()},
+        **{name: text.encode("utf-8") for name, text in written.items()},
         **{f"{name}.parquet": _parquet(tables[name]) for name in TABLES if name in tables},
     }
     contents[PACKAGE] = sheets.package_bytes(about, contents, notes.summary(edition))
@@ -262,87 +266,3 @@ def _parquet(frame: pl.DataFrame) -> bytes:
     target = io.BytesIO()
     frame.write_parquet(target, compression="zstd")
     return target.getvalue()
-
-
-# Printed registers
-
-
-def _printed_lines(store: Store, season: int) -> tuple[pl.DataFrame, pl.DataFrame]:
-    """Lines of the register printed in a season, and the file they come from."""
-    root = archive_root(store)
-    if root is None:
-        raise MissingKnowledgeError(
-            "the archive is not where it was at the last rebuild; rebuild with --archive DIR"
-        )
-    found = read_published_registers(root)[0]
-    printed = found.filter(pl.col("season") == season)
-    if printed.is_empty():
-        known = ", ".join(str(s) for s in found["season"].unique().sort()) or "none"
-        raise MissingKnowledgeError(
-            f"the archive holds no register printed in {season}; it holds: {known}"
-        )
-    _refuse_doubles(printed)
-    lines = printed.select(
-        *LINE,
-        *("tow_date", "declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m"),
-        pl.when("has_valid_curve")
-        .then(pl.lit("valid"))
-        .otherwise(pl.lit(NO_VALID_CURVE))
-        .alias("status"),
-        pl.when("has_valid_curve").then(pl.lit(AS_PRINTED)).alias("basis"),
-        _row_hashes(printed),
-    )
-    path = printed["path"][0]
-    files = store.read("listed_files").filter(pl.col("path") == path)
-    return lines, files.select("path", "sha256", pl.lit(REGISTER).alias("kind"))
-
-
-def _refuse_doubles(printed: pl.DataFrame) -> None:
-    double = printed.filter(pl.struct(LINE).is_duplicated())
-    if double.height:
-        row = double.row(0, named=True)
-        raise MissingKnowledgeError(
-            f"{row['path']}, line {row['line']}: {row['fsn_no']} stands there twice for "
-            f"{row['rowers']}{row['crew_class']}; take one of the lines out"
-        )
-
-
-def _row_hashes(lines: pl.DataFrame) -> pl.Series:
-    values = lines.drop("path", "line")
-    return pl.Series(INPUTS_HASH, [fingerprint(row) for row in values.rows()], pl.String)
-
-
-def _carried(printed: Edition, log_factors: pl.DataFrame, rule: RegisterRule) -> pl.DataFrame:
-    """Printed lines re-based in closed form: A / y^2 and B y with the log factor y of the season.
-
-    Raises:
-        MissingKnowledgeError: the edition is not a printed one.
-    """
-    if printed.about.kind != "as_printed":
-        raise MissingKnowledgeError(
-            f"edition {printed.about.edition} was recomputed; only lines of an edition as printed "
-            "can be carried over"
-        )
-    usable = ("tow_date", "declared_speed_m_s", "a_kg_m", "b_m_s")
-    lines = (
-        printed.register.drop_nulls(usable)
-        .with_columns(pl.col("tow_date").dt.year().alias("season"))
-        .join(log_factors.select("season", "factor"), on="season", how="left")
-    )
-    y = lines["factor"].fill_null(1.0).to_numpy()
-    a, b = rebase(lines["a_kg_m"], lines["b_m_s"], y)
-    return lines.select(
-        *LINE,
-        *("tow_date", "declared_speed_m_s", "status", INPUTS_HASH),
-        valid_until(pl.col("tow_date"), rule).alias("valid_until"),
-        pl.Series("a_kg_m", a),
-        pl.Series("b_m_s", b),
-        pl.Series("cw_kg_m", cw(a, s_of_b(b), lines["declared_speed_m_s"])),
-        pl.Series("basis", np.where(y == 1.0, AS_PRINTED, REBASED), pl.String),
-    )
-
-
-def _with_carried(lines: pl.DataFrame, printed: pl.DataFrame) -> pl.DataFrame:
-    """Lines of the warehouse, with a printed one in place of each that is not valid."""
-    taken = printed.join(lines.filter(pl.col("status") == "valid"), on=LINE, how="anti")
-    return pl.concat([lines.join(taken, on=LINE, how="anti"), taken], how="diagonal_relaxed")

@@ -20,6 +20,7 @@ import polars as pl
 import xlsxwriter  # type: ignore[import-untyped,unused-ignore]
 
 from warehouse.editions.folder import CSV, INPUTS, About
+from warehouse.editions.words import DUTCH
 
 BOM: Final = "\ufeff"
 CODE_LENGTH: Final = 10
@@ -29,14 +30,6 @@ FORMULA_STARTS: Final = ("=", "+", "-", "@", "\t", "\r")
 
 FieldType = Literal["string", "number", "integer", "date"]
 
-STATUS_WORDS: Final = {
-    "valid": "geldig",
-    "expired": "verlopen",
-    "rejected": "geen kromme",
-    "excluded": "uitgesloten",
-    "never_towed": "niet gesleept",
-    "no_valid_curve": "geen geldige kromme",
-}
 BASIS_WORDS: Final = {
     "measured": "herrekend",
     "printed": "gedrukt",
@@ -197,7 +190,7 @@ def _field(field: Field) -> dict[str, Any]:
 
 def _in_words(frame: pl.DataFrame) -> pl.DataFrame:
     """Codes in the words that people read."""
-    words = {"status": STATUS_WORDS, "basis": BASIS_WORDS}
+    words = {"status": DUTCH.statuses, "basis": BASIS_WORDS}
     return frame.with_columns(
         pl.col(column).replace(words[column]) for column in words if column in frame.columns
     )

@@ -16,6 +16,7 @@ from pydantic import ValidationError
 from pipeline.errors import BrokenPromiseError, HerijkError
 from pipeline.register import LINE
 from pipeline.steady import HAND_COLUMNS
+from warehouse import intake
 from warehouse.archive import FileHashes, index_archive
 from warehouse.code import code_version
 from warehouse.editions import sheets
@@ -36,14 +37,16 @@ from warehouse.editions.folder import (
 from warehouse.editions.inputs import (
     LIST,
     NOT_INPUT,
-    archive_root,
     unchanged_tows,
 )
-from warehouse.editions.lines import MEASURED, NUMBERS, lines_made_again
+from warehouse.editions.lines import NUMBERS, Again, made_again
+from warehouse.editions.printed import AS_PRINTED
 from warehouse.store import Store, table_digest
 
 SAME_NUMBER: Final = 1e-9
 """Relative difference up to which a number made again is the same."""
+
+NEVER_TOWED: Final = "never_towed"
 
 MOST_CELLS: Final = 20
 """Altered cells of a file that are named one by one."""
@@ -75,8 +78,8 @@ def verify(store: Store) -> Report:
     """Checks every published edition.
 
     Returns:
-        `editions` (name, lines, and how many were made again equal), `findings`, and `wrong`:
-        whether any finding is more than a notice.
+        `editions` (name, kind, `lines`, how many of them were `made_again` and how many came out
+        `equal`), `findings`, and `wrong`: whether any finding is more than a notice.
     """
     names = edition_names(store)
     findings: list[Finding] = []
@@ -89,11 +92,9 @@ def verify(store: Store) -> Report:
             findings.append(Finding(name, "altered", ABOUT, str(error)))
             continue
         findings += [*_altered(path, about), *_archive(store, path, about)]
-        made = 0
-        if about.kind == "recomputed":
-            made, differing = _made_again(store, name)
-            findings += differing
-        checked.append({"edition": name, "kind": about.kind, "lines_made_again": made})
+        counts, differing = _made_again(store, name)
+        findings += differing
+        checked.append({"edition": name, "kind": about.kind} | counts)
     return {
         "editions": checked,
         "findings": [asdict(f) for f in findings],
@@ -222,7 +223,7 @@ def _line_name(row: dict[str, Any]) -> str:
 
 def _archive(store: Store, path: Path, about: About) -> Iterator[Finding]:
     name = path.name
-    root = archive_root(store) if store.made_from("about_archive") is not None else None
+    root = intake.archive_root(store) if store.made_from("about_archive") is not None else None
     if root is None:
         yield Finding(
             name,
@@ -291,68 +292,101 @@ def _changed_facts(
 # Do archive and code of today give the same register?
 
 
-def _made_again(store: Store, name: str) -> tuple[int, list[Finding]]:
-    """Lines that come out equal, and a finding for each that does not."""
+def _made_again(store: Store, name: str) -> tuple[dict[str, int | None], list[Finding]]:
+    """How many lines there are and come out equal, and a finding for each that does not."""
     try:
         edition = read_edition(store, name)
-        again = lines_made_again(store, edition)
+    except (HerijkError, ValidationError, OSError) as error:
+        return dict.fromkeys(("lines", "made_again", "equal")), [_not_made(name, error)]
+    to_make = edition.register.filter(pl.col("status") != NEVER_TOWED)
+    counts: dict[str, int | None] = {"lines": edition.register.height, "made_again": 0, "equal": 0}
+    try:
+        again = made_again(store, edition)
     except (HerijkError, ValidationError, OSError, pl.exceptions.PolarsError) as error:
-        reason = str(error).splitlines()[0]
-        return 0, [Finding(name, "unchecked", "register", f"it cannot be made again: {reason}")]
-    findings = list(_differing(store, edition, again))
-    lines = edition.register.filter(pl.col("basis") == MEASURED).height
-    return lines - len(findings), findings
+        return counts, [_not_made(name, error)]
+    findings = list(_differing(store, edition, to_make, again))
+    counts |= {"made_again": to_make.height, "equal": to_make.height - len(findings)}
+    return counts, [*findings, *_other_members(edition, again, bool(findings))]
 
 
-def _differing(store: Store, edition: Edition, again: pl.DataFrame) -> Iterator[Finding]:
-    lines = edition.register.filter(pl.col("basis") == MEASURED)
-    columns = ["tow_id", *NUMBERS]
-    pairs = lines.select(*LINE, *columns).join(
-        again.select(*LINE, *columns), on=LINE, how="left", suffix="_now"
+def _not_made(name: str, error: Exception) -> Finding:
+    reason = str(error).splitlines()[0]
+    return Finding(name, "unchecked", "register", f"it cannot be made again: {reason}")
+
+
+def _differing(
+    store: Store, edition: Edition, lines: pl.DataFrame, again: Again
+) -> Iterator[Finding]:
+    columns = ["tow_id", "status", *NUMBERS]
+    known = [name for name in columns if name in again.lines.columns]
+    pairs = lines.select(*LINE, "basis", *known).join(
+        again.lines.select(*LINE, *known), on=LINE, how="left", suffix="_now"
     )
-    present = set(store.read("tows")["tow_id"])
-    unchanged = unchanged_tows(store, edition)
-    same_inputs = len(unchanged) == edition.tables["tows"].height
+    reasons = _Reasons.of(store, edition)
     for row in pairs.sort(LINE).iter_rows(named=True):
-        unequal = [n for n in NUMBERS if not _same(row[n], row[f"{n}_now"])]
-        if not unequal and row["tow_id"] == row["tow_id_now"]:
+        unequal = [n for n in known if not _same(row[n], row[f"{n}_now"])]
+        if not unequal:
             continue
-        why, wrong = _why(row, edition.about, present, unchanged, same_inputs)
+        why, wrong = reasons.why(row)
         what = ", ".join(f"{n} {_text(row[n])} becomes {_text(row[f'{n}_now'])}" for n in unequal)
         yield Finding(
-            edition.about.edition,
-            "differs",
-            _line_name(row),
-            f"made again, {what or 'another tow counts'}: {why}",
-            wrong,
+            edition.about.edition, "differs", _line_name(row), f"made again, {what}: {why}", wrong
         )
 
 
-def _why(
-    row: dict[str, Any],
-    about: About,
-    present: set[str],
-    unchanged: frozenset[str],
-    same_inputs: bool,
-) -> tuple[str, bool]:
-    """Why a line comes out otherwise, and whether that breaks a promise."""
-    tow = row["tow_id"]
-    if tow not in present:
-        return f"tow {tow} is no longer in the warehouse", True
-    if tow not in unchanged:
-        return f"the files or the list row of tow {tow} changed", True
-    if not same_inputs:
-        return "other tows that went into it changed", True
-    if about.code_version != code_version():
-        return f"the code changed, from {about.code_version} to {code_version()}", False
-    return "inputs, method and code are the same; this should not happen", True
+def _other_members(edition: Edition, again: Again, explained: bool) -> Iterator[Finding]:
+    """The ensemble, if it alone comes out otherwise."""
+    if again.ensemble is None or explained:
+        return
+    key = ["tow_id", "member"]
+    pairs = edition.tables["ensemble"].join(again.ensemble, on=key, how="full", suffix="_now")
+    differ = (pairs["cw_kg_m"] / pairs["cw_kg_m_now"] - 1.0).abs() > SAME_NUMBER
+    if differ.fill_null(True).any():
+        new_code = edition.about.code_version != code_version()
+        why = "the code changed" if new_code else "this should not happen"
+        message = f"made again, its members come out otherwise: {why}"
+        yield Finding(edition.about.edition, "differs", "ensemble.parquet", message, not new_code)
 
 
-def _same(was: float | None, now: float | None) -> bool:
-    if was is None or now is None:
-        return was is now
-    return abs(now - was) <= SAME_NUMBER * abs(was)
+@dataclass(frozen=True)
+class _Reasons:
+    """What can make a line of an edition come out otherwise."""
+
+    about: About
+    present: frozenset[str]
+    unchanged: frozenset[str]
+    same_inputs: bool
+
+    @classmethod
+    def of(cls, store: Store, edition: Edition) -> "_Reasons":
+        if edition.method is None:
+            return cls(edition.about, frozenset(), frozenset(), same_inputs=True)
+        unchanged = unchanged_tows(store, edition)
+        present = frozenset(store.read("tows")["tow_id"])
+        same_inputs = len(unchanged) == edition.tables["tows"].height
+        return cls(edition.about, present, unchanged, same_inputs)
+
+    def why(self, row: dict[str, Any]) -> tuple[str, bool]:
+        """Why a line comes out otherwise, and whether that breaks a promise."""
+        if row["basis"] == AS_PRINTED and self.about.kind == "as_printed":
+            return "the printed register in the archive says so now", True
+        tow = row.get("tow_id")
+        if tow is not None and tow not in self.present:
+            return f"tow {tow} is no longer in the warehouse", True
+        if tow is not None and tow not in self.unchanged:
+            return f"the files or the list row of tow {tow} changed", True
+        if not self.same_inputs:
+            return "other tows that went into it changed", True
+        if self.about.code_version != code_version():
+            return f"the code changed, from {self.about.code_version} to {code_version()}", False
+        return "inputs, method and code are the same; this should not happen", True
 
 
-def _text(value: float | None) -> str:
-    return "nothing" if value is None else f"{value:.6g}"
+def _same(was: float | str | None, now: float | str | None) -> bool:
+    if isinstance(was, float) and isinstance(now, float):
+        return abs(now - was) <= SAME_NUMBER * abs(was)
+    return was == now
+
+
+def _text(value: float | str | None) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value or "nothing")

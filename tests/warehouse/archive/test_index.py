@@ -97,9 +97,22 @@ def test_the_profile_sets_rate_and_directions(archive: Archive) -> None:
     assert scan.index.runs["direction"].to_list() == [1, -1] * 9
 
 
+def test_a_replaced_log_begins_a_new_part_of_its_season(archive: Archive) -> None:
+    days = archive.scan().index.tows["tow_date"].sort().to_list()
+    toml = "".join(
+        f'[[log_replaced]]\ndate = {day}\nlog = "{log}"\nreason = "worn"\n'
+        for day, log in ((days[1], "log1"), ("2013-06-01", "log1"), (days[0], "log2"))
+    )
+    (archive.root / "archief.toml").write_text(toml)
+    tows = archive.scan().index.tows.sort("tow_date")
+    assert tows["log1_part"].to_list() == [int(day >= days[1]) for day in days]
+    assert tows["log2_part"].to_list() == [1] * len(days)
+
+
 @pytest.mark.parametrize(
     ("toml", "named"),
     [
+        ('[[log_replaced]]\ndate = 2014-03-01\nlog = "log3"\nreason = "x"', "log"),
         ("simulatd = true", "simulatd"),
         ('[[profile]]\nseasons = "2014"\nrate = 3', "rate"),
         ('[[profile]]\nseasons = "2014"\ncolumns = { log3 = "x" }', "log3"),

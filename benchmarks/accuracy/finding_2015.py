@@ -1,0 +1,48 @@
+"""The finding of 2015 over many simulated histories: how its figures spread from seed to seed.
+
+PYTHONPATH=. python benchmarks/accuracy/finding_2015.py [seeds]
+"""
+
+import sys
+import warnings
+
+import numpy as np
+
+from tests.pipeline.finding_2015 import AFTER, AGAINST, BEFORE, LETTERS, PAIR, find
+
+
+def shift(row):
+    ends = (100 * (row[end] - 1) for end in ("shift_ratio", "lo", "hi"))
+    text = "{:+5.1f} ({:+5.1f} to {:+5.1f})".format(*ends)
+    return f"{text} {'apart' if row['apart'] else 'none '}, n {row['n']:2d}"
+
+
+def main():
+    warnings.simplefilter("error")
+    seeds = range(1, 1 + (int(sys.argv[1]) if len(sys.argv) > 1 else 12))
+    shares = {f"{y} on {x}": [] for x in AGAINST for y in LETTERS}
+    apart = {(t, m): [] for t in (*PAIR, "all") for m in (BEFORE, AFTER)}
+    print("shift of Cw from 2009-2011 to the next tow, %")
+    for seed in seeds:
+        found = find(seed)
+        for x in AGAINST:
+            for y in LETTERS:
+                shares[f"{y} on {x}"].append(found.explained(y, x))
+        for (boat_type, method), verdicts in apart.items():
+            row = found.shift(boat_type, method)
+            verdicts.append(row["apart"])
+            print(f"  {seed:2d} {boat_type:15s} {method:13s} {shift(row)}", flush=True)
+    print(f"stands apart, of {len(seeds)} seeds")
+    for (boat_type, method), verdicts in apart.items():
+        print(f"  {boat_type:15s} {method:13s} {sum(map(bool, verdicts))}")
+    print("R2, mean of both types: mean, sd, lowest, highest over seeds")
+    for name, values in shares.items():
+        mean, sd = np.mean(values), np.std(values, ddof=1)
+        print(f"  {name:18s} {mean:.2f}  {sd:.2f}  {min(values):.2f}  {max(values):.2f}")
+    for x in AGAINST:
+        ahead = np.array(shares[f"Cw on {x}"]) - shares[f"A on {x}"]
+        print(f"  Cw - A on {x:12s} {ahead.mean():.2f}  {ahead.std(ddof=1):.2f}  {ahead.min():.2f}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,173 @@
+"""Words and figures that the pages of `herijk audit` share.
+
+Belongs here: how a number, an interval, a verdict, a boat or a reason is said. Does not belong
+here: what stands on which page.
+"""
+
+import re
+import textwrap
+from math import exp
+from typing import Any, Final
+
+Report = dict[str, Any]
+
+REASONS: Final = {
+    "no_type": "boats without a type are not compared",
+    "few_boats": "too few boats",
+    "equal_values": "all boats have the same value",
+    "no_scatter": "runs without scatter",
+    "no_curves": "no curve of this type",
+    "few_pairs": "fewer than six pairs",
+    "too_few_repeats": "too few repeat tows",
+}
+"""Why nothing is claimed, by the codes in the tables."""
+
+EXPLANATIONS: Final = {
+    "weight": "unusual weight",
+    "length": "unusual length",
+    "season": "its season lies to the same side",
+    "log": "unusual calibration of its log",
+    "altered": "altered before this tow",
+    "slow_tow": "slow tow",
+    "askew": "perhaps pulled askew",
+    "b_at_cap": "B at its cap",
+    "b_not_determined": "B not determined",
+}
+"""What could explain a boat's place, by the codes in `type_outliers`."""
+
+QUANTITIES: Final = {"b_m_s": "B", "a_kg_m": "A", "cw_standard_kg_m": "Cw"}
+AGAINST: Final = {
+    "weight_kg": ("weight", 100.0, "100 kg"),
+    "declared_speed_m_s": ("tow speed", 0.1, "0.1 m/s"),
+}
+"""Explaining variables: their name, and the step for which a slope is told."""
+
+MOST_LISTED: Final = 4
+WIDTH: Final = 100
+
+NOTE: Final = (
+    "n counts the newest tow of each boat and crew; two crews of one boat are not taken for two "
+    "boats. Intervals are 95 %; a trend or shift is named where its interval leaves out zero: "
+    "'none seen' is no proof that there is none."
+)
+
+
+def wrapped(text: str, indent: int = 2, hanging: int = 2) -> str:
+    """Lines of at most `WIDTH`; a figure stays with its sign and n with its number."""
+    bound = re.sub(r"(?<=\d) (?=%)|(?<=\bn) (?=\d)|(?<=\bp) (?=\d)", "\xa0", text)
+    lines = textwrap.fill(
+        bound, WIDTH, initial_indent=" " * indent, subsequent_indent=" " * (indent + hanging)
+    )
+    return lines.replace("\xa0", " ")
+
+
+def share(ratio: float | None, digits: int = 0) -> str:
+    """A ratio in per cent."""
+    return "-" if ratio is None else f"{100 * ratio:.{digits}f} %"
+
+
+def change(ratio: float) -> str:
+    """How much a ratio differs from 1, in per cent without the sign."""
+    return f"{100 * (ratio - 1):+.1f}"
+
+
+def nothing(row: Report) -> str:
+    """That nothing is claimed, why, and from how many boats."""
+    n = row.get("n_boats", row["n"])
+    counted = f"{n} boats" if "n_boats" in row else f"n {n}"
+    return f"nothing claimed: {REASONS.get(row['reason'], row['reason'])} ({counted})"
+
+
+def yes(verdict: bool | None) -> str:
+    """The verdict on a slope."""
+    return {True: "follows", False: "no trend seen", None: "-"}[verdict]
+
+
+def interval(value: float, lo: float, hi: float, *, digits: int) -> str:
+    """A number with its interval, signed."""
+    return f"{value:+.{digits}f} ({lo:+.{digits}f} to {hi:+.{digits}f})"
+
+
+def who(row: Report) -> str:
+    """A boat with its crew."""
+    return f"{row['fsn_no']} {row['name'] or ''} {row['rowers']}{row['crew_class']}"
+
+
+def listed(lines: list[str]) -> list[str]:
+    """The first few, and how many more there are."""
+    more = len(lines) - MOST_LISTED
+    return lines[:MOST_LISTED] + ([f"and {more} more: see --json"] if more > 0 else [])
+
+
+def section(title: str, lines: list[str]) -> str:
+    """A title with its lines below."""
+    return "\n".join([title, *lines])
+
+
+def line_of(under: Report, quantity: str, explaining: str) -> Report:
+    """The straight line of a quantity on an explaining variable, or why there is none."""
+    for line in under["lines"]:
+        if (line["quantity"], line["explaining"]) == (quantity, explaining):
+            return dict(line)
+    return {"n": 0, "n_boats": 0, "slope": None, "follows": None, "reason": "no_curves"}
+
+
+def heading(found: Report) -> str:
+    """How many boats and tows of a type there are, and how they differ."""
+    boats = f"{found['n_boats']} boats, {found['n_towed']} of them towed; {found['n_tows']} tows"
+    if not found["n_tows"]:
+        return f"{boats} accepted."
+    seasons = f"{found['first_season']}-{found['last_season']}"
+    weight = (
+        "weight not known"
+        if found["lightest_kg"] is None
+        else f"{found['lightest_kg']:.0f}-{found['heaviest_kg']:.0f} kg"
+    )
+    speeds = f"{found['slowest_m_s']:.2f}-{found['fastest_m_s']:.2f} m/s"
+    return f"{boats}, {seasons}; {weight}; declared speed {speeds}."
+
+
+def apart(era: Report) -> str:
+    """The verdict on an era."""
+    return {True: "apart", False: "none seen", None: "-"}[era["apart"]]
+
+
+def outsider(row: Report) -> str:
+    """A boat outside its type: how far, and what could explain it."""
+    codes = ", ".join(EXPLANATIONS.get(code, code) for code in row["candidates"])
+    return (
+        f"{who(row)}, {row['tow_id']}: {distance(row)}, {row['deviation_sd']:+.1f} sd; "
+        f"{codes or 'nothing known explains it'}"
+    )
+
+
+def distance(row: Report) -> str:
+    """How far a boat lies from what the other boats of its type predict."""
+    if row["quantity"] == "bend":
+        return f"(v/B)^2 {row['value']:.2f}, expected {row['expected']:.2f}"
+    ratio = exp(row["value"] - row["expected"])
+    return f"Cw at {row['standard_speed_m_s']:.2f} m/s {change(ratio)} % from the expected"
+
+
+def slow_tow(row: Report) -> str:
+    """A slow tow, and what its own curve asks at the speed that like crews row."""
+    towed = f"{row['declared_speed_m_s']:.2f} m/s, {row['power_w']:.0f} W a rower"
+    ratios = [row[f"power_ratio_rowed{end}"] for end in ("", "_lo", "_hi")]
+    if None in ratios:
+        return f"{who(row)}, {row['tow_id']}: {towed}; no like crews to compare with"
+    power, lo, hi = map(change, ratios)
+    rowed, above = row["rowed_speed_m_s"], row["rowed_speed_m_s"] / row["declared_speed_m_s"]
+    return (
+        f"{who(row)}, {row['tow_id']}: {towed}; at {rowed:.2f} m/s, where like crews row "
+        f"({share(above)} of its speed), its curve asks {power} % ({lo} to {hi}) of the power by "
+        "its type's bend"
+    )
+
+
+def second_opinion(row: Report) -> str:
+    """Cw of the tow and as the other boats predict it."""
+    return (
+        f"Cw at {row['standard_speed_m_s']:.2f} m/s {row['cw_kg_m']:.2f}, predicted "
+        f"{row['predicted_cw_kg_m']:.2f} ({row['predicted_lo_kg_m']:.2f} to "
+        f"{row['predicted_hi_kg_m']:.2f}) kg/m"
+    )

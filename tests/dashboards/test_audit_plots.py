@@ -1,0 +1,75 @@
+"""The plots beside an audit: whole SVG files that say what they are and fetch nothing."""
+
+import shutil
+from xml.etree import ElementTree as ET
+
+import duckdb
+import pytest
+
+from dashboards.audit_plots import file_name, write_audit_plots
+from warehouse.audit import audit
+from warehouse.store import Store
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def drawn(store, folder, *names):
+    report = audit(store, names)
+    return {path.stem: path.read_text() for path in write_audit_plots(store, report, folder)}
+
+
+@pytest.fixture(scope="module")
+def type_plots(built, tmp_path_factory):
+    """Plots of a type that has a shift of its own; the small archive is too small for one."""
+    root = tmp_path_factory.mktemp("plots")
+    shutil.copytree(built.data, root / "data")
+    store = Store(root / "data")
+    with duckdb.connect(store.database) as db:
+        db.execute("DELETE FROM era_shifts")
+        db.execute(
+            "INSERT INTO era_shifts BY NAME SELECT 'as-published' AS method, 'Kuikensloep' AS "
+            "boat_type, '2009-2011' AS era, 9 AS n, 0.87 AS shift_ratio, 0.85 AS lo, 0.9 AS hi, "
+            "true AS apart, 0 AS n_ageing, '' AS reason"
+        )
+    return drawn(store, root / "plots", "Kuikensloep")
+
+
+def words(svg):
+    return [text.text for text in ET.fromstring(svg).iter(f"{SVG}text")]  # noqa: S314 - our own
+
+
+def test_a_type_has_its_plots_before_and_after_correction(type_plots):
+    for figure in ("a_weight", "b_weight", "cw_standard_weight", "b_speed", "shared_bend"):
+        for method in ("as-published", "rebased-2015"):
+            assert f"Kuikensloep, {method}" in words(type_plots[f"{figure}-{method}"])
+    assert {"eras-Kuikensloep", "repeats"} <= type_plots.keys()
+
+
+def test_a_plot_says_of_what_it_is_and_that_it_is_simulated(type_plots):
+    for name, svg in type_plots.items():
+        said = words(svg)
+        assert any(text.startswith("Kuikensloep") for text in said), name
+        assert any(text.startswith("SIMULATED") for text in said), name
+
+
+def test_a_plot_leads_nowhere_else(type_plots):
+    for svg in type_plots.values():
+        assert "href=" not in svg
+        assert svg.count("http") == svg.count("http://www.w3.org/")
+
+
+def test_a_boats_plots_single_it_out_in_its_type(built, tmp_path):
+    newest = built.table("type_outliers").filter(boat_type="Kuikensloep", method="rebased-2015")
+    plots, others = (drawn(built.store, tmp_path, newest["fsn_no"][i]) for i in (0, -1))
+    name = "cw_standard_weight-rebased-2015"
+    assert plots[name] != others[name]
+    assert {"history", name} <= plots.keys()
+
+
+def test_what_has_no_rows_has_no_plot(built, tmp_path):
+    unknown = drawn(built.store, tmp_path, "unknown")
+    assert not [name for name in unknown if name.startswith(("b_weight", "shared_bend"))]
+
+
+def test_a_name_becomes_a_file_name():
+    assert file_name("Kromhout whaler/../x") == "Kromhout-whaler-x"

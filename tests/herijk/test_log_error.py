@@ -1,0 +1,116 @@
+"""`herijk log-error` on archives that are hard: few boats, a season without repeats, one set aside.
+
+The archive has five tows a season, about twenty boats. Those of 2009 got other numbers, so that no
+boat of that season was ever towed again; every day of 2010 is set aside; a log was replaced in
+2011; one boat was made 15 % heavier to tow after 2011, and nobody said so.
+"""
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+
+import polars as pl
+import pytest
+
+from pipeline.simulate import World, WorldSettings, simulate_world
+from tests.conftest import Workbench
+from warehouse.archive.write import write_simulated_archive
+
+SEASONS = (2009, 2010, 2011, 2014, 2015, 2016)
+SETTINGS = WorldSettings(SEASONS, tows_per_season=5, rate_hz=20, seed=6)
+
+
+@pytest.fixture(scope="module")
+def hard(tmp_path_factory) -> Workbench:
+    root = tmp_path_factory.mktemp("hard")
+    bench = Workbench(root / "archive", root / "data")
+    world = _one_boat_heavier(simulate_world(SETTINGS))
+    write_simulated_archive(bench.archive, world)
+    _edit(bench, "sleeplijsten/sleeplijst_2009.csv", _renumbered)
+    _edit(bench, "sloepregister/sloependata.csv", _with_renumbered)
+    _edit(bench, "sleeplijsten/sleeplijst_2011.csv", _last_two_in_april)
+    days = sorted({tow.day for tow in world.tows if tow.season == 2010})
+    with (bench.archive / "archief.toml").open("a", encoding="utf-8") as toml:
+        toml.writelines(f'\n[[set_aside]]\ndate = {day}\nreason = "storm"\n' for day in days)
+        toml.write('\n[[log_replaced]]\ndate = 2011-04-01\nlog = "log1"\nreason = "worn"\n')
+    bench.rebuild(["rebased"])
+    return bench
+
+
+def _one_boat_heavier(world: World) -> World:
+    before = {t.boat.fsn_no for t in world.tows if t.season == 2011}
+    after = {t.boat.fsn_no for t in world.tows if t.season >= 2014}
+    boat = min(before & after)
+    tows = [
+        replace(t, hull=replace(t.hull, condition=1.15 * t.hull.condition))
+        if t.boat.fsn_no == boat and t.season >= 2014
+        else t
+        for t in world.tows
+    ]
+    return replace(world, tows=tuple(tows))
+
+
+def _edit(bench: Workbench, path: str, change: Callable[[str], str]) -> None:
+    file = bench.archive / path
+    file.write_bytes(change(file.read_bytes().decode("cp1252")).encode("cp1252"))
+
+
+def _renumbered(text: str) -> str:
+    return text.replace("FSN", "FSN9")
+
+
+def _with_renumbered(text: str) -> str:
+    """The boats, and each again under its other number."""
+    return text + "".join(_renumbered(text).splitlines(keepends=True)[1:])
+
+
+def _last_two_in_april(text: str) -> str:
+    return re.sub(r"(?m)^(2011-00[45].)[\d-]+", r"\g<1>2011-04-01", text)
+
+
+def seasons(bench: Workbench) -> dict[int, dict]:
+    return {row["season"]: row for row in bench.table("log_factors").to_dicts()}
+
+
+def test_a_season_without_repeats_is_not_determined_and_uses_what_is_prescribed(hard):
+    row = seasons(hard)[2009]
+    assert (row["source"], row["factor"], row["lo"]) == ("prescribed", 1.06, None)
+    links = hard.table("season_links").filter(pl.col("season") == 2009)
+    assert links["source"].to_list() == ["not determined"]
+    curves = hard.table("curves").filter(pl.col("season") == 2009)
+    assert curves["cw_kg_m"].null_count() < curves.height
+
+
+def test_a_season_that_is_set_aside_leaves_the_others_as_they_are(hard):
+    assert 2010 not in seasons(hard)
+    others = {season: row["source"] for season, row in seasons(hard).items() if season != 2009}
+    assert others == {2011: "estimated", 2014: "gps", 2015: "gps", 2016: "gps"}
+
+
+def test_few_boats_give_wide_intervals_that_hold_the_truth(hard):
+    truth = simulate_world(SETTINGS).season_log_factors
+    row = seasons(hard)[2011]
+    assert row["lo"] < truth[2011] < row["hi"]
+    assert row["hi"] - row["lo"] > 0.02  # 24 tows a season give about 0.014
+
+
+def test_each_part_of_a_season_has_its_factor_and_its_tows_use_it(hard):
+    links = hard.table("season_links").filter(
+        (pl.col("season") == 2011) & (pl.col("log") == "log1")
+    )
+    assert links["part"].to_list() == [0, 1]
+    points = hard.table("run_points").join(hard.table("tows"), on="tow_id")
+    used = points.filter(pl.col("season") == 2011).drop_nulls("speed_factor")
+    found = used.group_by("log1_part").agg(pl.col("speed_factor").unique()).sort("log1_part")
+    assert found["speed_factor"].explode().to_list() == pytest.approx(links["factor"].to_list())
+
+
+def test_the_command_says_what_is_not_known(hard, herijk):
+    status, out, err = herijk("log-error", "--data", hard.data)
+    assert (status, err) == (0, "")
+    assert "SIMULATED" in out
+    assert re.search(r"2009 +1\.0600 +- +- +prescribed", out)
+    assert "No sound tow in 2010" in out
+    assert re.search(r"2011 +log1 +2 +1\.\d{4}", out)
+    assert re.search(r"2011 +log2 +1 +1\.\d{4} .*other log", out)
+    assert re.search(r"step is of", out)

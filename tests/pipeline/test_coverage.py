@@ -1,0 +1,51 @@
+"""Intervals hold the truth as often as they say, and are not wider than that: a small version of
+`make accuracy`, on seasons with dGPS, where the errors of tows are their own."""
+
+import numpy as np
+import polars as pl
+import pytest
+
+from pipeline.method import shipped_method
+from pipeline.recompute import recompute
+from pipeline.simulate import WorldSettings
+from tests.worlds import measure
+
+SEASONS = (2014, 2015, 2016, 2017, 2018)
+T95 = 1.96
+
+
+@pytest.fixture(scope="module")
+def tows() -> pl.DataFrame:
+    """Curves with their truth; history, so with boats that were altered and nobody said so."""
+    world = measure(WorldSettings(SEASONS, 24, 20, 31))
+    nearest = pl.DataFrame(
+        {"tow_id": list(world.nearest_b_m_s), "true_b_m_s": list(world.nearest_b_m_s.values())}
+    )
+    curves = recompute(shipped_method("rebased"), world.tows, world.blocks).curves
+    return (
+        curves.join(world.truth.drop("season"), on="tow_id")
+        .join(nearest, on="tow_id")
+        .drop_nulls("cw_kg_m")
+    )
+
+
+def least_share(number: int) -> float:
+    """95 % less four standard errors of a share of so many."""
+    return 0.95 - 4 * np.sqrt(0.95 * 0.05 / number)
+
+
+def test_intervals_of_cw_hold_the_truth_and_are_no_wider_than_they_must(tows):
+    inside = tows["cw_at_15c_kg_m"].is_between(tows["cw_lo_kg_m"], tows["cw_hi_kg_m"])
+    assert inside.mean() >= least_share(tows.height)
+    error = (tows["cw_kg_m"] / tows["cw_at_15c_kg_m"]).log()
+    sd = (tows["cw_hi_kg_m"] / tows["cw_lo_kg_m"]).log() / (2 * T95)
+    size = np.sqrt(((error / sd) ** 2).mean())
+    # Four standard errors of a standard deviation from so many.
+    assert size == pytest.approx(1.0, abs=4 / np.sqrt(2 * tows.height))
+
+
+def test_intervals_of_b_hold_the_truth(tows):
+    found = tows.drop_nulls("b_lo_m_s")
+    upper = found["b_hi_m_s"].fill_null(float("inf"))
+    inside = found["true_b_m_s"].is_between(found["b_lo_m_s"], upper)
+    assert inside.mean() >= least_share(found.height)

@@ -1,0 +1,144 @@
+"""The due list: the federation's rule for the speed of the next tow, with its exceptions."""
+
+import datetime as dt
+
+import polars as pl
+import pytest
+
+from pipeline.due import (
+    HIGHEST_W,
+    LIKE_BOATS,
+    LOWEST_W,
+    NOT_RACED,
+    NOTHING_KNOWN,
+    REALLY_ROWED_SO,
+    ROWED_FASTER,
+    TOO_FAST,
+    due_list,
+)
+from pipeline.due import IN_RANGE as REALISTIC
+
+AS_OF = dt.date(2018, 6, 1)
+A, B, ROWERS = 31.6, 4.44, 8
+"""The worked example of the presentation: 71.2 W a rower at 2.35 m/s."""
+
+RACES = {
+    "fsn_no": pl.String(),
+    "rowers": pl.Int32(),
+    "crew_class": pl.String(),
+    "race_date": pl.Date(),
+    "distance_m": pl.Float64(),
+    "stream_m": pl.Float64(),
+    "rowing_time_s": pl.Float64(),
+}
+
+
+def power(speed):
+    return A / (1 - (speed / B) ** 2) * speed**3 / ROWERS
+
+
+def line(fsn_no, declared, crew_class="H", a=A, b=B):
+    known = declared is not None
+    return {
+        "fsn_no": fsn_no,
+        "rowers": ROWERS,
+        "crew_class": crew_class,
+        "status": "valid" if known else "never_towed",
+        "tow_id": f"2014-{fsn_no}" if known else None,
+        "tow_date": dt.date(2014, 3, 1) if known else None,
+        "valid_until": dt.date(2019, 12, 31) if known else None,
+        "declared_speed_m_s": declared,
+        "a_kg_m": a if known else None,
+        "b_m_s": b if known else None,
+        "cw_kg_m": None if not known else a if b is None else a / (1 - (declared / b) ** 2),
+    }
+
+
+def due(*lines, raced=(), types=()):
+    register = pl.DataFrame(
+        list(lines),
+        schema_overrides={"rowers": pl.Int32, "a_kg_m": pl.Float64, "b_m_s": pl.Float64},
+    )
+    boats = pl.DataFrame({"fsn_no": register["fsn_no"].unique().sort()}).with_columns(
+        pl.col("fsn_no")
+        .replace_strict(dict(types), default=None)
+        .cast(pl.String)
+        .alias("boat_type")
+    )
+    races = pl.DataFrame(
+        [
+            (f, ROWERS, "H", day, speed * 7200 + stream, stream, 7200.0)
+            for f, day, speed, stream in raced
+        ],
+        schema=RACES,
+        orient="row",
+    )
+    return {r["fsn_no"]: r for r in due_list(register, boats, races, AS_OF).iter_rows(named=True)}
+
+
+def test_a_realistic_speed_stays():
+    row = due(line("X", 2.35))["X"]
+    assert (row["tow_speed_m_s"], row["speed_reason"]) == (2.35, REALISTIC)
+    assert row["power_w"] == pytest.approx(71.21, abs=0.01)
+    assert power(row["lowest_speed_m_s"]) == pytest.approx(70)
+    assert power(row["highest_speed_m_s"]) == pytest.approx(90)
+    assert not row["beyond_curve"]
+
+
+def test_the_range_is_that_of_the_source_for_either_class():
+    assert (LOWEST_W, HIGHEST_W) == ({"H": 70.0, "D": 40.0}, {"H": 90.0, "D": 55.0})
+    row = due(line("X", 1.98, "D"))["X"]
+    assert power(row["lowest_speed_m_s"]) == pytest.approx(40)
+    assert power(row["highest_speed_m_s"]) == pytest.approx(55)
+
+
+def test_a_speed_that_takes_too_much_is_brought_down():
+    row = due(line("X", 2.8), raced=[("X", dt.date(2018, 5, 1), 2.8, 0.0)])["X"]
+    assert row["speed_reason"] == TOO_FAST
+    assert power(row["tow_speed_m_s"]) == pytest.approx(90)
+
+
+@pytest.mark.parametrize(
+    ("raced", "speed"),
+    [(2.3, 2.3), (2.45, 2.45), (2.9, "highest_speed_m_s")],
+)
+def test_a_low_speed_is_brought_up_to_what_was_rowed_faster(raced, speed):
+    row = due(line("X", 2.1), raced=[("X", dt.date(2018, 5, 1), raced, 0.0)])["X"]
+    assert row["speed_reason"] == ROWED_FASTER
+    assert row["tow_speed_m_s"] == pytest.approx(row.get(speed, speed))
+
+
+def test_a_low_speed_that_was_really_rowed_stands():
+    row = due(line("X", 2.1), raced=[("X", dt.date(2018, 5, 1), 2.05, 0.0)])["X"]
+    assert (row["tow_speed_m_s"], row["speed_reason"]) == (2.1, REALLY_ROWED_SO)
+
+
+def test_without_a_race_in_the_past_year_the_lower_end_is_proposed():
+    before = [("X", dt.date(2017, 6, 1), 2.6, 0.0), ("X", dt.date(2018, 6, 2), 2.6, 0.0)]
+    row = due(line("X", 2.1), raced=before)["X"]
+    assert row["raced_speed_m_s"] is None
+    assert row["speed_reason"] == NOT_RACED
+    assert power(row["tow_speed_m_s"]) == pytest.approx(70)
+
+
+def test_the_stream_is_taken_off_and_the_fastest_race_counts():
+    raced = [("X", dt.date(2018, 5, 1), 2.3, 900.0), ("X", dt.date(2018, 4, 1), 2.2, 0.0)]
+    assert due(line("X", 2.1), raced=raced)["X"]["raced_speed_m_s"] == pytest.approx(2.3)
+
+
+def test_a_speed_beyond_the_curve_says_so():
+    assert due(line("X", 2.0))["X"]["beyond_curve"]
+
+
+def test_a_flat_curve_has_speeds_too():
+    row = due(line("X", 2.35, a=44.0, b=None))["X"]
+    assert 44.0 * row["highest_speed_m_s"] ** 3 / ROWERS == pytest.approx(90)
+
+
+def test_a_boat_without_a_curve_gets_the_middle_of_like_boats():
+    types = [("X", "Kuiken"), ("Y", "Kuiken"), ("Z", "Vlet")]
+    found = due(line("X", 2.35), line("Y", None), line("Z", None), types=types)
+    middle = (found["X"]["lowest_speed_m_s"] + found["X"]["highest_speed_m_s"]) / 2
+    assert found["Y"]["speed_reason"] == LIKE_BOATS
+    assert found["Y"]["tow_speed_m_s"] == pytest.approx(middle)
+    assert (found["Z"]["tow_speed_m_s"], found["Z"]["speed_reason"]) == (None, NOTHING_KNOWN)

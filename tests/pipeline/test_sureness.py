@@ -1,0 +1,51 @@
+"""Intervals over a curve's valid speeds: at the declared speed the curve's own, wider elsewhere."""
+
+import polars as pl
+import pytest
+
+from pipeline.method import shipped_method
+from pipeline.recompute import recompute
+from pipeline.results import Recomputed
+from pipeline.simulate import WorldSettings
+from tests.worlds import measure
+
+
+@pytest.fixture(scope="module", params=["rebased", "rebased-2015"])
+def made(request) -> Recomputed:
+    world = measure(WorldSettings((2010, 2014), 12, 20, 4))
+    return recompute(shipped_method(request.param), world.tows, world.blocks)
+
+
+@pytest.fixture(scope="module")
+def points(made) -> pl.DataFrame:
+    declared = made.curves.select("tow_id", "declared_speed_m_s")
+    ratio = pl.col("speed_m_s") / pl.col("declared_speed_m_s")
+    return made.curve_points.join(declared, on="tow_id").with_columns(
+        ratio.round(3).alias("ratio"),
+        (pl.col("cw_hi_kg_m") / pl.col("cw_lo_kg_m")).log().alias("width"),
+    )
+
+
+def test_at_the_declared_speed_it_is_the_curve_s_own_interval(made, points):
+    own = made.curves.drop_nulls("cw_kg_m")
+    both = points.filter(pl.col("ratio") == 1.0).join(own, on="tow_id", suffix="_own")
+    assert both.height == own.height > 0
+    for name in ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"):
+        assert (both[name] / both[f"{name}_own"] - 1.0).abs().max() < 1e-12
+
+
+def test_points_cover_the_valid_range_and_lie_on_the_curve(made, points):
+    assert points["ratio"].min() == 0.85
+    assert points["ratio"].max() == 1.15
+    with_b = points.join(made.curves.drop_nulls("b_m_s"), on="tow_id", suffix="_own")
+    hyperbola = pl.col("a_kg_m") / (1.0 - (pl.col("speed_m_s") / pl.col("b_m_s")) ** 2)
+    off = with_b.select((hyperbola / pl.col("cw_kg_m") - 1.0).abs().max()).item()
+    assert off < 1e-12
+
+
+def test_the_interval_is_widest_at_an_end(points):
+    """Not at both: a tow whose log read low was towed faster than its declared speed."""
+    wide = points.pivot("ratio", index="tow_id", values="width").drop_nulls()
+    assert wide.height > 0
+    ends = wide.select(pl.max_horizontal("0.85", "1.15")).to_series()
+    assert (ends >= wide.select(pl.max_horizontal(pl.exclude("tow_id"))).to_series()).all()

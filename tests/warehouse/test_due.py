@@ -1,0 +1,70 @@
+"""The due list in the warehouse: races, decisions, and what makes it stale."""
+
+import datetime as dt
+
+import polars as pl
+import pytest
+
+from pipeline.due import NOT_RACED, SPEED_REASONS
+from pipeline.errors import MissingKnowledgeError
+from warehouse.decisions import FILE_NAME
+from warehouse.due import URGENCIES, due_report
+
+METHOD = "rebased-2015"
+
+
+def test_every_line_of_the_register_is_on_the_list(built):
+    due, register = built.table("due_list"), built.table("register")
+    key = ["method", "fsn_no", "rowers", "crew_class"]
+    assert due.select(key).equals(register.select(key).sort(key))
+    assert set(due["speed_reason"]) <= set(SPEED_REASONS)
+    last_tow, last_race = built.table("tows")["tow_date"].max(), due["as_of"].max()
+    assert due["as_of"].n_unique() == 1
+    assert last_race >= last_tow
+
+
+def test_the_report_tells_who_is_due(built):
+    report = due_report(built.store, METHOD)
+    assert report["simulated"]
+    assert {line["urgency"] for line in report["lines"]} <= set(URGENCIES)
+    expired = [line for line in report["lines"] if line["urgency"] == "expired"]
+    assert all(line["valid_until"] < report["as_of"] for line in expired)
+    days = [line["valid_until"] for line in report["lines"] if line["valid_until"]]
+    assert days == sorted(days)
+
+
+def test_a_method_that_was_not_applied_is_named(built):
+    with pytest.raises(MissingKnowledgeError, match="--method corrected-2013"):
+        due_report(built.store, "corrected-2013")
+
+
+def test_a_race_and_a_decision_change_the_list_at_the_next_rebuild(bench):
+    due = bench.table("due_list").filter(pl.col("method") == METHOD, status="valid")
+    line = due.row(0, named=True)
+    key = {name: line[name] for name in ("method", "fsn_no", "rowers", "crew_class")}
+    list_file = bench.archive / "wedstrijden" / "proefrace_2014.csv"
+    day = line["as_of"] + dt.timedelta(days=1)
+    list_file.write_text(
+        "wedstrijd;datum;afstand [km];fsn_nr;roeiers;klasse;roeitijd;stroom [km];straf [W]\n"
+        f"Proefrace;{day};36,000;{line['fsn_no']};{line['rowers']};{line['crew_class']};2:00:00;;\n",
+        encoding="utf-8",
+    )
+    (bench.data / FILE_NAME).write_text(
+        f'[[besluit]]\nsleep_id = "{due["tow_id"][1]}"\noordeel = "uitsluiten"\n'
+        'reden = "scheef"\nwie = "SKC"\ndatum = 2014-05-01\n',
+        encoding="utf-8",
+    )
+    assert bench.rebuild().database
+    after = bench.table("due_list").filter(pl.col("method") == METHOD)
+    raced = after.filter(**key).row(0, named=True)
+    assert raced["as_of"] == day
+    assert raced["raced_speed_m_s"] == pytest.approx(5.0)
+    assert raced["speed_reason"] != NOT_RACED
+    assert due["tow_id"][1] not in after["tow_id"].to_list()
+    assert not bench.rebuild().database
+
+
+def test_a_draft_has_no_verification_code(built):
+    assert (
+        built.table("register")["verification_code"].null_count() == built.table("register").height
+    )

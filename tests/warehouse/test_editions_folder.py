@@ -1,0 +1,132 @@
+"""An edition's folder: whole or not at all, killed anywhere and on a disk that is really full."""
+
+import os
+import subprocess
+import sys
+import textwrap
+
+import pytest
+
+from pipeline.errors import BrokenPromiseError
+from warehouse.editions.folder import edition_names, editions_folder, write_folder
+from warehouse.store import Store
+
+CONTENTS = {f"file-{n}": bytes([n]) * 5000 for n in range(6)}
+
+KILLED_ANYWHERE = """
+import os, signal, sys
+from pathlib import Path
+from tests.warehouse.test_editions_folder import CONTENTS
+from warehouse.editions.folder import edition_names, editions_folder, write_folder
+from warehouse.store import Store
+
+STEPS = {"open", "os.mkdir", "os.rename", "os.chmod", "os.rmdir", "os.remove", "os.listdir"}
+
+
+def publish_and_die(store, step):
+    seen = 0
+
+    def count(event, _):
+        nonlocal seen
+        if event in STEPS:
+            seen += 1
+            if seen == step:
+                os.kill(os.getpid(), signal.SIGKILL)
+
+    sync = os.fsync
+    os.fsync = lambda handle: (count("open", ()), sync(handle))
+    sys.addaudithook(count)
+    write_folder(store, "x", CONTENTS)
+
+
+step, whole = 0, False
+while not whole:
+    step += 1
+    store = Store(Path(sys.argv[1]) / str(step))
+    child = os.fork()
+    if child == 0:
+        publish_and_die(store, step)
+        os._exit(0)
+    whole = os.waitpid(child, 0)[1] == 0
+    names = edition_names(store) if editions_folder(store).exists() else []
+    assert names in ([], ["x"]), (step, names)
+    if names:
+        found = {f.name: f.read_bytes() for f in (editions_folder(store) / "x").iterdir()}
+        assert found == CONTENTS, step
+    else:
+        write_folder(store, "x", CONTENTS)
+    assert sorted(f.name for f in editions_folder(store).iterdir() if f.is_dir()) == ["x"], step
+print(step)
+"""
+
+
+def test_killed_at_every_step_there_is_nothing_or_all_of_it(tmp_path):
+    """Every opening, syncing and renaming of a file is a place to die; a next one clears up."""
+    done = subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", KILLED_ANYWHERE, str(tmp_path)],
+        check=False,
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert done.returncode == 0, done.stderr
+    assert int(done.stdout) > 3 * len(CONTENTS)
+
+
+FULL_DISK = """
+import sys
+from pathlib import Path
+from pipeline.errors import BrokenPromiseError
+from tests.warehouse.test_editions_folder import CONTENTS
+from warehouse.editions.folder import edition_names, editions_folder, write_folder
+from warehouse.store import Store
+
+store = Store(Path(sys.argv[1]))
+write_folder(store, "old", {"file": b"small"})
+try:
+    write_folder(store, "new", CONTENTS)
+except BrokenPromiseError as error:
+    assert edition_names(store) == ["old"]
+    assert sorted(f.name for f in editions_folder(store).iterdir() if f.is_dir()) == ["old"]
+    print(error)
+"""
+
+
+def in_small_disk(script, folder):
+    """Runs a script with a disk of 16 kB mounted at the folder, in a namespace of its own."""
+    mount = f"mount -t tmpfs -o size=16k tmpfs {folder}"
+    run = f'exec {sys.executable} -c "$SCRIPT" {folder}'
+    return subprocess.run(
+        ["unshare", "-rm", "sh", "-c", f"{mount} && {run}"],
+        check=False,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        env=os.environ | {"SCRIPT": textwrap.dedent(script)},
+    )
+
+
+def can_mount(folder):
+    try:
+        return in_small_disk("print('yes')", folder).stdout == "yes\n"
+    except OSError:
+        return False
+
+
+def test_a_full_disk_leaves_the_old_editions_and_says_what_to_do(tmp_path):
+    if not can_mount(tmp_path):
+        pytest.skip("no disk can be mounted here; a full disk is played in test_editions_publish")
+    done = in_small_disk(FULL_DISK, tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "No space left on device" in done.stdout
+    assert "Nothing was published; make room" in done.stdout
+
+
+def test_a_folder_that_cannot_be_made_is_one_sentence(tmp_path):
+    store = Store(tmp_path)
+    editions_folder(store).write_text("a file in the way", encoding="utf-8")
+    with pytest.raises(BrokenPromiseError, match="mend the folder, and publish again"):
+        write_folder(store, "x", CONTENTS)
+    editions_folder(store).unlink()
+    write_folder(store, "x", CONTENTS)
+    assert edition_names(store) == ["x"]
