@@ -107,7 +107,7 @@ def duckdb_means(files: dict[str, str]) -> pl.DataFrame:
             for name, short in zip(names, ("run", "v", "force", "wind", "angle"), strict=True)
         )
         query = DUCKDB_MEANS.format(samples=f"select filename, {asked} from {source}")
-        return pl.DataFrame(connection.execute(query).to_arrow_table())
+        return pl.DataFrame(connection.sql(query).to_arrow_table())
 
 
 def polars_means(files: dict[str, str]) -> pl.DataFrame:

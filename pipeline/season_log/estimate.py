@@ -64,7 +64,7 @@ class SeasonFactors:
         share = count / count.sum()
         ln_factor = share @ known["factor"].log().to_numpy()
         sd = np.sqrt(share @ self.covariance @ share)
-        half = sd * stdtrit(parts["dof"].to_numpy().min(), 0.5 * (1.0 + LEVEL))
+        half = sd * scipy.special.stdtrit(parts["dof"].to_numpy().min(), 0.5 * (1.0 + LEVEL))
         factor, lo, hi = np.exp(ln_factor + np.array([0.0, -half, half])).tolist()
         return factor, lo, hi, ESTIMATED if (parts["source"] == ESTIMATED).any() else GPS
 
