@@ -16,7 +16,7 @@ def herijk(*arguments: object, threads: int) -> subprocess.Popen[str]:
     return subprocess.Popen(
         [sys.executable, "-m", "herijk", *map(str, arguments)],
         cwd=ROOT,
-        env=os.environ | {"POLARS_MAX_THREADS": str(threads)},
+        env=os.environ | dict.fromkeys(("POLARS_MAX_THREADS", "OPENBLAS_NUM_THREADS"), str(threads)),
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
