@@ -58,7 +58,7 @@ KEPT: Final = 9
 CODES: Final = {
     *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "code"),
     *("quantity", "explaining", "candidates", "severity", "check", "shared", "kind", "scope"),
-    *("option", "speed_reason", "cause", "log"),
+    *("option", "speed_reason", "cause", "log", "flag", "what", "outcome"),
 }
 """Columns that hold codes of the warehouse, shown as words."""
 
@@ -104,6 +104,12 @@ def _write(views: Views, folder: Path) -> None:
     for page in all_pages(views):
         text = template.render(page=page, menu=MENU, about=about)
         (folder / page.path).write_text(text, encoding="utf-8")
+
+
+def render_page(views: Views, page: Page) -> str:
+    """A page by itself, for one that lies outside the site."""
+    template = _environment(_by_column(views.comments())).get_template("page.html.j2")
+    return template.render(page=page, menu=MENU, about=views.about())
 
 
 def _by_column(comments: dict[str, str]) -> dict[str, str]:
