@@ -6,7 +6,8 @@ import polars as pl
 
 from dashboards.site.boats import boat_pages
 from dashboards.site.downloads import DOWNLOADS, SHEETS
-from dashboards.site.parts import Chart, Page, Section, Select, Table, boat_path, default_method
+from dashboards.site.parts import Chart, Page, Section, Select, Table, default_method, with_page
+from dashboards.site.types import types_page
 from warehouse.views import Views
 
 MENU = (
@@ -21,7 +22,7 @@ def all_pages(views: Views) -> Iterator[Page]:
     yield _index(views)
     yield _register(views)
     yield _due(views, methods)
-    yield _types(views, methods)
+    yield types_page(views, methods)
     yield _corrections(views, methods)
     yield _reproducibility(views, methods)
     yield _changes(views)
@@ -41,12 +42,6 @@ def _whole(views: Views, name: str, title: str, columns: Sequence[str] = ()) -> 
         return []
     frame = views.table(name)
     return [Section(title, tables=[Table(name, frame, columns or frame.columns, title)])]
-
-
-def _with_page(frame: pl.DataFrame) -> pl.DataFrame:
-    """With the page of each boat, for charts whose points are links."""
-    page = pl.col("fsn_no").map_elements(boat_path, return_dtype=pl.String)
-    return frame.with_columns(page.alias("page"))
 
 
 def _method(methods: Sequence[str]) -> Select:
@@ -138,92 +133,6 @@ def _due(views: Views, methods: Sequence[str]) -> Page:
     return Page("due.html", "due", sections, selects=[_method(methods)])
 
 
-QUANTITIES = ("b_weight", "b_speed", "cw_weight", "cw_speed")
-SIDES = ("before", "after")
-PAIR = ("kromhout", "kuiken")
-"""Two types of which many boats are said to be equal: shown side by side at first."""
-
-
-def _types(views: Views, methods: list[str]) -> Page:
-    if not views.has("pooled_curves"):
-        return Page("types.html", "types", [])
-    boats = _with_page(views.type_boats())
-    types = boats["boat_type"].unique().sort().to_list()
-    columns = (
-        *("name", "fsn_no", "boat_type", "rowers", "crew_class", "season", "weight_kg"),
-        *("declared_speed_m_s", "b_m_s", "b_lo_m_s", "b_hi_m_s", "cw_kg_m", "cw_lo_kg_m"),
-        "cw_hi_kg_m",
-    )
-    table = Table(
-        "type_boats", boats.with_columns(after="method"), columns, "types_list",
-        ["after", "boat_type"], search=True, linked=True,
-    )  # fmt: skip
-    first, second = _pair(types)
-    return Page(
-        "types.html",
-        "types",
-        [
-            Section("types_charts", "types_note", _before_after("", "boat_type")),
-            Section("types_list", tables=[table]),
-            Section("types_pair", "types_pair_note", _before_after("pair_", "pair")),
-            *_type_tables(views),
-        ],
-        selects=[
-            Select("before", "before", methods, methods[0]),
-            Select("after", "after", methods, default_method(methods)),
-            Select("boat_type", "type", types, "", with_all=True),
-            Select("pair", "pair_first", types, first),
-            Select("pair_2", "pair_second", types, second),
-        ],
-        data={"type_boats": [boats.select("method", "page", *columns)]},
-    )
-
-
-def _before_after(prefix: str, of_type: str) -> list[Chart]:
-    return [
-        Chart(f"{prefix}{name}", "type_boats", side, {"method": side, "boat_type": of_type})
-        for name in QUANTITIES
-        for side in SIDES
-    ]
-
-
-def _pair(types: Sequence[str]) -> tuple[str, str]:
-    """The types of `PAIR` where the archive has them, else the first and last."""
-    known = [next((t for t in types if t.lower().startswith(name)), None) for name in PAIR]
-    return known[0] or types[0], known[1] or types[-1]
-
-
-def _type_tables(views: Views) -> list[Section]:
-    found = []
-    outliers = views.outliers() if views.has("type_outliers") else pl.DataFrame()
-    if outliers.height:
-        columns = (
-            *("name", "fsn_no", "boat_type", "rowers", "crew_class", "season", "quantity", "value"),
-            *("expected", "deviation_sd", "candidates"),
-        )
-        shown = outliers.with_columns(after="method")
-        table = Table("type_outliers", shown, columns, "types_outliers", ["after", "boat_type"])
-        found.append(Section("types_outliers", tables=[table]))
-    wanted = {
-        "type_consistency": (
-            "types_lines",
-            "types_lines_note",
-            "boat_type quantity explaining n slope slope_lo slope_hi r2 residual_sd_ratio",
-        ),
-        "type_homogeneity": (
-            "types_homogeneity",
-            None,
-            "boat_type n n_boats p_value power_at_10pct noise_share shared_b_m_s",
-        ),
-    }
-    for name, (title, note, columns) in wanted.items():
-        if views.has(name):
-            shown = views.table(name).with_columns(after="method")
-            table = Table(name, shown, columns.split(), title, ["after", "boat_type"])
-            found.append(Section(title, note, tables=[table]))
-    return found
-
-
 LINK_COLUMNS = (
     *("method", "season", "part", "log", "source", "n_tows", "n_links", "factor", "lo", "hi"),
     *("influence", "influence_boat", "factor_no_boats", "agreement"),
@@ -302,7 +211,7 @@ def _reproducibility(views: Views, methods: list[str]) -> Page:
         "repeat_pairs": (
             "repeats",
             "repeats_note",
-            lambda: _with_page(views.repeat_pairs()),
+            lambda: with_page(views.repeat_pairs()),
             "method name fsn_no rowers crew_class season_before season ln_ratio e_n",
         ),
         "variance_components": (
@@ -314,7 +223,7 @@ def _reproducibility(views: Views, methods: list[str]) -> Page:
         "predicted_cw": (
             "predicted",
             "predicted_note",
-            lambda: _with_page(views.predicted()),
+            lambda: with_page(views.predicted()),
             "method name fsn_no boat_type rowers crew_class cw_kg_m predicted_cw_kg_m disagrees",
         ),
     }
@@ -352,13 +261,13 @@ def _changes(views: Views) -> Page:
     )
     table = Table("changes", changes, columns, "changes_list", ["to_edition"], search=True)
     chart = Chart("changes", "changes", "changes_list", {"to_edition": "to_edition"})
-    drawn = _with_page(changes.drop("causes")).drop_nulls("cw_ratio")
+    drawn = with_page(changes.drop("causes")).drop_nulls("cw_ratio")
     return Page(
         "changes.html",
         "changes",
         [Section("changes_list", "changes_note", [chart], [table]), _races(views)],
         selects=[Select("to_edition", "edition", editions, _newest(editions))],
-        data={"changes": [drawn], "races": [_with_page(views.races())]},
+        data={"changes": [drawn], "races": [with_page(views.races())]},
     )
 
 

@@ -132,3 +132,9 @@ def boat_path(fsn_no: str) -> str:
     if safe != fsn_no:
         safe += "-" + hashlib.sha256(fsn_no.encode()).hexdigest()[:8]
     return f"boats/{safe}.html"
+
+
+def with_page(frame: pl.DataFrame) -> pl.DataFrame:
+    """With the page of each boat, for charts whose points are links."""
+    page = pl.col("fsn_no").map_elements(boat_path, return_dtype=pl.String)
+    return frame.with_columns(page.alias("page"))
