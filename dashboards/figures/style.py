@@ -82,8 +82,9 @@ def by_method(
     """
     (field, title), (low, high) = value, ends
     beside = base.encode(xOffset="method:N")
+    # The bar takes the colours of the point: given twice, colour and shape would have two legends.
     bar = beside.mark_rule(strokeWidth=2).encode(
-        number(alt.Y, low, title, zero), alt.Y2(f"{high}:Q"), method_colour(say)
+        number(alt.Y, low, title, zero), alt.Y2(f"{high}:Q"), alt.Color("method:N")
     )
     limits = [(f"{low}:Q", say("lowest")), (f"{high}:Q", say("highest"))]
     point = beside.mark_point(filled=True, size=65, opacity=1).encode(

@@ -108,6 +108,7 @@ def test_a_method_of_one_s_own_is_drawn_and_changes_no_other_s_colour():
     points = {}
     for own in ([], [shipped.with_columns(method=pl.lit("a-method"))]):
         picture = svg("season_change", pl.concat([shipped, *own]))
+        assert picture.count(">Methode<") == 1
         points[len(own)] = re.findall(
             r'method: ([\w-]+);[^>]*roledescription="point"[^>]*fill="([^"]+)"', picture
         )
