@@ -17,6 +17,7 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
     "site": ("Sleepproeven herijkt", "Tow tests re-based"),
     "index": ("Begin", "Start"),
     "register": ("Register", "Register"),
+    "due": ("Weer slepen", "Due to tow"),
     "types": ("Typen", "Types"),
     "corrections": ("Correcties", "Corrections"),
     "reproducibility": ("Herhaalbaarheid", "Reproducibility"),
@@ -32,14 +33,15 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
     ),
     "simulated_short": ("GESIMULEERD", "SIMULATED"),
     "no_script": (
-        "Zonder JavaScript staan de tabellen er wel, maar de grafieken niet.",
-        "Without JavaScript the tables are here, but the charts are not.",
+        "Zonder JavaScript staan de tabellen van de eerste keuze er, maar geen grafieken.",
+        "Without JavaScript the tables of the first choice are here, but no charts.",
     ),
     "made_by": ("Gemaakt met code", "Made by code"),
     "csv": ("CSV", "CSV"),
     "download": ("Download als CSV", "Download as CSV"),
+    "as_table": ("Als tabel", "As a table"),
     "search": ("Zoek", "Search"),
-    "rows": ("regels", "rows"),
+    "rows": ("Regels:", "Rows:"),
     "all": ("alle", "all"),
     "choose": ("Toon", "Show"),
     "clear": ("Wis keuze", "Clear selection"),
@@ -120,6 +122,10 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
         "Elke sloep en ploeg met A, B en Cw; zoeken, sorteren, downloaden.",
         "Every boat and crew with A, B and Cw; search, sort, download.",
     ),
+    "about_due": (
+        "Wie moet weer slepen, voor wanneer, en met welke snelheid?",
+        "Who has to tow again, by when, and at what speed?",
+    ),
     "about_types": (
         "Zijn gelijke sloepen gelijk? B en Cw tegen gewicht en sleepsnelheid, voor en na.",
         "Are equal boats equal? B and Cw against weight and tow speed, before and after.",
@@ -159,6 +165,24 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
         "A, B and Cw hold from 85 to 115 % of the declared speed. An edition called concept is "
         "a draft: not published.",
     ),
+    # Due
+    "due_list": ("Wie moet weer slepen", "Who has to tow again"),
+    "due_list_note": (
+        "Tot wanneer elke proef telt, beoordeeld op de dag van de laatste proef of wedstrijd "
+        "(Gezien op), en de snelheid voor de volgende: met 70 tot 90 W per roeier (heren) of 40 "
+        "tot 55 W (dames) op de bekende kromme. Buiten de kromme: verder dan 85 tot 115 % van de "
+        "opgegeven snelheid.",
+        "Until when each tow counts, as judged on the day of the last tow or race (As of), and the "
+        "speed of the next one: with 70 to 90 W a rower (men) or 40 to 55 W (women) on the known "
+        "curve. Beyond the curve: outside 85 to 115 % of the declared speed.",
+    ),
+    "retow_choice": ("Welke proeven het meest leren", "Which tows would tell most"),
+    "retow_choice_note": (
+        "Sloepen die, opnieuw gesleept met dGPS, de logfactoren van de seizoenen het zekerst "
+        "maken; de eerste leert het meest. Voor en na: standaardafwijking van een factor.",
+        "Boats that, towed again with dGPS, make the log factors of the seasons surest; the first "
+        "tells most. Before and after: standard deviation of a factor.",
+    ),
     # Boat
     "facts": ("Maten", "Dimensions"),
     "boat_lines": ("In het register", "In the register"),
@@ -180,10 +204,10 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
     "boat_traces_note": (
         "Gemiddelden per seconde; snelheid: doorgetrokken log 1, gestreept GPS. Het grijze "
         "vlak is het venster dat telt; de rest is weggesneden "
-        "om de reden die in de tabel staat.",
+        "om de reden die erboven staat.",
         "Means per second; speed: solid log 1, dashed GPS. The grey area is the window "
         "that counts; the rest is cut for the "
-        "reason in the table.",
+        "reason above it.",
     ),
     "boat_runs": ("Runs", "Runs"),
     "boat_out_back": ("Heen tegen terug, en de wind", "Out against back, and the wind"),
@@ -280,8 +304,8 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
     "run_reasons": ("Runs die niet tellen", "Runs that do not count"),
     "set_aside": ("Terzijde gelegd", "Set aside"),
     "set_aside_note": (
-        "Bestanden en proeven die niet gebruikt zijn, met de reden.",
-        "Files and tows not used, with the reason.",
+        "Bestanden, regels en proeven die niet gebruikt zijn, met de reden.",
+        "Files, lines and tows not used, with the reason.",
     ),
     "checks": ("Wat de controles vonden", "What the checks found"),
     "checks_note": (
@@ -312,23 +336,45 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
     ),
     "downloads": ("Downloads", "Downloads"),
     "downloads_note": (
-        "Het register van elke editie zoals uitgegeven, met de toelichting.",
-        "The register of every edition as published, with the release notes (in Dutch).",
+        "Het register van elke editie zoals uitgegeven, met de toelichting in twee talen.",
+        "The register of every edition as published, with the release notes in Dutch and English.",
     ),
     "types_pair": ("Twee typen naast elkaar", "Two types side by side"),
     "types_pair_note": (
         "Dezelfde assen voor beide typen; links de methode onder Voor, rechts die onder Na.",
         "The same axes for both types; left the method under Before, right the one under After.",
     ),
-    "season_links": ("Herhalingen tussen seizoenen", "Repeats between seasons"),
+    "season_links": ("Waar een logfactor op rust", "What a log factor rests on"),
+    "season_links_note": (
+        "Waar een log binnen een seizoen is vervangen, heeft elk deel een eigen factor; de "
+        "grafiek hierboven toont hun gemiddelde. De andere log heeft ook een regel: de methode "
+        "gebruikt hem niet.",
+        "Where a log was replaced within a season each part has its own factor; the chart above "
+        "shows their mean. The other log has a line too: the method does not use it.",
+    ),
+    "season_steps": ("Log of krachtmeter?", "Log or load cell?"),
+    "season_steps_note": (
+        "Een seizoen kan afwijken van de andere proeven van dezelfde sloepen doordat de log of "
+        "doordat de krachtmeter verkeerd wees. De bocht van de krommen onderscheidt die twee. "
+        "Stappen in ln Cw.",
+        "A season may differ from the other tows of the same boats because the log or because the "
+        "load cell was wrong. The bend of the curves tells the two apart. Steps in ln Cw.",
+    ),
+    "eras": ("Staat een tijdvak apart?", "Does an era stand apart?"),
+    "eras_note": (
+        "Volgende proef van dezelfde sloepen, in een later tijdvak, tegen die in het tijdvak "
+        "zelf, zonder veroudering: mediaan met 95 %-interval. In de grafiek alle typen samen.",
+        "Next tow of the same boats, in a later era, against that in the era itself, without "
+        "ageing: median with 95 % interval. The chart has all types together.",
+    ),
     "assessments": ("Controles", "Checks"),
     "assessments_note": (
         "Alleen wat buiten zijn grens ligt; alle controles staan in de tabel assessments.",
         "Only what lies beyond its limit; all checks stand in the table assessments.",
     ),
     "uncertainty_budget_note": (
-        "Relatieve standaardonzekerheid van Cw door elke oorzaak; wie haar delen staat in de CSV.",
-        "Relative standard uncertainty of Cw by each cause; who share it stands in the CSV.",
+        "Relatieve standaardonzekerheid van Cw door elke oorzaak; de tabel zegt wie haar delen.",
+        "Relative standard uncertainty of Cw by each cause; who share it stands in the table.",
     ),
     "hand_windows_note": (
         "Vensters die iemand zelf heeft gekozen, met de reden.",
@@ -540,7 +586,42 @@ WORDS: Final[dict[str, tuple[str, str]]] = {
     "column.meaning": ("Betekenis (Engels)", "Meaning"),
     "column.dof": ("Vrijheidsgraden", "Degrees of freedom"),
     "column.flagged": ("Over de grens", "Beyond"),
+    "column.speed_reason": ("Waarom deze snelheid", "Why this speed"),
+    "column.raced_speed_m_s": ("Geroeid [m/s]", "Raced [m/s]"),
+    "column.lowest_speed_m_s": ("Van [m/s]", "From [m/s]"),
+    "column.highest_speed_m_s": ("Tot [m/s]", "To [m/s]"),
+    "column.tow_speed_m_s": ("Sleep met [m/s]", "Tow at [m/s]"),
+    "column.beyond_curve": ("Buiten de kromme", "Beyond the curve"),
+    "column.as_of": ("Gezien op", "As of"),
+    "column.position": ("Volgorde", "Order"),
+    "column.seasons": ("Gesleept in", "Towed in"),
+    "column.factor_sd_before_ratio": ("Voor", "Before"),
+    "column.factor_sd_after_ratio": ("Na", "After"),
+    "column.level_step": ("Stap", "Step"),
+    "column.level_step_sd": ("sd", "sd"),
+    "column.force_step": ("waarvan kracht", "of it force"),
+    "column.force_step_sd": ("sd", "sd"),
+    "column.cause": ("Oorzaak", "Cause"),
+    "column.era": ("Tijdvak", "Era"),
+    "column.shift_ratio": ("Cw nieuw / oud", "Cw new / old"),
+    "column.apart": ("Staat apart", "Stands apart"),
+    "column.ageing_per_year": ("Veroudering per jaar", "Ageing a year"),
     # Codes
+    "code.in_range": ("zoals opgegeven", "as declared"),
+    "code.brought_down": ("opgegeven te snel: bovengrens", "declared too fast: upper end"),
+    "code.brought_up": ("laag, maar sneller geroeid", "low, but rowed faster"),
+    "code.low_but_rowed": ("laag, en zo geroeid", "low, and rowed so"),
+    "code.low_not_raced": (
+        "laag, geen wedstrijd: ondergrens, vraag de ploeg",
+        "low, no race: lower end, ask the crew",
+    ),
+    "code.like_boats": ("geen kromme: midden van het type", "no curve: middle of its type"),
+    "code.nothing_known": ("niets bekend: commissie beslist", "nothing known: committee decides"),
+    "code.log": ("log", "log"),
+    "code.not told": ("niet te zeggen", "not told"),
+    "code.not determined": ("niet bepaald", "not determined"),
+    "code.other log": ("andere log", "other log"),
+    "code.gps": ("GPS", "GPS"),
     "code.accepted": ("goed", "accepted"),
     "code.flagged": ("nakijken", "flagged"),
     "code.rejected": ("afgekeurd", "rejected"),

@@ -7,6 +7,7 @@ are so few windows that all of them are tried, longest first: the rule, not a ha
 """
 
 from dataclasses import dataclass
+from itertools import compress
 from typing import Final
 
 import numpy as np
@@ -299,4 +300,5 @@ def _reasons(present: BoolArray, mask: BoolArray, faults: _Faults) -> list[str]:
     seen = (faults.ramp, faults.force_peak > 1.0, faults.gust > 1.0)
     found = [(cut & fault).any(axis=1) for fault in seen]
     rest = cut.any(axis=1) & ~np.any(found, axis=0)
-    return [",".join(np.compress(row, CUT_REASONS)) for row in np.stack([*found, rest], axis=1)]
+    rows = np.stack([*found, rest], axis=1).tolist()
+    return [",".join(compress(CUT_REASONS, row)) for row in rows]

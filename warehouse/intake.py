@@ -42,12 +42,13 @@ def index(store: Store, root: Path) -> ArchiveIndex:
     hashes.save(store.file_hashes)
     for name in LISTED:
         store.write(f"listed_{name}", getattr(found, name), made_from="")
-    faults = pl.DataFrame([dataclasses.asdict(f) for f in found.faults], schema=FAULT_SCHEMA)
-    store.write("list_faults", faults, made_from="")
+    races, race_faults = read_races(root)
+    faults = [dataclasses.asdict(f) for f in (*found.faults, *race_faults)]
+    store.write("list_faults", pl.DataFrame(faults, schema=FAULT_SCHEMA), made_from="")
     about = {"simulated": [found.profiles.simulated], "root": [str(root.resolve())]}
     store.write("about_archive", pl.DataFrame(about), made_from="")
     store.write("listed_files", found.files, made_from="")
-    store.write("listed_races", read_races(root)[0], made_from="")
+    store.write("listed_races", races, made_from="")
     return found
 
 

@@ -140,6 +140,19 @@ class Views:
         """How often each check was made and found something, most often first."""
         return self.frame('SELECT * FROM check_counts ORDER BY method, beyond DESC, "check"')
 
+    def due_list(self) -> pl.DataFrame:
+        """Every boat and crew under every method, whose tow expires first on top."""
+        return self.frame(_DUE)
+
+    def retow_choice(self) -> pl.DataFrame:
+        """Boats that would make the season factors surest, with name and next speed."""
+        return self.frame(
+            "SELECT c.*, b.name, d.valid_until, d.tow_speed_m_s FROM retow_choice AS c "
+            "LEFT JOIN boats AS b USING (fsn_no) "
+            "LEFT JOIN due_list AS d USING (method, fsn_no, rowers, crew_class) "
+            "ORDER BY c.method, c.position"
+        )
+
     def races(self) -> pl.DataFrame:
         """Races replayed under two editions, with the boat's name."""
         return self.frame(
@@ -154,6 +167,11 @@ SELECT r.edition, r.fsn_no, b.name, b.boat_type, r.rowers, r.crew_class, r.tow_d
        r.tow_id, r.method, r.verification_code
 FROM register AS r LEFT JOIN boats AS b USING (fsn_no)
 ORDER BY edition, lower(b.name), fsn_no, rowers, crew_class
+"""
+
+_DUE = """
+SELECT d.*, b.name, b.boat_type FROM due_list AS d LEFT JOIN boats AS b USING (fsn_no)
+ORDER BY d.method, d.valid_until NULLS LAST, lower(b.name), d.fsn_no, d.rowers, d.crew_class
 """
 
 _CHANGES = """

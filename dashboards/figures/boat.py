@@ -1,5 +1,8 @@
 """Figures of one boat: curve, history, traces, wind, out against back, and uncertainty."""
 
+import json
+from collections.abc import Sequence
+
 import altair as alt
 import polars as pl
 
@@ -16,6 +19,7 @@ from dashboards.figures.style import (
     tips,
 )
 from dashboards.words import Say
+from pipeline.steady import CUT_REASONS
 
 COMPONENTS = (
     *("anemometer", "calibration", "force", "mass", "random", "season_log", "straightness"),
@@ -104,7 +108,7 @@ def traces(frame: pl.DataFrame, say: Say) -> alt.VConcatChart:
 
     Args:
         frame: rows of `kind` trace (`run, second, speed_m_s, gps_m_s, force_n, wind_m_s`) and
-            window (`run, window_start_s, window_end_s`).
+            window (`run, window_start_s, window_end_s, cut_reason`).
         say: gives texts.
     """
     rows = [
@@ -113,18 +117,39 @@ def traces(frame: pl.DataFrame, say: Say) -> alt.VConcatChart:
         (("wind_m_s", OKABE_ITO[6], [1, 0]),),
     ]
     titles = (say("speed_short"), say("force"), say("wind"))
+    first, *others = zip(rows, titles, strict=True)
     return alt.vconcat(
-        *(_trace_row(frame, say, fields, title) for fields, title in zip(rows, titles, strict=True))
+        _trace_row(frame, say, *first, _cut_reasons(say)),
+        *(_trace_row(frame, say, *row) for row in others),
     )
 
 
+def _cut_reasons(say: Say) -> list[alt.Chart]:
+    """Why the rest of a run was cut, in words, a line a reason, readable over the traces."""
+    text = "datum.cut_reason"
+    for code in CUT_REASONS:
+        text = f"replace({text}, '{code}', {json.dumps(say(f'code.{code}'))})"
+    why = (
+        alt.Chart()
+        .transform_filter("datum.kind == 'window' && datum.cut_reason")
+        .transform_calculate(why=text)
+        .encode(x=alt.value(3), y=alt.value(3), text="why:N")
+    )
+    look = {"align": "left", "baseline": "top", "fontSize": 10, "lineBreak": ","}
+    return [why.mark_text(**look, stroke="white", strokeWidth=3), why.mark_text(**look)]
+
+
 def _trace_row(
-    frame: pl.DataFrame, say: Say, fields: tuple[tuple[str, str, list[int]], ...], title: str
+    frame: pl.DataFrame,
+    say: Say,
+    fields: tuple[tuple[str, str, list[int]], ...],
+    title: str,
+    above: Sequence[alt.Chart] = (),
 ) -> alt.FacetChart:
     x = alt.X("second:Q", title=say("time"))
     window = (
         alt.Chart()
-        .transform_filter("datum.kind == 'window'")
+        .transform_filter("datum.kind == 'window' && isValid(datum.window_start_s)")
         .mark_rect(color=GREY, opacity=0.22)
         .encode(alt.X("window_start_s:Q", title=say("time")), alt.X2("window_end_s:Q"))
     )
@@ -136,7 +161,7 @@ def _trace_row(
         for field, ink, dash in fields
     ]
     return (
-        alt.layer(window, *lines, data=frame)
+        alt.layer(window, *lines, *above, data=frame)
         .properties(width=150, height=110)
         .facet(alt.Facet("run:O", title=say("run")), columns=6)
     )

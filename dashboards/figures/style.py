@@ -30,16 +30,18 @@ def colour(field: str, title: str, **more: Any) -> alt.Color:
 
 def method_colour(say: Say) -> alt.Color:
     """A method by colour: every method that ships has the same in every figure."""
-    return alt.Color("method:N", title=say("method"), scale=_of_methods(OKABE_ITO))
+    return alt.Color("method:N", title=say("method"), scale=_of_methods(OKABE_ITO), sort=None)
 
 
 def method_shape(say: Say) -> alt.Shape:
     """The same method by shape."""
-    return alt.Shape("method:N", title=say("method"), scale=_of_methods(SHAPES))
+    return alt.Shape("method:N", title=say("method"), scale=_of_methods(SHAPES), sort=None)
 
 
 def _of_methods(looks: Sequence[str]) -> alt.Scale:
-    return alt.Scale(domain=list(shipped_methods()), range=list(looks))
+    """Looks of the methods that ship, then of others that the data hold, as on the workbench."""
+    known = alt.DomainUnionWith(unionWith=list(shipped_methods()))
+    return alt.Scale(domain=known, range=list(looks))
 
 
 def shape(field: str, title: str, **more: Any) -> alt.Shape:
@@ -80,8 +82,9 @@ def by_method(
     """
     (field, title), (low, high) = value, ends
     beside = base.encode(xOffset="method:N")
+    # The bar takes the colours of the point: given twice, colour and shape would have two legends.
     bar = beside.mark_rule(strokeWidth=2).encode(
-        number(alt.Y, low, title, zero), alt.Y2(f"{high}:Q"), method_colour(say)
+        number(alt.Y, low, title, zero), alt.Y2(f"{high}:Q"), alt.Color("method:N")
     )
     limits = [(f"{low}:Q", say("lowest")), (f"{high}:Q", say("highest"))]
     point = beside.mark_point(filled=True, size=65, opacity=1).encode(

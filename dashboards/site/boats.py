@@ -39,7 +39,6 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
     )
     declared = curves.drop_nulls("cw_kg_m").with_columns(speed_m_s="declared_speed_m_s")
     lines = views.table("curve_points").join(boat_of, on="tow_id")
-    windows = points.drop_nulls("window_start_s")
     lineage = views.table("lineage").with_columns(
         pl.format("{}{}", "rowers", "crew_class").alias("crew")
     )
@@ -53,7 +52,7 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
         "declared": _kind(declared, "declared", "method", *NUMBERS),
         "stages": _stages(points),
         "trace": _seconds(views.table("trace_seconds").join(boat_of, on="tow_id")),
-        "window": _kind(windows, "window", "method", "run", "window_start_s", "window_end_s"),
+        "window": _kind(points, "window", "method", "run", *WINDOW),
         "lineage": lineage,
         "budget": views.table("uncertainty_budget")
         .select(*FOLLOWS, "component", "shared", "u_ratio", "dof")
@@ -67,6 +66,7 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
 
 
 POINT = ["run", "direction", "speed_m_s", "cw_kg_m", "used"]
+WINDOW = ["window_start_s", "window_end_s", "cut_reason"]
 NUMBERS = ["speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"]
 
 
@@ -104,9 +104,9 @@ CURVE_COLUMNS = (
     *("weight_kg", "altered", "runs_used", "status", "flags"),
 )
 RUN_COLUMNS = (
-    *("tow_id", "method", "run", "direction", "window_start_s", "window_end_s", "cut_reason"),
+    *("run", "direction", "window_start_s", "window_end_s", "cut_reason", "used", "reason"),
     *("speed_m_s", "gross_cw_kg_m", "air_cw_kg_m", "still_air_cw_kg_m", "cw_kg_m", "cw_sd"),
-    *("wind_m_s", "wind_angle_deg", "used", "reason"),
+    *("wind_m_s", "wind_angle_deg", "tow_id", "method"),
 )
 FACT_COLUMNS = (
     *("name", "fsn_no", "ht_no", "boat_type", "waterline_length_m", "beam_m", "bow_height_m"),

@@ -3,11 +3,11 @@
 from pathlib import Path
 from typing import Final
 
-from warehouse.editions.folder import CSV, NOTES, XLSX, edition_names, edition_path
+from warehouse.editions.folder import CSV, NOTES, NOTES_EN, XLSX, edition_names, edition_path
 from warehouse.store import Store
 
 DOWNLOADS: Final = "downloads"
-SHEETS: Final = (CSV, XLSX, NOTES)
+SHEETS: Final = (CSV, XLSX, NOTES, NOTES_EN)
 
 
 def copy_sheets(store: Store, folder: Path) -> None:

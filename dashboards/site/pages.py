@@ -6,10 +6,14 @@ import polars as pl
 
 from dashboards.site.boats import boat_pages
 from dashboards.site.downloads import DOWNLOADS, SHEETS
-from dashboards.site.parts import Chart, Page, Section, Select, Table, boat_path, default_method
+from dashboards.site.parts import Chart, Page, Section, Select, Table, default_method, with_page
+from dashboards.site.types import types_page
 from warehouse.views import Views
 
-MENU = ("index", "register", "types", "corrections", "reproducibility", "changes", "quality")
+MENU = (
+    *("index", "register", "due", "types", "corrections", "reproducibility", "changes"),
+    "quality",
+)
 
 
 def all_pages(views: Views) -> Iterator[Page]:
@@ -17,7 +21,8 @@ def all_pages(views: Views) -> Iterator[Page]:
     methods = method_names(views)
     yield _index(views)
     yield _register(views)
-    yield _types(views, methods)
+    yield _due(views, methods)
+    yield types_page(views, methods)
     yield _corrections(views, methods)
     yield _reproducibility(views, methods)
     yield _changes(views)
@@ -37,12 +42,6 @@ def _whole(views: Views, name: str, title: str, columns: Sequence[str] = ()) -> 
         return []
     frame = views.table(name)
     return [Section(title, tables=[Table(name, frame, columns or frame.columns, title)])]
-
-
-def _with_page(frame: pl.DataFrame) -> pl.DataFrame:
-    """With the page of each boat, for charts whose points are links."""
-    page = pl.col("fsn_no").map_elements(boat_path, return_dtype=pl.String)
-    return frame.with_columns(page.alias("page"))
 
 
 def _method(methods: Sequence[str]) -> Select:
@@ -112,95 +111,35 @@ def _newest(editions: Sequence[str]) -> str:
     return published[-1] if published else default_method(editions)
 
 
-QUANTITIES = ("b_weight", "b_speed", "cw_weight", "cw_speed")
-SIDES = ("before", "after")
-PAIR = ("kromhout", "kuiken")
-"""Two types of which many boats are said to be equal: shown side by side at first."""
+DUE_COLUMNS = (
+    *("valid_until", "name", "fsn_no", "boat_type", "rowers", "crew_class", "status"),
+    *("tow_speed_m_s", "speed_reason", "beyond_curve", "declared_speed_m_s", "power_w"),
+    *("raced_speed_m_s", "lowest_speed_m_s", "highest_speed_m_s", "tow_id", "as_of"),
+)
+CHOICE_COLUMNS = (
+    *("position", "name", "fsn_no", "rowers", "crew_class", "seasons", "valid_until"),
+    *("tow_speed_m_s", "factor_sd_before_ratio", "factor_sd_after_ratio"),
+)
 
 
-def _types(views: Views, methods: list[str]) -> Page:
-    if not views.has("pooled_curves"):
-        return Page("types.html", "types", [])
-    boats = _with_page(views.type_boats())
-    types = boats["boat_type"].unique().sort().to_list()
-    columns = (
-        *("name", "fsn_no", "boat_type", "rowers", "crew_class", "season", "weight_kg"),
-        *("declared_speed_m_s", "b_m_s", "b_lo_m_s", "b_hi_m_s", "cw_kg_m", "cw_lo_kg_m"),
-        "cw_hi_kg_m",
-    )
-    table = Table(
-        "type_boats", boats.with_columns(after="method"), columns, "types_list",
-        ["after", "boat_type"], search=True, linked=True,
-    )  # fmt: skip
-    first, second = _pair(types)
-    return Page(
-        "types.html",
-        "types",
-        [
-            Section("types_charts", "types_note", _before_after("", "boat_type")),
-            Section("types_list", tables=[table]),
-            Section("types_pair", "types_pair_note", _before_after("pair_", "pair")),
-            *_type_tables(views),
-        ],
-        selects=[
-            Select("before", "before", methods, methods[0]),
-            Select("after", "after", methods, default_method(methods)),
-            Select("boat_type", "type", types, "", with_all=True),
-            Select("pair", "pair_first", types, first),
-            Select("pair_2", "pair_second", types, second),
-        ],
-        data={"type_boats": [boats.drop("a_kg_m", "tow_id")]},
-    )
+def _due(views: Views, methods: Sequence[str]) -> Page:
+    """Who has to tow again, at what speed, and which tows would tell most."""
+    due = Table("due_list", views.due_list(), DUE_COLUMNS, "due_list", ["method"], search=True)
+    sections = [Section("due_list", "due_list_note", tables=[due])]
+    choice = views.retow_choice()
+    if choice.height:
+        table = Table("retow_choice", choice, CHOICE_COLUMNS, "retow_choice", ["method"])
+        sections.append(Section("retow_choice", "retow_choice_note", tables=[table]))
+    return Page("due.html", "due", sections, selects=[_method(methods)])
 
 
-def _before_after(prefix: str, of_type: str) -> list[Chart]:
-    return [
-        Chart(f"{prefix}{name}", "type_boats", side, {"method": side, "boat_type": of_type})
-        for name in QUANTITIES
-        for side in SIDES
-    ]
-
-
-def _pair(types: Sequence[str]) -> tuple[str, str]:
-    """The types of `PAIR` where the archive has them, else the first and last."""
-    known = [next((t for t in types if t.lower().startswith(name)), None) for name in PAIR]
-    return known[0] or types[0], known[1] or types[-1]
-
-
-def _type_tables(views: Views) -> list[Section]:
-    found = []
-    outliers = views.outliers() if views.has("type_outliers") else pl.DataFrame()
-    if outliers.height:
-        columns = (
-            *("name", "fsn_no", "boat_type", "rowers", "crew_class", "season", "quantity", "value"),
-            *("expected", "deviation_sd", "candidates"),
-        )
-        shown = outliers.with_columns(after="method")
-        table = Table("type_outliers", shown, columns, "types_outliers", ["after", "boat_type"])
-        found.append(Section("types_outliers", tables=[table]))
-    wanted = {
-        "type_consistency": (
-            "types_lines",
-            "types_lines_note",
-            "boat_type quantity explaining n slope slope_lo slope_hi r2 residual_sd_ratio",
-        ),
-        "type_homogeneity": (
-            "types_homogeneity",
-            None,
-            "boat_type n n_boats p_value power_at_10pct noise_share shared_b_m_s",
-        ),
-    }
-    for name, (title, note, columns) in wanted.items():
-        if views.has(name):
-            shown = views.table(name).with_columns(after="method")
-            table = Table(name, shown, columns.split(), title, ["after", "boat_type"])
-            found.append(Section(title, note, tables=[table]))
-    return found
-
-
-SEASON_LINKS = (
+LINK_COLUMNS = (
     *("method", "season", "part", "log", "source", "n_tows", "n_links", "factor", "lo", "hi"),
     *("influence", "influence_boat", "factor_no_boats", "agreement"),
+)
+STEP_COLUMNS = (
+    *("method", "season", "part", "log", "n_boats", "level_step", "level_step_sd", "force_step"),
+    *("force_step_sd", "cause"),
 )
 
 
@@ -217,6 +156,10 @@ def _corrections(views: Views, methods: list[str]) -> Page:
         )
         chart = Chart("log_factors", "log_factors", "log_factors")
         sections.append(Section("log_factors", "log_factors_note", [chart], [table]))
+    for name, columns in (("season_links", LINK_COLUMNS), ("season_steps", STEP_COLUMNS)):
+        if views.has(name):
+            table = Table(name, views.table(name), columns, name, ["method"])
+            sections.append(Section(name, f"{name}_note", tables=[table]))
     if views.has("correction_steps"):
         data["ladder"] = views.table("season_ladder")
         data["season_change"] = views.table("season_changes")
@@ -230,7 +173,7 @@ def _corrections(views: Views, methods: list[str]) -> Page:
     return Page(
         "corrections.html",
         "corrections",
-        [*sections, *_whole(views, "season_links", "season_links", SEASON_LINKS)],
+        sections,
         selects=[_method(methods)],
         data={name: [frame] for name, frame in data.items()},
     )
@@ -259,10 +202,16 @@ def _reproducibility(views: Views, methods: list[str]) -> Page:
             lambda: views.table("reproducibility"),
             "method scope n_pairs sd_ratio lo hi share_within_1pct share_within_2pct",
         ),
+        "era_shifts": (
+            "eras",
+            "eras_note",
+            lambda: views.table("era_shifts").drop_nulls("shift_ratio"),
+            "method boat_type era n shift_ratio lo hi apart ageing_per_year",
+        ),
         "repeat_pairs": (
             "repeats",
             "repeats_note",
-            lambda: _with_page(views.repeat_pairs()),
+            lambda: with_page(views.repeat_pairs()),
             "method name fsn_no rowers crew_class season_before season ln_ratio e_n",
         ),
         "variance_components": (
@@ -274,12 +223,13 @@ def _reproducibility(views: Views, methods: list[str]) -> Page:
         "predicted_cw": (
             "predicted",
             "predicted_note",
-            lambda: _with_page(views.predicted()),
+            lambda: with_page(views.predicted()),
             "method name fsn_no boat_type rowers crew_class cw_kg_m predicted_cw_kg_m disagrees",
         ),
     }
     figures = {
         "reproducibility": Chart("reproducibility", "reproducibility", "repro"),
+        "era_shifts": Chart("eras", "era_shifts", "eras"),
         "repeat_pairs": Chart("repeats", "repeat_pairs", "repeats"),
         "variance_components": Chart("components", "variance_components", "components"),
         "predicted_cw": Chart("predicted", "predicted_cw", "predicted", {"method": "method"}),
@@ -288,7 +238,7 @@ def _reproducibility(views: Views, methods: list[str]) -> Page:
     for name, (title, note, read, columns) in parts.items():
         frame = read() if views.has(name) else pl.DataFrame()
         if frame.height:
-            data[name] = frame
+            data[name] = frame if name != "era_shifts" else frame.filter(boat_type="all")
             table = Table(name, frame, columns.split(), title, ["method"])
             sections.append(Section(title, note, [figures[name]], [table]))
     return Page(
@@ -311,13 +261,13 @@ def _changes(views: Views) -> Page:
     )
     table = Table("changes", changes, columns, "changes_list", ["to_edition"], search=True)
     chart = Chart("changes", "changes", "changes_list", {"to_edition": "to_edition"})
-    drawn = _with_page(changes.drop("causes")).drop_nulls("cw_ratio")
+    drawn = with_page(changes.drop("causes")).drop_nulls("cw_ratio")
     return Page(
         "changes.html",
         "changes",
         [Section("changes_list", "changes_note", [chart], [table]), _races(views)],
         selects=[Select("to_edition", "edition", editions, _newest(editions))],
-        data={"changes": [drawn], "races": [_with_page(views.races())]},
+        data={"changes": [drawn], "races": [with_page(views.races())]},
     )
 
 

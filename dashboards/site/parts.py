@@ -105,6 +105,16 @@ class Page:
     site: str = ""
 
     @property
+    def chosen(self) -> dict[str, str]:
+        """What each selector says at first."""
+        return {select.name: select.chosen for select in self.selects}
+
+    @property
+    def has_charts(self) -> bool:
+        """Whether the page needs Vega."""
+        return any(section.charts for section in self.sections)
+
+    @property
     def root(self) -> str:
         """The way from this page to the site's root."""
         return self.site or "../" * self.path.count("/")
@@ -122,3 +132,9 @@ def boat_path(fsn_no: str) -> str:
     if safe != fsn_no:
         safe += "-" + hashlib.sha256(fsn_no.encode()).hexdigest()[:8]
     return f"boats/{safe}.html"
+
+
+def with_page(frame: pl.DataFrame) -> pl.DataFrame:
+    """With the page of each boat, for charts whose points are links."""
+    page = pl.col("fsn_no").map_elements(boat_path, return_dtype=pl.String)
+    return frame.with_columns(page.alias("page"))

@@ -10,6 +10,7 @@ import shutil
 import tempfile
 from collections.abc import Callable, Sequence
 from functools import cache
+from itertools import repeat
 from pathlib import Path
 from typing import Any, Final
 
@@ -21,8 +22,8 @@ from markupsafe import Markup, escape
 from dashboards.figures import FIGURES
 from dashboards.site.downloads import copy_sheets
 from dashboards.site.pages import MENU, all_pages
-from dashboards.site.parts import Page, boat_path
-from dashboards.words import LANGUAGES, both, speaker
+from dashboards.site.parts import Page, Table, boat_path
+from dashboards.words import LANGUAGES, WORDS, Say, both, speaker
 from warehouse.files import TEMPORARY_PREFIX, put_in_place
 from warehouse.store import Store
 from warehouse.views import Views
@@ -31,7 +32,7 @@ HERE: Final = Path(__file__).parent
 OWN_FILES: Final = ("site.css", "site.js")
 DIGITS: Final = (
     ("_kg_m", 2), ("_m_s", 2), ("_deg", 0), ("_kg", 0), ("_w", 1), ("_s", 0), ("cw_sd", 2),
-    ("_m", 2), ("_sd", 1), ("dof", 1),
+    ("_m", 2), ("step_sd", 4), ("_sd", 1), ("dof", 1), ("before_ratio", 6), ("after_ratio", 6),
 )  # fmt: skip
 """Decimals shown by the ending of a column's name; 4 otherwise."""
 
@@ -48,18 +49,24 @@ POLICY: Final = "; ".join(
 """What a browser lets a page load: the site's own files and nothing else; no eval, no connection.
 `file:` because to some browsers a page from disk is no `'self'`; inline styles are Vega's."""
 
+DECIMAL: Final = ","
+"""A page is written in Dutch; `site.js` changes numbers where English is chosen."""
+
 KEPT: Final = 9
 """Significant digits in downloads and charts; the database holds all."""
 
 CODES: Final = {
     *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "code"),
     *("quantity", "explaining", "candidates", "severity", "check", "shared", "kind", "scope"),
-    *("option", "flag", "what", "outcome"),
+    *("option", "speed_reason", "cause", "log", "flag", "what", "outcome"),
 }
 """Columns that hold codes of the warehouse, shown as words."""
 
 
-LONG: Final = {"flags", "cut_reason", "causes", "message", "meaning", "decision", "candidates"}
+LONG: Final = {
+    *("flags", "cut_reason", "reason", "speed_reason", "causes", "message", "meaning", "decision"),
+    "candidates",
+}
 """Columns of texts that may take several lines."""
 
 
@@ -118,14 +125,21 @@ def vega_bundle() -> str:
 
 @cache
 def chart_specifications() -> str:
-    """A script with every figure's Vega-Lite in every language, without data."""
+    """A script with every figure's Vega-Lite and words in every language, without data."""
     found = {
         language: {
             name: specification(figure, speaker(language)) for name, figure in FIGURES.items()
         }
         for language in LANGUAGES
     }
-    return f"window.HERIJK_FIGURES = {as_json(found)};\n"
+    words = {language: _words_of_charts(speaker(language)) for language in LANGUAGES}
+    return f"window.HERIJK_FIGURES = {as_json(found)};\nwindow.HERIJK_WORDS = {as_json(words)};\n"
+
+
+def _words_of_charts(say: Say) -> dict[str, str]:
+    """Names of columns and codes, and yes and no, for the table of a chart."""
+    named = {key: say(key) for key in WORDS if key.startswith(("column.", "code."))}
+    return named | {"true": say("yes"), "false": say("no")}
 
 
 def specification(figure: Callable[..., Any], say: Callable[[str], str]) -> dict[str, Any]:
@@ -191,10 +205,27 @@ def _is_number(frame: pl.DataFrame, column: str) -> bool:
     return frame.schema[column].is_numeric()
 
 
-def _rows(frame: pl.DataFrame, columns: list[str], root: str) -> list[list[Markup]]:
-    """Cells of a table, column by column because most columns are of one kind."""
-    made = [_cells(frame[c], root) for c in columns]
-    return [list(row) for row in zip(*made, strict=True)]
+def _rows(page: Page, table: Table) -> tuple[Markup, Markup]:
+    """The rows that the selectors show at first, and all others.
+
+    A browser lays out only the first; `site.js` brings in others when they are chosen.
+    """
+    frame, follows = table.frame, list(table.follows)
+    # Column by column, because the cells of a column are made in one way.
+    cells = zip(*(_cells(frame[c], page.root) for c in table.columns), strict=True)
+    boats = frame["fsn_no"] if table.linked else repeat(None)
+    keys = frame.select(follows).rows() if follows else repeat(())
+    first, others = [], []
+    for row, boat, key in zip(cells, boats, keys, strict=False):
+        marks = [_BOAT.format(boat)] if boat is not None else []
+        marks += [_FOLLOWED.format(n, v) for n, v in zip(follows, key, strict=True)]
+        is_first = all(page.chosen[n] in ("", v) for n, v in zip(follows, key, strict=True))
+        (first if is_first else others).append(f"<tr{''.join(marks)}>{''.join(row)}</tr>")
+    return Markup("\n".join(first)), Markup("\n".join(others))  # noqa: S704 - made of escaped parts
+
+
+_BOAT = Markup(' data-boat="{}"')
+_FOLLOWED = Markup(' data-f-{}="{}"')
 
 
 def _cells(column: pl.Series, root: str) -> list[Markup]:
@@ -219,7 +250,8 @@ _EMPTY = Markup("<td></td>")
 def _number(value: float | None, digits: int) -> Markup:
     if value is None:
         return Markup('<td class="n" data-v=""></td>')
-    return Markup(f'<td class="n" data-v="{value:.{KEPT}g}">{value:.{digits}f}</td>')  # noqa: S704 - a number
+    shown = f"{value:.{digits}f}".replace(".", DECIMAL)
+    return Markup(f'<td class="n" data-v="{value:.{KEPT}g}">{shown}</td>')  # noqa: S704 - a number
 
 
 def _integer(value: int | None) -> Markup:
@@ -247,7 +279,11 @@ def _direction(value: int) -> Markup:
 
 
 def _type(value: str) -> Markup:
-    return _text("code.unknown") if value == "unknown" else _plain(value)
+    return _text(f"code.{value}") if value in ("unknown", "all") else _plain(value)
+
+
+def _unit(value: str) -> Markup:
+    return _plain("" if value == "1" else value)
 
 
 def _hash(value: str) -> Markup:
@@ -271,8 +307,9 @@ def _code(value: Any) -> Markup:
 def _causes(value: str) -> Markup:
     """What a change is attributed to (a method's step by its name), each with its factor."""
     parts = [
-        Markup('{} <span class="n">{:.4f}</span>').format(
-            _text(f"code.{cause.get('step', cause['cause'])}"), cause["factor"]
+        Markup('{} <span class="n">{}</span>').format(
+            _text(f"code.{cause.get('step', cause['cause'])}"),
+            f"{cause['factor']:.4f}".replace(".", DECIMAL),
         )
         for cause in json.loads(value)
     ]
@@ -283,6 +320,7 @@ SHOWERS: Final[dict[str, Callable[[Any], Markup]]] = {
     "direction": _direction,
     "causes": _causes,
     "boat_type": _type,
+    "unit": _unit,
     **dict.fromkeys(("sha256", "content_hash", "method_hash", "seal"), _hash),
 }
 """Columns shown in a way of their own."""

@@ -15,6 +15,8 @@ from warehouse.store import Store
 ATTACK = "</script><script>alert(1)</script>"
 FORMULA = "=1+1"
 EDITIONS = ("2015-1", "2026-1")
+LINKS = [("log1", 0, "estimated"), ("log1", 1, "estimated"), ("log2", 0, "other log")]
+"""Log, part and source of season factors: the methods of the small archive estimate none."""
 PUBLISHED_ON = dt.date(2026, 5, 9)
 
 
@@ -37,6 +39,19 @@ def store(built, tmp_path_factory):
                 f"UPDATE boats SET name = ? WHERE fsn_no = (SELECT {which}(fsn_no) FROM tows)",  # noqa: S608
                 [name],
             )
+        for log, part, source in LINKS:
+            db.execute(
+                "INSERT INTO season_links BY NAME SELECT ? AS method, 2009 AS season, ? AS log, "
+                "? AS part, ? AS source, 4 AS n_tows, 3 AS n_links, 1.0 AS factor",
+                [METHODS[-1], log, part, source],
+            )
+        db.execute(
+            "INSERT INTO season_steps BY NAME SELECT ? AS method, 2009 AS season, 0 AS part, "
+            "'log1' AS log, 3 AS n_boats, 'not told' AS cause",
+            [METHODS[-1]],
+        )
+        db.execute("UPDATE contents SET rows = 3 WHERE \"table\" = 'season_links'")
+        db.execute("UPDATE contents SET rows = 1 WHERE \"table\" = 'season_steps'")
     build_site(store)
     return store
 

@@ -164,6 +164,21 @@ def test_a_chart_downloads_its_data(visitor, attacked):
     assert {row["tow_id"] for row in rows} == {page.locator("select[name=tow_id]").input_value()}
 
 
+def test_the_uncertainty_can_be_read_without_its_chart(visitor, attacked, built):
+    page = visitor.open(boat_path(attacked))
+    figure = page.locator("figure[data-figure=budget]")
+    figure.locator("summary").click()
+    tow, method = (page.locator(f"select[name={n}]").input_value() for n in ("tow_id", "method"))
+    budget = built.table("uncertainty_budget").filter(tow_id=tow, method=method)
+    rows = figure.locator("details tbody tr")
+    assert rows.count() == budget.height > 0
+    assert "spreiding van de runs" in figure.locator("details tbody").inner_text()
+    page.get_by_role("button", name="English").click()
+    page.wait_for_function(
+        "document.querySelector('figure[data-figure=budget] tbody').innerText.includes('scatter')"
+    )
+
+
 def test_a_name_is_no_formula_in_a_download(visitor):
     page = visitor.open("register.html")
     with page.expect_download() as caught:

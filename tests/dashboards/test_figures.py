@@ -1,9 +1,11 @@
 """Figures draw the columns they name, with units, whatever the frame holds."""
 
 import json
+import re
 
 import polars as pl
 import pytest
+import vl_convert
 
 from dashboards.figures import FIGURES, png
 from dashboards.words import LANGUAGES, WORDS, both, speaker
@@ -94,6 +96,35 @@ def test_a_figure_carries_the_rows_it_was_given():
     spec = FIGURES["resistance_curve"](frame, speaker("en")).to_dict()
     (rows,) = spec["datasets"].values()
     assert rows == frame.to_dicts()
+
+
+def svg(name, frame):
+    return vl_convert.vegalite_to_svg(FIGURES[name](frame, speaker("nl")).to_json())
+
+
+def test_a_method_of_one_s_own_is_drawn_and_changes_no_other_s_colour():
+    ends = {"lowest_ratio": 0.8, "highest_ratio": 1.1, "median_ratio": 0.9, "tows": 3}
+    shipped = pl.DataFrame({"season": 2010, "method": "rebased"} | ends)
+    points = {}
+    for own in ([], [shipped.with_columns(method=pl.lit("a-method"))]):
+        picture = svg("season_change", pl.concat([shipped, *own]))
+        assert picture.count(">Methode<") == 1
+        points[len(own)] = re.findall(
+            r'method: ([\w-]+);[^>]*roledescription="point"[^>]*fill="([^"]+)"', picture
+        )
+    assert [method for method, _ in points[1]] == ["rebased", "a-method"]
+    assert points[0][0] == points[1][0]
+    assert len({colour for _, colour in points[1]}) == 2
+
+
+def test_a_trace_says_why_it_was_cut():
+    trace = {"kind": "trace", "run": 1, "second": 0, "speed_m_s": 2.5, "force_n": 300.0}
+    window = {"kind": "window", "run": 1, "window_start_s": 5.0, "window_end_s": 40.0}
+    frame = pl.DataFrame([trace, window | {"cut_reason": "speed_drift,gust"}])
+    picture = svg("traces", frame)
+    for code in ("speed_drift", "gust"):
+        assert code not in picture
+        assert f">{both(f'code.{code}')[0]}<" in picture
 
 
 def test_a_figure_is_also_a_picture():

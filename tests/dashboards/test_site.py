@@ -79,7 +79,40 @@ def test_same_tables_same_bytes(store, site):
 def test_a_number_on_a_page_is_the_warehouse_s(site, built):
     line = built.table("register").filter(pl.col("cw_kg_m").is_not_null()).row(0, named=True)
     text = (site / boat_path(line["fsn_no"])).read_text("utf-8")
-    assert f'data-v="{line["cw_kg_m"]:.9g}">{line["cw_kg_m"]:.2f}</td>' in text
+    shown = f"{line['cw_kg_m']:.2f}".replace(".", ",")
+    assert f'data-v="{line["cw_kg_m"]:.9g}">{shown}</td>' in text
+
+
+def test_a_browser_lays_out_only_the_edition_that_is_chosen(site, built, store):
+    text = (site / "register.html").read_text("utf-8")
+    body, rest = re.search(
+        r"<tbody>(.*?)</tbody>.*?<template>(.*?)</template>", text, re.DOTALL
+    ).groups()
+    of = re.compile(r'<tr data-f-edition="([^"]+)">')
+    with Views(store) as views:
+        editions = views.register()["edition"].to_list()
+    assert set(of.findall(body)) == {EDITIONS[-1]}
+    assert EDITIONS[-1] not in of.findall(rest)
+    assert sorted([*of.findall(body), *of.findall(rest)]) == sorted(editions)
+
+
+def test_every_crew_stands_on_the_due_list_once_a_method(site, store):
+    with Views(store) as views:
+        due = views.table("due_list")
+    text = (site / "due.html").read_text("utf-8")
+    for method, lines in due.group_by("method"):
+        assert text.count(f'<tr data-f-method="{method[0]}">') == lines.height
+
+
+def test_a_log_s_factors_are_shown_as_often_as_the_table_has_them(site, store):
+    with Views(store) as views:
+        links, steps = views.table("season_links"), views.table("season_steps")
+    text = (site / "corrections.html").read_text("utf-8")
+    for name, frame in (("season_links", links), ("season_steps", steps)):
+        _, found, rest = text.partition(f'data-table="{name}"')
+        assert found == f'data-table="{name}"'
+        assert rest.partition("</section>")[0].count("<tr data-f") == frame.height > 0
+    assert "andere log" in text
 
 
 def test_nothing_half_made_is_left(store):

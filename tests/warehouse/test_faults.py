@@ -12,6 +12,7 @@ from tests.conftest import SMALL, Workbench
 
 ROWS = 50 * SMALL.rate_hz
 LIST_2009 = "sleeplijsten/sleeplijst_2009.csv"
+RACES = "wedstrijden/race_2014.csv"
 Lines = list[str]
 
 
@@ -119,6 +120,11 @@ def spoil_everything(root: Path, built: Workbench) -> tuple[set[tuple], set[str]
         + '\n[[set_aside]]\ndate = 2014-03-12\nreason = "wind: measured, but unreliable"\n',
         "utf-8",
     )
+    (archive.root / "wedstrijden").mkdir(exist_ok=True)
+    (archive.root / RACES).write_text(
+        "wedstrijd;datum;afstand [km];fsn_nr;roeiers;klasse;roeitijd;stroom [km];straf [W]\n"
+        "Race;2014-06-07;18,4;FSN1;8;H;2:10:25;;\nRace;2014-06-07;18,4;FSN2;8;H;2:70:25;;\n"
+    )
     (line_no_file,), (line_no_boat,) = map(archive.line_in_list, (no_file, no_boat))
     (line_twice,) = archive.line_in_list("2009-099")
     expected |= {
@@ -126,6 +132,7 @@ def spoil_everything(root: Path, built: Workbench) -> tuple[set[tuple], set[str]
         (LIST_2009, no_boat, line_no_boat, "unknown_boat"),
         (LIST_2009, "2009-099", line_twice, "duplicate_tow"),
         (archive.path_of[no_row], None, None, "samples_not_listed"),
+        (RACES, None, 3, "bad_race_row"),
         (archive.path_of[cut_gz], cut_gz, None, "unreadable_file"),
         *(
             (LIST_2009, two_rows, line, "duplicate_tow_id")
@@ -173,6 +180,11 @@ def test_all_other_rows_are_those_of_the_clean_archive(spoiled, built, table):
     # A tow is also judged against others, so a missing one may change a flag, never a number.
     judged = [c for c in ("status", "flags") if c in others.columns]
     assert_frame_equal(bench.table(table).drop(judged), others.drop(judged), check_exact=True)
+
+
+def test_a_sound_race_result_beside_a_bad_one_counts(spoiled):
+    results = spoiled[0].store.read("listed_races").filter(path=RACES)
+    assert results.select("fsn_no", "line").rows() == [("FSN1", 2)]
 
 
 def test_boats_are_all_there(spoiled, built):

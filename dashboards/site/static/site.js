@@ -26,9 +26,20 @@
       if (element.tagName === "OPTION") element.textContent = text;
       else element.setAttribute("aria-label", text);
     });
-    const mark = LOCALES[language].decimal;
-    all("td.n, span.n").forEach((cell) => { cell.textContent = cell.textContent.replace(/[.,]/, mark); });
+    setDecimal(LOCALES[language].decimal);
     all("figure[data-figure]").forEach(redraw);
+  }
+
+  let decimal = ","; // as the pages are written
+
+  function setDecimal(mark) {
+    if (mark === decimal) return;
+    decimal = mark;
+    for (const row of [...rowsOfTable.values()].flat()) {
+      all("td.n, span.n", row).forEach((cell) => {
+        cell.textContent = cell.textContent.replace(/[.,]/, mark);
+      });
+    }
   }
 
   // -- Downloads --------------------------------------------------------------------------------
@@ -50,22 +61,25 @@
   }
 
   // -- Tables -----------------------------------------------------------------------------------
+  // A row that is not shown is not in the document: a browser lays out what is seen.
   const tables = all(".table");
+  const rowsOfTable = new Map(tables.map((table) => [table,
+    [...table.querySelector("tbody").rows, ...(table.querySelector("template")?.content.children ?? [])]]));
   let selected = null; // boats chosen in a chart, or null
 
   function filter(table) {
-    const words = (table.querySelector(".search")?.value ?? "").toLowerCase().split(/\s+/);
+    const words = (table.querySelector(".search")?.value ?? "").toLowerCase().split(/\s+/).filter(Boolean);
     const linked = table.querySelector("table.linked");
     const follows = JSON.parse(table.dataset.follows);
-    let shown = 0;
-    for (const row of table.querySelectorAll("tbody tr")) {
-      const fits = follows.every((name) => matches(name, row.getAttribute(`data-f-${name}`)));
-      const found = words.every((word) => row.textContent.toLowerCase().includes(word));
-      const picked = !linked || selected === null || selected.has(row.dataset.boat);
-      row.hidden = !(fits && found && picked);
-      if (!row.hidden) shown += 1;
-    }
-    table.querySelector(".count b").textContent = shown;
+    const fits = (row) =>
+      follows.every((name) => matches(name, row.getAttribute(`data-f-${name}`))) &&
+      words.every((word) => row.textContent.toLowerCase().includes(word)) &&
+      (!linked || selected === null || selected.has(row.dataset.boat));
+    const shown = rowsOfTable.get(table).filter(fits);
+    const body = table.querySelector("tbody");
+    const isSame = shown.length === body.rows.length && shown.every((row, i) => row === body.rows[i]);
+    if (!isSame) body.replaceChildren(...shown);
+    table.querySelector(".count b").textContent = shown.length;
     const clear = table.querySelector(".clear");
     if (clear) clear.hidden = selected === null;
   }
@@ -84,16 +98,16 @@
     const down = header.getAttribute("aria-sort") === "ascending";
     all("th", table).forEach((other) => other.removeAttribute("aria-sort"));
     header.setAttribute("aria-sort", down ? "descending" : "ascending");
-    const body = table.querySelector("tbody");
     const numeric = header.classList.contains("n");
     const compare = new Intl.Collator("nl", { numeric: true }).compare;
-    const rows = [...body.rows].map((row) => [valueOf(row.cells[place]), row]);
+    const rows = rowsOfTable.get(table).map((row) => [valueOf(row.cells[place]), row]);
     rows.sort(([a], [b]) => {
       if (a === "" || b === "") return (a === "") - (b === "");
       const order = numeric ? Number(a) - Number(b) : compare(a, b);
       return down ? -order : order;
     });
-    body.append(...rows.map(([, row]) => row));
+    rowsOfTable.set(table, rows.map(([, row]) => row));
+    filter(table);
   }
 
   for (const table of tables) {
@@ -102,9 +116,8 @@
     all("th", table).forEach((header) =>
       header.querySelector("button").addEventListener("click", () => sort(table, header)));
     table.querySelector(".csv").addEventListener("click", () => {
-      const rows = all("tbody tr", table).filter((row) => !row.hidden);
       download(table.dataset.table, all("th", table).map((h) => h.dataset.c),
-        rows.map((row) => [...row.cells].map(valueOf)));
+        all("tbody tr", table).map((row) => [...row.cells].map(valueOf)));
     });
     table.querySelector("table.linked")?.addEventListener("click", (event) => {
       const row = event.target.closest("tbody tr");
@@ -157,6 +170,7 @@
     spec.datasets = { rows: shownRows(figure) };
     fitWidth(spec, figure);
     figure.querySelector(".picked").textContent = picked(figure);
+    tabulate(figure);
     views.get(figure)?.finalize();
     views.delete(figure);
     try {
@@ -181,6 +195,46 @@
       place.classList.add("broken");
     }
     place.classList.add("drawn");
+  }
+
+  // The rows of a chart as a table, made when it is opened: for who cannot see the chart.
+  function tabulate(figure) {
+    const place = figure.querySelector("details");
+    if (!place.open) return;
+    const words = window.HERIJK_WORDS[root.lang];
+    const rows = shownRows(figure);
+    const columns = columnsOf(rows);
+    const table = document.createElement("table");
+    table.createCaption().textContent = figure.dataset[root.lang];
+    const head = table.createTHead().insertRow();
+    for (const column of columns) {
+      const cell = document.createElement("th");
+      cell.scope = "col";
+      cell.textContent = words[`column.${column}`] ?? column;
+      head.append(cell);
+    }
+    const body = table.createTBody();
+    for (const row of rows) {
+      const line = body.insertRow();
+      for (const column of columns) {
+        const value = row[column] ?? "";
+        const cell = line.insertCell();
+        if (typeof value === "number") cell.className = "i";
+        cell.textContent = inWords(value, words);
+      }
+    }
+    place.querySelector(".scroll").replaceChildren(table);
+  }
+
+  function inWords(value, words) {
+    if (typeof value === "string") return words[`code.${value}`] ?? value;
+    if (Number.isInteger(value)) return String(value);
+    if (typeof value === "number") return String(Number(value.toPrecision(5))).replace(".", decimal);
+    return words[String(value)] ?? String(value);
+  }
+
+  function columnsOf(rows) {
+    return [...new Set(rows.flatMap(Object.keys))].filter((column) => column !== "page");
   }
 
   // A chart wider than its page is made narrower, with its labels; so are small multiples.
@@ -232,8 +286,9 @@
 
   // Clicking a row of the list makes its point large in every scatter.
   function mark(boat) {
-    all("table.linked tbody tr").forEach((row) =>
-      row.classList.toggle("chosen", row.dataset.boat === boat));
+    for (const row of [...rowsOfTable.values()].flat()) {
+      row.classList.toggle("chosen", row.dataset.boat === boat);
+    }
     for (const { view } of views.values()) {
       if ("chosen" in view.getState().signals) view.signal("chosen", boat).runAsync();
     }
@@ -246,9 +301,10 @@
 
   const charts = all("figure[data-figure]");
   for (const figure of charts) {
+    figure.querySelector("details").addEventListener("toggle", () => tabulate(figure));
     figure.querySelector(".csv").addEventListener("click", () => {
       const rows = shownRows(figure);
-      const columns = [...new Set(rows.flatMap(Object.keys))].filter((c) => c !== "page");
+      const columns = columnsOf(rows);
       download(figure.dataset.figure, columns, rows.map((row) => columns.map((c) => row[c])));
     });
   }
@@ -272,5 +328,7 @@
     charts.filter((figure) => !visible.has(figure)).forEach(start));
   setLanguage(stored.get() === "en" ? "en" : "nl");
   tables.forEach(filter);
-  charts.forEach((figure) => watcher.observe(figure));
+  // The scripts of the charts come after this one: the tables need not wait for them.
+  document.addEventListener("DOMContentLoaded", () =>
+    charts.forEach((figure) => watcher.observe(figure)));
 })();
