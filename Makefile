@@ -12,14 +12,18 @@ unexport PYTHONDONTWRITEBYTECODE
 export DAGSTER_DISABLE_TELEMETRY = 1
 export DAGSTER_DG_UPDATE_CHECK_ENABLED = 0
 
-.PHONY: help env demo test lint bench accuracy clean
+.PHONY: help env demo test lint bench scale accuracy survive fuzz full-scale clean
 
 help:
 	@echo "make demo   simulate an archive of ten seasons and rebuild its history"
 	@echo "make test   run all tests"
 	@echo "make lint   check style, types, imports and the Dagster definitions"
 	@echo "make bench  measure speed and memory"
+	@echo "make scale  measure one Dask worker against two, with an S3 server on this machine"
 	@echo "make accuracy  measure how near the truth the methods come, on simulated worlds"
+	@echo "make survive  kill 200 rebuilds at random moments and compare the tables after each"
+	@echo "make fuzz   throw 20,000 damaged files at the readers"
+	@echo "make full-scale  memory and time of a rebuild of 1,000 tows; needs 20 GB and an hour"
 	@echo "make env    make the environment in .venv, and nothing more"
 	@echo "make clean  remove the environment, the demo and the caches"
 
@@ -62,10 +66,22 @@ lint: $(READY)
 	@VIRTUAL_ENV="$(CURDIR)/.venv" $(BIN)/dg check defs --no-check-yaml
 
 bench: $(READY)
-	@for file in benchmarks/*.py; do echo "== $$file"; PYTHONPATH=. $(BIN)/python "$$file" || exit 1; done
+	@for file in $(filter-out benchmarks/scale.py,$(wildcard benchmarks/*.py)); do echo "== $$file"; PYTHONPATH=. $(BIN)/python "$$file" || exit 1; done
+
+scale: $(READY)
+	@PYTHONPATH=. $(BIN)/python benchmarks/scale.py
 
 accuracy: $(READY)
 	@for file in benchmarks/accuracy/*.py; do echo "== $$file"; PYTHONPATH=. $(BIN)/python "$$file" || exit 1; done
+
+survive: $(READY)
+	@OPENBLAS_NUM_THREADS=1 PYTHONPATH=. $(BIN)/python -u benchmarks/robustness/survive.py 200
+
+fuzz: $(READY)
+	@PYTHONPATH=. $(BIN)/python benchmarks/robustness/fuzz.py 20000
+
+full-scale: $(READY)
+	@PYTHONPATH=. $(BIN)/python benchmarks/robustness/full_scale.py
 
 clean:
 	rm -rf .venv $(DEMO) .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis

@@ -1,5 +1,7 @@
 """From archive files to blocks: the heavy part, partitioned by season."""
 
+import datetime as dt
+
 import dagster as dg
 import polars as pl
 
@@ -7,8 +9,13 @@ from assets.partitions import seasons
 from assets.resources import Progress, Setup
 from warehouse import intake
 
+LOOKED_AT = dg.FreshnessPolicy.time_window(
+    warn_window=dt.timedelta(hours=26), fail_window=dt.timedelta(hours=50)
+)
+"""Every rebuild looks through the archive, also when it finds no change."""
 
-@dg.asset(group_name="archive", kinds={"parquet"}, code_version="1")
+
+@dg.asset(group_name="archive", kinds={"parquet"}, code_version="1", freshness_policy=LOOKED_AT)
 def archive_index(setup: Setup) -> dg.MaterializeResult:
     """Boats, tow lists and files of the archive, with what is wrong in the lists."""
     found = intake.index(setup.store, setup.archive_root)
@@ -35,7 +42,11 @@ def samples(
     context: dg.AssetExecutionContext, setup: Setup, progress: dg.ResourceParam[Progress]
 ) -> dg.MaterializeResult:
     """The samples of one season's tows, in Parquet; faulty tows are set aside."""
-    season = int(context.partition_key)
+    return read(setup, int(context.partition_key), progress)
+
+
+def read(setup: Setup, season: int, progress: Progress) -> dg.MaterializeResult:
+    """Brings a season's samples into the lake."""
     found = intake.read_season(setup.store, setup.archive_root, season, progress.tow_read)
     faulty = found.filter(pl.col("reason_code").is_not_null())
     reasons = faulty["reason_code"].value_counts(sort=True).rows()
@@ -65,5 +76,10 @@ def samples(
 )
 def blocks(context: dg.AssetExecutionContext, setup: Setup) -> dg.MaterializeResult:
     """Sums over each second of each run of one season."""
-    found = intake.collect_blocks(setup.store, int(context.partition_key))
+    return add_up(setup, int(context.partition_key))
+
+
+def add_up(setup: Setup, season: int) -> dg.MaterializeResult:
+    """Puts a season's blocks together in one table."""
+    found = intake.collect_blocks(setup.store, season)
     return dg.MaterializeResult(metadata={"dagster/row_count": found.height})

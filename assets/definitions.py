@@ -1,62 +1,44 @@
 """The Dagster code location: everything that `dg` and `herijk serve` load."""
 
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
 import dagster as dg
 
-from assets import archive, tables
-from assets.resources import Progress, Quiet, Setup
-from assets.site import site
-
-INDEX, READ, COLLECT, APPLY, STUDY, FINISH = (
-    "index_archive",
-    "read_season",
-    "collect_archive",
-    "apply_method",
-    "study_methods",
-    "finish",
-)
-"""The jobs of a rebuild, in order: `READ` runs per season and `APPLY` per method."""
+from assets import automation
+from assets.jobs import job_defs
+from assets.notify import notifier_of
+from assets.resources import Quiet, Setup
+from assets.settings import Settings, read_settings
+from pipeline.method import shipped_methods
 
 
-jobs = [
-    dg.define_asset_job(INDEX, dg.AssetSelection.assets(archive.archive_index)),
-    dg.define_asset_job(READ, dg.AssetSelection.assets(archive.samples, archive.blocks)),
-    dg.define_asset_job(COLLECT, dg.AssetSelection.assets(tables.archive_tables)),
-    dg.define_asset_job(APPLY, dg.AssetSelection.assets(tables.method_tables)),
-    dg.define_asset_job(STUDY, dg.AssetSelection.assets(tables.study_tables)),
-    dg.define_asset_job(
-        FINISH,
-        dg.AssetSelection.assets(
-            tables.register_tables,
-            tables.consistency_tables,
-            tables.summary_tables,
-            tables.warehouse_database,
-            site,
+def build_defs(
+    archive: str, data: str, methods: Sequence[str], settings: Settings
+) -> dg.Definitions:
+    """The jobs of a rebuild, and what starts them when nobody asks."""
+    setup = Setup(
+        archive=archive,
+        data=data,
+        methods=list(methods),
+        set_aside_share=settings.set_aside_share,
+        factor_jump=settings.factor_jump,
+    )
+    return dg.Definitions.merge(
+        job_defs(setup, Quiet()),
+        dg.Definitions(
+            jobs=[automation.rebuild_job],
+            schedules=automation.schedules(settings),
+            sensors=[automation.archive_sensor(Path(archive))],
+            resources={"notifier": notifier_of(data, settings)},
         ),
-    ),
-]
-
-
-def build_defs(setup: Setup, progress: Progress) -> dg.Definitions:
-    """The definitions for given folders and someone who is told the progress."""
-    return dg.Definitions(
-        assets=[
-            archive.archive_index,
-            archive.samples,
-            archive.blocks,
-            tables.archive_tables,
-            tables.method_tables,
-            tables.study_tables,
-            tables.register_tables,
-            tables.consistency_tables,
-            tables.summary_tables,
-            tables.warehouse_database,
-            site,
-        ],
-        jobs=jobs,
-        resources={"setup": setup, "progress": dg.ResourceDefinition.hardcoded_resource(progress)},
     )
 
 
 defs = build_defs(
-    Setup(archive=dg.EnvVar("HERIJK_ARCHIVE"), data=dg.EnvVar("HERIJK_DATA")), Quiet()
+    os.environ.get("HERIJK_ARCHIVE", "archive"),
+    os.environ.get("HERIJK_DATA", "data"),
+    shipped_methods(),
+    read_settings(Path(os.environ.get("HERIJK_DATA", "data"))),
 )

@@ -3,22 +3,37 @@
 Resources load nothing and compute nothing; they hand plain objects to `warehouse` and `pipeline`.
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Protocol
 
 import dagster as dg
 from pydantic import Field
 
+from assets.settings import Settings
 from pipeline.method import Method, shipped_method, shipped_methods
+from warehouse.lock import only_writer
 from warehouse.store import Store
 
 
 class Setup(dg.ConfigurableResource):
-    """The archive that comes in, the data folder that goes out, and the methods to apply."""
+    """The archive that comes in, the data folder that goes out, and the methods to apply.
+
+    While a step runs, nobody else writes in the data folder: another waits for its turn.
+    """
 
     archive: str
     data: str
     methods: list[str] = Field(default_factory=lambda: list(shipped_methods()))
+    set_aside_share: float = Settings().set_aside_share
+    factor_jump: float = Settings().factor_jump
+
+    @contextmanager
+    def yield_for_execution(self, context: dg.InitResourceContext) -> Iterator["Setup"]:  # noqa: ARG002 - Dagster's signature
+        """The folders, with the right to write."""
+        with only_writer(self.store.root, wait=True):
+            yield self
 
     @property
     def archive_root(self) -> Path:

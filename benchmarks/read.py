@@ -18,7 +18,8 @@ from pipeline.blocks import block_sums
 from pipeline.simulate import WorldSettings, simulate_world
 from warehouse.archive import FileHashes, check_samples, index_archive, read_tow_samples
 from warehouse.archive.write import write_simulated_archive
-from warehouse.lake import write_samples
+from warehouse.lake import SAMPLES_FORM
+from warehouse.store import read_parquet, write_parquet
 
 
 def timed(seconds, work, *arguments):
@@ -49,8 +50,8 @@ def main():
             parquet = Path(folder) / f"{tow['tow_id']}.parquet"
             samples = timed(times["read text"], read_tow_samples, root, tow, profile)
             timed(times["check"], check_samples, samples, tow, index.runs)
-            timed(times["write Parquet"], write_samples, samples, parquet)
-            timed(times["read Parquet"], pl.read_parquet, parquet)
+            timed(times["write Parquet"], write_parquet, samples, parquet, None, SAMPLES_FORM)
+            timed(times["read Parquet"], read_parquet, parquet)
             timed(times["add up"], block_sums, samples, 1000)
             sizes.append(parquet.stat().st_size / 1e6)
     print(f"python {platform.python_version()}, polars {pl.__version__}; {tows} tows, median a tow")

@@ -19,6 +19,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from pipeline.simulate import WorldSettings, simulate_tow, simulate_world
+from warehouse.lake import SAMPLES_FORM
+from warehouse.store import read_parquet, write_parquet
 
 SCALE = 1000.0
 """Integers count thousandths: of a m/s, a N, a degree."""
@@ -82,7 +84,12 @@ def _read(path: Path) -> pl.DataFrame:
     return pl.read_parquet(path)
 
 
+def _as_in_the_lake(frame: pl.DataFrame, path: Path) -> None:
+    write_parquet(frame, path, form=SAMPLES_FORM)
+
+
 FORMATS = [
+    Format("float32, zstd 1, page checksums, synced (the lake)", _as_in_the_lake, read_parquet),
     Format("float32, zstd 1 (Polars, dictionary where it pays)", _polars(1), _read),
     Format("float32, zstd 3 (Polars, dictionary where it pays)", _polars(3), _read),
     Format("float32, zstd 1 (pyarrow, dictionary where it pays)", _arrow_dictionary, _read),

@@ -17,7 +17,7 @@ from herijk import audit_text, commands_editions, text
 from herijk.arguments import AsJson, DataFolder, show
 from herijk.method_text import method_in_words
 from herijk.progress import TerminalProgress
-from pipeline.errors import HerijkError, MissingKnowledgeError
+from pipeline.errors import BrokenPromiseError, HerijkError, MissingKnowledgeError
 from pipeline.method import Method, parse_method, shipped_method, shipped_methods, shipped_text
 from pipeline.register import draft_name
 from pipeline.simulate import WorldSettings, simulate_world
@@ -26,6 +26,7 @@ from warehouse.archive.write import write_simulated_archive
 from warehouse.audit import audit as audit_report
 from warehouse.editions.folder import edition_names, method_of_edition
 from warehouse.history import History
+from warehouse.obstacles import obstacles_explained
 from warehouse.rebase import rebase as rebase_history
 from warehouse.store import Store
 
@@ -81,15 +82,45 @@ def rebuild(
     as_json: AsJson = False,
 ) -> None:
     """From the archive to registers and tables; only what changed is done again."""
-    from assets.rebuild import rebuild as run  # noqa: PLC0415 - Dagster takes a second to import
+    from assets.notify import notifier_of  # noqa: PLC0415 - Dagster takes a second to import
+    from assets.rebuild import rebuild as run  # noqa: PLC0415
+    from assets.report import failed_checks, tell  # noqa: PLC0415
+    from assets.settings import read_settings  # noqa: PLC0415
 
     chosen = method or list(shipped_methods())
     for name in chosen:
         shipped_text(name)
     with TerminalProgress() as progress:
         done = run(archive, data, chosen, progress, seasons)
-    report = reports.rebuild_report(Store(data)) | {"done": vars(done)}
+    report = reports.rebuild_report(Store(data)) | {"done": done.work, "since": done.report}
     show(report, text.rebuild, as_json)
+    notifier = notifier_of(str(data), read_settings(data))
+    for problem in tell(notifier, done.report):
+        typer.echo(f"herijk: {problem}", err=True)
+    if failed := failed_checks(done.report):
+        raise BrokenPromiseError(f"a check failed: {'; '.join(failed)}")
+
+
+@app.command()
+def serve(
+    archive: Annotated[Path, typer.Option(help="The archive folder.", metavar="DIR")],
+    data: DataFolder = Path("data"),
+    host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
+    port: Annotated[
+        int, typer.Option(min=1, max=65534, help="Port of Dagster's page; the site has the next.")
+    ] = 3000,
+) -> None:
+    """Rebuild by itself: schedules and sensor, with Dagster's page and the site, until stopped."""
+    from assets.rebuild import prepare_home  # noqa: PLC0415 - Dagster takes a second to import
+    from assets.settings import read_settings  # noqa: PLC0415
+    from herijk.serving import Served, serve_until_stopped  # noqa: PLC0415
+
+    read_settings(data)
+    with obstacles_explained(data):
+        home = prepare_home(Store(data))
+        serve_until_stopped(
+            Served(archive, data, host, port), home, lambda line: typer.echo(line, err=True)
+        )
 
 
 @methods_app.callback()

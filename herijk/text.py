@@ -42,6 +42,7 @@ def rebuild(report: Report) -> str:
     done = report["done"]
     parts = [SIMULATED] if report["simulated"] else []
     parts.append(_work_done(done))
+    parts.append("Since the last report:\n" + _indented(report["since"]["headlines"]))
     parts.append(
         "Tows accepted: "
         + ", ".join(f"{row['season']}: {row['tows']}" for row in report["seasons"])
@@ -57,7 +58,9 @@ def rebuild(report: Report) -> str:
     if report["by_season"]:
         parts.append(_by_season(report["by_season"]))
         parts.append(_biggest(report["biggest_changes"]))
-    parts.append(f"Tables: {report['database']}\nSite: {report['site']}")
+    parts.append(
+        f"Tables: {report['database']}\nSite: {report['site']}\nReport: {report['report']}"
+    )
     return "\n\n".join(parts)
 
 
@@ -67,6 +70,10 @@ def _work_done(done: Report) -> str:
     seasons = ", ".join(str(s) for s in done["seasons"]) or "none"
     methods = ", ".join(done["methods"]) or "none"
     return f"Seasons read: {seasons}. Methods applied: {methods}."
+
+
+def _indented(lines: Iterable[str]) -> str:
+    return "\n".join(f"  {line}" for line in lines)
 
 
 def _faults(first: list[Report], number: int) -> str:

@@ -1,8 +1,9 @@
-"""The one family of errors. Three kinds, because the right reaction to each differs.
+"""The one family of errors. Four kinds, because the right reaction to each differs.
 
 Defective input is set aside and the rest goes on; missing knowledge stops a season; a broken
-promise stops everything. A message says what, where, what was observed, what the limit is and
-the way out. Exit statuses belong to the command, not here.
+promise stops everything; where the machine is in the way, the same is tried again later. A message
+says what, where, what was observed, what the limit is and the way out. Exit statuses belong to the
+command, not here.
 """
 
 
@@ -32,3 +33,7 @@ class MissingKnowledgeError(HerijkError):
 
 class BrokenPromiseError(HerijkError):
     """A schema, hash or frozen edition is not what it was declared to be."""
+
+
+class UnavailableError(HerijkError):
+    """The machine is in the way: someone else writes, the disk is full. Nothing is lost."""

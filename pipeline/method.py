@@ -288,10 +288,10 @@ class _Reader:
     def head(self) -> _Head:
         try:
             return _Head.model_validate(tomllib.loads(self.text))
-        except tomllib.TOMLDecodeError as error:
-            raise MethodFileError(f"{self.file_name}: not valid TOML: {error}") from error
         except ValidationError as error:
             raise self.from_validation(error, allowed=_Head) from error
+        except (ValueError, RecursionError) as error:
+            raise MethodFileError(f"{self.file_name}: not valid TOML: {error}") from error
 
     def error(self, key: str, message: str, where: str | None = None) -> MethodFileError:
         """An error about `key`, on the line of `where`, which is the key unless it is missing."""

@@ -2,7 +2,7 @@
 
 import shutil
 from collections.abc import Collection, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from unittest import mock
@@ -50,8 +50,13 @@ class Workbench:
         self, methods: Sequence[str] = METHODS, seasons: Collection[int] | None = None
     ) -> Done:
         """A rebuild in this process; Dagster's records are kept in memory to save time."""
-        with mock.patch.object(assets.rebuild, "_instance", _dagster_in_memory):
+        with self.records_in_memory():
             return assets.rebuild.rebuild(self.archive, self.data, methods, Quiet(), seasons)
+
+    @staticmethod
+    def records_in_memory() -> AbstractContextManager[object]:
+        """Inside, rebuilds keep no records of Dagster's on disk."""
+        return mock.patch.object(assets.rebuild, "_instance", _dagster_in_memory)
 
     def table(self, name: str) -> pl.DataFrame:
         """A table as a reader of the database gets it."""
@@ -90,3 +95,12 @@ def bench(built: Workbench, tmp_path: Path) -> Workbench:
     shutil.copytree(built.archive, tmp_path / "archive")
     shutil.copytree(built.data, tmp_path / "data")
     return Workbench(tmp_path / "archive", tmp_path / "data")
+
+
+@pytest.fixture(scope="session")
+def s3() -> Iterator[None]:
+    """An S3 server with a bucket, empty at first; each test uses a prefix of its own."""
+    from tests.elsewhere import s3_server  # noqa: PLC0415 - moto takes a second to import
+
+    with s3_server():
+        yield

@@ -49,8 +49,6 @@ def read_decisions(path: Path) -> tuple[Decision, ...]:
         return ()
     try:
         found = _File.model_validate(tomllib.loads(path.read_text(encoding="utf-8"))).besluit
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise MissingKnowledgeError(f"{path}: not valid TOML: {error}") from error
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])
@@ -58,6 +56,8 @@ def read_decisions(path: Path) -> tuple[Decision, ...]:
             f"{path}: {where}: {first['msg']}; a decision has sleep_id, oordeel (uitsluiten or "
             "voorkeur), reden, wie and datum"
         ) from error
+    except (ValueError, RecursionError) as error:
+        raise MissingKnowledgeError(f"{path}: not valid TOML: {error}") from error
     tows = [decision.sleep_id for decision in found]
     twice = sorted({tow for tow in tows if tows.count(tow) > 1})
     if twice:

@@ -1,6 +1,7 @@
-"""Writing files so that nothing half-written is ever visible: beside, sync, rename."""
+"""Writing files so that nothing half-written is ever visible: beside, sync, rename; and hashes."""
 
 import ctypes
+import hashlib
 import os
 import tempfile
 from collections.abc import Iterator
@@ -34,6 +35,12 @@ def written_beside(path: Path) -> Iterator[Path]:
         _sync(path.parent)
     finally:
         beside.unlink(missing_ok=True)
+
+
+def file_sha256(path: Path) -> str:
+    """SHA-256 of a file's content, in hex."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def write_new(path: Path, text: str) -> None:

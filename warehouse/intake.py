@@ -5,7 +5,9 @@ season's fingerprint says that something changed. Reading one season's files is 
 """
 
 import dataclasses
+import os
 from collections.abc import Collection
+from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
@@ -49,6 +51,29 @@ def index(store: Store, root: Path) -> ArchiveIndex:
     return found
 
 
+Listing = dict[str, list[int]]
+"""Size in bytes and time of change in ns of every file, by path within the archive."""
+
+
+def listing(root: Path) -> Listing:
+    """The files of an archive as they lie there now; none is opened, and no link is followed.
+
+    Raises:
+        MissingKnowledgeError: there is no such folder, or nothing in it: a disk not mounted.
+    """
+    found: Listing = {}
+    for folder, inner, files in os.walk(root):
+        inner[:] = [name for name in inner if not name.startswith(".")]
+        for name in (name for name in files if not name.startswith(".")):
+            path = Path(folder) / name
+            with suppress(FileNotFoundError):
+                stat = path.lstat()
+                found[path.relative_to(root).as_posix()] = [stat.st_size, stat.st_mtime_ns]
+    if not found:
+        raise MissingKnowledgeError(f"there is no file at {root}: is its disk there?")
+    return dict(sorted(found.items()))
+
+
 def listed_seasons(store: Store) -> list[int]:
     """Seasons of which the archive lists tows, sorted."""
     seasons: list[int] = store.read("listed_tows")["season"].unique().sort().to_list()
@@ -62,8 +87,12 @@ def stale_seasons(store: Store, root: Path, wanted: Collection[int] | None = Non
         season
         for season in listed_seasons(store)
         if (wanted is None or season in wanted)
-        and store.made_from("blocks", str(season)) != _fingerprint(store, profiles, season)
+        and not _is_up_to_date(store, season, _fingerprint(store, profiles, season))
     ]
+
+
+def _is_up_to_date(store: Store, season: int, made_from: str) -> bool:
+    return all(store.made_from(t, str(season)) == made_from for t in SEASON_TABLES)
 
 
 def forget_unlisted_seasons(store: Store) -> list[int]:

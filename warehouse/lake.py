@@ -18,12 +18,12 @@ import polars as pl
 import pipeline.blocks
 import pipeline.channels
 from pipeline.blocks import block_sums
-from pipeline.errors import DefectiveInputError
+from pipeline.errors import DefectiveInputError, UnavailableError
 from warehouse import archive
 from warehouse.archive import SeasonProfile, check_samples, fault_from, read_tow_samples
 from warehouse.code import source_hash
-from warehouse.files import written_beside
-from warehouse.store import Store, fingerprint, write_parquet
+from warehouse.files import file_sha256
+from warehouse.store import Store, count_rows, fingerprint, read_parquet, write_parquet
 
 SEASON_INDEX_SCHEMA: Final = {
     "tow_id": pl.String(),
@@ -37,7 +37,16 @@ SEASON_INDEX_SCHEMA: Final = {
 }
 """One row a listed tow: where its samples and blocks lie, or the fault that was found."""
 
-WORKERS: Final = 2
+WORKERS: Final = min(2, pl.thread_pool_size())
+"""Tows read at the same time: no more than Polars may use threads."""
+
+SAMPLES_FORM: Final = {
+    "compression": "zstd",
+    "compression_level": 1,
+    "use_dictionary": False,
+    "write_statistics": False,
+}
+"""How float32 samples are packed: measured in docs/decisions/0004."""
 
 Tow = Mapping[str, Any]
 Report = Callable[[str, bool], None]
@@ -92,7 +101,7 @@ def season_blocks(store: Store, season: int, index: pl.DataFrame) -> pl.DataFram
     """Blocks of all sound tows of a season, with `tow_id`, sorted by tow, run and second."""
     sound = index.filter(pl.col("blocks_key").is_not_null()).sort("tow_id")
     frames = [
-        pl.read_parquet(store.blocks_path(season, key), hive_partitioning=False).select(
+        read_parquet(store.blocks_path(season, key)).select(
             pl.lit(tow_id).alias("tow_id"), pl.all()
         )
         for tow_id, key in sound.select("tow_id", "blocks_key").iter_rows()
@@ -112,25 +121,42 @@ def _bring_in(
         if not path.exists():
             samples = read_tow_samples(root, tow, profile)
             check_samples(samples, tow, runs)
-            write_samples(samples, path)
+            _check_unchanged(root, tow)
+            write_parquet(samples, path, form=SAMPLES_FORM)
         if not blocks_path.exists():
-            blocks = block_sums(pl.read_parquet(path), tow["sample_rate_hz"])
+            blocks = block_sums(read_parquet(path), tow["sample_rate_hz"])
             write_parquet(blocks, blocks_path)
     except DefectiveInputError as error:
+        _check_unchanged(root, tow)
         return row | dataclasses.asdict(fault_from(error, tow["samples_path"], tow["tow_id"]))
-    count = pl.scan_parquet(path).select(pl.len()).collect().item()
-    return row | {"blocks_key": blocks_key, "samples": count}
+    return row | {"blocks_key": blocks_key, "samples": count_rows(path)}
+
+
+class ArchiveChangedError(UnavailableError):
+    """A file of the archive changed between looking through the archive and reading it."""
+
+
+def _check_unchanged(root: Path, tow: Tow) -> None:
+    """Samples are named by the hash of their file, so they must be that file's."""
+    for path, sha256 in (("samples_path", "samples_sha256"), ("second_path", "second_sha256")):
+        if tow[path] is not None and _sha256(root / tow[path]) != tow[sha256]:
+            raise ArchiveChangedError(
+                f"{tow[path]} changed while it was read. Try again when nobody is copying files "
+                f"into {root}"
+            )
+
+
+def _sha256(path: Path) -> str | None:
+    """Hash of a file; None when it went away."""
+    try:
+        return file_sha256(path)
+    except FileNotFoundError:
+        return None
 
 
 def forget_season(store: Store, season: int) -> None:
     """Removes the samples and blocks of a season that the archive no longer lists."""
     _remove_unlisted(store, season, pl.DataFrame(schema=SEASON_INDEX_SCHEMA))
-
-
-def write_samples(samples: pl.DataFrame, path: Path) -> None:
-    """Samples as float32 in Parquet; see docs/decisions for the measurement of formats."""
-    with written_beside(path) as beside:
-        samples.write_parquet(beside, compression="zstd", compression_level=1, statistics=False)
 
 
 def _known_faults(store: Store, season: int) -> dict[str, dict[str, Any]]:

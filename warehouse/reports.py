@@ -22,6 +22,7 @@ def rebuild_report(store: Store) -> Report:
         return {
             "database": str(store.database),
             "site": str(store.root / "site" / "index.html"),
+            "report": str(store.root / "report" / "latest.html"),
             "simulated": is_simulated(db),
             "seasons": rows(
                 db, "SELECT season, count(*) AS tows FROM tows GROUP BY season ORDER BY season"

@@ -1,23 +1,34 @@
-"""Where everything lies under the data folder, and how tables are written there.
+"""Where everything of a data folder lies, and how tables are written there.
 
 The lake holds Parquet: the samples and the blocks of each tow, written once and named by content,
 and the tables, one file per table or per partition of it (a season, a method). Each table file
-carries the fingerprint of what it was made from, so that a rebuild does only what changed. What a
-table means stands in `warehouse.schemas`; the database that readers use is `warehouse.database`.
+carries the fingerprint of what it was made from, so that a rebuild does only what changed. Lake and
+editions may lie in a bucket instead of the data folder (`warehouse.storage`). What a table means
+stands in `warehouse.schemas`; the database that readers use is `warehouse.database`.
 """
 
 import hashlib
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Final
 
 import polars as pl
+import pyarrow as pa  # type: ignore[import-untyped]
+import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
-from warehouse.files import written_beside
+from pipeline.errors import BrokenPromiseError
+from warehouse.obstacles import is_obstacle
+from warehouse.storage import Locations, Place, place, read_locations, written_whole
 
 FINGERPRINT_KEY: Final = "herijk.fingerprint"
+_FOOTER_BYTES: Final = 1 << 16
+"""Enough for most footers, so that one request brings them."""
+
+TABLE_FORM: Final = {"compression": "zstd"}
 
 
 def fingerprint(*parts: Any) -> str:
@@ -40,6 +51,20 @@ class Store:
 
     root: Path
 
+    @cached_property
+    def _locations(self) -> Locations:
+        return read_locations(self.root)
+
+    @cached_property
+    def lake(self) -> Place:
+        """Samples, blocks and tables."""
+        return place(self._locations.lake, self.root / "lake")
+
+    @cached_property
+    def editions(self) -> Place:
+        """The published editions, each under its name."""
+        return place(self._locations.editions, self.root / "editions")
+
     @property
     def database(self) -> Path:
         """The DuckDB file with all tables."""
@@ -52,27 +77,27 @@ class Store:
 
     @property
     def file_hashes(self) -> Path:
-        """Content hashes of archive files already seen."""
+        """Content hashes of archive files already seen: a cache, of this machine only."""
         return self.root / "lake" / "file_hashes.json"
 
-    def samples_path(self, season: int, key: str) -> Path:
+    def samples_path(self, season: int, key: str) -> Place:
         """The samples of one tow."""
-        return self.root / "lake" / "samples" / f"season={season}" / f"{key}.parquet"
+        return self.lake / "samples" / f"season={season}" / f"{key}.parquet"
 
-    def blocks_path(self, season: int, key: str) -> Path:
+    def blocks_path(self, season: int, key: str) -> Place:
         """The blocks of one tow."""
-        return self.root / "lake" / "blocks" / f"season={season}" / f"{key}.parquet"
+        return self.lake / "blocks" / f"season={season}" / f"{key}.parquet"
 
-    def table_path(self, table: str, partition: str | None = None) -> Path:
+    def table_path(self, table: str, partition: str | None = None) -> Place:
         """A table, or one partition of it."""
-        folder = self.root / "lake" / "tables"
+        folder = self.lake / "tables"
         if partition is None:
             return folder / f"{table}.parquet"
         return folder / table / f"{partition}.parquet"
 
     def partitions(self, table: str) -> list[str]:
         """The partitions of a table that have been written, sorted."""
-        folder = self.root / "lake" / "tables" / table
+        folder = self.lake / "tables" / table
         return sorted(f.stem for f in folder.glob("[!.]*.parquet"))
 
     def write(
@@ -83,7 +108,7 @@ class Store:
 
     def read(self, table: str, partition: str | None = None) -> pl.DataFrame:
         """A table or partition as written."""
-        return pl.read_parquet(self.table_path(table, partition), hive_partitioning=False)
+        return read_parquet(self.table_path(table, partition))
 
     def read_all(self, table: str, partitions: Iterable[str] | None = None) -> pl.DataFrame:
         """Partitions of a table, one below the other: the given ones, or all."""
@@ -91,18 +116,99 @@ class Store:
         return pl.concat([self.read(table, p) for p in chosen])
 
     def made_from(self, table: str, partition: str | None = None) -> str | None:
-        """Fingerprint of what a table was made from; None if there is no such table."""
+        """Fingerprint of what a table was made from; None if it is not there or is damaged."""
         path = self.table_path(table, partition)
         if not path.exists():
             return None
-        return pl.read_parquet_metadata(path).get(FINGERPRINT_KEY)
+        try:
+            held = (_footer(path).metadata or {}).get(FINGERPRINT_KEY.encode())
+            return None if held is None else bytes(held).decode()
+        except _UNREADABLE as error:
+            if is_obstacle(error):
+                raise
+            return None
 
     def remove(self, table: str, partition: str) -> None:
         """Removes a partition whose season or method is no more."""
         self.table_path(table, partition).unlink(missing_ok=True)
 
 
-def write_parquet(frame: pl.DataFrame, path: Path, metadata: dict[str, str] | None = None) -> None:
-    """Writes a frame as Parquet, whole or not at all."""
-    with written_beside(path) as beside:
-        frame.write_parquet(beside, compression="zstd", metadata=metadata)
+class DamagedFileError(BrokenPromiseError):
+    """A file that Herijk wrote cannot be read any more; it can be made again."""
+
+    def __init__(self, path: Place) -> None:
+        super().__init__(
+            f"{path} is damaged. It can be made again: run herijk rebuild; when that comes back, "
+            "look at the disk"
+        )
+        self.path = path
+
+
+_UNREADABLE: Final = (
+    pa.ArrowException,
+    pl.exceptions.PolarsError,
+    pl.exceptions.PanicException,
+    OSError,
+    ValueError,
+)
+
+
+def read_parquet(path: Place) -> pl.DataFrame:
+    """A frame that was written with `write_parquet`, its checksums verified.
+
+    Raises:
+        FileNotFoundError: it is not there.
+        DamagedFileError: it was changed since, by a failing disk or by hand.
+    """
+    with _damage_named(path):
+        source = path if isinstance(path, Path) else pa.BufferReader(path.read_bytes())
+        table = pq.read_table(source, partitioning=None, page_checksum_verification=True)
+        return pl.DataFrame(pl.from_arrow(table))
+
+
+def count_rows(path: Place) -> int:
+    """Rows of a frame that was written with `write_parquet`; raises as `read_parquet`."""
+    with _damage_named(path):
+        return int(_footer(path).num_rows)
+
+
+def _footer(path: Place) -> pq.FileMetaData:
+    """What stands at the end of a Parquet file; the rest is not fetched."""
+    if isinstance(path, Path):
+        return pq.read_metadata(path)
+    end = path.read_end(_FOOTER_BYTES)
+    size = int.from_bytes(end[-8:-4], "little") + 8  # the footer, its length and the mark "PAR1"
+    if size > len(end):
+        end = path.read_end(size)
+    return pq.read_metadata(pa.BufferReader(end))
+
+
+@contextmanager
+def _damage_named(path: Place) -> Iterator[None]:
+    try:
+        yield
+    except FileNotFoundError:
+        raise
+    except _UNREADABLE as error:
+        if is_obstacle(error):
+            raise
+        raise DamagedFileError(path) from error
+
+
+def write_parquet(
+    frame: pl.DataFrame,
+    path: Place,
+    metadata: dict[str, str] | None = None,
+    form: Mapping[str, Any] = TABLE_FORM,
+) -> None:
+    """Writes a frame as Parquet, whole or not at all, with a checksum of every page.
+
+    Without checksums a changed byte can be read as another number.
+    """
+    with written_whole(path) as target:
+        pq.write_table(
+            frame.to_arrow().replace_schema_metadata(metadata),
+            target,
+            write_page_checksum=True,
+            **form,
+        )

@@ -29,6 +29,7 @@ from warehouse.code import code_version
 from warehouse.database import build_database
 from warehouse.due import due_made_from, due_rows
 from warehouse.editions.published import published_made_from, published_tables
+from warehouse.files import file_sha256
 from warehouse.schemas import TABLES, Quarantine, conform
 from warehouse.store import Store, fingerprint, table_digest
 from warehouse.summaries import SUMMARY_TABLES
@@ -425,7 +426,8 @@ def make_database(store: Store, methods: Sequence[Method]) -> dict[str, int]:
     found["about"] = pl.DataFrame({"key": list(about), "value": list(about.values())})
     found["contents"] = _contents(found)
     build_database(store.database, found)
-    store.write("database", pl.DataFrame(), database_made_from(store, methods))
+    made = pl.DataFrame({"sha256": [file_sha256(store.database)]})
+    store.write("database", made, database_made_from(store, methods))
     return {name: frame.height for name, frame in found.items()}
 
 
@@ -442,10 +444,12 @@ def _contents(found: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
 
 
 def database_is_stale(store: Store, methods: Sequence[Method]) -> bool:
-    """Whether the database has to be built again."""
+    """Whether the database has to be built again, also because it was damaged since."""
     if not store.database.exists():
         return True
-    return store.made_from("database") != database_made_from(store, methods)
+    if store.made_from("database") != database_made_from(store, methods):
+        return True
+    return store.read("database")["sha256"].to_list() != [file_sha256(store.database)]
 
 
 def unaccounted_tows(store: Store) -> list[str]:

@@ -76,6 +76,10 @@ def _cw(say: Say) -> tuple[str, str]:
     return "cw_kg_m", say("cw_declared")
 
 
+def _cw_standard(say: Say) -> tuple[str, str]:
+    return "cw_standard_kg_m", say("cw_standard")
+
+
 def b_against_weight(frame: pl.DataFrame, say: Say) -> alt.Chart:
     """B against weight; `frame` is `Views.type_boats` with `page`."""
     return _scatter(frame, say, (_weight(say), _b(say)))
@@ -88,19 +92,17 @@ def b_against_speed(frame: pl.DataFrame, say: Say) -> alt.Chart:
 
 def a_against_weight(frame: pl.DataFrame, say: Say) -> alt.Chart:
     """A against weight."""
-    return _scatter(frame, say, ("weight_kg", say("weight")), ("a_kg_m", say("a")))
+    return _scatter(frame, say, (_weight(say), ("a_kg_m", say("a"))))
 
 
 def cw_standard_against_weight(frame: pl.DataFrame, say: Say) -> alt.Chart:
     """Cw at the type's standard speed against weight."""
-    y = ("cw_standard_kg_m", say("cw_standard"))
-    return _scatter(frame, say, ("weight_kg", say("weight")), y)
+    return _scatter(frame, say, (_weight(say), _cw_standard(say)))
 
 
 def cw_standard_against_speed(frame: pl.DataFrame, say: Say) -> alt.Chart:
     """Cw at the type's standard speed against tow speed."""
-    y = ("cw_standard_kg_m", say("cw_standard"))
-    return _scatter(frame, say, ("declared_speed_m_s", say("tow_speed")), y)
+    return _scatter(frame, say, (_speed(say), _cw_standard(say)))
 
 
 def shared_bend(frame: pl.DataFrame, say: Say) -> alt.Chart:

@@ -1,6 +1,5 @@
 """The sheets of published editions, put beside the pages so that the site is complete by itself."""
 
-import shutil
 from pathlib import Path
 from typing import Final
 
@@ -17,4 +16,4 @@ def copy_sheets(store: Store, folder: Path) -> None:
         target = folder / DOWNLOADS / edition
         target.mkdir(parents=True)
         for name in SHEETS:
-            shutil.copyfile(edition_path(store, edition) / name, target / name)
+            (target / name).write_bytes((edition_path(store, edition) / name).read_bytes())

@@ -93,6 +93,7 @@ class Page:
         name: of the boat, data rather than a text; empty elsewhere.
         selects: selectors.
         data: frames that charts draw, by name; of several, the rows come one below the other.
+        site: the way to the site, of a page that lies outside it.
     """
 
     path: str
@@ -101,11 +102,12 @@ class Page:
     name: str = ""
     selects: Sequence[Select] = ()
     data: Mapping[str, Sequence[pl.DataFrame]] = field(default_factory=dict)
+    site: str = ""
 
     @property
     def root(self) -> str:
         """The way from this page to the site's root."""
-        return "../" * self.path.count("/")
+        return self.site or "../" * self.path.count("/")
 
 
 def default_method(names: Sequence[str]) -> str:

@@ -21,7 +21,7 @@ from markupsafe import Markup, escape
 from dashboards.figures import FIGURES
 from dashboards.site.downloads import copy_sheets
 from dashboards.site.pages import MENU, all_pages
-from dashboards.site.parts import boat_path
+from dashboards.site.parts import Page, boat_path
 from dashboards.words import LANGUAGES, both, speaker
 from warehouse.files import TEMPORARY_PREFIX, put_in_place
 from warehouse.store import Store
@@ -54,7 +54,7 @@ KEPT: Final = 9
 CODES: Final = {
     *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "code"),
     *("quantity", "explaining", "candidates", "severity", "check", "shared", "kind", "scope"),
-    "option",
+    *("option", "flag", "what", "outcome"),
 }
 """Columns that hold codes of the warehouse, shown as words."""
 
@@ -97,6 +97,12 @@ def _write(views: Views, folder: Path) -> None:
     for page in all_pages(views):
         text = template.render(page=page, menu=MENU, about=about)
         (folder / page.path).write_text(text, encoding="utf-8")
+
+
+def render_page(views: Views, page: Page) -> str:
+    """A page by itself, for one that lies outside the site."""
+    template = _environment(_by_column(views.comments())).get_template("page.html.j2")
+    return template.render(page=page, menu=MENU, about=views.about())
 
 
 def _by_column(comments: dict[str, str]) -> dict[str, str]:

@@ -58,8 +58,14 @@ ASSETS = [
 CHECKS = [
     "correction_steps: steps_multiply_to_the_total",
     "curves: every_tow_has_a_curve_row",
+    "log_factors: log_factors_stayed",
+    "quarantine: few_tows_set_aside",
+    "register: boats_stayed_within_their_intervals",
+    "register: editions_can_be_made_again",
     "samples: most_tows_sound",
     "tows: every_listed_tow_accounted_for",
+    "warehouse_database: counts_agree",
+    "warehouse_database: tables_fit_their_schemas",
 ]
 
 

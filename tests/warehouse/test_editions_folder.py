@@ -8,7 +8,7 @@ import textwrap
 import pytest
 
 from pipeline.errors import BrokenPromiseError
-from warehouse.editions.folder import edition_names, editions_folder, write_folder
+from warehouse.editions.folder import edition_names, write_folder
 from warehouse.store import Store
 
 CONTENTS = {f"file-{n}": bytes([n]) * 5000 for n in range(6)}
@@ -17,7 +17,7 @@ KILLED_ANYWHERE = """
 import os, signal, sys
 from pathlib import Path
 from tests.warehouse.test_editions_folder import CONTENTS
-from warehouse.editions.folder import edition_names, editions_folder, write_folder
+from warehouse.editions.folder import edition_names, write_folder
 from warehouse.store import Store
 
 STEPS = {"open", "os.mkdir", "os.rename", "os.chmod", "os.rmdir", "os.remove", "os.listdir"}
@@ -48,14 +48,14 @@ while not whole:
         publish_and_die(store, step)
         os._exit(0)
     whole = os.waitpid(child, 0)[1] == 0
-    names = edition_names(store) if editions_folder(store).exists() else []
+    names = edition_names(store) if store.editions.exists() else []
     assert names in ([], ["x"]), (step, names)
     if names:
-        found = {f.name: f.read_bytes() for f in (editions_folder(store) / "x").iterdir()}
+        found = {f.name: f.read_bytes() for f in (store.editions / "x").iterdir()}
         assert found == CONTENTS, step
     else:
         write_folder(store, "x", CONTENTS)
-    assert sorted(f.name for f in editions_folder(store).iterdir() if f.is_dir()) == ["x"], step
+    assert sorted(f.name for f in store.editions.iterdir() if f.is_dir()) == ["x"], step
 print(step)
 """
 
@@ -78,7 +78,7 @@ import sys
 from pathlib import Path
 from pipeline.errors import BrokenPromiseError
 from tests.warehouse.test_editions_folder import CONTENTS
-from warehouse.editions.folder import edition_names, editions_folder, write_folder
+from warehouse.editions.folder import edition_names, write_folder
 from warehouse.store import Store
 
 store = Store(Path(sys.argv[1]))
@@ -87,7 +87,7 @@ try:
     write_folder(store, "new", CONTENTS)
 except BrokenPromiseError as error:
     assert edition_names(store) == ["old"]
-    assert sorted(f.name for f in editions_folder(store).iterdir() if f.is_dir()) == ["old"]
+    assert sorted(f.name for f in store.editions.iterdir() if f.is_dir()) == ["old"]
     print(error)
 """
 
@@ -124,9 +124,9 @@ def test_a_full_disk_leaves_the_old_editions_and_says_what_to_do(tmp_path):
 
 def test_a_folder_that_cannot_be_made_is_one_sentence(tmp_path):
     store = Store(tmp_path)
-    editions_folder(store).write_text("a file in the way", encoding="utf-8")
+    store.editions.write_text("a file in the way", encoding="utf-8")
     with pytest.raises(BrokenPromiseError, match="mend the folder, and publish again"):
         write_folder(store, "x", CONTENTS)
-    editions_folder(store).unlink()
+    store.editions.unlink()
     write_folder(store, "x", CONTENTS)
     assert edition_names(store) == ["x"]

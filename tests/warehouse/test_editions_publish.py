@@ -27,7 +27,6 @@ from warehouse.editions.folder import (
     CHANGES,
     TABLES,
     edition_names,
-    editions_folder,
     read_about,
     read_edition,
 )
@@ -58,7 +57,7 @@ def edition_of(bench, name="2014-1"):
 
 
 def folder(bench, name="2014-1"):
-    return editions_folder(bench.store) / name
+    return bench.store.editions / name
 
 
 def test_an_edition_holds_everything_behind_it(published):
@@ -357,7 +356,7 @@ def test_a_full_disk_leaves_nothing(bench_of_editions, monkeypatch):
     with pytest.raises(BrokenPromiseError, match=r"No space left .* make room"):
         bench_of_editions.publish("2014-1")
     assert edition_names(bench_of_editions.store) == []
-    assert [f for f in editions_folder(bench_of_editions.store).iterdir() if f.is_dir()] == []
+    assert [f for f in bench_of_editions.store.editions.iterdir() if f.is_dir()] == []
 
 
 KILLED = """
@@ -376,7 +375,7 @@ def test_a_publication_killed_in_the_middle_leaves_nothing_to_see(bench_of_editi
     )
     assert done.returncode == -signal.SIGKILL
     assert edition_names(bench.store) == []
-    root = editions_folder(bench.store)
+    root = bench.store.editions
     assert len([f for f in root.iterdir() if f.is_dir()]) == 1
     bench.publish("2014-1")
     assert [f.name for f in root.iterdir() if f.is_dir()] == ["2014-1"]

@@ -13,7 +13,7 @@ import pipeline.recompute
 from pipeline.errors import MissingKnowledgeError
 from pipeline.method import parse_method, shipped_method
 from tests.warehouse.edition_bench import terms
-from warehouse.editions.folder import editions_folder, read_about, read_edition
+from warehouse.editions.folder import read_about, read_edition
 from warehouse.editions.inputs import same_tows, unchanged_tows
 from warehouse.editions.lineage import lineage, lineage_rows
 from warehouse.editions.publish import publish_printed
@@ -22,7 +22,7 @@ from warehouse.schemas import conform
 
 
 def folder(bench, name="2014-1"):
-    return editions_folder(bench.store) / name
+    return bench.store.editions / name
 
 
 def found(bench, **wanted):

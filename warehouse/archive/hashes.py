@@ -3,14 +3,13 @@
 A cache and no more: losing it costs time, never a result.
 """
 
-import hashlib
 import json
-import os
-import tempfile
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
+
+from warehouse.files import file_sha256, written_beside
 
 RACY_SECONDS: Final = 2.0
 """A file this fresh can change again without a change of its time stamp (coarse clocks), so its
@@ -43,15 +42,8 @@ class FileHashes:
 
     def save(self, path: Path) -> None:
         """Write the cache to `path` in one step: a reader sees the old one or the new one."""
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=path.name, suffix=".tmp")
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8") as file:
-                json.dump(self.entries, file, indent=0, sort_keys=True)
-            Path(temporary).replace(path)
-        except BaseException:
-            Path(temporary).unlink(missing_ok=True)
-            raise
+        with written_beside(path) as beside:
+            beside.write_text(json.dumps(self.entries, indent=0, sort_keys=True), encoding="utf-8")
 
     def hash_file(self, path: Path) -> str:
         """Return the SHA-256 of a file's content, as hexadecimal text.
@@ -64,8 +56,7 @@ class FileHashes:
         known = self.entries.get(key)
         if known is not None and known[:2] == (before.st_size, before.st_mtime_ns):
             return known[2]
-        with path.open("rb") as file:
-            sha256 = hashlib.file_digest(file, "sha256").hexdigest()
+        sha256 = file_sha256(path)
         after = path.stat()
         unchanged = (before.st_size, before.st_mtime_ns) == (after.st_size, after.st_mtime_ns)
         settled = time.time_ns() - after.st_mtime_ns >= RACY_SECONDS * 1e9

@@ -194,7 +194,7 @@ def read_profiles(root: Path) -> Profiles:
         raise MissingKnowledgeError(f"{PROFILE_FILE}: {_explain(error)}") from error
     except DefectiveInputError as error:
         raise MissingKnowledgeError(error.message) from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except (ValueError, RecursionError) as error:
         raise MissingKnowledgeError(f"{PROFILE_FILE} is not valid TOML: {error}") from error
     return Profiles(
         simulated=parsed.simulated,

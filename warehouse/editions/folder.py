@@ -1,6 +1,7 @@
 """The folder of an edition: what it consists of, made whole or not at all, and read again.
 
-Everything is written beside, synced and renamed; a second edition of the same name is refused. What
+On a disk everything is written beside, synced and renamed; in a bucket `edition.json` comes last,
+and without it there is no edition. A second edition of the same name is refused. What
 goes into the files is decided in `publish`; whether they are still what they were, in `verify`.
 """
 
@@ -16,7 +17,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 import polars as pl
 from pydantic import BaseModel, ConfigDict, ValidationError
@@ -24,7 +25,11 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from pipeline.method import Method, parse_method
 from warehouse.files import TEMPORARY_PREFIX
+from warehouse.storage import Place
 from warehouse.store import Store
+
+if TYPE_CHECKING:
+    from warehouse.bucket import BucketPath
 
 Kind = Literal["recomputed", "as_printed"]
 
@@ -126,18 +131,18 @@ class Edition:
         return self.tables["register"]
 
 
-def editions_folder(store: Store) -> Path:
-    """Where the editions lie."""
-    return store.root / "editions"
-
-
 def edition_names(store: Store) -> list[str]:
     """The published editions, sorted; what is still being written is none."""
-    folder = editions_folder(store)
-    return sorted(f.name for f in folder.glob("[!.]*") if f.is_dir())
+    return sorted(f.name for f in store.editions.glob("[!.]*") if _is_published(f))
 
 
-def edition_path(store: Store, edition: str) -> Path:
+def _is_published(path: Place) -> bool:
+    if isinstance(path, Path):
+        return path.is_dir()
+    return (path / ABOUT).exists()
+
+
+def edition_path(store: Store, edition: str) -> Place:
     """The folder of a published edition.
 
     Raises:
@@ -146,7 +151,7 @@ def edition_path(store: Store, edition: str) -> Path:
     if edition not in edition_names(store):
         known = ", ".join(edition_names(store)) or "none yet"
         raise MissingKnowledgeError(f"there is no edition {edition}; published: {known}")
-    return editions_folder(store) / edition
+    return store.editions / edition
 
 
 def check_new_name(store: Store, edition: str) -> None:
@@ -161,14 +166,14 @@ def check_new_name(store: Store, edition: str) -> None:
             f"{edition!r} cannot name an edition: use letters, digits, '.', '_' and '-', begin "
             "with a letter or digit, and not with 'concept-', which marks drafts"
         )
-    if (editions_folder(store) / edition).exists():
+    if _is_published(store.editions / edition):
         raise BrokenPromiseError(
             f"edition {edition} was already published and is never changed; "
             "publish under another name, for example with a higher number"
         )
 
 
-def read_about(path: Path) -> About:
+def read_about(path: Place) -> About:
     """What an edition says about itself.
 
     Raises:
@@ -216,14 +221,14 @@ def method_of_edition(store: Store, edition: str) -> Method:
     return method
 
 
-def read_table(path: Path, name: str) -> pl.DataFrame:
+def read_table(path: Place, name: str) -> pl.DataFrame:
     """A table of an edition.
 
     Raises:
         BrokenPromiseError: the file is missing or damaged.
     """
     try:
-        return pl.read_parquet(path / f"{name}.parquet")
+        return pl.read_parquet((path / f"{name}.parquet").read_bytes())
     except (OSError, pl.exceptions.PolarsError) as error:
         raise BrokenPromiseError(
             f"edition {path.name}: {name}.parquet is missing or damaged; put the folder back from "
@@ -231,34 +236,45 @@ def read_table(path: Path, name: str) -> pl.DataFrame:
         ) from error
 
 
-def file_sha256(path: Path) -> str:
-    """SHA-256 of a file's content, in hex."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+def write_folder(store: Store, edition: str, contents: Mapping[str, bytes]) -> Place:
+    """Makes an edition of the given files, by name; `edition.json` is the last of them.
 
-
-def write_folder(store: Store, edition: str, contents: Mapping[str, bytes]) -> Path:
-    """Makes an edition of the given files, by name.
-
-    All files are synced before the folder gets its name, in one step; after an error, a full disk
-    or a kill there is no edition of that name. What a killed publication left is cleared away by
-    the next one.
+    After an error, a full disk or a kill there is no edition of that name. What a killed
+    publication left is cleared away by the next one; in a bucket nobody can know that it is dead,
+    so there a person does it.
 
     Raises:
         BrokenPromiseError: the name is taken, or the folder could not be written.
     """
-    root = editions_folder(store)
+    target = store.editions / edition
     try:
-        root.mkdir(parents=True, exist_ok=True)
-        with _one_at_a_time(root):
+        if isinstance(target, Path):
+            target.parent.mkdir(parents=True, exist_ok=True)
+            with _one_at_a_time(target.parent):
+                check_new_name(store, edition)
+                _write_beside(target, contents)
+        else:
             check_new_name(store, edition)
-            _write_beside(root / edition, contents)
+            _create_in_order(target, contents)
     except OSError as error:
         raise BrokenPromiseError(
             f"edition {edition} could not be written: {error.strerror or error}. Nothing was "
             "published; make room or mend the folder, and publish again"
         ) from error
-    return root / edition
+    return target
+
+
+def _create_in_order(target: "BucketPath", contents: Mapping[str, bytes]) -> None:
+    """Creates every object where there is none, so of two publications one stops at the first."""
+    for name, content in contents.items():
+        try:
+            (target / name).create_bytes(content)
+        except FileExistsError as error:
+            raise BrokenPromiseError(
+                f"{error} is there already: somebody publishes under this name just now, or did "
+                f"not finish. Nothing was published; publish under another name, or remove what "
+                f"lies under {target} when nobody is publishing"
+            ) from error
 
 
 def _write_beside(path: Path, contents: Mapping[str, bytes]) -> None:

@@ -10,7 +10,6 @@ import hashlib
 import io
 import json
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Final
 
 import polars as pl
@@ -38,7 +37,6 @@ from warehouse.editions.folder import (
     TableDigest,
     check_new_name,
     edition_names,
-    editions_folder,
     read_about,
     read_edition,
     write_folder,
@@ -55,6 +53,7 @@ from warehouse.editions.printed import printed_lines, printed_path, with_carried
 from warehouse.editions.sheets import CODE_FIELD
 from warehouse.ensemble import read_ensemble
 from warehouse.schemas import Register, conform
+from warehouse.storage import Place
 from warehouse.store import Store, table_digest
 from warehouse.tables import method_is_stale, runs_with_windows
 
@@ -90,7 +89,7 @@ class Terms:
     published_on: dt.date
 
 
-def publish(store: Store, method: Method, terms: Terms, carry: str | None = None) -> Path:
+def publish(store: Store, method: Method, terms: Terms, carry: str | None = None) -> Place:
     """Freezes the register of a method as an edition.
 
     Args:
@@ -118,7 +117,7 @@ def publish(store: Store, method: Method, terms: Terms, carry: str | None = None
     return _write(store, edition, input_files(store, edition.tables["tows"]), texts)
 
 
-def publish_printed(store: Store, season: int, terms: Terms) -> Path:
+def publish_printed(store: Store, season: int, terms: Terms) -> Place:
     """Freezes a register of the archive, as printed that year, as an edition.
 
     Raises:
@@ -168,7 +167,7 @@ def recomputed_edition(
 
 def latest_before(store: Store, valid_from: dt.date, published_on: dt.date) -> str | None:
     """The edition that counted last before a day; None if there is none."""
-    known = [read_about(editions_folder(store) / name) for name in edition_names(store)]
+    known = [read_about(store.editions / name) for name in edition_names(store)]
     earlier = [a for a in known if (a.valid_from, a.published_on) <= (valid_from, published_on)]
     if not earlier:
         return None
@@ -235,7 +234,7 @@ def _complete(
     return coded
 
 
-def _write(store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str, str]) -> Path:
+def _write(store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str, str]) -> Place:
     """Writes an edition's folder: tables, sheets, texts, and last what it says of itself."""
     about = edition.about
     tables = dict(edition.tables)

@@ -9,7 +9,6 @@ from warehouse.editions.folder import (
     CHANGES,
     Edition,
     edition_names,
-    editions_folder,
     read_about,
     read_edition,
 )
@@ -20,10 +19,7 @@ from warehouse.store import Store
 
 def published_made_from(store: Store) -> dict[str, str]:
     """The seals of all editions: what the rows of `published_tables` are made from."""
-    return {
-        name: read_about(editions_folder(store) / name).expected_seal
-        for name in edition_names(store)
-    }
+    return {name: read_about(store.editions / name).expected_seal for name in edition_names(store)}
 
 
 def published_tables(store: Store) -> dict[str, pl.DataFrame]:

@@ -5,6 +5,7 @@ archive's files those it was made from; and do archive and code of today give th
 Nothing is ever mended here.
 """
 
+import hashlib
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -28,8 +29,6 @@ from warehouse.editions.folder import (
     About,
     Edition,
     edition_names,
-    editions_folder,
-    file_sha256,
     read_about,
     read_edition,
     read_table,
@@ -41,6 +40,7 @@ from warehouse.editions.inputs import (
 )
 from warehouse.editions.lines import NUMBERS, Again, made_again
 from warehouse.editions.printed import AS_PRINTED
+from warehouse.storage import Place
 from warehouse.store import Store, table_digest
 
 SAME_NUMBER: Final = 1e-9
@@ -85,7 +85,7 @@ def verify(store: Store) -> Report:
     findings: list[Finding] = []
     checked = []
     for name in names:
-        path = editions_folder(store) / name
+        path = store.editions / name
         try:
             about = read_about(path)
         except BrokenPromiseError as error:
@@ -105,7 +105,7 @@ def verify(store: Store) -> Report:
 # Was a file of the edition changed by hand?
 
 
-def _altered(path: Path, about: About) -> Iterator[Finding]:
+def _altered(path: Place, about: About) -> Iterator[Finding]:
     name = path.name
     if about.edition != name:
         yield Finding(name, "altered", ABOUT, f"the folder was renamed; it is {about.edition}")
@@ -117,7 +117,7 @@ def _altered(path: Path, about: About) -> Iterator[Finding]:
     for file in sorted(about.files.keys() - present):
         yield Finding(name, "missing", file, f"{file} is gone; put it back from a copy")
     changed = [
-        f for f in sorted(about.files.keys() & present) if file_sha256(path / f) != about.files[f]
+        f for f in sorted(about.files.keys() & present) if _sha256(path / f) != about.files[f]
     ]
     intact = (about.files.keys() & present) - set(changed)
     for file in changed:
@@ -128,7 +128,11 @@ def _altered(path: Path, about: About) -> Iterator[Finding]:
         yield from _codes(path, about)
 
 
-def _codes(path: Path, about: About) -> Iterator[Finding]:
+def _sha256(file: Place) -> str:
+    return hashlib.sha256(file.read_bytes()).hexdigest()
+
+
+def _codes(path: Place, about: About) -> Iterator[Finding]:
     """Lines whose verification code does not fit their inputs, method and numbers."""
     try:
         register = read_table(path, "register")
@@ -146,7 +150,7 @@ def _codes(path: Path, about: About) -> Iterator[Finding]:
             )
 
 
-def _where(path: Path, about: About, file: str, intact: set[str]) -> list[tuple[str, str]]:
+def _where(path: Place, about: About, file: str, intact: set[str]) -> list[tuple[str, str]]:
     """Places within a changed file, as far as an intact copy of its content tells."""
     try:
         if file == CSV and "register.parquet" in intact:
@@ -168,7 +172,7 @@ def _where(path: Path, about: About, file: str, intact: set[str]) -> list[tuple[
     return []
 
 
-def _expected_csv(path: Path) -> sheets.Cells:
+def _expected_csv(path: Place) -> sheets.Cells:
     fields = [*sheets.REGISTER_FIELDS, sheets.CODE_FIELD]
     rows = sheets.printed_cells(read_table(path, "register"), fields)
     return [[field.header for field in fields], *rows]
@@ -194,7 +198,7 @@ def _cells(file: str, was: sheets.Cells, now: sheets.Cells) -> list[tuple[str, s
     return _not_too_many(file, found)
 
 
-def _xlsx_cells(path: Path, about: About) -> list[tuple[str, str]]:
+def _xlsx_cells(path: Place, about: About) -> list[tuple[str, str]]:
     fields = [*sheets.REGISTER_FIELDS, sheets.CODE_FIELD]
     register = read_table(path, "register")
     was = sheets.read_xlsx_cells(sheets.xlsx_bytes(register, fields, about))
@@ -221,7 +225,7 @@ def _line_name(row: dict[str, Any]) -> str:
 # Are the archive's files those it was made from?
 
 
-def _archive(store: Store, path: Path, about: About) -> Iterator[Finding]:
+def _archive(store: Store, path: Place, about: About) -> Iterator[Finding]:
     name = path.name
     root = intake.archive_root(store) if store.made_from("about_archive") is not None else None
     if root is None:
@@ -256,7 +260,7 @@ def _archive(store: Store, path: Path, about: About) -> Iterator[Finding]:
         yield from _list_rows(path, root, hashes)
 
 
-def _list_rows(path: Path, root: Path, hashes: FileHashes) -> Iterator[Finding]:
+def _list_rows(path: Place, root: Path, hashes: FileHashes) -> Iterator[Finding]:
     """Tows of the edition whose rows in the lists are no longer what they were."""
     try:
         index = index_archive(root, hashes.hash_file)

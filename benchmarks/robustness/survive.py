@@ -1,0 +1,228 @@
+"""Kills a rebuild with signal 9 at random moments, and looks whether anything was lost.
+
+    python benchmarks/robustness/survive.py [kills] [seed]
+
+The archive changes to and fro between two states. Each time a rebuild is killed at a random moment
+and then run again: the tables must be those of a rebuild that nobody disturbed. Meanwhile a reader
+in another process opens the database and the site as often as it can; it must see one state or the
+other, whole, and never an error. Rebuilds are forked from a process that has imported everything
+and computed nothing, so that moments in the work itself are hit, not in the imports.
+"""
+
+import os
+import random
+import select
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import traceback
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import duckdb
+
+import dashboards.report_page  # noqa: F401 - imported late by a rebuild, and slow
+from assets.rebuild import rebuild
+from assets.resources import Quiet
+from pipeline.simulate import WorldSettings, simulate_world
+from warehouse.archive.write import write_simulated_archive
+from warehouse.store import Store, fingerprint, table_digest
+
+METHODS = ("as-published", "rebased-2015")
+WORLD = WorldSettings(seasons=(2009, 2014), tows_per_season=8, rate_hz=20, seed=3)
+STATES = ("archive-a", "archive-b")
+SETTLED = 10.0
+"""Seconds: how long ago files seem to be written, so that their hashes are remembered."""
+
+
+@dataclass
+class Outcome:
+    """What was seen.
+
+    Attributes:
+        kills: rebuilds that were killed.
+        too_late: rebuilds that were done before the signal came; not counted as kills.
+        different: reruns whose tables are not those of an undisturbed rebuild.
+        at: kills by the newest thing in the data folder when the process died.
+        reads: what the reader saw, counted.
+    """
+
+    kills: int = 0
+    too_late: int = 0
+    different: int = 0
+    at: Counter[str] = field(default_factory=Counter)
+    reads: Counter[str] = field(default_factory=Counter)
+
+
+def digests(data: Path) -> str:
+    """One hash of all tables as a reader of the database gets them."""
+    with duckdb.connect(Store(data).database, read_only=True) as db:
+        db.execute("SET threads = 1")
+        names = [row[0] for row in db.execute("SHOW TABLES").fetchall()]
+        frames = {name: db.sql(f'SELECT * FROM "{name}"').pl() for name in names}  # noqa: S608
+    return fingerprint({name: table_digest(frame) for name, frame in sorted(frames.items())})
+
+
+def run_forked(work: Callable[[], object]) -> int:
+    """Starts work in a process of its own; returns its number."""
+    child = os.fork()
+    if child == 0:
+        status = 1
+        try:
+            work()
+            status = 0
+        except Exception:
+            traceback.print_exc()
+        finally:
+            os._exit(status)
+    return child
+
+
+def finished(child: int) -> bool:
+    """Waits for a process; whether it ended well. One that was killed did not."""
+    _, status = os.waitpid(child, 0)
+    if os.WIFSIGNALED(status):
+        return False
+    if os.WEXITSTATUS(status) != 0:
+        raise RuntimeError("a rebuild failed by itself")
+    return True
+
+
+class Ground:
+    """Two states of an archive, the tables of each, and a data folder to try on."""
+
+    def __init__(self, root: Path) -> None:
+        self.root, self.data, self.archive = root, root / "data", root / "archive"
+        first, second = (root / name for name in STATES)
+        write_in_child = run_forked(lambda: write_simulated_archive(first, simulate_world(WORLD)))
+        finished(write_in_child)
+        shutil.copytree(first, second)
+        _change(second)
+        for file in (f for state in (first, second) for f in state.rglob("*")):
+            os.utime(file, (time.time() - SETTLED,) * 2)
+        self.expected = {}
+        for name in STATES:
+            self.switch(name)
+            fresh = root / f"undisturbed-{name}"
+            begin = time.monotonic()
+            finished(self.start(fresh))
+            self.seconds = time.monotonic() - begin
+            self.expected[name] = digest_in_process(fresh)
+        assert len(set(self.expected.values())) == len(STATES)
+
+    def switch(self, name: str) -> None:
+        """Makes the archive be in a state; it is a link, so it happens at once."""
+        link = self.root / "link"
+        link.symlink_to(name)
+        link.replace(self.archive)
+
+    def start(self, data: Path) -> int:
+        """Starts a rebuild."""
+        return run_forked(lambda: rebuild(self.archive, data, METHODS, Quiet()))
+
+
+def _change(archive: Path) -> None:
+    """Spoils one tow and changes the weight of another."""
+    file = min((archive / "meetdata_2009").iterdir())
+    file.write_bytes(file.read_bytes()[:-7] + b"x")
+    path = archive / "sleeplijsten/sleeplijst_2014.csv"
+    lines = path.read_text("utf-8").split("\n")
+    path.write_text("\n".join([*lines[:2], *lines[3:]]), "utf-8")
+
+
+def digest_in_process(data: Path) -> str:
+    """The hash of the tables, computed elsewhere: this process must start no threads."""
+    asked = [sys.executable, __file__, "--digest", str(data)]
+    return subprocess.run(asked, check=True, capture_output=True, text=True).stdout.strip()
+
+
+def survive(root: Path, kills: int, seed: int, tell: Callable[[str], None] = print) -> Outcome:
+    """Kills rebuilds at random moments, and compares the tables after each rerun."""
+    chosen, outcome, ground = random.Random(seed), Outcome(), Ground(root)
+    ground.switch(STATES[0])
+    finished(ground.start(ground.data))
+    reader = subprocess.Popen(
+        [sys.executable, __file__, "--read", str(ground.data), *ground.expected.values()],
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    state = 0
+    while outcome.kills < kills:
+        state = 1 - state
+        ground.switch(STATES[state])
+        _kill_one(ground, chosen.uniform(0.0, 1.1 * ground.seconds), outcome)
+        finished(ground.start(ground.data))
+        outcome.different += digest_in_process(ground.data) != ground.expected[STATES[state]]
+        if outcome.kills % 10 == 0:
+            tell(f"{outcome.kills} of {kills} kills, {outcome.different} with other tables")
+    said, _ = reader.communicate("stop\n", timeout=120)
+    outcome.reads.update({what: int(n) for what, n in map(_cells, said.splitlines())})
+    return outcome
+
+
+def _cells(line: str) -> list[str]:
+    return line.split("\t")
+
+
+def _kill_one(ground: Ground, after_s: float, outcome: Outcome) -> None:
+    child = ground.start(ground.data)
+    time.sleep(after_s)
+    os.kill(child, signal.SIGKILL)
+    if finished(child):
+        outcome.too_late += 1
+        return
+    outcome.kills += 1
+    files = [f for f in ground.data.rglob("*") if f.is_file() and "dagster" not in f.parts]
+    newest = max(files, key=lambda f: f.stat().st_mtime_ns).relative_to(ground.data)
+    outcome.at["/".join(newest.parts[:3]) if newest.parts[0] == "lake" else newest.parts[0]] += 1
+
+
+def read_until_stopped(data: Path, expected: list[str]) -> None:
+    """Opens database and site over and over; prints how often each thing was seen."""
+    seen: Counter[str] = Counter()
+    names = dict(zip(expected, STATES, strict=True))
+    while not _told_to_stop():
+        try:
+            seen[names.get(digests(data), "neither state")] += 1
+            page = (data / "site" / "index.html").read_text("utf-8")
+            seen["site whole" if page.rstrip().endswith("</html>") else "site cut off"] += 1
+        except Exception as error:
+            seen[f"error: {type(error).__name__}: {str(error)[:80]}".replace("\t", " ")] += 1
+    for what, number in sorted(seen.items()):
+        print(f"{what}\t{number}")
+
+
+def _told_to_stop() -> bool:
+    return bool(select.select([sys.stdin], [], [], 0)[0])
+
+
+def main() -> None:
+    """Runs the suite and prints the figures; exit status 1 when anything was lost."""
+    if sys.argv[1:2] == ["--digest"]:
+        print(digests(Path(sys.argv[2])))
+        return
+    if sys.argv[1:2] == ["--read"]:
+        read_until_stopped(Path(sys.argv[2]), sys.argv[3:])
+        return
+    kills = int(sys.argv[1]) if len(sys.argv) > 1 else 200
+    seed = int(sys.argv[2]) if len(sys.argv) > 2 else 1
+    with tempfile.TemporaryDirectory() as folder:
+        begin = time.monotonic()
+        outcome = survive(Path(folder), kills, seed, lambda line: print(line, flush=True))
+    print(f"seed {seed}; {time.monotonic() - begin:.0f} s")
+    print(
+        f"kills: {outcome.kills}, reruns with other tables: {outcome.different}; "
+        f"too late: {outcome.too_late}"
+    )
+    print("killed after writing: " + ", ".join(f"{k} {n}" for k, n in outcome.at.most_common()))
+    print("reader: " + ", ".join(f"{k} {n}" for k, n in sorted(outcome.reads.items())))
+    bad = {k for k in outcome.reads if k not in (*STATES, "site whole")}
+    sys.exit(bool(outcome.different or bad))
+
+
+if __name__ == "__main__":
+    main()

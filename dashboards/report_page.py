@@ -1,0 +1,54 @@
+"""The page about a rebuild: what came in, what was set aside, what changed and why, the checks.
+
+It lies beside the site and uses its style.
+"""
+
+from typing import Any, Final
+
+import polars as pl
+
+from dashboards.report import outcome_of
+from dashboards.site.parts import Page, Section, Table
+from dashboards.site.render import render_page
+from warehouse.journal import News
+from warehouse.store import Store
+from warehouse.views import Views
+
+TO_SITE: Final = "../site/"
+
+_COLUMNS: Final = {
+    "tows": ("what", "tow_id", "fsn_no", "season"),
+    "set_aside": ("what", "path", "tow_id", "line", "reason_code", "message"),
+    "factors": ("method", "season", "old_factor", "new_factor", "ratio"),
+    "lines": (
+        *("to_edition", "name", "fsn_no", "rowers", "crew_class", "change"),
+        *("old_cw_kg_m", "new_cw_kg_m", "cw_ratio", "gain_in_two_hours_s"),
+        *("exceeds_interval", "causes"),
+    ),
+    "checks": ("check", "outcome", "detail"),
+}
+
+
+def report_page(store: Store, found: News, report: dict[str, Any]) -> str:
+    """The page: what came in, what was set aside, what changed and why, what the checks say."""
+    checks = pl.DataFrame(
+        [[c["check"], outcome_of(c), c["detail"]] for c in report["checks"]],
+        schema=dict.fromkeys(_COLUMNS["checks"], pl.String),
+        orient="row",
+    )
+    frames = {
+        "lines": found.lines,
+        "tows": found.tows,
+        "set_aside": found.set_aside,
+        "factors": found.factors,
+        "checks": checks,
+    }
+    sections = [
+        Section(f"report_{name}", tables=[Table(name, frame, _COLUMNS[name], f"report_{name}")])
+        if frame.height
+        else Section(f"report_{name}", empty="report_none")
+        for name, frame in frames.items()
+    ]
+    page = Page("report.html", "report", sections, site=TO_SITE)
+    with Views(store) as views:
+        return render_page(views, page)

@@ -1,0 +1,176 @@
+"""What starts a rebuild by itself: schedules and sensor, on a real instance and a daemon's tick."""
+
+import datetime as dt
+import itertools
+import logging
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import dagster as dg
+import pytest
+from dagster._core.test_utils import create_test_daemon_workspace_context, freeze_time
+from dagster._core.workspace.load_target import ModuleTarget
+from dagster._daemon.sensor import execute_sensor_iteration
+
+from assets.automation import archive_sensor, schedules
+from assets.definitions import build_defs, defs
+from assets.jobs import STEPS
+from assets.rebuild import INSTANCE_SETTINGS
+from assets.settings import Settings
+from tests.conftest import METHODS
+
+ROOT = Path(__file__).parents[2]
+LOG = logging.getLogger("sensors")
+
+
+@pytest.fixture
+def archive(tmp_path):
+    """A folder with three files; the sensor opens none."""
+    for name in ("sleeplijsten/sleeplijst_2009.csv", "meetdata_2009/a.csv", "meetdata_2009/b.csv"):
+        path = tmp_path / "archive" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("x")
+    return tmp_path / "archive"
+
+
+class Ticks:
+    """The sensor, asked again and again with the cursor it gave."""
+
+    def __init__(self, archive):
+        self.sensor, self.cursor = archive_sensor(archive), None
+
+    def tick(self):
+        """What a tick asks for: the changes, or None."""
+        with dg.DagsterInstance.ephemeral() as instance:
+            context = dg.build_sensor_context(instance, cursor=self.cursor)
+            found = self.sensor.evaluate_tick(context)
+        self.cursor = found.cursor or self.cursor
+        self.said = found.skip_message
+        return [request.tags["herijk/changes"] for request in found.run_requests or []]
+
+
+@pytest.fixture
+def ticks(archive):
+    """The sensor after it saw the archive for the first time."""
+    found = Ticks(archive)
+    assert found.tick() == []
+    assert found.tick() == ["3 new"]
+    return found
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (lambda root: (root / "meetdata_2009/c.csv").write_text("y"), "1 new"),
+        (lambda root: (root / "meetdata_2009/a.csv").write_text("mended"), "1 changed"),
+        (lambda root: (root / "meetdata_2009/b.csv").unlink(), "1 removed"),
+    ],
+)
+def test_a_file_that_came_changed_or_went_asks_for_one_rebuild(ticks, archive, change, says):
+    assert ticks.tick() == []
+    assert ticks.said == "no file of the archive changed"
+    change(archive)
+    assert ticks.tick() == []
+    assert "waiting until the archive is left alone" in ticks.said
+    assert ticks.tick() == [says]
+    assert ticks.tick() == []
+
+
+def test_while_files_are_copied_nothing_is_asked(ticks, archive):
+    for number in range(3):
+        (archive / f"meetdata_2009/new{number}.csv").write_text("z")
+        assert ticks.tick() == []
+    assert ticks.tick() == ["3 new"]
+
+
+def test_an_archive_whose_disk_is_gone_asks_for_nothing(ticks, archive):
+    archive.rename(archive.with_name("away"))
+    assert ticks.tick() == []
+    assert "is its disk there?" in ticks.said
+    archive.with_name("away").rename(archive)
+    assert ticks.tick() == []
+    assert ticks.said == "no file of the archive changed"
+
+
+def test_hidden_files_and_links_are_not_followed(ticks, archive, tmp_path):
+    (archive / ".lock").write_text("")
+    assert ticks.tick() == []
+    assert ticks.said == "no file of the archive changed"
+
+
+def test_the_daemon_queues_a_run_for_each_change(archive, tmp_path, monkeypatch):
+    """A real instance on disk, the code location in its own process, and ticks by the minute."""
+    (tmp_path / "home").mkdir()
+    shutil.copyfile(INSTANCE_SETTINGS, tmp_path / "home" / "dagster.yaml")
+    for name, value in (
+        ("DAGSTER_HOME", tmp_path / "home"),
+        ("HERIJK_ARCHIVE", archive),
+        ("HERIJK_DATA", tmp_path / "data"),
+    ):
+        monkeypatch.setenv(name, str(value))
+    target = ModuleTarget("assets.definitions", None, str(ROOT), None)
+    begin = dt.datetime(2026, 11, 21, 3, tzinfo=dt.UTC)
+    with (
+        dg.DagsterInstance.from_config(str(tmp_path / "home")) as instance,
+        create_test_daemon_workspace_context(target, instance) as workspace,
+    ):
+        minutes = itertools.count()
+
+        def ticks():
+            """Two ticks; the changes of all runs in the queue."""
+            for _ in range(2):
+                with freeze_time(begin + dt.timedelta(minutes=next(minutes))):
+                    list(execute_sensor_iteration(workspace, LOG, None, None))
+            return [run.tags["herijk/changes"] for run in reversed(instance.get_runs())]
+
+        assert ticks() == ["3 new"]
+        assert ticks() == ["3 new"]
+        (archive / "meetdata_2009/c.csv").write_text("new")
+        assert ticks() == ["3 new", "1 new"]
+        (archive / "meetdata_2009/c.csv").write_text("mended")
+        assert ticks() == ["3 new", "1 new", "1 changed"]
+        (archive / "meetdata_2009/c.csv").unlink()
+        assert ticks() == ["3 new", "1 new", "1 changed", "1 removed"]
+        queued = {run.status for run in instance.get_runs()}
+        assert queued == {dg.DagsterRunStatus.QUEUED}
+
+
+def test_a_night_without_a_change_does_no_work_and_says_so(bench):
+    """The job itself, as the schedule runs it."""
+    bench.rebuild()
+    before = bench.lake_files(), bench.store.database.stat().st_mtime_ns
+    location = build_defs(str(bench.archive), str(bench.data), list(METHODS), Settings())
+    with dg.DagsterInstance.ephemeral() as instance, bench.records_in_memory():
+        result = location.resolve_job_def("rebuild").execute_in_process(instance=instance)
+    (output,) = [e for e in result.all_events if e.event_type_value == "STEP_OUTPUT"]
+    said = output.step_output_data.metadata
+    assert said["nothing_changed"].value is True
+    assert said["headlines"].value == ["Nothing changed since the last report."]
+    assert (bench.lake_files(), bench.store.database.stat().st_mtime_ns) == before
+
+
+def test_schedules_run_the_rebuild_at_night_and_in_the_season():
+    nightly, campaign = schedules(Settings(campaign="0 12 * 4-9 *", timezone="Europe/Amsterdam"))
+    assert (nightly.job_name, campaign.job_name) == ("rebuild", "rebuild")
+    when = dt.datetime(2026, 5, 8, 12, tzinfo=dt.UTC)
+    with dg.DagsterInstance.ephemeral() as instance:
+        context = dg.build_schedule_context(instance, scheduled_execution_time=when)
+        (request,) = campaign.evaluate_tick(context).run_requests
+        (night,) = nightly.evaluate_tick(context).run_requests
+    assert request.run_config["ops"]["rebuild_archive"]["config"] == {"seasons": [2026]}
+    assert night.run_config == {}
+
+
+def test_no_job_publishes():
+    """The code that publishes is not even loaded where jobs run."""
+    jobs = {job.name for job in defs.resolve_all_job_defs()} - {"__ASSET_JOB"}
+    assert jobs == {*STEPS, "rebuild"}
+    found = subprocess.run(
+        [sys.executable, "-c", "import assets.definitions, sys; print(*sys.modules)"],
+        cwd=ROOT, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    loaded = found.stdout.split()
+    assert "warehouse.editions.verify" in loaded
+    assert "warehouse.editions.publish" not in loaded

@@ -1,0 +1,44 @@
+"""The same jobs step by step in processes of their own give the tables of one process."""
+
+import dagster as dg
+
+from assets.jobs import APPLY, COLLECT, FINISH, INDEX, READ, STUDY, job_defs
+from assets.rebuild import prepare_home
+from assets.resources import Quiet, Setup
+from tests.assets.test_rebuild import assert_same_tables
+from tests.conftest import METHODS, SMALL, Workbench
+
+
+def repository_of(archive: str, data: str) -> dg.Definitions:
+    """The jobs for two folders; loaded again in every process."""
+    return job_defs(Setup(archive=archive, data=data, methods=list(METHODS)), Quiet())
+
+
+def job_of(archive: str, data: str, name: str) -> dg.JobDefinition:
+    """One of the jobs."""
+    return repository_of(archive, data).resolve_job_def(name)
+
+
+def test_the_multiprocess_executor_gives_identical_tables(built, tmp_path, monkeypatch):
+    bench = Workbench(built.archive, tmp_path / "data")
+    home = prepare_home(bench.store)
+    monkeypatch.setenv("DAGSTER_HOME", str(home))
+    steps = [
+        (INDEX, None),
+        *((READ, str(season)) for season in SMALL.seasons),
+        (COLLECT, None),
+        *((APPLY, method) for method in METHODS),
+        (STUDY, None),
+        (FINISH, None),
+    ]
+    with dg.DagsterInstance.from_config(str(home)) as instance:
+        instance.add_dynamic_partitions("season", [str(season) for season in SMALL.seasons])
+        for name, partition in steps:
+            job = dg.build_reconstructable_job(
+                "tests.assets.test_executors", "job_of", (str(bench.archive), str(bench.data), name)
+            )
+            tags = {} if partition is None else {"dagster/partition": partition}
+            result = dg.execute_job(job, instance, tags=tags, raise_on_error=True)
+            assert result.success
+            assert {e.event_type_value for e in result.all_events} >= {"STEP_WORKER_STARTED"}
+    assert_same_tables(bench.tables(), built.tables())

@@ -1,0 +1,193 @@
+"""What goes wrong around a rebuild: the old state stays, the message helps, the next run mends."""
+
+import errno
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import duckdb
+import pytest
+
+import warehouse.lake
+from pipeline.errors import UnavailableError
+from tests.assets.test_rebuild import assert_same_tables, samples_files, spoil
+from warehouse.lake import ArchiveChangedError
+from warehouse.obstacles import obstacles_explained
+
+ROOT = Path(__file__).parents[2]
+
+
+def mounted(folder, size):
+    """Mounts a small disk; the test is skipped where that is not allowed."""
+    folder.mkdir()
+    options = ["-t", "tmpfs", "-o", f"size={size}", "tmpfs", str(folder)]
+    if (
+        shutil.which("mount") is None
+        or subprocess.run(["mount", *options], capture_output=True, check=False).returncode
+    ):
+        pytest.skip("may not mount a disk here")
+
+
+def test_a_full_disk_leaves_the_old_tables_and_the_next_run_goes_on(bench, built, tmp_path):
+    """A disk with room for what is there and a little more, filled while it works."""
+    used = sum(f.stat().st_size for f in bench.data.rglob("*") if f.is_file())
+    disk = tmp_path / "disk"
+    mounted(disk, used + 4_000_000)
+    try:
+        shutil.copytree(bench.data, disk / "data")
+        small = type(bench)(bench.archive, disk / "data")
+        filler = disk / "filler"
+        filler.write_bytes(bytes(shutil.disk_usage(disk).free - 100_000))
+        kept = spoil(samples_files(bench, 2009)[3])
+        with pytest.raises(UnavailableError, match=r"no room left .* Free some"):
+            small.rebuild()
+        assert_same_tables(small.tables(), built.tables())
+        filler.unlink()
+        samples_files(bench, 2009)[3].write_bytes(kept)
+        small.rebuild()
+        assert_same_tables(small.tables(), built.tables())
+        assert not list((disk / "data").rglob(".herijk-*"))
+    finally:
+        subprocess.run(["umount", str(disk)], check=True)
+
+
+@pytest.mark.parametrize(
+    ("number", "words"),
+    [
+        (errno.ENOSPC, "no room left"),
+        (errno.EDQUOT, "no room left"),
+        (errno.EROFS, "cannot be written"),
+        (errno.EACCES, "cannot be written"),
+        (errno.EMFILE, "may not open more files"),
+        (errno.EIO, "the disk under"),
+    ],
+)
+def test_each_obstacle_is_a_sentence_with_a_way_out(number, words, tmp_path):
+    with pytest.raises(UnavailableError) as told, obstacles_explained(tmp_path):
+        raise RuntimeError("wrapped") from OSError(number, os.strerror(number))
+    assert words in str(told.value)
+    assert "What was there before is whole" in str(told.value)
+
+
+def test_an_error_of_our_own_is_not_called_an_obstacle(tmp_path):
+    with pytest.raises(ZeroDivisionError), obstacles_explained(tmp_path):
+        raise ZeroDivisionError
+
+
+LIMITED = """
+import resource, sys
+from pathlib import Path
+from assets.rebuild import rebuild
+from assets.resources import Quiet
+from pipeline.errors import UnavailableError
+import dashboards.site
+kind = resource.RLIMIT_{limit}
+resource.setrlimit(kind, ({soft}, resource.getrlimit(kind)[1]))
+try:
+    rebuild(Path(sys.argv[1]), Path(sys.argv[2]), ["as-published", "rebased-2015"], Quiet())
+except UnavailableError as error:
+    sys.exit(str(error))
+"""
+
+
+@pytest.mark.parametrize(("limit", "soft", "words"), [("NOFILE", 14, "may not open more files")])
+def test_without_file_handles_it_stops_with_the_way_out(bench, built, limit, soft, words):
+    spoil(samples_files(bench, 2009)[3])
+    done = subprocess.run(
+        [sys.executable, "-c", LIMITED.format(limit=limit, soft=soft), bench.archive, bench.data],
+        cwd=ROOT, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 1, done.stderr
+    assert words in done.stderr
+    assert "Traceback" not in done.stderr
+    assert_same_tables(bench.tables(), built.tables())
+    bench.rebuild()
+    assert bench.table("quarantine").height == 1
+
+
+def damaged(path, how):
+    content = path.read_bytes()
+    middle = len(content) // 2
+    path.write_bytes(
+        {
+            "cut": content[:middle],
+            "empty": b"",
+            "garbage": b"\xff" * len(content),
+            "a byte": content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1 :],
+        }[how]
+    )
+
+
+@pytest.mark.parametrize("how", ["cut", "empty", "garbage", "a byte"])
+def test_damaged_tables_are_made_again_when_they_are_needed(bench, built, how):
+    tables = bench.data / "lake" / "tables"
+    for path in ("curves/rebased-2015.parquet", "season_tows/2009.parquet", "tows.parquet"):
+        damaged(tables / path, how)
+    spoil_and_mend = samples_files(bench, 2014)[0]
+    kept = spoil_and_mend.read_bytes()
+    spoil_and_mend.write_bytes(b"")
+    bench.rebuild()
+    assert set(bench.table("tows")["season"]) == {2009, 2014}
+    assert bench.table("tows").height == built.table("tows").height - 1
+    spoil_and_mend.write_bytes(kept)
+    bench.rebuild()
+    assert_same_tables(bench.tables(), built.tables())
+
+
+@pytest.mark.parametrize("how", ["cut", "empty", "garbage", "a byte"])
+def test_a_damaged_database_is_made_again_by_the_next_run(bench, built, how):
+    damaged(bench.store.database, how)
+    assert bench.rebuild().database
+    assert_same_tables(bench.tables(), built.tables())
+
+
+def test_an_archive_that_changes_meanwhile_is_read_again(bench, built, monkeypatch):
+    """The file is another than the one that was hashed: its samples would be kept as that one's."""
+    file = samples_files(bench, 2009)[3]
+    kept = spoil(file)
+    original, changes = warehouse.lake.read_tow_samples, []
+
+    def changing(root, tow, profile):
+        if not changes:
+            changes.append(tow["tow_id"])
+            file.write_bytes(kept)
+        return original(root, tow, profile)
+
+    monkeypatch.setattr(warehouse.lake, "read_tow_samples", changing)
+    bench.rebuild()
+    assert changes
+    assert_same_tables(bench.tables(), built.tables())
+
+
+def test_an_archive_that_never_stops_changing_is_left_alone(bench, built, monkeypatch):
+    file = samples_files(bench, 2009)[3]
+    spoil(file)
+    original = warehouse.lake.read_tow_samples
+
+    def changing(root, tow, profile):
+        file.write_bytes(file.read_bytes() + b" ")
+        return original(root, tow, profile)
+
+    monkeypatch.setattr(warehouse.lake, "read_tow_samples", changing)
+    with pytest.raises(ArchiveChangedError, match="Try again when nobody is copying"):
+        bench.rebuild()
+    assert_same_tables(bench.tables(), built.tables())
+
+
+@pytest.mark.parametrize("year", [1971, 2199])
+def test_a_clock_that_jumps_changes_no_table(bench, built, year):
+    """File times of another century: only content says what changed."""
+    for file in (f for f in bench.archive.rglob("*") if f.is_file()):
+        os.utime(file, ((year - 1970) * 31_556_952,) * 2)
+    assert bench.rebuild().seasons == []
+    assert_same_tables(bench.tables(), built.tables())
+
+
+def test_damaged_records_of_dagster_say_what_to_remove(tmp_path):
+    with (
+        pytest.raises(UnavailableError, match=r"Remove that folder"),
+        obstacles_explained(tmp_path),
+    ):
+        raise duckdb.IOException("file is not a database")

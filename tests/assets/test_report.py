@@ -1,0 +1,173 @@
+"""The report of a rebuild: what changed and why, and who is told."""
+
+import datetime as dt
+import email
+import email.policy
+import json
+import threading
+from http.server import BaseHTTPRequestHandler, HTTPServer
+
+import dagster as dg
+import pytest
+
+from assets.notify import Message, Notifier
+from assets.report import failed_checks, tell
+from assets.settings import read_settings
+from pipeline.errors import MissingKnowledgeError
+from tests.assets.test_rebuild import samples_files, spoil, tow_of
+
+NOW = dt.datetime(2026, 11, 21, 3, 5, tzinfo=dt.UTC)
+
+
+def latest(bench):
+    return json.loads((bench.data / "report" / "latest.json").read_text("utf-8"))
+
+
+def test_a_report_names_what_was_set_aside_and_what_that_did_to_the_drafts(bench):
+    bench.rebuild()
+    file = samples_files(bench, 2009)[3]
+    tow, kept = tow_of(bench, file), spoil(file)
+    report = bench.rebuild().report
+    assert latest(bench)["headlines"] == report["headlines"]
+    assert [(row["tow_id"], row["what"]) for row in report["tow_rows"]] == [(tow, "gone")]
+    assert [(r["tow_id"], r["reason_code"], r["what"]) for r in report["set_aside_rows"]] == [
+        (tow, "bad_number", "new")
+    ]
+    file.write_bytes(kept)
+    report = bench.rebuild().report
+    assert [row["what"] for row in report["set_aside_rows"]] == ["mended"]
+    assert {line["change"] for line in report["lines"]} <= {"added", "changed", "removed"}
+
+
+def test_a_changed_speed_is_named_as_the_cause_of_its_line(bench):
+    bench.rebuild()
+    row = bench.store.read("listed_tows").filter(season=2014).row(0, named=True)
+    lines = (bench.archive / row["list_path"]).read_text("utf-8").split("\n")
+    old = lines[row["list_line"] - 1]
+    speed = f"{row['declared_speed_m_s']:.2f}".replace(".", ",")
+    assert speed in old
+    higher = f"{row['declared_speed_m_s'] + 0.05:.2f}".replace(".", ",")
+    lines[row["list_line"] - 1] = old.replace(f";{speed};", f";{higher};", 1)
+    (bench.archive / row["list_path"]).write_text("\n".join(lines), "utf-8")
+    report = bench.rebuild().report
+    assert [(r["tow_id"], r["what"]) for r in report["tow_rows"]] == [(row["tow_id"], "list")]
+    mine = [line for line in report["lines"] if line["fsn_no"] == row["fsn_no"]]
+    causes = {c["cause"] for line in mine for c in json.loads(line["causes"])}
+    assert causes == {"input"}
+
+
+def test_a_second_rebuild_reports_that_nothing_changed(bench):
+    bench.rebuild()
+    page = (bench.data / "report" / "latest.html").read_text("utf-8")
+    report = bench.rebuild().report
+    assert report["nothing_changed"]
+    assert report["headlines"] == ["Nothing changed since the last report."]
+    assert latest(bench)["nothing_changed"]
+    assert (bench.data / "report" / "latest.html").read_text("utf-8") == page
+    assert "GESIMULEERD" in page
+
+
+def test_a_rebuild_killed_before_its_report_is_reported_on_by_the_next(bench, monkeypatch):
+    bench.rebuild()
+    spoil(samples_files(bench, 2009)[3])
+
+    def killed(*args):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr("assets.rebuild.write_report", killed)
+        with pytest.raises(KeyboardInterrupt):
+            bench.rebuild()
+    done = bench.rebuild()
+    assert (done.seasons, done.database) == ([], False)
+    assert [row["what"] for row in done.report["set_aside_rows"]] == ["new"]
+
+
+def test_all_checks_pass_on_a_sound_archive(built):
+    report = json.loads(next((built.data / "report").glob("2*.json")).read_text("utf-8"))
+    assert {c["check"] for c in report["checks"]} >= {"counts_agree", "tables_fit_their_schemas"}
+    assert [c for c in report["checks"] if not c["passed"]] == []
+    assert failed_checks(report) == []
+
+
+def test_a_failing_check_of_a_promise_is_an_error_and_a_warning_is_none():
+    check = {"check": "counts_agree", "passed": False, "detail": "number 1"}
+    for severity, failed in (("ERROR", ["counts_agree: number 1"]), ("WARN", [])):
+        assert failed_checks({"checks": [check | {"severity": severity}]}) == failed
+    assert dg.AssetCheckSeverity.ERROR.value == "ERROR"
+
+
+# Who is told
+
+
+@pytest.fixture
+def web():
+    """A web address on this machine that keeps what is posted."""
+    posted = []
+
+    class Handler(BaseHTTPRequestHandler):
+        def do_POST(self):
+            posted.append(json.loads(self.rfile.read(int(self.headers["Content-Length"]))))
+            self.send_response(204 if self.path == "/good" else 500)
+            self.end_headers()
+
+        def log_message(self, *_):
+            pass
+
+    with HTTPServer(("127.0.0.1", 0), Handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"http://127.0.0.1:{server.server_port}", posted
+        server.shutdown()
+
+
+def test_news_is_mailed_to_a_file_and_posted(bench, web):
+    address, posted = web
+    bench.rebuild()
+    spoil(samples_files(bench, 2009)[3])
+    report = bench.rebuild().report
+    notifier = Notifier(
+        data=str(bench.data),
+        mail_to="tc@example.org",
+        mail_from="h@x.org",
+        webhook=f"{address}/good",
+    )
+    assert tell(notifier, report) == []
+    assert "1 nieuw" in posted[-1]["text"]
+    assert "GESIMULEERD" in posted[-1]["text"]
+    assert tell(notifier, report | {"nothing_changed": True}) == []
+    assert len(posted) == 1
+    message = Message("onderwerp", "tekst", {"nothing_changed": False}, NOW)
+    assert notifier.send(message) == []
+    mail = email.message_from_bytes(
+        (bench.data / "outbox" / "2026-11-21T030500.000000.eml").read_bytes(),
+        policy=email.policy.default,
+    )
+    assert (mail["To"], mail["Subject"]) == ("tc@example.org", "onderwerp")
+    assert mail.get_content() == "tekst\n"
+    assert posted[-1]["report"] == {"nothing_changed": False}
+
+
+def test_a_message_that_cannot_be_sent_is_reported_and_stops_nothing(tmp_path, web):
+    address, _ = web
+    message = Message("s", "t", {}, NOW)
+    for webhook in (f"{address}/bad", "http://127.0.0.1:9/closed"):
+        notifier = Notifier(data=str(tmp_path), webhook=webhook)
+        (problem,) = notifier.send(message)
+        assert webhook in problem
+    injecting = Notifier(data=str(tmp_path), mail_to="a@b.c\nBcc: x@y.z")
+    (problem,) = injecting.send(message)
+    assert "no message could be sent" in problem
+    assert not list(tmp_path.rglob("*.eml"))
+
+
+def test_settings_that_are_not_understood_say_which(tmp_path):
+    assert read_settings(tmp_path).nightly == "0 3 * * *"
+    for text, word in (
+        ("nightly = 3", "nightly"),
+        ('webhook = "file:///etc/passwd"', "webhook"),
+        ("night = 1", "night"),
+        ("=", "TOML"),
+    ):
+        (tmp_path / "beheer.toml").write_text(text)
+        with pytest.raises(MissingKnowledgeError, match=word):
+            read_settings(tmp_path)

@@ -1,0 +1,74 @@
+"""One writer at a time; a lock that dies with its owner; leftovers of the dead are removed."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from pipeline.errors import UnavailableError
+from warehouse.lock import LOCK_FILE, only_writer
+
+HOLD = """
+import sys, time
+from pathlib import Path
+from warehouse.lock import only_writer
+with only_writer(Path(sys.argv[1])):
+    (Path(sys.argv[1]) / "lake").mkdir(exist_ok=True)
+    (Path(sys.argv[1]) / "lake" / ".herijk-half.parquet").write_text("half")
+    print("held", flush=True)
+    time.sleep(60)
+"""
+
+
+@pytest.fixture
+def holder(tmp_path):
+    """Another process that holds the lock and is writing a file."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", HOLD, str(tmp_path)],
+        cwd=Path(__file__).parents[2],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout.readline() == "held\n"
+    yield process
+    process.kill()
+    process.communicate()
+
+
+def test_the_second_says_who_holds_the_lock_and_touches_nothing(holder, tmp_path):
+    with pytest.raises(UnavailableError) as told, only_writer(tmp_path):
+        pass
+    message = str(told.value)
+    assert f"process {holder.pid} on {os.uname().nodename} since 2" in message
+    assert (tmp_path / "lake" / ".herijk-half.parquet").exists()
+
+
+def test_the_lock_dies_with_its_owner_and_the_next_clears_up(holder, tmp_path):
+    holder.send_signal(signal.SIGKILL)
+    holder.wait()
+    with only_writer(tmp_path):
+        assert not (tmp_path / "lake" / ".herijk-half.parquet").exists()
+        assert json.loads((tmp_path / LOCK_FILE).read_text())["pid"] == os.getpid()
+    assert (tmp_path / LOCK_FILE).read_text() == ""
+
+
+def test_a_step_inside_a_rebuild_needs_no_lock_of_its_own(tmp_path):
+    with only_writer(tmp_path), only_writer(tmp_path):
+        pass
+    with only_writer(tmp_path):
+        pass
+
+
+def test_leftovers_of_publications_are_left_to_publishing(tmp_path):
+    other = tmp_path / "editions" / ".herijk-2026-1"
+    other.mkdir(parents=True)
+    old_site = tmp_path / ".herijk-site"
+    old_site.mkdir()
+    (old_site / "index.html").write_text("")
+    with only_writer(tmp_path):
+        assert other.is_dir()
+        assert not old_site.exists()

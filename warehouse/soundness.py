@@ -1,0 +1,48 @@
+"""Whether a finished rebuild is what it promises: schemas, counts, the share set aside.
+
+Reads only. What checks are called and how bad they are is said in `assets.checks`.
+"""
+
+from collections.abc import Sequence
+
+from pipeline.method import Method
+from warehouse.reports import read_table
+from warehouse.schemas import TABLES
+from warehouse.store import Store
+from warehouse.tables import METHOD_TABLES, WHOLE_TABLES
+
+
+def schema_faults(store: Store) -> list[str]:
+    """Tables of the database that are not as their schema promises, a sentence each."""
+    return [
+        f"{name} is not as declared in warehouse/schemas.py"
+        for name, schema in TABLES.items()
+        if name in (*WHOLE_TABLES, *METHOD_TABLES) and not schema.is_valid(read_table(store, name))
+    ]
+
+
+def count_faults(store: Store, methods: Sequence[Method]) -> list[str]:
+    """Tables with other numbers of rows than in the lake, and methods that lost a tow."""
+    expected = {name: store.read(name).height for name in WHOLE_TABLES} | {
+        name: sum(store.read(name, m.name).height for m in methods) for name in METHOD_TABLES
+    }
+    found = {name: read_table(store, name).height for name in expected}
+    curves = dict(read_table(store, "curves")["method"].value_counts().rows())
+    return [
+        *(
+            f"{name} has {found[name]} rows, and {number} in the lake"
+            for name, number in expected.items()
+            if found[name] != number
+        ),
+        *(
+            f"{m.name} has {curves.get(m.name, 0)} curves of {expected['tows']} tows"
+            for m in methods
+            if curves.get(m.name) != expected["tows"]
+        ),
+    ]
+
+
+def set_aside_tows(store: Store) -> tuple[int, int]:
+    """How many tows are set aside, and how many are listed."""
+    aside = store.read("quarantine")["tow_id"].drop_nulls().n_unique()
+    return aside, aside + store.read("tows").height
