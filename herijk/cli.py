@@ -9,7 +9,7 @@ import re
 import sys
 from contextlib import suppress
 from pathlib import Path
-from typing import Annotated, Final
+from typing import Annotated, Any, Final
 
 import typer
 
@@ -186,7 +186,7 @@ def audit(
     as_json: AsJson = False,
 ) -> None:
     """Where a boat's numbers come from, step by step; or whether boats of a type are equal."""
-    from dashboards.audit_plots import file_name, write_audit_plots  # noqa: PLC0415 - Altair is slow
+    from dashboards.audit_plots import file_name  # noqa: PLC0415 - Altair is slow
 
     if len(names) > MOST_TYPES:
         raise typer.BadParameter("give a boat, or one or two types; quote a name with blanks")
@@ -195,8 +195,20 @@ def audit(
     store = Store(data)
     report = audit_report(store, names, method)
     folder = plots or store.root / "audit" / file_name(" ".join(names))
-    drawn = write_audit_plots(store, report, folder)
+    drawn = _plots(store, report, folder)
     show(report | {"plots": [str(path) for path in drawn]}, audit_text.audit, as_json)
+
+
+def _plots(store: Store, report: dict[str, Any], folder: Path) -> list[Path]:
+    """The plots of an audit; none, and said so, where they cannot be written: the page stands."""
+    from dashboards.audit_plots import write_audit_plots  # noqa: PLC0415 - Altair is slow
+
+    try:
+        return write_audit_plots(store, report, folder)
+    except OSError as error:
+        reason = f"herijk: no plots, for {folder} cannot be written ({error.strerror})"
+        typer.echo(f"{reason}; give another folder with --plots", err=True)
+        return []
 
 
 @app.command()
