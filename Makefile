@@ -65,8 +65,14 @@ lint: $(READY)
 	@$(BIN)/lint-imports --no-logo
 	@VIRTUAL_ENV="$(CURDIR)/.venv" $(BIN)/dg check defs --no-check-yaml
 
+# A thousand tows: half an hour to simulate, once. A minute: make bench TOWS=1 REPEATS=1
+TOWS ?= 60
+REPEATS ?= 5
+
 bench: $(READY)
-	@for file in $(filter-out benchmarks/scale.py,$(wildcard benchmarks/*.py)); do echo "== $$file"; PYTHONPATH=. $(BIN)/python "$$file" || exit 1; done
+	@PYTHONPATH=. $(BIN)/python -m benchmarks.speed --tows-per-season $(TOWS) --repeats $(REPEATS) \
+	  --write $(if $(filter 60,$(TOWS)),docs,benchmarks/data)
+	@for part in fit editions samples_format; do echo "== $$part"; PYTHONPATH=. $(BIN)/python -m benchmarks.$$part || exit 1; done
 
 scale: $(READY)
 	@PYTHONPATH=. $(BIN)/python benchmarks/scale.py

@@ -1,18 +1,18 @@
 """Publishing, comparing and verifying editions of 300 boats, from blocks.
 
-    PYTHONPATH=. python benchmarks/editions.py [tows a season]
+    PYTHONPATH=. python -m benchmarks.editions [tows a season]
 
 The samples are simulated at 5 Hz: the number of samples in a block does not matter here. Making the
 archive and reading it is not counted.
 """
 
 import datetime as dt
-import platform
 import sys
 import tempfile
 import time
 from pathlib import Path
 
+from benchmarks.harness import machine
 from pipeline.method import shipped_method
 from pipeline.simulate import WorldSettings, simulate_world
 from warehouse import intake, tables
@@ -54,7 +54,7 @@ def timed(what, function, *arguments):
 def main(tows_per_season):
     with tempfile.TemporaryDirectory() as folder:
         store = rebuilt(Path(folder), tows_per_season)
-        print(f"{platform.processor() or platform.machine()}, {store.read('tows').height} tows")
+        print(machine("polars"), f"{store.read('tows').height} tows")
         for name in METHODS:
             terms = Terms(f"edition-{name}", DAY, "benchmark", DAY)
             timed(f"publish {name}", publish, store, shipped_method(name), terms)

@@ -1,6 +1,6 @@
 """Batch fit of the hyperbola against scipy.optimize.least_squares, on the same cases in one run.
 
-    python benchmarks/fit.py [cases]
+    PYTHONPATH=. python -m benchmarks.fit [cases]
 
 One thread. Both start from the points alone; scipy gets the analytic Jacobian and well-scaled
 parameters, its fastest way for this problem. The equality check polishes scipy's answer with plain
@@ -13,15 +13,13 @@ os.environ["OMP_NUM_THREADS"] = "1"  # read when numpy is imported, so before it
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 os.environ["MKL_NUM_THREADS"] = "1"
 
-import platform
-import statistics
 import sys
 import time
 
 import numpy as np
-import scipy
 from scipy.optimize import least_squares
 
+from benchmarks.harness import machine, median_seconds
 from pipeline import curve
 
 REPEATS = 5
@@ -65,15 +63,6 @@ class Scipy:
         return p
 
 
-def median_seconds(work):
-    times = []
-    for _ in range(REPEATS):
-        start = time.perf_counter()
-        work()
-        times.append(time.perf_counter() - start)
-    return statistics.median(times)
-
-
 def difference(fitted, solvers, parameters):
     """Largest relative difference in A and, on the scale of v^2, in s."""
     pivots = np.array([solver.pivot for solver in solvers])
@@ -88,15 +77,15 @@ def main():
     fitted = curve.fit(points)
     assert fitted.converged.all()
 
-    batch_s = median_seconds(lambda: curve.fit(points))
+    batch_s = median_seconds(lambda: curve.fit(points), REPEATS)
     start = time.perf_counter()
     answers = [solver.fit() for solver in solvers]
     scipy_s = time.perf_counter() - start
     polished = [s.polish(p) for s, p in zip(solvers, answers, strict=True)]
     many = cases(LARGE_BATCH)
-    many_s = median_seconds(lambda: curve.fit(many))
+    many_s = median_seconds(lambda: curve.fit(many), REPEATS)
 
-    print(f"python {platform.python_version()}, numpy {np.__version__}, scipy {scipy.__version__}")
+    print(machine("numpy", "scipy"))
     print(f"{n} cases, 6 points each, one thread; median of {REPEATS} (scipy: 1 pass)")
     print(f"  batch fit       {batch_s / n * 1e6:9.2f} us a fit {n / batch_s:12,.0f} fits/s")
     print(f"  least_squares   {scipy_s / n * 1e6:9.2f} us a fit {n / scipy_s:12,.0f} fits/s")

@@ -1,6 +1,6 @@
 """Size and time of ways to keep a tow's samples, on simulated tows of 300,000 samples.
 
-    python benchmarks/samples_format.py [tows]
+    PYTHONPATH=. python -m benchmarks.samples_format [tows]
 
 Two kinds of numbers: as the simulator makes them (noise in every bit of a float32) and as a CSV
 file gives them (three decimals). Decision 0004 rests on this.

@@ -3,32 +3,25 @@
 Exit status: 0 done (also with tows set aside: they are listed), 1 could not do it, 2 wrong
 arguments. What a command does stands in `assets`, `warehouse` and `pipeline`; how a result looks
 as text, in `herijk.text`.
+
+A command imports what it needs when it runs: Polars, SciPy, Altair and Dagster take seconds
+together, and `herijk --help` needs none of them.
 """
 
 import re
 import sys
 from contextlib import suppress
 from pathlib import Path
-from typing import Annotated, Any, Final
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
-from herijk import audit_text, commands_editions, text
+from herijk import commands_editions, text
 from herijk.arguments import AsJson, DataFolder, show
-from herijk.method_text import method_in_words
-from herijk.progress import TerminalProgress
 from pipeline.errors import BrokenPromiseError, HerijkError, MissingKnowledgeError
-from pipeline.method import Method, parse_method, shipped_method, shipped_methods, shipped_text
-from pipeline.register import draft_name
-from pipeline.simulate import WorldSettings, simulate_world
-from warehouse import reports
-from warehouse.archive.write import write_simulated_archive
-from warehouse.audit import audit as audit_report
-from warehouse.editions.folder import edition_names, method_of_edition
-from warehouse.history import History
-from warehouse.obstacles import obstacles_explained
-from warehouse.rebase import rebase as rebase_history
-from warehouse.store import Store
+
+if TYPE_CHECKING:
+    from pipeline.method import Method
 
 app = typer.Typer(
     help="Recomputes the history of the Dutch rowing-sloop register from its tow tests.",
@@ -82,10 +75,14 @@ def rebuild(
     as_json: AsJson = False,
 ) -> None:
     """From the archive to registers and tables; only what changed is done again."""
-    from assets.notify import notifier_of  # noqa: PLC0415 - Dagster takes a second to import
-    from assets.rebuild import rebuild as run  # noqa: PLC0415
-    from assets.report import failed_checks, tell  # noqa: PLC0415
-    from assets.settings import read_settings  # noqa: PLC0415
+    from assets.notify import notifier_of
+    from assets.rebuild import rebuild as run
+    from assets.report import failed_checks, tell
+    from assets.settings import read_settings
+    from herijk.progress import TerminalProgress
+    from pipeline.method import shipped_methods, shipped_text
+    from warehouse import reports
+    from warehouse.store import Store
 
     chosen = method or list(shipped_methods())
     for name in chosen:
@@ -111,9 +108,11 @@ def serve(
     ] = 3000,
 ) -> None:
     """Rebuild by itself: schedules and sensor, with Dagster's page and the site, until stopped."""
-    from assets.rebuild import prepare_home  # noqa: PLC0415 - Dagster takes a second to import
-    from assets.settings import read_settings  # noqa: PLC0415
-    from herijk.serving import Served, serve_until_stopped  # noqa: PLC0415
+    from assets.rebuild import prepare_home
+    from assets.settings import read_settings
+    from herijk.serving import Served, serve_until_stopped
+    from warehouse.obstacles import obstacles_explained
+    from warehouse.store import Store
 
     read_settings(data)
     with obstacles_explained(data):
@@ -126,6 +125,8 @@ def serve(
 @methods_app.callback()
 def methods(context: typer.Context, as_json: AsJson = False) -> None:
     """List the methods."""
+    from pipeline.method import shipped_method, shipped_methods
+
     if context.invoked_subcommand is None:
         known = [shipped_method(name) for name in shipped_methods()]
         rows = [{"method": m.name, "title": m.title, "content_hash": m.content_hash} for m in known]
@@ -135,6 +136,9 @@ def methods(context: typer.Context, as_json: AsJson = False) -> None:
 @methods_app.command("show")
 def show_method(name: Annotated[str, typer.Argument(help="Name of a method.")]) -> None:
     """One method in words, with what differs from the one it extends."""
+    from herijk.method_text import method_in_words
+    from pipeline.method import shipped_method
+
     shown = _method(name)
     parent = None if shown.extends is None else shipped_method(shown.extends)
     typer.echo(method_in_words(shown, parent))
@@ -153,14 +157,21 @@ def rebase(
     as_json: AsJson = False,
 ) -> None:
     """All of history under a method: what changes and why. Nothing is published or stored."""
+    from warehouse.editions.folder import edition_names, method_of_edition
+    from warehouse.rebase import rebase as rebase_history
+    from warehouse.store import Store
+
     store = Store(data)
     old = method_of_edition(store, against) if against in edition_names(store) else _method(against)
     report = rebase_history(store, _method(method), old)
     show(report, text.rebase, as_json)
 
 
-def _method(name_or_file: str) -> Method:
+def _method(name_or_file: str) -> "Method":
     """A method that ships, or one from a file; a draft's name stands for its method."""
+    from pipeline.method import parse_method, shipped_method
+    from pipeline.register import draft_name
+
     file = Path(name_or_file)
     if file.suffix == ".toml":
         if not file.is_file():
@@ -186,7 +197,11 @@ def audit(
     as_json: AsJson = False,
 ) -> None:
     """Where a boat's numbers come from, step by step; or whether boats of a type are equal."""
-    from dashboards.audit_plots import file_name  # noqa: PLC0415 - Altair is slow
+    from dashboards.audit_plots import file_name
+    from herijk import audit_text
+    from pipeline.method import shipped_text
+    from warehouse.audit import audit as audit_report
+    from warehouse.store import Store
 
     if len(names) > MOST_TYPES:
         raise typer.BadParameter("give a boat, or one or two types; quote a name with blanks")
@@ -201,7 +216,7 @@ def audit(
 
 def _plots(store: Store, report: dict[str, Any], folder: Path) -> list[Path]:
     """The plots of an audit; none, and said so, where they cannot be written: the page stands."""
-    from dashboards.audit_plots import write_audit_plots  # noqa: PLC0415 - Altair is slow
+    from dashboards.audit_plots import write_audit_plots
 
     try:
         return write_audit_plots(store, report, folder)
@@ -219,8 +234,10 @@ def workbench(
     ] = 8765,
 ) -> None:
     """Change a method's options in a browser and see at once what happens to all boats."""
-    from dashboards.workbench.bench import Bench  # noqa: PLC0415 - Altair takes a second to import
-    from dashboards.workbench.server import address, listen, serving  # noqa: PLC0415 - same
+    from dashboards.workbench.bench import Bench
+    from dashboards.workbench.server import address, listen, serving
+    from warehouse.history import History
+    from warehouse.store import Store
 
     held, store = listen(port), Store(data)
     bench = Bench(store, History.of(store))
@@ -236,6 +253,10 @@ def log_error(
     as_json: AsJson = False,
 ) -> None:
     """How wrong the speed log was in each season, how sure that is, and what it rests on."""
+    from pipeline.method import shipped_text
+    from warehouse import reports
+    from warehouse.store import Store
+
     shipped_text(method)
     show(reports.log_error_report(Store(data), method), text.log_error, as_json)
 
@@ -249,6 +270,10 @@ def simulate(
     seed: Annotated[int, typer.Option(min=0, help="Decides all that is drawn.")] = 1,
 ) -> None:
     """Write a simulated archive with known truth (the truth lies beside it, not in it)."""
+    from herijk.progress import TerminalProgress
+    from pipeline.simulate import WorldSettings, simulate_world
+    from warehouse.archive.write import write_simulated_archive
+
     settings = WorldSettings(tuple(seasons), tows_per_season, rate, seed)
     with TerminalProgress() as progress:
         progress.expect(len(seasons) * tows_per_season)

@@ -13,16 +13,6 @@ import typer
 from herijk import due_text
 from herijk import editions_text as text
 from herijk.arguments import AsJson, DataFolder, show
-from pipeline.method import shipped_method, shipped_text
-from pipeline.replay import FATIGUES, STREAMS, RaceRules
-from warehouse.due import due_report
-from warehouse.editions import compare
-from warehouse.editions.folder import read_edition
-from warehouse.editions.lineage import lineage as find_lineage
-from warehouse.editions.publish import Terms, publish_printed
-from warehouse.editions.publish import publish as publish_edition
-from warehouse.editions.verify import verify as verify_editions
-from warehouse.store import Store
 
 
 def add_to(app: typer.Typer) -> None:
@@ -80,6 +70,12 @@ def publish(
     as_json: AsJson = False,
 ) -> None:
     """Freeze an edition of the register: it is never changed afterwards."""
+    from pipeline.method import shipped_method
+    from warehouse.editions.folder import read_edition
+    from warehouse.editions.publish import Terms, publish_printed
+    from warehouse.editions.publish import publish as publish_edition
+    from warehouse.store import Store
+
     if (method is None) == (printed is None):
         raise typer.BadParameter("give --method NAME, or --printed YEAR, and not both")
     if printed is not None and carry is not None:
@@ -106,13 +102,17 @@ def diff(
     fatigue: Annotated[
         str,
         typer.Option(help="Fatigue correction of races: none, known (2 to 3 h only) or extend."),
-    ] = RaceRules.fatigue,
+    ] = "extend",
     stream: Annotated[
         str, typer.Option(help="Stream in races: distance_first or net_speed_over_legs.")
-    ] = RaceRules.stream,
+    ] = "distance_first",
     as_json: AsJson = False,
 ) -> None:
     """Two editions side by side: who gains, who loses, why, and what it does to races."""
+    from pipeline.replay import FATIGUES, STREAMS, RaceRules
+    from warehouse.editions import compare
+    from warehouse.store import Store
+
     rules = RaceRules(
         fatigue=_one_of(FATIGUES, fatigue, "--fatigue"),  # type: ignore[arg-type]
         stream=_one_of(STREAMS, stream, "--stream"),  # type: ignore[arg-type]
@@ -130,6 +130,9 @@ def diff(
 
 def verify(data: DataFolder = Path("data"), as_json: AsJson = False) -> None:
     """Check that editions and archive are what they were, and make the editions again."""
+    from warehouse.editions.verify import verify as verify_editions
+    from warehouse.store import Store
+
     report = verify_editions(Store(data))
     show(report, text.verify, as_json)
     if report["wrong"]:
@@ -143,6 +146,9 @@ def lineage(
     as_json: AsJson = False,
 ) -> None:
     """From a printed line to the files, runs and seconds behind it."""
+    from warehouse.editions.lineage import lineage as find_lineage
+    from warehouse.store import Store
+
     show(find_lineage(Store(data), edition, fsn_no), text.lineage, as_json)
 
 
@@ -154,5 +160,9 @@ def due(
     as_json: AsJson = False,
 ) -> None:
     """Whose tow expires when, at what speed to tow each next, and who would tell most."""
+    from pipeline.method import shipped_text
+    from warehouse.due import due_report
+    from warehouse.store import Store
+
     shipped_text(method)
     show(due_report(Store(data), method), due_text.due, as_json)

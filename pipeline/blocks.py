@@ -18,12 +18,14 @@ The sums of one block, over its `n` samples, with F the tow force, v a speed sou
 - `gps`, `gps2`, `gps_n`: ground speed, its square, and how many samples have one
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Final
+from itertools import pairwise
+from typing import Final, NamedTuple
 
 import numpy as np
 import polars as pl
+from numpy.typing import NDArray
 
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.errors import BrokenPromiseError
@@ -32,19 +34,42 @@ SPEED_SOURCES: Final = ("log1", "log2", "mean")
 AIR_TERMS: Final = ("head", "front", "side")
 WIND_SIDES: Final = ("ahead", "behind")
 AIR_SUMS: Final = tuple(f"{term}_{side}" for term in AIR_TERMS for side in WIND_SIDES)
-WIND_SUMS: Final = ("wind_v", "wind_v2", "wind_cos", "wind_sin", "wind_x", "wind_y")
 SUM_NAMES: Final = (
     "force",
     "force2",
     *(f"{s}_{q}" for s in SPEED_SOURCES for q in ("v", "v2", "inv_v2", "cw", "cw2", *AIR_SUMS)),
     *AIR_SUMS,
-    *WIND_SUMS,
+    *("wind_v", "wind_v2", "wind_cos", "wind_sin", "wind_x", "wind_y"),
     *("gps", "gps2", "gps_n"),
 )
-BLOCK_SECONDS: Final = 1.0
+CHUNK_SAMPLES: Final = 25_000
+"""Samples worked on at a time: few enough to stay in the processor's cache."""
+
+_DIVIDED: Final = ("one", "force", *AIR_SUMS)
+"""What is summed as it is and divided by v^2 of each source."""
+
+_TERMS: Final = (
+    *_DIVIDED,
+    *(f"{s}_v" for s in SPEED_SOURCES),
+    *("wind_v", "wind_cos", "wind_sin", "wind_x", "wind_y"),
+    "gps",
+)
+_SQUARES: Final = (
+    "force2",
+    "wind_v2",
+    "gps2",
+    *(f"{s}_{q}" for q in ("v2", "cw2") for s in SPEED_SOURCES),
+)
+_MADE: Final = (
+    *_TERMS,
+    *(f"{s}_{q}" for s in SPEED_SOURCES for q in ("inv_v2", "cw", *AIR_SUMS)),
+    *_SQUARES,
+    "gps_n",
+)
+"""The sums in the order in which they are made."""
 
 
-def block_sums(samples: pl.DataFrame, sample_rate_hz: float) -> pl.DataFrame:
+def block_sums(samples: pl.DataFrame, sample_rate_hz: int) -> pl.DataFrame:
     """Adds up the samples of one tow per run and second.
 
     Args:
@@ -53,75 +78,121 @@ def block_sums(samples: pl.DataFrame, sample_rate_hz: float) -> pl.DataFrame:
 
     Returns:
         One row per run and second: `run`, `second` (0 is the first), `n` (samples; the last
-        block of a run may hold fewer) and the sums of `SUM_NAMES`, float64. Each sum is made in
-        the order of the samples, so it does not depend on threads.
+        block of a run may hold fewer) and the sums of `SUM_NAMES`, float64. A sum depends on
+        the samples of its block alone, not on its neighbours nor on threads.
     """
-    run = samples["run"].to_numpy()
-    starts, run_of_block, second = _block_starts(run, sample_rate_hz)
-    n = np.diff(np.append(starts, len(run)))
-    sums = {name: np.add.reduceat(values, starts) for name, values in _terms(samples)}
+    channels = {name: samples[name].to_numpy() for name in samples.columns}
+    run = channels.pop("run")
+    keys, sums = [], []
+    for piece in _pieces(run, sample_rate_hz):
+        shape = (piece.blocks, -1)
+        keys.append(piece.keys(run))
+        sums.append(
+            _sums({c: v[piece.start : piece.end].reshape(shape) for c, v in channels.items()})
+        )
+    run_of_block, second, n = np.concatenate(keys, axis=1)
+    made = dict(zip(_MADE, np.concatenate(sums, axis=1), strict=True))
     return pl.DataFrame(
-        {"run": run_of_block, "second": second.astype(np.int16), "n": n.astype(np.int32)}
-        | {name: sums[name] for name in SUM_NAMES}
+        [
+            pl.Series("run", run_of_block, pl.Int8),
+            pl.Series("second", second, pl.Int16),
+            pl.Series("n", n, pl.Int32),
+            *(pl.Series(name, made[name]) for name in SUM_NAMES),
+        ]
     )
 
 
-def _block_starts(run: FloatArray, sample_rate_hz: float) -> tuple[IntArray, FloatArray, IntArray]:
-    """First sample of every block, with its run and its second within the run."""
-    new_run = np.flatnonzero(np.diff(run, prepend=run[:1] - 1))
-    run_length = np.diff(np.append(new_run, len(run)))
-    in_run = np.arange(len(run)) - np.repeat(new_run, run_length)
-    second = (in_run / sample_rate_hz / BLOCK_SECONDS).astype(np.int64)
-    starts = np.flatnonzero((in_run == 0) | (np.diff(second, prepend=-1) != 0))
-    return starts, run[starts], second[starts]
+class _Piece(NamedTuple):
+    """Consecutive blocks of one length within a run: samples `start` to `end`."""
+
+    start: int
+    end: int
+    blocks: int
+    first_second: int
+
+    def keys(self, run: IntArray) -> IntArray:
+        """Run, second and number of samples of each block, shape (3, blocks)."""
+        second = self.first_second + np.arange(self.blocks)
+        length = (self.end - self.start) // self.blocks
+        return np.stack(
+            [np.full_like(second, run[self.start]), second, np.full_like(second, length)]
+        )
 
 
-def _terms(samples: pl.DataFrame) -> Iterator[tuple[str, FloatArray]]:
-    """Every quantity that is summed, per sample, one at a time to keep memory small."""
-    column = {c: samples[c].to_numpy().astype(np.float64) for c in samples.columns if c != "run"}
-    force = column["force_n"]
-    yield "force", force
-    yield "force2", force * force
-    wind, angle = column["wind_speed_m_s"], np.radians(column["wind_angle_deg"])
-    cos, sin = np.cos(angle), np.sin(angle)
-    yield from zip(WIND_SUMS, (wind, wind * wind, cos, sin, wind * cos, wind * sin), strict=True)
-    air = _air_terms(wind * cos, cos, sin)
-    yield from air.items()
-    log1, log2 = column["log1_m_s"], column["log2_m_s"]
-    for source, v in (("log1", log1), ("log2", log2), ("mean", 0.5 * (log1 + log2))):
-        v2 = v * v
-        cw = force / v2
-        yield f"{source}_v", v
-        yield f"{source}_v2", v2
-        yield f"{source}_inv_v2", 1.0 / v2
-        yield f"{source}_cw", cw
-        yield f"{source}_cw2", cw * cw
-        yield from ((f"{source}_{name}", term / v2) for name, term in air.items())
-    yield from _gps_terms(column["gps_m_s"])
+def _pieces(run: IntArray, sample_rate_hz: int) -> Iterator[_Piece]:
+    """Cuts every run into pieces of whole seconds, and what remains at its end."""
+    starts = np.flatnonzero(run[1:] != run[:-1]) + 1
+    most = max(1, CHUNK_SAMPLES // sample_rate_hz)
+    for start, end in pairwise([0, *starts.tolist(), len(run)]):
+        seconds, rest = divmod(end - start, sample_rate_hz)
+        for first in range(0, seconds, most):
+            blocks = min(most, seconds - first)
+            at = start + first * sample_rate_hz
+            yield _Piece(at, at + blocks * sample_rate_hz, blocks, first)
+        if rest:
+            yield _Piece(end - rest, end, 1, seconds)
 
 
-def _air_terms(along_m_s: FloatArray, cos: FloatArray, sin: FloatArray) -> dict[str, FloatArray]:
-    """The three squares of wind speed that air force is proportional to, signed, in m2/s2.
+def _sums(channel: Mapping[str, NDArray[np.float32]]) -> FloatArray:
+    """The sums of `_MADE` over each block, shape (sums, blocks).
 
-    `head` is u|u| with u = w cos a, the wind along the course (old rule); `front` and `side` weigh
-    it with |cos a| and |sin a| (oblique rule of 2015). Sources: presentation 2015,
-    "Windweerstand" and "Dwarse tegenwind".
+    Sums of products are made as scalar products; those of everything that is also divided by the
+    v^2 of each source, as one matrix product a block.
+
+    Args:
+        channel: the channels, shape (blocks, samples).
     """
-    head = along_m_s * np.abs(along_m_s)
-    terms = {"head": head, "front": head * np.abs(cos), "side": head * np.abs(sin)}
-    return {
-        f"{term}_{side}": np.maximum(values, 0.0) if side == "ahead" else np.minimum(values, 0.0)
-        for term, values in terms.items()
-        for side in WIND_SIDES
-    }
+    shape = channel["force_n"].shape
+    terms = np.empty((len(_TERMS), *shape))
+    row = dict(zip(_TERMS, terms, strict=True))
+    row["one"][:], row["force"][:] = 1.0, channel["force_n"]
+    _fill_wind(row, channel["wind_speed_m_s"], channel["wind_angle_deg"])
+    present = np.isfinite(channel["gps_m_s"])
+    row["gps"][:] = np.where(present, channel["gps_m_s"], 0.0)
+    speeds = terms[len(_DIVIDED) :][: len(SPEED_SOURCES)]
+    speeds[0], speeds[1] = channel["log1_m_s"], channel["log2_m_s"]
+    np.multiply(0.5, speeds[0] + speeds[1], out=speeds[2])
+
+    divisors = np.ones((1 + len(SPEED_SOURCES), *shape))
+    np.divide(1.0, speeds * speeds, out=divisors[1:])
+    cw = row["force"] * divisors[1:]
+    product = divisors.transpose(1, 0, 2) @ terms.transpose(1, 2, 0)
+    divided = product[:, 1:, : len(_DIVIDED)].reshape(len(product), -1)
+    squares = [np.vecdot(row[q], row[q]) for q in ("force", "wind_v", "gps")]
+    of_sources = [*np.vecdot(speeds, speeds), *np.vecdot(cw, cw)]
+    count = present.sum(axis=-1, dtype=np.float64)
+    return np.concatenate([product[:, 0].T, divided.T, [*squares, *of_sources, count]])
 
 
-def _gps_terms(gps_m_s: FloatArray) -> Iterator[tuple[str, FloatArray]]:
-    present = np.isfinite(gps_m_s)
-    gps = np.where(present, gps_m_s, 0.0)
-    yield "gps", gps
-    yield "gps2", gps * gps
-    yield "gps_n", present.astype(np.float64)
+def _fill_wind(
+    row: Mapping[str, FloatArray], speed_m_s: NDArray[np.float32], angle_deg: NDArray[np.float32]
+) -> None:
+    """Fills the rows of the wind and of the three squares that air force is proportional to.
+
+    These are signed, in m2/s2: `head` is u|u| with u = w cos a, the wind along the course (old
+    rule); `front` and `side` weigh it with |cos a| and |sin a| (oblique rule of 2015). Sources:
+    presentation 2015, "Windweerstand" and "Dwarse tegenwind".
+    """
+    wind, cos, sin, along = (row[f"wind_{name}"] for name in ("v", "cos", "sin", "x"))
+    wind[:] = speed_m_s
+    _fill_cos_sin(cos, sin, angle_deg)
+    np.multiply(wind, cos, out=along)
+    np.multiply(wind, sin, out=row["wind_y"])
+    head = along * np.abs(along)
+    np.maximum(head, 0.0, out=row["head_ahead"])
+    np.minimum(head, 0.0, out=row["head_behind"])
+    for term, weight in (("front", np.abs(cos)), ("side", np.abs(sin))):
+        for side in WIND_SIDES:
+            np.multiply(row[f"head_{side}"], weight, out=row[f"{term}_{side}"])
+
+
+def _fill_cos_sin(cos: FloatArray, sin: FloatArray, angle_deg: NDArray[np.float32]) -> None:
+    """Cosine and sine from the tangent of half the angle, in a third of the time of both."""
+    half = np.multiply(angle_deg, np.pi / 360.0, dtype=np.float64)
+    t = np.tan(half)
+    np.divide(2.0, 1.0 + t * t, out=cos)
+    np.multiply(t, cos, out=sin)
+    cos -= 1.0
 
 
 @dataclass(frozen=True)
@@ -189,17 +260,22 @@ def stack_blocks(blocks: pl.DataFrame, runs: pl.DataFrame) -> RunBlocks:
         BrokenPromiseError: a run without blocks.
     """
     runs = runs.sort("tow_id", "run").with_row_index("row")
-    placed = blocks.join(runs.select("tow_id", "run", "row"), on=["tow_id", "run"], how="inner")
-    missing = runs.filter(~pl.col("row").is_in(placed["row"].unique().implode()))
+    rows = runs.select("tow_id", "run", "row")
+    place = blocks.select("tow_id", "run").join(
+        rows, on=["tow_id", "run"], how="left", maintain_order="left"
+    )["row"]
+    missing = runs.filter(~pl.col("row").is_in(place.unique().implode()))
     if missing.height:
         tow, run = missing.row(0, named=True)["tow_id"], missing.row(0, named=True)["run"]
         raise BrokenPromiseError(
             f"tow {tow}, run {run}: no blocks, though its samples were read; "
             "rebuild with an empty data folder"
         )
-    row, second = placed["row"].to_numpy(), placed["second"].to_numpy()
+    if place.null_count():
+        blocks, place = blocks.filter(place.is_not_null()), place.drop_nulls()
+    row, second = place.to_numpy(), blocks["second"].to_numpy()
     shape = (runs.height, int(second.max()) + 1 if len(second) else 0)
-    arrays = {name: _place(placed[name], row, second, shape) for name in ("n", *SUM_NAMES)}
+    arrays = {name: _place(blocks[name], row, second, shape) for name in ("n", *SUM_NAMES)}
     return RunBlocks(runs.drop("row"), arrays.pop("n"), arrays)
 
 

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from typing import Final, NamedTuple, Self
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import stdtrit
 
 from pipeline.errors import BrokenPromiseError
 
@@ -600,7 +600,7 @@ def _sensitivities(
 def _t_quantile(dof: ArrayLike, level: float) -> FloatArray:
     """Two-sided t-quantile; 0 degrees of freedom give that of 1: callers treat them apart."""
     freedom = np.maximum(np.asarray(dof, dtype=np.float64), 1.0)
-    return np.asarray(stdtrit(freedom, 0.5 * (1.0 + level)), dtype=np.float64)
+    return np.asarray(scipy.special.stdtrit(freedom, 0.5 * (1.0 + level)), dtype=np.float64)
 
 
 def _last_below(

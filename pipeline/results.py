@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import polars as pl
+import scipy
 from numpy.typing import ArrayLike
-from scipy.special import stdtrit
 
 from pipeline import curve
 from pipeline.arrays import BoolArray
@@ -188,7 +188,7 @@ def _mean_factor(o: Outcome, season: int) -> FactorRow:
     mean = float(ln_factor.mean())
     if n == 1:
         return season, float(np.exp(mean)), None, None, "gps"
-    half = float(stdtrit(n - 1, 0.5 + LEVEL / 2) * ln_factor.std(ddof=1) / np.sqrt(n))
+    half = float(scipy.special.stdtrit(n - 1, 0.5 + LEVEL / 2) * ln_factor.std(ddof=1) / np.sqrt(n))
     return (
         season,
         float(np.exp(mean)),

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d
+import scipy
 
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.blocks import RunBlocks
@@ -161,7 +161,9 @@ def _robust(values: FloatArray, present: BoolArray) -> tuple[FloatArray, FloatAr
 
 def _widened(values: FloatArray) -> FloatArray:
     """The largest value among each block and its neighbours within `PEAK_MARGIN_S`."""
-    return np.asarray(maximum_filter1d(values, 2 * PEAK_MARGIN_S + 1, axis=1, mode="nearest"))
+    return np.asarray(
+        scipy.ndimage.maximum_filter1d(values, 2 * PEAK_MARGIN_S + 1, axis=1, mode="nearest")
+    )
 
 
 def _ramps(speed: FloatArray, present: BoolArray, least_m_s: float) -> BoolArray:
@@ -256,8 +258,10 @@ class _Sums:
 def _unsteadiness(sums: _Sums, size: int, rule: Window) -> FloatArray:
     """How far the worst steadiness criterion is from its limit (1), for every window of a size.
 
-    The criteria: drift of speed by a fitted line over the window, difference of mean speed and
-    of mean force between its first and last `END_SECONDS`.
+    Attributes:
+        speed, speed_time: of the speed less its mean over the run, and of that times the second.
+        speed_ends, force_ends: mean over `END_SECONDS` from each second on, in limits.
+        drift_m_s: limit of the drift.
     """
     drift = np.abs(_slope(sums, size)) * size / rule.speed_drift_m_s
     speed_ends = np.abs(_ends_difference(sums.speed_ends, size)) / rule.speed_drift_m_s

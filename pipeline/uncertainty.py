@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 import polars as pl
-from scipy.special import stdtrit
+import scipy
 
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.blocks import RunBlocks
@@ -314,7 +314,7 @@ def combine(held: pl.DataFrame, level: float = 0.95) -> pl.DataFrame:
         .with_columns(pl.col("dof").fill_nan(np.inf))
         .sort("tow_id")
     )
-    quantile = stdtrit(rows["dof"].clip(1.0).to_numpy(), 0.5 * (1.0 + level))
+    quantile = scipy.special.stdtrit(rows["dof"].clip(1.0).to_numpy(), 0.5 * (1.0 + level))
     half = rows["u_ratio"] * pl.Series(quantile, dtype=pl.Float64)
     return rows.drop("spread").with_columns(
         (-half).exp().alias("lo_ratio"), half.exp().alias("hi_ratio")

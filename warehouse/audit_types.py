@@ -8,7 +8,7 @@ from math import hypot, log
 from typing import Any, Final
 
 import duckdb
-from scipy.special import fdtri
+import scipy
 
 from pipeline.consistency import ERAS
 from pipeline.consistency.homogeneity import LEVEL
@@ -113,7 +113,7 @@ def closest(lines: list[Report]) -> Report:
 def _larger(one: tuple[int, float], other: tuple[int, float]) -> bool:
     """Whether a variance, with its degrees of freedom, is larger than another at 5 %."""
     dof = max(one[0], 1), max(other[0], 1)
-    return one[1] > float(fdtri(*dof, 1.0 - LEVEL)) * other[1]
+    return one[1] > float(scipy.special.fdtri(*dof, 1.0 - LEVEL)) * other[1]
 
 
 def _bends(test: Report) -> Report:

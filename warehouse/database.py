@@ -14,7 +14,6 @@ import polars as pl
 
 from pipeline.errors import MissingKnowledgeError
 from warehouse.files import written_beside
-from warehouse.schemas import TABLES
 
 
 def build_database(path: Path, tables: Mapping[str, pl.DataFrame]) -> None:
@@ -38,6 +37,8 @@ def build_database(path: Path, tables: Mapping[str, pl.DataFrame]) -> None:
 
 
 def _comment(connection: duckdb.DuckDBPyConnection, name: str) -> None:
+    from warehouse.schemas import TABLES  # noqa: PLC0415 - half a second that readers need not wait
+
     schema = TABLES.get(name)
     if schema is None:
         return

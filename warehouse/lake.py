@@ -118,14 +118,14 @@ def _bring_in(
     blocks_key = fingerprint(key, tow["sample_rate_hz"], _blocks_hash())
     blocks_path = store.blocks_path(profile.season, blocks_key)
     try:
-        if not path.exists():
-            samples = read_tow_samples(root, tow, profile)
+        samples = None if path.exists() else read_tow_samples(root, tow, profile)
+        if samples is not None:
             check_samples(samples, tow, runs)
             _check_unchanged(root, tow)
             write_parquet(samples, path, form=SAMPLES_FORM)
         if not blocks_path.exists():
-            blocks = block_sums(read_parquet(path), tow["sample_rate_hz"])
-            write_parquet(blocks, blocks_path)
+            held = read_parquet(path) if samples is None else samples
+            write_parquet(block_sums(held, tow["sample_rate_hz"]), blocks_path)
     except DefectiveInputError as error:
         _check_unchanged(root, tow)
         return row | dataclasses.asdict(fault_from(error, tow["samples_path"], tow["tow_id"]))

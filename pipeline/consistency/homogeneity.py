@@ -9,8 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 import polars as pl
-from scipy import optimize
-from scipy.special import fdtrc, fdtri
+import scipy
 
 from pipeline import curve
 from pipeline.arrays import FloatArray
@@ -30,7 +29,7 @@ OWN, PARTIAL, SHARED = "own", "partial", "shared"
 def shared_bend(boats: Observed) -> float:
     """The one s = 1/B^2 [s2/m2] that fits all boats best, each with its own height."""
     fastest = float(np.where(boats.points.used, boats.points.speed_m_s, 0.0).max()) ** 2
-    found = optimize.minimize_scalar(
+    found = scipy.optimize.minimize_scalar(
         lambda r: _misfit(boats, r / fastest),
         bounds=(-2.0, 0.999),
         method="bounded",
@@ -109,7 +108,7 @@ def _tested(boats: Observed, boat_type: str) -> dict[str, Any]:
     return (
         counts
         | {"dof_between": dof[0], "dof_within": dof[1], "f_value": f, "run_sd_ratio": sigma}
-        | {"p_value": float(fdtrc(*dof, f)), "reason": ""}
+        | {"p_value": float(scipy.special.fdtrc(*dof, f)), "reason": ""}
         | _spread(boats, shared, sigma, f)
     )
 
@@ -164,8 +163,8 @@ def power(
     q = r / (1.0 - r)
     weight = (2.0 * q * (1.0 + q)) ** 2 / (boats.column("q_unit_variance") * run_sd_ratio**2)
     mean = (weight.sum() - (weight**2).sum() / weight.sum()) / dof[0]
-    limit = float(fdtri(*dof, 1.0 - LEVEL))
-    return float(fdtrc(*dof, limit / (1.0 + b_cv**2 * mean)))
+    limit = float(scipy.special.fdtri(*dof, 1.0 - LEVEL))
+    return float(scipy.special.fdtrc(*dof, limit / (1.0 + b_cv**2 * mean)))
 
 
 def _correlation(x: FloatArray, y: FloatArray) -> float | None:

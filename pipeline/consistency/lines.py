@@ -11,7 +11,7 @@ from typing import Any, Final
 
 import numpy as np
 import polars as pl
-from scipy.special import stdtrit
+import scipy
 
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.consistency import mixed
@@ -254,7 +254,7 @@ def _against_type(boats: Observed, quantity: str, eras: tuple[Era, ...]) -> pl.D
     fit = mixed.fit(problem, (mixed.BOAT,))
     left_out = fit.leave_boats_out()
     deviation = _studentised(left_out.error / np.sqrt(left_out.variance * fit.scale), fit)
-    limit = float(stdtrit(max(fit.dof - 1, 1), 1.0 - OUTSIDE_LEVEL / (2.0 * len(y))))
+    limit = float(scipy.special.stdtrit(max(fit.dof - 1, 1), 1.0 - OUTSIDE_LEVEL / (2.0 * len(y))))
     return boats.table.select(
         "method",
         "tow_id",

@@ -14,9 +14,8 @@ from functools import cached_property
 from typing import Final, NamedTuple, Self
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy import optimize, sparse
-from scipy.special import stdtrit
 
 from pipeline.arrays import FloatArray, IntArray
 
@@ -106,9 +105,11 @@ class Problem:
         return np.hstack([self._others, self.x, self.y[:, None]])
 
     @cached_property
-    def _by_boat(self) -> sparse.csr_array:
+    def _by_boat(self) -> "scipy.sparse.csr_array":
         n = len(self.y)
-        return sparse.csr_array((np.ones(n), (self.boat, np.arange(n))), shape=(self.boats, n))
+        return scipy.sparse.csr_array(
+            (np.ones(n), (self.boat, np.arange(n))), shape=(self.boats, n)
+        )
 
     @cached_property
     def spread(self) -> float:
@@ -213,7 +214,7 @@ class Fit:
         """
         rows = len(self.problem.y) - self.problem.x.shape[1]
         sd = np.sqrt(np.diag(self._covariance) * max(self.misfit, 0.0) / rows)
-        half = float(stdtrit(self.dof, 0.5 + LEVEL / 2)) * sd
+        half = float(scipy.special.stdtrit(self.dof, 0.5 + LEVEL / 2)) * sd
         beta = self.beta
         return Coefficients(beta, beta - half, beta + half)
 
@@ -247,7 +248,7 @@ class Fit:
 
         sd, scale = self.sd[index], self.problem.spread
         lo = (
-            optimize.brentq(excess, 0.0, sd, xtol=PROFILE_PRECISION * scale)
+            scipy.optimize.brentq(excess, 0.0, sd, xtol=PROFILE_PRECISION * scale)
             if excess(0.0) > 0
             else 0.0
         )
@@ -255,7 +256,7 @@ class Fit:
         for _ in range(8):
             if excess(outside) > 0:
                 return float(lo), float(
-                    optimize.brentq(excess, sd, outside, xtol=PROFILE_PRECISION * scale)
+                    scipy.optimize.brentq(excess, sd, outside, xtol=PROFILE_PRECISION * scale)
                 )
             outside *= 2.0
         return float(lo), None
@@ -285,14 +286,14 @@ def _search(
         return problem.deviance(sd)
 
     if len(places) == 1:
-        alone = optimize.minimize_scalar(
+        alone = scipy.optimize.minimize_scalar(
             deviance, bounds=(0.0, 3.0), method="bounded", options={"xatol": 1e-5}
         )
         best = np.array([alone.x])
     elif places:
         first = sd[places] / scale
         simplex = np.vstack([first, first + np.diag(0.3 * np.maximum(first, 0.1))])
-        found = optimize.minimize(
+        found = scipy.optimize.minimize(
             deviance,
             first,
             method="Nelder-Mead",

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 import polars as pl
-from scipy.special import stdtrit
+import scipy
 
 from pipeline.arrays import FloatArray
 from pipeline.consistency import mixed
@@ -104,7 +104,7 @@ def _second_opinion(
     ratio = np.where(known, left_out.error, np.nan)
     total = np.where(known, left_out.variance * fit.scale, np.nan)
     sd = np.sqrt(np.maximum(total - variance, 0.0))
-    half = float(stdtrit(fit.dof, 0.5 + LEVEL / 2)) * sd
+    half = float(scipy.special.stdtrit(fit.dof, 0.5 + LEVEL / 2)) * sd
     return {
         "predicted_cw_kg_m": cw * np.exp(-ratio),
         "predicted_lo_kg_m": cw * np.exp(-ratio - half),

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 import polars as pl
-from scipy.special import chdtri
+import scipy
 
 from pipeline.arrays import FloatArray
 from pipeline.consistency.components import DISTINCT, WITHIN_TYPE
@@ -136,7 +136,10 @@ def _spread(pairs: pl.DataFrame) -> dict[str, float | int | None]:
     if n == 0:
         return {"n_pairs": 0}
     total = float((difference**2).sum())
-    low, high = float(chdtri(n, 0.5 - LEVEL / 2)), float(chdtri(n, 0.5 + LEVEL / 2))
+    low, high = (
+        float(scipy.special.chdtri(n, 0.5 - LEVEL / 2)),
+        float(scipy.special.chdtri(n, 0.5 + LEVEL / 2)),
+    )
     e_n = pairs["e_n"].drop_nulls().to_numpy()
     return {
         "n_pairs": n,

@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 import polars as pl
-from scipy.special import stdtrit
+import scipy
 
 from pipeline.arrays import FloatArray, IntArray
 from pipeline.errors import BrokenPromiseError
@@ -64,7 +64,7 @@ class SeasonFactors:
         share = count / count.sum()
         ln_factor = share @ known["factor"].log().to_numpy()
         sd = np.sqrt(share @ self.covariance @ share)
-        half = sd * stdtrit(parts["dof"].to_numpy().min(), 0.5 * (1.0 + LEVEL))
+        half = sd * scipy.special.stdtrit(parts["dof"].to_numpy().min(), 0.5 * (1.0 + LEVEL))
         factor, lo, hi = np.exp(ln_factor + np.array([0.0, -half, half])).tolist()
         return factor, lo, hi, ESTIMATED if (parts["source"] == ESTIMATED).any() else GPS
 
@@ -221,5 +221,5 @@ def _described(table: pl.DataFrame, network: Network, second: Second) -> pl.Data
 
 
 def _half_width(sd: pl.Series, dof: pl.Series) -> pl.Series:
-    quantile = stdtrit(dof.fill_null(1.0).clip(1.0).to_numpy(), 0.5 * (1.0 + LEVEL))
+    quantile = scipy.special.stdtrit(dof.fill_null(1.0).clip(1.0).to_numpy(), 0.5 * (1.0 + LEVEL))
     return sd * pl.Series(quantile)

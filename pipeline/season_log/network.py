@@ -8,8 +8,7 @@ from typing import Final
 
 import numpy as np
 import polars as pl
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+import scipy
 
 from pipeline.arrays import BoolArray, FloatArray, IntArray
 
@@ -98,8 +97,8 @@ def _connect(group: IntArray, boat: IntArray, has_gps: BoolArray) -> tuple[IntAr
     nodes = groups + 1 + boats
     start = np.concatenate([edges[1], np.zeros(len(gps_nodes), np.int64)])
     end = np.concatenate([edges[0] + groups + 1, gps_nodes])
-    graph = coo_array((np.ones(len(start)), (start, end)), shape=(nodes, nodes))
-    label = connected_components(graph, directed=False)[1]
+    graph = scipy.sparse.coo_array((np.ones(len(start)), (start, end)), shape=(nodes, nodes))
+    label = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
     other, component = np.unique(label[1 : groups + 1], return_inverse=True)
     # The anchor's part is 0, the others follow in the order of their seasons.
     first = [int(np.flatnonzero(component == i)[0]) for i in range(len(other))]

@@ -6,7 +6,7 @@ is. Nothing of how the first one's is estimated.
 
 import numpy as np
 import polars as pl
-from scipy.special import stdtrit
+import scipy
 
 from pipeline.season_log.estimate import LEVEL, SeasonFactors
 from pipeline.season_log.network import GROUP
@@ -48,7 +48,7 @@ def other_log_factors(found: SeasonFactors) -> pl.DataFrame:
     spread = own_variance**2 / pl.col("dof") + ratio_variance**2 / (pl.col("n_tows") - 1)
     variance = own_variance + ratio_variance
     rows = rows.with_columns(variance.sqrt().alias("ln_sd"), (variance**2 / spread).alias("dof"))
-    quantile = stdtrit(rows["dof"].to_numpy(), 0.5 * (1.0 + LEVEL))
+    quantile = scipy.special.stdtrit(rows["dof"].to_numpy(), 0.5 * (1.0 + LEVEL))
     half = np.asarray(quantile) * rows["ln_sd"].to_numpy()
     return rows.select(
         *GROUP,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from scipy.optimize import brentq
+import scipy
 
 from pipeline.simulate.hull import AirCoefficients, Hull, true_cw_kg_m
 
@@ -163,7 +163,7 @@ def speed_at_power_m_s(
         cw = float(true_cw_kg_m(hull, np.array(speed_m_s), temperature_c, air))
         return cw * speed_m_s**3 / rowers - power_w
 
-    return float(brentq(surplus_w, 0.5, 6.0))
+    return float(scipy.optimize.brentq(surplus_w, 0.5, 6.0))
 
 
 def _name(index: int, boat_type: BoatType) -> str:

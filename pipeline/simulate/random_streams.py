@@ -8,8 +8,8 @@ off without any other number changing. No physics here.
 from enum import IntEnum
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.signal import lfilter
 
 Floats = NDArray[np.float64]
 
@@ -80,7 +80,7 @@ def coloured_noise(
     gain = np.float32(np.sqrt(1.0 - decay**2))
     coefficients = (np.array([gain]), np.array([1.0, -decay], dtype=np.float32))
     start = np.array([decay * white[0]], dtype=np.float32)
-    noise, _ = lfilter(*coefficients, white[1:], zi=start)
+    noise, _ = scipy.signal.lfilter(*coefficients, white[1:], zi=start)
     return np.asarray(noise, dtype=np.float32)
 
 
@@ -94,7 +94,7 @@ def smooth_wander(
     settle = int(10 * correlation_s / step_s)
     decay = np.exp(-step_s / correlation_s)
     white = rng.standard_normal(settle + count)
-    wander = lfilter([1.0], [1.0, -2.0 * decay, decay**2], white)[settle:]
+    wander = scipy.signal.lfilter([1.0], [1.0, -2.0 * decay, decay**2], white)[settle:]
     # Variance of white noise through a double pole at `decay`.
     variance = (1.0 + decay**2) / (1.0 - decay**2) ** 3
     return np.asarray(wander / np.sqrt(variance))

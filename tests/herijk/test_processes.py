@@ -10,13 +10,14 @@ from tests.conftest import METHODS, SMALL, Workbench
 from warehouse.store import table_digest
 
 ROOT = Path(__file__).parents[2]
+THREAD_LIMITS = ("POLARS_MAX_THREADS", "OPENBLAS_NUM_THREADS")
 
 
 def herijk(*arguments: object, threads: int) -> subprocess.Popen[str]:
     return subprocess.Popen(
         [sys.executable, "-m", "herijk", *map(str, arguments)],
         cwd=ROOT,
-        env=os.environ | {"POLARS_MAX_THREADS": str(threads)},
+        env=os.environ | dict.fromkeys(THREAD_LIMITS, str(threads)),
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

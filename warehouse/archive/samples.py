@@ -146,11 +146,11 @@ def _split_header(data: bytes, profile: SeasonProfile) -> _Body:
 
 def _read_fast(body: _Body) -> pl.DataFrame | None:
     """Return the columns, or None where the careful way has to judge."""
-    if b'"' in body.data:
-        return None
+    quoted = b'"' in body.data
     wanted = {found.index: key for key, found in body.columns.items()}
+    number = pl.String() if quoted else pl.Float64()
     schema = {
-        wanted.get(index, f"ignored {index}"): pl.Float64() if index in wanted else pl.String()
+        wanted.get(index, f"ignored {index}"): number if index in wanted else pl.String()
         for index in range(body.width)
     }
     try:
@@ -158,10 +158,12 @@ def _read_fast(body: _Body) -> pl.DataFrame | None:
             body.data,
             has_header=False,
             separator=body.delimiter,
-            quote_char=None,
+            quote_char='"' if quoted else None,
             decimal_comma=body.delimiter != ",",
             schema=schema,
         ).select(wanted.values())
+        if quoted:
+            frame = frame.select(pl.all().str.replace(",", ".", literal=True).cast(pl.Float64()))
     except pl.exceptions.PolarsError:
         return None
     finite = frame.select(pl.all().is_finite().all() & (pl.all().null_count() == 0))

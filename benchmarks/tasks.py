@@ -1,0 +1,264 @@
+"""What is timed: functions that prepare and return the work, called in a process of their own."""
+
+import shutil
+from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import polars as pl
+
+from assets.rebuild import rebuild
+from benchmarks import plain
+from benchmarks.harness import THREADS
+from benchmarks.world import FOLDER, World
+from pipeline.blocks import block_sums, stack_blocks
+from pipeline.method import parse_method, shipped_method, shipped_methods
+from pipeline.recompute import recompute
+from warehouse import lake, tables
+from warehouse.archive.files import read_bytes
+from warehouse.archive.profile import read_profiles
+from warehouse.rebase import rebase
+from warehouse.store import Store
+
+Work = Callable[[], Any]
+SIDES = {"as_it_was": 0.2, "changed": 0.3}
+TEXT_LIMIT_BYTES = 10**9
+
+
+def _both(function: Callable[..., Any], rows: Iterable[Any]) -> list[Any]:
+    with ThreadPoolExecutor(THREADS) as pool:
+        return list(pool.map(function, rows))
+
+
+def _method(side: str) -> Any:
+    return parse_method(plain.METHOD.replace("AIR_SIDE", str(SIDES[side])), "benchmark")
+
+
+def _parse(path: Path) -> pl.DataFrame:
+    frame = pl.read_csv(read_bytes(path, TEXT_LIMIT_BYTES), separator=";", decimal_comma=True)
+    return frame.with_columns(pl.col(pl.Float64).cast(pl.Float32), pl.col("run").cast(pl.Int8))
+
+
+def _runs(world: World, tows: pl.DataFrame) -> pl.DataFrame:
+    runs = world.store.read("tow_runs").filter("selected").select("tow_id", "run")
+    sizes = ["waterline_length_m", "beam_m", "bow_height_m", "declared_speed_m_s"]
+    return runs.join(tows.select("tow_id", *sizes), on="tow_id")
+
+
+def _lake_files(world: World, tows: pl.DataFrame) -> dict[str, str]:
+    keys = tows.select("tow_id", "season", "samples_key").iter_rows()
+    return {t: str(world.store.samples_path(season, key)) for t, season, key in keys}
+
+
+def _text_files(world: World, tows: pl.DataFrame) -> dict[str, str]:
+    paths = tows.select("tow_id", "samples_path").iter_rows()
+    return {t: str(world.archive / path) for t, path in paths}
+
+
+# Text
+
+
+def parse_text(tows_per_season: int, count: int, write: bool) -> Work:
+    """Polars alone on the same files, all columns; written as Parquet or not."""
+    world = World(tows_per_season)
+    tows = world.tows(count, plain=True)
+    folder = FOLDER / "written"
+    folder.mkdir(parents=True, exist_ok=True)
+
+    def one(file: tuple[str, str]) -> None:
+        frame = _parse(Path(file[1]))
+        if write:
+            lake.write_samples(frame, folder / f"{file[0]}.parquet")
+
+    return lambda: _both(one, _text_files(world, tows).items())
+
+
+def read_text(tows_per_season: int, count: int) -> Work:
+    """Text to checked samples and blocks in an empty lake."""
+    world = World(tows_per_season)
+    tows, store = world.tows(count, plain=True), _empty_store()
+    return lambda: _into_lake(world, store, tows)
+
+
+def herijk_from_text(tows_per_season: int, count: int, result: str | None = None) -> Work:
+    """Text to curves, by way of the lake."""
+    world = World(tows_per_season)
+    tows, store = world.tows(count, plain=True), _empty_store()
+
+    def work() -> None:
+        index = _into_lake(world, store, tows)
+        blocks = pl.concat(
+            lake.season_blocks(store, season, found) for season, found in index.items()
+        )
+        _save(_recomputed(world, tows, blocks, "as_it_was"), result)
+
+    return work
+
+
+def _empty_store() -> Store:
+    folder = FOLDER / "empty"
+    shutil.rmtree(folder, ignore_errors=True)
+    return Store(folder)
+
+
+def _into_lake(world: World, store: Store, tows: pl.DataFrame) -> dict[int, pl.DataFrame]:
+    profiles, runs = read_profiles(world.archive), world.store.read("tow_runs")
+    listed = tows.drop("samples_key", "blocks_key")
+    found = {}
+    for (season,), rows in listed.group_by("season", maintain_order=True):
+        mine = runs.join(rows.select("tow_id"), on="tow_id", how="semi")
+        profile = profiles.for_season(season)
+        index = lake.read_season(store, world.archive, rows, mine, profile, lambda *_: None)
+        assert index["reason_code"].null_count() == index.height
+        found[season] = index
+    return found
+
+
+# Parquet
+
+
+def decode(tows_per_season: int, count: int) -> Work:
+    """Polars alone on the lake's files: every column of every sample in memory, once."""
+    world = World(tows_per_season)
+    files = _lake_files(world, world.tows(count))
+    return lambda: _both(_decoded_rows, files.values())
+
+
+def _decoded_rows(path: str) -> int:
+    return pl.read_parquet(path, hive_partitioning=False).height
+
+
+def add_up(tows_per_season: int, count: int) -> Work:
+    """Blocks from the lake's samples."""
+    world = World(tows_per_season)
+    tows = world.tows(count)
+    return lambda: _blocks(world, tows)
+
+
+def herijk_from_parquet(
+    tows_per_season: int, count: int, result: str | None = None, plain_text: bool = False
+) -> Work:
+    """Samples in the lake to curves."""
+    world = World(tows_per_season)
+    tows = world.tows(count, plain=plain_text)
+
+    def work() -> None:
+        _save(_recomputed(world, tows, _blocks(world, tows), "as_it_was"), result)
+
+    return work
+
+
+def _blocks(world: World, tows: pl.DataFrame) -> pl.DataFrame:
+    def one(file: tuple[str, str]) -> pl.DataFrame:
+        samples = pl.read_parquet(file[1], hive_partitioning=False)
+        return block_sums(samples, 1000).select(pl.lit(file[0]).alias("tow_id"), pl.all())
+
+    return pl.concat(_both(one, _lake_files(world, tows).items()))
+
+
+# All of history
+
+
+def apply_method(tows_per_season: int, count: int, method: str) -> Work:
+    """A method on tows whose blocks are in memory: computation and no more."""
+    world = World(tows_per_season)
+    tows = world.tows(count).drop("samples_key", "blocks_key")
+    blocks = _stacked(world, tows)
+    known = shipped_method(method) if method not in SIDES else _method(method)
+    return partial(recompute, known, tows, blocks)
+
+
+def herijk_changed(tows_per_season: int, count: int, result: str | None = None) -> Work:
+    """A changed method on all tows, from the blocks on disk."""
+    world = World(tows_per_season)
+    tows = world.tows(count).drop("samples_key", "blocks_key")
+
+    def work() -> None:
+        made = recompute(_method("changed"), tows, _stacked(world, tows))
+        _save(made.curves, result)
+
+    return work
+
+
+def _stacked(world: World, tows: pl.DataFrame) -> Any:
+    runs = tables.runs_with_windows(world.store).join(
+        tows.select("tow_id"), on="tow_id", how="semi"
+    )
+    return stack_blocks(tables.intake.all_blocks(world.store), runs)
+
+
+def whole_rebase(tows_per_season: int) -> Work:
+    """What `herijk rebase rebased` computes: two methods, the ladder between them, registers."""
+    methods = shipped_method("rebased"), shipped_method("as-published")
+    return partial(rebase, World(tows_per_season).store, *methods)
+
+
+def rebuild_all(tows_per_season: int) -> Work:
+    """`herijk rebuild` with every method, through Dagster, into an empty folder."""
+    world, store = World(tows_per_season), _empty_store()
+    return partial(rebuild, world.archive, store.root, list(shipped_methods()), Silent())
+
+
+def rebuild_again(tows_per_season: int) -> Work:
+    """The same when nothing has changed."""
+    store = Store(FOLDER / "empty")
+    return partial(
+        rebuild, World(tows_per_season).archive, store.root, list(shipped_methods()), Silent()
+    )
+
+
+class Silent:
+    """Progress that nobody watches."""
+
+    def expect(self, tows: int) -> None:
+        pass
+
+    def tow_read(self, tow_id: str, set_aside: bool) -> None:
+        pass
+
+    def step(self, what: str) -> None:
+        pass
+
+
+# The others
+
+
+def other(
+    tows_per_season: int,
+    count: int,
+    tool: str,
+    text: bool,
+    side: str = "as_it_was",
+    plain_text: bool = True,
+    result: str | None = None,
+) -> Work:
+    """The same with pandas, DuckDB or Polars, from text or from the lake's Parquet."""
+    world = World(tows_per_season)
+    tows = world.tows(count, plain=plain_text)
+    files = (_text_files if text else _lake_files)(world, tows)
+    runs = _runs(world, tows)
+
+    def work() -> None:
+        if tool == "pandas":
+            made = pd.concat([plain.pandas_means(t, Path(path)) for t, path in files.items()])
+            means = pl.from_pandas(made)
+        else:
+            means = {"duckdb": plain.duckdb_means, "polars": plain.polars_means}[tool](files)
+        _save(plain.curves(means, runs, SIDES[side]), result)
+
+    return work
+
+
+def _recomputed(world: World, tows: pl.DataFrame, blocks: pl.DataFrame, side: str) -> pl.DataFrame:
+    runs = world.store.read("tow_runs").join(tows.select("tow_id"), on="tow_id", how="semi")
+    held = tows.drop("samples_key", "blocks_key")
+    return recompute(_method(side), held, stack_blocks(blocks, runs)).curves
+
+
+def _save(curves: pl.DataFrame, result: str | None) -> None:
+    """Keeps what came out, for the comparison of the numbers."""
+    if result is not None:
+        curves.write_parquet(result)

@@ -1,0 +1,75 @@
+"""The archive that is measured on, and which of its tows a comparison uses.
+
+Made once and kept: simulating 1,020 tows takes half an hour. The lake beside it holds what
+`herijk rebuild` would have put there, without Dagster.
+"""
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+import polars as pl
+
+from pipeline.simulate import WorldSettings, simulate_world
+from warehouse import intake, tables
+from warehouse.archive.write import write_simulated_archive
+from warehouse.store import Store
+
+SEASONS = tuple(range(2009, 2026))
+RATE_HZ = 1000
+FOLDER = Path(os.environ.get("BENCH_FOLDER", "benchmarks/data"))
+PLAIN_HEADER = "run;log1 [m/s];log2 [m/s];"
+"""Files that begin like this are spelled as pandas, DuckDB and Polars can read them unaided."""
+
+
+@dataclass(frozen=True)
+class World:
+    """A simulated archive with its data folder."""
+
+    tows_per_season: int
+
+    @property
+    def archive(self) -> Path:
+        return FOLDER / f"{self.tows_per_season}" / "archive"
+
+    @property
+    def store(self) -> Store:
+        return Store(FOLDER / f"{self.tows_per_season}" / "data")
+
+    def make(self) -> None:
+        """Makes what is not there yet."""
+        if not self.archive.exists():
+            settings = WorldSettings(SEASONS, self.tows_per_season, RATE_HZ)
+            write_simulated_archive(self.archive, simulate_world(settings))
+        intake.index(self.store, self.archive)
+        for season in intake.stale_seasons(self.store, self.archive):
+            intake.read_season(self.store, self.archive, season, lambda *_: None)
+            intake.collect_blocks(self.store, season)
+        if tables.archive_is_stale(self.store):
+            tables.collect_archive(self.store, max(self.store.read("listed_tows")["tow_date"]))
+
+    def tows(self, count: int | None = None, plain: bool = False) -> pl.DataFrame:
+        """Sound tows with their place in the lake, evenly spread over the seasons.
+
+        Args:
+            count: so many of them, all when left out.
+            plain: only those whose text any reader understands as it stands.
+        """
+        index = self.store.read_all("season_index").drop_nulls("samples_key")
+        found = self.store.read("tows").join(
+            index.select("tow_id", "samples_key", "blocks_key"), on="tow_id"
+        )
+        if plain:
+            found = found.filter(
+                pl.col("second_path").is_null()
+                & pl.col("samples_path").map_elements(self._is_plain, pl.Boolean)
+            )
+        found = found.sort("tow_id")
+        if count is None or count >= found.height:
+            return found
+        return found[[i * found.height // count for i in range(count)]]
+
+    def _is_plain(self, path: str) -> bool:
+        file = self.archive / path
+        with file.open("rb") as opened:
+            return file.suffix == ".csv" and opened.read(40).startswith(PLAIN_HEADER.encode())

@@ -1,0 +1,26 @@
+"""A command does not import what it does not need: `--help` is there at once."""
+
+import subprocess
+import sys
+
+import pytest
+
+HEAVY = {"altair", "dagster", "dataframely", "duckdb", "numpy", "polars", "scipy", "sqlalchemy"}
+NEEDED = {
+    "herijk.cli": set(),
+    "pipeline.method": set(),
+    "warehouse.reports": {"duckdb", "polars"},
+    "warehouse.audit": {"duckdb", "numpy", "polars", "scipy"},
+    "warehouse.editions.lineage": {"polars"},
+}
+UNUSED_PARTS = {"scipy.optimize", "scipy.signal", "scipy.sparse", "scipy.special", "scipy.stats"}
+
+
+@pytest.mark.parametrize("module", NEEDED)
+def test_a_module_imports_no_more_than_it_needs(module):
+    code = f"import {module}, sys; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    imported = set(done.stdout.split())
+    assert module in imported
+    assert imported & HEAVY <= NEEDED[module]
+    assert imported & UNUSED_PARTS == set()
