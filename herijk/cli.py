@@ -12,7 +12,7 @@ import re
 import sys
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
@@ -197,7 +197,7 @@ def audit(
     as_json: AsJson = False,
 ) -> None:
     """Where a boat's numbers come from, step by step; or whether boats of a type are equal."""
-    from dashboards.audit_plots import file_name, write_audit_plots
+    from dashboards.audit_plots import file_name
     from herijk import audit_text
     from pipeline.method import shipped_text
     from warehouse.audit import audit as audit_report
@@ -210,8 +210,20 @@ def audit(
     store = Store(data)
     report = audit_report(store, names, method)
     folder = plots or store.root / "audit" / file_name(" ".join(names))
-    drawn = write_audit_plots(store, report, folder)
+    drawn = _plots(store, report, folder)
     show(report | {"plots": [str(path) for path in drawn]}, audit_text.audit, as_json)
+
+
+def _plots(store: Store, report: dict[str, Any], folder: Path) -> list[Path]:
+    """The plots of an audit; none, and said so, where they cannot be written: the page stands."""
+    from dashboards.audit_plots import write_audit_plots
+
+    try:
+        return write_audit_plots(store, report, folder)
+    except OSError as error:
+        reason = f"herijk: no plots, for {folder} cannot be written ({error.strerror})"
+        typer.echo(f"{reason}; give another folder with --plots", err=True)
+        return []
 
 
 @app.command()

@@ -1,11 +1,12 @@
 """A simulated world as the frames and arrays that `pipeline.recompute` works on, without files."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
+import numpy as np
 import polars as pl
 
-from pipeline.blocks import RunBlocks, block_sums, stack_blocks
+from pipeline.blocks import SPEED_SOURCES, RunBlocks, block_sums, stack_blocks
 from pipeline.channels import BACK, OUT, TARGET_SPEED_RATIOS
 from pipeline.method import Method
 from pipeline.recompute import recompute
@@ -59,6 +60,22 @@ def measure(settings: WorldSettings) -> Measured:
         for tow in world.tows
     }
     return Measured(tows, runs, stacked, truth_rows(world), run_truth, nearest)
+
+
+def with_force_error(world: Measured, season: int, ratio: float) -> Measured:
+    """The same world with a load cell that reads so many times too much in one season."""
+    power = {"force": 1, "force2": 2}
+    power |= {
+        f"{source}_{name}": n for source in SPEED_SOURCES for name, n in (("cw", 1), ("cw2", 2))
+    }
+    mine = world.blocks.runs.join(
+        world.tows.select("tow_id", "season"), on="tow_id", maintain_order="left"
+    )
+    factor = np.where(mine["season"] == season, ratio, 1.0)[:, None]
+    sums = {
+        name: values * factor ** power.get(name, 0) for name, values in world.blocks.sums.items()
+    }
+    return replace(world, blocks=replace(world.blocks, sums=sums))
 
 
 def recompute_world(

@@ -10,6 +10,9 @@ import numpy as np
 
 from tests.pipeline.finding_2015 import AFTER, AGAINST, BEFORE, LETTERS, PAIR, find
 
+FIRST_SEED = 101
+"""The tests use other seeds: what is expected of them does not come from themselves."""
+
 
 def shift(row):
     ends = (100 * (row[end] - 1) for end in ("shift_ratio", "lo", "hi"))
@@ -19,7 +22,7 @@ def shift(row):
 
 def main():
     warnings.simplefilter("error")
-    seeds = range(1, 1 + (int(sys.argv[1]) if len(sys.argv) > 1 else 12))
+    seeds = range(FIRST_SEED, FIRST_SEED + (int(sys.argv[1]) if len(sys.argv) > 1 else 16))
     shares = {f"{y} on {x}": [] for x in AGAINST for y in LETTERS}
     apart = {(t, m): [] for t in (*PAIR, "all") for m in (BEFORE, AFTER)}
     print("shift of Cw from 2009-2011 to the next tow, %")
@@ -31,7 +34,7 @@ def main():
         for (boat_type, method), verdicts in apart.items():
             row = found.shift(boat_type, method)
             verdicts.append(row["apart"])
-            print(f"  {seed:2d} {boat_type:15s} {method:13s} {shift(row)}", flush=True)
+            print(f"  {seed:3d} {boat_type:15s} {method:13s} {shift(row)}", flush=True)
     print(f"stands apart, of {len(seeds)} seeds")
     for (boat_type, method), verdicts in apart.items():
         print(f"  {boat_type:15s} {method:13s} {sum(map(bool, verdicts))}")

@@ -10,6 +10,7 @@ from pipeline.season_log.estimate import SeasonFactors
 from pipeline.season_log.network import BOAT, GROUP, index_of, with_state
 from pipeline.season_log.scale import LEAST_MARGIN, scale_effect
 
+LOG: Final = "log"
 NOT_TOLD: Final = "not told"
 
 FEWEST_BOATS: Final = 3
@@ -38,7 +39,8 @@ def log_or_force(tows: pl.DataFrame, found: SeasonFactors) -> pl.DataFrame:
         boats' other tows, those corrected by their factors), `force_step` (the part in ln force
         that the slope shows), both with `_sd`, `n_boats`, and `cause`: `log`, `force` (a log error
         may have come with it), `none` (no level step of 3 % and twice its sd), or `not told`: the
-        slope is too uncertain, or there are fewer than three boats.
+        slope is too uncertain, there are fewer than three boats, or a log would be blamed that
+        dGPS has calibrated: then the boats' other tows may be what is wrong.
     """
     placed = (
         with_state(tows)
@@ -59,10 +61,10 @@ def log_or_force(tows: pl.DataFrame, found: SeasonFactors) -> pl.DataFrame:
     for key, part in placed.with_row_index("row").group_by(GROUP, maintain_order=True):
         inside = np.zeros(placed.height, dtype=bool)
         inside[part["row"].to_numpy()] = True
-        rows.append(
-            dict(zip(GROUP, key, strict=True))
-            | _step(boat, inside, ln_cw, corrected, q / pooled_q, q_sd / pooled_q)
-        )
+        step = _step(boat, inside, ln_cw, corrected, q / pooled_q, q_sd / pooled_q)
+        if step["cause"] == LOG and part["anchored"].all():
+            step["cause"] = NOT_TOLD
+        rows.append(dict(zip(GROUP, key, strict=True)) | step)
     numbers = ("level_step", "level_step_sd", "force_step", "force_step_sd")
     schema = {name: tows.schema[name] for name in GROUP} | dict.fromkeys(numbers, pl.Float64())
     return pl.DataFrame(rows, schema=schema | {"n_boats": pl.Int64(), "cause": pl.String()}).sort(
@@ -126,4 +128,4 @@ def _cause(level: float, level_sd: float, force: float, force_sd: float) -> str:
         return "force"
     if abs(level) < TELLING * force_sd:
         return NOT_TOLD
-    return "log" if abs(force) < abs(force - level) else "force"
+    return LOG if abs(force) < abs(force - level) else "force"

@@ -138,6 +138,19 @@ def test_plots_lie_where_they_are_asked_for(built, tmp_path):
     assert (asked / "history.svg").is_file()
 
 
+def test_where_plots_cannot_be_written_the_page_stands_and_it_is_said(built, tmp_path):
+    asked = tmp_path / "plots"
+    asked.write_text("a file", encoding="utf-8")
+    fsn_no = built.table("boats")["fsn_no"][0]
+    printed = run("audit", fsn_no, "--data", built.data, "--plots", asked)
+    assert printed.exit_code == 0
+    assert fsn_no in printed.stdout
+    assert "plots in" not in printed.stdout
+    assert printed.stderr.count("\n") == 1
+    assert str(asked) in printed.stderr
+    assert "--plots" in printed.stderr
+
+
 def test_three_names_are_too_many(built):
     printed = run("audit", "Kuikensloep", "Barkas", "Vlet", "--data", built.data)
     assert printed.exit_code == 2

@@ -12,18 +12,21 @@ from dataclasses import replace
 import polars as pl
 import pytest
 
+from pipeline.method import shipped_method
 from pipeline.simulate import World, WorldSettings, simulate_world
-from tests.conftest import Workbench
+from tests.warehouse.edition_bench import EditionBench
 from warehouse.archive.write import write_simulated_archive
+from warehouse.database import build_database
 
 SEASONS = (2009, 2010, 2011, 2014, 2015, 2016)
 SETTINGS = WorldSettings(SEASONS, tows_per_season=5, rate_hz=20, seed=6)
+METHOD = "rebased"
 
 
 @pytest.fixture(scope="module")
-def hard(tmp_path_factory) -> Workbench:
+def hard(tmp_path_factory) -> EditionBench:
     root = tmp_path_factory.mktemp("hard")
-    bench = Workbench(root / "archive", root / "data")
+    bench = EditionBench(root / "archive", root / "data")
     world = _one_boat_heavier(simulate_world(SETTINGS))
     write_simulated_archive(bench.archive, world)
     _edit(bench, "sleeplijsten/sleeplijst_2009.csv", _renumbered)
@@ -33,7 +36,11 @@ def hard(tmp_path_factory) -> Workbench:
     with (bench.archive / "archief.toml").open("a", encoding="utf-8") as toml:
         toml.writelines(f'\n[[set_aside]]\ndate = {day}\nreason = "storm"\n' for day in days)
         toml.write('\n[[log_replaced]]\ndate = 2011-04-01\nlog = "log1"\nreason = "worn"\n')
-    bench.rebuild(["rebased"])
+    bench.rebuild((shipped_method(METHOD),))
+    asked = ("log_factors", "season_links", "season_steps")
+    about = pl.DataFrame({"key": ["simulated"], "value": ["true"]})
+    tables = {name: bench.store.read(name, METHOD) for name in asked}
+    build_database(bench.store.database, tables | {"about": about})
     return bench
 
 
@@ -50,7 +57,7 @@ def _one_boat_heavier(world: World) -> World:
     return replace(world, tows=tuple(tows))
 
 
-def _edit(bench: Workbench, path: str, change: Callable[[str], str]) -> None:
+def _edit(bench: EditionBench, path: str, change: Callable[[str], str]) -> None:
     file = bench.archive / path
     file.write_bytes(change(file.read_bytes().decode("cp1252")).encode("cp1252"))
 
@@ -68,16 +75,16 @@ def _last_two_in_april(text: str) -> str:
     return re.sub(r"(?m)^(2011-00[45].)[\d-]+", r"\g<1>2011-04-01", text)
 
 
-def seasons(bench: Workbench) -> dict[int, dict]:
-    return {row["season"]: row for row in bench.table("log_factors").to_dicts()}
+def seasons(bench: EditionBench) -> dict[int, dict]:
+    return {row["season"]: row for row in bench.store.read("log_factors", METHOD).to_dicts()}
 
 
 def test_a_season_without_repeats_is_not_determined_and_uses_what_is_prescribed(hard):
     row = seasons(hard)[2009]
     assert (row["source"], row["factor"], row["lo"]) == ("prescribed", 1.06, None)
-    links = hard.table("season_links").filter(pl.col("season") == 2009)
+    links = hard.store.read("season_links", METHOD).filter(pl.col("season") == 2009)
     assert links["source"].to_list() == ["not determined"]
-    curves = hard.table("curves").filter(pl.col("season") == 2009)
+    curves = hard.store.read("curves", METHOD).filter(pl.col("season") == 2009)
     assert curves["cw_kg_m"].null_count() < curves.height
 
 
@@ -95,11 +102,11 @@ def test_few_boats_give_wide_intervals_that_hold_the_truth(hard):
 
 
 def test_each_part_of_a_season_has_its_factor_and_its_tows_use_it(hard):
-    links = hard.table("season_links").filter(
+    links = hard.store.read("season_links", METHOD).filter(
         (pl.col("season") == 2011) & (pl.col("log") == "log1")
     )
     assert links["part"].to_list() == [0, 1]
-    points = hard.table("run_points").join(hard.table("tows"), on="tow_id")
+    points = hard.store.read("run_points", METHOD).join(hard.store.read("tows"), on="tow_id")
     used = points.filter(pl.col("season") == 2011).drop_nulls("speed_factor")
     found = used.group_by("log1_part").agg(pl.col("speed_factor").unique()).sort("log1_part")
     assert found["speed_factor"].explode().to_list() == pytest.approx(links["factor"].to_list())

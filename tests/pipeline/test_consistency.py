@@ -1,9 +1,14 @@
 """Consistency of boats: against independent implementations, known truth, and degenerate input."""
 
+from dataclasses import replace
+
 import numpy as np
 import polars as pl
 import pytest
+import statsmodels.api as sm
 from scipy import optimize, stats
+from statsmodels.regression.mixed_linear_model import MixedLM, VCSpec
+from statsmodels.stats.meta_analysis import combine_effects
 
 from pipeline.consistency import (
     ERAS,
@@ -20,6 +25,8 @@ from pipeline.consistency import (
     type_outliers,
     variance_components,
 )
+from pipeline.consistency.lines import LN_CW, quantities
+from pipeline.consistency.observed import newest
 from tests.pipeline.consistency_fleet import fleet
 from warehouse.schemas import conform
 
@@ -71,53 +78,60 @@ def test_fit_finds_the_minimum_that_another_optimiser_finds():
     assert found.sd == pytest.approx(np.sqrt(other.x), abs=0.02 * problem.spread)
 
 
-def test_with_no_true_spread_the_line_is_weighted_least_squares():
+def one_row_a_boat(variance, true_sd=0.0, seed=3):
+    rng = np.random.default_rng(seed)
+    x = sm.add_constant(rng.normal(size=12))
+    y = x @ [1.0, 2.0] + np.sqrt(variance + true_sd**2) * rng.normal(size=12)
+    return mixed.Problem.of(y, x, variance, range(12))
+
+
+def assert_same_line(fit, other):
+    """Coefficients and 95 % intervals of a fitted line are those of a result of statsmodels."""
+    found = fit.coefficients()
+    assert found.value == pytest.approx(other.params, rel=1e-9)
+    assert np.column_stack([found.lo, found.hi]) == pytest.approx(other.conf_int(), rel=1e-9)
+
+
+def test_equal_errors_give_the_line_and_interval_of_ordinary_least_squares():
+    problem = one_row_a_boat(np.full(12, 1e-6), true_sd=1.0)
+    assert_same_line(mixed.fit(problem, (mixed.BOAT,)), sm.OLS(problem.y, problem.x).fit())
+
+
+def test_known_variances_give_the_line_and_interval_of_weighted_least_squares():
+    problem = one_row_a_boat(np.linspace(0.5, 3.0, 12) ** 2)
+    other = sm.WLS(problem.y, problem.x, weights=1 / problem.variance).fit()
+    assert_same_line(mixed.Fit(problem, (), (0.0, 0.0, 0.0)), other)
+
+
+def test_the_mean_of_unlike_boats_is_that_of_a_meta_analysis():
+    # At the same spread: statsmodels estimates it by Paule and Mandel, not by likelihood.
+    problem = one_row_a_boat(np.linspace(0.5, 3.0, 12) ** 2, true_sd=2.0)
+    other = combine_effects(problem.y, problem.variance, method_re="iterated", atol=1e-12)
+    only_mean = replace(problem, x=np.ones((12, 1)))
+    found = mixed.Fit(only_mean, (mixed.BOAT,), (np.sqrt(other.tau2), 0.0, 0.0))
+    assert found.beta[0] == pytest.approx(other.mean_effect_re, rel=1e-9)
+    half = stats.t.ppf(0.975, 11) * other.sd_eff_w_re_hksj
+    assert found.coefficients().hi[0] - found.beta[0] == pytest.approx(half, rel=1e-6)
+
+
+def test_variance_components_are_those_of_another_program():
     problem = grouped_data()
-    wls = mixed.Fit(problem, (), (0.0, 0.0, 0.0))
-    weight = 1.0 / np.sqrt(problem.variance)
-    beta, *_ = np.linalg.lstsq(problem.x * weight[:, None], problem.y * weight)
-    assert wls.beta == pytest.approx(beta, rel=1e-9)
-
-
-def test_equal_errors_give_the_interval_of_ordinary_least_squares():
-    # Balanced, so the true spread is estimated as the residual spread and the two must agree.
-    rng = np.random.default_rng(3)
-    x = rng.normal(size=12)
-    y = 1.0 + 2.0 * x + rng.normal(size=12)
-    problem = mixed.Problem.of(y, np.column_stack([np.ones(12), x]), np.full(12, 1e-6), range(12))
-    found = mixed.fit(problem, (mixed.BOAT,)).coefficients()
-    ols = stats.linregress(x, y)
-    half = stats.t.ppf(0.975, 10) * ols.stderr
-    assert found.value[1] == pytest.approx(ols.slope, rel=1e-6)
-    assert found.hi[1] - found.value[1] == pytest.approx(half, rel=1e-3)
-
-
-BCG = np.array(
-    [
-        [4, 119, 11, 128, 44], [6, 300, 29, 274, 55], [3, 228, 11, 209, 42],
-        [62, 13536, 248, 12619, 52], [33, 5036, 47, 5761, 13], [180, 1361, 372, 1079, 44],
-        [8, 2537, 10, 619, 19], [505, 87886, 499, 87892, 13], [29, 7470, 45, 7232, 27],
-        [17, 1699, 65, 1600, 42], [186, 50448, 141, 27197, 18], [5, 2493, 3, 2338, 33],
-        [27, 16886, 29, 17825, 33],
-    ]
-)  # fmt: skip
-"""Thirteen trials of a vaccine [Colditz and others 1994, JAMA 271:698]: treated ill and well,
-untreated ill and well, latitude. The R package metafor prints its results in its manual."""
-
-
-def test_the_model_gives_the_printed_results_of_another_program():
-    ill, well, ill_without, well_without, latitude = BCG.T.astype(float)
-    n, n_without = ill + well, ill_without + well_without
-    ln_risk = np.log(ill / n / (ill_without / n_without))
-    variance = 1 / ill - 1 / n + 1 / ill_without - 1 / n_without
-    level = mixed.fit(mixed.Problem.of(ln_risk, np.ones(13), variance, range(13)), (mixed.BOAT,))
-    assert level.sd[0] ** 2 == pytest.approx(0.3132, abs=5e-5)
-    assert level.beta[0] == pytest.approx(-0.7145, abs=5e-5)
-    x = np.column_stack([np.ones(13), latitude])
-    line = mixed.fit(mixed.Problem.of(ln_risk, x, variance, range(13)), (mixed.BOAT,))
-    # metafor stops iterating at a change of 1e-5.
-    assert line.sd[0] ** 2 == pytest.approx(0.0764, abs=6e-5)
-    assert line.beta == pytest.approx([0.2515, -0.0291], abs=5e-5)
+    problem = replace(problem, variance=np.full(len(problem.y), 1e-9))
+    groups = [np.eye(group.max() + 1)[group] for group in (problem.boat, problem.other)]
+    crossed = VCSpec(
+        ["boat", "other"],
+        [[[str(i) for i in range(g.shape[1])]] for g in groups],
+        [[g] for g in groups],
+    )
+    whole = np.zeros(len(problem.y))
+    other = MixedLM(problem.y, problem.x, whole, exog_vc=crossed).fit(reml=True)
+    found = mixed.fit(problem, mixed.COMPONENTS)
+    assert found.beta == pytest.approx(other.fe_params, rel=1e-3)
+    assert found.sd == pytest.approx(np.sqrt([*other.vcomp, other.scale]), rel=1e-3)
+    # The likelihood is flat at its top, so its height agrees more closely than the components.
+    assert problem.deviance(found.sd) == pytest.approx(
+        problem.deviance(np.sqrt([*other.vcomp, other.scale])), abs=1e-4
+    )
 
 
 def test_leaving_a_boat_out_equals_fitting_without_it():
@@ -192,6 +206,17 @@ def test_sharing_the_bend_hardly_moves_cw_at_the_declared_speed(like_boats):
 
 
 # Lines, outliers, tow speed
+
+
+def test_a_line_of_a_type_is_that_of_weighted_least_squares():
+    observed = newest(observe(*fleet(27, boats=12, b_cv=0.05, height_sd=0.03)))
+    row = type_consistency(observed).row(by_predicate=(pl.col("quantity") == LN_CW), named=True)
+    y, unit = quantities(observed)[LN_CW]
+    variance = unit * observed.column("run_sd_ratio") ** 2 + row["between_sd_ratio"] ** 2
+    x = sm.add_constant(np.log(observed.column("displacement_kg")))
+    other = sm.WLS(y, x, weights=1 / variance).fit()
+    assert row["slope"] == pytest.approx(other.params[1], rel=1e-6)
+    assert [row["slope_lo"], row["slope_hi"]] == pytest.approx(other.conf_int()[1], rel=1e-6)
 
 
 def test_intervals_of_slopes_cover_the_truth():

@@ -7,23 +7,33 @@ import pytest
 
 from pipeline.method import shipped_method
 from pipeline.recompute import recompute
+from pipeline.results import Recomputed
 from pipeline.simulate import WorldSettings
-from tests.worlds import measure
+from tests.worlds import Measured, measure
 
 SEASONS = (2014, 2015, 2016, 2017, 2018)
 T95 = 1.96
 
 
 @pytest.fixture(scope="module")
-def tows() -> pl.DataFrame:
-    """Curves with their truth; history, so with boats that were altered and nobody said so."""
-    world = measure(WorldSettings(SEASONS, 24, 20, 31))
+def world() -> Measured:
+    """History, so with boats that were altered and nobody said so."""
+    return measure(WorldSettings(SEASONS, 24, 20, 31))
+
+
+@pytest.fixture(scope="module")
+def made(world) -> Recomputed:
+    return recompute(shipped_method("rebased"), world.tows, world.blocks)
+
+
+@pytest.fixture(scope="module")
+def tows(world, made) -> pl.DataFrame:
+    """Curves with their truth."""
     nearest = pl.DataFrame(
         {"tow_id": list(world.nearest_b_m_s), "true_b_m_s": list(world.nearest_b_m_s.values())}
     )
-    curves = recompute(shipped_method("rebased"), world.tows, world.blocks).curves
     return (
-        curves.join(world.truth.drop("season"), on="tow_id")
+        made.curves.join(world.truth.drop("season"), on="tow_id")
         .join(nearest, on="tow_id")
         .drop_nulls("cw_kg_m")
     )
@@ -49,3 +59,19 @@ def test_intervals_of_b_hold_the_truth(tows):
     upper = found["b_hi_m_s"].fill_null(float("inf"))
     inside = found["true_b_m_s"].is_between(found["b_lo_m_s"], upper)
     assert inside.mean() >= least_share(found.height)
+
+
+def test_run_points_scatter_about_their_curves_as_the_unrest_within_the_runs_says(made):
+    """Each season's two estimates within a factor of two: the first also has in it what differs
+    from run to run (stream, helm), the second what is taken off (wind, inertia)."""
+    used = made.run_points.filter("used").with_columns(
+        pl.col("tow_id").str.head(4).alias("season"),
+        (pl.col("cw_kg_m") / pl.col("fitted_cw_kg_m") - 1.0).alias("residual"),
+    )
+    dof = pl.len() - 2 * pl.col("tow_id").n_unique()
+    seasons = used.group_by("season").agg(
+        ((pl.col("residual") ** 2).sum() / dof).sqrt().alias("scatter"),
+        (pl.col("u_ratio") ** 2).mean().sqrt().alias("within"),
+    )
+    assert seasons.height == len(SEASONS)
+    assert (seasons["scatter"] / seasons["within"]).is_between(0.5, 2.0).all()

@@ -8,6 +8,7 @@ import shutil
 import polars as pl
 import pytest
 
+import pipeline.ladder
 import pipeline.recompute
 from pipeline.errors import MissingKnowledgeError
 from pipeline.method import parse_method, shipped_method
@@ -77,6 +78,14 @@ def test_between_methods_only_steps_are_causes_and_they_multiply(published):
     assert {cause for cause, _ in found} <= {"method"}
     assert {"wind", "temperature", "run_point"} <= {step for _, step in found}
     assert_factors_multiply(lines)
+
+
+def test_log_factors_of_the_editions_are_used_and_not_estimated_again(published, monkeypatch):
+    def refuse(*_):
+        raise AssertionError("estimated again")
+
+    monkeypatch.setattr(pipeline.ladder, "log_factors", refuse)
+    assert_factors_multiply(diff(published.store, "2014-1", "2014-2").lines)
 
 
 def test_one_option_shows_under_its_own_step_alone(bench_of_editions):

@@ -191,7 +191,13 @@ def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     if tows.is_empty():
         return NO_LADDER
     blocks = stack_blocks(intake.all_blocks(store), runs)
-    return ladder(old.method, new.method, tows, blocks)
+    return ladder(old.method, new.method, tows, blocks, _links(old, new))
+
+
+def _links(old: Edition, new: Edition) -> tuple[pl.DataFrame, pl.DataFrame] | None:
+    """The log factors with which both editions were made; None where one does not have them."""
+    found = [edition.tables.get("season_links") for edition in (old, new)]
+    return None if found[0] is None or found[1] is None else (found[0], found[1])
 
 
 def _grounds(old: Edition, new: Edition, separated: set[object], code_known: bool) -> pl.DataFrame:

@@ -52,6 +52,7 @@ TABLES: Final = (
     "curves",
     "run_points",
     "log_factors",
+    "season_links",
     "ensemble",
     CHANGES,
 )

@@ -58,6 +58,9 @@ from warehouse.store import Store, table_digest
 from warehouse.tables import method_is_stale, runs_with_windows
 
 BOAT_FACTS: Final = ("ht_no", "name", "boat_type")
+MADE: Final = ("curves", "run_points", "log_factors", "season_links")
+"""What a method made of the tows, and an edition keeps."""
+
 PRINTED_METHOD: Final = "as-printed"
 LINE_SCHEMA: Final = {
     **{n: column.dtype for n, column in Register.columns().items() if n != CODE_FIELD.column},
@@ -146,7 +149,7 @@ def recomputed_edition(
     tables = {
         "tows": tows,
         "tow_runs": runs_with_windows(store),
-        **{name: store.read(name, method.name) for name in ("curves", "run_points", "log_factors")},
+        **{name: store.read(name, method.name) for name in MADE},
     }
     crews = store.read("listed_boats")
     lines = method_lines(tables, crews, terms.valid_from, method.validity, decisions)
