@@ -22,6 +22,7 @@ from pipeline.errors import BrokenPromiseError, HerijkError, MissingKnowledgeErr
 
 if TYPE_CHECKING:
     from pipeline.method import Method
+    from warehouse.store import Store
 
 app = typer.Typer(
     help="Recomputes the history of the Dutch rowing-sloop register from its tow tests.",
@@ -214,7 +215,7 @@ def audit(
     show(report | {"plots": [str(path) for path in drawn]}, audit_text.audit, as_json)
 
 
-def _plots(store: Store, report: dict[str, Any], folder: Path) -> list[Path]:
+def _plots(store: "Store", report: dict[str, Any], folder: Path) -> list[Path]:
     """The plots of an audit; none, and said so, where they cannot be written: the page stands."""
     from dashboards.audit_plots import write_audit_plots
 
