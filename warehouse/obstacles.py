@@ -76,9 +76,9 @@ def obstacles_explained(root: Path) -> Iterator[None]:
     """
     try:
         yield
-    except HerijkError:
+    except (HerijkError, KeyboardInterrupt, SystemExit):
         raise
-    except Exception as error:
+    except BaseException as error:  # a panic of a library in Rust is no Exception
         found = _obstacle(error)
         if found is None:
             raise

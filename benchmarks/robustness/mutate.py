@@ -85,7 +85,7 @@ class Ground:
         store = self.store
         intake.index(store, self.archive)
         for season in intake.stale_seasons(store, self.archive):
-            intake.read_season(store, self.archive, season, lambda tow, aside: None)
+            intake.read_season(store, self.archive, season, lambda *_: None)
             intake.collect_blocks(store, season)
         tables.collect_archive(store, SEEN)
         blocks = tables.run_blocks(store)
