@@ -38,6 +38,7 @@ WORLD = WorldSettings(seasons=(2009, 2014), tows_per_season=8, rate_hz=20, seed=
 STATES = ("archive-a", "archive-b")
 SETTLED = 10.0
 """Seconds: how long ago files seem to be written, so that their hashes are remembered."""
+PAUSE_S = 0.1
 
 
 @dataclass
@@ -157,8 +158,7 @@ def survive(root: Path, kills: int, seed: int, tell: Callable[[str], None] = pri
         _kill_one(ground, chosen.uniform(0.0, 1.1 * ground.seconds), outcome)
         finished(ground.start(ground.data))
         outcome.different += ground.digest(ground.data) != ground.expected[STATES[state]]
-        if outcome.kills % 10 == 0:
-            tell(f"{outcome.kills} of {kills} kills, {outcome.different} with other tables")
+        tell(f"{outcome.kills} of {kills} kills, {outcome.different} with other tables")
     said, _ = reader.communicate("stop\n", timeout=120)
     outcome.reads.update({what: int(n) for what, n in map(_cells, said.splitlines())})
     return outcome
@@ -197,7 +197,8 @@ def read_until_stopped(data: Path, expected: list[str]) -> None:
 
 
 def _told_to_stop() -> bool:
-    return bool(select.select([sys.stdin], [], [], 0)[0])
+    """Also a pause between two looks, so that the rebuild gets a share of the machine."""
+    return bool(select.select([sys.stdin], [], [], PAUSE_S)[0])
 
 
 def main() -> None:
