@@ -22,7 +22,7 @@ help:
 	@echo "make scale  measure one Dask worker against two, with an S3 server on this machine"
 	@echo "make accuracy  measure how near the truth the methods come, on simulated worlds"
 	@echo "make survive  kill 200 rebuilds at random moments and compare the tables after each"
-	@echo "make fuzz   throw 20,000 damaged files at the readers"
+	@echo "make fuzz   throw 20,000 damaged files at the readers, and put 300 faults in an archive"
 	@echo "make full-scale  memory and time of a rebuild of 1,000 tows; needs 20 GB and an hour"
 	@echo "make env    make the environment in .venv, and nothing more"
 	@echo "make clean  remove the environment, the demo and the caches"
@@ -85,6 +85,7 @@ survive: $(READY)
 
 fuzz: $(READY)
 	@PYTHONPATH=. $(BIN)/python benchmarks/robustness/fuzz.py 20000
+	@OPENBLAS_NUM_THREADS=1 PYTHONPATH=. $(BIN)/python benchmarks/robustness/mutate.py 300
 
 full-scale: $(READY)
 	@PYTHONPATH=. $(BIN)/python benchmarks/robustness/full_scale.py

@@ -37,9 +37,6 @@ SEASON_INDEX_SCHEMA: Final = {
 }
 """One row a listed tow: where its samples and blocks lie, or the fault that was found."""
 
-WORKERS: Final = min(2, pl.thread_pool_size())
-"""Tows read at the same time: no more than Polars may use threads."""
-
 SAMPLES_FORM: Final = {
     "compression": "zstd",
     "compression_level": 1,
@@ -90,7 +87,8 @@ def read_season(
         report(tow["tow_id"], row["reason_code"] is not None)
         return row | {"tow_id": tow["tow_id"]}
 
-    with ThreadPoolExecutor(WORKERS) as pool:
+    workers = min(2, pl.thread_pool_size())  # asked here: asking starts the threads
+    with ThreadPoolExecutor(workers) as pool:
         rows = list(pool.map(read, tows.sort("tow_id").iter_rows(named=True)))
     index = pl.DataFrame(rows, schema=SEASON_INDEX_SCHEMA)
     _remove_unlisted(store, profile.season, index)

@@ -31,6 +31,11 @@ _DAMAGED_RECORDS: Final = (
     "the history of runs"
 )
 
+_CLOSED_RECORDS: Final = (
+    "Dagster's records in {root}/dagster cannot be opened: this process may not open more files "
+    "(allow more: ulimit -n 1024; in systemd LimitNOFILE=1024), or has no right to that folder"
+)
+
 _BY_NUMBER: Final = {
     errno.ENOSPC: _FULL,
     errno.EDQUOT: _FULL,
@@ -52,6 +57,7 @@ _BY_WORDS: Final = {
     "readonly database": _FORBIDDEN,
     "permission denied": _FORBIDDEN,
     "too many open files": _HANDLES,
+    "unable to open database file": _CLOSED_RECORDS,
     "input/output error": _BROKEN_DISK,
     "disk i/o error": _BROKEN_DISK,
     "file is not a database": _DAMAGED_RECORDS,
@@ -70,9 +76,9 @@ def obstacles_explained(root: Path) -> Iterator[None]:
     """
     try:
         yield
-    except HerijkError:
+    except (HerijkError, KeyboardInterrupt, SystemExit):
         raise
-    except Exception as error:
+    except BaseException as error:  # a panic of a library in Rust is no Exception
         found = _obstacle(error)
         if found is None:
             raise

@@ -144,7 +144,9 @@ def independent(data: bytes) -> np.ndarray:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
         text = data.decode("cp1252")
+    usual = csv.field_size_limit(len(text) + 1)  # of the whole process, so put back
     rows = list(csv.reader(io.StringIO(text.rstrip("\r\n"), newline="\n"), delimiter=";"))[1:]
+    csv.field_size_limit(usual)
     return np.array([[_python_number(cell) for cell in row[:5]] for row in rows])
 
 

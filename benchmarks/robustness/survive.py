@@ -38,6 +38,7 @@ WORLD = WorldSettings(seasons=(2009, 2014), tows_per_season=8, rate_hz=20, seed=
 STATES = ("archive-a", "archive-b")
 SETTLED = 10.0
 """Seconds: how long ago files seem to be written, so that their hashes are remembered."""
+PAUSE_S = 0.1
 
 
 @dataclass
@@ -112,7 +113,7 @@ class Ground:
             begin = time.monotonic()
             finished(self.start(fresh))
             self.seconds = time.monotonic() - begin
-            self.expected[name] = digest_in_process(fresh)
+            self.expected[name] = self.digest(fresh)
         assert len(set(self.expected.values())) == len(STATES)
 
     def switch(self, name: str) -> None:
@@ -125,6 +126,12 @@ class Ground:
         """Starts a rebuild."""
         return run_forked(lambda: rebuild(self.archive, data, METHODS, Quiet()))
 
+    def digest(self, data: Path) -> str:
+        """The hash of the tables, computed elsewhere: this process must start no threads."""
+        written = self.root / "digest"
+        finished(run_forked(lambda: written.write_text(digests(data))))
+        return written.read_text()
+
 
 def _change(archive: Path) -> None:
     """Spoils one tow and changes the weight of another."""
@@ -133,12 +140,6 @@ def _change(archive: Path) -> None:
     path = archive / "sleeplijsten/sleeplijst_2014.csv"
     lines = path.read_text("utf-8").split("\n")
     path.write_text("\n".join([*lines[:2], *lines[3:]]), "utf-8")
-
-
-def digest_in_process(data: Path) -> str:
-    """The hash of the tables, computed elsewhere: this process must start no threads."""
-    asked = [sys.executable, __file__, "--digest", str(data)]
-    return subprocess.run(asked, check=True, capture_output=True, text=True).stdout.strip()
 
 
 def survive(root: Path, kills: int, seed: int, tell: Callable[[str], None] = print) -> Outcome:
@@ -156,9 +157,8 @@ def survive(root: Path, kills: int, seed: int, tell: Callable[[str], None] = pri
         ground.switch(STATES[state])
         _kill_one(ground, chosen.uniform(0.0, 1.1 * ground.seconds), outcome)
         finished(ground.start(ground.data))
-        outcome.different += digest_in_process(ground.data) != ground.expected[STATES[state]]
-        if outcome.kills % 10 == 0:
-            tell(f"{outcome.kills} of {kills} kills, {outcome.different} with other tables")
+        outcome.different += ground.digest(ground.data) != ground.expected[STATES[state]]
+        tell(f"{outcome.kills} of {kills} kills, {outcome.different} with other tables")
     said, _ = reader.communicate("stop\n", timeout=120)
     outcome.reads.update({what: int(n) for what, n in map(_cells, said.splitlines())})
     return outcome
@@ -197,14 +197,12 @@ def read_until_stopped(data: Path, expected: list[str]) -> None:
 
 
 def _told_to_stop() -> bool:
-    return bool(select.select([sys.stdin], [], [], 0)[0])
+    """Also a pause between two looks, so that the rebuild gets a share of the machine."""
+    return bool(select.select([sys.stdin], [], [], PAUSE_S)[0])
 
 
 def main() -> None:
     """Runs the suite and prints the figures; exit status 1 when anything was lost."""
-    if sys.argv[1:2] == ["--digest"]:
-        print(digests(Path(sys.argv[2])))
-        return
     if sys.argv[1:2] == ["--read"]:
         read_until_stopped(Path(sys.argv[2]), sys.argv[3:])
         return

@@ -29,8 +29,12 @@ PROFILE_DROP: Final = 3.841458820694124
 PROFILE_PRECISION: Final = 3e-3
 """Precision of the ends of a profile interval: of the deviance, and of the sd as a share."""
 
-SMALLEST_SHARE: Final = 1e-9
-"""Least measuring error and least component, as a share of the spread of y: keeps V invertible."""
+SMALLEST_SHARE: Final = 1e-4
+"""Least measuring error, as a share of the size of y.
+
+Points that happen to lie exactly on a curve seem to have no error. Sherman-Morrison subtracts
+numbers as large as (boat's sd / error)^2, so that below 1e-8 no digit is left; 1e-4 leaves eight.
+"""
 
 
 class Coefficients(NamedTuple):

@@ -8,6 +8,15 @@ from assets.resources import Quiet, Setup
 from tests.assets.test_rebuild import assert_same_tables
 from tests.conftest import METHODS, SMALL, Workbench
 
+FORKED = {
+    "execution": {
+        "config": {
+            "multiprocess": {"start_method": {"forkserver": {"preload_modules": [__name__]}}}
+        }
+    }
+}
+"""Each step in a process forked from one that has imported everything: no import per step."""
+
 
 def repository_of(archive: str, data: str) -> dg.Definitions:
     """The jobs for two folders; loaded again in every process."""
@@ -38,7 +47,7 @@ def test_the_multiprocess_executor_gives_identical_tables(built, tmp_path, monke
                 "tests.assets.test_executors", "job_of", (str(bench.archive), str(bench.data), name)
             )
             tags = {} if partition is None else {"dagster/partition": partition}
-            result = dg.execute_job(job, instance, tags=tags, raise_on_error=True)
+            result = dg.execute_job(job, instance, run_config=FORKED, tags=tags)
             assert result.success
             assert {e.event_type_value for e in result.all_events} >= {"STEP_WORKER_STARTED"}
     assert_same_tables(bench.tables(), built.tables())

@@ -82,9 +82,53 @@ from pathlib import Path
 from assets.rebuild import rebuild
 from assets.resources import Quiet
 from pipeline.errors import UnavailableError
-import dashboards.site
-kind = resource.RLIMIT_{limit}
-resource.setrlimit(kind, ({soft}, resource.getrlimit(kind)[1]))
+import dashboards.report_page, dashboards.site
+_, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+for limit in (14, 24, 200):
+    resource.setrlimit(resource.RLIMIT_NOFILE, (limit, hard))
+    try:
+        rebuild(Path(sys.argv[1]), Path(sys.argv[2]), ["as-published", "rebased-2015"], Quiet())
+        print(limit, "done")
+    except UnavailableError as error:
+        print(limit, str(error))
+"""
+
+
+def test_without_file_handles_it_stops_with_the_way_out_and_goes_on_with_more(bench, built):
+    """Where handles run out differs from one machine to the next; a half success is none."""
+    file = samples_files(bench, 2009)[3]
+    kept = spoil(file)
+    bench.rebuild()
+    file.write_bytes(kept)
+    run = subprocess.run(
+        [sys.executable, "-c", LIMITED, bench.archive, bench.data],
+        cwd=ROOT, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert run.returncode == 0, run.stderr
+    few, *_, enough = run.stdout.splitlines()
+    assert "may not open more files" in few
+    assert all(line.endswith("done") or "more files" in line for line in run.stdout.splitlines())
+    assert enough == "200 done"
+    assert_same_tables(bench.tables(), built.tables())
+    pages = [{p.name for p in b.data.glob("site/**/*") if p.is_file()} for b in (bench, built)]
+    assert pages[0] == pages[1]
+
+
+def test_a_panic_in_a_library_is_explained_too(tmp_path):
+    """Rust's panics come as BaseException."""
+    panic = type("PanicException", (BaseException,), {})
+    with pytest.raises(UnavailableError, match="more files"), obstacles_explained(tmp_path):
+        raise panic('Os { code: 24, message: "Too many open files" }')
+
+
+NOBODY = 65534
+AS_NOBODY = """
+import os, sys
+from pathlib import Path
+from assets.rebuild import rebuild
+from assets.resources import Quiet
+from pipeline.errors import UnavailableError
+os.setuid(int(sys.argv[3]))
 try:
     rebuild(Path(sys.argv[1]), Path(sys.argv[2]), ["as-published", "rebased-2015"], Quiet())
 except UnavailableError as error:
@@ -92,19 +136,19 @@ except UnavailableError as error:
 """
 
 
-@pytest.mark.parametrize(("limit", "soft", "words"), [("NOFILE", 14, "may not open more files")])
-def test_without_file_handles_it_stops_with_the_way_out(bench, built, limit, soft, words):
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root can become somebody else")
+def test_in_a_folder_of_somebody_else_it_stops_with_the_way_out(bench, built):
+    for folder in (bench.data, *bench.data.parents[:3]):
+        folder.chmod(0o755)
     spoil(samples_files(bench, 2009)[3])
-    done = subprocess.run(
-        [sys.executable, "-c", LIMITED.format(limit=limit, soft=soft), bench.archive, bench.data],
+    run = subprocess.run(
+        [sys.executable, "-c", AS_NOBODY, bench.archive, bench.data, str(NOBODY)],
         cwd=ROOT, capture_output=True, text=True, check=False,
     )  # fmt: skip
-    assert done.returncode == 1, done.stderr
-    assert words in done.stderr
-    assert "Traceback" not in done.stderr
+    assert run.returncode == 1
+    assert "cannot be written" in run.stderr
+    assert "Traceback" not in run.stderr
     assert_same_tables(bench.tables(), built.tables())
-    bench.rebuild()
-    assert bench.table("quarantine").height == 1
 
 
 def damaged(path, how):

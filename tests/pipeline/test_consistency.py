@@ -67,6 +67,21 @@ def test_deviance_equals_the_dense_formula(sd):
     assert problem.deviance(sd) == pytest.approx(dense_deviance(problem, sd), rel=1e-10)
 
 
+def test_a_tow_without_any_error_keeps_the_fit_exact():
+    """Runs that lie exactly on their curve: beside a spread of boats no digit was left."""
+    y = np.array([0.367, 0.464, 0.569, 0.481, 0.508, 0.516])
+    x = np.array(
+        [[1, 0, 0], [0, 1, 0.009], [0, 1, -0.091], [0, 1, 0.023], [0, 1, 0.059], [1, 0, 0]]
+    )
+    problem = mixed.Problem.of(
+        y, x, [0.0, 9.6e-5, 1.1e-3, 3.8e-4, 2.2e-4, 7.4e-6], range(6), [0] * 6
+    )
+    for sd in (0.001, 0.1, 10.0):
+        dense = dense_deviance(problem, (sd, 0.0, 0.0))
+        assert problem.deviance((sd, 0.0, 0.0)) == pytest.approx(dense, abs=1e-4)
+    assert np.isfinite(mixed.fit(problem, (mixed.BOAT,)).coefficients()).all()
+
+
 def test_fit_finds_the_minimum_that_another_optimiser_finds():
     problem = grouped_data()
     found = mixed.fit(problem, mixed.COMPONENTS)

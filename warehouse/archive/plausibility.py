@@ -25,7 +25,8 @@ SPEED_SPIKE_RATIO: Final = 3.0
 SPEEDS_AGREE_RATIO: Final = (0.6, 1.4)
 RESISTANCE_KG_M: Final = (2.0, 500.0)
 """Mean force over intended speed squared; sloops lie between 15 and 60."""
-FORCE_SPIKE_RATIO: Final = 20.0
+FORCE_SPIKE_RATIO: Final = (-3.0, 20.0)
+"""Of the median. A tow line cannot push: what a slack one reads is noise about zero."""
 WIND_SPEED_M_S: Final = (0.0, 40.0)
 WIND_MEAN_M_S: Final = 20.0
 WIND_ANGLE_DEG: Final = (-180.0, 360.0)
@@ -369,16 +370,18 @@ def _check_speed(runs: list[_Run], tow: Mapping[str, Any]) -> None:
 def _check_spikes(runs: list[_Run], tow: Mapping[str, Any]) -> None:
     for run in runs:
         # The median, as a large spike lifts the mean it is compared with.
-        force_limit = FORCE_SPIKE_RATIO * abs(float(np.median(run.channels["force"])))
-        speed_limit = SPEED_SPIKE_RATIO * run.intended_m_s
-        for key, limit, unit in (
-            ("force", force_limit, "N"),
-            ("log1", speed_limit, "m/s"),
-            ("log2", speed_limit, "m/s"),
-            ("gps", speed_limit, "m/s"),
+        median = abs(float(np.median(run.channels["force"])))
+        force = (FORCE_SPIKE_RATIO[0] * median, FORCE_SPIKE_RATIO[1] * median)
+        fastest = SPEED_SPIKE_RATIO * run.intended_m_s
+        speed = (-fastest, fastest)
+        for key, limits, unit in (
+            ("force", force, "N"),
+            ("log1", speed, "m/s"),
+            ("log2", speed, "m/s"),
+            ("gps", speed, "m/s"),
         ):
             if key in run.channels:
-                _check_within(run, tow, key, (-limit, limit), unit)
+                _check_within(run, tow, key, limits, unit)
 
 
 def _check_within(

@@ -114,6 +114,7 @@ TOW_CASES: dict[str, tuple[Spoil, str, str, int | None]] = {
     "force as angle": (swap_header("kracht [N]", "wind [gra]"), "swapped_columns", FIRST, 1),
     "force far too large": (scaled(4, 1000), "implausible_value", FIRST, line_of(1)),
     "force spike": (constant(4, "-99999,9", line_of(3, 7), line_of(3, 7)), "implausible_value", FIRST, line_of(3, 7)),
+    "force pushes": (constant(4, "-3000", line_of(3, 7), line_of(3, 7)), "implausible_value", FIRST, line_of(3, 7)),
     "wind too strong": (constant(5, "41", line_of(4, 9), line_of(4, 9)), "implausible_value", FIRST, line_of(4, 9)),
     "angle too large": (constant(6, "361", line_of(4, 9), line_of(4, 9)), "implausible_value", FIRST, line_of(4, 9)),
     "gps off": (scaled(3, 1.5, line_of(2), line_of(2, ROWS - 1)), "implausible_value", FIRST, line_of(2)),
