@@ -94,7 +94,8 @@ def rebuild(
         HerijkError: there is no archive, a promise was broken, another rebuild is at work, or the
             machine is in the way.
     """
-    settings = read_settings(data)
+    with obstacles_explained(data):
+        settings = read_settings(data)
     setup = Setup(
         archive=str(archive),
         data=str(data),

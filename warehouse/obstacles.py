@@ -36,6 +36,11 @@ _CLOSED_RECORDS: Final = (
     "(allow more: ulimit -n 1024; in systemd LimitNOFILE=1024), or has no right to that folder"
 )
 
+_NO_DRAWING: Final = (
+    "a figure could not be drawn: the drawing library stopped, most often because this process may "
+    "not open more files (allow more: ulimit -n 1024; in systemd LimitNOFILE=1024)"
+)
+
 _BY_NUMBER: Final = {
     errno.ENOSPC: _FULL,
     errno.EDQUOT: _FULL,
@@ -58,6 +63,7 @@ _BY_WORDS: Final = {
     "permission denied": _FORBIDDEN,
     "too many open files": _HANDLES,
     "unable to open database file": _CLOSED_RECORDS,
+    "receiver is gone": _NO_DRAWING,
     "input/output error": _BROKEN_DISK,
     "disk i/o error": _BROKEN_DISK,
     "file is not a database": _DAMAGED_RECORDS,

@@ -84,7 +84,7 @@ from assets.resources import Quiet
 from pipeline.errors import UnavailableError
 import dashboards.report_page, dashboards.site
 _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-for limit in (14, 24, 200):
+for limit in (14, 200):
     resource.setrlimit(resource.RLIMIT_NOFILE, (limit, hard))
     try:
         rebuild(Path(sys.argv[1]), Path(sys.argv[2]), ["as-published", "rebased-2015"], Quiet())
@@ -105,9 +105,8 @@ def test_without_file_handles_it_stops_with_the_way_out_and_goes_on_with_more(be
         cwd=ROOT, capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert run.returncode == 0, run.stderr
-    few, *_, enough = run.stdout.splitlines()
+    few, enough = run.stdout.splitlines()
     assert "may not open more files" in few
-    assert all(line.endswith("done") or "more files" in line for line in run.stdout.splitlines())
     assert enough == "200 done"
     assert_same_tables(bench.tables(), built.tables())
     pages = [{p.name for p in b.data.glob("site/**/*") if p.is_file()} for b in (bench, built)]
@@ -119,6 +118,8 @@ def test_a_panic_in_a_library_is_explained_too(tmp_path):
     panic = type("PanicException", (BaseException,), {})
     with pytest.raises(UnavailableError, match="more files"), obstacles_explained(tmp_path):
         raise panic('Os { code: 24, message: "Too many open files" }')
+    with pytest.raises(UnavailableError, match="figure"), obstacles_explained(tmp_path):
+        raise ValueError("Failed to send SVG conversion request: receiver is gone")
 
 
 NOBODY = 65534

@@ -39,23 +39,6 @@ def test_a_report_names_what_was_set_aside_and_what_that_did_to_the_drafts(bench
     assert {line["change"] for line in report["lines"]} <= {"added", "changed", "removed"}
 
 
-def test_a_changed_speed_is_named_as_the_cause_of_its_line(bench):
-    bench.rebuild()
-    row = bench.store.read("listed_tows").filter(season=2014).row(0, named=True)
-    lines = (bench.archive / row["list_path"]).read_text("utf-8").split("\n")
-    old = lines[row["list_line"] - 1]
-    speed = f"{row['declared_speed_m_s']:.2f}".replace(".", ",")
-    assert speed in old
-    higher = f"{row['declared_speed_m_s'] + 0.05:.2f}".replace(".", ",")
-    lines[row["list_line"] - 1] = old.replace(f";{speed};", f";{higher};", 1)
-    (bench.archive / row["list_path"]).write_text("\n".join(lines), "utf-8")
-    report = bench.rebuild().report
-    assert [(r["tow_id"], r["what"]) for r in report["tow_rows"]] == [(row["tow_id"], "list")]
-    mine = [line for line in report["lines"] if line["fsn_no"] == row["fsn_no"]]
-    causes = {c["cause"] for line in mine for c in json.loads(line["causes"])}
-    assert causes == {"input"}
-
-
 def test_a_second_rebuild_reports_that_nothing_changed(bench):
     bench.rebuild()
     page = (bench.data / "report" / "latest.html").read_text("utf-8")

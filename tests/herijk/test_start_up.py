@@ -9,9 +9,9 @@ HEAVY = {"altair", "dagster", "dataframely", "duckdb", "numpy", "polars", "scipy
 NEEDED = {
     "herijk.cli": set(),
     "pipeline.method": set(),
-    "warehouse.reports": {"duckdb", "polars"},
+    "warehouse.reports": {"duckdb", "numpy", "polars"},
     "warehouse.audit": {"duckdb", "numpy", "polars", "scipy"},
-    "warehouse.editions.lineage": {"polars"},
+    "warehouse.editions.lineage": {"numpy", "polars"},
 }
 UNUSED_PARTS = {"scipy.optimize", "scipy.signal", "scipy.sparse", "scipy.special", "scipy.stats"}
 
