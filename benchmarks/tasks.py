@@ -21,7 +21,7 @@ from warehouse import lake, tables
 from warehouse.archive.files import read_bytes
 from warehouse.archive.profile import read_profiles
 from warehouse.rebase import rebase
-from warehouse.store import Store
+from warehouse.store import Store, write_parquet
 
 Work = Callable[[], Any]
 SIDES = {"as_it_was": 0.2, "changed": 0.3}
@@ -71,7 +71,7 @@ def parse_text(tows_per_season: int, count: int, write: bool) -> Work:
     def one(file: tuple[str, str]) -> None:
         frame = _parse(Path(file[1]))
         if write:
-            lake.write_samples(frame, folder / f"{file[0]}.parquet")
+            write_parquet(frame, folder / f"{file[0]}.parquet", form=lake.SAMPLES_FORM)
 
     return lambda: _both(one, _text_files(world, tows).items())
 
