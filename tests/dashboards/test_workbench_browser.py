@@ -68,6 +68,14 @@ def is_own(address_asked, url):
     return address_asked.startswith((url, "data:", "blob:"))
 
 
+def draw_all(page):
+    """Draws what is out of view too, as printing does."""
+    page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
+    page.wait_for_function(
+        "[...document.querySelectorAll('figure')].every(f => f.querySelector('svg[role=img]'))"
+    )
+
+
 def option(page, name, place=0):
     return page.locator(f"[data-option='{name}']").nth(place)
 
@@ -98,6 +106,7 @@ def test_it_opens_and_draws_everything(page, width):
     page.reload()
     page.wait_for_function(IDLE)
     assert "GESIMULEERD" in page.locator(".simulated").inner_text()
+    draw_all(page)
     assert page.locator("figure").count() == page.locator("figure svg[role=img]").count() > 0
     assert page.evaluate("document.documentElement.scrollWidth") <= columns
     site.SHOTS.mkdir(exist_ok=True)
