@@ -5,6 +5,8 @@ from typing import Any, Final
 
 from herijk.audit_text.words import (
     AGAINST,
+    LETTERS,
+    LINES,
     NOTE,
     QUANTITIES,
     REASONS,
@@ -74,7 +76,10 @@ def _first_title(under: Report) -> str:
     lines = [line_of(figures, "cw_standard_kg_m", "weight_kg") for figures in under.values()]
     speeds = {f"{x['standard_speed_m_s']:.2f} m/s" for x in lines if "standard_speed_m_s" in x}
     at = f" at a standard {' or '.join(sorted(speeds))}" if speeds else ""
-    return f"1. Do A [kg/m] and B [m/s] follow weight or tow speed? Does Cw [kg/m]{at}?"
+    return (
+        "1. Do A [kg/m] and B [m/s] follow weight or tow speed, and the bend q weight? Does Cw "
+        f"[kg/m]{at}?"
+    )
 
 
 def _each(under: Report, say: Callable[[Report], list[str]]) -> list[str]:
@@ -91,16 +96,16 @@ def _each(under: Report, say: Callable[[Report], list[str]]) -> list[str]:
 def _lines(under: Report) -> list[str]:
     """The table of lines, what is not claimed, and which quantity lies closest together."""
     cells, silent = [], []
-    for quantity, letter in QUANTITIES.items():
-        for explaining, (against, _, unit) in AGAINST.items():
-            label = f"{letter} per {unit}"
-            for method, figures in under.items():
-                line = line_of(figures, quantity, explaining)
-                if line["reason"]:
-                    silent.append((method, f"{letter} against {against}", nothing(line)))
-                    continue
-                cells.append((label, method, _slope(line, explaining), *_line_figures(line)))
-                label = ""
+    for quantity, explaining in LINES:
+        letter, (against, _, unit) = LETTERS[quantity], AGAINST[explaining]
+        label = f"{letter} per {unit}"
+        for method, figures in under.items():
+            line = line_of(figures, quantity, explaining)
+            if line["reason"]:
+                silent.append((method, f"{letter} against {against}", nothing(line)))
+                continue
+            cells.append((label, method, _slope(line, explaining), *_line_figures(line)))
+            label = ""
     label = "Cw, power of m"
     for method, figures in under.items():
         line = line_of(figures, "ln_cw_standard", "ln_displacement")
@@ -115,7 +120,9 @@ def _lines(under: Report) -> list[str]:
 
 def _slope(line: Report, explaining: str) -> str:
     step = AGAINST[explaining][1]
-    return interval(*(step * line[end] for end in ("slope", "slope_lo", "slope_hi")), digits=2)
+    digits = 3 if line["quantity"] == "q" else 2
+    ends = (step * line[end] for end in ("slope", "slope_lo", "slope_hi"))
+    return interval(*ends, digits=digits)
 
 
 def _line_figures(line: Report) -> tuple[Any, ...]:

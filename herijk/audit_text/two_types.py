@@ -38,6 +38,7 @@ def _headline(eras: list[str]) -> list[Row]:
     ]
     return [
         *lines,
+        Row("q against weight", "q weight_kg", _line("q", "weight_kg")),
         Row("spread about weight", "closest", _spread),
         Row("equal bends possible", "bends", _bends),
         Row("q per 10 % tow speed", "speed_trend", _trend),
@@ -62,7 +63,8 @@ def _line(quantity: str, explaining: str) -> Cell:
         line = line_of(under, quantity, explaining)
         if line["reason"]:
             return _nothing(line)
-        slope = f"{AGAINST[explaining][1] * line['slope']:+.2f}"
+        digits = 3 if quantity == "q" else 2
+        slope = f"{AGAINST[explaining][1] * line['slope']:+.{digits}f}"
         return f"{_trend_seen(line)}, {slope}, {share(line['r2'])}, n {line['n']}"
 
     return cell

@@ -3,14 +3,12 @@
 Needs Chromium, like the tests of the site. Screenshots go to `ci-output/`.
 """
 
-import threading
-
 import pytest
 
 from dashboards.workbench.bench import Base, Bench, Question
-from dashboards.workbench.server import address, listen, serving
 from pipeline.method import Steps, parse_method
 from tests.dashboards import test_browser as site
+from tests.dashboards.conftest import served
 from warehouse.history import History
 from warehouse.store import Store
 
@@ -27,13 +25,8 @@ def bench(built, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def url(bench):
-    held = listen(0)
-    server = serving(bench)
-    thread = threading.Thread(target=server.run, kwargs={"sockets": [held]})
-    thread.start()
-    yield address(held)
-    server.should_exit = True
-    thread.join()
+    with served(bench) as address:
+        yield address
 
 
 @pytest.fixture(scope="module")

@@ -1,5 +1,5 @@
 // Charts of an answer: drawn once, then given new rows, when they are in view.
-import { all, byId, root, start, state, wide } from "./page.js";
+import { all, byId, root, state, wide } from "./page.js";
 import { outdate, updateSeen, watch } from "./seen.js";
 import { chooseBoat, downloadRows } from "./tables.js";
 
@@ -14,13 +14,12 @@ const toBoat = (row) => ({ ...row, page: "#boat" }); // a point of a boat leads 
 
 const ROWS = {
   changed: () => state.answer.register.filter((row) => row.change === "changed").map(toBoat),
-  types: (side) => state.answer.types.filter((row) =>
-    row.method === (side === "before" ? state.answer.before : start.trial)
-    && ["", row.boat_type].includes(byId("boat_type").value)).map(toBoat),
+  types: () => state.answer.types.filter((row) =>
+    ["", row.boat_type].includes(byId("boat_type").value)).map(toBoat),
   boat_figure: () => state.answer.boat_figure.filter((row) => row.tow_id === byId("tow").value),
 };
 
-const figureRows = ({ dataset: { data, side } }) => (ROWS[data] ?? (() => state.answer[data]))(side);
+const figureRows = ({ dataset: { data } }) => (ROWS[data] ?? (() => state.answer[data]))();
 
 const drawing = new Map(); // figure -> its drawing on the way
 
@@ -49,8 +48,14 @@ async function drawNow(figure) {
   const spec = structuredClone(window.HERIJK_FIGURES[root.lang][figure.dataset.figure]);
   spec.datasets = { rows: structuredClone(rows) };
   const columns = wide.matches ? 2 : 1;
-  spec.width = Math.max(Math.min(spec.width, byId("results").clientWidth / columns - 110), 190);
-  spec.height = Math.min(spec.height, 260);
+  const room = byId("results").clientWidth / columns - 110;
+  if (spec.facet) {
+    spec.columns = columns;
+    spec.spec.width = Math.max(Math.min(spec.spec.width, room / columns), 190);
+  } else {
+    spec.width = Math.max(Math.min(spec.width, room), 190);
+    spec.height = Math.min(spec.height, 260);
+  }
   const place = figure.querySelector(".chart");
   const { view } = await window.vegaEmbed(place, spec, {
     actions: false, renderer: "svg", formatLocale: LOCALES[root.lang],
