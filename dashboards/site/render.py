@@ -323,7 +323,14 @@ def _causes(value: str) -> Markup:
     return Markup(" \u00d7 ").join(parts)
 
 
+def _titles(value: Any) -> Markup:
+    """A title in Dutch and one in English."""
+    nl, en = value
+    return in_both((nl, en))
+
+
 SHOWERS: Final[dict[str, Callable[[Any], Markup]]] = {
+    "titles": _titles,
     "direction": _direction,
     "causes": _causes,
     "boat_type": _type,

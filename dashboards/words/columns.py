@@ -110,7 +110,7 @@ COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "column.method_hash": ("Vingerafdruk methode", "Method hash"),
     "column.content_hash": ("Vingerafdruk", "Hash"),
     "column.code_version": ("Code", "Code"),
-    "column.title": ("Titel", "Title"),
+    "column.titles": ("Titel", "Title"),
     "column.table": ("Tabel", "Table"),
     "column.rows": ("Regels", "Rows"),
     "column.factor": ("Factor", "Factor"),

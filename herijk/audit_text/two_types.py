@@ -14,6 +14,7 @@ from herijk.audit_text.words import (
     line_of,
     section,
     share,
+    step_of,
     wrapped,
 )
 from herijk.text import table
@@ -63,8 +64,7 @@ def _line(quantity: str, explaining: str) -> Cell:
         line = line_of(under, quantity, explaining)
         if line["reason"]:
             return _nothing(line)
-        digits = 3 if quantity == "q" else 2
-        slope = f"{AGAINST[explaining][1] * line['slope']:+.{digits}f}"
+        slope = f"{step_of(quantity, explaining)[0] * line['slope']:+.2f}"
         return f"{_trend_seen(line)}, {slope}, {share(line['r2'])}, n {line['n']}"
 
     return cell
@@ -134,7 +134,7 @@ def two_types(report: Report) -> list[str]:
                 differing.append(wrapped(f"{row.label}, {method}: {said}"))
     intro = [f"{one['boat_type']}: {heading(one)}" for one in types]
     intro.append(
-        f"{NOTE} Beside a verdict stand the slope, per 100 kg or 0.1 m/s, and the share of the "
+        f"{NOTE} Beside a verdict stand the slope, per 100 kg (q: 1000 kg) or 0.1 m/s, and the share of the "
         "spread that the line explains."
     )
     title = "What differs: slopes and shifts by more than both intervals together, and verdicts"

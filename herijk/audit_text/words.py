@@ -57,6 +57,14 @@ NOTE: Final = (
 )
 
 
+def step_of(quantity: str, explaining: str) -> tuple[float, str]:
+    """The step for which a slope is told, and its name; q changes little, its step is a tonne."""
+    if quantity == "q":
+        return 1000.0, "1000 kg"
+    _, step, unit = AGAINST[explaining]
+    return step, unit
+
+
 def wrapped(text: str, indent: int = 2, hanging: int = 2) -> str:
     """Lines of at most `WIDTH`; a figure stays with its sign and n with its number."""
     bound = re.sub(r"(?<=\d) (?=%)|(?<=\bn) (?=\d)|(?<=\bp) (?=\d)", "\xa0", text)
