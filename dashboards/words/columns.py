@@ -62,7 +62,7 @@ COLUMNS: Final[dict[str, tuple[str, str]]] = {
     # Columns
     "column.edition": ("Editie", "Edition"),
     "column.method": ("Methode", "Method"),
-    "column.fsn_no": ("FSN-nr", "FSN no"),
+    "column.fsn_no": ("FSN\u2011nr", "FSN no"),
     "column.ht_no": ("HT-nr", "HT no"),
     "column.name": ("Naam", "Name"),
     "column.boat_type": ("Type", "Type"),

@@ -275,7 +275,7 @@
     const picture = place.querySelector("svg");
     if (!picture) return;
     picture.setAttribute("role", "img");
-    picture.setAttribute("aria-label", figure.dataset[root.lang]);
+    picture.setAttribute("aria-label", `${figure.dataset[root.lang]} ${picked(figure)}`.trim());
   }
 
   function redraw(figure) {
