@@ -14,7 +14,8 @@ import statistics
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -100,6 +101,12 @@ def _peak_mib() -> float:
     status = Path("/proc/self/status").read_text(encoding="ascii")
     line = next(line for line in status.splitlines() if line.startswith("VmHWM:"))
     return int(line.split()[1]) / 1024
+
+
+def both(function: Callable[..., Any], rows: Iterable[Any]) -> list[Any]:
+    """The function of every row, `THREADS` at a time."""
+    with ThreadPoolExecutor(THREADS) as pool:
+        return list(pool.map(function, rows))
 
 
 def median_seconds(work: Callable[[], object], repeats: int) -> float:

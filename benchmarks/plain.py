@@ -1,9 +1,9 @@
-"""The same work without Herijk: per tow with pandas and NumPy, in DuckDB's SQL, in Polars.
+"""The least that gives the same curves: per tow with pandas and NumPy, in DuckDB's SQL, in Polars.
 
 Each takes files of samples, gives the run points of one method and the curve through those of
 each tow, and does only what that method needs: no checks, no other sums, nothing written. The
 method is the simplest that corrects for wind (`METHOD`), because a steady window has no natural
-form in SQL.
+form in SQL. All that a rebuild does is in `benchmarks.same`.
 """
 
 import math

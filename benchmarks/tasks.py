@@ -1,8 +1,7 @@
 """What is timed: functions that prepare and return the work, called in a process of their own."""
 
 import shutil
-from collections.abc import Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -11,8 +10,8 @@ import pandas as pd
 import polars as pl
 
 from assets.rebuild import rebuild
-from benchmarks import plain
-from benchmarks.harness import THREADS
+from benchmarks import plain, same
+from benchmarks.harness import both
 from benchmarks.world import FOLDER, World
 from pipeline.blocks import block_sums, stack_blocks
 from pipeline.method import parse_method, shipped_method, shipped_methods
@@ -26,11 +25,6 @@ from warehouse.store import Store, write_parquet
 Work = Callable[[], Any]
 SIDES = {"as_it_was": 0.2, "changed": 0.3}
 TEXT_LIMIT_BYTES = 10**9
-
-
-def _both(function: Callable[..., Any], rows: Iterable[Any]) -> list[Any]:
-    with ThreadPoolExecutor(THREADS) as pool:
-        return list(pool.map(function, rows))
 
 
 def _method(side: str) -> Any:
@@ -73,7 +67,7 @@ def parse_text(tows_per_season: int, count: int, write: bool) -> Work:
         if write:
             write_parquet(frame, folder / f"{file[0]}.parquet", form=lake.SAMPLES_FORM)
 
-    return lambda: _both(one, _text_files(world, tows).items())
+    return lambda: both(one, _text_files(world, tows).items())
 
 
 def read_text(tows_per_season: int, count: int) -> Work:
@@ -124,7 +118,7 @@ def decode(tows_per_season: int, count: int) -> Work:
     """Polars alone on the lake's files: every column of every sample in memory, once."""
     world = World(tows_per_season)
     files = _lake_files(world, world.tows(count))
-    return lambda: _both(_decoded_rows, files.values())
+    return lambda: both(_decoded_rows, files.values())
 
 
 def _decoded_rows(path: str) -> int:
@@ -156,7 +150,7 @@ def _blocks(world: World, tows: pl.DataFrame) -> pl.DataFrame:
         samples = pl.read_parquet(file[1], hive_partitioning=False)
         return block_sums(samples, 1000).select(pl.lit(file[0]).alias("tow_id"), pl.all())
 
-    return pl.concat(_both(one, _lake_files(world, tows).items()))
+    return pl.concat(both(one, _lake_files(world, tows).items()))
 
 
 # All of history
@@ -227,6 +221,23 @@ class Silent:
 
 
 def other(
+    tows_per_season: int, count: int, tool: str, text: bool, result: str | None = None
+) -> Work:
+    """The same work with pandas, DuckDB or Polars, from text or from the lake's Parquet."""
+    world = World(tows_per_season)
+    tows = world.tows(count, plain=True)
+    files = (_text_files if text else _lake_files)(world, tows)
+    runs, folder = _runs(world, tows), FOLDER / "written"
+    folder.mkdir(parents=True, exist_ok=True)
+
+    def work() -> None:
+        means = same.means_of_runs(same.sums(tool, files, folder))
+        _save(plain.curves(means, runs, SIDES["as_it_was"]), result)
+
+    return work
+
+
+def other_at_least(
     tows_per_season: int,
     count: int,
     tool: str,
@@ -235,7 +246,7 @@ def other(
     plain_text: bool = True,
     result: str | None = None,
 ) -> Work:
-    """The same with pandas, DuckDB or Polars, from text or from the lake's Parquet."""
+    """The least that gives the same curves: one method and nothing kept."""
     world = World(tows_per_season)
     tows = world.tows(count, plain=plain_text)
     files = (_text_files if text else _lake_files)(world, tows)
@@ -255,7 +266,8 @@ def other(
 def _recomputed(world: World, tows: pl.DataFrame, blocks: pl.DataFrame, side: str) -> pl.DataFrame:
     runs = world.store.read("tow_runs").join(tows.select("tow_id"), on="tow_id", how="semi")
     held = tows.drop("samples_key", "blocks_key")
-    return recompute(_method(side), held, stack_blocks(blocks, runs)).curves
+    stacked = stack_blocks(blocks, runs)
+    return recompute(_method(side), held, stacked, with_bands=False).curves
 
 
 def _save(curves: pl.DataFrame, result: str | None) -> None:

@@ -5,6 +5,7 @@ business of `plausibility`. There are two ways to read text: a fast one that pol
 a careful one that knows lines; the fast one is trusted only where it gives the same.
 """
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -42,14 +43,16 @@ OUTPUT_NAMES: Final = {
 }
 TIME_TOLERANCE: Final = 0.01
 _BLANKS: Final = " \t"
+_ROW: Final = re.compile(rb"[^\r\n]")
 _QUOTED_DECIMAL_COMMA: Final = r'"([ \t]*[+-]?[0-9]*),([0-9][0-9eE+ \t-]*)"'
 
 
 @dataclass(frozen=True)
 class _Body:
-    """The text below the header."""
+    """The text below the header, which ends at `start`; not copied, as it may be large."""
 
     data: bytes
+    start: int
     delimiter: str
     width: int
     columns: Mapping[str, FoundColumn]
@@ -133,20 +136,19 @@ def _read_text(data: bytes, profile: SeasonProfile) -> pl.DataFrame:
 def _split_header(data: bytes, profile: SeasonProfile) -> _Body:
     if not data.isascii() or b"\x00" in data or not data[:100].strip():
         data = decode(data).encode()
-    header_bytes, _, below = data.partition(b"\n")
-    header_line = decode(header_bytes).rstrip("\r")
+    start = data.find(b"\n") + 1 or len(data)
+    header_line = decode(data[:start]).rstrip("\r\n")
     delimiter = find_delimiter(header_line)
     header = split_line(header_line, delimiter)
     columns = find_columns(header, profile.columns)
-    below = below.rstrip(b"\r\n")
-    if not below:
+    if not _ROW.search(data, start):
         raise DefectiveInputError("unreadable_file", "There are no samples below the header.")
-    return _Body(below, delimiter, len(header), columns)
+    return _Body(data, start, delimiter, len(header), columns)
 
 
 def _read_fast(body: _Body) -> pl.DataFrame | None:
     """Return the columns, or None where the careful way has to judge."""
-    quoted = b'"' in body.data
+    quoted = body.data.find(b'"', body.start) >= 0
     wanted = {found.index: key for key, found in body.columns.items()}
     number = pl.String() if quoted else pl.Float64()
     schema = {
@@ -157,6 +159,7 @@ def _read_fast(body: _Body) -> pl.DataFrame | None:
         frame = pl.read_csv(
             body.data,
             has_header=False,
+            skip_lines=1,
             separator=body.delimiter,
             quote_char='"' if quoted else None,
             decimal_comma=body.delimiter != ",",
@@ -172,7 +175,7 @@ def _read_fast(body: _Body) -> pl.DataFrame | None:
 
 def _read_carefully(body: _Body) -> pl.DataFrame:
     """Return the same columns, or raise the first fault with its line."""
-    text = body.data.decode()
+    text = body.data[body.start :].rstrip(b"\r\n").decode()
     lines = pl.Series("line", text.split("\n")).str.strip_suffix("\r")
     if body.delimiter == ",":
         lines = lines.str.replace_all(_QUOTED_DECIMAL_COMMA, '"$1.$2"')
