@@ -122,10 +122,11 @@ def _slope(line: Report) -> str:
 
 
 def _line_figures(line: Report) -> tuple[Any, ...]:
+    digits = 0 if line["quantity"] == "q" else 1  # q spreads by many per cent
     return (
         share(line["r2"]),
-        share(line["residual_sd_ratio"], 1),
-        share(line["noise_sd_ratio"], 1),
+        share(line["residual_sd_ratio"], digits),
+        share(line["noise_sd_ratio"], digits),
         line["n"],
         yes(line["follows"]),
     )
