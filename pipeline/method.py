@@ -286,6 +286,10 @@ class _Layer(_Options):
     options: dict[str, dict[str, Any]]
 
 
+_KEYS: Final = re.compile(r"(?<![\w-])([\w-]++)\s*+=")
+"""Tried at the beginning of a word only: a long word would otherwise be tried at each letter."""
+
+
 class _Reader:
     """A method text with its file name, so that every error can say where it is."""
 
@@ -337,7 +341,7 @@ class _Reader:
             header = re.match(r"\s*\[+([\w.-]+)\]+", line)
             if header:
                 table = set(header[1].split("."))
-            found.append((number, table | set(re.findall(r"([\w-]+)\s*=", line))))
+            found.append((number, table | set(_KEYS.findall(line))))
         return found
 
 

@@ -13,6 +13,7 @@ import gzip
 import io
 import random
 import re
+import signal
 import sys
 import tempfile
 import time
@@ -40,6 +41,8 @@ from warehouse.decisions import read_decisions
 from warehouse.editions.folder import ABOUT, read_about
 
 SLOW_S: Final = 2.0
+HANG_S: Final = 20.0
+"""Seconds of processor time: a reader that takes longer is told to stop."""
 WORDS: Final = (
     *(b"NaN", b"inf", b"-inf", b"1e999", b"-1e-999", b"1.2.3", b"1,2,3", b"1e5", b"0x10"),
     *(b"1_000", b"--1", b"+", b"9" * 400, b"1" * 40, b"7", b"0", b"-1", b"1.5", b" " * 1000),
@@ -253,6 +256,7 @@ def _read_method(path: Path, data: bytes) -> None:
 def fuzz(inputs: int, seed: int, tell: Callable[[str], None] = print) -> Findings:
     """Damages files and reads them."""
     found = Findings()
+    signal.signal(signal.SIGVTALRM, _hangs)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         known = targets(folder)
@@ -265,10 +269,15 @@ def fuzz(inputs: int, seed: int, tell: Callable[[str], None] = print) -> Finding
     return found
 
 
+def _hangs(*_: object) -> None:
+    raise TimeoutError(f"no answer within {HANG_S:.0f} s")
+
+
 def _try(folder: Path, target: Target, data: bytes, number: int, found: Findings) -> None:
     path = folder / target.name
     path.write_bytes(data)
     begin = time.process_time()
+    signal.setitimer(signal.ITIMER_VIRTUAL, HANG_S)
     try:
         target.read(path, data)
         outcome = "accepted"
@@ -279,6 +288,8 @@ def _try(folder: Path, target: Target, data: bytes, number: int, found: Findings
         what = f"input {number}, {path.name}: {type(error).__name__}: {error}"[:300]
         print(what, file=sys.stderr, flush=True)
         found.failures.append(what)
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0)
     seconds = time.process_time() - begin
     found.slowest_s = max(found.slowest_s, seconds)
     if seconds > SLOW_S:

@@ -4,8 +4,8 @@
 
 The archive changes to and fro between two states. Each time a rebuild is killed at a random moment
 and then run again: the tables must be those of a rebuild that nobody disturbed. Meanwhile a reader
-in another process opens the database and the site as often as it can; it must see one state or the
-other, whole, and never an error. Each rebuild to be killed is a process of its own that has
+in another process opens the database and the site every second; it must see one state or the other,
+whole, and never an error. Each rebuild to be killed is a process of its own that has
 imported everything and waits for its turn, so that moments in the work itself are hit.
 """
 
@@ -33,12 +33,14 @@ from pipeline.simulate import WorldSettings, simulate_world
 from warehouse.archive.write import write_simulated_archive
 from warehouse.store import Store, fingerprint, table_digest
 
+ROOT = Path(__file__).parents[2]
+MYSELF = (sys.executable, "-m", "benchmarks.robustness.survive")
 METHODS = ("rebased-2015",)
 WORLD = WorldSettings(seasons=(2009, 2014), tows_per_season=4, rate_hz=20, seed=3)
 STATES = ("archive-a", "archive-b")
 SETTLED = 10.0
 """Seconds: how long ago files seem to be written, so that their hashes are remembered."""
-PAUSE_S = 0.4
+PAUSE_S = 1.0
 SCRIPTS = ("vega.js", "charts.js")
 
 
@@ -80,8 +82,8 @@ class Victim:
 
     def __init__(self, archive: Path, data: Path) -> None:
         self.process = subprocess.Popen(
-            [sys.executable, __file__, "--rebuild", archive, data],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+            [*MYSELF, "--rebuild", archive, data],
+            cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
         )  # fmt: skip
 
     def kill_after(self, seconds: float) -> bool:
@@ -161,8 +163,8 @@ def survive(root: Path, kills: int, seed: int, tell: Callable[[str], None] = pri
     """Kills rebuilds at random moments, and compares the tables after each rerun."""
     chosen, outcome, ground = random.Random(seed), Outcome(), Ground(root)
     reader = subprocess.Popen(
-        [sys.executable, __file__, "--read", str(ground.data), *ground.expected.values()],
-        stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+        [*MYSELF, "--read", ground.data, *ground.expected.values()],
+        cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
     )  # fmt: skip
     victim, state = Victim(ground.archive, ground.data), 0
     while outcome.kills < kills:

@@ -8,11 +8,10 @@ from assets.resources import Quiet, Setup
 from tests.assets.test_rebuild import assert_same_tables
 from tests.conftest import METHODS, SMALL, Workbench
 
+PRELOADED = [__name__, "dashboards.site", "scipy.optimize"]
 FORKED = {
     "execution": {
-        "config": {
-            "multiprocess": {"start_method": {"forkserver": {"preload_modules": [__name__]}}}
-        }
+        "config": {"multiprocess": {"start_method": {"forkserver": {"preload_modules": PRELOADED}}}}
     }
 }
 """Each step in a process forked from one that has imported everything: no import per step."""

@@ -2,6 +2,7 @@
 # ruff: noqa: E501 - tables of cases, one a line
 
 import re
+import time
 
 import pytest
 
@@ -120,6 +121,13 @@ def test_every_error_says_where_what_and_what_is_allowed(case):
     assert [part for part in expected if part not in message] == [], message
     assert "\n" not in message
     assert "pydantic" not in message
+
+
+def test_a_very_long_line_is_refused_at_once():
+    begin = time.process_time()
+    with pytest.raises(MethodFileError, match="line 1: titel: unknown key"):
+        parse(f'titel = "{"a" * 200_000}"\n' + method_text())
+    assert time.process_time() - begin < 2.0
 
 
 def test_a_circle_over_two_files_is_found():
