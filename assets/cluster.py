@@ -16,8 +16,7 @@ from dagster_dask import dask_executor
 from distributed.scheduler import KilledWorker
 
 from assets import archive
-from assets.jobs import QUIET_LOG
-from assets.resources import Quiet, Setup
+from assets.resources import QUIET_LOG, Quiet, Setup
 from pipeline.errors import UnavailableError
 
 
