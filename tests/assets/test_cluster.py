@@ -104,3 +104,13 @@ def test_a_cluster_that_is_not_there_is_told_with_the_way_out(built, remote):
         pytest.raises(UnavailableError, match=r"tcp://127\.0\.0\.1:1 did not finish"),
     ):
         read_seasons(instance, "tcp://127.0.0.1:1", (built.archive, remote.data), [2009], {})
+
+
+def test_a_scheduler_without_workers_is_not_waited_for_without_end(built, remote, monkeypatch):
+    monkeypatch.setenv("DASK_DISTRIBUTED__SCHEDULER__NO_WORKERS_TIMEOUT", "1s")
+    with (
+        rebuild._instance(remote.store) as instance,
+        dask_cluster(0, remote.store.dagster_home) as deserted,
+        pytest.raises(UnavailableError, match=r"did not finish.*without any running workers"),
+    ):
+        read_seasons(instance, deserted.address, (built.archive, remote.data), [2009], {})
