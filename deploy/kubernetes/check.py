@@ -1,6 +1,6 @@
 """Renders the manifests and checks them against the types of the Kubernetes API, without a cluster.
 
-    PYTHONPATH=. python deploy/kubernetes/check.py
+    python deploy/kubernetes/check.py
 
 Needs kubectl and the extra `k8s`; the settings of Herijk are read by Herijk. Found are unknown
 fields, missing ones and wrong kinds of value; not found is what only a cluster knows: images,
