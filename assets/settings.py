@@ -3,13 +3,12 @@
 It lies in the data folder and may be left out. No setting in it can change a number.
 """
 
-import tomllib
 from pathlib import Path
 from typing import Final
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 
-from pipeline.errors import MissingKnowledgeError
+from warehouse.settings_file import read_settings_file
 
 FILE_NAME: Final = "beheer.toml"
 
@@ -48,17 +47,4 @@ def read_settings(data: Path) -> Settings:
     Raises:
         MissingKnowledgeError: the file cannot be understood.
     """
-    path = data / FILE_NAME
-    if not path.exists():
-        return Settings()
-    try:
-        return Settings.model_validate(tomllib.loads(path.read_text(encoding="utf-8")))
-    except ValidationError as error:
-        first = error.errors()[0]
-        known = ", ".join(Settings.model_fields)
-        where = ".".join(str(part) for part in first["loc"])
-        raise MissingKnowledgeError(
-            f"{path}: {where}: {first['msg']}; it may hold {known}"
-        ) from error
-    except (ValueError, RecursionError) as error:
-        raise MissingKnowledgeError(f"{path}: not valid TOML: {error}") from error
+    return read_settings_file(data / FILE_NAME, Settings, ", ".join(Settings.model_fields))

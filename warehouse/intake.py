@@ -15,7 +15,14 @@ import polars as pl
 
 from pipeline.errors import MissingKnowledgeError
 from warehouse import lake
-from warehouse.archive import ArchiveIndex, FileHashes, Profiles, index_archive, read_races
+from warehouse.archive import (
+    ArchiveIndex,
+    FileHashes,
+    Profiles,
+    index_archive,
+    read_published_registers,
+    read_races,
+)
 from warehouse.archive.profile import read_profiles
 from warehouse.store import Store, fingerprint
 
@@ -43,7 +50,8 @@ def index(store: Store, root: Path) -> ArchiveIndex:
     for name in LISTED:
         store.write(f"listed_{name}", getattr(found, name), made_from="")
     races, race_faults = read_races(root)
-    faults = [dataclasses.asdict(f) for f in (*found.faults, *race_faults)]
+    _, register_faults = read_published_registers(root)
+    faults = [dataclasses.asdict(f) for f in (*found.faults, *race_faults, *register_faults)]
     store.write("list_faults", pl.DataFrame(faults, schema=FAULT_SCHEMA), made_from="")
     about = {"simulated": [found.profiles.simulated], "root": [str(root.resolve())]}
     store.write("about_archive", pl.DataFrame(about), made_from="")

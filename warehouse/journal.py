@@ -40,8 +40,8 @@ NEEDED: Final = (
 )
 FAULT: Final = ("path", "tow_id", "line", "reason_code", "message")
 FACTOR: Final = ("method", "season")
-SAME_FACTOR: Final = 1e-6
-"""A log factor that moved by less did not move."""
+SAME_FACTOR: Final = 5e-5
+"""A log factor that moved by less did not move: it shows as 1.0000."""
 
 Tables = dict[str, pl.DataFrame]
 

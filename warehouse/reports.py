@@ -6,8 +6,6 @@ or one type is in `warehouse.audit`.
 
 from typing import Any
 
-import polars as pl
-
 from warehouse.database import is_simulated, open_database, rows
 from warehouse.store import Store
 
@@ -99,9 +97,3 @@ FROM register_changes AS c LEFT JOIN boats AS b USING (fsn_no)
 WHERE c.cw_ratio IS NOT NULL
 ORDER BY abs(ln(c.cw_ratio)) DESC, c.to_edition, c.fsn_no LIMIT ?
 """
-
-
-def read_table(store: Store, name: str) -> pl.DataFrame:
-    """A table of the database, in the order in which it was written."""
-    with open_database(store.database) as db:
-        return pl.DataFrame(db.sql(f'SELECT * FROM "{name}"').pl())  # noqa: S608

@@ -6,28 +6,31 @@ Reads only. What checks are called and how bad they are is said in `assets.check
 from collections.abc import Sequence
 
 from pipeline.method import Method
-from warehouse.reports import read_table
+from warehouse.database import open_database
 from warehouse.schemas import TABLES
-from warehouse.store import Store
+from warehouse.store import Store, count_rows
 from warehouse.tables import METHOD_TABLES, WHOLE_TABLES
 
 
 def schema_faults(store: Store) -> list[str]:
     """Tables of the database that are not as their schema promises, a sentence each."""
-    return [
-        f"{name} is not as declared in warehouse/schemas.py"
-        for name, schema in TABLES.items()
-        if name in (*WHOLE_TABLES, *METHOD_TABLES) and not schema.is_valid(read_table(store, name))
-    ]
+    with open_database(store.database) as db:
+        return [
+            f"{name} is not as declared in warehouse/schemas.py"
+            for name in (*WHOLE_TABLES, *METHOD_TABLES)
+            if not TABLES[name].is_valid(db.sql(f'FROM "{name}"').pl())
+        ]
 
 
 def count_faults(store: Store, methods: Sequence[Method]) -> list[str]:
     """Tables with other numbers of rows than in the lake, and methods that lost a tow."""
-    expected = {name: store.read(name).height for name in WHOLE_TABLES} | {
-        name: sum(store.read(name, m.name).height for m in methods) for name in METHOD_TABLES
+    expected = {name: count_rows(store.table_path(name)) for name in WHOLE_TABLES} | {
+        name: sum(count_rows(store.table_path(name, m.name)) for m in methods)
+        for name in METHOD_TABLES
     }
-    found = {name: read_table(store, name).height for name in expected}
-    curves = dict(read_table(store, "curves")["method"].value_counts().rows())
+    with open_database(store.database) as db:
+        found = {name: len(db.table(name)) for name in expected}
+        curves = dict(db.sql("SELECT method, count(*) FROM curves GROUP BY method").fetchall())
     return [
         *(
             f"{name} has {found[name]} rows, and {number} in the lake"

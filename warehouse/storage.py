@@ -5,16 +5,16 @@ spoken to stands in `warehouse.bucket`, which needs the extra `s3`.
 """
 
 import io
-import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Final, TypeAlias
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 
 from pipeline.errors import MissingKnowledgeError
 from warehouse.files import written_beside
+from warehouse.settings_file import read_settings_file
 
 if TYPE_CHECKING:
     from warehouse.bucket import BucketPath
@@ -24,6 +24,7 @@ Place: TypeAlias = "Path | BucketPath"
 
 FILE_NAME: Final = "opslag.toml"
 _BUCKET: Final = r"^s3://[a-z0-9][a-z0-9.-]+(/[A-Za-z0-9._=-]+)+$"
+_MAY_HOLD: Final = "lake and editions, each as 's3://bucket/prefix' without a name or password"
 
 
 class Locations(BaseModel):
@@ -46,19 +47,7 @@ def read_locations(root: Path) -> Locations:
     Raises:
         MissingKnowledgeError: the file cannot be understood.
     """
-    path = root / FILE_NAME
-    if not path.exists():
-        return Locations()
-    try:
-        return Locations.model_validate(tomllib.loads(path.read_text(encoding="utf-8")))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise MissingKnowledgeError(f"{path}: not valid TOML: {error}") from error
-    except ValidationError as error:
-        where = ".".join(str(part) for part in error.errors()[0]["loc"])
-        raise MissingKnowledgeError(
-            f"{path}: {where} cannot be used; it may hold lake and editions, each as "
-            "'s3://bucket/prefix' without a name or password"
-        ) from error
+    return read_settings_file(root / FILE_NAME, Locations, _MAY_HOLD)
 
 
 def place(url: str | None, otherwise: Path) -> Place:

@@ -9,6 +9,7 @@ import datetime as dt
 from collections.abc import Mapping, Sequence
 from typing import Final
 
+import duckdb
 import polars as pl
 
 from pipeline.blocks import RunBlocks, stack_blocks
@@ -26,7 +27,7 @@ from pipeline.steady import HAND_COLUMNS
 from warehouse import intake
 from warehouse.archive import outside_run
 from warehouse.code import code_version
-from warehouse.database import build_database
+from warehouse.database import build_database, open_database
 from warehouse.due import due_made_from, due_rows
 from warehouse.editions.published import published_made_from, published_tables
 from warehouse.files import file_sha256
@@ -186,15 +187,21 @@ def _quarantine(
         ]
     )
     key = ["path", "tow_id", "line", "reason_code"]
-    seen = (
-        store.read("quarantine")
-        if store.made_from("quarantine") is not None
-        else Quarantine.create_empty()
-    )
-    first = seen.group_by(key).agg(pl.col("first_seen").min())
+    first = _seen_before(store).group_by(key).agg(pl.col("first_seen").min())
     return faults.join(first, on=key, how="left", nulls_equal=True).with_columns(
         pl.col("first_seen").fill_null(today)
     )
+
+
+def _seen_before(store: Store) -> pl.DataFrame:
+    """What was set aside before; from the database where the lake's table is lost."""
+    if store.made_from("quarantine") is not None:
+        return store.read("quarantine")
+    try:
+        with open_database(store.database) as db:
+            return pl.DataFrame(db.sql("FROM quarantine").pl())
+    except (MissingKnowledgeError, duckdb.Error):  # not made yet, or damaged too
+        return Quarantine.create_empty()
 
 
 def method_made_from(store: Store, method: Method) -> str:

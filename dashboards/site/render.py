@@ -144,7 +144,7 @@ def _words_of_charts(say: Say) -> dict[str, str]:
 
 def specification(figure: Callable[..., Any], say: Callable[[str], str]) -> dict[str, Any]:
     """A figure's Vega-Lite with the data left to the page: a dataset called `rows`."""
-    spec: dict[str, Any] = figure(pl.DataFrame({"kind": ["x"]}), say).to_dict()
+    spec: dict[str, Any] = figure(pl.DataFrame({"kind": ["x"]}), say).to_dict(validate=False)
     (placeholder,) = spec.pop("datasets")
     spec.pop("$schema")
     text = json.dumps(spec).replace(f'"{placeholder}"', '"rows"')

@@ -4,17 +4,24 @@ import datetime as dt
 import email
 import email.policy
 import json
+import shutil
 import threading
 from http.server import BaseHTTPRequestHandler, HTTPServer
 
 import dagster as dg
+import duckdb
+import polars as pl
 import pytest
 
 from assets.notify import Message, Notifier
 from assets.report import failed_checks, tell
 from assets.settings import read_settings
+from dashboards.words import both
 from pipeline.errors import MissingKnowledgeError
 from tests.assets.test_rebuild import samples_files, spoil, tow_of
+from tests.conftest import METHODS
+from tests.warehouse.test_faults import Archive, cells, line_of, times
+from warehouse.journal import news, reported_database
 
 NOW = dt.datetime(2026, 11, 21, 3, 5, tzinfo=dt.UTC)
 
@@ -23,20 +30,57 @@ def latest(bench):
     return json.loads((bench.data / "report" / "latest.json").read_text("utf-8"))
 
 
-def test_a_report_names_what_was_set_aside_and_what_that_did_to_the_drafts(bench):
-    bench.rebuild()
+STRONGER = 1.05
+
+
+def with_more_force(bench, tow):
+    """Rewrites the force column of a tow's samples; every Cw of that tow moves as much."""
+    archive = Archive(bench.archive, bench)
+    archive.samples(tow, cells(3, times(STRONGER), 2, line_of(7)))
+
+
+def test_a_report_names_what_was_set_aside_what_changed_and_why(bench, built):
     file = samples_files(bench, 2009)[3]
-    tow, kept = tow_of(bench, file), spoil(file)
+    gone, kept = tow_of(bench, file), spoil(file)
+    register = built.table("register").filter(pl.col("tow_id").str.starts_with("2009"))
+    stronger = register.filter(pl.col("tow_id") != gone).row(0, named=True)
+    with_more_force(bench, stronger["tow_id"])
     report = bench.rebuild().report
     assert latest(bench)["headlines"] == report["headlines"]
-    assert [(row["tow_id"], row["what"]) for row in report["tow_rows"]] == [(tow, "gone")]
+    assert {(row["tow_id"], row["what"]) for row in report["tow_rows"]} == {
+        (gone, "gone"),
+        (stronger["tow_id"], "samples"),
+    }
     assert [(r["tow_id"], r["reason_code"], r["what"]) for r in report["set_aside_rows"]] == [
-        (tow, "bad_number", "new")
+        (gone, "bad_number", "new")
     ]
+    assert report["factors"] == []
+    changed = [line for line in report["lines"] if line["change"] == "changed"]
+    assert [(line["fsn_no"], line["to_edition"]) for line in changed] == [
+        (stronger["fsn_no"], f"concept-{method}") for method in METHODS
+    ]
+    for line in changed:
+        assert line["cw_ratio"] == pytest.approx(STRONGER, abs=0.02)
+        (cause,) = json.loads(line["causes"])
+        assert (cause["cause"], cause["factor"]) == ("input", pytest.approx(line["cw_ratio"]))
+    page = (bench.data / "report" / "latest.html").read_text("utf-8")
+    words = '<span lang="nl">{}</span><span lang="en">{}</span>'.format(*both("code.input"))
+    assert f'{words} <span class="n">1,05' in page
+
     file.write_bytes(kept)
     report = bench.rebuild().report
     assert [row["what"] for row in report["set_aside_rows"]] == ["mended"]
-    assert {line["change"] for line in report["lines"]} <= {"added", "changed", "removed"}
+    assert [row["what"] for row in report["tow_rows"]] == ["new"]
+
+
+def test_a_log_factor_that_shows_the_same_did_not_move(bench):
+    shutil.copyfile(bench.store.database, bench.data / "other.duckdb")
+    reported_database(bench.store).unlink()
+    (bench.data / "other.duckdb").rename(reported_database(bench.store))
+    with duckdb.connect(reported_database(bench.store)) as db:
+        db.execute("UPDATE log_factors SET factor = factor * 1.00004 WHERE season = 2009")
+        db.execute("UPDATE log_factors SET factor = factor * 1.00006 WHERE season = 2014")
+    assert news(bench.store).factors["season"].unique().to_list() == [2014]
 
 
 def test_a_second_rebuild_reports_that_nothing_changed(bench):
