@@ -75,7 +75,7 @@ bench: $(READY)
 	@for part in fit editions samples_format; do echo "== $$part"; PYTHONPATH=. $(BIN)/python -m benchmarks.$$part || exit 1; done
 
 scale: $(READY)
-	@PYTHONPATH=. $(BIN)/python benchmarks/scale.py
+	@PYTHONPATH=. $(BIN)/python -m benchmarks.scale --tows-per-season $(TOWS)
 
 accuracy: $(READY)
 	@for file in benchmarks/accuracy/*.py; do echo "== $$file"; PYTHONPATH=. $(BIN)/python "$$file" || exit 1; done

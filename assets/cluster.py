@@ -13,11 +13,10 @@ from typing import Any
 
 import dagster as dg
 from dagster_dask import dask_executor
-from distributed.scheduler import KilledWorker
+from distributed.scheduler import KilledWorker, NoWorkerError
 
 from assets import archive
-from assets.jobs import QUIET_LOG
-from assets.resources import Quiet, Setup
+from assets.resources import QUIET_LOG, Quiet, Setup
 from pipeline.errors import UnavailableError
 
 
@@ -102,7 +101,8 @@ def read_seasons(
         tags: of the run.
 
     Raises:
-        UnavailableError: there is no scheduler there, or its workers are killed time and again.
+        UnavailableError: there is no scheduler there, it has been without workers for as long as
+            it was told to wait, or they are killed time and again.
     """
     archive_root, data = (str(folder.resolve()) for folder in folders)
     # Dask knows a step by the names of job and step: two rebuilds on one cluster must differ.
@@ -121,7 +121,7 @@ def read_seasons(
         with dg.execute_job(job, instance, config, tags=tags, raise_on_error=True) as result:
             failures = {event.step_key: event for event in result.get_step_failure_events()}
             checks = result.get_asset_check_evaluations()
-    except (OSError, KilledWorker) as error:
+    except (OSError, KilledWorker, NoWorkerError) as error:
         raise UnavailableError(
             f"the Dask cluster at {address} did not finish: {error}. Look whether its scheduler "
             "and workers are up, and run it again: what was finished is kept"

@@ -17,9 +17,6 @@ STEPS = INDEX, READ, COLLECT, APPLY, STUDY, FINISH, CHECK = (
 )
 """The jobs of a rebuild, in order: `READ` runs per season and `APPLY` per method."""
 
-QUIET_LOG = {"loggers": {"console": {"config": {"log_level": "CRITICAL"}}}}
-"""Nothing on the terminal: what Dagster says stands in its records."""
-
 ASSETS = [
     archive.archive_index,
     archive.samples,

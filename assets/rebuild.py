@@ -21,14 +21,13 @@ from assets.jobs import (
     COLLECT,
     FINISH,
     INDEX,
-    QUIET_LOG,
     READ,
     STEPS,
     STUDY,
     job_defs,
 )
 from assets.report import write_report
-from assets.resources import Progress, Setup
+from assets.resources import QUIET_LOG, Progress, Setup
 from assets.settings import read_settings
 from assets.site import site_is_stale
 from pipeline.errors import MissingKnowledgeError

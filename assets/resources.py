@@ -16,6 +16,9 @@ from pipeline.method import Method, shipped_method, shipped_methods
 from warehouse.lock import only_writer
 from warehouse.store import Store
 
+QUIET_LOG = {"loggers": {"console": {"config": {"log_level": "CRITICAL"}}}}
+"""Nothing on the terminal: what Dagster says stands in its records."""
+
 
 class Setup(dg.ConfigurableResource):
     """The archive that comes in, the data folder that goes out, and the methods to apply.

@@ -1,125 +1,233 @@
-"""Seasons read by one and by two Dask workers into S3 storage, and by this process into a folder.
+"""Seasons read by one and by two Dask workers into S3 storage, and a rebuild of which one dies.
 
-    python benchmarks/scale.py [tows a season] [repeats]
+    PYTHONPATH=. python -m benchmarks.scale [--tows-per-season 60] [--seasons 8] [--repeats 3]
 
-Scheduler and workers (one thread each) are processes of their own; this process serves S3.
-Each repeat begins with an empty lake, one worker and two by turns. The tables of every repeat have
-to be those read here. A last round kills a worker halfway. Busy machines give low ratios, so the
-load is printed beside them.
+S3 server, scheduler and workers (one thread each) are processes of their own. Each round begins
+with an empty bucket and workers that have imported everything; timed is the reading of the seasons,
+one worker and two by turns. Processor seconds are shown apart for workers, server and this process,
+since the server takes its share of the same cores. Every lake has to be the one made here, table by
+table; so have, in the last round, the database and an edition of a whole rebuild during which a
+worker is killed. The archive is that of `make bench`.
 """
 
+import argparse
+import datetime as dt
 import os
 import platform
+import shutil
 import signal
 import statistics
-import sys
 import tempfile
 import threading
 import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
+import duckdb
 import polars as pl
+from distributed import Client
 from polars.testing import assert_frame_equal
 
+from assets import rebuild
 from assets.cluster import read_seasons
-from assets.rebuild import _instance
-from pipeline.simulate import WorldSettings, simulate_world
-from tests.elsewhere import dask_cluster, lie_in_bucket, s3_server
+from assets.resources import Quiet
+from benchmarks.world import RATE_HZ, SEASONS, World
+from pipeline.method import shipped_method, shipped_methods
+from tests.elsewhere import (
+    Cluster,
+    assert_same_lake,
+    dask_cluster,
+    edition_hashes,
+    lie_in_bucket,
+    s3_server,
+)
 from warehouse import intake
-from warehouse.archive.write import write_simulated_archive
+from warehouse.editions.publish import Terms, publish
 from warehouse.store import Store
 
-SEASONS = tuple(range(2009, 2017))
-RATE_HZ = 1000
+METHODS = tuple(shipped_methods())
+TERMS = Terms("2026-1", dt.date(2026, 5, 8), "benchmark", dt.date(2026, 5, 1))
 
 
-def read_here(archive, store):
-    """Seconds, and of them those of a processor, to read every season here into a folder."""
-    intake.index(store, archive)
-    start, used = time.perf_counter(), time.process_time()
-    for season in SEASONS:
-        intake.read_season(store, archive, season, lambda *_: None)
-        intake.collect_blocks(store, season)
-    return time.perf_counter() - start, time.process_time() - used
+@dataclass(frozen=True)
+class Round:
+    """What it took to read the seasons: seconds elapsed, and of a processor by who used them."""
+
+    seconds: float
+    processor_s: dict[str, float]
 
 
-def megabytes(folder, pattern):
-    return sum(file.stat().st_size for file in folder.rglob(pattern)) / 1e6
+def main() -> None:
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--tows-per-season", type=int, default=60)
+    parser.add_argument("--seasons", type=int, default=8, help="how many of them are read")
+    parser.add_argument("--repeats", type=int, default=3)
+    chosen = parser.parse_args()
+    seasons = SEASONS[: chosen.seasons]
+    world = World(chosen.tows_per_season)
+    if not world.archive.exists():
+        world.make()
+    with tempfile.TemporaryDirectory() as folder:
+        compare(world.archive, Path(folder), seasons, chosen.repeats)
 
 
-def read_there(archive, data, workers, kill=False):
-    """Seconds to read every season on warm workers, into the bucket."""
+def compare(archive: Path, root: Path, seasons: Sequence[int], repeats: int) -> None:
+    """Prints all figures; stops where a table differs."""
+    here = Store(root / "here")
+    start = time.perf_counter()
+    rebuild.rebuild(archive, here.root, METHODS, Quiet(), seasons)
+    took_here = time.perf_counter() - start
+    tows = here.read_all("season_index")["blocks_key"].count()
+    print(
+        f"{platform.machine()}, {os.cpu_count()} cores, python {platform.python_version()}, "
+        f"polars {pl.__version__}; {tows} tows at {RATE_HZ} Hz in {len(seasons)} seasons; "
+        f"{dt.date.today()}; load {os.getloadavg()[0]:.1f}"
+    )
+    print(
+        "MB a tow: " + ", ".join(f"{n} {mb / tows:.2f}" for n, mb in sizes(archive, here, seasons))
+    )
+    rounds: dict[int, list[Round]] = {1: [], 2: []}
+    for repeat in range(repeats):
+        for workers, found in rounds.items():
+            found.append(read_there(archive, here, root / f"{workers}-{repeat}", workers, seasons))
+            shares = ", ".join(f"{n} {s / tows:.3f}" for n, s in found[-1].processor_s.items())
+            print(
+                f"  {workers} worker(s): {found[-1].seconds:.1f} s; processor s a tow: {shares}; "
+                f"load {os.getloadavg()[0]:.1f}",
+                flush=True,
+            )
+    for workers, found in rounds.items():
+        middle = statistics.median(one.seconds for one in found)
+        print(f"{workers} worker(s): median {middle:.1f} s, {tows / middle:.2f} tows/s")
+    pairs = zip(*rounds.values(), strict=True)
+    ratios = sorted(one.seconds / two.seconds for one, two in pairs)
+    print(
+        f"two against one: median {statistics.median(ratios):.2f} of {ratios[0]:.2f} to "
+        f"{ratios[-1]:.2f}; every lake the same"
+    )
+    took_there = rebuild_there(archive, here, root / "killed", seasons)
+    print(
+        f"whole rebuild, {len(METHODS)} methods: here {took_here:.1f} s; two workers of which one "
+        f"is killed {took_there:.1f} s, with the same lake, database and edition"
+    )
+
+
+def sizes(archive: Path, here: Store, seasons: Sequence[int]) -> Iterator[tuple[str, float]]:
+    """Megabytes of the seasons in the archive, in the lake by kind, and of blocks in memory."""
+    yield "text", sum(megabytes(archive / f"meetdata_{season}") for season in seasons)
+    for kind in ("samples", "blocks", "tables"):
+        yield kind, megabytes(here.root / "lake" / kind)
+    yield "blocks in memory", intake.all_blocks(here).estimated_size() / 1e6
+
+
+def megabytes(folder: Path) -> float:
+    return sum(file.stat().st_size for file in folder.rglob("*") if file.is_file()) / 1e6
+
+
+def read_there(
+    archive: Path, here: Store, data: Path, workers: int, seasons: Sequence[int]
+) -> Round:
+    """Reads every season on warm workers into an empty bucket."""
+    with s3_server() as server:
+        store = remote_store(data, here)
+        intake.index(store, archive)
+        with (
+            rebuild._instance(store) as instance,
+            dask_cluster(workers, store.dagster_home) as cluster,
+        ):
+            warm_up(cluster)
+            with processor_seconds(cluster, server.pid) as used:
+                start = time.perf_counter()
+                read = read_seasons(instance, cluster.address, (archive, data), seasons, {})
+                seconds = time.perf_counter() - start
+        assert read.failed == {}, read.failed
+        assert_same_seasons(here, store, seasons)
+    return Round(seconds, used)
+
+
+def rebuild_there(archive: Path, here: Store, data: Path, seasons: Sequence[int]) -> float:
+    """Seconds of a whole rebuild during which a worker is killed."""
+    with s3_server():
+        store = remote_store(data, here)
+        with dask_cluster(2, store.dagster_home) as cluster:
+            (data / "beheer.toml").write_text(f'dask = "{cluster.address}"\n')
+            threading.Thread(target=kill_one, args=(store, cluster), daemon=True).start()
+            start = time.perf_counter()
+            rebuild.rebuild(archive, data, METHODS, Quiet(), seasons)
+            seconds = time.perf_counter() - start
+            assert cluster.workers[0].poll() == -signal.SIGKILL
+        assert_same_lake(here, store)
+        assert_same_database(here, store)
+        assert published(here) == published(store)
+    return seconds
+
+
+def remote_store(data: Path, here: Store) -> Store:
+    """A data folder with its lake in the bucket; hashes of the archive's files are known."""
     lie_in_bucket(data, data.name)
     store = Store(data)
-    intake.index(store, archive)
-    with _instance(store) as instance, dask_cluster(workers, store.dagster_home) as cluster:
-        killer = threading.Thread(target=kill_one, args=(store, cluster), daemon=True)
-        if kill:
-            killer.start()
-        start = time.perf_counter()
-        read = read_seasons(instance, cluster.address, (archive, data), SEASONS, {})
-        seconds = time.perf_counter() - start
-    assert read.failed == {}, read.failed
-    return seconds, store
+    store.file_hashes.parent.mkdir()
+    shutil.copy(here.file_hashes, store.file_hashes)
+    return store
 
 
-def kill_one(store, cluster):
-    """Kills a worker when the first tows are in the lake."""
+def warm_up(cluster: Cluster) -> None:
+    """Has every worker import what it needs."""
+    with Client(cluster.address) as client:
+        client.run(__import__, "assets.cluster")
+
+
+@contextmanager
+def processor_seconds(cluster: Cluster, server: int) -> Iterator[dict[str, float]]:
+    """Processor seconds used inside, by who used them; filled in at the end."""
+    pids = {
+        **{f"worker {n}": w.pid for n, w in enumerate(cluster.workers, start=1)},
+        "S3 server": server,
+        "this process": os.getpid(),
+    }
+    before = {name: processor_s(pid) for name, pid in pids.items()}
+    used: dict[str, float] = {}
+    yield used
+    used |= {name: processor_s(pid) - before[name] for name, pid in pids.items()}
+
+
+def processor_s(pid: int) -> float:
+    """Processor seconds of a process until now: fields 14 and 15 of `/proc/PID/stat`."""
+    fields = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def kill_one(store: Store, cluster: Cluster) -> None:
+    """Kills a worker when the first blocks are in the lake."""
     while next((store.lake / "blocks").iterdir(), None) is None:
         time.sleep(0.05)
     cluster.workers[0].send_signal(signal.SIGKILL)
 
 
-def assert_same_tables(one, other):
+def assert_same_seasons(one: Store, other: Store, seasons: Sequence[int]) -> None:
     for table in intake.SEASON_TABLES:
-        for season in map(str, SEASONS):
-            assert_frame_equal(one.read(table, season), other.read(table, season))
+        for season in map(str, seasons):
+            assert_frame_equal(one.read(table, season), other.read(table, season), check_exact=True)
             assert one.made_from(table, season) == other.made_from(table, season)
 
 
-def main():
-    tows = int(sys.argv[1]) if len(sys.argv) > 1 else 4
-    repeats = int(sys.argv[2]) if len(sys.argv) > 2 else 5
-    number = tows * len(SEASONS)
-    with tempfile.TemporaryDirectory() as folder, s3_server():
-        root = Path(folder)
-        archive = root / "archive"
-        write_simulated_archive(archive, simulate_world(WorldSettings(SEASONS, tows, RATE_HZ)))
-        here = Store(root / "here")
-        here_s, processor_s = read_here(archive, here)
-        print(
-            f"{platform.machine()}, {os.cpu_count()} cores, python {platform.python_version()}, "
-            f"polars {pl.__version__}; {number} tows at {RATE_HZ} Hz; date {time.strftime('%F')}"
-        )
-        print(f"here, into a folder, two threads: {here_s:.1f} s, {number / here_s:.2f} tows/s")
-        print(f"processor: {processor_s / number:.2f} s a tow")
-        sizes = {
-            "text": megabytes(archive, "*.csv*"),
-            "samples": megabytes(here.lake / "samples", "*.parquet"),
-            "blocks": megabytes(here.lake / "blocks", "*.parquet"),
-            "tables": megabytes(here.lake / "tables", "*.parquet"),
-        }
-        sizes["blocks in memory"] = here.read_all("blocks").estimated_size() / 1e6
-        print("MB a tow: " + ", ".join(f"{n} {mb / number:.2f}" for n, mb in sizes.items()))
-        seconds = {1: [], 2: []}
-        for repeat in range(repeats):
-            for workers, found in seconds.items():
-                took, there = read_there(archive, root / f"{workers}-{repeat}", workers)
-                assert_same_tables(here, there)
-                found.append(took)
-            took = " and ".join(f"{found[-1]:.1f} s" for found in seconds.values())
-            print(f"  repeat {repeat}: {took}; load {os.getloadavg()[0]:.1f}", flush=True)
-        for workers, found in seconds.items():
-            middle = statistics.median(found)
-            print(
-                f"{workers} worker(s), into S3: median {middle:.1f} s, lowest {min(found):.1f} s, "
-                f"{number / middle:.2f} tows/s"
-            )
-        ratios = [one / two for one, two in zip(*seconds.values(), strict=True)]
-        print(f"two against one: median {statistics.median(ratios):.2f}, best {max(ratios):.2f}")
-        took, there = read_there(archive, root / "killed", 2, kill=True)
-        assert_same_tables(here, there)
-        print(f"one of two killed: {took:.1f} s, the same tables")
+def assert_same_database(one: Store, other: Store) -> None:
+    with (
+        duckdb.connect(one.database, read_only=True) as ours,
+        duckdb.connect(other.database, read_only=True) as theirs,
+    ):
+        names = ours.sql("SHOW TABLES").pl()["name"].to_list()
+        assert names == theirs.sql("SHOW TABLES").pl()["name"].to_list()
+        for name in names:
+            assert_frame_equal(ours.table(name).pl(), theirs.table(name).pl(), check_exact=True)
+
+
+def published(store: Store) -> dict[str, str]:
+    """Hashes of the files of an edition that is published now."""
+    publish(store, shipped_method("rebased-2015"), TERMS)
+    return edition_hashes(store, TERMS.edition)
 
 
 if __name__ == "__main__":

@@ -32,7 +32,7 @@ _COLUMNS: Final = {
 def report_page(store: Store, found: News, report: dict[str, Any]) -> str:
     """The page: what came in, what was set aside, what changed and why, what the checks say."""
     checks = pl.DataFrame(
-        [[c["check"], outcome_of(c), c["detail"]] for c in report["checks"]],
+        [[c["check"], outcome_of(c), "" if c["passed"] else c["detail"]] for c in report["checks"]],
         schema=dict.fromkeys(_COLUMNS["checks"], pl.String),
         orient="row",
     )

@@ -130,7 +130,9 @@ def methods(context: typer.Context, as_json: AsJson = False) -> None:
 
     if context.invoked_subcommand is None:
         known = [shipped_method(name) for name in shipped_methods()]
-        rows = [{"method": m.name, "title": m.title, "content_hash": m.content_hash} for m in known]
+        rows = [
+            {"method": m.name, "title": m.title_en, "content_hash": m.content_hash} for m in known
+        ]
         show({"methods": rows}, text.methods, as_json)
 
 

@@ -21,7 +21,7 @@ DIFFERS = "*"
 
 def method_in_words(shown: Method, parent: Method | None) -> str:
     """The whole method; sentences that differ from those of `parent` are marked."""
-    lines = [f"{shown.name}: {shown.title}", "", shown.description.strip(), ""]
+    lines = [f"{shown.name}: {shown.title_en}", "", shown.description.strip(), ""]
     if parent is not None:
         lines += [f"Extends {parent.name}; what differs from it is marked {DIFFERS}.", ""]
     for held in shown.ranges:

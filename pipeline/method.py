@@ -158,10 +158,15 @@ class SeasonSteps(_Options):
 
 
 class Method(_Options):
-    """A complete method: for every season of its range the option of every step."""
+    """A complete method: for every season of its range the option of every step.
+
+    Attributes:
+        title_en: the title where a text is English; that of a file without one is `title`.
+    """
 
     name: str
     title: str
+    title_en: str
     description: str
     extends: str | None
     ranges: tuple[SeasonSteps, ...]
@@ -236,6 +241,7 @@ def parse_method(text: str, file_name: str, text_of: Callable[[str], str] = ship
     return Method(
         name=head.name,
         title=head.title,
+        title_en=head.title_en or head.title,
         description=head.description,
         extends=head.extends,
         ranges=_ranges(reader, layers, seasons),
@@ -248,6 +254,7 @@ class _Head(_Options):
 
     name: str = Field(pattern=r"^[a-z0-9][a-z0-9-]*$")
     title: str
+    title_en: str = ""
     description: str = ""
     extends: str | None = None
     seasons: str = "2009:"

@@ -20,6 +20,7 @@ def method_text(method: Method) -> str:
             for key, value in (
                 ("name", method.name),
                 ("title", method.title),
+                ("title_en", method.title_en),
                 ("description", method.description),
                 ("seasons", seasons),
             )

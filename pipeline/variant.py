@@ -78,6 +78,7 @@ def variant(
     return Method(
         name=name,
         title=title,
+        title_en=title,
         description=description,
         extends=base.name if ships else base.extends,
         ranges=joined(ranges),

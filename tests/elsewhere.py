@@ -1,7 +1,7 @@
-"""Storage and machines other than this process: an S3 server and a Dask cluster on loopback."""
+"""An S3 server and a Dask cluster on loopback, and whether what they made is what is made here."""
 
+import hashlib
 import json
-import logging
 import os
 import subprocess
 import sys
@@ -15,7 +15,11 @@ from pathlib import Path
 from unittest import mock
 
 from distributed import Client
-from moto.server import ThreadedMotoServer
+from polars.testing import assert_frame_equal
+
+from warehouse import bucket
+from warehouse.storage import Place
+from warehouse.store import Store, read_parquet
 
 ROOT = Path(__file__).parents[1]
 BUCKET = "herijk-test"
@@ -23,27 +27,31 @@ PATIENCE_S = 120.0
 
 
 @contextmanager
-def s3_server() -> Iterator[None]:
+def s3_server() -> Iterator[subprocess.Popen[str]]:
     """An S3 server with an empty bucket; the environment of this process leads there."""
-    logging.getLogger("werkzeug").setLevel(logging.ERROR)
-    server = ThreadedMotoServer("127.0.0.1", 0, verbose=False)
-    server.start()
-    host, port = server.get_host_and_port()
-    address = f"http://{host}:{port}"
-    there = {
-        "AWS_ENDPOINT_URL": address,
-        "AWS_ALLOW_HTTP": "true",
-        "AWS_REGION": "us-east-1",
-        "AWS_ACCESS_KEY_ID": "loopback",
-        "AWS_SECRET_ACCESS_KEY": "not-a-secret",
-    }
-    try:
+    command = [sys.executable, "-m", "tests.s3"]
+    with (
+        subprocess.Popen(
+            command, cwd=ROOT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        ) as server,
+        mock.patch.dict(os.environ),
+    ):
+        assert server.stdout is not None
+        address = server.stdout.readline().strip()
         make = urllib.request.Request(f"{address}/{BUCKET}", method="PUT")  # noqa: S310
         urllib.request.urlopen(make).close()  # noqa: S310 - our own server
-        with mock.patch.dict(os.environ, there):
-            yield
-    finally:
-        server.stop()
+        os.environ |= {
+            "AWS_ENDPOINT_URL": address,
+            "AWS_ALLOW_HTTP": "true",
+            "AWS_REGION": "us-east-1",
+            "AWS_ACCESS_KEY_ID": "loopback",
+            "AWS_SECRET_ACCESS_KEY": "not-a-secret",
+        }
+        bucket._client.cache_clear()  # of a server before this one
+        try:
+            yield server
+        finally:
+            server.kill()
 
 
 def lie_in_bucket(data: Path, prefix: str) -> None:
@@ -59,12 +67,12 @@ class Cluster:
     """A Dask scheduler's address, and its workers: processes of one thread each."""
 
     address: str
-    workers: list[subprocess.Popen]
+    workers: list[subprocess.Popen[bytes]]
 
 
 @contextmanager
 def dask_cluster(workers: int, dagster_home: Path) -> Iterator[Cluster]:
-    """A scheduler and workers as processes of their own, all ready; stopped afterwards."""
+    """A scheduler and workers as processes of their own, all there; stopped afterwards."""
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         settings = {
@@ -72,10 +80,13 @@ def dask_cluster(workers: int, dagster_home: Path) -> Iterator[Cluster]:
             "DAGSTER_HOME": str(dagster_home),
             "POLARS_MAX_THREADS": "1",
             "OMP_NUM_THREADS": "1",
+            "OPENBLAS_NUM_THREADS": "1",
         }
+        file = folder / "scheduler.json"
 
-        def start(kind: str, *options: str) -> subprocess.Popen:
-            command = [sys.executable, "-m", "dask", kind, "--no-dashboard", *options]
+        def start(kind: str, *options: str) -> subprocess.Popen[bytes]:
+            shared = ("--no-dashboard", "--scheduler-file", str(file))
+            command = [sys.executable, "-m", "dask", kind, *shared, *options]
             with (folder / f"{kind}.log").open("a") as log:
                 process = subprocess.Popen(
                     command, cwd=folder, env=os.environ | settings, stdout=log, stderr=log
@@ -83,15 +94,14 @@ def dask_cluster(workers: int, dagster_home: Path) -> Iterator[Cluster]:
             stack.callback(_stop, process)
             return process
 
-        file = folder / "scheduler.json"
-        start("scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(file))
+        start("scheduler", "--host", "127.0.0.1", "--port", "0")
+        alone = ("--nthreads", "1", "--no-nanny", "--local-directory", str(folder))
+        started = [start("worker", *alone) for _ in range(workers)]  # they wait for the file
         address = _wait_for(file)
-        options = (address, "--nthreads", "1", "--no-nanny", "--local-directory", str(folder))
-        cluster = Cluster(address, [start("worker", *options) for _ in range(workers)])
-        with Client(address) as client:
-            client.wait_for_workers(workers, timeout=PATIENCE_S)
-            client.run(__import__, "assets.cluster")  # imports take seconds, which nobody measures
-        yield cluster
+        if workers:
+            with Client(address) as client:
+                client.wait_for_workers(workers, timeout=PATIENCE_S)
+        yield Cluster(address, started)
 
 
 def _wait_for(file: Path) -> str:
@@ -99,12 +109,48 @@ def _wait_for(file: Path) -> str:
     limit = time.monotonic() + PATIENCE_S
     while time.monotonic() < limit:
         try:
-            return json.loads(file.read_text())["address"]
+            return str(json.loads(file.read_text())["address"])
         except (FileNotFoundError, json.JSONDecodeError):
             time.sleep(0.05)
     raise TimeoutError(f"no scheduler after {PATIENCE_S} s")
 
 
-def _stop(process: subprocess.Popen) -> None:
+def _stop(process: subprocess.Popen[bytes]) -> None:
     process.kill()
     process.wait()
+
+
+def assert_same_lake(one: Store, other: Store) -> None:
+    """Samples, blocks and tables are the same and made from the same, wherever they lie.
+
+    The hash of the database file is of no concern: DuckDB never writes the same bytes twice.
+    """
+    files, others = _files_below(one.lake), _files_below(other.lake)
+    assert files.keys() == others.keys()
+    for name in files.keys() - {"tables/database.parquet"}:
+        assert_frame_equal(read_parquet(files[name]), read_parquet(others[name]), check_exact=True)
+    for table, partition in {_table(name) for name in files if name.startswith("tables/")}:
+        assert one.made_from(table, partition) == other.made_from(table, partition), table
+
+
+def _files_below(folder: Place, above: str = "") -> dict[str, Place]:
+    """Parquet files at any depth below a folder, by path."""
+    found: dict[str, Place] = {}
+    for below in folder.iterdir():
+        if below.name.endswith(".parquet"):
+            found[above + below.name] = below
+        elif not below.name.endswith(".json"):  # the cache of hashes stays on the machine
+            found |= _files_below(below, f"{above}{below.name}/")
+    return found
+
+
+def _table(name: str) -> tuple[str, str | None]:
+    """Table and partition that lie under a path of the lake."""
+    table, _, partition = name.removeprefix("tables/").removesuffix(".parquet").partition("/")
+    return table, partition or None
+
+
+def edition_hashes(store: Store, edition: str) -> dict[str, str]:
+    """SHA-256 of every file of an edition, by name."""
+    files = (store.editions / edition).iterdir()
+    return {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files}

@@ -119,11 +119,12 @@ def _of_boat(
 
 
 def _tow(db: duckdb.DuckDBPyConnection, tow: Report, methods: list[str]) -> Report:
-    """A tow with its curves, the runs behind each, and what each step of a correction did."""
+    """A tow with its curves, the runs and uncertainty of each, and what each step did."""
     tow_id = tow["tow_id"]
     curves = rows(db, _CURVES, tow_id, methods)
     for curve in curves:
         curve["run_points"] = rows(db, _RUN_POINTS, tow_id, curve["method"])
+        curve["budget"] = rows(db, _BUDGET, tow_id, curve["method"])
     return tow | {"curves": curves, "steps": rows(db, _STEPS, tow_id, methods, methods)}
 
 
@@ -132,6 +133,11 @@ _TOWS = "SELECT * FROM tows WHERE fsn_no = ? ORDER BY tow_date, tow_id"
 _CURVES = "SELECT * FROM curves WHERE tow_id = ? AND list_contains(?, method) ORDER BY method"
 
 _RUN_POINTS = "SELECT * FROM run_points WHERE tow_id = ? AND method = ? ORDER BY run"
+
+_BUDGET = """
+SELECT component, shared, u_ratio, dof FROM uncertainty_budget
+WHERE tow_id = ? AND method = ? ORDER BY u_ratio DESC, component
+"""
 
 _STEPS = """
 SELECT * FROM correction_steps

@@ -66,10 +66,6 @@ class BucketPath:
             return False
         return True
 
-    def is_dir(self) -> bool:
-        """Whether there is any object below it."""
-        return next(self.iterdir(), None) is not None
-
     def iterdir(self) -> Iterator["BucketPath"]:
         """Objects and prefixes directly below it, sorted."""
         with _explained(self):
@@ -136,11 +132,17 @@ def _explained(path: BucketPath) -> Iterator[None]:
     """Turns what the service or the network says into a sentence with the way out.
 
     Raises:
-        UnavailableError: the service cannot be reached, or refuses.
+        UnavailableError: the service cannot be reached, or refuses, or has no such bucket.
     """
     try:
         yield
     except AlreadyExistsError:
+        raise
+    except FileNotFoundError as error:
+        if "NoSuchBucket" in str(error):
+            raise UnavailableError(
+                f"{path}: there is no bucket {path.bucket}; make it, or mend opslag.toml"
+            ) from error
         raise
     except BaseError as error:
         said = str(error).splitlines()[0]

@@ -745,6 +745,7 @@ class Methods(dy.Schema):
 
     method = _method(primary_key=True)
     title = _text("title for people")
+    title_en = _text("title in English; the same where the method has one title")
     content_hash = _text("SHA-256 of the definition", regex="^[0-9a-f]{64}$")
     definition = _text("the options of every season, as canonical JSON")
 

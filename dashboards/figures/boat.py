@@ -58,7 +58,7 @@ def resistance_curve(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
             cw_hi_kg_m, run, direction, used`.
         say: gives texts.
     """
-    x = number(alt.X, "speed_m_s", say("speed"), axis=alt.Axis(tickCount=8))
+    x = number(alt.X, "speed_m_s", say("speed"))
     y = number(alt.Y, "cw_kg_m", say("cw"))
     whole = alt.Chart(frame)
     line = whole.transform_filter("datum.kind == 'line'")

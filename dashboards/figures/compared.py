@@ -14,7 +14,7 @@ def curves_compared(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
         frame: rows of `kind` line, point and declared (`warehouse.trial.Trial.boat_figure`).
         say: gives texts.
     """
-    x = number(alt.X, "speed_m_s", say("speed"), axis=alt.Axis(tickCount=8))
+    x = number(alt.X, "speed_m_s", say("speed"))
     y = number(alt.Y, "cw_kg_m", say("cw"))
     low, high = alt.Y("cw_lo_kg_m:Q", title=say("cw")), alt.Y2("cw_hi_kg_m:Q")
     ink = alt.Scale(range=[OKABE_ITO[1], OKABE_ITO[0]])

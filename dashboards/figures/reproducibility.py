@@ -15,6 +15,7 @@ from dashboards.figures.style import (
     number,
     shape,
     tips,
+    type_legend,
 )
 from dashboards.words import Say
 
@@ -103,8 +104,8 @@ def predicted(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
         .encode(
             number(alt.X, "cw_kg_m", say("tow_cw")),
             number(alt.Y, "predicted_cw_kg_m", say("predicted_cw")),
-            colour("boat_type", say("type")),
-            shape("boat_type", say("type")),
+            colour("boat_type", say("type"), legend=type_legend(say)),
+            shape("boat_type", say("type"), legend=type_legend(say)),
             href="page:N",
             tooltip=tips(
                 ("name:N", say("name")),

@@ -50,8 +50,14 @@ def shape(field: str, title: str, **more: Any) -> alt.Shape:
 
 
 def number(channel: Any, field: str, title: str, zero: bool = False, **more: Any) -> Any:
-    """A quantity on an axis that need not begin at zero."""
-    return channel(f"{field}:Q", title=title, scale=alt.Scale(zero=zero), **more)
+    """A quantity on an axis that need not begin at zero; labels below it keep apart."""
+    across = {"axis": alt.Axis(tickCount=8)} if channel is alt.X else {}
+    return channel(f"{field}:Q", title=title, scale=alt.Scale(zero=zero), **across | more)
+
+
+def type_legend(say: Say, **more: Any) -> alt.Legend:
+    """A legend of boat types, of which one is not known."""
+    return alt.Legend(labelExpr=named(["unknown"], say), **more)
 
 
 def tips(*pairs: tuple[str, str]) -> list[alt.Tooltip]:

@@ -9,7 +9,7 @@ from typing import Any
 import altair as alt
 import polars as pl
 
-from dashboards.figures.style import OKABE_ITO, colour, number, shape, tips
+from dashboards.figures.style import OKABE_ITO, colour, number, shape, tips, type_legend
 from dashboards.words import Say
 
 Axes = tuple[tuple[str, str], tuple[str, str]]
@@ -38,10 +38,11 @@ def _points(frame: pl.DataFrame, say: Say, axes: Axes, more: dict[str, Any]) -> 
     )
 
 
-def _scatter(frame: pl.DataFrame, say: Say, axes: Axes) -> alt.Chart:
+def _scatter(frame: pl.DataFrame, say: Say, axes: Axes) -> alt.FacetChart:
+    """All types; methods side by side on the same axes, so that they can be compared."""
     brush = alt.selection_interval(name="brush")
     chosen = alt.param(name="chosen", value="")
-    legend = alt.Legend(orient="top", columns=3)
+    legend = type_legend(say, orient="top", columns=3)
     more = {
         "color": colour("boat_type", say("type"), legend=legend),
         "shape": shape("boat_type", say("type"), legend=legend),
@@ -49,14 +50,16 @@ def _scatter(frame: pl.DataFrame, say: Say, axes: Axes) -> alt.Chart:
         "opacity": alt.condition(brush, alt.value(0.9), alt.value(0.2)),
     }
     points = _points(frame, say, axes, more).add_params(brush, chosen)
-    return points.properties(width=400, height=280)
+    return points.properties(width=400, height=280).facet(
+        alt.Facet("method:N", title=None), columns=2
+    )
 
 
 def _pair(frame: pl.DataFrame, say: Say, axes: Axes) -> alt.FacetChart:
-    """Two types side by side on the same axes."""
+    """Two types side by side and methods one above the other, all on the same axes."""
     points = _points(frame, say, axes, {"color": alt.value(OKABE_ITO[0])})
     return points.properties(width=220, height=220).facet(
-        alt.Facet("boat_type:N", title=None), columns=2
+        row=alt.Row("method:N", title=None), column=alt.Column("boat_type:N", title=None)
     )
 
 
@@ -80,27 +83,27 @@ def _cw_standard(say: Say) -> tuple[str, str]:
     return "cw_standard_kg_m", say("cw_standard")
 
 
-def b_against_weight(frame: pl.DataFrame, say: Say) -> alt.Chart:
+def b_against_weight(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
     """B against weight; `frame` is `Views.type_boats` with `page`."""
     return _scatter(frame, say, (_weight(say), _b(say)))
 
 
-def b_against_speed(frame: pl.DataFrame, say: Say) -> alt.Chart:
+def b_against_speed(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
     """B against tow speed."""
     return _scatter(frame, say, (_speed(say), _b(say)))
 
 
-def a_against_weight(frame: pl.DataFrame, say: Say) -> alt.Chart:
+def a_against_weight(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
     """A against weight."""
     return _scatter(frame, say, (_weight(say), ("a_kg_m", say("a"))))
 
 
-def cw_standard_against_weight(frame: pl.DataFrame, say: Say) -> alt.Chart:
+def cw_standard_against_weight(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
     """Cw at the type's standard speed against weight."""
     return _scatter(frame, say, (_weight(say), _cw_standard(say)))
 
 
-def cw_standard_against_speed(frame: pl.DataFrame, say: Say) -> alt.Chart:
+def cw_standard_against_speed(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
     """Cw at the type's standard speed against tow speed."""
     return _scatter(frame, say, (_speed(say), _cw_standard(say)))
 
@@ -123,12 +126,12 @@ def shared_bend(frame: pl.DataFrame, say: Say) -> alt.Chart:
     )
 
 
-def cw_against_weight(frame: pl.DataFrame, say: Say) -> alt.Chart:
+def cw_against_weight(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
     """Cw at the declared speed against weight."""
     return _scatter(frame, say, (_weight(say), _cw(say)))
 
 
-def cw_against_speed(frame: pl.DataFrame, say: Say) -> alt.Chart:
+def cw_against_speed(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
     """Cw at the declared speed against that speed."""
     return _scatter(frame, say, (_speed(say), _cw(say)))
 

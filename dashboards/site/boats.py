@@ -87,10 +87,12 @@ def _stages(points: pl.DataFrame) -> pl.DataFrame:
 
 
 def _seconds(traces: pl.DataFrame) -> pl.DataFrame:
-    """Seconds of every run, to the digits that a chart can show."""
-    fields = {"speed_m_s": 3, "gps_m_s": 3, "force_n": 1, "wind_m_s": 2}
-    rounded = traces.with_columns(pl.col(name).round(digits) for name, digits in fields.items())
-    return _kind(rounded, "trace", "run", "second", *fields)
+    """Seconds of every run, to the digits that a chart of 110 pixels can show."""
+    fields = ("speed_m_s", "gps_m_s", "wind_m_s")
+    rounded = traces.with_columns(
+        pl.col(*fields).round(2), pl.col("force_n").round().cast(pl.Int32)
+    )
+    return _kind(rounded, "trace", "run", "second", *fields, "force_n")
 
 
 LINE_COLUMNS = (
@@ -116,7 +118,7 @@ LINEAGE_COLUMNS = ("edition", "crew", "tow_id", "path", "sha256", "method_hash",
 
 
 def _page(fsn_no: str, own: dict[str, pl.DataFrame], methods: Sequence[str]) -> Page:
-    facts = Section("facts", tables=[Table("boat", own["boats"], FACT_COLUMNS, "facts")])
+    facts = Section("facts", tables=[Table("boats", own["boats"], FACT_COLUMNS, "facts")])
     name = own["boats"]["name"][0]
     tows = own["curves"]["tow_id"].unique(maintain_order=True).to_list()
     if not tows:
@@ -159,7 +161,7 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
         Chart("wind", "runs", "wind", OF_THE_CURVE),
     ]
     curves = Table("curves", own["curves"], CURVE_COLUMNS, "boat_history")
-    runs = Table("runs", own["runs"], RUN_COLUMNS, "boat_runs", FOLLOWS)
+    runs = Table("run_points", own["runs"], RUN_COLUMNS, "boat_runs", FOLLOWS)
     found = [
         Section(
             "boat_lines", tables=[Table("register", own["register"], LINE_COLUMNS, "boat_lines")]

@@ -58,17 +58,16 @@ def _index(views: Views) -> Page:
             Section(
                 "methods",
                 "methods_note",
-                tables=[
-                    Table(
-                        "methods",
-                        views.table("methods"),
-                        ["method", "title", "content_hash"],
-                        "methods",
-                    )
-                ],
+                tables=[_methods_table(views)],
             ),
         ],
     )
+
+
+def _methods_table(views: Views) -> Table:
+    """The methods, with the title in the language of the page."""
+    frame = views.table("methods").with_columns(titles=pl.concat_list("title", "title_en"))
+    return Table("methods", frame, ["method", "titles", "content_hash"], "methods")
 
 
 REGISTER_COLUMNS = (
@@ -325,17 +324,13 @@ def _set_aside(views: Views) -> Section:
 
 def _rebuilt(views: Views) -> Section:
     """What the rebuild read, applied and made."""
-    shown = {
-        "seasons": ("season", "listed", "tows"),
-        "methods": ("method", "title", "content_hash"),
-        "contents": ("table", "rows", "meaning"),
-    }
-    captions = {"contents": "tables"}
+    seasons, tables = views.table("seasons"), views.table("contents")
     return Section(
         "rebuilt",
         "rebuilt_note",
         tables=[
-            Table(name, views.table(name), columns, captions.get(name, name))
-            for name, columns in shown.items()
+            Table("seasons", seasons, ("season", "listed", "tows"), "seasons"),
+            _methods_table(views),
+            Table("contents", tables, ("table", "rows", "meaning"), "tables"),
         ],
     )

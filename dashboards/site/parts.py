@@ -42,14 +42,14 @@ class Chart:
         figure: name in `dashboards.figures.FIGURES`.
         data: name of the page's data it draws.
         caption: key of its caption; also what a screen reader says.
-        follows: selector by data column: only rows equal to the selector's value are drawn, and
-            rows where the column is empty.
+        follows: selector, or several, by data column: only rows that hold what one of them says
+            are drawn, and rows where the column is empty.
     """
 
     figure: str
     data: str
     caption: str
-    follows: Mapping[str, str] = field(default_factory=dict)
+    follows: Mapping[str, str | Sequence[str]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,4 @@
-"""From pages to files: HTML with the tables, data for the charts, and what all pages share.
-
-Everything that comes from the archive is escaped: by Jinja in HTML, and in data blocks so that
-no text can end the block.
-"""
+"""From pages to files: HTML with the tables, data for the charts, and what all pages share."""
 
 import datetime as dt
 import json
@@ -10,7 +6,7 @@ import shutil
 import tempfile
 from collections.abc import Callable, Sequence
 from functools import cache
-from itertools import repeat
+from itertools import chain, repeat
 from pathlib import Path
 from typing import Any, Final
 
@@ -20,6 +16,7 @@ import vl_convert
 from markupsafe import Markup, escape
 
 from dashboards.figures import FIGURES
+from dashboards.html import as_json, environment, in_both
 from dashboards.site.downloads import copy_sheets
 from dashboards.site.pages import MENU, all_pages
 from dashboards.site.parts import Page, Table, boat_path
@@ -52,7 +49,7 @@ POLICY: Final = "; ".join(
 DECIMAL: Final = ","
 """A page is written in Dutch; `site.js` changes numbers where English is chosen."""
 
-KEPT: Final = 9
+KEPT: Final = 7
 """Significant digits in downloads and charts; the database holds all."""
 
 CODES: Final = {
@@ -113,8 +110,11 @@ def render_page(views: Views, page: Page) -> str:
 
 
 def _by_column(comments: dict[str, str]) -> dict[str, str]:
-    """The meaning of a column by its name alone: names mean the same in every table."""
-    return {name.split(".", 1)[1]: text for name, text in comments.items()}
+    """The meaning of a column by its table and name; by its name alone where all tables agree."""
+    meanings: dict[str, set[str]] = {}
+    for name, text in comments.items():
+        meanings.setdefault(name.split(".", 1)[1], set()).add(text)
+    return comments | {name: min(texts) for name, texts in meanings.items() if len(texts) == 1}
 
 
 @cache
@@ -144,6 +144,7 @@ def _words_of_charts(say: Say) -> dict[str, str]:
 
 def specification(figure: Callable[..., Any], say: Callable[[str], str]) -> dict[str, Any]:
     """A figure's Vega-Lite with the data left to the page: a dataset called `rows`."""
+    # Validating takes as long as all else of a small site; the tests of figures do it.
     spec: dict[str, Any] = figure(pl.DataFrame({"kind": ["x"]}), say).to_dict(validate=False)
     (placeholder,) = spec.pop("datasets")
     spec.pop("$schema")
@@ -151,37 +152,31 @@ def specification(figure: Callable[..., Any], say: Callable[[str], str]) -> dict
     return dict(json.loads(text))
 
 
-def as_json(value: Any) -> str:
-    """JSON that may stand inside a script element: no text in it can close the element."""
-    text = json.dumps(value, separators=(",", ":"), ensure_ascii=False, default=str)
-    return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
-
-
 def _data(frames: Sequence[pl.DataFrame]) -> Markup:
-    """Frames as columns, for a data block; a column of texts as its values and their places."""
+    """Frames as columns, for a data block (`_column`)."""
     found = [{c.name: _column(c) for c in frame} for frame in frames]
     return Markup(as_json(found))  # noqa: S704 - as_json escapes
 
 
 def _column(column: pl.Series) -> list[Any] | dict[str, list[Any]]:
+    """A list; of texts and of what stays the same for many rows, each value once.
+
+    `runs` then has the place of a value and for how many rows it holds, one pair after the other.
+    """
     if column.dtype.is_float():
         return column.round_sig_figs(KEPT).to_list()
-    if column.dtype != pl.String:
+    lengths, held = column.rle().struct.unnest().get_columns()
+    if column.dtype != pl.String and 2 * len(held) >= len(column):
         return column.to_list()
-    values = column.unique(maintain_order=True)
+    values = held.unique(maintain_order=True)
     places = {value: place for place, value in enumerate(values)}
-    return {"values": values.to_list(), "places": [places[value] for value in column]}
+    runs = zip((places[value] for value in held), lengths, strict=True)
+    return {"values": values.to_list(), "runs": list(chain.from_iterable(runs))}
 
 
 def _environment(comments: dict[str, str]) -> jinja2.Environment:
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(HERE / "templates"),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=jinja2.StrictUndefined,
-    )
-    environment.globals.update(
+    return environment(
+        HERE / "templates",
         policy=POLICY,
         t=_text,
         both=both,
@@ -190,15 +185,10 @@ def _environment(comments: dict[str, str]) -> jinja2.Environment:
         is_number=_is_number,
         comments=comments,
     )
-    return environment
 
 
 def _text(key: str) -> Markup:
-    """A text in both languages; the style sheet hides the one that is not chosen."""
-    nl, en = both(key)
-    if nl == en:
-        return Markup("{}").format(nl)
-    return Markup('<span lang="nl">{}</span><span lang="en">{}</span>').format(nl, en)
+    return in_both(both(key))
 
 
 def _is_number(frame: pl.DataFrame, column: str) -> bool:
@@ -213,14 +203,23 @@ def _rows(page: Page, table: Table) -> tuple[Markup, Markup]:
     frame, follows = table.frame, list(table.follows)
     # Column by column, because the cells of a column are made in one way.
     cells = zip(*(_cells(frame[c], page.root) for c in table.columns), strict=True)
-    boats = frame["fsn_no"] if table.linked else repeat(None)
+    boats = [_BOAT.format(n) for n in frame["fsn_no"]] if table.linked else repeat("")
     keys = frame.select(follows).rows() if follows else repeat(())
-    first, others = [], []
+
+    @cache
+    def marked(key: tuple[str, ...]) -> tuple[list[str], str]:
+        """Where rows of a key stand, and what they say of it besides their cells."""
+        own = dict(zip(follows, key, strict=True))
+        is_first = all(page.chosen[name] in ("", value) for name, value in own.items())
+        unseen = ((name, value) for name, value in own.items() if name not in table.columns)
+        marks = "".join(_FOLLOWED.format(*one) for one in unseen)
+        return first if is_first else others, marks
+
+    first: list[str] = []
+    others: list[str] = []
     for row, boat, key in zip(cells, boats, keys, strict=False):
-        marks = [_BOAT.format(boat)] if boat is not None else []
-        marks += [_FOLLOWED.format(n, v) for n, v in zip(follows, key, strict=True)]
-        is_first = all(page.chosen[n] in ("", v) for n, v in zip(follows, key, strict=True))
-        (first if is_first else others).append(f"<tr{''.join(marks)}>{''.join(row)}</tr>")
+        place, marks = marked(key)
+        place.append(f"<tr{boat}{marks}>{''.join(row)}</tr>")
     return Markup("\n".join(first)), Markup("\n".join(others))  # noqa: S704 - made of escaped parts
 
 
@@ -237,7 +236,14 @@ def _cells(column: pl.Series, root: str) -> list[Markup]:
         return [_integer(value) for value in column]
     show = _shower(name, root)
     cell = _LONG_CELL if name in LONG else _CELL
-    return [_EMPTY if value is None else _shown(value, show, cell) for value in column]
+
+    def made(value: Any) -> Markup:
+        return _EMPTY if value is None else _shown(value, show, cell)
+
+    if isinstance(column.dtype, pl.List):
+        return [made(value) for value in column]
+    of = {value: made(value) for value in column.unique()}
+    return [of[value] for value in column]
 
 
 _SAME_CELL = Markup("<td>{}</td>")
@@ -249,14 +255,15 @@ _EMPTY = Markup("<td></td>")
 
 def _number(value: float | None, digits: int) -> Markup:
     if value is None:
-        return Markup('<td class="n" data-v=""></td>')
-    shown = f"{value:.{digits}f}".replace(".", DECIMAL)
-    return Markup(f'<td class="n" data-v="{value:.{KEPT}g}">{shown}</td>')  # noqa: S704 - a number
+        return Markup("<td class=n></td>")
+    shown, exact = f"{value:z.{digits}f}", f"{value:.{KEPT}g}"
+    mark = "" if shown == exact and digits == 0 else f" data-v={exact}"
+    return Markup(f"<td class=n{mark}>{shown.replace('.', DECIMAL)}</td>")  # noqa: S704 - a number
 
 
 def _integer(value: int | None) -> Markup:
     text = "" if value is None else str(value)
-    return Markup(f'<td class="i">{text}</td>')  # noqa: S704 - a number
+    return Markup(f"<td class=i>{text}</td>")  # noqa: S704 - a number
 
 
 def _shown(value: Any, show: Callable[[Any], Markup], cell: Markup) -> Markup:
@@ -316,7 +323,14 @@ def _causes(value: str) -> Markup:
     return Markup(" \u00d7 ").join(parts)
 
 
+def _titles(value: Any) -> Markup:
+    """A title in Dutch and one in English."""
+    nl, en = value
+    return in_both((nl, en))
+
+
 SHOWERS: Final[dict[str, Callable[[Any], Markup]]] = {
+    "titles": _titles,
     "direction": _direction,
     "causes": _causes,
     "boat_type": _type,

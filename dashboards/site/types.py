@@ -9,8 +9,10 @@ from warehouse.views import Views
 
 QUANTITIES = ("b_weight", "b_speed", "cw_weight", "cw_speed")
 SIDES = ("before", "after")
+"""Selectors of the two methods that stand side by side."""
 PAIR = ("kromhout", "kuiken")
 """Two types of which many boats are said to be equal: shown side by side at first."""
+PAIR_SELECTORS = ("pair_first", "pair_second")
 
 
 def types_page(views: Views, methods: Sequence[str]) -> Page:
@@ -35,26 +37,23 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
         [
             Section("types_charts", "types_note", _before_after("", "boat_type")),
             Section("types_list", tables=[table]),
-            Section("types_pair", "types_pair_note", _before_after("pair_", "pair")),
+            Section("types_pair", "types_pair_note", _before_after("pair_", PAIR_SELECTORS)),
             *_type_tables(views),
         ],
         selects=[
             Select("before", "before", methods, methods[0]),
             Select("after", "after", methods, default_method(methods)),
             Select("boat_type", "type", types, "", with_all=True),
-            Select("pair", "pair_first", types, first),
-            Select("pair_2", "pair_second", types, second),
+            Select("pair_first", "pair_first", types, first),
+            Select("pair_second", "pair_second", types, second),
         ],
         data={"type_boats": [boats.select("method", "page", *columns)]},
     )
 
 
-def _before_after(prefix: str, of_type: str) -> list[Chart]:
-    return [
-        Chart(f"{prefix}{name}", "type_boats", side, {"method": side, "boat_type": of_type})
-        for name in QUANTITIES
-        for side in SIDES
-    ]
+def _before_after(prefix: str, of_type: str | Sequence[str]) -> list[Chart]:
+    follows = {"method": SIDES, "boat_type": of_type}
+    return [Chart(f"{prefix}{name}", "type_boats", name, follows) for name in QUANTITIES]
 
 
 def _pair(types: Sequence[str]) -> tuple[str, str]:

@@ -11,7 +11,6 @@ from pathlib import Path
 from threading import Lock
 from typing import Any, Final, TypeVar
 
-import jinja2
 import uvicorn
 from markupsafe import Markup
 from pydantic import BaseModel, ValidationError
@@ -24,9 +23,11 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, JSONResponse, Response
 from starlette.routing import Route
 
-from dashboards.site.render import as_json, chart_specifications, vega_bundle
+from dashboards.html import as_json, environment, in_both
+from dashboards.site.render import chart_specifications, vega_bundle
+from dashboards.words import both
 from dashboards.workbench.bench import Base, Bench, Named, Question
-from dashboards.workbench.texts import all_texts, text
+from dashboards.workbench.texts import TEXTS
 from pipeline.errors import HerijkError, MissingKnowledgeError
 
 LOOPBACK: Final = "127.0.0.1"
@@ -134,23 +135,14 @@ def _refusal(error: ValidationError) -> dict[str, Any]:
 
 
 def _page(bench: Bench) -> str:
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(HERE / "templates"),
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        undefined=jinja2.StrictUndefined,
-    )
-    environment.globals.update(t=_in_both, both=text)
     start = bench.start()
-    data = Markup(as_json(start | {"words": all_texts()}))  # noqa: S704 - as_json escapes
-    return environment.get_template("workbench.html.j2").render(start=start, data=data)
+    data = Markup(as_json(start | {"words": TEXTS}))  # noqa: S704 - as_json escapes
+    made = environment(HERE / "templates", t=_text, both=lambda key: both(key, TEXTS))
+    return made.get_template("workbench.html.j2").render(start=start, data=data)
 
 
-def _in_both(key: str) -> Markup:
-    """A text in both languages; the style sheet hides the one that is not chosen."""
-    nl, en = text(key)
-    return Markup('<span lang="nl">{}</span><span lang="en">{}</span>').format(nl, en)
+def _text(key: str) -> Markup:
+    return in_both(both(key, TEXTS))
 
 
 def listen(port: int) -> socket.socket:

@@ -1,13 +1,14 @@
-"""The workbench's own texts in Dutch and English; what the site says too is in `dashboards.words`.
+"""Every text of the workbench in Dutch and English: `dashboards.words`, and its own.
 
 An option or value without a text here is shown by its name in the method file.
 """
 
 from typing import Final
 
-from dashboards.words import WORDS, both
+from dashboards.words import WORDS, Words
 
-TEXTS: Final[dict[str, tuple[str, str]]] = {
+TEXTS: Final[Words] = {
+    **WORDS,
     "workbench": ("Werkbank", "Workbench"),
     "intro": (
         "Verander een keuze in de rekenmethode en zie meteen wat er met alle sloepen gebeurt. "
@@ -107,8 +108,6 @@ TEXTS: Final[dict[str, tuple[str, str]]] = {
         "The curve and the runs before and after. Open marks do not count; the bar at the "
         "declared speed is the 95 % interval.",
     ),
-    "before": ("voor", "before"),
-    "after": ("na", "after"),
     "choose_boat": ("Kies sloep", "Choose boat"),
     "figure_curve": ("Weerstandskrommen van deze proef", "Resistance curves of this tow"),
     "figure_repeats": ("Standaardafwijking van één proef", "Standard deviation of one tow"),
@@ -212,13 +211,3 @@ TEXTS: Final[dict[str, tuple[str, str]]] = {
     "choice.capped": ("begrensd", "capped"),
     "choice.hull_speed": ("de rompsnelheid", "the hull speed"),
 }
-
-
-def text(key: str) -> tuple[str, str]:
-    """A text in Dutch and English, by key; a name without one stands for itself."""
-    return TEXTS.get(key) or both(key)
-
-
-def all_texts() -> dict[str, tuple[str, str]]:
-    """Every text that the page may show."""
-    return WORDS | TEXTS

@@ -2,8 +2,9 @@
 
     python deploy/kubernetes/check.py
 
-Needs kubectl and the extra `k8s`. Found are unknown fields, missing ones and wrong kinds of value;
-not found is what only a cluster knows: images, secrets, storage classes, rights.
+Needs kubectl and the extra `k8s`; the settings of Herijk are read by Herijk. Found are unknown
+fields, missing ones and wrong kinds of value; not found is what only a cluster knows: images,
+secrets, storage classes, rights.
 """
 
 import subprocess
@@ -15,6 +16,9 @@ from dagster._config import process_config, resolve_to_config_type
 from dagster_k8s import K8sRunLauncher
 from kubernetes import client
 
+from assets.settings import read_settings
+from warehouse.storage import read_locations
+
 HERE = Path(__file__).parent
 MODELS = {
     "ConfigMap": client.V1ConfigMap,
@@ -24,6 +28,7 @@ MODELS = {
     "PersistentVolumeClaim": client.V1PersistentVolumeClaim,
     "Service": client.V1Service,
 }
+READERS = {"beheer.toml": read_settings, "opslag.toml": read_locations}
 
 
 def faults(value, kind, where):
@@ -62,7 +67,13 @@ def main():
     launcher = yaml.safe_load((HERE / "dagster.yaml").read_text())["run_launcher"]["config"]
     checked = process_config(resolve_to_config_type(K8sRunLauncher.config_type()), launcher)
     found += [f"run_launcher: {error.message}" for error in checked.errors or ()]
-    print(f"{len(objects)} objects and the run launcher checked", *found, sep="\n")
+    for read in READERS.values():
+        read(HERE)  # stops where one is wrong
+    print(
+        f"{len(objects)} objects, the run launcher and {' and '.join(READERS)} checked",
+        *found,
+        sep="\n",
+    )
     sys.exit(bool(found))
 
 

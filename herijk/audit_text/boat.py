@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from math import exp
+from typing import Final
 
 from herijk.audit_text.words import (
     EXPLANATIONS,
@@ -11,10 +12,14 @@ from herijk.audit_text.words import (
     nothing,
     second_opinion,
     section,
+    share,
     slow_tow,
     wrapped,
 )
 from herijk.text import table
+
+LEAST_TOLD: Final = 5e-5
+"""Part of Cw below which a cause of uncertainty is nothing in two decimals of a per cent."""
 
 
 def boat_page(report: Report) -> list[str]:
@@ -195,7 +200,19 @@ def _curve(curve: Report) -> str:
         )
         for p in curve["run_points"]
     ]
-    return f"  {curve['method']}: {_result(curve)}\n{table(head, rows)}"
+    found = [f"  {curve['method']}: {_result(curve)}", table(head, rows), _budget(curve["budget"])]
+    return "\n".join(part for part in found if part)
+
+
+def _budget(budget: list[Report]) -> str:
+    """What makes Cw uncertain, the largest first; with whom it is shared where it is."""
+    felt = [
+        f"{row['component'].replace('_', ' ')} {share(row['u_ratio'], 2)}"
+        + ("" if row["shared"] == "single" else f" ({row['shared']})")
+        for row in budget
+        if row["u_ratio"] and row["u_ratio"] >= LEAST_TOLD
+    ]
+    return wrapped(f"standard uncertainty of Cw: {', '.join(felt)}", 4) if felt else ""
 
 
 def _result(curve: Report) -> str:

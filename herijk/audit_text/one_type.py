@@ -5,6 +5,8 @@ from typing import Any, Final
 
 from herijk.audit_text.words import (
     AGAINST,
+    LETTERS,
+    LINES,
     NOTE,
     QUANTITIES,
     REASONS,
@@ -21,6 +23,7 @@ from herijk.audit_text.words import (
     section,
     share,
     slow_tow,
+    step_of,
     who,
     wrapped,
     yes,
@@ -74,7 +77,7 @@ def _first_title(under: Report) -> str:
     lines = [line_of(figures, "cw_standard_kg_m", "weight_kg") for figures in under.values()]
     speeds = {f"{x['standard_speed_m_s']:.2f} m/s" for x in lines if "standard_speed_m_s" in x}
     at = f" at a standard {' or '.join(sorted(speeds))}" if speeds else ""
-    return f"1. Do A [kg/m] and B [m/s] follow weight or tow speed? Does Cw [kg/m]{at}?"
+    return f"1. Do A [kg/m] and B [m/s] follow weight or tow speed, q weight? Cw [kg/m]{at}?"
 
 
 def _each(under: Report, say: Callable[[Report], list[str]]) -> list[str]:
@@ -91,16 +94,16 @@ def _each(under: Report, say: Callable[[Report], list[str]]) -> list[str]:
 def _lines(under: Report) -> list[str]:
     """The table of lines, what is not claimed, and which quantity lies closest together."""
     cells, silent = [], []
-    for quantity, letter in QUANTITIES.items():
-        for explaining, (against, _, unit) in AGAINST.items():
-            label = f"{letter} per {unit}"
-            for method, figures in under.items():
-                line = line_of(figures, quantity, explaining)
-                if line["reason"]:
-                    silent.append((method, f"{letter} against {against}", nothing(line)))
-                    continue
-                cells.append((label, method, _slope(line, explaining), *_line_figures(line)))
-                label = ""
+    for quantity, explaining in LINES:
+        letter, against = LETTERS[quantity], AGAINST[explaining][0]
+        label = f"{letter} per {step_of(quantity, explaining)[1]}"
+        for method, figures in under.items():
+            line = line_of(figures, quantity, explaining)
+            if line["reason"]:
+                silent.append((method, f"{letter} against {against}", nothing(line)))
+                continue
+            cells.append((label, method, _slope(line), *_line_figures(line)))
+            label = ""
     label = "Cw, power of m"
     for method, figures in under.items():
         line = line_of(figures, "ln_cw_standard", "ln_displacement")
@@ -113,16 +116,17 @@ def _lines(under: Report) -> list[str]:
     return shown + _silent(silent) + (_each(under, _closest) if cells else [])
 
 
-def _slope(line: Report, explaining: str) -> str:
-    step = AGAINST[explaining][1]
+def _slope(line: Report) -> str:
+    step, _ = step_of(line["quantity"], line["explaining"])
     return interval(*(step * line[end] for end in ("slope", "slope_lo", "slope_hi")), digits=2)
 
 
 def _line_figures(line: Report) -> tuple[Any, ...]:
+    digits = 0 if line["quantity"] == "q" else 1  # q spreads by many per cent
     return (
         share(line["r2"]),
-        share(line["residual_sd_ratio"], 1),
-        share(line["noise_sd_ratio"], 1),
+        share(line["residual_sd_ratio"], digits),
+        share(line["noise_sd_ratio"], digits),
         line["n"],
         yes(line["follows"]),
     )

@@ -14,6 +14,7 @@ from herijk.audit_text.words import (
     line_of,
     section,
     share,
+    step_of,
     wrapped,
 )
 from herijk.text import table
@@ -38,6 +39,7 @@ def _headline(eras: list[str]) -> list[Row]:
     ]
     return [
         *lines,
+        Row("q against weight", "q weight_kg", _line("q", "weight_kg")),
         Row("spread about weight", "closest", _spread),
         Row("equal bends possible", "bends", _bends),
         Row("q per 10 % tow speed", "speed_trend", _trend),
@@ -62,7 +64,7 @@ def _line(quantity: str, explaining: str) -> Cell:
         line = line_of(under, quantity, explaining)
         if line["reason"]:
             return _nothing(line)
-        slope = f"{AGAINST[explaining][1] * line['slope']:+.2f}"
+        slope = f"{step_of(quantity, explaining)[0] * line['slope']:+.2f}"
         return f"{_trend_seen(line)}, {slope}, {share(line['r2'])}, n {line['n']}"
 
     return cell
@@ -132,8 +134,8 @@ def two_types(report: Report) -> list[str]:
                 differing.append(wrapped(f"{row.label}, {method}: {said}"))
     intro = [f"{one['boat_type']}: {heading(one)}" for one in types]
     intro.append(
-        f"{NOTE} Beside a verdict stand the slope, per 100 kg or 0.1 m/s, and the share of the "
-        "spread that the line explains."
+        f"{NOTE} Beside a verdict stand the slope, per 100 kg (q: 1000 kg) or 0.1 m/s, and the "
+        "share of the spread that the line explains."
     )
     title = "What differs: slopes and shifts by more than both intervals together, and verdicts"
     return [

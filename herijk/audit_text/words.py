@@ -36,11 +36,16 @@ EXPLANATIONS: Final = {
 """What could explain a boat's place, by the codes in `type_outliers`."""
 
 QUANTITIES: Final = {"b_m_s": "B", "a_kg_m": "A", "cw_standard_kg_m": "Cw"}
+LETTERS: Final = QUANTITIES | {"q": "q"}
+"""Quantities of which straight lines are told; of q that on weight, as its own test is on speed."""
 AGAINST: Final = {
     "weight_kg": ("weight", 100.0, "100 kg"),
     "declared_speed_m_s": ("tow speed", 0.1, "0.1 m/s"),
 }
 """Explaining variables: their name, and the step for which a slope is told."""
+
+LINES: Final = (*((name, other) for name in QUANTITIES for other in AGAINST), ("q", "weight_kg"))
+"""What is told of the table of lines: quantity and explaining variable."""
 
 MOST_LISTED: Final = 4
 WIDTH: Final = 100
@@ -50,6 +55,14 @@ NOTE: Final = (
     "boats. Intervals are 95 %; a trend or shift is named where its interval leaves out zero: "
     "'none seen' is no proof that there is none."
 )
+
+
+def step_of(quantity: str, explaining: str) -> tuple[float, str]:
+    """The step for which a slope is told, and its name; q changes little, its step is a tonne."""
+    if quantity == "q":
+        return 1000.0, "1000 kg"
+    _, step, unit = AGAINST[explaining]
+    return step, unit
 
 
 def wrapped(text: str, indent: int = 2, hanging: int = 2) -> str:

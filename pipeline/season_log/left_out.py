@@ -53,10 +53,9 @@ def leave_out(
     inverse = np.linalg.inv(normal + np.diag(precision))
     solution = inverse @ (right + precision * mean)
     boats = int(cluster.max(initial=-1)) + 1
-    member = (cluster[:, None] == np.arange(boats)).astype(np.float64)
     weighted = weight[:, None] * design
-    normal_of = np.einsum("nb,ni,nj->bij", member, weighted, design, optimize=True)
-    right_of = member.T @ (weighted * value[:, None])
+    normal_of = _sum_of(cluster, boats, weighted[:, :, None] * design[:, None, :])
+    right_of = _sum_of(cluster, boats, weighted * value[:, None])
     # The tiny term keeps an unknown that is lost without the boat from stopping the others.
     information = np.maximum(np.diag(normal), 1.0)
     left = np.linalg.inv(normal + np.diag(precision + LOST * information) - normal_of)
@@ -75,3 +74,10 @@ def leave_out(
         change,
         lost,
     )
+
+
+def _sum_of(cluster: IntArray, boats: int, rows: FloatArray) -> FloatArray:
+    """Sum of each boat's rows, shape (boats, ...)."""
+    total = np.zeros((boats, *rows.shape[1:]))
+    np.add.at(total, cluster, rows)
+    return total

@@ -27,7 +27,7 @@ PROMISED = {
     " residual_sd_ratio",
     "reproducibility": "method scope n_pairs sd_ratio lo hi share_within_1pct share_within_2pct",
     "quarantine": "path tow_id line reason_code message first_seen",
-    "methods": "method title content_hash definition",
+    "methods": "method title title_en content_hash definition",
     "lineage": "edition fsn_no rowers crew_class tow_id path sha256 method method_hash"
     " code_version",
 }

@@ -1,5 +1,7 @@
-"""Seasons read by two Dask workers into a bucket are those read here into a folder."""
+"""A rebuild with its lake in a bucket, its seasons read on Dask: what it makes is the same."""
 
+import datetime as dt
+import shutil
 import signal
 import threading
 import time
@@ -7,39 +9,44 @@ import time
 import dagster as dg
 import dask
 import pytest
-from polars.testing import assert_frame_equal
 
 from assets import rebuild
 from assets.cluster import read_seasons
+from assets.resources import Quiet
 from pipeline.errors import UnavailableError
-from tests.elsewhere import dask_cluster, lie_in_bucket
+from pipeline.method import shipped_method
+from tests.assets.test_rebuild import assert_same_tables
+from tests.conftest import METHODS, SMALL, Workbench
+from tests.elsewhere import assert_same_lake, dask_cluster, edition_hashes, lie_in_bucket
 from warehouse import intake
-from warehouse.intake import SEASON_TABLES
+from warehouse.editions.publish import Terms, publish
 from warehouse.store import Store
 
-SEASONS = [2009, 2014]
+DAY = dt.date(2026, 5, 1)
 
 
 @pytest.fixture(scope="module")
 def remote(built, s3, tmp_path_factory):
-    """A data folder with its lake in a bucket that holds the archive's lists and no season yet."""
+    """A data folder whose lake and editions lie in a bucket; nothing was made yet."""
     data = tmp_path_factory.mktemp("remote")
     lie_in_bucket(data, "cluster")
-    intake.index(Store(data), built.archive)
-    return Store(data)
-
-
-@pytest.fixture(scope="module")
-def instance(remote):
-    """Dagster's records on disk, where workers find them too."""
-    with rebuild._instance(remote) as found:
-        yield found
+    return Workbench(built.archive, data)
 
 
 @pytest.fixture(scope="module")
 def cluster(remote):
-    with dask_cluster(2, remote.dagster_home) as found:
+    with dask_cluster(2, remote.store.dagster_home) as found:
         yield found
+
+
+class Told(Quiet):
+    """Progress that keeps the steps."""
+
+    def __init__(self):
+        self.steps = []
+
+    def step(self, what):
+        self.steps.append(what)
 
 
 def kill_when_the_other_is_done(store, worker, done):
@@ -50,39 +57,60 @@ def kill_when_the_other_is_done(store, worker, done):
     worker.kill()
 
 
-def test_the_step_of_a_killed_worker_goes_to_another_and_tables_are_the_same(
-    built, remote, instance, cluster
+def published(store):
+    """Hashes of the files of an edition that is published now."""
+    method = shipped_method(METHODS[1])
+    publish(store, method, Terms("2026-1", dt.date(2026, 5, 8), "ALV 2026", DAY))
+    return edition_hashes(store, "2026-1")
+
+
+def test_a_rebuild_of_which_a_worker_is_killed_makes_what_is_made_here(
+    built, remote, cluster, tmp_path
 ):
-    done, stuck = [], cluster.workers[0]
+    (remote.data / "beheer.toml").write_text(f'dask = "{cluster.address}"\n')
+    done, stuck, told = [], cluster.workers[0], Told()
     stuck.send_signal(signal.SIGSTOP)  # it will be given a step and not finish it
-    arguments = (remote, stuck, done)
+    arguments = (remote.store, stuck, done)
     threading.Thread(target=kill_when_the_other_is_done, args=arguments, daemon=True).start()
-    folders = (built.archive, remote.root)
-    read = read_seasons(instance, cluster.address, folders, SEASONS, {})
+    rebuild.rebuild(remote.archive, remote.data, METHODS, told)
     assert stuck.wait() == -signal.SIGKILL
     assert len(done) == 1
-    assert read.failed == {}
-    for table in SEASON_TABLES:
-        for season in map(str, SEASONS):
-            assert_frame_equal(remote.read(table, season), built.store.read(table, season))
-            assert remote.made_from(table, season) == built.store.made_from(table, season)
-    assert intake.stale_seasons(remote, built.archive) == []
-    assert not (remote.root / "lake" / "tables").exists()
-    for asset in ("samples", "blocks"):
-        assert instance.get_materialized_partitions(dg.AssetKey(asset)) == set(map(str, SEASONS))
-    assert {check.check_name for check in read.checks} == {"most_tows_sound"}
+    assert not [step for step in told.steps if "reading it here" in step]
+    assert_same_lake(built.store, remote.store)
+    assert_same_tables(remote.tables(), built.tables())
+    shutil.copytree(built.data, tmp_path / "here")
+    assert published(remote.store) == published(Store(tmp_path / "here"))
+    assert not (remote.data / "lake" / "tables").exists()
+    assert not (remote.data / "editions").exists()
+    assert intake.stale_seasons(remote.store, remote.archive) == []
+    with rebuild._instance(remote.store) as instance:
+        seasons = set(map(str, SMALL.seasons))
+        for asset in ("samples", "blocks"):
+            assert instance.get_materialized_partitions(dg.AssetKey(asset)) == seasons
 
 
-def test_a_season_that_a_worker_cannot_read_is_told(built, remote, instance, cluster):
-    elsewhere = remote.root / "without-settings"  # so the worker looks for a lake in it
-    read = read_seasons(instance, cluster.address, (built.archive, elsewhere), [2009], {})
+def test_a_season_that_a_worker_cannot_read_is_told(built, remote, cluster):
+    elsewhere = remote.data / "without-settings"  # so the worker looks for a lake in it
+    with rebuild._instance(remote.store) as instance:
+        read = read_seasons(instance, cluster.address, (built.archive, elsewhere), [2009], {})
     assert list(read.failed) == [2009]
     assert "without-settings/lake/tables/listed_tows.parquet" in read.failed[2009]
 
 
-def test_a_cluster_that_is_not_there_is_told_with_the_way_out(built, remote, instance):
+def test_a_cluster_that_is_not_there_is_told_with_the_way_out(built, remote):
     with (
+        rebuild._instance(remote.store) as instance,
         dask.config.set({"distributed.comm.timeouts.connect": "0.2s"}),
         pytest.raises(UnavailableError, match=r"tcp://127\.0\.0\.1:1 did not finish"),
     ):
-        read_seasons(instance, "tcp://127.0.0.1:1", (built.archive, remote.root), SEASONS, {})
+        read_seasons(instance, "tcp://127.0.0.1:1", (built.archive, remote.data), [2009], {})
+
+
+def test_a_scheduler_without_workers_is_not_waited_for_without_end(built, remote, monkeypatch):
+    monkeypatch.setenv("DASK_DISTRIBUTED__SCHEDULER__NO_WORKERS_TIMEOUT", "1s")
+    with (
+        rebuild._instance(remote.store) as instance,
+        dask_cluster(0, remote.store.dagster_home) as deserted,
+        pytest.raises(UnavailableError, match=r"did not finish.*without any running workers"),
+    ):
+        read_seasons(instance, deserted.address, (built.archive, remote.data), [2009], {})

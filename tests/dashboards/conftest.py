@@ -1,12 +1,15 @@
-"""The site of the small archive with two editions and boats whose names are attacks."""
+"""The site of the small archive, with two editions and names that attack; a running workbench."""
 
+import contextlib
 import datetime as dt
 import shutil
+import threading
 
 import duckdb
 import pytest
 
 from dashboards.site import build_site
+from dashboards.workbench.server import address, listen, serving
 from pipeline.method import shipped_method
 from tests.conftest import METHODS, Workbench
 from warehouse.editions.publish import Terms, publish
@@ -65,3 +68,15 @@ def site(store):
 def attacked(built):
     """Number of the boat with the name `ATTACK`."""
     return built.table("tows")["fsn_no"].min()
+
+
+@contextlib.contextmanager
+def served(bench):
+    """The address of a workbench that runs meanwhile."""
+    held = listen(0)
+    server = serving(bench)
+    thread = threading.Thread(target=server.run, kwargs={"sockets": [held]})
+    thread.start()
+    yield address(held)
+    server.should_exit = True
+    thread.join()

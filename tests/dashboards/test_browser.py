@@ -220,7 +220,7 @@ def test_dragging_over_the_scatter_fills_the_list_and_a_point_leads_to_its_boat(
     chart.locator("svg").wait_for()
     chart.scroll_into_view_if_needed()
     boats = shown(page, "type_boats").count()
-    area = chart.locator(".background").first.bounding_box()
+    area = chart.locator(".role-scope .background").first.bounding_box()
     page.mouse.move(area["x"] + 15, area["y"] + 15)
     page.mouse.down()
     page.mouse.move(area["x"] + area["width"] / 2, area["y"] + area["height"] - 15, steps=5)

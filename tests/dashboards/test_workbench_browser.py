@@ -3,14 +3,12 @@
 Needs Chromium, like the tests of the site. Screenshots go to `ci-output/`.
 """
 
-import threading
-
 import pytest
 
 from dashboards.workbench.bench import Base, Bench, Question
-from dashboards.workbench.server import address, listen, serving
 from pipeline.method import Steps, parse_method
 from tests.dashboards import test_browser as site
+from tests.dashboards.conftest import served
 from warehouse.history import History
 from warehouse.store import Store
 
@@ -27,13 +25,8 @@ def bench(built, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def url(bench):
-    held = listen(0)
-    server = serving(bench)
-    thread = threading.Thread(target=server.run, kwargs={"sockets": [held]})
-    thread.start()
-    yield address(held)
-    server.should_exit = True
-    thread.join()
+    with served(bench) as address:
+        yield address
 
 
 @pytest.fixture(scope="module")
@@ -68,6 +61,14 @@ def is_own(address_asked, url):
     return address_asked.startswith((url, "data:", "blob:"))
 
 
+def draw_all(page):
+    """Draws what is out of view too, as printing does."""
+    page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
+    page.wait_for_function(
+        "[...document.querySelectorAll('figure')].every(f => f.querySelector('svg[role=img]'))"
+    )
+
+
 def option(page, name, place=0):
     return page.locator(f"[data-option='{name}']").nth(place)
 
@@ -98,6 +99,7 @@ def test_it_opens_and_draws_everything(page, width):
     page.reload()
     page.wait_for_function(IDLE)
     assert "GESIMULEERD" in page.locator(".simulated").inner_text()
+    draw_all(page)
     assert page.locator("figure").count() == page.locator("figure svg[role=img]").count() > 0
     assert page.evaluate("document.documentElement.scrollWidth") <= columns
     site.SHOTS.mkdir(exist_ok=True)

@@ -30,7 +30,7 @@ def run(*arguments):
 def test_a_type_page_is_a_page_of_words_and_figures(built):
     for boat_type in types_of(built):
         lines = page(built, boat_type).splitlines()
-        assert len(lines) <= 85
+        assert len(lines) <= 87
         assert max(map(len, lines)) <= WIDTH
         assert lines[0].startswith("SIMULATED")
         text = "\n".join(lines)
@@ -41,7 +41,7 @@ def test_a_type_page_is_a_page_of_words_and_figures(built):
 def test_every_figure_of_a_line_is_printed_with_its_n(built):
     rows = built.table("type_consistency").filter(
         pl.col("reason") == "",
-        pl.col("quantity").is_in(["b_m_s", "a_kg_m", "cw_standard_kg_m"]),
+        pl.col("quantity").is_in(["b_m_s", "a_kg_m", "cw_standard_kg_m", "q"]),
         explaining="weight_kg",
         method="rebased-2015",
     )
@@ -49,7 +49,8 @@ def test_every_figure_of_a_line_is_printed_with_its_n(built):
     pages = {t: page(built, t, method="rebased-2015") for t in rows["boat_type"].unique()}
     for row in rows.iter_rows(named=True):
         text = pages[row["boat_type"]]
-        ends = (f"{100 * row[end]:+.2f}" for end in ("slope", "slope_lo", "slope_hi"))
+        step_kg = 1000 if row["quantity"] == "q" else 100
+        ends = (f"{step_kg * row[end]:+.2f}" for end in ("slope", "slope_lo", "slope_hi"))
         slope = "{} ({} to {})".format(*ends)
         line = next(line for line in text.splitlines() if slope in line)
         assert f" {100 * row['r2']:.0f} % " in line
@@ -108,6 +109,17 @@ def test_a_boats_page_has_its_place_history_and_second_opinion(built):
     assert "Its place among" in text
     assert "as-published" not in text
     assert re.search(r"Set aside, .*:\n  nothing", text)
+
+
+def test_a_boats_page_has_its_uncertainty_budget(built):
+    tow = built.table("tows").row(0, named=True)
+    text = " ".join(page(built, tow["fsn_no"], method="rebased-2015").split())
+    felt = built.table("uncertainty_budget").filter(
+        pl.col("u_ratio") > 1e-4, tow_id=tow["tow_id"], method="rebased-2015"
+    )
+    assert felt.height >= 3
+    for component, u_ratio in felt.select("component", "u_ratio").iter_rows():
+        assert f"{component.replace('_', ' ')} {100 * u_ratio:.2f} %" in text
 
 
 def test_the_steps_of_a_boats_tow_multiply_to_the_total_printed(built):

@@ -242,3 +242,15 @@ def test_the_hash_changes_with_one_season_of_an_override_and_with_the_seasons_co
     ]
     assert len(set(hashes)) == len(hashes)
     assert all(re.fullmatch("[0-9a-f]{64}", h) for h in hashes)
+
+
+def test_a_method_has_an_english_title_or_its_one_title_serves():
+    text = method_text()
+    assert parse_method(text, "x.toml").title_en == "Test"
+    both = text.replace('title = "Test"', 'title = "Test"\ntitle_en = "English"')
+    made = parse_method(both, "x.toml")
+    assert (made.title, made.title_en) == ("Test", "English")
+    assert made.content_hash == parse_method(text, "x.toml").content_hash
+    for name in shipped_methods():
+        shipped = shipped_method(name)
+        assert shipped.title_en != shipped.title

@@ -91,9 +91,10 @@ def test_an_unknown_key_of_the_rule_is_named():
 def test_a_method_written_out_reads_back_as_itself(name):
     method = shipped_method(name)
     read = parse_method(method_text(method), "x.toml")
-    assert (read.definition, read.validity, read.title, read.description) == (
+    assert (read.definition, read.validity, read.title, read.title_en, read.description) == (
         method.definition,
         method.validity,
         method.title,
+        method.title_en,
         method.description,
     )

@@ -2,6 +2,7 @@
 
 import datetime as dt
 import shutil
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path, PurePosixPath
 
 import polars as pl
@@ -95,8 +96,14 @@ def test_a_prefix_is_listed_like_a_folder(root):
     (root / "below" / "c.parquet").write_bytes(b"")
     assert [f.name for f in root.iterdir()] == ["a.parquet", "b.parquet", "below", "note.txt"]
     assert list(root.glob("[!.]*.parquet")) == [root / "a.parquet", root / "b.parquet"]
-    assert (root / "below").is_dir()
-    assert not (root / "a.parquet").is_dir()
+    assert list((root / "nothing").iterdir()) == []
+
+
+def test_a_listing_goes_on_past_the_thousand_that_the_service_gives_at_once(root):
+    names = [f"{number:04}.parquet" for number in range(1001)]
+    with ThreadPoolExecutor(8) as pool:
+        list(pool.map(lambda name: (root / name).write_bytes(b""), names))
+    assert [f.name for f in root.iterdir()] == names
 
 
 def test_an_object_is_created_once(root):
@@ -111,6 +118,21 @@ def test_a_service_that_is_away_is_told_with_the_way_out(monkeypatch):
     monkeypatch.setenv("AWS_ALLOW_HTTP", "true")
     with pytest.raises(UnavailableError, match="AWS_ENDPOINT_URL"):
         BucketPath.parse("s3://nobody/lake").read_bytes()
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        BucketPath.read_bytes,
+        BucketPath.unlink,
+        lambda path: path.write_bytes(b""),
+        lambda path: path.create_bytes(b""),
+        lambda path: path.read_end(8),
+    ],
+)
+def test_a_bucket_that_is_not_there_is_told_with_the_way_out(s3, asked):
+    with pytest.raises(UnavailableError, match=r"there is no bucket s3://no-such-bucket; make it"):
+        asked(BucketPath.parse("s3://no-such-bucket/lake/table.parquet"))
 
 
 def test_a_store_in_a_bucket_keeps_tables_partitions_and_fingerprints(built, moved):

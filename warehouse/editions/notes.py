@@ -91,7 +91,9 @@ def _method(edition: Edition, language: Language) -> str:
             "nl": "zoals destijds gedrukt; welke methode is niet vastgelegd",
             "en": "as printed at the time; which one is not recorded",
         }[language.code]
-    return f"{edition.method.title} ({edition.method.name}, {edition.method.content_hash[:12]})"
+    method = edition.method
+    title = {"nl": method.title, "en": method.title_en}[language.code]
+    return f"{title} ({method.name}, {method.content_hash[:12]})"
 
 
 def _changes(found: Report | None, language: Language) -> dict[str, Any]:

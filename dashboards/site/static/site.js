@@ -70,9 +70,11 @@
   function filter(table) {
     const words = (table.querySelector(".search")?.value ?? "").toLowerCase().split(/\s+/).filter(Boolean);
     const linked = table.querySelector("table.linked");
-    const follows = JSON.parse(table.dataset.follows);
+    const follows = JSON.parse(table.dataset.follows).map((name) =>
+      [name, all("th", table).findIndex((header) => header.dataset.c === name)]);
     const fits = (row) =>
-      follows.every((name) => matches(name, row.getAttribute(`data-f-${name}`))) &&
+      follows.every(([name, place]) => matches(name, // its cell, or where there is none a mark
+        place < 0 ? row.getAttribute(`data-f-${name}`) : valueOf(row.cells[place]))) &&
       words.every((word) => row.textContent.toLowerCase().includes(word)) &&
       (!linked || selected === null || selected.has(row.dataset.boat));
     const shown = rowsOfTable.get(table).filter(fits);
@@ -84,9 +86,11 @@
     if (clear) clear.hidden = selected === null;
   }
 
-  // A value fits a selector, or its second: to see two types side by side.
-  function matches(name, value) {
-    const wanted = [choice(name), choice(`${name}_2`)].filter((text) => text !== "");
+  // What a selector says, or each of several: to see two types side by side. "All" says nothing.
+  const chosenOf = (names) => [names].flat().map(choice).filter((text) => text !== "");
+
+  function matches(names, value) {
+    const wanted = chosenOf(names);
     return wanted.length === 0 || wanted.includes(String(value));
   }
 
@@ -128,15 +132,22 @@
   // -- Charts -----------------------------------------------------------------------------------
   const frames = new Map();
 
-  // Columns to rows; a column of texts holds its values once, and the place of each.
+  // Columns to rows.
   function asRows(columns) {
     const names = Object.keys(columns);
-    const values = names.map((name) => {
-      const column = columns[name];
-      return Array.isArray(column) ? column : column.places.map((place) => column.values[place]);
-    });
+    const values = names.map((name) => valuesOf(columns[name]));
     return (values[0] ?? []).map((_, i) =>
       Object.fromEntries(names.map((name, j) => [name, values[j][i]])));
+  }
+
+  // A column may hold its values once, with the place of each and for how many rows it holds.
+  function valuesOf(column) {
+    if (Array.isArray(column)) return column;
+    const found = [];
+    for (let i = 0; i < column.runs.length; i += 2) {
+      for (let n = column.runs[i + 1]; n > 0; n -= 1) found.push(column.values[column.runs[i]]);
+    }
+    return found;
   }
 
   function rowsOf(name) {
@@ -149,14 +160,13 @@
 
   function shownRows(figure) {
     const follows = Object.entries(JSON.parse(figure.dataset.follows));
-    return rowsOf(figure.dataset.data).filter((row) => follows.every(([column, name]) =>
-      (row[column] ?? null) === null || matches(name, row[column])));
+    return rowsOf(figure.dataset.data).filter((row) => follows.every(([column, names]) =>
+      (row[column] ?? null) === null || matches(names, row[column])));
   }
 
   // What the selectors say, so that a chart names its tow and method, also in print.
   function picked(figure) {
-    const names = Object.values(JSON.parse(figure.dataset.follows));
-    return names.flatMap((name) => [choice(name), choice(`${name}_2`)]).filter(Boolean).join(", ");
+    return Object.values(JSON.parse(figure.dataset.follows)).flatMap(chosenOf).join(", ");
   }
 
   const LABELS = 150; // room for axis and legend beside a chart [px]
@@ -246,19 +256,26 @@
       spec.width = Math.max(room, least);
       spec.autosize = { type: "fit-x", contains: "padding" };
     }
-    if (!isNarrow) return;
-    for (const part of (spec.vconcat ?? [spec]).filter((part) => part.columns)) {
-      part.columns = part.spec.width > 200 ? 1 : 2;
-      part.spec.width = Math.floor((room - LABELS / 2) / part.columns) - 20;
+    for (const part of (spec.vconcat ?? [spec]).filter((part) => part.facet)) {
+      fitFacets(part, room, isNarrow);
     }
+    if (!isNarrow) return;
     spec.config = { ...spec.config, legend: { ...spec.config?.legend, orient: "bottom", columns: 1 } };
+  }
+
+  function fitFacets(part, room, isNarrow) {
+    const least = part.spec.width > 200 ? 1 : 2;
+    if (isNarrow && part.columns) part.columns = least;
+    const columns = part.columns ?? 2; // rows and columns of a pair
+    const width = Math.floor((room - (isNarrow ? LABELS / 2 : LABELS)) / columns) - 20;
+    part.spec.width = isNarrow ? width : Math.min(part.spec.width, width);
   }
 
   function describe(figure, place) {
     const picture = place.querySelector("svg");
     if (!picture) return;
     picture.setAttribute("role", "img");
-    picture.setAttribute("aria-label", figure.dataset[root.lang]);
+    picture.setAttribute("aria-label", `${figure.dataset[root.lang]} ${picked(figure)}`.trim());
   }
 
   function redraw(figure) {

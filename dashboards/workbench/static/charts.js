@@ -1,9 +1,10 @@
-// Charts of an answer: drawn once, then given new rows.
-import { all, byId, root, start, state, wide } from "./page.js";
+// Charts of an answer: drawn once, then given new rows, when they are in view.
+import { all, byId, root, state, wide } from "./page.js";
+import { outdate, updateSeen, watch } from "./seen.js";
 import { chooseBoat, downloadRows } from "./tables.js";
 
-export const figures = all("figure[data-figure]");
-const views = new Map(); // figure -> its Vega view
+const figures = all("figure[data-figure]");
+const views = new Map(); // figure -> its Vega view and the language of its texts
 const LOCALES = {
   nl: { decimal: ",", thousands: ".", grouping: [3], currency: ["€ ", ""], minus: "-" },
   en: { decimal: ".", thousands: ",", grouping: [3], currency: ["€", ""], minus: "-" },
@@ -13,47 +14,68 @@ const toBoat = (row) => ({ ...row, page: "#boat" }); // a point of a boat leads 
 
 const ROWS = {
   changed: () => state.answer.register.filter((row) => row.change === "changed").map(toBoat),
-  types: (side) => state.answer.types.filter((row) =>
-    row.method === (side === "before" ? state.answer.before : start.trial)
-    && ["", row.boat_type].includes(byId("boat_type").value)).map(toBoat),
+  types: () => state.answer.types.filter((row) =>
+    ["", row.boat_type].includes(byId("boat_type").value)).map(toBoat),
   boat_figure: () => state.answer.boat_figure.filter((row) => row.tow_id === byId("tow").value),
 };
 
-const figureRows = ({ dataset: { data, side } }) => (ROWS[data] ?? (() => state.answer[data]))(side);
+const figureRows = ({ dataset: { data } }) => (ROWS[data] ?? (() => state.answer[data]))();
 
-export async function draw(figure) {
+const drawing = new Map(); // figure -> its drawing on the way
+
+// One drawing of a figure after the other; each takes the rows as they are by then.
+function draw(figure) {
+  drawing.set(figure, (drawing.get(figure) ?? Promise.resolve()).then(() => drawNow(figure)));
+  return drawing.get(figure);
+}
+
+export const outdateCharts = () => outdate(figures, draw);
+
+export function redrawCharts() {
+  outdateCharts();
+  return updateSeen();
+}
+
+async function drawNow(figure) {
   const rows = figureRows(figure);
-  if (views.has(figure)) {
-    await views.get(figure).view.data("rows", structuredClone(rows)).runAsync();
+  const known = views.get(figure);
+  if (known?.language === root.lang) {
+    await known.view.data("rows", structuredClone(rows)).runAsync();
     return;
   }
+  known?.view.finalize();
+  const language = root.lang;
   const spec = structuredClone(window.HERIJK_FIGURES[root.lang][figure.dataset.figure]);
   spec.datasets = { rows: structuredClone(rows) };
   const columns = wide.matches ? 2 : 1;
-  spec.width = Math.max(Math.min(spec.width, byId("results").clientWidth / columns - 110), 190);
-  spec.height = Math.min(spec.height, 260);
+  const room = byId("results").clientWidth / columns - 110;
+  if (spec.facet) {
+    spec.columns = columns;
+    spec.spec.width = Math.max(Math.min(spec.spec.width, room / columns), 190);
+  } else {
+    spec.width = Math.max(Math.min(spec.width, room), 190);
+    spec.height = Math.min(spec.height, 260);
+  }
   const place = figure.querySelector(".chart");
-  const drawn = await window.vegaEmbed(place, spec, {
+  const { view } = await window.vegaEmbed(place, spec, {
     actions: false, renderer: "svg", formatLocale: LOCALES[root.lang],
     config: { legend: { labelFontSize: 12, titleFontSize: 12, labelLimit: 220,
       orient: "bottom", columns: columns + 1 },
       axis: { labelFontSize: 12, titleFontSize: 12, labelLimit: 200 } },
   });
-  drawn.view.addEventListener("click", (_, item) => {
+  view.addEventListener("click", (_, item) => {
     if (item?.datum?.fsn_no) chooseBoat(item.datum.fsn_no);
   });
   const picture = place.querySelector("svg");
   picture.setAttribute("role", "img");
   picture.setAttribute("aria-label", figure.dataset[root.lang]);
-  views.set(figure, drawn);
+  views.set(figure, { view, language });
 }
 
-export function forgetCharts() {
-  views.forEach((drawn) => drawn.finalize());
-  views.clear();
-}
-
-figures.forEach((figure) => figure.querySelector(".csv").addEventListener("click", () => {
-  const rows = figureRows(figure);
-  downloadRows(figure.dataset.figure, [...new Set(rows.flatMap(Object.keys))], rows);
-}));
+figures.forEach((figure) => {
+  watch(figure);
+  figure.querySelector(".csv").addEventListener("click", () => {
+    const rows = figureRows(figure);
+    downloadRows(figure.dataset.figure, [...new Set(rows.flatMap(Object.keys))], rows);
+  });
+});

@@ -1,5 +1,6 @@
 // Tables of an answer: sorted, searched, downloaded.
 import { all, byId, code, make, number, say, start, state } from "./page.js";
+import { outdate, watch } from "./seen.js";
 
 export function chooseBoat(fsn_no) {
   byId("boat").value = fsn_no;
@@ -7,7 +8,7 @@ export function chooseBoat(fsn_no) {
   byId("boat").scrollIntoView({ block: "center" });
 }
 
-export const tables = all(".table");
+const tables = all(".table");
 const order = new Map(); // table -> [column, direction]
 
 function rowsOf(table) {
@@ -27,7 +28,9 @@ function rowsOf(table) {
   });
 }
 
-export function fill(table) {
+export const outdateTables = () => outdate(tables, fill);
+
+function fill(table) {
   const columns = start.columns[table.dataset.table];
   table.querySelector("thead").replaceChildren(make("tr", {}, ...columns.map((column) =>
     header(table, column))));
@@ -99,6 +102,7 @@ export function downloadRows(name, columns, rows) {
 }
 
 tables.forEach((table) => {
+  watch(table);
   table.querySelector(".search")?.addEventListener("input", () => fill(table));
   table.querySelector(".csv").addEventListener("click", () => downloadRows(
     table.dataset.table, start.columns[table.dataset.table], rowsOf(table)));

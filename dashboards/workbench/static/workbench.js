@@ -1,9 +1,10 @@
 // The workbench: a method on trial, questions about it to the server, and what the answers show.
 // One question at a time is on its way; of those that come meanwhile only the last is asked.
-import { draw, figures, forgetCharts } from "./charts.js";
+import { outdateCharts, redrawCharts } from "./charts.js";
 import { buildForm, markWrong } from "./controls.js";
 import { all, byId, make, number, pair, root, say, seasonsText, start, state, word } from "./page.js";
-import { download, fill, tables } from "./tables.js";
+import { updateSeen } from "./seen.js";
+import { download, outdateTables } from "./tables.js";
 
 // -- Questions ------------------------------------------------------------------------------------
 let asked = false; // a question waits
@@ -76,12 +77,13 @@ function reset() {
 }
 
 // -- Answers --------------------------------------------------------------------------------------
-async function show() {
+function show() {
   showChanges();
   showSummary();
   fillSelect(byId("tow"), [...new Set(state.answer.boat_curves.map((row) => row.tow_id))].reverse());
-  tables.forEach(fill);
-  for (const figure of figures) await draw(figure);
+  outdateTables();
+  outdateCharts();
+  return updateSeen();
 }
 
 function showChanges() {
@@ -159,7 +161,7 @@ function setLanguage(language) {
     else element.setAttribute("aria-label", text);
   });
   document.title = word("workbench");
-  if (state.answer) { forgetCharts(); show(); }
+  if (state.answer) show();
 }
 
 const wished = () => ({ base: state.source, steps: state.steps,
@@ -193,8 +195,8 @@ byId("open").addEventListener("change", async () => {
 });
 byId("against").addEventListener("change", ask);
 byId("boat").addEventListener("change", ask);
-byId("tow").addEventListener("change", () => figures.forEach(draw));
-byId("boat_type").addEventListener("change", () => figures.forEach(draw));
+byId("tow").addEventListener("change", redrawCharts);
+byId("boat_type").addEventListener("change", redrawCharts);
 all("[data-language]").forEach((button) =>
   button.addEventListener("click", () => setLanguage(button.dataset.language)));
 

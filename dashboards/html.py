@@ -1,0 +1,38 @@
+"""From templates to HTML: what the site and the workbench share.
+
+Everything that comes from the archive is escaped: by Jinja in HTML, by `as_json` in data blocks.
+"""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import jinja2
+from markupsafe import Markup
+
+
+def environment(templates: Path, **names: Any) -> jinja2.Environment:
+    """Templates of a folder, which know these names; a name that they do not know is an error."""
+    made = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(templates),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )
+    made.globals.update(names)
+    return made
+
+
+def in_both(pair: tuple[str, str]) -> Markup:
+    """A text in both languages; the style sheet hides the one that is not chosen."""
+    nl, en = pair
+    if nl == en:
+        return Markup("{}").format(nl)
+    return Markup("<span lang=nl>{}</span><span lang=en>{}</span>").format(nl, en)
+
+
+def as_json(value: Any) -> str:
+    """JSON that may stand inside a script element: no text in it can close the element."""
+    text = json.dumps(value, separators=(",", ":"), ensure_ascii=False, default=str)
+    return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")

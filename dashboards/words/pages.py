@@ -1,0 +1,379 @@
+"""Titles, captions and notes of pages."""
+
+from typing import Final
+
+PAGES: Final[dict[str, tuple[str, str]]] = {
+    # Pages and frame
+    "site": ("Sleepproeven herijkt", "Tow tests re-based"),
+    "index": ("Begin", "Start"),
+    "register": ("Register", "Register"),
+    "due": ("Weer slepen", "Due to tow"),
+    "types": ("Typen", "Types"),
+    "corrections": ("Correcties", "Corrections"),
+    "reproducibility": ("Herhaalbaarheid", "Reproducibility"),
+    "changes": ("Wijzigingen", "Changes"),
+    "quality": ("Kwaliteit", "Quality"),
+    "boat": ("Sloep", "Boat"),
+    "skip": ("Naar de inhoud", "Skip to content"),
+    "pages": ("Pagina's", "Pages"),
+    "language": ("Taal", "Language"),
+    "simulated": (
+        "GESIMULEERD: deze sloepen bestaan niet. De getallen komen uit een nagebootst archief.",
+        "SIMULATED: these boats do not exist. The numbers come from a simulated archive.",
+    ),
+    "simulated_short": ("GESIMULEERD", "SIMULATED"),
+    "no_script": (
+        "Zonder JavaScript staan de tabellen van de eerste keuze er, maar geen grafieken.",
+        "Without JavaScript the tables of the first choice are here, but no charts.",
+    ),
+    "made_by": ("Gemaakt met code", "Made by code"),
+    "csv": ("CSV", "CSV"),
+    "download": ("Download als CSV", "Download as CSV"),
+    "as_table": ("Als tabel", "As a table"),
+    "search": ("Zoek", "Search"),
+    "rows": ("Regels:", "Rows:"),
+    "all": ("alle", "all"),
+    "choose": ("Toon", "Show"),
+    "clear": ("Wis keuze", "Clear selection"),
+    "yes": ("ja", "yes"),
+    "no": ("nee", "no"),
+    # Report of a rebuild
+    "report": ("Verslag van de herberekening", "Report of the rebuild"),
+    "report_lines": ("Veranderde regels van de concepten", "Changed lines of the drafts"),
+    "report_tows": ("Sleepproeven", "Tows"),
+    "report_set_aside": ("Terzijde gelegd", "Set aside"),
+    "report_factors": ("Logfactoren die verschoven", "Log factors that moved"),
+    "report_checks": ("Controles", "Checks"),
+    "report_none": ("Niets.", "Nothing."),
+    "report_nothing": (
+        "Er is niets veranderd sinds het vorige verslag.",
+        "Nothing changed since the last report.",
+    ),
+    "report_first": ("Eerste verslag: alles is nieuw.", "First report: everything is new."),
+    "report_beyond": ("buiten hun marge", "beyond their interval"),
+    "report_failed": ("De herberekening is mislukt", "The rebuild failed"),
+    "column.what": ("Wat", "What"),
+    "column.old_factor": ("Factor was", "Factor was"),
+    "column.new_factor": ("Factor is", "Factor is"),
+    "column.ratio": ("Verhouding", "Ratio"),
+    "column.old_cw_kg_m": ("Cw was [kg/m]", "Cw was [kg/m]"),
+    "column.new_cw_kg_m": ("Cw is [kg/m]", "Cw is [kg/m]"),
+    "column.gain_in_two_hours_s": ("Winst in 2 uur [s]", "Gain in 2 h [s]"),
+    "column.exceeds_interval": ("Buiten marge", "Beyond interval"),
+    "column.outcome": ("Uitkomst", "Outcome"),
+    "column.detail": ("Bijzonderheden", "Details"),
+    "code.new": ("nieuw", "new"),
+    "code.mended": ("hersteld", "mended"),
+    "code.gone": ("weg", "gone"),
+    "code.samples": ("metingen veranderd", "samples changed"),
+    "code.list": ("lijst veranderd", "list changed"),
+    "code.passed": ("in orde", "passed"),
+    "code.warn": ("LET OP", "WARNING"),
+    "code.error": ("FOUT", "ERROR"),
+    "code.tow": ("andere proef telt", "another tow counts"),
+    "code.other_input": ("andere proeven veranderden", "other tows changed"),
+    "code.input_and_code": ("invoer en code", "input and code"),
+    "code.code_or_other_input": ("code of andere proeven", "code or other tows"),
+    "code.unseparated": ("methode en invoer", "method and input"),
+    "code.unexplained": ("onverklaard", "unexplained"),
+    "code.tables_fit_their_schemas": ("tabellen volgens schema", "tables fit their schemas"),
+    "code.counts_agree": ("aantallen kloppen", "counts agree"),
+    "code.few_tows_set_aside": ("weinig terzijde gelegd", "few tows set aside"),
+    "code.log_factors_stayed": ("logfactoren gelijk gebleven", "log factors stayed"),
+    "code.boats_stayed_within_their_intervals": (
+        "sloepen binnen hun marge gebleven",
+        "boats stayed within their intervals",
+    ),
+    "code.editions_can_be_made_again": (
+        "edities zijn na te rekenen",
+        "editions can be made again",
+    ),
+    "code.every_listed_tow_accounted_for": (
+        "elke proef van de lijst is terug te vinden",
+        "every listed tow accounted for",
+    ),
+    "code.every_tow_has_a_curve_row": ("elke proef heeft een kromme", "every tow has a curve"),
+    "code.most_tows_sound": ("de meeste proeven zijn goed", "most tows are sound"),
+    "code.steps_multiply_to_the_total": (
+        "stappen vermenigvuldigen tot het geheel",
+        "steps multiply to the total",
+    ),
+    # Index
+    "index_intro": (
+        "De weerstand van roeisloepen wordt gemeten met een sleepproef. Deze bladen laten zien wat "
+        "er van alle proeven wordt als ze met dezelfde rekenmethode worden herrekend: het "
+        "register, elke sloep met haar metingen, en wat elke stap verandert.",
+        "The resistance of rowing sloops is measured with a tow test. These pages show what "
+        "becomes of all tests when they are recomputed with one method: the register, every boat "
+        "with its measurements, and what each step changes.",
+    ),
+    "index_pages": ("Wat waar staat", "What is where"),
+    "about_register": (
+        "Elke sloep en ploeg met A, B en Cw; zoeken, sorteren, downloaden.",
+        "Every boat and crew with A, B and Cw; search, sort, download.",
+    ),
+    "about_due": (
+        "Wie moet weer slepen, voor wanneer, en met welke snelheid?",
+        "Who has to tow again, by when, and at what speed?",
+    ),
+    "about_types": (
+        "Zijn gelijke sloepen gelijk? B en Cw tegen gewicht en sleepsnelheid, voor en na.",
+        "Are equal boats equal? B and Cw against weight and tow speed, before and after.",
+    ),
+    "about_corrections": (
+        "Logfactoren per seizoen, en wat elke stap van een methode met Cw doet.",
+        "Log factors per season, and what each step of a method does to Cw.",
+    ),
+    "about_reproducibility": (
+        "Hoe goed komen twee proeven van dezelfde, niet verbouwde sloep overeen?",
+        "How well do two tests of one unaltered boat agree?",
+    ),
+    "about_changes": (
+        "Wat er tussen twee edities van het register verandert, en waardoor.",
+        "What changes between two editions of the register, and why.",
+    ),
+    "about_quality": (
+        "Proeven die terzijde zijn gelegd, waarschuwingen, en tellingen van de herrekening.",
+        "Tows set aside, flags, and counts of the rebuild.",
+    ),
+    "summary": ("In het kort", "Summary"),
+    "methods": ("Rekenmethoden", "Methods"),
+    "methods_note": (
+        "Elk getal hangt af van een methode, en noemt die. Twee gelijke vingerafdrukken zijn "
+        "twee gelijke methoden.",
+        "Every number depends on a method, and names it. Two equal hashes are two equal methods.",
+    ),
+    "tables": ("Tabellen in de database", "Tables in the database"),
+    "tables_note": (
+        "Alles op deze bladen staat in warehouse.duckdb.",
+        "Everything on these pages stands in warehouse.duckdb.",
+    ),
+    # Register
+    "register_note": (
+        "A, B en Cw gelden van 85 tot 115 % van de opgegeven roeisnelheid. Een editie die "
+        "concept heet, is niet gepubliceerd.",
+        "A, B and Cw hold from 85 to 115 % of the declared speed. An edition called concept is "
+        "a draft: not published.",
+    ),
+    # Due
+    "due_list": ("Wie moet weer slepen", "Who has to tow again"),
+    "due_list_note": (
+        "Tot wanneer elke proef telt, beoordeeld op de dag van de laatste proef of wedstrijd "
+        "(Gezien op), en de snelheid voor de volgende: met 70 tot 90 W per roeier (heren) of 40 "
+        "tot 55 W (dames) op de bekende kromme. Buiten de kromme: verder dan 85 tot 115 % van de "
+        "opgegeven snelheid.",
+        "Until when each tow counts, as judged on the day of the last tow or race (As of), and the "
+        "speed of the next one: with 70 to 90 W a rower (men) or 40 to 55 W (women) on the known "
+        "curve. Beyond the curve: outside 85 to 115 % of the declared speed.",
+    ),
+    "retow_choice": ("Welke proeven het meest leren", "Which tows would tell most"),
+    "retow_choice_note": (
+        "Sloepen die, opnieuw gesleept met dGPS, de logfactoren van de seizoenen het zekerst "
+        "maken; de eerste leert het meest. Voor en na: standaardafwijking van een factor.",
+        "Boats that, towed again with dGPS, make the log factors of the seasons surest; the first "
+        "tells most. Before and after: standard deviation of a factor.",
+    ),
+    # Boat
+    "facts": ("Maten", "Dimensions"),
+    "boat_lines": ("In het register", "In the register"),
+    "boat_curve": ("Weerstandskromme", "Resistance curve"),
+    "boat_curve_note": (
+        "De lijn is Cw = A / (1 - (v/B)^2) over het geldige bereik, 85 tot 115 % van de opgegeven "
+        "snelheid; de band is het 95 %-interval, met alles wat in de onzekerheid zit. De streep is "
+        "het interval bij de opgegeven snelheid. Open tekens tellen niet mee.",
+        "The line is Cw = A / (1 - (v/B)^2) over the valid range, 85 to 115 % of the declared "
+        "speed; the band is its 95 % interval, with all that the uncertainty is made of. The bar "
+        "is the interval at the declared speed. Open marks do not count.",
+    ),
+    "boat_history": ("Door de jaren", "Through the years"),
+    "boat_history_note": (
+        "Cw bij de opgegeven snelheid van elke proef, onder elke methode, met 95 %-interval.",
+        "Cw at the declared speed of every tow, under every method, with its 95 % interval.",
+    ),
+    "boat_traces": ("Wat de instrumenten zeiden", "What the instruments said"),
+    "boat_traces_note": (
+        "Gemiddelden per seconde; snelheid: doorgetrokken log 1, gestreept GPS. Het grijze "
+        "vlak is het venster dat telt; de rest is weggesneden "
+        "om de reden die erboven staat.",
+        "Means per second; speed: solid log 1, dashed GPS. The grey area is the window "
+        "that counts; the rest is cut for the "
+        "reason above it.",
+    ),
+    "boat_runs": ("Runs", "Runs"),
+    "boat_out_back": ("Heen tegen terug, en de wind", "Out against back, and the wind"),
+    "boat_out_back_note": (
+        "Cw voor en na de luchtcorrectie, heen (runs 1-3) en terug (runs 4-6). Na de correctie "
+        "horen heen en terug samen te vallen.",
+        "Cw before and after the air correction, out (runs 1-3) and back (runs 4-6). After the "
+        "correction out and back should coincide.",
+    ),
+    "boat_lineage": ("Herkomst", "Lineage"),
+    "boat_lineage_note": (
+        "De bestanden, de methode en de code achter elke registerregel.",
+        "The files, the method and the code behind every register line.",
+    ),
+    # Types
+    "types_charts": ("B en Cw per type", "B and Cw per type"),
+    "types_note": (
+        "Dezelfde sloepen onder twee methoden, op dezelfde assen. Sleep over een grafiek om "
+        "sloepen te kiezen: de lijst eronder toont ze. Klik op een punt om naar de sloep te gaan.",
+        "The same boats under two methods, on the same axes. Drag over a chart to select boats: "
+        "the list below shows them. Click a point to go to the boat.",
+    ),
+    "b_weight": ("B tegen gewicht", "B against weight"),
+    "b_speed": ("B tegen opgegeven snelheid", "B against declared speed"),
+    "cw_weight": ("Cw tegen gewicht", "Cw against weight"),
+    "cw_speed": ("Cw tegen opgegeven snelheid", "Cw against declared speed"),
+    "types_list": ("Sloepen", "Boats"),
+    "before": ("Voor", "Before"),
+    "after": ("Na", "After"),
+    "pair_first": ("Vergelijk", "Compare"),
+    "pair_second": ("met", "with"),
+    "types_lines": ("Hangt het af van gewicht of snelheid?", "Does it follow weight or speed?"),
+    "types_lines_note": (
+        "Een rechte lijn per type. Een helling waarvan het interval 0 bevat, is niet aangetoond.",
+        "A straight line per type. A slope whose interval holds 0 is not shown to exist.",
+    ),
+    "types_homogeneity": ("Kan één B voor het type?", "Could one B serve the type?"),
+    "types_outliers": ("Sloepen die afwijken van hun type", "Boats that differ from their type"),
+    # Corrections
+    "log_factors": ("Logfactor per seizoen", "Log factor per season"),
+    "log_factors_note": (
+        "Ware snelheid = logsnelheid x factor. Bij een factor zonder streep is geen interval "
+        "bekend.",
+        "True speed = log speed x factor. A factor without a bar has no known interval.",
+    ),
+    "ladder": ("Wat elke stap doet", "What each step does"),
+    "ladder_note": (
+        "Factor op Cw van elke stap, meetkundig gemiddeld over de proeven van een seizoen. De "
+        "factoren van een seizoen vermenigvuldigen tot het totaal.",
+        "Factor on Cw of each step, geometric mean over a season's tows. The factors of a season "
+        "multiply to the total.",
+    ),
+    "season_change": ("Zoals gepubliceerd tegen herrekend", "As published against re-based"),
+    "season_change_note": (
+        "Cw onder de methode / Cw zoals gepubliceerd, van dezelfde proef: mediaan, en laagste tot "
+        "hoogste.",
+        "Cw under the method / Cw as published, of the same tow: median, and lowest to highest.",
+    ),
+    "options": ("Keuzen van oordeel", "Choices of judgement"),
+    "options_note": (
+        "Wat Cw verandert als één keuze anders was gemaakt: mediaan en de middelste 90 % van de "
+        "proeven.",
+        "What happens to Cw had one choice been made otherwise: median and the middle 90 % of "
+        "tows.",
+    ),
+    # Reproducibility
+    "repro": ("Spreiding van één proef", "Spread of one tow"),
+    "repro_note": (
+        "Standaardafwijking van een proef uit herhalingen van niet verbouwde sloepen, met "
+        "95 %-interval. Lager is beter.",
+        "Standard deviation of one tow from repeats of unaltered boats, with 95 % interval. "
+        "Lower is better.",
+    ),
+    "repeats": ("Elk paar", "Every pair"),
+    "repeats_note": (
+        "ln(nieuwe Cw / oude Cw). Klik op een punt om naar de sloep te gaan.",
+        "ln(new Cw / old Cw). Click a point to go to the boat.",
+    ),
+    "components": ("Waar de spreiding vandaan komt", "Where the spread comes from"),
+    "predicted": ("Voorspeld zonder slepen", "Predicted without towing"),
+    "predicted_note": (
+        "Cw uit lengte, gewicht, breedte en type tegen Cw uit de proef. Op de lijn zijn ze gelijk.",
+        "Cw from length, weight, beam and type against Cw from the tow. On the line they agree.",
+    ),
+    # Changes
+    "changes_list": ("Gewijzigde regels", "Changed lines"),
+    "changes_note": (
+        "Verhouding nieuw / oud. Een tijd van 0,99 is 1 % sneller bij gelijk vermogen.",
+        "Ratio new / old. A time of 0.99 is 1 % faster at equal power.",
+    ),
+    # Quality
+    "statuses": ("Stand van de krommen", "Status of the curves"),
+    "flags": ("Waarschuwingen", "Flags"),
+    "flags_note": (
+        "Een waarschuwing zegt waar iemand naar moet kijken; zij verandert geen getal.",
+        "A flag says what a person should look at; it never changes a number.",
+    ),
+    "run_reasons": ("Runs die niet tellen", "Runs that do not count"),
+    "set_aside": ("Terzijde gelegd", "Set aside"),
+    "set_aside_note": (
+        "Bestanden, regels en proeven die niet gebruikt zijn, met de reden.",
+        "Files, lines and tows not used, with the reason.",
+    ),
+    "checks": ("Wat de controles vonden", "What the checks found"),
+    "checks_note": (
+        "Op hoeveel proeven elke controle is gedaan, en hoe vaak iets buiten zijn grens lag.",
+        "On how many tows each check was made, and how often something lay beyond its limit.",
+    ),
+    "rebuilt": ("Wat de herrekening deed", "What the rebuild did"),
+    "rebuilt_note": (
+        "Proeven per seizoen die in de sleeplijst staan en die gebruikt zijn; de methoden die zijn "
+        "toegepast; en de tabellen die daaruit zijn gemaakt.",
+        "Tows per season that the tow list holds and that were used; the methods applied; and the "
+        "tables made of them.",
+    ),
+    "seasons": ("Seizoenen", "Seasons"),
+    "nothing_set_aside": ("Niets is terzijde gelegd.", "Nothing was set aside."),
+    "no_changes": ("Er zijn geen gewijzigde regels.", "There are no changed lines."),
+    "editions": ("Uitgegeven edities", "Published editions"),
+    "races": ("Wedstrijden opnieuw gerekend", "Races computed again"),
+    "races_note": (
+        "Plaats en vermogen per roeier van elke uitslag onder de oude en de nieuwe editie. Op de "
+        "lijn blijft de plaats gelijk.",
+        "Place and power a rower of every result under the old and the new edition. On the line "
+        "the place stays the same.",
+    ),
+    "no_races": (
+        "Het archief bevat geen wedstrijden om opnieuw te rekenen.",
+        "The archive holds no races to compute again.",
+    ),
+    "downloads": ("Downloads", "Downloads"),
+    "downloads_note": (
+        "Het register van elke editie zoals uitgegeven, met de toelichting in twee talen.",
+        "The register of every edition as published, with the release notes in Dutch and English.",
+    ),
+    "types_pair": ("Twee typen naast elkaar", "Two types side by side"),
+    "types_pair_note": (
+        "Dezelfde assen voor beide typen, en voor de methoden onder Voor en Na.",
+        "The same axes for both types, and for the methods under Before and After.",
+    ),
+    "season_links": ("Waar een logfactor op rust", "What a log factor rests on"),
+    "season_links_note": (
+        "Waar een log binnen een seizoen is vervangen, heeft elk deel een eigen factor; de "
+        "grafiek hierboven toont hun gemiddelde. De andere log heeft ook een regel: de methode "
+        "gebruikt hem niet.",
+        "Where a log was replaced within a season each part has its own factor; the chart above "
+        "shows their mean. The other log has a line too: the method does not use it.",
+    ),
+    "season_steps": ("Log of krachtmeter?", "Log or load cell?"),
+    "season_steps_note": (
+        "Een seizoen kan afwijken van de andere proeven van dezelfde sloepen doordat de log of "
+        "doordat de krachtmeter verkeerd wees. De bocht van de krommen onderscheidt die twee. "
+        "Stappen in ln Cw.",
+        "A season may differ from the other tows of the same boats because the log or because the "
+        "load cell was wrong. The bend of the curves tells the two apart. Steps in ln Cw.",
+    ),
+    "eras": ("Staat een tijdvak apart?", "Does an era stand apart?"),
+    "eras_note": (
+        "Volgende proef van dezelfde sloepen, in een later tijdvak, tegen die in het tijdvak "
+        "zelf, zonder veroudering: mediaan met 95 %-interval. In de grafiek alle typen samen.",
+        "Next tow of the same boats, in a later era, against that in the era itself, without "
+        "ageing: median with 95 % interval. The chart has all types together.",
+    ),
+    "assessments": ("Controles", "Checks"),
+    "assessments_note": (
+        "Alleen wat buiten zijn grens ligt; alle controles staan in de tabel assessments.",
+        "Only what lies beyond its limit; all checks stand in the table assessments.",
+    ),
+    "uncertainty_budget_note": (
+        "Relatieve standaardonzekerheid van Cw door elke oorzaak; de tabel zegt wie haar delen.",
+        "Relative standard uncertainty of Cw by each cause; who share it stands in the table.",
+    ),
+    "hand_windows_note": (
+        "Vensters die iemand zelf heeft gekozen, met de reden.",
+        "Windows that a person chose, with the reason.",
+    ),
+    "uncertainty_budget": ("Waaruit de onzekerheid bestaat", "What the uncertainty is made of"),
+    "hand_windows": ("Vensters met de hand", "Windows by hand"),
+}
