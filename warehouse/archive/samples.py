@@ -147,7 +147,12 @@ def _split_header(data: bytes, profile: SeasonProfile) -> _Body:
 
 
 def _read_fast(body: _Body) -> pl.DataFrame | None:
-    """Return the columns, or None where the careful way has to judge."""
+    """Return the columns, or None where the careful way has to judge.
+
+    That is also where a carriage return stands within a line: Polars takes it for a blank.
+    """
+    if body.data.count(b"\r") != body.data.count(b"\r\n"):
+        return None
     quoted = body.data.find(b'"', body.start) >= 0
     wanted = {found.index: key for key, found in body.columns.items()}
     number = pl.String() if quoted else pl.Float64()

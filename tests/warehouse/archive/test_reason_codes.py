@@ -99,6 +99,7 @@ TOW_CASES: dict[str, tuple[Spoil, str, str, int | None]] = {
     "too many fields": (lines(lambda c: [*c[:9], c[9] + ";1", *c[10:]]), "broken_row", FIRST, 10),
     "blank line": (lines(lambda c: [*c[:9], "", *c[9:]]), "broken_row", FIRST, 10),
     "letters": (constant(4, "abc", 77, 77), "bad_number", FIRST, 77),
+    "carriage return in a cell": (constant(4, "236,\r", 77, 77), "bad_number", FIRST, 77),
     "empty gps": (constant(3, "", 77, 77), "bad_number", FIRST, 77),
     "overflow in 32 bits": (constant(4, "1e39", 77, 77), "bad_number", FIRST, 77),
     "log1 drops out": (constant(1, "0,000", line_of(2, 100), line_of(2, 300)), "log_dropout", FIRST, line_of(2, 100)),
