@@ -16,6 +16,7 @@ import polars as pl
 from scipy.optimize import least_squares
 
 from benchmarks.harness import THREADS
+from benchmarks.world import HEADERS
 
 METHOD = """
 name = "plain"
@@ -39,11 +40,8 @@ AHEAD = BEHIND = 0.5
 HIGHEST_TARGET_RATIO = 1.15
 HALF_RHO = 0.5 * 1.225
 CHANNELS = {
-    "run": "run",
-    "log1 [m/s]": "log1_m_s",
-    "kracht [N]": "force_n",
-    "wind [m/s]": "wind_speed_m_s",
-    "wind [gra]": "wind_angle_deg",
+    HEADERS[name]: name
+    for name in ("run", "log1_m_s", "force_n", "wind_speed_m_s", "wind_angle_deg")
 }
 MEANS = ["speed_m_s", "gross_kg_m", "ahead", "behind", "side"]
 """Of each run: speed, F/v^2, and the air terms over v^2."""

@@ -16,20 +16,9 @@ import pandas as pd
 import polars as pl
 
 from benchmarks.harness import THREADS, both
+from benchmarks.world import HEADERS, RATE_HZ
 from pipeline.blocks import AIR_SUMS, SPEED_SOURCES, SUM_NAMES
 from pipeline.channels import SAMPLE_SCHEMA
-
-RATE_HZ = 1000
-HEADERS = {
-    "run": "run",
-    "log1_m_s": "log1 [m/s]",
-    "log2_m_s": "log2 [m/s]",
-    "gps_m_s": "gps [m/s]",
-    "force_n": "kracht [N]",
-    "wind_speed_m_s": "wind [m/s]",
-    "wind_angle_deg": "wind [gra]",
-}
-"""Column of a sample, and its header in the text."""
 
 
 def means_of_runs(sums: pl.DataFrame) -> pl.DataFrame:
@@ -157,7 +146,8 @@ _SAMPLES = """
 select tow_id, run, log1_m_s::double as log1, log2_m_s::double as log2, gps_m_s::double as gps,
        (log1 + log2) / 2 as mean, force_n::double as force, wind_speed_m_s::double as wind,
        radians(wind_angle_deg::double) as angle,
-       (file_row_number - min(file_row_number) over (partition by filename, run)) // 1000 as second
+       (file_row_number - min(file_row_number) over (partition by filename, run)) // {rate}
+       as second
 from read_parquet({files}, filename = true, file_row_number = true) join files using (filename)
 """
 _WIND = """
@@ -198,7 +188,7 @@ def _duckdb(files: Mapping[str, str], folder: Path) -> pl.DataFrame:
         named = pl.DataFrame({"tow_id": list(files), "filename": list(files.values())})
         connection.register("files", named.to_arrow())
         added = ", ".join(f"sum({what}) as {name}" for name, what in _ADDED.items())
-        samples = _WIND.format(samples=_SAMPLES.format(files=list(files.values())))
+        samples = _WIND.format(samples=_SAMPLES.format(files=list(files.values()), rate=RATE_HZ))
         query = (
             f"select tow_id, run, second, count(*) as n, count(gps)::double as gps_n, {added} "
             f"from ({samples}) group by tow_id, run, second"

@@ -12,7 +12,7 @@ import polars as pl
 from assets.rebuild import rebuild
 from benchmarks import plain, same
 from benchmarks.harness import both
-from benchmarks.world import FOLDER, World
+from benchmarks.world import FOLDER, RATE_HZ, World
 from pipeline.blocks import block_sums, stack_blocks
 from pipeline.method import parse_method, shipped_method, shipped_methods
 from pipeline.recompute import recompute
@@ -148,7 +148,7 @@ def herijk_from_parquet(
 def _blocks(world: World, tows: pl.DataFrame) -> pl.DataFrame:
     def one(file: tuple[str, str]) -> pl.DataFrame:
         samples = pl.read_parquet(file[1], hive_partitioning=False)
-        return block_sums(samples, 1000).select(pl.lit(file[0]).alias("tow_id"), pl.all())
+        return block_sums(samples, RATE_HZ).select(pl.lit(file[0]).alias("tow_id"), pl.all())
 
     return pl.concat(both(one, _lake_files(world, tows).items()))
 

@@ -18,7 +18,17 @@ from warehouse.store import Store
 SEASONS = tuple(range(2009, 2026))
 RATE_HZ = 1000
 FOLDER = Path(os.environ.get("BENCH_FOLDER", "benchmarks/data"))
-PLAIN_HEADER = "run;log1 [m/s];log2 [m/s];gps [m/s];"
+HEADERS = {
+    "run": "run",
+    "log1_m_s": "log1 [m/s]",
+    "log2_m_s": "log2 [m/s]",
+    "gps_m_s": "gps [m/s]",
+    "force_n": "kracht [N]",
+    "wind_speed_m_s": "wind [m/s]",
+    "wind_angle_deg": "wind [gra]",
+}
+"""Column of a sample, and its header in the text."""
+PLAIN_HEADER = ";".join(list(HEADERS.values())[:4]) + ";"
 """Files that begin like this are spelled as pandas, DuckDB and Polars can read them unaided."""
 
 
