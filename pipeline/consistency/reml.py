@@ -1,0 +1,238 @@
+"""Restricted likelihood of a linear mixed model with known measuring errors, and its maximum.
+
+    y = X beta + boat + other + cell + error
+
+Here the data, the likelihood with its slope, and the search for the variances of boat, other and
+cell. What a fitted model says about anything stands in `mixed`.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final, NamedTuple, Self
+
+import numpy as np
+import scipy
+from numpy.typing import ArrayLike
+
+from pipeline.arrays import FloatArray, IntArray
+
+SMALLEST_SHARE: Final = 1e-4
+"""Least measuring error, as a share of the size of y.
+
+Points that happen to lie exactly on a curve seem to have no error. Sherman-Morrison subtracts
+numbers as large as (boat's sd / error)^2, so that below 1e-8 no digit is left; 1e-4 leaves eight.
+"""
+
+MAX_ITERATIONS: Final = 100
+MAX_HALVINGS: Final = 40
+TOLERANCE: Final = 1e-12
+"""A search is done when a step changes no variance by more than this share of its size."""
+
+NEGLIGIBLE: Final = 1e-3
+"""Share of the spread's variance below which a variance need not be known as a share of itself."""
+
+ROUNDING: Final = 1e-11
+"""Share of a deviance, or 1 if that is larger, that is lost in its sums."""
+
+
+UNFELT: Final = 1e-10
+"""Information, in units of the spread, below which it is rounding: the type of boats of one type."""
+
+
+class Likelihood(NamedTuple):
+    """The restricted likelihood at some variances.
+
+    Attributes:
+        deviance: -2 log of it but for a constant.
+        gradient: (3,) slope of the deviance along the variances of boat, other and cell.
+        information: (3, 3) average of observed and expected second derivative of the deviance.
+    """
+
+    deviance: float
+    gradient: FloatArray
+    information: FloatArray
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Data of a mixed model.
+
+    Attributes:
+        y: (n,) observations.
+        x: (n, p) fixed effects, of full column rank.
+        variance: (n,) known variance of each observation.
+        boat: (n,) which boat, 0 and up, without gaps.
+        other: (n,) which other group, 0 and up; None without.
+    """
+
+    y: FloatArray
+    x: FloatArray
+    variance: FloatArray
+    boat: IntArray
+    other: IntArray | None
+
+    @classmethod
+    def of(
+        cls,
+        y: ArrayLike,
+        x: ArrayLike,
+        variance: ArrayLike,
+        boat: ArrayLike,
+        other: ArrayLike | None = None,
+    ) -> Self:
+        """A problem from anything array-like; groups may be named by text or number."""
+        values = np.asarray(y, dtype=np.float64)
+        floor = (SMALLEST_SHARE * (np.ptp(values) + abs(values.mean()))) ** 2
+        return cls(
+            values,
+            np.asarray(x, dtype=np.float64).reshape(len(values), -1),
+            np.maximum(np.asarray(variance, dtype=np.float64), max(floor, 1e-300)),
+            np.unique(np.asarray(boat), return_inverse=True)[1],
+            None if other is None else np.unique(np.asarray(other), return_inverse=True)[1],
+        )
+
+    @property
+    def boats(self) -> int:
+        """Number of boats."""
+        return int(self.boat.max()) + 1
+
+    @cached_property
+    def residual(self) -> FloatArray:
+        """Y less the plain least-squares fit: the likelihood sees nothing else of y."""
+        return np.asarray(self.y - self.x @ np.linalg.lstsq(self.x, self.y)[0])
+
+    @cached_property
+    def spread(self) -> float:
+        """Standard deviation of y about the plain least-squares fit, the scale of a search."""
+        dof = max(len(self.y) - self.x.shape[1], 1)
+        return float(np.sqrt((self.residual**2).sum() / dof))
+
+    @cached_property
+    def _others(self) -> FloatArray:
+        n = len(self.y)
+        return (
+            np.zeros((n, 0))
+            if self.other is None
+            else np.eye(int(self.other.max()) + 1)[self.other]
+        )
+
+    @cached_property
+    def _columns(self) -> FloatArray:
+        return np.hstack([self._others, self.x, self.residual[:, None]])
+
+    @cached_property
+    def _by_boat(self) -> "scipy.sparse.csr_array":
+        n = len(self.y)
+        return scipy.sparse.csr_array(
+            (np.ones(n), (self.boat, np.arange(n))), shape=(self.boats, n)
+        )
+
+    def likelihood(self, variances: ArrayLike) -> Likelihood:
+        """The restricted likelihood at variances of boat, other and cell, none of them negative.
+
+        With A the covariance but for the others, P = A^-1 - G G' takes the others (Woodbury) and
+        the fixed effects out at once; boats go in closed form (Sherman-Morrison within a boat). So
+        the cost is linear in the rows. Slope and average information are those of Gilmour, Thompson
+        and Cullis (1995): tr(P V_k) - y'P V_k P y and y'P V_k P V_l P y, V_k the part of one
+        variance in the covariance.
+        """
+        boat, other, cell = np.asarray(variances, dtype=np.float64)
+        weight = 1.0 / (self.variance + cell)
+        precision = self._by_boat @ weight
+        shrink = boat / (1.0 + boat * precision)
+
+        def without_boats(columns: FloatArray) -> FloatArray:
+            """A^-1 times columns."""
+            weighted = weight[:, None] * columns
+            of_boat = shrink[:, None] * (self._by_boat @ weighted)
+            return np.asarray(weighted - weight[:, None] * of_boat[self.boat])
+
+        k, columns = self._others.shape[1], self._columns
+        scale = np.ones(columns.shape[1] - 1)
+        scale[:k] = np.sqrt(other)
+        solved = without_boats(columns)
+        inner = scale[:, None] * (columns[:, :-1].T @ solved[:, :-1]) * scale
+        inner[:k, :k] += np.eye(k)
+        root = np.linalg.cholesky(inner)
+        g = (solved[:, :-1] * scale) @ np.linalg.inv(root).T
+        py = solved[:, -1] - g @ (g.T @ self.residual)
+        deviance = (
+            -np.log(weight).sum()
+            + np.log1p(boat * precision).sum()
+            + 2.0 * np.log(np.diag(root)).sum()
+            + self.residual @ py
+        )
+        g_of_boat, g_of_other = self._by_boat @ g, self._others.T @ g
+        traces = np.array(
+            [
+                (precision / (1.0 + boat * precision)).sum() - (g_of_boat**2).sum(),
+                (self._others * solved[:, :k]).sum() - (g_of_other**2).sum(),
+                weight.sum() - (shrink * (self._by_boat @ weight**2)).sum() - (g**2).sum(),
+            ]
+        )
+        parts = np.column_stack(
+            [(self._by_boat @ py)[self.boat], self._others @ (self._others.T @ py), py]
+        )
+        along = g.T @ parts
+        return Likelihood(
+            float(deviance),
+            traces - parts.T @ py,
+            np.asarray(parts.T @ without_boats(parts) - along.T @ along),
+        )
+
+    def deviance(self, sd: ArrayLike) -> float:
+        """-2 log of the restricted likelihood but for a constant, at sds of boat, other, cell."""
+        return self.likelihood(np.square(sd)).deviance
+
+
+def search(problem: Problem, free: IntArray, start: FloatArray) -> tuple[FloatArray, float]:
+    """Least deviance over some of the variances, the others held.
+
+    Newton's method with the average information, on variances that are not negative: one that is 0
+    and would fall is left at exactly 0. The slope, not the deviance, says when it is done: the
+    least of a smooth function is flat over the root of its rounding, its slope crosses 0 there.
+
+    Args:
+        problem: the data.
+        free: places of the free variances among boat, other and cell.
+        start: (3,) variances to begin with; the others of the result are as here.
+
+    Returns:
+        The variances, and the deviance there.
+    """
+    unit = max(problem.spread**2, float(problem.variance.min()))
+    at, now = start, problem.likelihood(start)
+    for _ in range(MAX_ITERATIONS):
+        loose = free[(at[free] > 0.0) | (now.gradient[free] < 0.0)]
+        if not len(loose):
+            break
+        step = np.zeros(3)
+        step[loose] = _newton(now, loose, unit)
+        last = at
+        at, now = _descend(problem, at, now, step)
+        if (np.abs(at - last) <= TOLERANCE * np.maximum(at, NEGLIGIBLE * unit)).all():
+            break
+    return at, now.deviance
+
+
+def _newton(now: Likelihood, loose: IntArray, unit: float) -> FloatArray:
+    """Step of the loose variances; one that the data do not feel goes nowhere, as do its like."""
+    felt = np.diag(now.information)[loose] > UNFELT / unit**2
+    size = np.sqrt(np.where(felt, np.diag(now.information)[loose], 1.0))
+    scaled = np.where(np.outer(felt, felt), now.information[np.ix_(loose, loose)], 0.0)
+    slope = np.where(felt, now.gradient[loose], 0.0) / size
+    return np.asarray(-np.linalg.lstsq(scaled / np.outer(size, size), slope, rcond=UNFELT)[0] / size)
+
+
+def _descend(
+    problem: Problem, at: FloatArray, now: Likelihood, step: FloatArray
+) -> tuple[FloatArray, Likelihood]:
+    """The step, cut off at 0, halved until the deviance does not rise by more than rounding."""
+    limit = now.deviance + ROUNDING * max(1.0, abs(now.deviance))
+    for _ in range(MAX_HALVINGS):
+        trial = np.maximum(at + step, 0.0)
+        there = problem.likelihood(trial)
+        if there.deviance <= limit:
+            return trial, there
+        step = 0.5 * step
+    return at, now
