@@ -23,19 +23,29 @@ POWER_AT: Final = (0.05, 0.10)
 
 SPEED_RATIOS: Final = {"cw_085_kg_m": 0.85, "cw_kg_m": 1.0, "cw_115_kg_m": 1.15}
 
+BEND_BOUNDS: Final = (-2.0, 0.999)
+"""Of the shared s, as a share of that which puts B on the fastest point."""
+
+BEND_MARGIN: Final = 1e-3
+"""Within this of the least that a plain search finds lies the least itself."""
+
 OWN, PARTIAL, SHARED = "own", "partial", "shared"
 
 
 def shared_bend(boats: Observed) -> float:
     """The one s = 1/B^2 [s2/m2] that fits all boats best, each with its own height."""
     fastest = float(np.where(boats.points.used, boats.points.speed_m_s, 0.0).max()) ** 2
+    lowest, highest = BEND_BOUNDS
     found = scipy.optimize.minimize_scalar(
-        lambda r: _misfit(boats, r / fastest),
-        bounds=(-2.0, 0.999),
-        method="bounded",
-        options={"xatol": 1e-7},
+        lambda r: _misfit(boats, r / fastest), bounds=BEND_BOUNDS, method="bounded"
     )
-    return float(found.x) / fastest
+    ends = np.clip(found.x + np.array([-BEND_MARGIN, BEND_MARGIN]), lowest, highest)
+    falls, rises = (_misfit_slope(boats, r / fastest) for r in ends)
+    if falls >= 0.0 or rises <= 0.0:
+        return float(ends[0] if falls >= 0.0 else ends[1]) / fastest
+    # The least of a smooth function is flat over the root of its rounding; its slope is not.
+    least = scipy.optimize.brentq(lambda r: _misfit_slope(boats, r / fastest), *ends, xtol=1e-15)
+    return float(least) / fastest
 
 
 def height_given_bend(points: curve.Points, s_s2_m2: FloatArray) -> FloatArray:
@@ -53,6 +63,17 @@ def _misfit(boats: Observed, s_s2_m2: float) -> float:
     fitted = curve.cw(height_given_bend(points, s)[:, None], s[:, None], points.speed_m_s)
     residual = np.where(points.used, points.cw_kg_m - fitted, 0.0)
     return float(((residual / boats.column("c0_kg_m")[:, None]) ** 2).sum())
+
+
+def _misfit_slope(boats: Observed, s_s2_m2: float) -> float:
+    """Derivative of `_misfit` along s: a height at its best does not count (envelope theorem)."""
+    points = boats.points
+    v2 = np.where(points.used, points.speed_m_s, 0.0) ** 2
+    a = height_given_bend(points, np.full(boats.table.height, s_s2_m2))[:, None]
+    fitted = a * points.used / (1.0 - s_s2_m2 * v2)
+    residual = np.where(points.used, points.cw_kg_m - fitted, 0.0)
+    slope = fitted * v2 / (1.0 - s_s2_m2 * v2)
+    return float((-2.0 * residual * slope / boats.column("c0_kg_m")[:, None] ** 2).sum())
 
 
 def type_homogeneity(observed: Observed) -> pl.DataFrame:
