@@ -130,54 +130,60 @@ class Problem:
     def likelihood(self, variances: ArrayLike) -> Likelihood:
         """The restricted likelihood at variances of boat, other and cell, none of them negative.
 
-        With A the covariance but for the others, P = A^-1 - G G' takes the others (Woodbury) and
-        the fixed effects out at once; boats go in closed form (Sherman-Morrison within a boat). So
-        the cost is linear in the rows. Slope and average information are those of Gilmour, Thompson
-        and Cullis (1995): tr(P V_k) - y'P V_k P y and y'P V_k P V_l P y, V_k the part of one
-        variance in the covariance.
+        Rows are whitened for error, cell and boat; others (Woodbury) and fixed effects are then
+        taken out by one orthogonal decomposition: no large numbers cancel, however small the errors
+        are, and the cost is linear in the rows. Slope and average information are those of Gilmour,
+        Thompson and Cullis (1995): tr(P V_k) - y'P V_k P y and y'P V_k P V_l P y, with V_k the part
+        of one variance in the covariance V, and P the inverse of V without the fixed effects.
         """
         boat, other, cell = np.asarray(variances, dtype=np.float64)
         weight = 1.0 / (self.variance + cell)
         precision = self._by_boat @ weight
-        shrink = boat / (1.0 + boat * precision)
+        inflation = 1.0 + boat * precision
+        root = np.sqrt(weight)[:, None]
+        shrink = ((1.0 / np.sqrt(inflation) - 1.0) / precision)[:, None]
 
-        def without_boats(columns: FloatArray) -> FloatArray:
-            """A^-1 times columns."""
-            weighted = weight[:, None] * columns
-            of_boat = shrink[:, None] * (self._by_boat @ weighted)
-            return np.asarray(weighted - weight[:, None] * of_boat[self.boat])
+        def without_boats(rows: FloatArray) -> FloatArray:
+            """What is left of rows, in units of their errors, in units of boats and errors."""
+            return np.asarray(rows + root * (shrink * (self._by_boat @ (root * rows)))[self.boat])
 
-        k, columns = self._others.shape[1], self._columns
-        scale = np.ones(columns.shape[1] - 1)
-        scale[:k] = np.sqrt(other)
-        solved = without_boats(columns)
-        inner = scale[:, None] * (columns[:, :-1].T @ solved[:, :-1]) * scale
-        inner[:k, :k] += np.eye(k)
-        root = np.linalg.cholesky(inner)
-        g = (solved[:, :-1] * scale) @ np.linalg.inv(root).T
-        py = solved[:, -1] - g @ (g.T @ self.residual)
-        deviance = (
-            -np.log(weight).sum()
-            + np.log1p(boat * precision).sum()
-            + 2.0 * np.log(np.diag(root)).sum()
-            + self.residual @ py
-        )
-        g_of_boat, g_of_other = self._by_boat @ g, self._others.T @ g
+        def of_boats(rows: FloatArray) -> FloatArray:
+            """Sum of each boat's rows, whitened, back in their own units."""
+            return np.asarray((self._by_boat @ (root * rows)) / np.sqrt(inflation)[:, None])
+
+        k, n = self._others.shape[1], len(self.y)
+        white = without_boats(root * self._columns)
+        known, y = white[:, :-1], white[:, -1:]
+        scale = np.where(np.arange(known.shape[1]) < k, np.sqrt(other), 1.0)
+        q, r = np.linalg.qr(np.vstack([known * scale, np.eye(k, known.shape[1])]))
+        q, of_others = q[:n], q[n:]
+        residual = y - q @ (q.T @ y)
+        p_y, boats_p_y = root * without_boats(residual), of_boats(residual)
+        if other > 0.0:
+            others_p_y = of_others @ (q.T @ y) / np.sqrt(other)
+            trace_of_others = (k - (of_others**2).sum()) / other
+        else:
+            others_p_y = known[:, :k].T @ residual
+            trace_of_others = (known[:, :k] ** 2).sum() - ((known[:, :k].T @ q) ** 2).sum()
+        alone = weight * (1.0 + boat * (precision[self.boat] - weight)) / inflation[self.boat]
         traces = np.array(
             [
-                (precision / (1.0 + boat * precision)).sum() - (g_of_boat**2).sum(),
-                (self._others * solved[:, :k]).sum() - (g_of_other**2).sum(),
-                weight.sum() - (shrink * (self._by_boat @ weight**2)).sum() - (g**2).sum(),
+                (precision / inflation).sum() - (of_boats(q) ** 2).sum(),
+                trace_of_others,
+                alone.sum() - ((root * without_boats(q)) ** 2).sum(),
             ]
         )
-        parts = np.column_stack(
-            [(self._by_boat @ py)[self.boat], self._others @ (self._others.T @ py), py]
+        squares = np.array([(part**2).sum() for part in (boats_p_y, others_p_y, p_y)])
+        parts = np.hstack([boats_p_y[self.boat], self._others @ others_p_y, p_y])
+        parts = without_boats(root * parts)
+        along = q.T @ parts
+        determinant = (
+            np.log(inflation).sum() - np.log(weight).sum() + 2.0 * np.log(np.abs(np.diag(r))).sum()
         )
-        along = g.T @ parts
         return Likelihood(
-            float(deviance),
-            traces - parts.T @ py,
-            np.asarray(parts.T @ without_boats(parts) - along.T @ along),
+            float(determinant + (residual**2).sum() + ((of_others @ (q.T @ y)) ** 2).sum()),
+            traces - squares,
+            np.asarray(parts.T @ parts - along.T @ along),
         )
 
     def deviance(self, sd: ArrayLike) -> float:
