@@ -152,7 +152,8 @@ class Fit:
             nearest = nearest.copy()
             nearest[index] = sd * sd
             nearest, deviance = search(self.problem, rest, nearest)
-            return deviance - least - PROFILE_DROP
+            # The root of a deviance is nearly straight, which a search for its zero likes.
+            return float(np.sqrt(max(deviance - least, 0.0)) - np.sqrt(PROFILE_DROP))
 
         sd, scale = self.sd[index], self.problem.spread
         lo = (

@@ -25,7 +25,7 @@ numbers as large as (boat's sd / error)^2, so that below 1e-8 no digit is left; 
 
 MAX_ITERATIONS: Final = 100
 MAX_HALVINGS: Final = 40
-TOLERANCE: Final = 1e-12
+TOLERANCE: Final = 1e-11
 """A search is done when a step changes no variance by more than this share of its size."""
 
 NEGLIGIBLE: Final = 1e-3
