@@ -93,6 +93,32 @@ def test_fit_finds_the_minimum_that_another_optimiser_finds():
     assert found.sd == pytest.approx(np.sqrt(other.x), abs=0.02 * problem.spread)
 
 
+@pytest.mark.parametrize(
+    ("boat_sd", "other_sd", "error"), [(2.0, 1.0, 1.0), (0.1, 0.1, 1e-5), (0.0, 1.0, 1.0)]
+)
+def test_the_last_bits_of_the_data_do_not_reach_the_components(boat_sd, other_sd, error):
+    rng = np.random.default_rng(4)
+    n, boat, other = 60, np.r_[np.arange(20), rng.integers(0, 20, 40)], np.arange(60) % 6
+    y = 3.4 + boat_sd * rng.normal(size=20)[boat] + other_sd * rng.normal(size=6)[other]
+    y += np.sqrt(error) * rng.normal(size=n)
+    x = np.column_stack([np.ones(n), rng.normal(size=n)])
+    fits = [
+        mixed.fit(
+            mixed.Problem.of(y * noise, x, np.full(n, error**2), boat, other), mixed.COMPONENTS
+        )
+        for noise in (1.0, 1.0 + 4e-16 * rng.normal(size=n))
+    ]
+    sds, intervals = (
+        np.array([getter(f) for f in fits], dtype=np.float64)
+        for getter in (lambda f: f.sd, lambda f: [f.interval(c) for c in mixed.COMPONENTS])
+    )
+    spread = fits[0].problem.spread
+    assert sds[0] == pytest.approx(sds[1], abs=1e-10 * spread)
+    assert intervals[0] == pytest.approx(intervals[1], abs=1e-10 * spread, nan_ok=True)
+    # A variance on its bound is none at all, not almost none.
+    assert ((sds == 0.0) | (sds > 1e-3 * spread)).all()
+
+
 def one_row_a_boat(variance, true_sd=0.0, seed=3):
     rng = np.random.default_rng(seed)
     x = sm.add_constant(rng.normal(size=12))
