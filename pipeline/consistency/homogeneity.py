@@ -15,6 +15,7 @@ from pipeline import curve
 from pipeline.arrays import FloatArray
 from pipeline.consistency import mixed
 from pipeline.consistency.observed import LINE, TOW_SCHEMA, UNKNOWN_TYPE, Observed, newest, q_at
+from pipeline.consistency.reml import Problem
 
 LEVEL: Final = 0.05
 FEWEST_BOATS: Final = 3
@@ -39,12 +40,16 @@ def shared_bend(boats: Observed) -> float:
     found = scipy.optimize.minimize_scalar(
         lambda r: _misfit(boats, r / fastest), bounds=BEND_BOUNDS, method="bounded"
     )
-    ends = np.clip(found.x + np.array([-BEND_MARGIN, BEND_MARGIN]), lowest, highest)
-    falls, rises = (_misfit_slope(boats, r / fastest) for r in ends)
-    if falls >= 0.0 or rises <= 0.0:
-        return float(ends[0] if falls >= 0.0 else ends[1]) / fastest
+    below = max(float(found.x) - BEND_MARGIN, lowest)
+    above = min(float(found.x) + BEND_MARGIN, highest)
+    if _misfit_slope(boats, below / fastest) >= 0.0:
+        return below / fastest
+    if _misfit_slope(boats, above / fastest) <= 0.0:
+        return above / fastest
     # The least of a smooth function is flat over the root of its rounding; its slope is not.
-    least = scipy.optimize.brentq(lambda r: _misfit_slope(boats, r / fastest), *ends, xtol=1e-15)
+    least = scipy.optimize.brentq(
+        lambda r: _misfit_slope(boats, r / fastest), below, above, xtol=1e-15
+    )
     return float(least) / fastest
 
 
@@ -206,7 +211,7 @@ def _bend_prior(boats: Observed, speed_m_s: float, sigma: float) -> tuple[float,
     """Mean of q at the standard speed and its true standard deviation between boats (REML)."""
     q, unit = q_at(boats, speed_m_s)
     known = np.isfinite(q)
-    problem = mixed.Problem.of(
+    problem = Problem.of(
         q[known],
         np.ones(known.sum()),
         unit[known] * sigma**2,

@@ -68,38 +68,41 @@ class Fit:
         return self.problem.boats - int(self.problem.x.shape[1])
 
     @cached_property
-    def _inverse(self) -> FloatArray:
+    def _white(self) -> FloatArray:
+        """L^-1, with the covariance of the rows V = L L'; shape (n, n)."""
         p = self.problem
         boat, other, cell = (s * s for s in self.sd)
         v = np.diag(p.variance + cell) + boat * (p.boat[:, None] == p.boat)
         if p.other is not None:
             v += other * (p.other[:, None] == p.other)
-        return np.asarray(np.linalg.inv(v))
+        return np.asarray(np.linalg.inv(np.linalg.cholesky(v)))
 
     @cached_property
     def _covariance(self) -> FloatArray:
-        return np.asarray(np.linalg.inv(self.problem.x.T @ self._inverse @ self.problem.x))
+        x = self._white @ self.problem.x
+        return np.asarray(np.linalg.inv(x.T @ x))
 
     @cached_property
     def _projection(self) -> FloatArray:
         """P = V^-1 - V^-1 X (X' V^-1 X)^-1 X' V^-1, shape (n, n)."""
-        vx = self._inverse @ self.problem.x
-        return self._inverse - vx @ self._covariance @ vx.T
+        known = np.linalg.qr(self._white @ self.problem.x)[0]
+        rest = self._white - known @ (known.T @ self._white)
+        return np.asarray(rest.T @ rest)
 
-    @property
+    def _misfit_of(self, x: FloatArray) -> float:
+        """Weighted sum of squares of y about the best of some columns."""
+        known, y = np.linalg.qr(self._white @ x)[0], self._white @ self.problem.y
+        return float(((y - known @ (known.T @ y)) ** 2).sum())
+
+    @cached_property
     def misfit(self) -> float:
         """Y' P Y: the weighted sum of squares about the fixed effects."""
-        return float(self.problem.y @ self._projection @ self.problem.y)
+        return self._misfit_of(self.problem.x)
 
     @property
     def total_misfit(self) -> float:
         """The same without the last column of X, at the same variances."""
-        rest = self.problem.x[:, :-1]
-        v = self._inverse
-        residual = self.problem.y - rest @ np.linalg.solve(
-            rest.T @ v @ rest, rest.T @ v @ self.problem.y
-        )
-        return float(residual @ v @ residual)
+        return self._misfit_of(self.problem.x[:, :-1])
 
     @property
     def scale(self) -> float:
@@ -110,7 +113,8 @@ class Fit:
     @property
     def beta(self) -> FloatArray:
         """Fixed effects, shape (p,)."""
-        return np.asarray(self._covariance @ (self.problem.x.T @ self._inverse @ self.problem.y))
+        white = self._white @ np.column_stack([self.problem.x, self.problem.y])
+        return np.asarray(np.linalg.lstsq(white[:, :-1], white[:, -1])[0])
 
     def coefficients(self) -> Coefficients:
         """Fixed effects with 95 % intervals; needs `dof` of at least 1.
@@ -130,12 +134,13 @@ class Fit:
         For rows g the error is (P_gg)^-1 (P y)_g with variance (P_gg)^-1: no fit is repeated.
         Where the others do not determine the prediction, the variance is infinite.
         """
-        p, py = self._projection, self._projection @ self.problem.y
+        p, py = self._projection, self._projection @ self.problem.residual
         error, variance = np.zeros(len(py)), np.full(len(py), np.inf)
+        weight = (self._white**2).sum(axis=0)  # the diagonal of V^-1
         order = np.argsort(self.problem.boat, kind="stable")
         for rows in np.split(order, np.flatnonzero(np.diff(self.problem.boat[order])) + 1):
             block = p[np.ix_(rows, rows)]
-            if np.linalg.eigvalsh(block)[0] > 1e-9 * np.diag(self._inverse)[rows].max():
+            if np.linalg.eigvalsh(block)[0] > 1e-9 * weight[rows].max():
                 inverse = np.linalg.inv(block)
                 error[rows], variance[rows] = inverse @ py[rows], np.diag(inverse)
         return LeftOut(error, variance)

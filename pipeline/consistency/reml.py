@@ -19,8 +19,9 @@ from pipeline.arrays import FloatArray, IntArray
 SMALLEST_SHARE: Final = 1e-4
 """Least measuring error, as a share of the size of y.
 
-Points that happen to lie exactly on a curve seem to have no error. Sherman-Morrison subtracts
-numbers as large as (boat's sd / error)^2, so that below 1e-8 no digit is left; 1e-4 leaves eight.
+Points that happen to lie exactly on a curve seem to have no error, and would have all the weight.
+The inverse of the covariance holds numbers as large as (boat's sd / error)^2 and loses as many
+digits: below 1e-8 none is left; 1e-4 leaves eight.
 """
 
 MAX_ITERATIONS: Final = 100
@@ -36,7 +37,8 @@ ROUNDING: Final = 1e-11
 
 
 UNFELT: Final = 1e-10
-"""Information, in units of the spread, below which it is rounding: the type of boats of one type."""
+"""Information, in units of the spread, below which it is rounding: boats of one type have none of
+what differs between types."""
 
 
 class Likelihood(NamedTuple):
@@ -227,7 +229,8 @@ def _newton(now: Likelihood, loose: IntArray, unit: float) -> FloatArray:
     size = np.sqrt(np.where(felt, np.diag(now.information)[loose], 1.0))
     scaled = np.where(np.outer(felt, felt), now.information[np.ix_(loose, loose)], 0.0)
     slope = np.where(felt, now.gradient[loose], 0.0) / size
-    return np.asarray(-np.linalg.lstsq(scaled / np.outer(size, size), slope, rcond=UNFELT)[0] / size)
+    scaled = scaled / np.outer(size, size)
+    return np.asarray(-np.linalg.lstsq(scaled, slope, rcond=UNFELT)[0] / size)
 
 
 def _descend(

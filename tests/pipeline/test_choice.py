@@ -1,7 +1,6 @@
 """Equals but for rounding are equals, in every place where one of several is chosen."""
 
 import numpy as np
-import polars as pl
 import pytest
 
 from pipeline.choice import first_largest

@@ -55,9 +55,7 @@ def older_kernels() -> dict[str, str]:
     return {"OPENBLAS_CORETYPE": "Nehalem", "NPY_DISABLE_CPU_FEATURES": " ".join(found)}
 
 
-def run(
-    program: str, bench: EditionBench, environment: dict[str, str], *arguments: Path
-) -> str:
+def run(program: str, bench: EditionBench, environment: dict[str, str], *arguments: Path) -> str:
     done = subprocess.run(
         [sys.executable, "-c", program, bench.archive, bench.data, *arguments],
         cwd=ROOT,
