@@ -17,7 +17,7 @@ import numpy as np
 import scipy
 
 from pipeline.arrays import FloatArray, IntArray
-from pipeline.consistency.reml import Problem, search
+from pipeline.consistency.reml import Problem, Whitened, search
 
 BOAT, OTHER, CELL = "boat", "other", "cell"
 COMPONENTS: Final = (BOAT, OTHER, CELL)
@@ -68,41 +68,25 @@ class Fit:
         return self.problem.boats - int(self.problem.x.shape[1])
 
     @cached_property
-    def _white(self) -> FloatArray:
-        """L^-1, with the covariance of the rows V = L L'; shape (n, n)."""
-        p = self.problem
-        boat, other, cell = (s * s for s in self.sd)
-        v = np.diag(p.variance + cell) + boat * (p.boat[:, None] == p.boat)
-        if p.other is not None:
-            v += other * (p.other[:, None] == p.other)
-        return np.asarray(np.linalg.inv(np.linalg.cholesky(v)))
+    def _white(self) -> Whitened:
+        return Whitened.of(self.problem, np.square(self.sd))
 
     @cached_property
-    def _covariance(self) -> FloatArray:
-        x = self._white @ self.problem.x
-        return np.asarray(np.linalg.inv(x.T @ x))
+    def _root(self) -> FloatArray:
+        """R with (R'R)^-1 the covariance of the fixed effects, (p, p); upper triangular."""
+        first = len(self._white.of_others)
+        return self._white.r[first:, first:]
 
-    @cached_property
-    def _projection(self) -> FloatArray:
-        """P = V^-1 - V^-1 X (X' V^-1 X)^-1 X' V^-1, shape (n, n)."""
-        known = np.linalg.qr(self._white @ self.problem.x)[0]
-        rest = self._white - known @ (known.T @ self._white)
-        return np.asarray(rest.T @ rest)
-
-    def _misfit_of(self, x: FloatArray) -> float:
-        """Weighted sum of squares of y about the best of some columns."""
-        known, y = np.linalg.qr(self._white @ x)[0], self._white @ self.problem.y
-        return float(((y - known @ (known.T @ y)) ** 2).sum())
-
-    @cached_property
+    @property
     def misfit(self) -> float:
         """Y' P Y: the weighted sum of squares about the fixed effects."""
-        return self._misfit_of(self.problem.x)
+        return self._white.misfit
 
     @property
     def total_misfit(self) -> float:
         """The same without the last column of X, at the same variances."""
-        return self._misfit_of(self.problem.x[:, :-1])
+        last = self._root[-1, -1] * self.beta[-1]
+        return self.misfit + float(last) ** 2
 
     @property
     def scale(self) -> float:
@@ -110,11 +94,12 @@ class Fit:
         rows = len(self.problem.y) - self.problem.x.shape[1]
         return max(1.0, self.misfit / rows) if rows > 0 else 1.0
 
-    @property
+    @cached_property
     def beta(self) -> FloatArray:
         """Fixed effects, shape (p,)."""
-        white = self._white @ np.column_stack([self.problem.x, self.problem.y])
-        return np.asarray(np.linalg.lstsq(white[:, :-1], white[:, -1])[0])
+        known = self._white.along[len(self._white.of_others) :, 0]
+        plain = np.linalg.lstsq(self.problem.x, self.problem.y)[0]
+        return np.asarray(plain + np.linalg.solve(self._root, known))
 
     def coefficients(self) -> Coefficients:
         """Fixed effects with 95 % intervals; needs `dof` of at least 1.
@@ -123,7 +108,8 @@ class Fit:
         equal errors the interval is that of ordinary least squares, whatever was estimated.
         """
         rows = len(self.problem.y) - self.problem.x.shape[1]
-        sd = np.sqrt(np.diag(self._covariance) * max(self.misfit, 0.0) / rows)
+        spread = (np.linalg.inv(self._root) ** 2).sum(axis=1)
+        sd = np.sqrt(spread * self.misfit / rows)
         half = float(scipy.special.stdtrit(self.dof, 0.5 + LEVEL / 2)) * sd
         beta = self.beta
         return Coefficients(beta, beta - half, beta + half)
@@ -134,15 +120,18 @@ class Fit:
         For rows g the error is (P_gg)^-1 (P y)_g with variance (P_gg)^-1: no fit is repeated.
         Where the others do not determine the prediction, the variance is infinite.
         """
-        p, py = self._projection, self._projection @ self.problem.residual
+        white, boat = self._white, self.problem.boat
+        py, known = white.own_units(white.rest)[:, 0], white.own_units(white.q)
+        shared = white.boat / white.inflation
         error, variance = np.zeros(len(py)), np.full(len(py), np.inf)
-        weight = (self._white**2).sum(axis=0)  # the diagonal of V^-1
-        order = np.argsort(self.problem.boat, kind="stable")
-        for rows in np.split(order, np.flatnonzero(np.diff(self.problem.boat[order])) + 1):
-            block = p[np.ix_(rows, rows)]
-            if np.linalg.eigvalsh(block)[0] > 1e-9 * weight[rows].max():
-                inverse = np.linalg.inv(block)
-                error[rows], variance[rows] = inverse @ py[rows], np.diag(inverse)
+        order = np.argsort(boat, kind="stable")
+        for rows in np.split(order, np.flatnonzero(np.diff(boat[order])) + 1):
+            weight = white.weight[rows]
+            inverse = np.diag(weight) - shared[boat[rows[0]]] * np.outer(weight, weight)
+            block = inverse - known[rows] @ known[rows].T
+            if np.linalg.eigvalsh(block)[0] > 1e-9 * np.diag(inverse).max():
+                found = np.linalg.inv(block)
+                error[rows], variance[rows] = found @ py[rows], np.diag(found)
         return LeftOut(error, variance)
 
     def interval(self, component: str) -> tuple[float, float | None]:

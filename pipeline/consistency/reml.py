@@ -6,7 +6,7 @@ Here the data, the likelihood with its slope, and the search for the variances o
 cell. What a fitted model says about anything stands in `mixed`.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final, NamedTuple, Self
 
@@ -110,7 +110,8 @@ class Problem:
         return float(np.sqrt((self.residual**2).sum() / dof))
 
     @cached_property
-    def _others(self) -> FloatArray:
+    def others(self) -> FloatArray:
+        """Which other group each row is of, as columns of 0 and 1; (n, groups)."""
         n = len(self.y)
         return (
             np.zeros((n, 0))
@@ -119,11 +120,13 @@ class Problem:
         )
 
     @cached_property
-    def _columns(self) -> FloatArray:
-        return np.hstack([self._others, self.x, self.residual[:, None]])
+    def columns(self) -> FloatArray:
+        """Others, fixed effects and what y is beyond the plain fit, side by side."""
+        return np.hstack([self.others, self.x, self.residual[:, None]])
 
     @cached_property
-    def _by_boat(self) -> "scipy.sparse.csr_array":
+    def by_boat(self) -> "scipy.sparse.csr_array":
+        """Adds up the rows of each boat; (boats, n)."""
         n = len(self.y)
         return scipy.sparse.csr_array(
             (np.ones(n), (self.boat, np.arange(n))), shape=(self.boats, n)
@@ -132,58 +135,35 @@ class Problem:
     def likelihood(self, variances: ArrayLike) -> Likelihood:
         """The restricted likelihood at variances of boat, other and cell, none of them negative.
 
-        Rows are whitened for error, cell and boat; others (Woodbury) and fixed effects are then
-        taken out by one orthogonal decomposition: no large numbers cancel, however small the errors
-        are, and the cost is linear in the rows. Slope and average information are those of Gilmour,
-        Thompson and Cullis (1995): tr(P V_k) - y'P V_k P y and y'P V_k P V_l P y, with V_k the part
-        of one variance in the covariance V, and P the inverse of V without the fixed effects.
+        Slope and average information are those of Gilmour, Thompson and Cullis (1995), tr(P V_k) -
+        y'P V_k P y and y'P V_k P V_l P y: V_k is the part of one variance in the covariance V, P
+        its inverse without the fixed effects.
         """
-        boat, other, cell = np.asarray(variances, dtype=np.float64)
-        weight = 1.0 / (self.variance + cell)
-        precision = self._by_boat @ weight
-        inflation = 1.0 + boat * precision
-        root = np.sqrt(weight)[:, None]
-        shrink = ((1.0 / np.sqrt(inflation) - 1.0) / precision)[:, None]
-
-        def without_boats(rows: FloatArray) -> FloatArray:
-            """What is left of rows, in units of their errors, in units of boats and errors."""
-            return np.asarray(rows + root * (shrink * (self._by_boat @ (root * rows)))[self.boat])
-
-        def of_boats(rows: FloatArray) -> FloatArray:
-            """Sum of each boat's rows, whitened, back in their own units."""
-            return np.asarray((self._by_boat @ (root * rows)) / np.sqrt(inflation)[:, None])
-
-        k, n = self._others.shape[1], len(self.y)
-        white = without_boats(root * self._columns)
-        known, y = white[:, :-1], white[:, -1:]
-        scale = np.where(np.arange(known.shape[1]) < k, np.sqrt(other), 1.0)
-        q, r = np.linalg.qr(np.vstack([known * scale, np.eye(k, known.shape[1])]))
-        q, of_others = q[:n], q[n:]
-        residual = y - q @ (q.T @ y)
-        p_y, boats_p_y = root * without_boats(residual), of_boats(residual)
-        if other > 0.0:
-            others_p_y = of_others @ (q.T @ y) / np.sqrt(other)
-            trace_of_others = (k - (of_others**2).sum()) / other
+        at = Whitened.of(self, variances)
+        p_y, boats_p_y = at.own_units(at.rest), at.of_boats(at.rest)
+        if at.other > 0.0:
+            others_p_y = at.of_others @ at.along / np.sqrt(at.other)
+            trace_of_others = (len(at.of_others) - (at.of_others**2).sum()) / at.other
         else:
-            others_p_y = known[:, :k].T @ residual
-            trace_of_others = (known[:, :k] ** 2).sum() - ((known[:, :k].T @ q) ** 2).sum()
-        alone = weight * (1.0 + boat * (precision[self.boat] - weight)) / inflation[self.boat]
+            others = at.without_boats(at.root * self.others)
+            others_p_y = others.T @ at.rest
+            trace_of_others = (others**2).sum() - ((others.T @ at.q) ** 2).sum()
+        alone = at.weight * (1.0 + at.boat * (at.precision[self.boat] - at.weight))
         traces = np.array(
             [
-                (precision / inflation).sum() - (of_boats(q) ** 2).sum(),
+                (at.precision / at.inflation).sum() - (at.of_boats(at.q) ** 2).sum(),
                 trace_of_others,
-                alone.sum() - ((root * without_boats(q)) ** 2).sum(),
+                (alone / at.inflation[self.boat]).sum() - (at.own_units(at.q) ** 2).sum(),
             ]
         )
         squares = np.array([(part**2).sum() for part in (boats_p_y, others_p_y, p_y)])
-        parts = np.hstack([boats_p_y[self.boat], self._others @ others_p_y, p_y])
-        parts = without_boats(root * parts)
-        along = q.T @ parts
-        determinant = (
-            np.log(inflation).sum() - np.log(weight).sum() + 2.0 * np.log(np.abs(np.diag(r))).sum()
-        )
+        parts = np.hstack([boats_p_y[self.boat], self.others @ others_p_y, p_y])
+        parts = at.without_boats(at.root * parts)
+        along = at.q.T @ parts
+        determinant = np.log(at.inflation).sum() - np.log(at.weight).sum()
+        determinant += 2.0 * np.log(np.abs(np.diag(at.r))).sum()
         return Likelihood(
-            float(determinant + (residual**2).sum() + ((of_others @ (q.T @ y)) ** 2).sum()),
+            float(determinant + at.misfit),
             traces - squares,
             np.asarray(parts.T @ parts - along.T @ along),
         )
@@ -191,6 +171,80 @@ class Problem:
     def deviance(self, sd: ArrayLike) -> float:
         """-2 log of the restricted likelihood but for a constant, at sds of boat, other, cell."""
         return self.likelihood(np.square(sd)).deviance
+
+
+@dataclass(frozen=True)
+class Whitened:
+    """A problem at some variances: rows of unit covariance, known columns taken out.
+
+    Rows are whitened for error, cell and boat. Others (as further data: Woodbury) and fixed effects
+    are then taken out by one orthogonal decomposition: no large numbers cancel, however small the
+    errors are, and all is linear in the rows. All matrices are narrow: a product of two that have
+    as many columns as rows comes out otherwise on another number of threads.
+
+    Attributes:
+        problem: the problem.
+        boat, other: the variances.
+        weight: (n,) 1 / variance of error and cell; root: (n, 1) its root.
+        precision: (boats,) sum of the weights; inflation: 1 + boat's variance times that.
+        q: (n, k + p) orthogonal columns, with `of_others`, (k, k + p), below.
+        r: (k + p, k + p) triangular.
+        along: (k + p, 1) whitened y along the columns.
+        rest: (n, 1) what is left of it.
+    """
+
+    problem: Problem
+    boat: float
+    other: float
+    weight: FloatArray
+    precision: FloatArray
+    inflation: FloatArray
+    q: FloatArray
+    of_others: FloatArray
+    r: FloatArray
+    along: FloatArray
+    rest: FloatArray
+
+    @classmethod
+    def of(cls, problem: Problem, variances: ArrayLike) -> Self:
+        """A problem at its variances of boat, other and cell."""
+        boat, other, cell = np.asarray(variances, dtype=np.float64)
+        weight = 1.0 / (problem.variance + cell)
+        precision = problem.by_boat @ weight
+        none = np.zeros((0, 0))
+        bare = cls(problem, boat, other, weight, precision, 1.0 + boat * precision, *(none,) * 5)
+        k, n = problem.others.shape[1], len(problem.y)
+        white = bare.without_boats(bare.root * problem.columns)
+        known, y = white[:, :-1], white[:, -1:]
+        known[:, :k] *= np.sqrt(other)
+        q, r = np.linalg.qr(np.vstack([known, np.eye(k, known.shape[1])]))
+        along = q[:n].T @ y
+        return replace(bare, q=q[:n], of_others=q[n:], r=r, along=along, rest=y - q[:n] @ along)
+
+    @cached_property
+    def root(self) -> FloatArray:
+        """Root of the weights, (n, 1)."""
+        return np.sqrt(self.weight)[:, None]
+
+    def without_boats(self, rows: FloatArray) -> FloatArray:
+        """What is left of rows, in units of their errors, in units of boats and errors."""
+        shrink = (1.0 / np.sqrt(self.inflation) - 1.0) / self.precision
+        of_boat = shrink[:, None] * (self.problem.by_boat @ (self.root * rows))
+        return np.asarray(rows + self.root * of_boat[self.problem.boat])
+
+    def own_units(self, rows: FloatArray) -> FloatArray:
+        """Whitened rows as they weigh on the rows of the problem."""
+        return self.root * self.without_boats(rows)
+
+    def of_boats(self, rows: FloatArray) -> FloatArray:
+        """Sum of `own_units` over each boat."""
+        total = self.problem.by_boat @ (self.root * rows)
+        return np.asarray(total / np.sqrt(self.inflation)[:, None])
+
+    @property
+    def misfit(self) -> float:
+        """Y' P Y: the weighted sum of squares about the fixed effects."""
+        return float((self.rest**2).sum() + ((self.of_others @ self.along) ** 2).sum())
 
 
 def search(problem: Problem, free: IntArray, start: FloatArray) -> tuple[FloatArray, float]:
