@@ -13,7 +13,8 @@ from assets.rebuild import rebuild
 from benchmarks import plain, same
 from benchmarks.harness import both
 from benchmarks.world import FOLDER, RATE_HZ, World
-from pipeline.blocks import block_sums, stack_blocks
+from pipeline.block_sums import block_sums
+from pipeline.blocks import stack_blocks
 from pipeline.method import parse_method, shipped_method, shipped_methods
 from pipeline.recompute import recompute
 from warehouse import lake, tables

@@ -8,7 +8,8 @@ import numpy as np
 import polars as pl
 import pytest
 
-from pipeline.blocks import block_sums, stack_blocks
+from pipeline.block_sums import block_sums
+from pipeline.blocks import stack_blocks
 from pipeline.recompute import recompute
 from pipeline.simulate import Defects, WorldSettings, simulate_tow, simulate_world
 from tests.pipeline.methods import method
