@@ -3,7 +3,7 @@
 What the sums are stands in `pipeline.blocks`. The loop is compiled by Numba, and written so that
 its result follows from the samples alone, to the last bit and on every processor: only additions,
 multiplications and divisions, in a fixed order, and no function of a mathematical library
-(docs/decisions/0017). It is written without branches, so that the compiler can work on several
+(docs/decisions/0015). It is written without branches, so that the compiler can work on several
 samples at a time; sample i of a block is added to lane i modulo `LANES`, and the lanes to each
 other at the end. Importing this module compiles the loop, or finds it compiled: import it late.
 """
@@ -32,12 +32,10 @@ _CHANNELS: Final = (
     "wind_speed_m_s",
     "wind_angle_deg",
 )
-_ROWS: Final = len(SUM_NAMES)
-_FORCE, _LOG1, _LOG2, _MEAN, _AIR, _WIND, _GPS = (
-    SUM_NAMES.index(first)
-    for first in ("force", "log1_v", "log2_v", "mean_v", "head_ahead", "wind_v", "gps")
-)
-"""Where the sums of each kind begin; within a kind they stand as in `SUM_NAMES`."""
+_FORCE, _LOG1, _LOG2, _MEAN, _AIR, _WIND, _GPS, _ROWS = 0, 2, 13, 24, 35, 41, 47, 50
+"""Where the sums of each kind begin in `SUM_NAMES`, and how many sums there are.
+
+Plain numbers: the compiled loop is kept as long as this file does not change."""
 
 
 def block_sums(samples: pl.DataFrame, sample_rate_hz: int) -> pl.DataFrame:
@@ -183,13 +181,18 @@ def _add_gps(sums: FloatArray, row: int, lane: Lane, gps: float) -> None:
 
 _INDICES: Final = types.Array(int64, 1, "C", readonly=True)
 _CHANNEL: Final = types.Array(float32, 1, "C", readonly=True)
+_SIGNATURE: Final = types.void(_INDICES, _INDICES, float64[:, ::1], *[_CHANNEL] * len(_CHANNELS))
 
 
-@_compiled(
-    types.void(_INDICES, _INDICES, float64[:, ::1], *[_CHANNEL] * len(_CHANNELS)),
-    nogil=True,
-    cache=True,
-)
+def _compiled_once(function: Callable[P, R]) -> Callable[P, R]:
+    """Compiled now, or as it was kept beside this file or in the user's folder of caches."""
+    try:
+        return _compiled(_SIGNATURE, nogil=True, cache=True)(function)
+    except RuntimeError:  # neither folder may be written: two seconds of compiling, each time
+        return _compiled(_SIGNATURE, nogil=True)(function)
+
+
+@_compiled_once
 def _add_up(
     start: IntArray,
     end: IntArray,

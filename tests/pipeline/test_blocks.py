@@ -1,6 +1,10 @@
 """Blocks give exactly the means over samples, whatever the rate and the length of the runs."""
 
+import hashlib
 import math
+import os
+import subprocess
+import sys
 
 import numpy as np
 import polars as pl
@@ -157,3 +161,26 @@ def test_means_over_an_empty_window_are_zero_not_nan():
     blocks = stacked(samples_of([30]), 10)
     nothing = np.zeros(blocks.n.shape, dtype=bool)
     assert blocks.mean("force", nothing).tolist() == [0.0]
+
+
+def digest_of_sums() -> str:
+    sums = block_sums(samples_of([900, 1234]), 333).select(SUM_NAMES)
+    return hashlib.sha256(sums.to_numpy().tobytes()).hexdigest()
+
+
+def test_sums_are_the_same_bits_on_any_processor(tmp_path):
+    """Compiled for a processor that works on one or two numbers at a time."""
+    plain = {
+        "NUMBA_CPU_NAME": "generic",
+        "NUMBA_CPU_FEATURES": "",
+        "NUMBA_CACHE_DIR": str(tmp_path),
+    }
+    code = "from tests.pipeline.test_blocks import digest_of_sums; print(digest_of_sums())"
+    elsewhere = subprocess.run(
+        [sys.executable, "-c", code],
+        env=os.environ | plain,
+        stdout=subprocess.PIPE,
+        check=True,
+        text=True,
+    )
+    assert elsewhere.stdout.strip() == digest_of_sums()
