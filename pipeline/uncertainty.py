@@ -209,9 +209,8 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
 
     Args:
         tows: one row a tow and speed: `tow_id`, `speed_ratio` (that speed / the declared one),
-            `season, part, log`; `kappa`; `random_ratio` (of C0, from the
-            scatter of the run points) with `random_dof`; `calibrated` (on dGPS); `log_sd` and
-            `log_dof` of the season's ln factor (0 and any where calibrated), `wander_sd` of the
+            `season, part, log`; `kappa`; `random_ratio` (of C0, from the scatter of the run
+            points) with `random_dof`; `calibrated` (on dGPS); `log_sd` and `log_dof` of the season's ln factor (0 and any where calibrated), `wander_sd` of the
             log (0 where calibrated); `air_ratio`, net wind correction / Cw, and
             `air_per_coefficient`, change of ln Cw per unit of drag coefficient (both signed);
             `temperature_known`.
@@ -220,8 +219,9 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
 
     Returns:
         One row per tow, speed and component: `tow_id, speed_ratio, component`, `shared` (single,
-        season or archive), `key` (rows with one key share one error), `effect_ratio` (change of ln Cw by one standard
-        deviation of it, signed), `u_ratio` (its size), `dof` (infinite for assumed numbers).
+        season or archive), `key` (rows with one key share one error), `effect_ratio` (change of
+        ln Cw by one standard deviation of it, signed), `u_ratio` (its size), `dof` (infinite for
+        assumed numbers).
     """
     kappa, calibrated = pl.col("kappa"), pl.col("calibrated")
     known = pl.col("temperature_known")
@@ -299,9 +299,8 @@ def combine(held: pl.DataFrame, level: float = 0.95) -> pl.DataFrame:
 
     Returns:
         One row a tow and speed, sorted: `tow_id, speed_ratio, u_ratio`, `u_shared_ratio` (what
-        other tows share),
-        `u_single_ratio`, `dof` (Welch-Satterthwaite), and `lo_ratio, hi_ratio`: the bounds of Cw
-        relative to its value, a t interval on the logarithm.
+        other tows share), `u_single_ratio`, `dof` (Welch-Satterthwaite), and `lo_ratio, hi_ratio`:
+        the bounds of Cw relative to its value, a t interval on the logarithm.
     """
     square = pl.col("u_ratio") ** 2
     single = pl.col("shared") == SINGLE
