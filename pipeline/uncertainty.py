@@ -210,10 +210,10 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
     Args:
         tows: one row a tow and speed: `tow_id`, `speed_ratio` (that speed / the declared one),
             `season, part, log`; `kappa`; `random_ratio` (of C0, from the scatter of the run
-            points) with `random_dof`; `calibrated` (on dGPS); `log_sd` and `log_dof` of the season's ln factor (0 and any where calibrated), `wander_sd` of the
-            log (0 where calibrated); `air_ratio`, net wind correction / Cw, and
-            `air_per_coefficient`, change of ln Cw per unit of drag coefficient (both signed);
-            `temperature_known`.
+            points) with `random_dof`; `calibrated` (on dGPS); `log_sd` and `log_dof` of the
+            season's ln factor (0 and any where calibrated), `wander_sd` of the log (0 where
+            calibrated); `air_ratio`, net wind correction / Cw, and `air_per_coefficient`, change of
+            ln Cw per unit of drag coefficient (both signed); `temperature_known`.
         assumed: what the archive cannot show; give `wind_coefficient` what the archive-wide search
             came to where that was used.
 
