@@ -141,6 +141,20 @@ def add_up(tows_per_season: int, count: int) -> Work:
     return lambda: _blocks(world, tows)
 
 
+def add_up_and_write(tows_per_season: int, count: int) -> Work:
+    """The same, written tow by tow as a rebuild does after a change of the sums."""
+    world = World(tows_per_season)
+    tows = world.tows(count)
+    folder = FOLDER / "written"
+    folder.mkdir(parents=True, exist_ok=True)
+
+    def one(file: tuple[str, str]) -> None:
+        sums = block_sums(pl.read_parquet(file[1], hive_partitioning=False), RATE_HZ)
+        write_parquet(sums, folder / f"{file[0]}.parquet", form=lake.LAKE_FORM)
+
+    return lambda: both(one, _lake_files(world, tows).items())
+
+
 def herijk_from_parquet(
     tows_per_season: int, count: int, result: str | None = None, plain_text: bool = False
 ) -> Work:
