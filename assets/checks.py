@@ -22,9 +22,14 @@ def _result(
         severity=severity,
         metadata={
             "number": len(wrong),
-            "first": dg.MetadataValue.json([str(w) for w in wrong[:20]]),
+            "first": dg.MetadataValue.json([_on_a_line(w) for w in wrong[:20]]),
         },
     )
+
+
+def _on_a_line(wrong: object) -> str:
+    """A row of a table, or a sentence."""
+    return " ".join(map(str, wrong)) if isinstance(wrong, tuple) else str(wrong)
 
 
 @dg.asset_check(asset="warehouse_database")

@@ -13,7 +13,7 @@ from typing import Any
 import dagster as dg
 
 from assets.notify import Message, Notifier
-from dashboards.report import headlines, mail
+from dashboards.report import found_in_words, headlines, mail
 from dashboards.words import speaker
 from warehouse.code import code_version
 from warehouse.files import written_beside
@@ -60,7 +60,7 @@ def _plain(check: dg.AssetCheckEvaluation) -> Report:
         "check": check.check_name,
         "passed": check.passed,
         "severity": check.severity.value,
-        "detail": ", ".join(f"{name} {value.value}" for name, value in check.metadata.items()),
+        "found": {name: value.value for name, value in check.metadata.items()},
     }
 
 
@@ -72,7 +72,7 @@ def _write(path: Path, text: str) -> None:
 def failed_checks(report: Report) -> list[str]:
     """Checks whose failing means that a table is not what it promises."""
     return [
-        f"{check['check']}: {check['detail']}"
+        f"{check['check']}: {found_in_words(check, speaker('en'))}"
         for check in report["checks"]
         if not check["passed"] and check["severity"] == dg.AssetCheckSeverity.ERROR.value
     ]

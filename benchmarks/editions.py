@@ -32,10 +32,7 @@ def rebuilt(root, tows_per_season):
     settings = WorldSettings(tuple(range(2009, 2019)), tows_per_season, 5)
     write_simulated_archive(root / "archive", simulate_world(settings))
     store = Store(root / "data")
-    intake.index(store, root / "archive")
-    for season in intake.listed_seasons(store):
-        intake.read_season(store, root / "archive", season, lambda *_: None)
-        intake.collect_blocks(store, season)
+    intake.bring_in(store, root / "archive")
     tables.collect_archive(store, DAY)
     blocks = tables.run_blocks(store)
     for name in METHODS:

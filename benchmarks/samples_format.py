@@ -19,7 +19,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from pipeline.simulate import WorldSettings, simulate_tow, simulate_world
-from warehouse.lake import SAMPLES_FORM
+from warehouse.lake import LAKE_FORM
 from warehouse.store import read_parquet, write_parquet
 
 SCALE = 1000.0
@@ -85,7 +85,7 @@ def _read(path: Path) -> pl.DataFrame:
 
 
 def _as_in_the_lake(frame: pl.DataFrame, path: Path) -> None:
-    write_parquet(frame, path, form=SAMPLES_FORM)
+    write_parquet(frame, path, form=LAKE_FORM)
 
 
 FORMATS = [

@@ -176,7 +176,8 @@ def remote_store(data: Path, here: Store) -> Store:
 def warm_up(cluster: Cluster) -> None:
     """Has every worker import what it needs."""
     with Client(cluster.address) as client:
-        client.run(__import__, "assets.cluster")
+        for module in ("assets.cluster", "pipeline.block_sums"):
+            client.run(__import__, module)
 
 
 @contextmanager

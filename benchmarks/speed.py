@@ -104,7 +104,11 @@ def of_size(tows_per_season: int, counts: list[int]) -> list[Task]:
         Task(f"{label}, {n}", f"benchmarks.tasks.{function}", arguments | {"count": n})
         for n in counts
         for label, function, arguments in (
-            ("blocks from Parquet", "add_up", {"tows_per_season": tows_per_season}),
+            (
+                "blocks from Parquet, written",
+                "add_up_and_write",
+                {"tows_per_season": tows_per_season},
+            ),
             (
                 "rebased, computation",
                 "apply_method",
@@ -175,7 +179,7 @@ def run(tows_per_season: int, compared: int, repeats: int) -> dict[str, Any]:
     found |= measure(once, 1)
     return {
         "date": dt.datetime.now(dt.UTC).date().isoformat(),
-        "machine": machine("numpy", "polars", "duckdb", "pandas", "scipy", "pyarrow"),
+        "machine": machine("numpy", "numba", "polars", "duckdb", "pandas", "scipy", "pyarrow"),
         "tows": all_tows,
         "compared_tows": compared,
         "curves_compared": curves,
@@ -218,9 +222,10 @@ def summary(report: dict[str, Any], command: str) -> str:
         "The others keep the samples as Parquet, make the same sums of every second and the same "
         "curves by the same method (whole runs, oblique wind, free curve); "
         f"{report['curves_compared']} curves agreed within {SAME_CURVE:g}. Ours checks every file "
-        "besides. *One method* is the least a script can do for the same curves: five columns, "
-        "one method, nothing kept; so the others also do it for a changed method. Load is that "
-        "of the machine when the run ended: above the number of cores, other work was going on "
+        "besides; the archive has been indexed, so no file is hashed here. *One method* is the "
+        "least a script can do for the same curves: five columns, one method, nothing kept; so "
+        "the others also do it for a changed method. Load is that of the machine when the run "
+        "ended: above the number of cores, other work was going on "
         "and the column *processor* is the surer one.",
         "",
         "## Asked and found",

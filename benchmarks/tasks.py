@@ -13,7 +13,8 @@ from assets.rebuild import rebuild
 from benchmarks import plain, same
 from benchmarks.harness import both
 from benchmarks.world import FOLDER, RATE_HZ, World
-from pipeline.blocks import block_sums, stack_blocks
+from pipeline.block_sums import block_sums
+from pipeline.blocks import stack_blocks
 from pipeline.method import parse_method, shipped_method, shipped_methods
 from pipeline.recompute import recompute
 from warehouse import lake, tables
@@ -65,7 +66,7 @@ def parse_text(tows_per_season: int, count: int, write: bool) -> Work:
     def one(file: tuple[str, str]) -> None:
         frame = _parse(Path(file[1]))
         if write:
-            write_parquet(frame, folder / f"{file[0]}.parquet", form=lake.SAMPLES_FORM)
+            write_parquet(frame, folder / f"{file[0]}.parquet", form=lake.LAKE_FORM)
 
     return lambda: both(one, _text_files(world, tows).items())
 
@@ -73,14 +74,14 @@ def parse_text(tows_per_season: int, count: int, write: bool) -> Work:
 def read_text(tows_per_season: int, count: int) -> Work:
     """Text to checked samples and blocks in an empty lake."""
     world = World(tows_per_season)
-    tows, store = world.tows(count, plain=True), _empty_store()
+    tows, store = world.tows(count, plain=True), _indexed_store(world)
     return lambda: _into_lake(world, store, tows)
 
 
 def herijk_from_text(tows_per_season: int, count: int, result: str | None = None) -> Work:
     """Text to curves, by way of the lake."""
     world = World(tows_per_season)
-    tows, store = world.tows(count, plain=True), _empty_store()
+    tows, store = world.tows(count, plain=True), _indexed_store(world)
 
     def work() -> None:
         index = _into_lake(world, store, tows)
@@ -96,6 +97,14 @@ def _empty_store() -> Store:
     folder = FOLDER / "empty"
     shutil.rmtree(folder, ignore_errors=True)
     return Store(folder)
+
+
+def _indexed_store(world: World) -> Store:
+    """A lake without samples; indexing, which hashes every file, has been done."""
+    store = _empty_store()
+    store.file_hashes.parent.mkdir(parents=True)
+    shutil.copy(world.store.file_hashes, store.file_hashes)
+    return store
 
 
 def _into_lake(world: World, store: Store, tows: pl.DataFrame) -> dict[int, pl.DataFrame]:
@@ -130,6 +139,20 @@ def add_up(tows_per_season: int, count: int) -> Work:
     world = World(tows_per_season)
     tows = world.tows(count)
     return lambda: _blocks(world, tows)
+
+
+def add_up_and_write(tows_per_season: int, count: int) -> Work:
+    """The same, written tow by tow as a rebuild does after a change of the sums."""
+    world = World(tows_per_season)
+    tows = world.tows(count)
+    folder = FOLDER / "written"
+    folder.mkdir(parents=True, exist_ok=True)
+
+    def one(file: tuple[str, str]) -> None:
+        sums = block_sums(pl.read_parquet(file[1], hive_partitioning=False), RATE_HZ)
+        write_parquet(sums, folder / f"{file[0]}.parquet", form=lake.LAKE_FORM)
+
+    return lambda: both(one, _lake_files(world, tows).items())
 
 
 def herijk_from_parquet(

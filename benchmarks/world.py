@@ -51,10 +51,7 @@ class World:
         if not self.archive.exists():
             settings = WorldSettings(SEASONS, self.tows_per_season, RATE_HZ)
             write_simulated_archive(self.archive, simulate_world(settings))
-        intake.index(self.store, self.archive)
-        for season in intake.stale_seasons(self.store, self.archive):
-            intake.read_season(self.store, self.archive, season, lambda *_: None)
-            intake.collect_blocks(self.store, season)
+        intake.bring_in(self.store, self.archive)
         if tables.archive_is_stale(self.store):
             tables.collect_archive(self.store, max(self.store.read("listed_tows")["tow_date"]))
 

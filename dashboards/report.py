@@ -18,6 +18,19 @@ def outcome_of(check: Report) -> str:
     return "passed" if check["passed"] else str(check["severity"]).lower()
 
 
+def found_in_words(check: Report, say: Say) -> str:
+    """What a check found."""
+    return ", ".join(f"{say('code.' + name)} {value}" for name, value in values_found(check))
+
+
+def values_found(check: Report) -> list[tuple[str, str]]:
+    """Code and text of each quantity that a check found."""
+    return [
+        (name, "; ".join(value) if isinstance(value, list) else str(value))
+        for name, value in check["found"].items()
+    ]
+
+
 def mail(report: Report) -> tuple[str, str]:
     """Subject and text of the mail, in Dutch."""
     say = speaker("nl")
@@ -46,7 +59,7 @@ def _wrong(report: Report, say: Say) -> Iterable[str]:
     failed = [c for c in report["checks"] if not c["passed"]]
     for check in failed:
         outcome = say(f"code.{outcome_of(check)}")
-        yield f"{outcome}: {say('code.' + check['check'])} ({check['detail']})"
+        yield f"{outcome}: {say('code.' + check['check'])} ({found_in_words(check, say)})"
 
 
 def _moved(report: Report, say: Say) -> Iterable[str]:

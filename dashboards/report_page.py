@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import polars as pl
 
-from dashboards.report import outcome_of
+from dashboards.report import outcome_of, values_found
 from dashboards.site.parts import Page, Section, Table
 from dashboards.site.render import render_page
 from warehouse.journal import News
@@ -25,14 +25,18 @@ _COLUMNS: Final = {
         *("old_cw_kg_m", "new_cw_kg_m", "cw_ratio", "gain_in_two_hours_s"),
         *("exceeds_interval", "causes"),
     ),
-    "checks": ("check", "outcome", "detail"),
+    "checks": ("check", "outcome", "quantity", "value"),
 }
 
 
 def report_page(store: Store, found: News, report: dict[str, Any]) -> str:
     """The page: what came in, what was set aside, what changed and why, what the checks say."""
     checks = pl.DataFrame(
-        [[c["check"], outcome_of(c), "" if c["passed"] else c["detail"]] for c in report["checks"]],
+        [
+            [check["check"], outcome_of(check), *found]
+            for check in report["checks"]
+            for found in ([("", "")] if check["passed"] else values_found(check))
+        ],
         schema=dict.fromkeys(_COLUMNS["checks"], pl.String),
         orient="row",
     )

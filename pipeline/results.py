@@ -78,7 +78,9 @@ def as_tables(
         log_factors=together([_log_factors(o, found) for o in outcomes]),
         assessments=assessments,
         uncertainty_budget=budget.select(
-            name, pl.exclude("dof"), pl.when(pl.col("dof").is_finite()).then("dof").alias("dof")
+            name,
+            pl.exclude("speed_ratio", "dof"),
+            pl.when(pl.col("dof").is_finite()).then("dof").alias("dof"),
         ),
         curve_points=curve_points(outcomes, found).select(name, pl.all())
         if with_bands

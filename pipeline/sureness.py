@@ -23,7 +23,7 @@ from pipeline.uncertainty import Assumed, budget, combine, residual_scatter, run
 ARCHIVE_COEFFICIENT_SD: Final = 0.01
 """Of the one coefficient found for the whole archive (research, method.md 0.9; measured here)."""
 
-CURVE_SPEED_RATIOS: Final = np.linspace(0.85, 1.15, 13)
+CURVE_SPEED_RATIOS: Final = tuple(np.linspace(0.85, 1.15, 13).tolist())
 """Speeds of the points of a curve / declared speed: the range in which a curve is valid."""
 
 USUAL_BEND: Final = 0.4
@@ -75,9 +75,11 @@ def run_point_ratio(o: Outcome) -> FloatArray:
 
 
 def budget_of(
-    outcomes: Sequence[Outcome], found: SeasonFactors | None, speed_ratio: float = 1.0
+    outcomes: Sequence[Outcome],
+    found: SeasonFactors | None,
+    speed_ratios: Sequence[float] = (1.0,),
 ) -> pl.DataFrame:
-    """Every component of the uncertainty of Cw at one speed, per tow with a curve.
+    """Every component of the uncertainty of Cw at some speeds, per tow with a curve.
 
     Away from the declared speed the random part grows, and a speed error acts through the
     elasticity there.
@@ -85,13 +87,13 @@ def budget_of(
     Args:
         outcomes: all batches of a method.
         found: its season factors, if it has estimated ones.
-        speed_ratio: that speed / declared speed.
+        speed_ratios: those speeds / declared speed.
 
     Returns:
-        Rows as `pipeline.uncertainty.budget` gives them, sorted by tow.
+        Rows as `pipeline.uncertainty.budget` gives them, sorted by tow, speed and component.
     """
-    held = [_budget_of_batch(o, found, speed_ratio) for o in outcomes]
-    return pl.concat(held).sort("tow_id", "component")
+    held = [_budget_of_batch(o, found, speed_ratios) for o in outcomes]
+    return pl.concat(held).sort("tow_id", "speed_ratio", "component")
 
 
 def curve_points(outcomes: Sequence[Outcome], found: SeasonFactors | None) -> pl.DataFrame:
@@ -101,23 +103,21 @@ def curve_points(outcomes: Sequence[Outcome], found: SeasonFactors | None) -> pl
         `tow_id, speed_m_s, cw_kg_m, cw_lo_kg_m, cw_hi_kg_m`: a row per tow and speed of
         `CURVE_SPEED_RATIOS`, none at speeds from B on.
     """
-    return pl.concat([_points_at(outcomes, found, ratio) for ratio in CURVE_SPEED_RATIOS])
-
-
-def _points_at(
-    outcomes: Sequence[Outcome], found: SeasonFactors | None, ratio: float
-) -> pl.DataFrame:
-    rows = pl.concat(
+    points = pl.concat(
         [
             o.batch.tows.select(
                 "tow_id",
+                pl.lit(ratio).alias("speed_ratio"),
                 (ratio * pl.col("declared_speed_m_s")).alias("speed_m_s"),
                 pl.Series("cw_kg_m", o.cw_at(ratio)),
             )
+            for ratio in CURVE_SPEED_RATIOS
             for o in outcomes
         ]
     )
-    return rows.join(cw_bounds(budget_of(outcomes, found, ratio)), on="tow_id").select(
+    bounds = cw_bounds(budget_of(outcomes, found, CURVE_SPEED_RATIOS))
+    at = ["tow_id", "speed_ratio"]
+    return points.join(bounds, on=at, maintain_order="left").select(
         "tow_id",
         "speed_m_s",
         "cw_kg_m",
@@ -127,24 +127,43 @@ def _points_at(
 
 
 def cw_bounds(held: pl.DataFrame) -> pl.DataFrame:
-    """Bounds of the 95 % interval of Cw relative to Cw, per tow: `tow_id, lo_ratio, hi_ratio`."""
-    return combine(held).select("tow_id", "lo_ratio", "hi_ratio")
+    """Bounds of the 95 % interval of Cw relative to Cw, per tow and speed of a budget.
+
+    Returns:
+        `tow_id, speed_ratio, lo_ratio, hi_ratio`.
+    """
+    return combine(held).select("tow_id", "speed_ratio", "lo_ratio", "hi_ratio")
 
 
-def _budget_of_batch(o: Outcome, found: SeasonFactors | None, speed_ratio: float) -> pl.DataFrame:
+def _budget_of_batch(
+    o: Outcome, found: SeasonFactors | None, speed_ratios: Sequence[float]
+) -> pl.DataFrame:
+    bend = USUAL_BEND if found is None else _median_bend(o)
+    rows = pl.concat([_terms_of_budget(o, found, bend, ratio) for ratio in speed_ratios])
+    return budget(rows, _assumed(o, found, bend))
+
+
+def _net_air(o: Outcome) -> FloatArray:
+    """Net wind correction of Cw, mean over a tow's points, shape (tows,) [kg/m]."""
+    return o.batch.mean(o.air_kg_m - o.still_air_kg_m, o.used)
+
+
+def _terms_of_budget(
+    o: Outcome, found: SeasonFactors | None, bend: float, speed_ratio: float
+) -> pl.DataFrame:
+    """What `pipeline.uncertainty.budget` asks of tows, of those with a Cw at this speed."""
     batch, cw = o.batch, o.cw_at(speed_ratio)
     sound = np.isfinite(cw)
     safe = np.where(sound, cw, 1.0)
     random, dof = random_ratio(o, found is not None, speed_ratio)
-    bend = USUAL_BEND if found is None else _median_bend(o)
     r = bend / (1.0 + bend) * speed_ratio**2
     estimated = np.isfinite(o.estimated.factor)
-    air = batch.mean(o.air_kg_m - o.still_air_kg_m, o.used)
     # A larger coefficient takes more off as felt and puts more back for still air.
     still_unit = o.still_air_kg_m / np.maximum(o.still_air_coefficient, 1e-9)
     per_coefficient = batch.mean(still_unit - o.air_unit_kg_m, o.used)
-    rows = batch.tows.select(
+    return batch.tows.select(
         "tow_id",
+        pl.lit(speed_ratio).alias("speed_ratio"),
         "season",
         log_part(o.steps.speed.source),
         pl.lit(o.steps.speed.source).alias("log"),
@@ -155,11 +174,10 @@ def _budget_of_batch(o: Outcome, found: SeasonFactors | None, speed_ratio: float
         pl.Series("log_sd", np.where(estimated, o.estimated.ln_sd, 0.0)),
         pl.Series("log_dof", np.where(estimated, o.estimated.dof, np.inf)),
         pl.Series("wander_sd", np.where(o.calibrated, 0.0, _wander(o, found))),
-        pl.Series("air_ratio", air / safe),
+        pl.Series("air_ratio", _net_air(o) / safe),
         pl.Series("air_per_coefficient", per_coefficient / safe),
         pl.Series("temperature_known", o.temperature_known),
     ).filter(pl.Series(sound))
-    return budget(rows, _assumed(o, found, bend, air))
 
 
 def _median_bend(o: Outcome) -> float:
@@ -181,7 +199,7 @@ def _wander(o: Outcome, found: SeasonFactors | None) -> FloatArray:
     return wander
 
 
-def _assumed(o: Outcome, found: SeasonFactors | None, bend: float, air: FloatArray) -> Assumed:
+def _assumed(o: Outcome, found: SeasonFactors | None, bend: float) -> Assumed:
     """What is assumed, or shown by repeat tows: of Cw at the declared speed, whatever is asked."""
     assumed = Assumed()
     if o.steps.wind.coefficients == "archive":
@@ -189,6 +207,6 @@ def _assumed(o: Outcome, found: SeasonFactors | None, bend: float, air: FloatArr
     if found is None:
         return assumed
     sound = np.isfinite(o.cw_at_declared)
-    air_ratio = air[sound] / o.cw_at_declared[sound]
+    air_ratio = _net_air(o)[sound] / o.cw_at_declared[sound]
     usual_air = float(np.sqrt(np.mean(air_ratio**2))) if sound.any() else 0.0
     return assumed.as_repeats_show(found.tow_sd, 2.0 * (1.0 + bend), usual_air)

@@ -202,25 +202,26 @@ class Assumed:
 
 
 def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
-    """Every component of the uncertainty of Cw at the declared speed, per tow.
+    """Every component of the uncertainty of Cw at one speed, per tow.
 
     A speed error acts through the elasticity kappa of the boat. A tow without dGPS has the wander
     of its log in place of calibration and stream drift: a log feels the water, not the stream.
 
     Args:
-        tows: one row a tow: `tow_id, season, part, log`; `kappa`; `random_ratio` (of C0, from the
-            scatter of the run points) with `random_dof`; `calibrated` (on dGPS); `log_sd` and
-            `log_dof` of the season's ln factor (0 and any where calibrated), `wander_sd` of the
-            log (0 where calibrated); `air_ratio`, net wind correction / Cw, and
-            `air_per_coefficient`, change of ln Cw per unit of drag coefficient (both signed);
-            `temperature_known`.
+        tows: one row a tow and speed: `tow_id`, `speed_ratio` (that speed / the declared one),
+            `season, part, log`; `kappa`; `random_ratio` (of C0, from the scatter of the run
+            points) with `random_dof`; `calibrated` (on dGPS); `log_sd` and `log_dof` of the
+            season's ln factor (0 and any where calibrated), `wander_sd` of the log (0 where
+            calibrated); `air_ratio`, net wind correction / Cw, and `air_per_coefficient`, change of
+            ln Cw per unit of drag coefficient (both signed); `temperature_known`.
         assumed: what the archive cannot show; give `wind_coefficient` what the archive-wide search
             came to where that was used.
 
     Returns:
-        One row per tow and component: `tow_id, component, shared` (single, season or archive),
-        `key` (rows with one key share one error), `effect_ratio` (change of ln Cw by one standard
-        deviation of it, signed), `u_ratio` (its size), `dof` (infinite for assumed numbers).
+        One row per tow, speed and component: `tow_id, speed_ratio, component`, `shared` (single,
+        season or archive), `key` (rows with one key share one error), `effect_ratio` (change of
+        ln Cw by one standard deviation of it, signed), `u_ratio` (its size), `dof` (infinite for
+        assumed numbers).
     """
     kappa, calibrated = pl.col("kappa"), pl.col("calibrated")
     known = pl.col("temperature_known")
@@ -254,6 +255,7 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
     held = [
         tows.select(
             "tow_id",
+            "speed_ratio",
             pl.lit(name).alias("component"),
             shared.get(name, pl.lit(SINGLE)).alias("shared"),
             _key(name, shared.get(name, pl.lit(SINGLE))).alias("key"),
@@ -289,21 +291,21 @@ def log_key(season: pl.Expr, part: pl.Expr, log: pl.Expr) -> pl.Expr:
 
 
 def combine(held: pl.DataFrame, level: float = 0.95) -> pl.DataFrame:
-    """Adds a budget up per tow.
+    """Adds a budget up per tow and speed.
 
     Args:
         held: rows of `budget`.
         level: coverage of the interval.
 
     Returns:
-        One row a tow, sorted: `tow_id, u_ratio`, `u_shared_ratio` (what other tows share),
-        `u_single_ratio`, `dof` (Welch-Satterthwaite), and `lo_ratio, hi_ratio`: the bounds of Cw
-        relative to its value, a t interval on the logarithm.
+        One row a tow and speed, sorted: `tow_id, speed_ratio, u_ratio`, `u_shared_ratio` (what
+        other tows share), `u_single_ratio`, `dof` (Welch-Satterthwaite), and `lo_ratio, hi_ratio`:
+        the bounds of Cw relative to its value, a t interval on the logarithm.
     """
     square = pl.col("u_ratio") ** 2
     single = pl.col("shared") == SINGLE
     rows = (
-        held.group_by("tow_id")
+        held.group_by("tow_id", "speed_ratio")
         .agg(
             square.sum().sqrt().alias("u_ratio"),
             square.filter(~single).sum().sqrt().alias("u_shared_ratio"),
@@ -312,7 +314,7 @@ def combine(held: pl.DataFrame, level: float = 0.95) -> pl.DataFrame:
         )
         .with_columns((pl.col("u_ratio") ** 4 / pl.col("spread")).alias("dof"))
         .with_columns(pl.col("dof").fill_nan(np.inf))
-        .sort("tow_id")
+        .sort("tow_id", "speed_ratio")
     )
     quantile = scipy.special.stdtrit(rows["dof"].clip(1.0).to_numpy(), 0.5 * (1.0 + level))
     half = rows["u_ratio"] * pl.Series(quantile, dtype=pl.Float64)

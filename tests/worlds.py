@@ -6,7 +6,8 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 import polars as pl
 
-from pipeline.blocks import SPEED_SOURCES, RunBlocks, block_sums, stack_blocks
+from pipeline.block_sums import block_sums
+from pipeline.blocks import SPEED_SOURCES, RunBlocks, stack_blocks
 from pipeline.channels import BACK, OUT, TARGET_SPEED_RATIOS
 from pipeline.method import Method
 from pipeline.recompute import recompute

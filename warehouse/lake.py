@@ -17,12 +17,16 @@ import polars as pl
 
 import pipeline.blocks
 import pipeline.channels
-from pipeline.blocks import block_sums
 from pipeline.errors import DefectiveInputError, UnavailableError
 from warehouse import archive
-from warehouse.archive import SeasonProfile, check_samples, fault_from, read_tow_samples
+from warehouse.archive import (
+    FileHashes,
+    SeasonProfile,
+    check_samples,
+    fault_from,
+    read_tow_samples,
+)
 from warehouse.code import source_hash
-from warehouse.files import file_sha256
 from warehouse.store import Store, count_rows, fingerprint, read_parquet, write_parquet
 
 SEASON_INDEX_SCHEMA: Final = {
@@ -37,13 +41,13 @@ SEASON_INDEX_SCHEMA: Final = {
 }
 """One row a listed tow: where its samples and blocks lie, or the fault that was found."""
 
-SAMPLES_FORM: Final = {
+LAKE_FORM: Final = {
     "compression": "zstd",
     "compression_level": 1,
     "use_dictionary": False,
     "write_statistics": False,
 }
-"""How float32 samples are packed: measured in docs/decisions/0004."""
+"""How samples and blocks are packed: measured in docs/decisions/0004."""
 
 Tow = Mapping[str, Any]
 Report = Callable[[str, bool], None]
@@ -79,11 +83,13 @@ def read_season(
         The season's index, `SEASON_INDEX_SCHEMA`, sorted by tow.
     """
     before = _known_faults(store, profile.season)
+    hashes = FileHashes.load(store.file_hashes)
     runs_of = dict(runs.partition_by("tow_id", as_dict=True))
 
     def read(tow: Tow) -> dict[str, Any]:
-        key = _samples_key(tow, runs_of[tow["tow_id"],], profile)
-        row = before.get(key) or _bring_in(store, root, tow, runs_of[tow["tow_id"],], profile, key)
+        listed_runs = runs_of[tow["tow_id"],]
+        key = _samples_key(tow, listed_runs, profile)
+        row = before.get(key) or _bring_in(store, root, tow, listed_runs, profile, key, hashes)
         report(tow["tow_id"], row["reason_code"] is not None)
         return row | {"tow_id": tow["tow_id"]}
 
@@ -108,7 +114,13 @@ def season_blocks(store: Store, season: int, index: pl.DataFrame) -> pl.DataFram
 
 
 def _bring_in(
-    store: Store, root: Path, tow: Tow, runs: pl.DataFrame, profile: SeasonProfile, key: str
+    store: Store,
+    root: Path,
+    tow: Tow,
+    runs: pl.DataFrame,
+    profile: SeasonProfile,
+    key: str,
+    hashes: FileHashes,
 ) -> dict[str, Any]:
     """Index row of a tow after its samples and blocks are in the lake, or with its fault."""
     row = dict.fromkeys(SEASON_INDEX_SCHEMA) | {"samples_key": key}
@@ -119,13 +131,16 @@ def _bring_in(
         samples = None if path.exists() else read_tow_samples(root, tow, profile)
         if samples is not None:
             check_samples(samples, tow, runs)
-            _check_unchanged(root, tow)
-            write_parquet(samples, path, form=SAMPLES_FORM)
+            _check_unchanged(root, tow, hashes)
+            write_parquet(samples, path, form=LAKE_FORM)
         if not blocks_path.exists():
+            from pipeline.block_sums import block_sums  # noqa: PLC0415 - compiles on import
+
             held = read_parquet(path) if samples is None else samples
-            write_parquet(block_sums(held, tow["sample_rate_hz"]), blocks_path)
+            sums = block_sums(held, tow["sample_rate_hz"])
+            write_parquet(sums, blocks_path, form=LAKE_FORM)
     except DefectiveInputError as error:
-        _check_unchanged(root, tow)
+        _check_unchanged(root, tow, hashes)
         return row | dataclasses.asdict(fault_from(error, tow["samples_path"], tow["tow_id"]))
     return row | {"blocks_key": blocks_key, "samples": count_rows(path)}
 
@@ -134,20 +149,23 @@ class ArchiveChangedError(UnavailableError):
     """A file of the archive changed between looking through the archive and reading it."""
 
 
-def _check_unchanged(root: Path, tow: Tow) -> None:
-    """Samples are named by the hash of their file, so they must be that file's."""
+def _check_unchanged(root: Path, tow: Tow, hashes: FileHashes) -> None:
+    """Samples are named by the hash of their file, so they must be that file's.
+
+    A file with the size and time it had when it was hashed is not read once more.
+    """
     for path, sha256 in (("samples_path", "samples_sha256"), ("second_path", "second_sha256")):
-        if tow[path] is not None and _sha256(root / tow[path]) != tow[sha256]:
+        if tow[path] is not None and _sha256(root / tow[path], hashes) != tow[sha256]:
             raise ArchiveChangedError(
                 f"{tow[path]} changed while it was read. Try again when nobody is copying files "
                 f"into {root}"
             )
 
 
-def _sha256(path: Path) -> str | None:
+def _sha256(path: Path, hashes: FileHashes) -> str | None:
     """Hash of a file; None when it went away."""
     try:
-        return file_sha256(path)
+        return hashes.hash_file(path)
     except FileNotFoundError:
         return None
 
@@ -197,7 +215,8 @@ def _reader_hash() -> str:
 @cache
 def _blocks_hash() -> str:
     """The code that adds samples up: when it changes, the lake's samples are added up again."""
-    return source_hash([_source(pipeline.blocks)])
+    names = _source(pipeline.blocks)
+    return source_hash([names, names.with_name("block_sums.py")])
 
 
 def _source(module: Any) -> Path:

@@ -83,10 +83,7 @@ class Ground:
     def read(self) -> tuple[Rows, set[str]]:
         """Rows of each tow in each table, and the tows set aside."""
         store = self.store
-        intake.index(store, self.archive)
-        for season in intake.stale_seasons(store, self.archive):
-            intake.read_season(store, self.archive, season, lambda *_: None)
-            intake.collect_blocks(store, season)
+        intake.bring_in(store, self.archive)
         tables.collect_archive(store, SEEN)
         blocks = tables.run_blocks(store)
         found = {name: store.read(name) for name in ("tows", "tow_runs")}

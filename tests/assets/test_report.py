@@ -118,8 +118,15 @@ def test_all_checks_pass_on_a_sound_archive(built):
 
 
 def test_a_failing_check_of_a_promise_is_an_error_and_a_warning_is_none():
-    check = {"check": "counts_agree", "passed": False, "detail": "number 1"}
-    for severity, failed in (("ERROR", ["counts_agree: number 1"]), ("WARN", [])):
+    check = {
+        "check": "counts_agree",
+        "passed": False,
+        "found": {"number": 2, "first": ["boats", "tows"]},
+    }
+    for severity, failed in (
+        ("ERROR", ["counts_agree: number 2, among them boats; tows"]),
+        ("WARN", []),
+    ):
         assert failed_checks({"checks": [check | {"severity": severity}]}) == failed
     assert dg.AssetCheckSeverity.ERROR.value == "ERROR"
 

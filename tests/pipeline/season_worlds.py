@@ -170,6 +170,7 @@ def register(world):
         anchored.alias("calibrated"),
         pl.col("ln_cw_sd").alias("random_ratio"),
         pl.lit(200.0).alias("random_dof"),
+        pl.lit(1.0).alias("speed_ratio"),
         pl.lit(0.025).alias("air_ratio"),
         pl.lit(0.05).alias("air_per_coefficient"),
         (pl.col("season") >= 2018).alias("temperature_known"),

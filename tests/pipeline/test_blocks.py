@@ -1,6 +1,10 @@
 """Blocks give exactly the means over samples, whatever the rate and the length of the runs."""
 
+import hashlib
 import math
+import os
+import subprocess
+import sys
 
 import numpy as np
 import polars as pl
@@ -8,7 +12,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pipeline.blocks import SUM_NAMES, block_sums, stack_blocks
+from pipeline.block_sums import block_sums
+from pipeline.blocks import SUM_NAMES, stack_blocks
 from pipeline.channels import SAMPLE_SCHEMA
 from pipeline.errors import BrokenPromiseError
 from pipeline.wind import mean_wind_angle_deg
@@ -100,15 +105,15 @@ def test_every_window_mean_is_that_over_samples(rate_hz, lengths, window, gps, s
             assert abs(blocks.mean(name, mask)[i] - mean) <= EXACT * size, name
 
 
-@given(angle=st.floats(0.0, 359.9), spread=st.floats(0.1, 60.0), seed=st.integers(0, 99))
+@given(angle=st.integers(0, 64 * 360 - 1), spread=st.integers(8, 64 * 60), seed=st.integers(0, 99))
 def test_mean_wind_angle_goes_round_north(angle, spread, seed):
     samples = samples_of([100], seed)
-    offsets = np.random.default_rng(seed).uniform(-spread, spread, 50)
-    around = np.mod(angle + np.concatenate([offsets, -offsets]), 360.0)
-    samples = samples.with_columns(pl.Series("wind_angle_deg", around))
+    offsets = np.random.default_rng(seed).integers(-spread, spread, 50)
+    around = np.mod(angle + np.concatenate([offsets, -offsets]), 64 * 360) / 64  # exact in 32 bits
+    samples = samples.with_columns(pl.Series("wind_angle_deg", around, pl.Float32))
     blocks = stacked(samples, 10)
     found = mean_wind_angle_deg(blocks, blocks.n > 0)[0]
-    assert abs((found - angle + 180.0) % 360.0 - 180.0) < 1e-9
+    assert abs((found - angle / 64 + 180.0) % 360.0 - 180.0) < 1e-9
 
 
 @pytest.mark.parametrize("rate_hz", [1, 20, 50, 333, 1000])
@@ -156,3 +161,26 @@ def test_means_over_an_empty_window_are_zero_not_nan():
     blocks = stacked(samples_of([30]), 10)
     nothing = np.zeros(blocks.n.shape, dtype=bool)
     assert blocks.mean("force", nothing).tolist() == [0.0]
+
+
+def digest_of_sums() -> str:
+    sums = block_sums(samples_of([900, 1234]), 333).select(SUM_NAMES)
+    return hashlib.sha256(sums.to_numpy().tobytes()).hexdigest()
+
+
+def test_sums_are_the_same_bits_on_any_processor(tmp_path):
+    """Compiled for a processor that works on one or two numbers at a time."""
+    plain = {
+        "NUMBA_CPU_NAME": "generic",
+        "NUMBA_CPU_FEATURES": "",
+        "NUMBA_CACHE_DIR": str(tmp_path),
+    }
+    code = "from tests.pipeline.test_blocks import digest_of_sums; print(digest_of_sums())"
+    elsewhere = subprocess.run(
+        [sys.executable, "-c", code],
+        env=os.environ | plain,
+        stdout=subprocess.PIPE,
+        check=True,
+        text=True,
+    )
+    assert elsewhere.stdout.strip() == digest_of_sums()

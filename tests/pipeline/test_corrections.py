@@ -8,7 +8,9 @@ import numpy as np
 import polars as pl
 import pytest
 
-from pipeline.blocks import block_sums, stack_blocks
+from pipeline.block_sums import block_sums
+from pipeline.blocks import stack_blocks
+from pipeline.channels import SAMPLE_SCHEMA
 from pipeline.recompute import recompute
 from pipeline.simulate import Defects, WorldSettings, simulate_tow, simulate_world
 from tests.pipeline.methods import method
@@ -136,6 +138,7 @@ def accelerating(acceleration_m_s2: float) -> tuple[pl.DataFrame, "object"]:
         after = before + acceleration_m_s2 * (time_s - 25.0)
         force = pl.col("force_n") * (after / before) ** 2 + mass[tow.tow_id] * acceleration_m_s2
         moved = samples.with_columns(after.alias("log1_m_s"), force.alias("force_n"))
+        moved = moved.cast(SAMPLE_SCHEMA)
         tow_id = pl.lit(tow.tow_id).alias("tow_id")
         frames.append(block_sums(moved, settings.rate_hz).select(tow_id, pl.all()))
     return tows, stack_blocks(pl.concat(frames), run_rows(tows))

@@ -8,7 +8,8 @@ import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
 
-from pipeline.blocks import block_sums, stack_blocks
+from pipeline.block_sums import block_sums
+from pipeline.blocks import stack_blocks
 from pipeline.errors import MissingKnowledgeError
 from pipeline.method import parse_method, shipped_method
 from pipeline.recompute import recompute

@@ -18,7 +18,8 @@ from tests.pipeline.season_worlds import as_blocks, run_noise, run_point_ratios
 
 def tows(**changed):
     usual = {
-        "tow_id": "2014-001", "season": 2014, "part": 0, "log": "log1", "kappa": 2.86,
+        "tow_id": "2014-001", "speed_ratio": 1.0, "season": 2014, "part": 0, "log": "log1",
+        "kappa": 2.86,
         "random_ratio": 0.0061, "random_dof": 96.0, "calibrated": True, "log_sd": 0.0,
         "log_dof": np.inf, "wander_sd": 0.0, "air_ratio": 0.025, "air_per_coefficient": 0.05,
         "temperature_known": False,

@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pipeline.blocks import AIR_SUMS, RunBlocks, block_sums, stack_blocks
+from pipeline.block_sums import block_sums
+from pipeline.blocks import AIR_SUMS, RunBlocks, stack_blocks
 from pipeline.channels import SAMPLE_SCHEMA
 from pipeline.method import Wind
 from pipeline.wind import AirParts, air_parts, averaged_terms, nearest_coefficients

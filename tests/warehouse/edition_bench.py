@@ -50,11 +50,7 @@ class EditionBench:
     def rebuild(self, methods: tuple[Method, ...] = tuple(map(shipped_method, METHODS))) -> None:
         """Everything that a rebuild does up to the curves."""
         store = self.store
-        intake.index(store, self.archive)
-        intake.forget_unlisted_seasons(store)
-        for season in intake.stale_seasons(store, self.archive):
-            intake.read_season(store, self.archive, season, lambda *_: None)
-            intake.collect_blocks(store, season)
+        intake.bring_in(store, self.archive)
         tables.collect_archive(store, DAY)
         blocks = tables.run_blocks(store)
         for method in methods:

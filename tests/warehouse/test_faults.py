@@ -204,10 +204,7 @@ def test_boats_are_all_there(spoiled, built):
 def read_again(bench: Workbench, day: dt.date) -> pl.DataFrame:
     """Brings the archive into the lake as a rebuild of that day does; gives what is set aside."""
     store = bench.store
-    intake.index(store, bench.archive)
-    for season in intake.stale_seasons(store, bench.archive):
-        intake.read_season(store, bench.archive, season, lambda *_: None)
-        intake.collect_blocks(store, season)
+    intake.bring_in(store, bench.archive)
     tables.collect_archive(store, day)
     return store.read("quarantine")
 

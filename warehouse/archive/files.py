@@ -3,6 +3,7 @@
 Knows folder names, safe paths and compression; not what stands in a file.
 """
 
+import os
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -150,7 +151,7 @@ def read_bytes(path: Path, max_bytes: int) -> bytes:
     try:
         with path.open("rb") as raw:
             if compression is None:
-                content = raw.read(max_bytes + 1)
+                content = raw.read(min(os.fstat(raw.fileno()).st_size, max_bytes) + 1)
             else:
                 content = _unpack(raw, compression, max_bytes)
     except FileNotFoundError as error:

@@ -151,7 +151,7 @@ def _read_fast(body: _Body) -> pl.DataFrame | None:
 
     That is also where a carriage return stands within a line: Polars takes it for a blank.
     """
-    if body.data.count(b"\r") != body.data.count(b"\r\n"):
+    if _has_stray_return(body.data):
         return None
     quoted = body.data.find(b'"', body.start) >= 0
     wanted = {found.index: key for key, found in body.columns.items()}
@@ -174,8 +174,22 @@ def _read_fast(body: _Body) -> pl.DataFrame | None:
             frame = frame.select(pl.all().str.replace(",", ".", literal=True).cast(pl.Float64()))
     except pl.exceptions.PolarsError:
         return None
-    finite = frame.select(pl.all().is_finite().all() & (pl.all().null_count() == 0))
-    return frame if all(finite.row(0)) else None
+    return frame if all(map(_all_finite, frame.iter_columns())) else None
+
+
+def _has_stray_return(data: bytes) -> bool:
+    """Whether a carriage return stands anywhere but before a line feed."""
+    if b"\r" not in data:
+        return False
+    letters = np.frombuffer(data, np.uint8)
+    returns = np.flatnonzero(letters == ord("\r"))
+    last = len(letters) - 1
+    return bool(returns[-1] == last or (letters[returns + 1] != ord("\n")).any())
+
+
+def _all_finite(numbers: pl.Series) -> bool:
+    """Whether every cell holds a number; NumPy is quicker at it than Polars."""
+    return numbers.null_count() == 0 and bool(np.isfinite(numbers.to_numpy()).all())
 
 
 def _read_carefully(body: _Body) -> pl.DataFrame:
@@ -322,9 +336,9 @@ def _to_schema(raw: pl.DataFrame) -> pl.DataFrame:
 def _check_finite(samples: pl.DataFrame) -> None:
     """A number such as 1e39 is finite in 64 bits and not in 32."""
     for name in samples.columns[1:]:
-        infinite = samples[name].is_infinite()
+        infinite = np.isinf(samples[name].to_numpy())
         if infinite.any():
-            row = int(infinite.arg_max() or 0)
+            row = int(infinite.argmax())
             raise DefectiveInputError(
                 "bad_number", f"Line {row + 2}: the number for {name} is too large.", line=row + 2
             )

@@ -37,10 +37,7 @@ def give(archive: Archive, rows: str, path: str = WINDOWS) -> None:
 
 def bring_in(archive: Archive, store: Store) -> None:
     """A rebuild as far as the tables about the archive, only where something changed."""
-    intake.index(store, archive.root)
-    for season in intake.stale_seasons(store, archive.root):
-        intake.read_season(store, archive.root, season, lambda tow_id, set_aside: None)
-        intake.collect_blocks(store, season)
+    intake.bring_in(store, archive.root)
     if tables.archive_is_stale(store):
         tables.collect_archive(store, TODAY)
 
