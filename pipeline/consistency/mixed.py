@@ -10,7 +10,7 @@ elsewhere.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -121,7 +121,8 @@ class Fit:
         Where the others do not determine the prediction, the variance is infinite.
         """
         white, boat = self._white, self.problem.boat
-        py, known = white.own_units(white.rest)[:, 0], white.own_units(white.q)
+        weighed = white.weigh(np.hstack([white.q, white.rest]))[0]
+        known, py = weighed[:, :-1], weighed[:, -1]
         shared = white.boat / white.inflation
         error, variance = np.zeros(len(py)), np.full(len(py), np.inf)
         order = np.argsort(boat, kind="stable")
@@ -141,6 +142,7 @@ class Fit:
         rest = _places(tuple(c for c in self.free if c != component))
         nearest = np.square(self.sd)
 
+        @cache
         def excess(sd: float) -> float:
             nonlocal nearest
             nearest = nearest.copy()
@@ -168,8 +170,11 @@ class Fit:
 def fit(problem: Problem, free: tuple[str, ...]) -> Fit:
     """Restricted maximum likelihood of the components named in `free`."""
     places = _places(free)
+    # What the errors leave of the spread, in equal parts.
+    left = problem.spread**2 - float(problem.variance.mean())
+    least = 0.1 * max(problem.spread**2, float(problem.variance.min()))
     start = np.zeros(3)
-    start[places] = 0.25 * max(problem.spread**2, float(problem.variance.min()))
+    start[places] = max(left, least) / max(len(places), 1)
     found, least = search(problem, places, start)
     for place in places:
         without = found.copy()

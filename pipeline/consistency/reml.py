@@ -140,7 +140,8 @@ class Problem:
         its inverse without the fixed effects.
         """
         at = Whitened.of(self, variances)
-        p_y, boats_p_y = at.own_units(at.rest), at.of_boats(at.rest)
+        own, of_boats = at.weigh(np.hstack([at.q, at.rest]))
+        p_y, boats_p_y = own[:, -1:], of_boats[:, -1:]
         if at.other > 0.0:
             others_p_y = at.of_others @ at.along / np.sqrt(at.other)
             trace_of_others = (len(at.of_others) - (at.of_others**2).sum()) / at.other
@@ -151,9 +152,9 @@ class Problem:
         alone = at.weight * (1.0 + at.boat * (at.precision[self.boat] - at.weight))
         traces = np.array(
             [
-                (at.precision / at.inflation).sum() - (at.of_boats(at.q) ** 2).sum(),
+                (at.precision / at.inflation).sum() - (of_boats[:, :-1] ** 2).sum(),
                 trace_of_others,
-                (alone / at.inflation[self.boat]).sum() - (at.own_units(at.q) ** 2).sum(),
+                (alone / at.inflation[self.boat]).sum() - (own[:, :-1] ** 2).sum(),
             ]
         )
         squares = np.array([(part**2).sum() for part in (boats_p_y, others_p_y, p_y)])
@@ -228,18 +229,18 @@ class Whitened:
 
     def without_boats(self, rows: FloatArray) -> FloatArray:
         """What is left of rows, in units of their errors, in units of boats and errors."""
-        shrink = (1.0 / np.sqrt(self.inflation) - 1.0) / self.precision
-        of_boat = shrink[:, None] * (self.problem.by_boat @ (self.root * rows))
-        return np.asarray(rows + self.root * of_boat[self.problem.boat])
+        return self._shrunk(rows, self.problem.by_boat @ (self.root * rows))
 
-    def own_units(self, rows: FloatArray) -> FloatArray:
-        """Whitened rows as they weigh on the rows of the problem."""
-        return self.root * self.without_boats(rows)
-
-    def of_boats(self, rows: FloatArray) -> FloatArray:
-        """Sum of `own_units` over each boat."""
+    def weigh(self, rows: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Whitened rows as they weigh on the rows of the problem, and the sum of that by boat."""
         total = self.problem.by_boat @ (self.root * rows)
-        return np.asarray(total / np.sqrt(self.inflation)[:, None])
+        of_boats = total / np.sqrt(self.inflation)[:, None]
+        return self.root * self._shrunk(rows, total), np.asarray(of_boats)
+
+    def _shrunk(self, rows: FloatArray, total: FloatArray) -> FloatArray:
+        """Rows with each boat's mean made smaller; `total` is the weighted sum by boat."""
+        shrink = (1.0 / np.sqrt(self.inflation) - 1.0) / self.precision
+        return np.asarray(rows + self.root * (shrink[:, None] * total)[self.problem.boat])
 
     @property
     def misfit(self) -> float:
