@@ -14,6 +14,7 @@ import polars as pl
 
 from pipeline.channels import TARGET_SPEED_RATIOS
 from pipeline.checks import CHECKS, CODES
+from pipeline.choice import SAME_SHARE
 
 LINE: Final = ("fsn_no", "rowers", "crew_class")
 LIKE: Final = ("boat_type", "rowers", "crew_class")
@@ -117,7 +118,9 @@ def _limits() -> pl.DataFrame:
 def _held_against_limits(observed: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
     """Adds the limit that is exceeded or nearest, and whether it is exceeded."""
     x, lowest, highest = pl.col("observed"), pl.col("lowest"), pl.col("highest")
-    nearer_lowest = highest.is_null() | (x - lowest < highest - x)
+    # Of two that are as near, but for rounding, the highest: as where nothing differs at all.
+    nearer = (highest - x) - (x - lowest) > SAME_SHARE * (highest - lowest)
+    nearer_lowest = highest.is_null() | nearer
     last = pl.col("check").replace_strict(_LAST_SEASON, return_dtype=pl.Int32)
     return (
         observed.join(curves.select("method", "tow_id", "season", "crew_class"), on="tow_id")

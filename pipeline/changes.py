@@ -13,6 +13,7 @@ import numpy as np
 import polars as pl
 
 from pipeline.arrays import FloatArray
+from pipeline.choice import SAME_SHARE
 from pipeline.curve import cw
 from pipeline.power import curve_of_lines, speed_at_power
 from pipeline.race import power_per_rower_w
@@ -21,7 +22,7 @@ from pipeline.register import LINE
 SAME_RATIO: Final = 5e-4
 """A difference up to 0.05 % counts as the same (research, method.md T21)."""
 
-NO_FACTOR: Final = 1e-12
+NO_FACTOR: Final = SAME_SHARE
 """A factor this near to 1 is rounding and is not listed as a cause."""
 
 RACE_S: Final = 7200.0

@@ -20,6 +20,7 @@ from pipeline.batch import Batch
 from pipeline.blocks import RunBlocks
 from pipeline.calibration import gps_factor
 from pipeline.channels import BACK, OUT
+from pipeline.choice import first_largest
 from pipeline.hull import front_area_m2, hull_speed_m_s, still_air_coefficient_kg_m
 from pipeline.method import Method, Steps, Window
 from pipeline.outcome import Outcome, TowFactor
@@ -384,7 +385,7 @@ def _misfit(prepared: _Prepared, coefficient: float) -> FloatArray:
 def _best_per_tow(prepared: _Prepared) -> FloatArray:
     """One coefficient per tow within its bounds, by trying all of a fine grid, shape (tows,)."""
     misfits = np.stack([_misfit(prepared, c) for c in PER_TOW_GRID])
-    return np.asarray(PER_TOW_GRID[misfits.argmin(axis=0)], dtype=np.float64)
+    return np.asarray(PER_TOW_GRID[first_largest(-misfits)], dtype=np.float64)
 
 
 def _archive_coefficient(prepared: list[_Prepared]) -> float | None:

@@ -17,6 +17,10 @@ from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.blocks import RunBlocks
 from pipeline.method import Window
 
+WORTH_DECIMALS: Final = 6
+"""Windows whose worth is equal to the microsecond are equals: the same faults in another order of
+summing cost the same."""
+
 END_SECONDS: Final = 5
 """Length of the two ends that are compared, s (research, method.md 6.4)."""
 
@@ -215,7 +219,7 @@ def _search(present: BoolArray, faults: _Faults, rule: Window) -> tuple[IntArray
         ends = _unsteadiness(sums, size, rule)
         accepted = (_span(good, size) == size) & (ends <= WORST_ENDS)
         worth = size - _span(price, size) - ENDS_PRICE_S * np.maximum(ends - 1.0, 0.0)
-        worth = np.where(accepted, worth, -np.inf)
+        worth = np.where(accepted, np.round(worth, WORTH_DECIMALS), -np.inf)
         best = worth.argmax(axis=1)
         found = np.take_along_axis(worth, best[:, None], 1)[:, 0]
         better = found > value

@@ -137,7 +137,9 @@ def nearest_coefficients(air: AirParts, excess_kg_m: FloatArray) -> tuple[FloatA
     larger = np.where(mostly_ahead, air.ahead, air.behind)
     smaller = np.where(mostly_ahead, air.behind, air.ahead)
     first = _clipped_quotient(excess_kg_m, larger)
-    second = _clipped_quotient(excess_kg_m - first * larger, smaller)
+    # Within its bounds the first takes all: what is left then is rounding.
+    within = (first > PER_RUN_BOUNDS[0]) & (first < PER_RUN_BOUNDS[1])
+    second = _clipped_quotient(np.where(within, 0.0, excess_kg_m - first * larger), smaller)
     return np.where(mostly_ahead, first, second), np.where(mostly_ahead, second, first)
 
 

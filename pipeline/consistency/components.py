@@ -18,6 +18,7 @@ from pipeline.consistency.observed import (
     curve_at,
     ln_cw_unit_variance,
 )
+from pipeline.consistency.reml import Problem
 
 FLEET, WITHIN_TYPE = "fleet", "within_type"
 SCOPES: Final = (FLEET, WITHIN_TYPE)
@@ -74,7 +75,7 @@ def _components(tows: Observed, scope: str) -> list[dict[str, Any]]:
     if repeated < FEWEST_REPEATS or counts["n_seasons"] < 2 or counts["n_boats"] < x.shape[1] + 2:
         names = (*NAMES, "run")
         return [counts | {"component": c, "reason": "too_few_repeats"} for c in names]
-    fit = mixed.fit(mixed.Problem.of(y, x, variance, boat, season), mixed.COMPONENTS)
+    fit = mixed.fit(Problem.of(y, x, variance, boat, season), mixed.COMPONENTS)
     return [counts | row for row in _shares(fit, float(np.sqrt(variance.mean())))]
 
 

@@ -15,6 +15,7 @@ from pipeline import curve
 from pipeline.arrays import FloatArray
 from pipeline.consistency import mixed
 from pipeline.consistency.observed import LINE, TOW_SCHEMA, UNKNOWN_TYPE, Observed, newest, q_at
+from pipeline.consistency.reml import Problem
 
 LEVEL: Final = 0.05
 FEWEST_BOATS: Final = 3
@@ -23,19 +24,33 @@ POWER_AT: Final = (0.05, 0.10)
 
 SPEED_RATIOS: Final = {"cw_085_kg_m": 0.85, "cw_kg_m": 1.0, "cw_115_kg_m": 1.15}
 
+BEND_BOUNDS: Final = (-2.0, 0.999)
+"""Of the shared s, as a share of that which puts B on the fastest point."""
+
+BEND_MARGIN: Final = 1e-3
+"""Within this of the least that a plain search finds lies the least itself."""
+
 OWN, PARTIAL, SHARED = "own", "partial", "shared"
 
 
 def shared_bend(boats: Observed) -> float:
     """The one s = 1/B^2 [s2/m2] that fits all boats best, each with its own height."""
     fastest = float(np.where(boats.points.used, boats.points.speed_m_s, 0.0).max()) ** 2
+    lowest, highest = BEND_BOUNDS
     found = scipy.optimize.minimize_scalar(
-        lambda r: _misfit(boats, r / fastest),
-        bounds=(-2.0, 0.999),
-        method="bounded",
-        options={"xatol": 1e-7},
+        lambda r: _misfit(boats, r / fastest), bounds=BEND_BOUNDS, method="bounded"
     )
-    return float(found.x) / fastest
+    below = max(float(found.x) - BEND_MARGIN, lowest)
+    above = min(float(found.x) + BEND_MARGIN, highest)
+    if _misfit_slope(boats, below / fastest) >= 0.0:
+        return below / fastest
+    if _misfit_slope(boats, above / fastest) <= 0.0:
+        return above / fastest
+    # The least of a smooth function is flat over the root of its rounding; its slope is not.
+    least = scipy.optimize.brentq(
+        lambda r: _misfit_slope(boats, r / fastest), below, above, xtol=1e-15
+    )
+    return float(least) / fastest
 
 
 def height_given_bend(points: curve.Points, s_s2_m2: FloatArray) -> FloatArray:
@@ -53,6 +68,17 @@ def _misfit(boats: Observed, s_s2_m2: float) -> float:
     fitted = curve.cw(height_given_bend(points, s)[:, None], s[:, None], points.speed_m_s)
     residual = np.where(points.used, points.cw_kg_m - fitted, 0.0)
     return float(((residual / boats.column("c0_kg_m")[:, None]) ** 2).sum())
+
+
+def _misfit_slope(boats: Observed, s_s2_m2: float) -> float:
+    """Derivative of `_misfit` along s: a height at its best does not count (envelope theorem)."""
+    points = boats.points
+    v2 = np.where(points.used, points.speed_m_s, 0.0) ** 2
+    a = height_given_bend(points, np.full(boats.table.height, s_s2_m2))[:, None]
+    fitted = a * points.used / (1.0 - s_s2_m2 * v2)
+    residual = np.where(points.used, points.cw_kg_m - fitted, 0.0)
+    slope = fitted * v2 / (1.0 - s_s2_m2 * v2)
+    return float((-2.0 * residual * slope / boats.column("c0_kg_m")[:, None] ** 2).sum())
 
 
 def type_homogeneity(observed: Observed) -> pl.DataFrame:
@@ -185,7 +211,7 @@ def _bend_prior(boats: Observed, speed_m_s: float, sigma: float) -> tuple[float,
     """Mean of q at the standard speed and its true standard deviation between boats (REML)."""
     q, unit = q_at(boats, speed_m_s)
     known = np.isfinite(q)
-    problem = mixed.Problem.of(
+    problem = Problem.of(
         q[known],
         np.ones(known.sum()),
         unit[known] * sigma**2,

@@ -27,6 +27,7 @@ from pipeline.consistency.observed import (
     newest,
     q_at,
 )
+from pipeline.consistency.reml import Problem
 from pipeline.consistency.tow_speed import is_slow
 
 LN_CW, BEND = "ln_cw_standard", "bend"
@@ -169,7 +170,7 @@ def _fitted_line(
     """
     variance = unit * boats.column("run_sd_ratio") ** 2
     width = np.abs(centred).max()
-    problem = mixed.Problem.of(
+    problem = Problem.of(
         y, np.column_stack([crews, centred / width]), variance, boats.table["fsn_no"].to_numpy()
     )
     fit = mixed.fit(problem, (mixed.BOAT,))
@@ -250,7 +251,7 @@ def _against_type(boats: Observed, quantity: str, eras: tuple[Era, ...]) -> pl.D
     if n_boats < x.shape[1] + FEWEST_BOATS:
         return None
     variance = unit[known] * boats.column("run_sd_ratio") ** 2
-    problem = mixed.Problem.of(y, x, variance, boats.table["fsn_no"].to_numpy())
+    problem = Problem.of(y, x, variance, boats.table["fsn_no"].to_numpy())
     fit = mixed.fit(problem, (mixed.BOAT,))
     left_out = fit.leave_boats_out()
     deviation = _studentised(left_out.error / np.sqrt(left_out.variance * fit.scale), fit)

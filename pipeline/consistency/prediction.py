@@ -21,6 +21,7 @@ from pipeline.consistency.observed import (
     ln_cw_unit_variance,
     newest,
 )
+from pipeline.consistency.reml import Problem
 
 LEVEL: Final = 0.95
 NORMAL_95: Final = 1.959963984540054
@@ -95,9 +96,7 @@ def _tow_variance(fleet: Observed, speed_m_s: FloatArray) -> FloatArray:
 def _second_opinion(
     fleet: Observed, x: FloatArray, cw: FloatArray, variance: FloatArray
 ) -> dict[str, FloatArray]:
-    problem = mixed.Problem.of(
-        np.log(cw), x, variance, fleet.table["fsn_no"].to_numpy(), _types(fleet)
-    )
+    problem = Problem.of(np.log(cw), x, variance, fleet.table["fsn_no"].to_numpy(), _types(fleet))
     fit = mixed.fit(problem, (mixed.BOAT, mixed.OTHER))
     left_out = fit.leave_boats_out()
     known = np.isfinite(left_out.variance)

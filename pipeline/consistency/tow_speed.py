@@ -13,6 +13,7 @@ from pipeline.arrays import BoolArray, FloatArray
 from pipeline.consistency import mixed
 from pipeline.consistency.homogeneity import height_given_bend, shared_bend
 from pipeline.consistency.observed import LINE, UNKNOWN_TYPE, Observed, newest, q_at
+from pipeline.consistency.reml import Problem
 
 SLOW_POWER_W: Final = {"H": 60.0, "D": 34.0}
 """Power a rower below which a tow is too slow. Men: "minder dan 60-70 Watt" (Cw-kromme, R. Pot
@@ -85,7 +86,7 @@ def _trend(parts: list[Observed]) -> dict[str, Any]:
     centred = x - types @ np.linalg.lstsq(types, x)[0]
     if np.abs(centred).max() < 1e-9:
         return counts | {"reason": "equal_values"}
-    problem = mixed.Problem.of(q, np.column_stack([types, centred]), variance, boat)
+    problem = Problem.of(q, np.column_stack([types, centred]), variance, boat)
     slope, lo, hi = (float(e[-1]) for e in mixed.fit(problem, (mixed.BOAT,)).coefficients())
     return counts | {"slope": slope, "slope_lo": lo, "slope_hi": hi, "reason": ""}
 

@@ -19,7 +19,8 @@ The model, for tow k of boat i in season j, with lambda = ln(true speed / log sp
 
 h is what a scale error of the log does to a hyperbola exactly, about kappa lambda. Boats theta are
 eliminated. Wander w, tow noise eps and GPS noise gamma have variances of their own; their
-residuals get the weights of a t distribution, against alterations that nobody reported.
+residuals get the weights of a t distribution, against alterations that nobody reported; of a boat's
+only two tows, the weight of their difference.
 """
 
 from pipeline.season_log.assumed import Prior, Settings

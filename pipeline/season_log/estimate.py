@@ -8,6 +8,7 @@ import polars as pl
 import scipy
 
 from pipeline.arrays import FloatArray, IntArray
+from pipeline.choice import first_largest
 from pipeline.errors import BrokenPromiseError
 from pipeline.season_log.assumed import USUAL, Settings
 from pipeline.season_log.joint import AGEING, Fit, Rows, fit_jointly, leave_boats_out
@@ -143,7 +144,7 @@ def _weakest_mode(covariance: FloatArray) -> tuple[float, FloatArray]:
         return 0.0, np.zeros(0)
     variance, modes = np.linalg.eigh(covariance)
     mode = modes[:, -1]
-    sign = np.sign(mode[np.abs(mode).argmax()])  # which way round is arbitrary
+    sign = np.sign(mode[first_largest(np.abs(mode))])  # which way round is arbitrary
     return float(np.sqrt(variance[-1])), mode * sign
 
 
@@ -155,7 +156,7 @@ def _numbers(network: Network, fit: Fit, spread: LeftOut, weakest_mode: FloatArr
     move = np.abs(np.expm1(spread.change[:, :n])) * np.exp(ln_factor)
     move = np.where(lost, np.inf, move)
     influence = move.max(axis=0, initial=0.0)
-    boat = move.argmax(axis=0) if move.size else np.zeros(n)
+    boat = first_largest(move) if move.size else np.zeros(n)
     placed = {
         "ln_factor": ln_factor,
         "ln_sd": np.sqrt(np.diag(spread.covariance)[:n]),

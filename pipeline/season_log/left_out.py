@@ -55,11 +55,12 @@ def leave_out(
     boats = int(cluster.max(initial=-1)) + 1
     weighted = weight[:, None] * design
     normal_of = _sum_of(cluster, boats, weighted[:, :, None] * design[:, None, :])
-    right_of = _sum_of(cluster, boats, weighted * value[:, None])
+    # From the boat's residuals, not as the difference of two solutions, which loses their digits.
+    pull_of = _sum_of(cluster, boats, weighted * (value - design @ solution)[:, None])
     # The tiny term keeps an unknown that is lost without the boat from stopping the others.
     information = np.maximum(np.diag(normal), 1.0)
     left = np.linalg.inv(normal + np.diag(precision + LOST * information) - normal_of)
-    change = np.einsum("bij,bj->bi", left, right - right_of + precision * mean) - solution
+    change = -np.einsum("bij,bj->bi", left, pull_of)
     lost = np.einsum("bii->bi", left) * information * np.sqrt(LOST) > 1.0
     kept = np.where(lost, 0.0, change) * slack
     by_model = (inverse @ normal @ inverse) * slack

@@ -12,6 +12,7 @@ import numpy as np
 import polars as pl
 
 from pipeline.arrays import BoolArray, FloatArray
+from pipeline.choice import first_largest
 from pipeline.season_log.estimate import SeasonFactors
 from pipeline.season_log.network import LINE, Network
 
@@ -33,6 +34,8 @@ TIE_SCHEMA: Final = {
 
 def retow_choice(found: SeasonFactors, most: int = MOST_BOATS) -> pl.DataFrame:
     """The boats to tow again, the one that tells most first, each given those before it.
+
+    Of boats that tell as much the first by boat and crew is chosen.
 
     Every candidate is a boat and crew as it was left after its last reported alteration, towed
     once, with dGPS, in the season after the last.
@@ -58,7 +61,7 @@ def retow_choice(found: SeasonFactors, most: int = MOST_BOATS) -> pl.DataFrame:
         shift = tie @ covariance
         gain = (shift**2).sum(axis=1) / ((shift * tie).sum(axis=1) + variance)
         gain[~open_to_choice] = 0.0
-        best = int(gain.argmax())
+        best = int(first_largest(gain))
         if gain[best] <= 0.0:
             break
         before = _typical_sd(covariance)

@@ -16,8 +16,9 @@ from pipeline.season_log.left_out import leave_out
 from pipeline.season_log.network import Network
 from pipeline.season_log.scale import linear_scale
 
-REGRESSIONS: Final = 8
-"""Repeats of the second estimate until h is linear about its own answer."""
+REGRESSIONS: Final = 100
+TOLERANCE: Final = 1e-12
+"""The second estimate is repeated until h is linear about its own answer."""
 VARIANCE_FLOOR: Final = 1e-12
 
 
@@ -67,8 +68,11 @@ def without_boats(network: Network, ageing: tuple[float, float], settings: Setti
         design = np.column_stack([(group[:, None] == np.arange(groups)) * slope[:, None], other])
         normal = design.T @ design / variance + np.diag(precision)
         solution = np.linalg.solve(normal, design.T @ value / variance + precision * mean)
+        moved = np.abs(solution[:groups] - ln_factor).max()
         ln_factor = solution[:groups]
         variance = float(np.mean((value - design @ solution) ** 2)) + VARIANCE_FLOOR
+        if moved < TOLERANCE:
+            break
     weight = np.full(len(value), 1.0 / variance)
     left = leave_out(design, value, weight, network.cluster[sound], (mean, precision), 1.0)
     by_ageing = np.linalg.solve(normal, design.T @ year / variance)[:groups] * ageing[1]

@@ -27,6 +27,7 @@ from pipeline.consistency import (
 )
 from pipeline.consistency.lines import LN_CW, quantities
 from pipeline.consistency.observed import newest
+from pipeline.consistency.reml import Problem
 from tests.pipeline.consistency_fleet import fleet
 from warehouse.schemas import conform
 
@@ -46,7 +47,7 @@ def grouped_data(seed=1, n=60, boats=20, others=5):
     x = np.column_stack([np.ones(n), rng.normal(size=n)])
     known = rng.uniform(0.5, 2.0, n) ** 2
     y = x @ [1.0, 0.5] + 2.0 * rng.normal(size=boats)[boat] + rng.normal(size=others)[other]
-    return mixed.Problem.of(y + np.sqrt(known) * rng.normal(size=n), x, known, boat, other)
+    return Problem.of(y + np.sqrt(known) * rng.normal(size=n), x, known, boat, other)
 
 
 def dense_deviance(problem, sd):
@@ -73,9 +74,7 @@ def test_a_tow_without_any_error_keeps_the_fit_exact():
     x = np.array(
         [[1, 0, 0], [0, 1, 0.009], [0, 1, -0.091], [0, 1, 0.023], [0, 1, 0.059], [1, 0, 0]]
     )
-    problem = mixed.Problem.of(
-        y, x, [0.0, 9.6e-5, 1.1e-3, 3.8e-4, 2.2e-4, 7.4e-6], range(6), [0] * 6
-    )
+    problem = Problem.of(y, x, [0.0, 9.6e-5, 1.1e-3, 3.8e-4, 2.2e-4, 7.4e-6], range(6), [0] * 6)
     for sd in (0.001, 0.1, 10.0):
         dense = dense_deviance(problem, (sd, 0.0, 0.0))
         assert problem.deviance((sd, 0.0, 0.0)) == pytest.approx(dense, abs=1e-4)
@@ -93,11 +92,35 @@ def test_fit_finds_the_minimum_that_another_optimiser_finds():
     assert found.sd == pytest.approx(np.sqrt(other.x), abs=0.02 * problem.spread)
 
 
+@pytest.mark.parametrize(
+    ("boat_sd", "other_sd", "error"), [(2.0, 1.0, 1.0), (0.1, 0.1, 1e-5), (0.0, 1.0, 1.0)]
+)
+def test_the_last_bits_of_the_data_do_not_reach_the_components(boat_sd, other_sd, error):
+    rng = np.random.default_rng(4)
+    n, boat, other = 60, np.r_[np.arange(20), rng.integers(0, 20, 40)], np.arange(60) % 6
+    y = 3.4 + boat_sd * rng.normal(size=20)[boat] + other_sd * rng.normal(size=6)[other]
+    y += np.sqrt(error) * rng.normal(size=n)
+    x = np.column_stack([np.ones(n), rng.normal(size=n)])
+    fits = [
+        mixed.fit(Problem.of(y * noise, x, np.full(n, error**2), boat, other), mixed.COMPONENTS)
+        for noise in (1.0, 1.0 + 4e-16 * rng.normal(size=n))
+    ]
+    sds, intervals = (
+        np.array([getter(f) for f in fits], dtype=np.float64)
+        for getter in (lambda f: f.sd, lambda f: [f.interval(c) for c in mixed.COMPONENTS])
+    )
+    spread = fits[0].problem.spread
+    assert sds[0] == pytest.approx(sds[1], abs=1e-10 * spread)
+    assert intervals[0] == pytest.approx(intervals[1], abs=1e-10 * spread, nan_ok=True)
+    # A variance on its bound is none at all, not almost none.
+    assert ((sds == 0.0) | (sds > 1e-3 * spread)).all()
+
+
 def one_row_a_boat(variance, true_sd=0.0, seed=3):
     rng = np.random.default_rng(seed)
     x = sm.add_constant(rng.normal(size=12))
     y = x @ [1.0, 2.0] + np.sqrt(variance + true_sd**2) * rng.normal(size=12)
-    return mixed.Problem.of(y, x, variance, range(12))
+    return Problem.of(y, x, variance, range(12))
 
 
 def assert_same_line(fit, other):

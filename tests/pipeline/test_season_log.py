@@ -17,8 +17,10 @@ from pipeline.season_log import (
     estimate_season_factors,
     log_or_force,
     other_log_factors,
+    retow_choice,
     scale_effect,
 )
+from tests.numbers import SAME, jittered, unequal
 from tests.pipeline.season_worlds import ANCHORED_FROM, CLEAN, HARD, simulate
 
 PERFECT = replace(
@@ -240,6 +242,18 @@ def test_a_tow_without_a_sound_curve_is_refused(column, value):
     spoiled = pl.when(pl.col("tow_id") == tows["tow_id"][7]).then(value).otherwise(column)
     with pytest.raises(BrokenPromiseError, match=f"{column} of tow {tows['tow_id'][7]}"):
         estimate_season_factors(tows.with_columns(spoiled.cast(pl.Float64).alias(column)))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_last_bits_of_the_tows_do_not_reach_the_factors(seed):
+    # Boats were altered unreported: of two tows that disagree, rounding chose the one to believe.
+    tows = simulate(HARD, seed).tows
+    found, other = (estimate_season_factors(t) for t in (tows, jittered(tows, seed)))
+    assert unequal({"factors": found.factors}, {"factors": other.factors}) == []
+    assert found.tow_sd == pytest.approx(other.tow_sd, rel=SAME)
+    assert found.wander_sd == pytest.approx(other.wander_sd, rel=SAME)
+    chosen, others = (retow_choice(one) for one in (found, other))
+    assert unequal({"choice": chosen}, {"choice": others}) == []
 
 
 def test_the_order_of_the_rows_does_not_matter():

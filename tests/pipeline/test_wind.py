@@ -80,3 +80,12 @@ def test_coefficients_that_are_searched_stay_between_0_and_1():
     ahead, behind = nearest_coefficients(air, np.array([2.0, 9.0, -1.0, -1.0, 3.0]))
     assert ahead.tolist() == [0.5, 1.0, 0.0, 0.0, 0.0]
     assert behind.tolist() == [0.0, 0.0, 0.0, 0.5, 0.0]
+
+
+@given(air=st.floats(1.0, 5.0), share=st.floats(0.01, 0.99), other=st.floats(-1e-6, -1e-9))
+def test_a_coefficient_that_suffices_leaves_none_to_the_other(air, share, other):
+    # What is left is rounding, and divided by a breath of wind it was anything from 0 to 1.
+    parts = AirParts(np.array([air]), np.array([other]), np.zeros(1))
+    ahead, behind = nearest_coefficients(parts, np.array([share * air]))
+    assert ahead[0] == pytest.approx(share)
+    assert behind[0] == 0.0

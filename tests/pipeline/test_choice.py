@@ -1,0 +1,30 @@
+"""Equals but for rounding are equals, in every place where one of several is chosen."""
+
+import numpy as np
+import polars as pl
+import pytest
+
+from pipeline.assessment import _held_against_limits
+from pipeline.choice import first_largest
+
+
+@pytest.mark.parametrize(
+    ("values", "place"),
+    [
+        ([1.0, 3.0, 3.0 + 1e-14], 1),
+        ([1.0, 3.0, 3.0 + 1e-6], 2),
+        ([-2.0, -1.0 - 1e-14, -1.0], 1),
+        ([1.0, np.inf, np.inf], 1),
+        ([0.0, 0.0], 0),
+    ],
+)
+def test_of_equals_the_first_is_chosen(values, place):
+    assert first_largest(np.array(values)) == place
+    assert first_largest(np.array([values, values]).T).tolist() == [place, place]
+
+
+@pytest.mark.parametrize(("observed", "limit"), [(-2e-16, 0.03), (0.0, 0.03), (-0.01, -0.03)])
+def test_half_way_between_two_limits_rounding_does_not_choose(observed, limit):
+    curves = pl.DataFrame({"method": ["m"], "tow_id": ["t"], "season": [2014], "crew_class": ["H"]})
+    long = pl.DataFrame({"tow_id": ["t"], "check": ["out_and_back_differ"], "observed": [observed]})
+    assert _held_against_limits(long, curves)["limit"].item() == limit
