@@ -46,7 +46,7 @@ from warehouse.store import Store, table_digest
 SAME_NUMBER: Final = 1e-9
 """Relative difference up to which a number made again is the same.
 
-Other processors leave other last bits, which come to no more in any table (docs/decisions/0018)."""
+Other processors leave other last bits, which come to no more in any table (docs/decisions/0017)."""
 
 NEVER_TOWED: Final = "never_towed"
 
