@@ -3,7 +3,7 @@
     PYTHONPATH=. python -m benchmarks.scale [--tows-per-season 60] [--seasons 8] [--repeats 3]
 
 S3 server, scheduler and workers (one thread each) are processes of their own. Each round begins
-with an empty bucket and workers that have imported everything; timed is the reading of the seasons,
+with an empty bucket, and scheduler and workers that have imported everything; timed is the reading of the seasons,
 one worker and two by turns. Processor seconds are shown apart for workers, server and this process,
 since the server takes its share of the same cores. Every lake has to be the one made here, table by
 table; so have, in the last round, the database and an edition of a whole rebuild during which a
@@ -174,8 +174,9 @@ def remote_store(data: Path, here: Store) -> Store:
 
 
 def warm_up(cluster: Cluster) -> None:
-    """Has every worker import what it needs."""
+    """Has every worker import what it needs, and the scheduler what it has to unpack."""
     with Client(cluster.address) as client:
+        client.run_on_scheduler(__import__, "assets.cluster")
         for module in ("assets.cluster", "pipeline.block_sums"):
             client.run(__import__, module)
 
