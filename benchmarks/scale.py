@@ -3,11 +3,11 @@
     PYTHONPATH=. python -m benchmarks.scale [--tows-per-season 60] [--seasons 8] [--repeats 3]
 
 S3 server, scheduler and workers (one thread each) are processes of their own. Each round begins
-with an empty bucket, and scheduler and workers that have imported everything; timed is the reading of the seasons,
-one worker and two by turns. Processor seconds are shown apart for workers, server and this process,
-since the server takes its share of the same cores. Every lake has to be the one made here, table by
-table; so have, in the last round, the database and an edition of a whole rebuild during which a
-worker is killed. The archive is that of `make bench`.
+with an empty bucket, and scheduler and workers that have imported everything; timed is the reading
+of the seasons, one worker and two by turns. Processor seconds are shown apart for workers, server
+and this process, since the server takes its share of the same cores. Every lake has to be the one
+made here, table by table; so have, in the last round, the database and an edition of a whole
+rebuild during which a worker is killed. The archive is that of `make bench`.
 """
 
 import argparse
