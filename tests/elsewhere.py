@@ -81,6 +81,7 @@ def dask_cluster(workers: int, dagster_home: Path) -> Iterator[Cluster]:
             "POLARS_MAX_THREADS": "1",
             "OMP_NUM_THREADS": "1",
             "OPENBLAS_NUM_THREADS": "1",
+            "DASK_DISTRIBUTED__SCHEDULER__WORK_STEALING": "False",
         }
         file = folder / "scheduler.json"
 
