@@ -28,6 +28,13 @@ SIDES = {"as_it_was": 0.2, "changed": 0.3}
 TEXT_LIMIT_BYTES = 10**9
 
 
+def _written() -> Path:
+    """Where a task puts what it writes."""
+    folder = FOLDER / "written"
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
 def _method(side: str) -> Any:
     return parse_method(plain.METHOD.replace("AIR_SIDE", str(SIDES[side])), "benchmark")
 
@@ -60,8 +67,7 @@ def parse_text(tows_per_season: int, count: int, write: bool) -> Work:
     """Polars alone on the same files, all columns; written as Parquet or not."""
     world = World(tows_per_season)
     tows = world.tows(count, plain=True)
-    folder = FOLDER / "written"
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = _written()
 
     def one(file: tuple[str, str]) -> None:
         frame = _parse(Path(file[1]))
@@ -145,12 +151,10 @@ def add_up_and_write(tows_per_season: int, count: int) -> Work:
     """The same, written tow by tow as a rebuild does after a change of the sums."""
     world = World(tows_per_season)
     tows = world.tows(count)
-    folder = FOLDER / "written"
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = _written()
 
     def one(file: tuple[str, str]) -> None:
-        sums = block_sums(pl.read_parquet(file[1], hive_partitioning=False), RATE_HZ)
-        write_parquet(sums, folder / f"{file[0]}.parquet", form=lake.LAKE_FORM)
+        write_parquet(_sums(file[1]), folder / f"{file[0]}.parquet", form=lake.LAKE_FORM)
 
     return lambda: both(one, _lake_files(world, tows).items())
 
@@ -168,10 +172,13 @@ def herijk_from_parquet(
     return work
 
 
+def _sums(path: str) -> pl.DataFrame:
+    return block_sums(pl.read_parquet(path, hive_partitioning=False), RATE_HZ)
+
+
 def _blocks(world: World, tows: pl.DataFrame) -> pl.DataFrame:
     def one(file: tuple[str, str]) -> pl.DataFrame:
-        samples = pl.read_parquet(file[1], hive_partitioning=False)
-        return block_sums(samples, RATE_HZ).select(pl.lit(file[0]).alias("tow_id"), pl.all())
+        return _sums(file[1]).select(pl.lit(file[0]).alias("tow_id"), pl.all())
 
     return pl.concat(both(one, _lake_files(world, tows).items()))
 
@@ -250,8 +257,7 @@ def other(
     world = World(tows_per_season)
     tows = world.tows(count, plain=True)
     files = (_text_files if text else _lake_files)(world, tows)
-    runs, folder = _runs(world, tows), FOLDER / "written"
-    folder.mkdir(parents=True, exist_ok=True)
+    runs, folder = _runs(world, tows), _written()
 
     def work() -> None:
         means = same.means_of_runs(same.sums(tool, files, folder))
