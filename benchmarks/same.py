@@ -1,6 +1,6 @@
 """The heavy part of a rebuild in other tools: samples kept, and the sums of every second.
 
-From text each tool writes the samples of a tow as Parquet (32 bits, zstd), as Herijk does; from
+From text each tool writes the samples of a tow as Parquet (32 bits, lz4), as Herijk does; from
 those it makes the sums of `pipeline.blocks`, from which every method can be computed. Nothing is
 checked. Each works the way it is best at: pandas tow after tow with NumPy, DuckDB in SQL, Polars in
 lazy expressions; the last two with `THREADS` threads.
@@ -32,7 +32,7 @@ def means_of_runs(sums: pl.DataFrame) -> pl.DataFrame:
         (pl.col("log1_cw") / n).alias("gross_kg_m"),
         (pl.col("log1_front_ahead") / n).alias("ahead"),
         (pl.col("log1_front_behind") / n).alias("behind"),
-        ((pl.col("log1_side_ahead") + pl.col("log1_side_behind")) / n).alias("side"),
+        (pl.col("log1_side") / n).alias("side"),
     )
 
 
@@ -65,7 +65,7 @@ def _pandas_tow(path: str, folder: Path) -> pd.DataFrame:
         samples = pd.read_csv(path, sep=";", decimal=",", usecols=list(HEADERS.values()))
         samples = samples.rename(columns={text: name for name, text in HEADERS.items()})
         samples = samples.astype(dict.fromkeys(list(HEADERS)[1:], "float32") | {"run": "int8"})
-        samples.to_parquet(folder / "pandas.parquet", compression="zstd", index=False)
+        samples.to_parquet(folder / "pandas.parquet", compression="lz4", index=False)
     else:
         samples = pd.read_parquet(path, columns=list(HEADERS))
     run = samples.pop("run").to_numpy()
@@ -96,17 +96,16 @@ def _quantities(channel: Mapping[str, Any], cos: Any, sin: Any) -> dict[str, Any
     air = {"head_ahead": head.clip(0, None), "head_behind": head.clip(None, 0)}
     for side in ("ahead", "behind"):
         air[f"front_{side}"] = air[f"head_{side}"] * abs(cos)
-        air[f"side_{side}"] = air[f"head_{side}"] * abs(sin)
-    made = {"force": force, "force2": force * force} | air
-    made |= {"wind_v": wind, "wind_v2": wind * wind, "wind_cos": cos, "wind_sin": sin}
-    made |= {"wind_x": x, "wind_y": wind * sin, "gps": gps, "gps2": gps * gps}
+    made = {"force": force, "side": head * abs(sin)} | air
+    made |= {"wind_v": wind, "wind_cos": cos, "wind_sin": sin}
+    made |= {"wind_x": x, "wind_y": wind * sin, "gps": gps}
     log1, log2 = channel["log1_m_s"], channel["log2_m_s"]
     for source, v in zip(SPEED_SOURCES, (log1, log2, 0.5 * (log1 + log2)), strict=True):
         inverse = 1.0 / (v * v)
         cw = force * inverse
-        made |= {f"{source}_v": v, f"{source}_v2": v * v, f"{source}_inv_v2": inverse}
+        made |= {f"{source}_v": v, f"{source}_inv_v2": inverse}
         made |= {f"{source}_cw": cw, f"{source}_cw2": cw * cw}
-        made |= {f"{source}_{term}": air[term] * inverse for term in AIR_SUMS}
+        made |= {f"{source}_{term}": made[term] * inverse for term in AIR_SUMS}
     return made
 
 
@@ -124,7 +123,7 @@ def _polars_tow(tow: str, path: str, folder: Path) -> pl.DataFrame:
             pl.col(header).cast(SAMPLE_SCHEMA[name]).alias(name) for name, header in HEADERS.items()
         )
         path = str(folder / f"{tow}.parquet")
-        samples.sink_parquet(path, compression="zstd", compression_level=1, statistics=False)
+        samples.sink_parquet(path, compression="lz4", statistics=False)
     wide = pl.scan_parquet(path, hive_partitioning=False).with_columns(
         pl.col(list(HEADERS)[1:]).cast(pl.Float64),
         second=pl.int_range(pl.len()).over("run") // RATE_HZ,
@@ -154,24 +153,20 @@ _WIND = """
 select *, cos(angle) as cos, sin(angle) as sin, wind * cos as x, x * abs(x) as head,
        greatest(head, 0) as head_ahead, least(head, 0) as head_behind,
        head_ahead * abs(cos) as front_ahead, head_behind * abs(cos) as front_behind,
-       head_ahead * abs(sin) as side_ahead, head_behind * abs(sin) as side_behind,
+       head * abs(sin) as side,
        1 / (log1 * log1) as log1_inverse, 1 / (log2 * log2) as log2_inverse,
        1 / (mean * mean) as mean_inverse
 from ({samples})
 """
 _ADDED = {
     **{name: name for name in ("force", *AIR_SUMS)},
-    "force2": "force * force",
     "wind_v": "wind",
-    "wind_v2": "wind * wind",
     "wind_cos": "cos",
     "wind_sin": "sin",
     "wind_x": "x",
     "wind_y": "wind * sin",
     "gps": "gps",
-    "gps2": "gps * gps",
     **{f"{s}_v": s for s in SPEED_SOURCES},
-    **{f"{s}_v2": f"{s} * {s}" for s in SPEED_SOURCES},
     **{f"{s}_inv_v2": f"{s}_inverse" for s in SPEED_SOURCES},
     **{f"{s}_cw": f"force * {s}_inverse" for s in SPEED_SOURCES},
     **{f"{s}_cw2": f"(force * {s}_inverse) * (force * {s}_inverse)" for s in SPEED_SOURCES},
@@ -204,5 +199,5 @@ def _duckdb_to_parquet(cursor: Any, tow: str, path: str, folder: Path) -> None:
     cursor.execute(
         f"copy (select {asked} from read_csv('{path}', delim = ';', header = true, "
         f"decimal_separator = ',')) to '{folder / f'{tow}.parquet'}' "
-        "(format parquet, compression zstd, compression_level 1)"
+        "(format parquet, compression lz4)"
     )

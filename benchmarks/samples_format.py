@@ -12,6 +12,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import polars as pl
@@ -84,12 +85,26 @@ def _read(path: Path) -> pl.DataFrame:
     return pl.read_parquet(path)
 
 
-def _as_in_the_lake(frame: pl.DataFrame, path: Path) -> None:
-    write_parquet(frame, path, form=LAKE_FORM)
+def _as_in_the_lake(packing: dict[str, Any]) -> Callable[[pl.DataFrame, Path], None]:
+    def write(frame: pl.DataFrame, path: Path) -> None:
+        write_parquet(frame, path, form=LAKE_FORM | packing)
 
+    return write
+
+
+PACKINGS: dict[str, dict[str, Any]] = {
+    "lz4 (the lake)": {},
+    "zstd 1": {"compression": "zstd", "compression_level": 1},
+    "snappy": {"compression": "snappy"},
+    "not packed": {"compression": "none"},
+    "lz4, dictionary": {"use_dictionary": True},
+}
 
 FORMATS = [
-    Format("float32, zstd 1, page checksums, synced (the lake)", _as_in_the_lake, read_parquet),
+    *(
+        Format(f"float32, {name}, page checksums, synced", _as_in_the_lake(packing), read_parquet)
+        for name, packing in PACKINGS.items()
+    ),
     Format("float32, zstd 1 (Polars, dictionary where it pays)", _polars(1), _read),
     Format("float32, zstd 3 (Polars, dictionary where it pays)", _polars(3), _read),
     Format("float32, zstd 1 (pyarrow, dictionary where it pays)", _arrow_dictionary, _read),

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from pipeline.arrays import FloatArray, IntArray
 from pipeline.blocks import SUM_NAMES
 
-LANES: Final = np.uintp(32)
+LANES: Final = np.uintp(16)
 """Running sums of each kind: enough for the widest registers, few enough for the nearest cache."""
 
 _CHANNELS: Final = (
@@ -32,7 +32,7 @@ _CHANNELS: Final = (
     "wind_speed_m_s",
     "wind_angle_deg",
 )
-_FORCE, _LOG1, _LOG2, _MEAN, _AIR, _WIND, _GPS, _ROWS = 0, 2, 13, 24, 35, 41, 47, 50
+_FORCE, _LOG1, _LOG2, _MEAN, _AIR, _WIND, _GPS, _ROWS = 0, 1, 10, 19, 28, 33, 38, 40
 """Where the sums of each kind begin in `SUM_NAMES`, and how many sums there are.
 
 Plain numbers: the compiled loop is kept as long as this file does not change."""
@@ -54,12 +54,13 @@ def block_sums(samples: pl.DataFrame, sample_rate_hz: int) -> pl.DataFrame:
     start, end, second = _bounds(run, sample_rate_hz)
     sums = np.empty((_ROWS, len(start)))
     _add_up(start, end, sums, *(samples[name].to_numpy() for name in _CHANNELS))
+    found, blocks = pl.Series(sums.reshape(-1)), len(start)
     return pl.DataFrame(
         [
             pl.Series("run", run[start], pl.Int8),
             pl.Series("second", second, pl.Int16),
             pl.Series("n", end - start, pl.Int32),
-            *(pl.Series(name, row) for name, row in zip(SUM_NAMES, sums, strict=True)),
+            *(found.slice(i * blocks, blocks).alias(name) for i, name in enumerate(SUM_NAMES)),
         ]
     )
 
@@ -89,6 +90,7 @@ def _compiled(*signature: Any, **options: Any) -> Callable[[Callable[P, R]], Cal
 _part = _compiled(inline="always")
 
 Lane = int | np.uintp
+Channel = NDArray[np.float32]
 
 
 @_part
@@ -97,33 +99,33 @@ def _at(row: int, lane: Lane) -> np.uintp:
     return np.uintp(row) * LANES + lane
 
 
-_SIN: Final = tuple((-1) ** (n // 2) / math.factorial(n) for n in range(3, 16, 2))
-_COS: Final = tuple((-1) ** (n // 2) / math.factorial(n) for n in range(2, 17, 2))
-"""Taylor's series: within an eighth of a turn the first term left out is below 1e-16."""
-
-
 @_part
 def _cos_sin(angle_deg: float) -> tuple[float, float]:
-    """Cosine and sine: of what is left after whole quarter turns, turned by those quarters."""
-    quarters = np.rint(angle_deg * (1.0 / 90.0))
-    x = (angle_deg - 90.0 * quarters) * (math.pi / 180.0)
+    """Cosine and sine, to 2e-15: from the tangent of a quarter of what is left after whole turns.
+
+    The tangent is the eighth convergent of Lambert's continued fraction,
+    tan x = x / (1 - x^2 / (3 - x^2 / (5 - ...))), as a fraction n / d; twice the angle of
+    a vector (d, n) has that of (d^2 - n^2, 2 n d).
+    """
+    turns = np.rint(angle_deg * (1.0 / 360.0))
+    x = (angle_deg - 360.0 * turns) * (math.pi / 720.0)
     z = x * x
-    s, c = _SIN, _COS
-    sin = s[3] + z * (s[4] + z * (s[5] + z * s[6]))
-    sin = x + x * z * (s[0] + z * (s[1] + z * (s[2] + z * sin)))
-    cos = c[3] + z * (c[4] + z * (c[5] + z * (c[6] + z * c[7])))
-    cos = 1.0 + z * (c[0] + z * (c[1] + z * (c[2] + z * cos)))
-    turned = quarters - 4.0 * np.rint(quarters * 0.25)  # -2 to 2
-    cos_turned, sin_turned = 1.0 - abs(turned), turned * (2.0 - abs(turned))
-    return cos_turned * cos - sin_turned * sin, sin_turned * cos + cos_turned * sin
+    n = x * (2027025.0 + z * (-270270.0 + z * (6930.0 + z * -36.0)))
+    d = 2027025.0 + z * (-945945.0 + z * (51975.0 + z * (-630.0 + z)))
+    d2, n2 = d * d, n * n
+    cos_half, sin_half = d2 - n2, 2.0 * n * d  # times d2 + n2
+    scale = 1.0 / ((d2 + n2) * (d2 + n2))
+    return (cos_half * cos_half - sin_half * sin_half) * scale, 2.0 * cos_half * sin_half * scale
 
 
-_Air = tuple[float, float, float, float, float, float]
+Kind = tuple[float, ...]
+Terms = tuple[Kind, ...]
+"""What a sample adds to the sums, kind by kind in the order of `SUM_NAMES`."""
 
 
 @_part
-def _air_terms(along: float, cos: float, sin: float) -> _Air:
-    """The three squares that air force is proportional to, from ahead and from behind.
+def _of_air(along: float, cos: float, sin: float) -> Kind:
+    """The squares that air force is proportional to, the first two from ahead and from behind.
 
     These are signed, in m2/s2: `head` is u|u| with u = w cos a, the wind along the course (old
     rule); `front` and `side` weigh it with |cos a| and |sin a| (oblique rule of 2015). Sources:
@@ -131,57 +133,91 @@ def _air_terms(along: float, cos: float, sin: float) -> _Air:
     """
     head = along * abs(along)
     ahead, behind = 0.5 * (head + abs(head)), 0.5 * (head - abs(head))
-    front, side = abs(cos), abs(sin)
-    return ahead, behind, ahead * front, behind * front, ahead * side, behind * side
+    front = abs(cos)
+    return ahead, behind, ahead * front, behind * front, head * abs(sin)
 
 
 @_part
-def _add_air(sums: FloatArray, row: int, lane: Lane, air: _Air, weight: float) -> None:
-    sums[_at(row, lane)] += air[0] * weight
-    sums[_at(row + 1, lane)] += air[1] * weight
-    sums[_at(row + 2, lane)] += air[2] * weight
-    sums[_at(row + 3, lane)] += air[3] * weight
-    sums[_at(row + 4, lane)] += air[4] * weight
-    sums[_at(row + 5, lane)] += air[5] * weight
-
-
-@_part
-def _add_source(sums: FloatArray, row: int, lane: Lane, v: float, force: float, air: _Air) -> None:
+def _of_source(v: float, force: float, air: Kind) -> Kind:
     """What is summed of one speed source."""
-    v2 = v * v
-    inv_v2 = 1.0 / v2
+    inv_v2 = 1.0 / (v * v)
     cw = force * inv_v2
-    sums[_at(row, lane)] += v
-    sums[_at(row + 1, lane)] += v2
-    sums[_at(row + 2, lane)] += inv_v2
-    sums[_at(row + 3, lane)] += cw
-    sums[_at(row + 4, lane)] += cw * cw
-    _add_air(sums, row + 5, lane, air, inv_v2)
+    return (
+        v,
+        inv_v2,
+        cw,
+        cw * cw,
+        air[0] * inv_v2,
+        air[1] * inv_v2,
+        air[2] * inv_v2,
+        air[3] * inv_v2,
+        air[4] * inv_v2,
+    )
 
 
 @_part
-def _add_wind(sums: FloatArray, row: int, lane: Lane, wind: float, cos: float, sin: float) -> None:
-    sums[_at(row, lane)] += wind
-    sums[_at(row + 1, lane)] += wind * wind
-    sums[_at(row + 2, lane)] += cos
-    sums[_at(row + 3, lane)] += sin
-    sums[_at(row + 4, lane)] += wind * cos
-    sums[_at(row + 5, lane)] += wind * sin
+def _of_wind(wind: float, cos: float, sin: float) -> Kind:
+    return wind, cos, sin, wind * cos, wind * sin
 
 
 @_part
-def _add_gps(sums: FloatArray, row: int, lane: Lane, gps: float) -> None:
+def _of_gps(gps: float) -> Kind:
     """Ground speed, where there is one: the others are not numbers."""
     present = np.isfinite(gps)
-    speed = gps if present else 0.0
-    sums[_at(row, lane)] += speed
-    sums[_at(row + 1, lane)] += speed * speed
-    sums[_at(row + 2, lane)] += 1.0 if present else 0.0
+    return (gps if present else 0.0), (1.0 if present else 0.0)
+
+
+_NO_SAMPLE: Final = ((0.0,), *[(0.0,) * 9] * 3, *[(0.0,) * 5] * 2, (0.0,) * 2)
+
+
+@_part
+def _terms(
+    i: Lane,
+    log1: Channel,
+    log2: Channel,
+    gps: Channel,
+    force: Channel,
+    wind: Channel,
+    angle_deg: Channel,
+) -> Terms:
+    v1, v2 = np.float64(log1[i]), np.float64(log2[i])
+    f, w = np.float64(force[i]), np.float64(wind[i])
+    cos, sin = _cos_sin(np.float64(angle_deg[i]))
+    air = _of_air(w * cos, cos, sin)
+    return (
+        (f,),
+        _of_source(v1, f, air),
+        _of_source(v2, f, air),
+        _of_source(0.5 * (v1 + v2), f, air),
+        air,
+        _of_wind(w, cos, sin),
+        _of_gps(np.float64(gps[i])),
+    )
+
+
+@_part
+def _add_kind(sums: FloatArray, row: int, lane: Lane, one: Kind, two: Kind) -> None:
+    for k in range(len(one)):
+        sums[_at(row + k, lane)] += one[k] + two[k]
+
+
+@_part
+def _add(sums: FloatArray, lane: Lane, one: Terms, two: Terms) -> None:
+    """Adds two samples to each other and then to the running sums: half as much is stored."""
+    _add_kind(sums, _FORCE, lane, one[0], two[0])
+    _add_kind(sums, _LOG1, lane, one[1], two[1])
+    _add_kind(sums, _LOG2, lane, one[2], two[2])
+    _add_kind(sums, _MEAN, lane, one[3], two[3])
+    _add_kind(sums, _AIR, lane, one[4], two[4])
+    _add_kind(sums, _WIND, lane, one[5], two[5])
+    _add_kind(sums, _GPS, lane, one[6], two[6])
 
 
 _INDICES: Final = types.Array(int64, 1, "C", readonly=True)
-_CHANNEL: Final = types.Array(float32, 1, "C", readonly=True)
-_SIGNATURE: Final = types.void(_INDICES, _INDICES, float64[:, ::1], *[_CHANNEL] * len(_CHANNELS))
+_CHANNEL_TYPE: Final = types.Array(float32, 1, "C", readonly=True)
+_SIGNATURE: Final = types.void(
+    _INDICES, _INDICES, float64[:, ::1], *[_CHANNEL_TYPE] * len(_CHANNELS)
+)
 
 
 def _compiled_once(function: Callable[P, R]) -> Callable[P, R]:
@@ -197,33 +233,29 @@ def _add_up(
     start: IntArray,
     end: IntArray,
     found: FloatArray,
-    log1: NDArray[np.float32],
-    log2: NDArray[np.float32],
-    gps: NDArray[np.float32],
-    force: NDArray[np.float32],
-    wind: NDArray[np.float32],
-    angle_deg: NDArray[np.float32],
+    log1: Channel,
+    log2: Channel,
+    gps: Channel,
+    force: Channel,
+    wind: Channel,
+    angle_deg: Channel,
 ) -> None:
     """Fills `found`, shape (sums, blocks), from the channels, shape (samples,)."""
     sums = np.empty(np.uintp(_ROWS) * LANES)
     for block in range(len(start)):
         sums[:] = 0.0
         first, after = np.uintp(start[block]), np.uintp(end[block])
+        while first + LANES + LANES <= after:
+            for lane in range(LANES):
+                i = first + lane
+                one = _terms(i, log1, log2, gps, force, wind, angle_deg)
+                two = _terms(i + LANES, log1, log2, gps, force, wind, angle_deg)
+                _add(sums, lane, one, two)
+            first += LANES + LANES
         while first < after:
             for lane in range(min(LANES, after - first)):
-                i = first + lane
-                v1, v2, f = np.float64(log1[i]), np.float64(log2[i]), np.float64(force[i])
-                w = np.float64(wind[i])
-                cos, sin = _cos_sin(np.float64(angle_deg[i]))
-                air = _air_terms(w * cos, cos, sin)
-                sums[_at(_FORCE, lane)] += f
-                sums[_at(_FORCE + 1, lane)] += f * f
-                _add_source(sums, _LOG1, lane, v1, f, air)
-                _add_source(sums, _LOG2, lane, v2, f, air)
-                _add_source(sums, _MEAN, lane, 0.5 * (v1 + v2), f, air)
-                _add_air(sums, _AIR, lane, air, 1.0)
-                _add_wind(sums, _WIND, lane, w, cos, sin)
-                _add_gps(sums, _GPS, lane, np.float64(gps[i]))
+                one = _terms(first + lane, log1, log2, gps, force, wind, angle_deg)
+                _add(sums, lane, one, _NO_SAMPLE)
             first += LANES
         for row in range(_ROWS):
             total = 0.0

@@ -9,14 +9,14 @@ which window, which coefficient).
 The sums of one block, over its `n` samples, with F the tow force, v a speed source
 (`log1`, `log2`, or `mean`, the mean of both), w and a the apparent wind:
 
-- `force`, `force2`: F, F^2 [N, N2]
-- `<source>_v`, `<source>_v2`, `<source>_inv_v2`: v, v^2, 1/v^2
+- `force`: F [N]
+- `<source>_v`, `<source>_inv_v2`: v, 1/v^2
 - `<source>_cw`, `<source>_cw2`: F/v^2 [kg/m] and its square
-- `<term>_<side>`: the air term of `pipeline.wind` [m2/s2], for wind from `ahead` and from `behind`
-- `<source>_<term>_<side>`: the same divided by v^2
-- `wind_v`, `wind_v2`: w, w^2; `wind_cos`, `wind_sin`: cos a, sin a
-- `wind_x`, `wind_y`: w cos a, w sin a
-- `gps`, `gps2`, `gps_n`: ground speed, its square, and how many samples have one
+- `<air>`: the terms of `pipeline.wind` [m2/s2]: `head` and `front`, each for wind from `ahead` and
+  from `behind`, and `side`
+- `<source>_<air>`: the same divided by v^2
+- `wind_v`: w; `wind_cos`, `wind_sin`: cos a, sin a; `wind_x`, `wind_y`: w cos a, w sin a
+- `gps`, `gps_n`: ground speed, and how many samples have one
 """
 
 from dataclasses import dataclass
@@ -29,16 +29,13 @@ from pipeline.arrays import BoolArray, FloatArray, IntArray
 from pipeline.errors import BrokenPromiseError
 
 SPEED_SOURCES: Final = ("log1", "log2", "mean")
-AIR_TERMS: Final = ("head", "front", "side")
-WIND_SIDES: Final = ("ahead", "behind")
-AIR_SUMS: Final = tuple(f"{term}_{side}" for term in AIR_TERMS for side in WIND_SIDES)
+AIR_SUMS: Final = ("head_ahead", "head_behind", "front_ahead", "front_behind", "side")
 SUM_NAMES: Final = (
     "force",
-    "force2",
-    *(f"{s}_{q}" for s in SPEED_SOURCES for q in ("v", "v2", "inv_v2", "cw", "cw2", *AIR_SUMS)),
+    *(f"{s}_{q}" for s in SPEED_SOURCES for q in ("v", "inv_v2", "cw", "cw2", *AIR_SUMS)),
     *AIR_SUMS,
-    *("wind_v", "wind_v2", "wind_cos", "wind_sin", "wind_x", "wind_y"),
-    *("gps", "gps2", "gps_n"),
+    *("wind_v", "wind_cos", "wind_sin", "wind_x", "wind_y"),
+    *("gps", "gps_n"),
 )
 
 

@@ -74,7 +74,7 @@ def air_parts(
     return AirParts(
         front * terms["front_ahead"],
         front * terms["front_behind"],
-        side * (terms["side_ahead"] + terms["side_behind"]),
+        side * terms["side"],
     )
 
 
@@ -101,13 +101,10 @@ def averaged_terms(blocks: RunBlocks, averaging_s: int) -> dict[str, FloatArray]
     cos, sin = cos_sum / length, sin_sum / length
     along = speed * cos
     head = along * np.abs(along)
-    by_term = {
-        "head": head,
-        "front": head * np.abs(cos),
-        "side": head * np.abs(sin),
-    }
-    clip = {"ahead": np.maximum, "behind": np.minimum}
-    return {name: clip[name.split("_")[1]](by_term[name.split("_")[0]], 0.0) for name in AIR_SUMS}
+    ahead, behind = np.maximum(head, 0.0), np.minimum(head, 0.0)
+    front = np.abs(cos)
+    terms = ahead, behind, ahead * front, behind * front, head * np.abs(sin)
+    return dict(zip(AIR_SUMS, terms, strict=True))
 
 
 def _centred_sum(values: FloatArray, width: int) -> FloatArray:

@@ -65,7 +65,7 @@ def measure(settings: WorldSettings) -> Measured:
 
 def with_force_error(world: Measured, season: int, ratio: float) -> Measured:
     """The same world with a load cell that reads so many times too much in one season."""
-    power = {"force": 1, "force2": 2}
+    power = {"force": 1}
     power |= {
         f"{source}_{name}": n for source in SPEED_SOURCES for name, n in (("cw", 1), ("cw2", 2))
     }

@@ -42,8 +42,7 @@ SEASON_INDEX_SCHEMA: Final = {
 """One row a listed tow: where its samples and blocks lie, or the fault that was found."""
 
 LAKE_FORM: Final = {
-    "compression": "zstd",
-    "compression_level": 1,
+    "compression": "lz4",
     "use_dictionary": False,
     "write_statistics": False,
 }

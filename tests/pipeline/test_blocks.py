@@ -46,30 +46,25 @@ def quantities(row: dict[str, float]) -> dict[str, float]:
     angle = math.radians(row["wind_angle_deg"])
     along, across = wind * math.cos(angle), wind * math.sin(angle)
     sign = "ahead" if along > 0 else "behind"
-    air = {
-        f"{term}_{side}": 0.0 for term in ("head", "front", "side") for side in ("ahead", "behind")
-    }
+    air = {f"{term}_{side}": 0.0 for term in ("head", "front") for side in ("ahead", "behind")}
     air[f"head_{sign}"] = along * abs(along)
     air[f"front_{sign}"] = along * abs(along) * abs(math.cos(angle))
-    air[f"side_{sign}"] = along * abs(along) * abs(math.sin(angle))
+    air["side"] = along * abs(along) * abs(math.sin(angle))
     gps = row["gps_m_s"]
     found = {
         "force": force,
-        "force2": force**2,
         "wind_v": wind,
-        "wind_v2": wind**2,
         "wind_cos": math.cos(angle),
         "wind_sin": math.sin(angle),
         "wind_x": along,
         "wind_y": across,
         "gps": 0.0 if gps is None else gps,
-        "gps2": 0.0 if gps is None else gps**2,
         "gps_n": float(gps is not None),
         **air,
     }
     logs = row["log1_m_s"], row["log2_m_s"]
     for source, v in (("log1", logs[0]), ("log2", logs[1]), ("mean", sum(logs) / 2)):
-        found |= {f"{source}_v": v, f"{source}_v2": v**2, f"{source}_inv_v2": v**-2}
+        found |= {f"{source}_v": v, f"{source}_inv_v2": v**-2}
         found |= {f"{source}_cw": force / v**2, f"{source}_cw2": (force / v**2) ** 2}
         found |= {f"{source}_{name}": value / v**2 for name, value in air.items()}
     return found
