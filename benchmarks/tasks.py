@@ -177,10 +177,9 @@ def _sums(path: str) -> pl.DataFrame:
 
 
 def _blocks(world: World, tows: pl.DataFrame) -> pl.DataFrame:
-    def one(file: tuple[str, str]) -> pl.DataFrame:
-        return _sums(file[1]).select(pl.lit(file[0]).alias("tow_id"), pl.all())
-
-    return pl.concat(both(one, _lake_files(world, tows).items()))
+    files = _lake_files(world, tows)
+    tow_id = pl.Series("tow_id", list(files))
+    return lake.blocks_of_tows(tow_id, both(_sums, files.values()))
 
 
 # All of history

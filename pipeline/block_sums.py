@@ -54,7 +54,7 @@ def block_sums(samples: pl.DataFrame, sample_rate_hz: int) -> pl.DataFrame:
     start, end, second = _bounds(run, sample_rate_hz)
     sums = np.empty((_ROWS, len(start)))
     _add_up(start, end, sums, *(samples[name].to_numpy() for name in _CHANNELS))
-    found, blocks = pl.Series(sums.reshape(-1)), len(start)
+    found, blocks = pl.Series(sums.ravel()), len(start)
     return pl.DataFrame(
         [
             pl.Series("run", run[start], pl.Int8),

@@ -7,12 +7,13 @@ like is known to `warehouse.archive`; which sums there are, to `pipeline.blocks`
 """
 
 import dataclasses
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
 import polars as pl
 
 import pipeline.blocks
@@ -103,13 +104,16 @@ def read_season(
 def season_blocks(store: Store, season: int, index: pl.DataFrame) -> pl.DataFrame:
     """Blocks of all sound tows of a season, with `tow_id`, sorted by tow, run and second."""
     sound = index.filter(pl.col("blocks_key").is_not_null()).sort("tow_id")
-    frames = [
-        read_parquet(store.blocks_path(season, key)).select(
-            pl.lit(tow_id).alias("tow_id"), pl.all()
-        )
-        for tow_id, key in sound.select("tow_id", "blocks_key").iter_rows()
-    ]
-    return pl.concat(frames) if frames else pl.DataFrame(schema={"tow_id": pl.String()})
+    frames = [read_parquet(store.blocks_path(season, key)) for key in sound["blocks_key"]]
+    return blocks_of_tows(sound["tow_id"], frames)
+
+
+def blocks_of_tows(tow_id: pl.Series, frames: Sequence[pl.DataFrame]) -> pl.DataFrame:
+    """Blocks of tows one below the other, with the `tow_id` of each."""
+    if not frames:
+        return pl.DataFrame(schema={"tow_id": pl.String()})
+    tow = np.repeat(np.arange(len(frames)), [frame.height for frame in frames])
+    return pl.concat(frames).insert_column(0, tow_id.gather(tow))
 
 
 def _bring_in(
