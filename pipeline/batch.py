@@ -41,7 +41,7 @@ class Batch:
         """Number of tows."""
         return self.tows.height
 
-    @property
+    @cached_property
     def seasons(self) -> tuple[int, ...]:
         """Seasons of the tows, sorted."""
         return tuple(self.tows["season"].unique().sort())
