@@ -319,7 +319,7 @@ def _choose_curve(prepared: _Prepared, points: curve.Points, free: curve.Curves)
         return free
     hull = hull_speed_m_s(prepared.batch.of_tow("waterline_length_m"))
     if rule.b == "capped":
-        return curve.fit_capped(points, rule.cap_hull_speeds * hull)
+        return curve.fit_capped(points, free, rule.cap_hull_speeds * hull)
     return curve.fit_given_b(points, hull)
 
 
@@ -363,19 +363,21 @@ def _best_per_run(
     return ahead, behind
 
 
-def _misfit(prepared: _Prepared, coefficient: float) -> FloatArray:
-    """Residual sum of squares / Cw^2 of each tow with one drag coefficient, shape (tows,)."""
-    one = np.full(len(prepared.batch.tow), coefficient)
-    curves = curve.fit(prepared.points(prepared.cw_kg_m(one, one, one)))
-    scale = curves.cw_at(prepared.batch.of_tow("declared_speed_m_s"))
+def _misfits(prepared: _Prepared, grid: FloatArray) -> FloatArray:
+    """Residual sum of squares / Cw^2 with each drag coefficient, shape (coefficients, tows)."""
+    each = [np.full(len(prepared.batch.tow), coefficient) for coefficient in grid]
+    points = [prepared.points(prepared.cw_kg_m(one, one, one)) for one in each]
+    curves = curve.fit(curve.Points.stack(points))
+    scale = curves.cw_at(np.tile(prepared.batch.of_tow("declared_speed_m_s"), len(grid)))
     sound = curves.converged & np.isfinite(scale)
-    return np.where(sound, curves.rss_kg2_m2 / np.where(sound, scale, 1.0) ** 2, 0.0)
+    misfit = np.where(sound, curves.rss_kg2_m2 / np.where(sound, scale, 1.0) ** 2, 0.0)
+    return misfit.reshape(len(grid), -1)
 
 
 def _best_per_tow(prepared: _Prepared) -> FloatArray:
     """One coefficient per tow within its bounds, by trying all of a fine grid, shape (tows,)."""
-    misfits = np.stack([_misfit(prepared, c) for c in PER_TOW_GRID])
-    return np.asarray(PER_TOW_GRID[first_largest(-misfits)], dtype=np.float64)
+    best = first_largest(-_misfits(prepared, PER_TOW_GRID))
+    return np.asarray(PER_TOW_GRID[best], dtype=np.float64)
 
 
 def _archive_coefficient(prepared: list[_Prepared]) -> float | None:
@@ -386,7 +388,7 @@ def _archive_coefficient(prepared: list[_Prepared]) -> float | None:
     """
     if not prepared:
         return None
-    total = np.array([sum(float(_misfit(p, c).sum()) for p in prepared) for c in ARCHIVE_GRID])
+    total = np.sum([_misfits(p, ARCHIVE_GRID).sum(axis=1) for p in prepared], axis=0)
     best = int(np.clip(total.argmin(), 1, len(ARCHIVE_GRID) - 2))
     below, here, above = total[best - 1 : best + 2]
     bend = below - 2.0 * here + above
