@@ -9,6 +9,7 @@ what holds when.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
@@ -166,17 +167,24 @@ class _Prepared:
     temperature_kg_m: FloatArray
     temperature_known: BoolArray
 
-    @property
+    @cached_property
     def factor(self) -> FloatArray:
         """True speed / log speed of each run, shape (runs,)."""
         return (self.known * self.y)[self.batch.tow]
 
-    @property
+    @cached_property
     def used(self) -> BoolArray:
         """Runs that count, shape (runs,)."""
         return np.asarray(self.reasons == "")
 
-    @property
+    @cached_property
+    def in_fit(self) -> BoolArray:
+        """Runs that count, of tows that have enough of them, shape (runs,)."""
+        return (
+            self.used & enough_runs(self.batch, self.used, self.steps.runs.minimum)[self.batch.tow]
+        )
+
+    @cached_property
     def speed_m_s(self) -> FloatArray:
         """Mean true speed, shape (runs,)."""
         return self.means.speed_m_s * self.factor
@@ -199,11 +207,10 @@ class _Prepared:
     def points(self, cw_kg_m: FloatArray) -> curve.Points:
         """Points of all tows that have enough runs, for a batch fit."""
         batch = self.batch
-        sound = self.used & enough_runs(batch, self.used, self.steps.runs.minimum)[batch.tow]
         return curve.Points(
             batch.by_tow(self.speed_m_s),
             batch.by_tow(cw_kg_m),
-            batch.by_tow(sound & (cw_kg_m > 0) & (self.speed_m_s > 0)) > 0,
+            batch.by_tow(self.in_fit & (cw_kg_m > 0) & (self.speed_m_s > 0)) > 0,
         )
 
 
