@@ -68,7 +68,7 @@ def recompute(
             be compared with like boats.
         blocks: their runs; `blocks.runs` has the columns of `tow_runs`.
         cache: what was found before of the same tows; added to.
-        with_bands: make `curve_points`, a third of the work; without, it is empty.
+        with_bands: make `curve_points`, a tenth of the work; without, it is empty.
 
     Raises:
         MissingKnowledgeError: the method says nothing about a season of `tows`.
