@@ -25,7 +25,7 @@ from typing import Final
 import numpy as np
 import polars as pl
 
-from pipeline.arrays import BoolArray, FloatArray, IntArray
+from pipeline.arrays import BoolArray, FloatArray
 from pipeline.errors import BrokenPromiseError
 
 SPEED_SOURCES: Final = ("log1", "log2", "mean")
@@ -117,15 +117,14 @@ def stack_blocks(blocks: pl.DataFrame, runs: pl.DataFrame) -> RunBlocks:
         )
     if place.null_count():
         blocks, place = blocks.filter(place.is_not_null()), place.drop_nulls()
-    row, second = place.to_numpy(), blocks["second"].to_numpy()
-    shape = (runs.height, int(second.max()) + 1 if len(second) else 0)
-    arrays = {name: _place(blocks[name], row, second, shape) for name in ("n", *SUM_NAMES)}
-    return RunBlocks(runs.drop("row"), arrays.pop("n"), arrays)
+    second = blocks["second"].to_numpy()
+    seconds = int(second.max()) + 1 if len(second) else 0
+    cell = place.to_numpy() * seconds + second
 
+    def placed(values: pl.Series) -> FloatArray:
+        cells = np.zeros(runs.height * seconds)
+        cells[cell] = values.to_numpy()
+        return cells.reshape(runs.height, seconds)
 
-def _place(
-    values: pl.Series, row: IntArray, second: IntArray, shape: tuple[int, int]
-) -> FloatArray:
-    cube = np.zeros(shape)
-    cube[row, second] = values.to_numpy()
-    return cube
+    sums = {name: placed(blocks[name]) for name in SUM_NAMES}
+    return RunBlocks(runs.drop("row"), placed(blocks["n"]), sums)
