@@ -252,8 +252,7 @@
     const room = figure.parentElement.clientWidth;
     const isNarrow = room < 550;
     if (typeof spec.width === "number" && spec.width + LABELS > room) {
-      const least = spec.layer?.some((layer) => layer.mark?.type === "text") ? 640 : 0; // legible
-      spec.width = Math.max(room, least);
+      spec.width = room;
       spec.autosize = { type: "fit-x", contains: "padding" };
     }
     for (const part of (spec.vconcat ?? [spec]).filter((part) => part.facet)) {
