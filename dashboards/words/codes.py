@@ -89,6 +89,8 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.random": ("spreiding van de runs", "scatter of the runs"),
     "code.season_log": ("log van het seizoen", "log of the season"),
     "code.straightness": ("recht slepen", "straight towing"),
+    "code.altered": ("verbouwd", "altered"),
+    "code.askew": ("scheef gesleept", "pulled askew"),
     "code.single": ("één proef", "one tow"),
     "code.archive": ("alle proeven", "all tows"),
     "code.b_not_determined": ("B niet bepaald", "B not determined"),

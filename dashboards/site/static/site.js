@@ -177,9 +177,12 @@
     const place = figure.querySelector(".chart");
     const turn = (figure.turn = (figure.turn ?? 0) + 1);
     const spec = structuredClone(window.HERIJK_FIGURES[root.lang][figure.dataset.figure]);
-    spec.datasets = { rows: shownRows(figure) };
+    const rows = shownRows(figure);
+    spec.datasets = { rows };
     fitWidth(spec, figure);
-    figure.querySelector(".picked").textContent = picked(figure);
+    const empty = place.hidden = rows.length === 0;
+    figure.querySelector(".picked").textContent =
+      picked(figure) + (empty ? `: ${window.HERIJK_WORDS[root.lang].no_values}` : "");
     tabulate(figure);
     views.get(figure)?.finalize();
     views.delete(figure);
@@ -259,7 +262,8 @@
       fitFacets(part, room, isNarrow);
     }
     if (!isNarrow) return;
-    spec.config = { ...spec.config, legend: { ...spec.config?.legend, orient: "bottom", columns: 1 } };
+    const legend = { ...spec.config?.legend, orient: "bottom", columns: 1 };
+    spec.config = { ...spec.config, legend, axisX: { titleFontSize: 10 } };
   }
 
   function fitFacets(part, room, isNarrow) {
