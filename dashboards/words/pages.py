@@ -38,75 +38,6 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "clear": ("Wis keuze", "Clear selection"),
     "yes": ("ja", "yes"),
     "no": ("nee", "no"),
-    # Report of a rebuild
-    "report": ("Verslag van de herberekening", "Report of the rebuild"),
-    "report_lines": ("Veranderde regels van de concepten", "Changed lines of the drafts"),
-    "report_tows": ("Sleepproeven", "Tows"),
-    "report_set_aside": ("Terzijde gelegd", "Set aside"),
-    "report_factors": ("Logfactoren die verschoven", "Log factors that moved"),
-    "report_checks": ("Controles", "Checks"),
-    "report_none": ("Niets.", "Nothing."),
-    "report_nothing": (
-        "Er is niets veranderd sinds het vorige verslag.",
-        "Nothing changed since the last report.",
-    ),
-    "report_first": ("Eerste verslag: alles is nieuw.", "First report: everything is new."),
-    "report_beyond": ("buiten hun marge", "beyond their interval"),
-    "report_failed": ("De herberekening is mislukt", "The rebuild failed"),
-    "column.what": ("Wat", "What"),
-    "column.old_factor": ("Factor was", "Factor was"),
-    "column.new_factor": ("Factor is", "Factor is"),
-    "column.ratio": ("Verhouding", "Ratio"),
-    "column.old_cw_kg_m": ("Cw was [kg/m]", "Cw was [kg/m]"),
-    "column.new_cw_kg_m": ("Cw is [kg/m]", "Cw is [kg/m]"),
-    "column.gain_in_two_hours_s": ("Winst in 2 uur [s]", "Gain in 2 h [s]"),
-    "column.exceeds_interval": ("Buiten marge", "Beyond interval"),
-    "column.outcome": ("Uitkomst", "Outcome"),
-    "code.number": ("aantal", "number"),
-    "code.first": ("waaronder", "among them"),
-    "code.lost": ("ontbreekt", "missing"),
-    "code.set_aside": ("terzijde gelegd", "set aside"),
-    "code.listed": ("op de lijst", "on the list"),
-    "code.limit": ("hoogstens toegestaan deel", "largest share allowed"),
-    "code.new": ("nieuw", "new"),
-    "code.mended": ("hersteld", "mended"),
-    "code.gone": ("weg", "gone"),
-    "code.samples": ("metingen veranderd", "samples changed"),
-    "code.list": ("lijst veranderd", "list changed"),
-    "code.passed": ("in orde", "passed"),
-    "code.warn": ("LET OP", "WARNING"),
-    "code.error": ("FOUT", "ERROR"),
-    "code.tow": ("andere proef telt", "another tow counts"),
-    "code.other_input": ("andere proeven veranderden", "other tows changed"),
-    "code.input_and_code": ("invoer en code", "input and code"),
-    "code.code_or_other_input": ("code of andere proeven", "code or other tows"),
-    "code.unseparated": ("methode en invoer", "method and input"),
-    "code.unexplained": ("onverklaard", "unexplained"),
-    "code.tables_fit_their_schemas": ("tabellen volgens schema", "tables fit their schemas"),
-    "code.counts_agree": ("aantallen kloppen", "counts agree"),
-    "code.few_tows_set_aside": ("weinig terzijde gelegd", "few tows set aside"),
-    "code.log_factors_stayed": ("logfactoren gelijk gebleven", "log factors stayed"),
-    "code.boats_stayed_within_their_intervals": (
-        "sloepen binnen hun marge gebleven",
-        "boats stayed within their intervals",
-    ),
-    "code.editions_can_be_made_again": (
-        "edities zijn na te rekenen",
-        "editions can be made again",
-    ),
-    "code.every_listed_tow_accounted_for": (
-        "elke proef van de lijst is terug te vinden",
-        "every listed tow accounted for",
-    ),
-    "code.every_tow_has_a_curve_row": (
-        "elke proef staat bij de krommen, ook zonder kromme",
-        "every tow has a row among the curves, even one without a curve",
-    ),
-    "code.most_tows_sound": ("de meeste proeven zijn goed", "most tows are sound"),
-    "code.steps_multiply_to_the_total": (
-        "stappen vermenigvuldigen tot het geheel",
-        "steps multiply to the total",
-    ),
     # Index
     "index_intro": (
         "De weerstand van roeisloepen wordt gemeten met een sleepproef. Deze bladen laten zien wat "
@@ -267,9 +198,9 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     ),
     "types_outliers_note": (
         "Ver van wat de andere sloepen van het type voorspellen, in standaardafwijkingen (sd) van "
-        "die voorspelling. Een mogelijke verklaring is iets om na te gaan, geen oorzaak.",
+        "die voorspelling. Een mogelijke verklaring is iets om na te gaan, niet bewezen.",
         "Far from what the other boats of the type predict, in standard deviations (sd) of that "
-        "prediction. A possible cause is something to look at, not a cause.",
+        "prediction. A possible cause is something to look at, not proven.",
     ),
     "types_outliers": ("Sloepen die afwijken van hun type", "Boats that differ from their type"),
     # Corrections
@@ -319,10 +250,12 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "components_note": (
         "Wat verschillen tussen sloepen, tussen seizoenen, van een sloep tussen seizoenen, en "
         "tussen runs bijdragen aan de spreiding van Cw: standaardafwijking met 95 %-interval, uit "
-        "één model van alle proeven (n).",
+        "één model van alle proeven met een kromme (n). Elke ploeg van een sloep telt apart als "
+        "sloep, en na een verbouwing opnieuw.",
         "What differences between boats, between seasons, of a boat between seasons, and between "
         "runs add to the spread of Cw: standard deviation with 95 % interval, from one model of "
-        "all tows (n).",
+        "all tows with a curve (n). Each crew of a boat counts as a boat, and again after an "
+        "alteration.",
     ),
     "predicted": ("Voorspeld zonder slepen", "Predicted without towing"),
     "predicted_note": (
