@@ -159,10 +159,12 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     # Types
     "types_charts": ("B en Cw per type", "B and Cw per type"),
     "types_note": (
-        "Dezelfde sloepen onder twee methoden, op dezelfde assen. Sleep over een grafiek om "
-        "sloepen te kiezen: de lijst eronder toont ze. Klik op een punt om naar de sloep te gaan.",
-        "The same boats under two methods, on the same axes. Drag over a chart to select boats: "
-        "the list below shows them. Click a point to go to the boat.",
+        "De nieuwste proef van elke sloep en ploeg onder twee methoden, op dezelfde assen. Sloepen "
+        "zonder type staan er niet bij. Sleep over een grafiek om sloepen te kiezen: de lijst "
+        "eronder toont ze. Klik op een punt om naar de sloep te gaan.",
+        "The newest tow of each boat and crew under two methods, on the same axes. Boats without "
+        "a type are left out. Drag over a chart to select boats: the list below shows them. Click "
+        "a point to go to the boat.",
     ),
     "b_weight": ("B tegen gewicht", "B against weight"),
     "b_speed": ("B tegen opgegeven snelheid", "B against declared speed"),

@@ -192,6 +192,14 @@ def test_the_uncertainty_can_be_read_without_its_chart(visitor, attacked, built)
     )
 
 
+def test_a_chart_s_table_says_out_and_back_in_words(visitor, attacked):
+    page = visitor.open(boat_path(attacked))
+    figure = page.locator("figure[data-figure=out_and_back]")
+    figure.locator("summary").click()
+    text = figure.locator("details tbody").inner_text()
+    assert {"heen", "terug", "zonder luchtcorrectie"} <= set(text.replace("\n", "\t").split("\t"))
+
+
 def test_a_name_is_no_formula_in_a_download(visitor):
     page = visitor.open("register.html")
     with page.expect_download() as caught:

@@ -117,9 +117,14 @@ def test_a_log_s_factors_are_shown_as_often_as_the_table_has_them(site, store):
     assert "andere log" in text
 
 
-def test_a_code_on_a_page_has_a_text(store):
+def test_a_column_and_a_code_on_a_page_have_a_text(store):
     with Views(store) as views:
-        tables = [t for page in all_pages(views) for s in page.sections for t in s.tables]
+        pages_made = list(all_pages(views))
+    tables = [t for page in pages_made for s in page.sections for t in s.tables]
+    columns = {c for table in tables for c in table.columns} | {
+        c for page in pages_made for frames in page.data.values() for f in frames for c in f.columns
+    }
+    assert {c for c in columns if f"column.{c}" not in WORDS} <= {"page"}  # a link, not shown
     codes = {
         code
         for table in tables

@@ -233,7 +233,7 @@
         const value = row[column] ?? "";
         const cell = line.insertCell();
         if (typeof value === "number") cell.className = "i";
-        cell.textContent = inWords(value, words);
+        cell.textContent = words[`code.${column}.${value}`] ?? inWords(value, words);
       }
     }
     place.querySelector(".scroll").replaceChildren(table);
