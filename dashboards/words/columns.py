@@ -90,7 +90,7 @@ COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "column.cw_sd": ("sd in de run [kg/m]", "sd in the run [kg/m]"),
     "column.power_w": ("Ver\u00admogen [W/\u200broeier]", "Power [W/\u200brower]"),
     "column.runs_used": ("Runs", "Runs"),
-    "column.flags": ("Waarschuwingen", "Flags"),
+    "column.flags": ("Waarschu\u00adwingen", "Flags"),
     "column.waterline_length_m": ("Waterlijn [m]", "Waterline [m]"),
     "column.beam_m": ("Breedte [m]", "Beam [m]"),
     "column.bow_height_m": ("Boeghoogte [m]", "Bow height [m]"),

@@ -36,7 +36,9 @@ def browser(url):
     from playwright.sync_api import sync_playwright  # noqa: PLC0415 - not needed when skipped
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=site.CHROMIUM, args=site.FLAGS)
+        browser = playwright.chromium.launch(
+            executable_path=site.CHROMIUM, args=site.FLAGS, ignore_default_args=site.HIDDEN_BARS
+        )
         yield browser
         browser.close()
 
