@@ -180,9 +180,9 @@
     const rows = shownRows(figure);
     spec.datasets = { rows };
     fitWidth(spec, figure);
-    const empty = place.hidden = rows.length === 0;
+    place.hidden = rows.length === 0;
     figure.querySelector(".picked").textContent =
-      picked(figure) + (empty ? `: ${window.HERIJK_WORDS[root.lang].no_values}` : "");
+      picked(figure) + (place.hidden ? `: ${window.HERIJK_WORDS[root.lang].no_values}` : "");
     tabulate(figure);
     views.get(figure)?.finalize();
     views.delete(figure);

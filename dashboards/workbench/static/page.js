@@ -34,7 +34,8 @@ export function say(key) {
 
 export function number(value, digits, sign = false) {
   const text = value.toFixed(digits).replace(/^-(?=[0.]+$)/, ""); // nothing has no sign
-  return (sign && Number(text) > 0 ? "+" : "") + (root.lang === "nl" ? text.replace(".", ",") : text);
+  const plus = sign && Number(text) > 0 ? "+" : "";
+  return plus + (root.lang === "nl" ? text.replace(".", ",") : text);
 }
 
 export function seasonsText(first, last) {
