@@ -20,6 +20,7 @@ import polars as pl
 from dashboards.workbench.bench import Base, Bench, Question
 from dashboards.workbench.server import address, listen, serving
 from pipeline.method import Steps
+from pipeline.run_cache import RunCache
 from pipeline.simulate import WorldSettings, simulate_world
 from tests.worlds import measure
 from warehouse.history import History
@@ -100,12 +101,12 @@ def main():
     print(f"{held.tows.height} tows of {held.boats.height} boats; least and most of five")
     with tempfile.TemporaryDirectory() as folder:
         for what, clock in (("answered", time.perf_counter), ("processor", time.process_time)):
-            bench = Bench(Store(Path(folder)), dataclasses.replace(held, windows={}))
+            bench = Bench(Store(Path(folder)), dataclasses.replace(held, cache=RunCache()))
             times = {option: answers(bench, option, v, clock) for option, v in CHANGES.items()}
             report(what, times)
         chromium = shutil.which("chromium")
         if chromium:
-            fresh = Bench(Store(Path(folder)), dataclasses.replace(held, windows={}))
+            fresh = Bench(Store(Path(folder)), dataclasses.replace(held, cache=RunCache()))
             socket, server = listen(0), serving(fresh)
             thread = threading.Thread(target=server.run, kwargs={"sockets": [socket]})
             thread.start()

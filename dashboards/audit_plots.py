@@ -84,8 +84,9 @@ def _write(plot: Plot, report: dict[str, Any], folder: Path) -> Path:
     """One SVG, its title saying of what and whether it was simulated; a boat stands out."""
     say = speaker("en")
     about = [report["boat"]["fsn_no"]] if report["about"] == "boat" else _types(report)
+    of = [plot.of] if plot.of in about else [*about, plot.of]
     title = alt.Title(
-        ", ".join(dict.fromkeys([*about, *([plot.of] if plot.of else [])])),
+        ", ".join(filter(None, of)),
         subtitle=[say("simulated")] if report["simulated"] else [],
     )
     spec = FIGURES[plot.figure](plot.rows, say).properties(title=title).to_dict()

@@ -5,6 +5,7 @@ tow spread over its runs. No formula of the method.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import polars as pl
@@ -40,7 +41,7 @@ class Batch:
         """Number of tows."""
         return self.tows.height
 
-    @property
+    @cached_property
     def seasons(self) -> tuple[int, ...]:
         """Seasons of the tows, sorted."""
         return tuple(self.tows["season"].unique().sort())
@@ -81,7 +82,7 @@ class Batch:
         total = np.bincount(self.tow, np.where(runs, values, 0.0), self.size)
         return np.asarray(total / np.maximum(self.count(runs), 1), dtype=np.float64)
 
-    @property
+    @cached_property
     def place(self) -> IntArray:
         """Rank of each run within its tow: 0, 1, 2, ..., shape (runs,)."""
         first = np.searchsorted(self.tow, self.tow, side="left")

@@ -10,6 +10,7 @@ errors a curve is described by C0 = Cw(v0) and q = r / (1 - r) with r = s v0^2, 
 independent: Cw(v) = C0 / (1 - q ((v/v0)^2 - 1)).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple, Self
 
@@ -79,6 +80,15 @@ class Points:
         cw = np.atleast_2d(np.asarray(cw_kg_m, dtype=np.float64))
         mask = np.ones(speed.shape, bool) if used is None else np.atleast_2d(np.asarray(used, bool))
         return cls(speed, cw, mask)
+
+    @classmethod
+    def stack(cls, parts: Sequence[Self]) -> Self:
+        """The points of several batches one under another, all with as many points a curve."""
+        return cls(
+            np.concatenate([part.speed_m_s for part in parts]),
+            np.concatenate([part.cw_kg_m for part in parts]),
+            np.concatenate([part.used for part in parts]),
+        )
 
 
 @dataclass(frozen=True)
@@ -246,7 +256,7 @@ def fit_given_b(points: Points, b_m_s: ArrayLike) -> Curves:
     return _fit_given_s(points, s)
 
 
-def fit_capped(points: Points, b_cap_m_s: ArrayLike) -> Curves:
+def fit_capped(points: Points, free: Curves, b_cap_m_s: ArrayLike) -> Curves:
     """Least squares with B at most its cap; A is fitted again where the cap works.
 
     A missing B (s <= 0) counts as infinitely large and is capped too: the cap used by the
@@ -254,12 +264,12 @@ def fit_capped(points: Points, b_cap_m_s: ArrayLike) -> Curves:
 
     Args:
         points: run points of n_fits curves.
+        free: their free fit (`fit`).
         b_cap_m_s: (n_fits,) or one for all; infinite caps only at the flat curve.
 
     Returns:
         n_fits curves with `b_capped` set where the cap was met.
     """
-    free = fit(points)
     s_min = np.broadcast_to(s_of_b(b_cap_m_s), free.s_s2_m2.shape)
     too_flat = free.converged & (free.s_s2_m2 < s_min)
     capped = _fit_given_s(points, s_min)

@@ -13,7 +13,8 @@ import polars as pl
 from pipeline.blocks import RunBlocks
 from pipeline.method import Method, Steps
 from pipeline.outcome import Outcome
-from pipeline.recompute import KnownWindows, batches, evaluate, log_factors
+from pipeline.recompute import batches, evaluate, log_factors
+from pipeline.run_cache import RunCache
 
 STEP_ORDER: Final = (
     "speed",
@@ -36,6 +37,7 @@ def ladder(
     tows: pl.DataFrame,
     blocks: RunBlocks,
     links: tuple[pl.DataFrame, pl.DataFrame] | None = None,
+    cache: RunCache | None = None,
 ) -> pl.DataFrame:
     """The effect of each step on every tow's Cw at the declared speed.
 
@@ -48,24 +50,26 @@ def ladder(
         blocks: their runs.
         links: log factors of both methods, where they were estimated before: their rows of the
             table `season_links`.
+        cache: what was found before of the same tows; added to.
 
     Returns:
         Sorted rows `tow_id`, `position` (0 is the start), `step`, `factor` (Cw after / before the
         step; 1 at the start) and `cw_kg_m` (after it). The factors of a tow multiply to its total.
     """
     pairs = batches([from_method, to_method], tows, blocks)
-    known: KnownWindows = {}
+    cache = RunCache() if cache is None else cache
     old_factors, new_factors = links or (
-        log_factors([(batch, steps[end]) for batch, steps in pairs], known) for end in (0, 1)
+        log_factors([(batch, steps[end]) for batch, steps in pairs], cache) for end in (0, 1)
     )
-    rungs = [
-        evaluate(
-            [(batch, _mixed(old, new, count)) for batch, (old, new) in pairs],
-            known,
-            new_factors if count else old_factors,
-        )
-        for count in range(len(STEP_ORDER) + 1)
-    ]
+    rungs: list[list[Outcome]] = []
+    mixed: list[Steps] = []
+    for count in range(len(STEP_ORDER) + 1):
+        before, mixed = mixed, [_mixed(old, new, count) for _, (old, new) in pairs]
+        if count > 1 and mixed == before:  # both methods have this step alike
+            rungs.append(rungs[-1])
+            continue
+        plans = [(batch, steps) for (batch, _), steps in zip(pairs, mixed, strict=True)]
+        rungs.append(evaluate(plans, cache, new_factors if count else old_factors))
     found = [_rungs_of_batch(list(outcomes)) for outcomes in zip(*rungs, strict=True)]
     return pl.concat(found).sort("tow_id", "position")
 

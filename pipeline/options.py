@@ -15,7 +15,8 @@ import polars as pl
 from pipeline.arrays import FloatArray
 from pipeline.blocks import RunBlocks
 from pipeline.method import Method, Steps
-from pipeline.recompute import KnownWindows, batches, evaluate, log_factors
+from pipeline.recompute import batches, evaluate, log_factors
+from pipeline.run_cache import RunCache
 
 ALL_OPTIONS: Final = "all"
 
@@ -63,13 +64,13 @@ def option_effects(
         combinations, relative; only in the row `all`).
     """
     pairs = batches([method], tows, blocks)
-    known: KnownWindows = {}
+    cache = RunCache()
     factors = links
     if factors is None:
-        factors = log_factors([(batch, steps) for batch, (steps,) in pairs], known)
+        factors = log_factors([(batch, steps) for batch, (steps,) in pairs], cache)
     cw, slope, corners = [], [], list(itertools.product((0, 1), repeat=len(CHOICES)))
     for corner in corners:
-        outcomes = evaluate([(b, _chosen(steps, corner)) for b, (steps,) in pairs], known, factors)
+        outcomes = evaluate([(b, _chosen(steps, corner)) for b, (steps,) in pairs], cache, factors)
         cw.append(np.concatenate([np.log(o.cw_at_declared) for o in outcomes]))
         slope.append(np.concatenate([_ln_b(o.curves.b_m_s) for o in outcomes]))
     tow_ids = pl.concat([batch.tows["tow_id"] for batch, _ in pairs])

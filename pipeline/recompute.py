@@ -9,6 +9,7 @@ what holds when.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
@@ -22,10 +23,11 @@ from pipeline.calibration import gps_factor
 from pipeline.channels import BACK, OUT
 from pipeline.choice import first_largest
 from pipeline.hull import front_area_m2, hull_speed_m_s, still_air_coefficient_kg_m
-from pipeline.method import Method, Steps, Window
+from pipeline.method import Method, Steps
 from pipeline.outcome import Outcome, TowFactor
-from pipeline.resistance import RunMeans, run_means, temperature_change_kg_m
+from pipeline.resistance import RunMeans, temperature_change_kg_m
 from pipeline.results import Recomputed, as_tables
+from pipeline.run_cache import RunCache
 from pipeline.season_factors import (
     factor_of_tows,
     find_season_factors,
@@ -34,7 +36,7 @@ from pipeline.season_factors import (
 )
 from pipeline.season_log import SeasonFactors
 from pipeline.speed import log_factor
-from pipeline.steady import Windows, choose_windows
+from pipeline.steady import Windows
 from pipeline.wind import PER_TOW_BOUNDS, nearest_coefficients
 
 NOT_SELECTED = "not_selected"
@@ -48,9 +50,6 @@ PER_RUN_ITERATIONS = 4
 PER_TOW_GRID = np.linspace(*PER_TOW_BOUNDS, 41)
 ARCHIVE_GRID = np.linspace(0.0, 1.2, 13)
 
-KnownWindows: TypeAlias = dict[tuple[tuple[int, ...], Window], Windows]
-"""Windows of all tows of some seasons under a rule, found before."""
-
 Texts: TypeAlias = np.ndarray[tuple[int, ...], np.dtype[np.str_]]
 
 
@@ -58,7 +57,7 @@ def recompute(
     method: Method,
     tows: pl.DataFrame,
     blocks: RunBlocks,
-    known_windows: KnownWindows | None = None,
+    cache: RunCache | None = None,
     with_bands: bool = True,
 ) -> Recomputed:
     """Run points, curves, log factors and assessments of all tows under a method.
@@ -68,40 +67,36 @@ def recompute(
         tows: rows of the warehouse's `tows`, with `boat_type` where it is known, so that a tow can
             be compared with like boats.
         blocks: their runs; `blocks.runs` has the columns of `tow_runs`.
-        known_windows: windows found before for the same tows; added to.
-        with_bands: make `curve_points`, a third of the work; without, it is empty.
+        cache: what was found before of the same tows; added to.
+        with_bands: make `curve_points`, a tenth of the work; without, it is empty.
 
     Raises:
         MissingKnowledgeError: the method says nothing about a season of `tows`.
     """
     plans = [(batch, steps) for batch, (steps,) in batches([method], tows, blocks)]
-    known = {} if known_windows is None else known_windows
+    cache = RunCache() if cache is None else cache
     asked = any(is_estimated(held.steps) for held in method.ranges)
-    found = season_factors(plans, known) if asked else None
+    found = season_factors(plans, cache) if asked else None
     factors = None if found is None else found.factors
-    return as_tables(method, tows, evaluate(plans, known, factors), found, with_bands)
+    return as_tables(method, tows, evaluate(plans, cache, factors), found, with_bands)
 
 
-def season_factors(
-    plans: Sequence[tuple[Batch, Steps]], known_windows: KnownWindows
-) -> SeasonFactors | None:
+def season_factors(plans: Sequence[tuple[Batch, Steps]], cache: RunCache) -> SeasonFactors | None:
     """The log factors that the given steps ask to estimate, and how far tows scatter.
 
     None if not a single tow has a curve from which to estimate.
     """
-    before = evaluate([(batch, without_factor(steps)) for batch, steps in plans], known_windows)
+    before = evaluate([(batch, without_factor(steps)) for batch, steps in plans], cache)
     if not any(np.isfinite(outcome.cw_at_declared).any() for outcome in before):
         return None
     return find_season_factors(before)
 
 
-def log_factors(
-    plans: Sequence[tuple[Batch, Steps]], known_windows: KnownWindows
-) -> pl.DataFrame | None:
+def log_factors(plans: Sequence[tuple[Batch, Steps]], cache: RunCache) -> pl.DataFrame | None:
     """The factors alone, as `evaluate` wants them; None if the steps ask for none."""
     if not any(is_estimated(steps) for _, steps in plans):
         return None
-    found = season_factors(plans, known_windows)
+    found = season_factors(plans, cache)
     return None if found is None else found.factors
 
 
@@ -125,25 +120,21 @@ def batches(
 
 def evaluate(
     plans: Sequence[tuple[Batch, Steps]],
-    known_windows: KnownWindows | None = None,
+    cache: RunCache,
     factors: pl.DataFrame | None = None,
 ) -> list[Outcome]:
     """What the given steps make of each batch.
 
     Args:
         plans: batches with their steps; what is searched over the archive is searched over them.
-        known_windows: windows found before for the same tows; added to.
+        cache: what was found before of the same tows; added to.
         factors: rows of `SeasonFactors.factors` or of the table `season_links`, for steps that
             ask for estimated log factors.
     """
-    windows = {} if known_windows is None else known_windows
-    prepared = []
-    for batch, steps in plans:
-        key = (batch.seasons, steps.window)
-        if key not in windows:
-            windows[key] = choose_windows(batch.blocks, steps.window)
-        factor = factor_of_tows(batch, steps, factors)
-        prepared.append(_prepare(batch, steps, windows[key], factor))
+    prepared = [
+        _prepare(batch, steps, cache, factor_of_tows(batch, steps, factors))
+        for batch, steps in plans
+    ]
     shared = _archive_coefficient([p for p in prepared if p.steps.wind.coefficients == "archive"])
     return [_finish(p, shared) for p in prepared]
 
@@ -176,17 +167,24 @@ class _Prepared:
     temperature_kg_m: FloatArray
     temperature_known: BoolArray
 
-    @property
+    @cached_property
     def factor(self) -> FloatArray:
         """True speed / log speed of each run, shape (runs,)."""
         return (self.known * self.y)[self.batch.tow]
 
-    @property
+    @cached_property
     def used(self) -> BoolArray:
         """Runs that count, shape (runs,)."""
         return np.asarray(self.reasons == "")
 
-    @property
+    @cached_property
+    def in_fit(self) -> BoolArray:
+        """Runs that count, of tows that have enough of them, shape (runs,)."""
+        return (
+            self.used & enough_runs(self.batch, self.used, self.steps.runs.minimum)[self.batch.tow]
+        )
+
+    @cached_property
     def speed_m_s(self) -> FloatArray:
         """Mean true speed, shape (runs,)."""
         return self.means.speed_m_s * self.factor
@@ -209,11 +207,10 @@ class _Prepared:
     def points(self, cw_kg_m: FloatArray) -> curve.Points:
         """Points of all tows that have enough runs, for a batch fit."""
         batch = self.batch
-        sound = self.used & enough_runs(batch, self.used, self.steps.runs.minimum)[batch.tow]
         return curve.Points(
             batch.by_tow(self.speed_m_s),
             batch.by_tow(cw_kg_m),
-            batch.by_tow(sound & (cw_kg_m > 0) & (self.speed_m_s > 0)) > 0,
+            batch.by_tow(self.in_fit & (cw_kg_m > 0) & (self.speed_m_s > 0)) > 0,
         )
 
 
@@ -224,8 +221,8 @@ def enough_runs(batch: Batch, used: BoolArray, minimum: int) -> BoolArray:
     return (out + back >= minimum) & (out > 0) & (back > 0)
 
 
-def _prepare(batch: Batch, steps: Steps, windows: Windows, estimated: TowFactor) -> _Prepared:
-    means = run_means(batch, windows.mask, steps)
+def _prepare(batch: Batch, steps: Steps, cache: RunCache, estimated: TowFactor) -> _Prepared:
+    windows, means = cache.windows(batch, steps), cache.means(batch, steps)
     tow_list = batch.of_tow("speed_correction_ratio")
     known = log_factor(steps.speed, tow_list, estimated.factor)
     reasons = _reasons(batch, steps, windows, means.speed_m_s * known[batch.tow])
@@ -329,7 +326,7 @@ def _choose_curve(prepared: _Prepared, points: curve.Points, free: curve.Curves)
         return free
     hull = hull_speed_m_s(prepared.batch.of_tow("waterline_length_m"))
     if rule.b == "capped":
-        return curve.fit_capped(points, rule.cap_hull_speeds * hull)
+        return curve.fit_capped(points, free, rule.cap_hull_speeds * hull)
     return curve.fit_given_b(points, hull)
 
 
@@ -373,19 +370,21 @@ def _best_per_run(
     return ahead, behind
 
 
-def _misfit(prepared: _Prepared, coefficient: float) -> FloatArray:
-    """Residual sum of squares / Cw^2 of each tow with one drag coefficient, shape (tows,)."""
-    one = np.full(len(prepared.batch.tow), coefficient)
-    curves = curve.fit(prepared.points(prepared.cw_kg_m(one, one, one)))
-    scale = curves.cw_at(prepared.batch.of_tow("declared_speed_m_s"))
+def _misfits(prepared: _Prepared, grid: FloatArray) -> FloatArray:
+    """Residual sum of squares / Cw^2 with each drag coefficient, shape (coefficients, tows)."""
+    each = [np.full(len(prepared.batch.tow), coefficient) for coefficient in grid]
+    points = [prepared.points(prepared.cw_kg_m(one, one, one)) for one in each]
+    curves = curve.fit(curve.Points.stack(points))
+    scale = curves.cw_at(np.tile(prepared.batch.of_tow("declared_speed_m_s"), len(grid)))
     sound = curves.converged & np.isfinite(scale)
-    return np.where(sound, curves.rss_kg2_m2 / np.where(sound, scale, 1.0) ** 2, 0.0)
+    misfit = np.where(sound, curves.rss_kg2_m2 / np.where(sound, scale, 1.0) ** 2, 0.0)
+    return misfit.reshape(len(grid), -1)
 
 
 def _best_per_tow(prepared: _Prepared) -> FloatArray:
     """One coefficient per tow within its bounds, by trying all of a fine grid, shape (tows,)."""
-    misfits = np.stack([_misfit(prepared, c) for c in PER_TOW_GRID])
-    return np.asarray(PER_TOW_GRID[first_largest(-misfits)], dtype=np.float64)
+    best = first_largest(-_misfits(prepared, PER_TOW_GRID))
+    return np.asarray(PER_TOW_GRID[best], dtype=np.float64)
 
 
 def _archive_coefficient(prepared: list[_Prepared]) -> float | None:
@@ -396,7 +395,7 @@ def _archive_coefficient(prepared: list[_Prepared]) -> float | None:
     """
     if not prepared:
         return None
-    total = np.array([sum(float(_misfit(p, c).sum()) for p in prepared) for c in ARCHIVE_GRID])
+    total = np.sum([_misfits(p, ARCHIVE_GRID).sum(axis=1) for p in prepared], axis=0)
     best = int(np.clip(total.argmin(), 1, len(ARCHIVE_GRID) - 2))
     below, here, above = total[best - 1 : best + 2]
     bend = below - 2.0 * here + above

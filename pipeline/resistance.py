@@ -13,12 +13,11 @@ import numpy as np
 
 from pipeline.arrays import BoolArray, FloatArray
 from pipeline.batch import Batch
-from pipeline.blocks import AIR_SUMS
 from pipeline.friction import friction_cw_kg_m, water_density_kg_m3
 from pipeline.hull import front_area_m2, side_area_m2
 from pipeline.method import RunPoint, Steps, Temperature
 from pipeline.steady import END_SECONDS
-from pipeline.wind import AirParts, air_parts, averaged_terms
+from pipeline.wind import AirParts, air_parts, air_sums, averaged_terms
 
 LOG2_AGREES_RATIO: Final = 0.01
 """Log 2 takes part in a mean of both only if its speed is within 1 % of log 1 (inferred from the
@@ -47,6 +46,16 @@ class RunMeans:
     inertia_kg_m: FloatArray
     air: AirParts
 
+    def where(self, chosen: BoolArray, other: "RunMeans") -> "RunMeans":
+        """These means for the chosen runs, shape (runs,), those of the other elsewhere."""
+        return RunMeans(
+            speed_m_s=np.where(chosen, self.speed_m_s, other.speed_m_s),
+            gross_kg_m=np.where(chosen, self.gross_kg_m, other.gross_kg_m),
+            sd_kg_m=np.where(chosen, self.sd_kg_m, other.sd_kg_m),
+            inertia_kg_m=np.where(chosen, self.inertia_kg_m, other.inertia_kg_m),
+            air=self.air.where(chosen, other.air),
+        )
+
 
 def run_means(batch: Batch, window: BoolArray, steps: Steps) -> RunMeans:
     """Means of every run over its window.
@@ -56,30 +65,10 @@ def run_means(batch: Batch, window: BoolArray, steps: Steps) -> RunMeans:
         window: blocks that count, shape (runs, seconds).
         steps: speed source, estimator, wind model and inertia of the method.
     """
-    use_mean = _both_logs_good(batch, window) & (steps.speed.source == "mean")
-    single = "log2" if steps.speed.source == "log2" else "log1"
-
-    def mean(name: str) -> FloatArray:
-        of_log = batch.blocks.mean(f"{single}_{name}", window)
-        return np.where(use_mean, batch.blocks.mean(f"mean_{name}", window), of_log)
-
-    speed, samples_cw = mean("v"), mean("cw")
-    variance = np.maximum(mean("cw2") - samples_cw**2, 0.0)
-    if steps.run_point.estimator == "mean_of_ratios":
-        gross = samples_cw
-    else:
-        gross = batch.blocks.mean("force", window) / _or_one(speed) ** 2
-    terms = _air_terms(batch, window, steps, speed, use_mean, single)
-    front = front_area_m2(batch.of_run("beam_m"), batch.of_run("bow_height_m"))
-    side = side_area_m2(batch.of_run("waterline_length_m"), batch.of_run("bow_height_m"))
-    air = air_parts(batch.blocks, terms, steps.wind, front, side)
-    change = np.where(
-        use_mean,
-        _end_speed_change(batch, window, "mean"),
-        _end_speed_change(batch, window, single),
-    )
-    inertia = _inertia(batch, steps.run_point, change, speed)
-    return RunMeans(speed, gross, np.sqrt(variance), inertia, air)
+    if steps.speed.source != "mean":
+        return _means_of_source(batch, window, steps, steps.speed.source)
+    of_both, of_log1 = (_means_of_source(batch, window, steps, s) for s in ("mean", "log1"))
+    return of_both.where(_both_logs_good(batch, window), of_log1)
 
 
 def _both_logs_good(batch: Batch, window: BoolArray) -> BoolArray:
@@ -90,13 +79,26 @@ def _both_logs_good(batch: Batch, window: BoolArray) -> BoolArray:
     return (np.abs(ratio - 1.0) <= LOG2_AGREES_RATIO)[batch.tow]
 
 
+def _means_of_source(batch: Batch, window: BoolArray, steps: Steps, source: str) -> RunMeans:
+    """Means of every run by one speed source of `pipeline.blocks`."""
+    blocks = batch.blocks
+    speed, samples_cw = (blocks.mean(f"{source}_{name}", window) for name in ("v", "cw"))
+    variance = np.maximum(blocks.mean(f"{source}_cw2", window) - samples_cw**2, 0.0)
+    if steps.run_point.estimator == "mean_of_ratios":
+        gross = samples_cw
+    else:
+        gross = blocks.mean("force", window) / _or_one(speed) ** 2
+    terms = _air_terms(batch, window, steps, speed, source)
+    front = front_area_m2(batch.of_run("beam_m"), batch.of_run("bow_height_m"))
+    side = side_area_m2(batch.of_run("waterline_length_m"), batch.of_run("bow_height_m"))
+    air = air_parts(blocks, terms, steps.wind, front, side)
+    change = _end_speed_change(batch, window, source)
+    inertia = _inertia(batch, steps.run_point, change, speed)
+    return RunMeans(speed, gross, np.sqrt(variance), inertia, air)
+
+
 def _air_terms(
-    batch: Batch,
-    window: BoolArray,
-    steps: Steps,
-    speed: FloatArray,
-    use_mean: BoolArray,
-    single: str,
+    batch: Batch, window: BoolArray, steps: Steps, speed: FloatArray, source: str
 ) -> dict[str, FloatArray]:
     """Mean of each air term / v^2, per sample or from the averaged wind vector."""
     blocks = batch.blocks
@@ -104,18 +106,15 @@ def _air_terms(
     smooth = averaged_terms(blocks, steps.wind.averaging_s) if steps.wind.averaging_s else None
     count = np.maximum(blocks.count(window), 1.0)
     found = {}
-    for name in AIR_SUMS:
+    for name in air_sums(steps.wind):
         if by_ratio:
             sums = blocks[name] if smooth is None else smooth[name] * blocks.n
             found[name] = np.where(window, sums, 0.0).sum(axis=1) / count / _or_one(speed) ** 2
-            continue
-        of_source = {
-            source: blocks.total(f"{source}_{name}", window)
-            if smooth is None
-            else np.where(window, smooth[name] * blocks[f"{source}_inv_v2"], 0.0).sum(axis=1)
-            for source in (single, "mean")
-        }
-        found[name] = np.where(use_mean, of_source["mean"], of_source[single]) / count
+        elif smooth is None:
+            found[name] = blocks.mean(f"{source}_{name}", window)
+        else:
+            sums = smooth[name] * blocks[f"{source}_inv_v2"]
+            found[name] = np.where(window, sums, 0.0).sum(axis=1) / count
     return found
 
 

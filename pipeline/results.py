@@ -22,7 +22,15 @@ from pipeline.race import power_per_rower_w
 from pipeline.season_log import SeasonFactors, log_or_force, other_log_factors, retow_choice
 from pipeline.season_log.ties import TIE_SCHEMA
 from pipeline.speed import log_factor
-from pipeline.sureness import budget_of, curve_points, cw_bounds, run_point_ratio, scatter_of
+from pipeline.sureness import (
+    CURVE_SPEED_RATIOS,
+    DECLARED,
+    budget_of,
+    curve_points,
+    cw_bounds,
+    run_point_ratio,
+    scatter_of,
+)
 from pipeline.wind import mean_wind_angle_deg
 
 LEVEL = 0.95
@@ -61,11 +69,11 @@ def as_tables(
     def together(frames: list[pl.DataFrame]) -> pl.DataFrame:
         return pl.concat(frames).select(name, pl.all())
 
-    pooled = found is not None
+    pooled, at_declared = found is not None, pl.col("speed_ratio") == DECLARED
     run_points = together([_run_points(o, pooled) for o in outcomes])
-    budget = budget_of(outcomes, found)
+    budget = budget_of(outcomes, found, CURVE_SPEED_RATIOS if with_bands else (DECLARED,))
     bounds = cw_bounds(budget)
-    curves = together([_curves(o, bounds, pooled) for o in outcomes])
+    curves = together([_curves(o, bounds.filter(at_declared), pooled) for o in outcomes])
     assessments = assess(curves, run_points, tows)
     rejecting = [
         (season, check)
@@ -77,12 +85,12 @@ def as_tables(
         curves=with_status(curves, assessments, rejecting),
         log_factors=together([_log_factors(o, found) for o in outcomes]),
         assessments=assessments,
-        uncertainty_budget=budget.select(
+        uncertainty_budget=budget.filter(at_declared).select(
             name,
             pl.exclude("speed_ratio", "dof"),
             pl.when(pl.col("dof").is_finite()).then("dof").alias("dof"),
         ),
-        curve_points=curve_points(outcomes, found).select(name, pl.all())
+        curve_points=curve_points(outcomes, bounds).select(name, pl.all())
         if with_bands
         else pl.DataFrame(),
         season_links=_season_links(found).select(name, pl.all()),

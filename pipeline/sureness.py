@@ -23,8 +23,12 @@ from pipeline.uncertainty import Assumed, budget, combine, residual_scatter, run
 ARCHIVE_COEFFICIENT_SD: Final = 0.01
 """Of the one coefficient found for the whole archive (research, method.md 0.9; measured here)."""
 
-CURVE_SPEED_RATIOS: Final = tuple(np.linspace(0.85, 1.15, 13).tolist())
-"""Speeds of the points of a curve / declared speed: the range in which a curve is valid."""
+DECLARED: Final = 1.0
+"""The declared speed among speed ratios."""
+
+CURVE_SPEED_RATIOS: Final = tuple(thousandths / 1000 for thousandths in range(850, 1151, 25))
+"""Speeds of the points of a curve / declared speed: the range in which a curve is valid, with
+`DECLARED` in the middle."""
 
 USUAL_BEND: Final = 0.4
 """q where the archive is not asked for it (research, method.md 0.7: r of 0.3)."""
@@ -33,22 +37,6 @@ USUAL_BEND: Final = 0.4
 def scatter_of(o: Outcome, pooled: bool) -> curve.Scatter:
     """Scatter of single run points: of the season, or of each tow alone."""
     return pooled_scatter(o) if pooled else curve.own_scatter(o.free)
-
-
-def random_ratio(
-    o: Outcome, pooled: bool = True, speed_ratio: float = 1.0
-) -> tuple[FloatArray, FloatArray]:
-    """Relative random uncertainty of Cw at a speed / declared speed, and its degrees of freedom.
-
-    From the scatter of the run points about their curves (`scatter_of`).
-    """
-    scatter = scatter_of(o, pooled)
-    speed = speed_ratio * o.batch.of_tow("declared_speed_m_s")
-    errors = curve.covariance(o.points, o.free, scatter, speed)
-    cw = o.free.cw_at(speed)
-    known = np.isfinite(cw) & np.isfinite(errors.c0_variance_kg2_m2)
-    variance = np.where(known, errors.c0_variance_kg2_m2, 1.0)
-    return np.where(known, np.sqrt(variance) / np.where(known, cw, 1.0), 1.0), scatter.dof
 
 
 def pooled_scatter(o: Outcome) -> curve.Scatter:
@@ -75,9 +63,7 @@ def run_point_ratio(o: Outcome) -> FloatArray:
 
 
 def budget_of(
-    outcomes: Sequence[Outcome],
-    found: SeasonFactors | None,
-    speed_ratios: Sequence[float] = (1.0,),
+    outcomes: Sequence[Outcome], found: SeasonFactors | None, speed_ratios: Sequence[float]
 ) -> pl.DataFrame:
     """Every component of the uncertainty of Cw at some speeds, per tow with a curve.
 
@@ -90,32 +76,23 @@ def budget_of(
         speed_ratios: those speeds / declared speed.
 
     Returns:
-        Rows as `pipeline.uncertainty.budget` gives them, sorted by tow, speed and component.
+        Rows as `pipeline.uncertainty.budget` gives them.
     """
-    held = [_budget_of_batch(o, found, speed_ratios) for o in outcomes]
-    return pl.concat(held).sort("tow_id", "speed_ratio", "component")
+    return pl.concat([_budget_of_batch(o, found, speed_ratios) for o in outcomes])
 
 
-def curve_points(outcomes: Sequence[Outcome], found: SeasonFactors | None) -> pl.DataFrame:
+def curve_points(outcomes: Sequence[Outcome], bounds: pl.DataFrame) -> pl.DataFrame:
     """Curves over the speeds at which they are valid, with the 95 % interval of Cw at each.
+
+    Args:
+        outcomes: all batches of a method.
+        bounds: those of `cw_bounds` at `CURVE_SPEED_RATIOS`.
 
     Returns:
         `tow_id, speed_m_s, cw_kg_m, cw_lo_kg_m, cw_hi_kg_m`: a row per tow and speed of
         `CURVE_SPEED_RATIOS`, none at speeds from B on.
     """
-    points = pl.concat(
-        [
-            o.batch.tows.select(
-                "tow_id",
-                pl.lit(ratio).alias("speed_ratio"),
-                (ratio * pl.col("declared_speed_m_s")).alias("speed_m_s"),
-                pl.Series("cw_kg_m", o.cw_at(ratio)),
-            )
-            for ratio in CURVE_SPEED_RATIOS
-            for o in outcomes
-        ]
-    )
-    bounds = cw_bounds(budget_of(outcomes, found, CURVE_SPEED_RATIOS))
+    points = pl.concat([_at_speeds(o, CURVE_SPEED_RATIOS) for o in outcomes])
     at = ["tow_id", "speed_ratio"]
     return points.join(bounds, on=at, maintain_order="left").select(
         "tow_id",
@@ -139,45 +116,71 @@ def _budget_of_batch(
     o: Outcome, found: SeasonFactors | None, speed_ratios: Sequence[float]
 ) -> pl.DataFrame:
     bend = USUAL_BEND if found is None else _median_bend(o)
-    rows = pl.concat([_terms_of_budget(o, found, bend, ratio) for ratio in speed_ratios])
-    return budget(rows, _assumed(o, found, bend))
+    scatter = scatter_of(o, found is not None)
+    terms = _terms_of_tows(o, found, scatter)
+    cw, r = pl.col("cw_kg_m"), bend / (1.0 + bend) * pl.col("speed_ratio") ** 2
+    random = np.concatenate([_random_ratio(o, scatter, ratio) for ratio in speed_ratios])
+    rows = (
+        _at_speeds(o, speed_ratios)
+        .with_columns(pl.Series("random_ratio", random))
+        .filter(cw.is_finite())
+        .join(terms, on="tow_id", maintain_order="left")
+        .with_columns(
+            (2.0 / (1.0 - r)).alias("kappa"),
+            (pl.col("net_air_kg_m") / cw).alias("air_ratio"),
+            (pl.col("air_per_coefficient_kg_m") / cw).alias("air_per_coefficient"),
+        )
+    )
+    return budget(rows, _assumed(o, found, bend, terms["net_air_kg_m"].to_numpy()))
 
 
-def _net_air(o: Outcome) -> FloatArray:
-    """Net wind correction of Cw, mean over a tow's points, shape (tows,) [kg/m]."""
-    return o.batch.mean(o.air_kg_m - o.still_air_kg_m, o.used)
+def _at_speeds(o: Outcome, speed_ratios: Sequence[float]) -> pl.DataFrame:
+    """Every tow at every speed: `tow_id, speed_ratio, speed_m_s, cw_kg_m`, NaN from B on."""
+    return pl.concat(
+        [
+            o.batch.tows.select(
+                "tow_id",
+                pl.lit(ratio).alias("speed_ratio"),
+                (ratio * pl.col("declared_speed_m_s")).alias("speed_m_s"),
+                pl.Series("cw_kg_m", o.cw_at(ratio)),
+            )
+            for ratio in speed_ratios
+        ]
+    )
 
 
-def _terms_of_budget(
-    o: Outcome, found: SeasonFactors | None, bend: float, speed_ratio: float
-) -> pl.DataFrame:
-    """What `pipeline.uncertainty.budget` asks of tows, of those with a Cw at this speed."""
-    batch, cw = o.batch, o.cw_at(speed_ratio)
-    sound = np.isfinite(cw)
-    safe = np.where(sound, cw, 1.0)
-    random, dof = random_ratio(o, found is not None, speed_ratio)
-    r = bend / (1.0 + bend) * speed_ratio**2
+def _random_ratio(o: Outcome, scatter: curve.Scatter, speed_ratio: float) -> FloatArray:
+    """Relative random uncertainty of Cw at a speed / declared speed, shape (tows,)."""
+    speed = speed_ratio * o.batch.of_tow("declared_speed_m_s")
+    errors = curve.covariance(o.points, o.free, scatter, speed)
+    cw = o.free.cw_at(speed)
+    known = np.isfinite(cw) & np.isfinite(errors.c0_variance_kg2_m2)
+    variance = np.where(known, errors.c0_variance_kg2_m2, 1.0)
+    return np.where(known, np.sqrt(variance) / np.where(known, cw, 1.0), 1.0)
+
+
+def _terms_of_tows(o: Outcome, found: SeasonFactors | None, scatter: curve.Scatter) -> pl.DataFrame:
+    """What `pipeline.uncertainty.budget` asks of tows, as far as it is the same at any speed."""
+    batch = o.batch
     estimated = np.isfinite(o.estimated.factor)
+    net_air = batch.mean(o.air_kg_m - o.still_air_kg_m, o.used)
     # A larger coefficient takes more off as felt and puts more back for still air.
     still_unit = o.still_air_kg_m / np.maximum(o.still_air_coefficient, 1e-9)
     per_coefficient = batch.mean(still_unit - o.air_unit_kg_m, o.used)
     return batch.tows.select(
         "tow_id",
-        pl.lit(speed_ratio).alias("speed_ratio"),
         "season",
         log_part(o.steps.speed.source),
         pl.lit(o.steps.speed.source).alias("log"),
-        pl.lit(2.0 / (1.0 - r)).alias("kappa"),
-        pl.Series("random_ratio", random),
-        pl.Series("random_dof", dof),
+        pl.Series("random_dof", scatter.dof),
         pl.Series("calibrated", o.calibrated),
         pl.Series("log_sd", np.where(estimated, o.estimated.ln_sd, 0.0)),
         pl.Series("log_dof", np.where(estimated, o.estimated.dof, np.inf)),
         pl.Series("wander_sd", np.where(o.calibrated, 0.0, _wander(o, found))),
-        pl.Series("air_ratio", _net_air(o) / safe),
-        pl.Series("air_per_coefficient", per_coefficient / safe),
+        pl.Series("net_air_kg_m", net_air),
+        pl.Series("air_per_coefficient_kg_m", per_coefficient),
         pl.Series("temperature_known", o.temperature_known),
-    ).filter(pl.Series(sound))
+    )
 
 
 def _median_bend(o: Outcome) -> float:
@@ -199,7 +202,9 @@ def _wander(o: Outcome, found: SeasonFactors | None) -> FloatArray:
     return wander
 
 
-def _assumed(o: Outcome, found: SeasonFactors | None, bend: float) -> Assumed:
+def _assumed(
+    o: Outcome, found: SeasonFactors | None, bend: float, net_air_kg_m: FloatArray
+) -> Assumed:
     """What is assumed, or shown by repeat tows: of Cw at the declared speed, whatever is asked."""
     assumed = Assumed()
     if o.steps.wind.coefficients == "archive":
@@ -207,6 +212,6 @@ def _assumed(o: Outcome, found: SeasonFactors | None, bend: float) -> Assumed:
     if found is None:
         return assumed
     sound = np.isfinite(o.cw_at_declared)
-    air_ratio = _net_air(o)[sound] / o.cw_at_declared[sound]
+    air_ratio = net_air_kg_m[sound] / o.cw_at_declared[sound]
     usual_air = float(np.sqrt(np.mean(air_ratio**2))) if sound.any() else 0.0
     return assumed.as_repeats_show(found.tow_sd, 2.0 * (1.0 + bend), usual_air)

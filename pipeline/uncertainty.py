@@ -298,14 +298,14 @@ def combine(held: pl.DataFrame, level: float = 0.95) -> pl.DataFrame:
         level: coverage of the interval.
 
     Returns:
-        One row a tow and speed, sorted: `tow_id, speed_ratio, u_ratio`, `u_shared_ratio` (what
-        other tows share), `u_single_ratio`, `dof` (Welch-Satterthwaite), and `lo_ratio, hi_ratio`:
-        the bounds of Cw relative to its value, a t interval on the logarithm.
+        One row a tow and speed, in the order of `held`: `tow_id, speed_ratio, u_ratio`,
+        `u_shared_ratio` (what other tows share), `u_single_ratio`, `dof` (Welch-Satterthwaite), and
+        `lo_ratio, hi_ratio`: the bounds of Cw relative to its value, a t interval on the logarithm.
     """
     square = pl.col("u_ratio") ** 2
     single = pl.col("shared") == SINGLE
     rows = (
-        held.group_by("tow_id", "speed_ratio")
+        held.group_by("tow_id", "speed_ratio", maintain_order=True)
         .agg(
             square.sum().sqrt().alias("u_ratio"),
             square.filter(~single).sum().sqrt().alias("u_shared_ratio"),
@@ -314,7 +314,6 @@ def combine(held: pl.DataFrame, level: float = 0.95) -> pl.DataFrame:
         )
         .with_columns((pl.col("u_ratio") ** 4 / pl.col("spread")).alias("dof"))
         .with_columns(pl.col("dof").fill_nan(np.inf))
-        .sort("tow_id", "speed_ratio")
     )
     quantile = scipy.special.stdtrit(rows["dof"].clip(1.0).to_numpy(), 0.5 * (1.0 + level))
     half = rows["u_ratio"] * pl.Series(quantile, dtype=pl.Float64)

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from pipeline.arrays import BoolArray, FloatArray
-from pipeline.blocks import AIR_SUMS, RunBlocks
+from pipeline.blocks import AIR_SUMS, WIND_SIDES, RunBlocks
 from pipeline.hull import AIR_DENSITY_KG_M3
 from pipeline.method import Wind
 
@@ -43,6 +43,20 @@ class AirParts:
         """The air part for given coefficients, shape (runs,), kg/m."""
         return ahead * self.ahead + behind * self.behind + side * self.side
 
+    def where(self, chosen: BoolArray, other: "AirParts") -> "AirParts":
+        """These parts for the chosen runs, shape (runs,), those of the other elsewhere."""
+        return AirParts(
+            ahead=np.where(chosen, self.ahead, other.ahead),
+            behind=np.where(chosen, self.behind, other.behind),
+            side=np.where(chosen, self.side, other.side),
+        )
+
+
+def air_sums(wind: Wind) -> tuple[str, ...]:
+    """Those of `AIR_SUMS` that a wind model is made of."""
+    terms = {"none": (), "head": ("head",), "oblique": ("front", "side")}[wind.model]
+    return tuple(f"{term}_{side}" for term in terms for side in WIND_SIDES)
+
 
 def air_parts(
     blocks: RunBlocks,
@@ -59,7 +73,7 @@ def air_parts(
 
     Args:
         blocks: the runs.
-        terms: mean over the window of each air term / v^2, by its name in `AIR_SUMS`.
+        terms: mean over the window of each air term / v^2, by its name in `air_sums`.
         wind: the model.
         front_area_m2: shape (runs,).
         side_area_m2: shape (runs,).

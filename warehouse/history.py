@@ -21,14 +21,15 @@ from pipeline.consistency import (
 )
 from pipeline.errors import MissingKnowledgeError
 from pipeline.method import Method
-from pipeline.recompute import KnownWindows, recompute
+from pipeline.recompute import recompute
 from pipeline.register import draft_name, draft_register
 from pipeline.results import Recomputed
+from pipeline.run_cache import RunCache
 from warehouse.store import Store
 from warehouse.tables import run_blocks, typed_tows
 
-MOST_WINDOWS: Final = 100
-"""Window rules remembered, of 0.4 MB each for a thousand tows."""
+MOST_CACHED: Final = 200
+"""Entries of the cache, of 0.4 MB each for a thousand tows."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ class History:
         crews: listed boats with their crews, also those never towed.
         blocks: the runs of `tows`.
         simulated: the archive says that it is simulated.
-        windows: windows found so far; half of the time of a recompute goes into them.
+        cache: what was found of the runs so far.
     """
 
     tows: pl.DataFrame
@@ -49,7 +50,7 @@ class History:
     crews: pl.DataFrame
     blocks: RunBlocks
     simulated: bool
-    windows: KnownWindows = field(default_factory=dict)
+    cache: RunCache = field(default_factory=RunCache)
 
     @classmethod
     def of(cls, store: Store) -> Self:
@@ -83,9 +84,9 @@ class History:
         Raises:
             MissingKnowledgeError: the method says nothing about a season.
         """
-        if len(self.windows) > MOST_WINDOWS:
-            self.windows.clear()
-        made = recompute(method, self.tows, self.blocks, self.windows, with_bands=False)
+        if len(self.cache) > MOST_CACHED:
+            self.cache.clear()
+        made = recompute(method, self.tows, self.blocks, self.cache, with_bands=False)
         lines = draft_register(made.curves, self.tows, self.crews, self.last_day, method.validity)
         edition = pl.lit(draft_name(method.name)).alias("edition")
         return Draft(self, method, made, lines.with_columns(edition))

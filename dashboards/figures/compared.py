@@ -3,7 +3,7 @@
 import altair as alt
 import polars as pl
 
-from dashboards.figures.style import HEIGHT, OKABE_ITO, WIDTH, number, tips
+from dashboards.figures.style import HEIGHT, OKABE_ITO, SHAPES, WIDTH, number, tips
 from dashboards.words import Say
 
 
@@ -17,10 +17,13 @@ def curves_compared(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     x = number(alt.X, "speed_m_s", say("speed"))
     y = number(alt.Y, "cw_kg_m", say("cw"))
     low, high = alt.Y("cw_lo_kg_m:Q", title=say("cw")), alt.Y2("cw_hi_kg_m:Q")
-    ink = alt.Scale(range=[OKABE_ITO[1], OKABE_ITO[0]])
-    colour = alt.Color("method:N", title=say("method"), scale=ink, sort=None)
-    dash = alt.StrokeDash("method:N", title=say("method"), scale=alt.Scale(range=[[5, 4], [1, 0]]))
-    mark = alt.Shape("method:N", title=say("method"), scale=alt.Scale(range=["square", "circle"]))
+    # What as-published and a method on trial look like in the figures of all methods.
+    ink, marks = (alt.Scale(range=[looks[0], looks[4]]) for looks in (OKABE_ITO, SHAPES))
+    dashes = alt.Scale(range=[[5, 4], [1, 0]])
+    # One legend, that of the points: colour and dash of the lines would each have their own.
+    colour = alt.Color("method:N", scale=ink, sort=None, legend=None)
+    dash = alt.StrokeDash("method:N", scale=dashes, sort=None, legend=None)
+    look = {"title": say("method"), "sort": None}
     base = alt.Chart(frame)
     line = base.transform_filter("datum.kind == 'line'")
     point = base.transform_filter("datum.kind == 'point'")
@@ -32,8 +35,8 @@ def curves_compared(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
             x,
             y,
             colour,
-            mark,
-            fill=alt.Fill("method:N", scale=ink, legend=None),
+            alt.Shape("method:N", scale=marks, **look),
+            alt.Fill("method:N", scale=ink, **look),
             fillOpacity=alt.condition("datum.used", alt.value(0.85), alt.value(0)),
             tooltip=tips(
                 ("method:N", say("method")),

@@ -63,7 +63,7 @@ def season_ladder(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
             "step:N",
             title=say("step"),
             sort=order,
-            axis=alt.Axis(labelExpr=label, labelAngle=0, orient="top"),
+            axis=alt.Axis(labelExpr=label, labelAngle=-45, orient="top"),
         ),
         alt.Y("season:O", title=say("season")),
     )

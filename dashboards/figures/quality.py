@@ -11,7 +11,7 @@ STATUSES = ["accepted", "flagged", "rejected"]
 
 def statuses(frame: pl.DataFrame, say: Say) -> alt.Chart:
     """Curves per season by status, of one method; `frame` is `Views.status_counts`."""
-    shades = alt.Scale(domain=STATUSES, range=[OKABE_ITO[5], OKABE_ITO[4], OKABE_ITO[6]])
+    shades = alt.Scale(domain=STATUSES, range=[OKABE_ITO[5], OKABE_ITO[1], OKABE_ITO[6]])
     return (
         alt.Chart(frame)
         .mark_bar(stroke="black", strokeWidth=0.5)

@@ -125,7 +125,7 @@ def register_changes(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
         alt.Chart(frame)
         .mark_point(size=60, filled=True, opacity=0.85, cursor="pointer")
         .encode(
-            number(alt.X, "cw_ratio", say("ratio_cw")),
+            number(alt.X, "cw_ratio", say("column.cw_ratio")),
             number(alt.Y, "time_ratio", say("time_ratio")),
             colour("to_edition", say("edition")),
             shape("to_edition", say("edition")),
@@ -133,7 +133,7 @@ def register_changes(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
             tooltip=tips(
                 ("name:N", say("name")),
                 ("fsn_no:N", "FSN"),
-                ("cw_ratio:Q", say("ratio_cw")),
+                ("cw_ratio:Q", say("column.cw_ratio")),
                 ("time_ratio:Q", say("time_ratio")),
             ),
         )

@@ -30,12 +30,19 @@ def colour(field: str, title: str, **more: Any) -> alt.Color:
 
 def method_colour(say: Say) -> alt.Color:
     """A method by colour: every method that ships has the same in every figure."""
-    return alt.Color("method:N", title=say("method"), scale=_of_methods(OKABE_ITO), sort=None)
+    scale = _of_methods(OKABE_ITO)
+    return alt.Color("method:N", title=say("method"), scale=scale, sort=None, legend=_drawn())
 
 
 def method_shape(say: Say) -> alt.Shape:
     """The same method by shape."""
-    return alt.Shape("method:N", title=say("method"), scale=_of_methods(SHAPES), sort=None)
+    scale = _of_methods(SHAPES)
+    return alt.Shape("method:N", title=say("method"), scale=scale, sort=None, legend=_drawn())
+
+
+def _drawn() -> alt.Legend:
+    """Only methods that are drawn: those that stand side by side, of all that have a look."""
+    return alt.Legend(values=alt.ExprRef("domain('xOffset')"))
 
 
 def _of_methods(looks: Sequence[str]) -> alt.Scale:

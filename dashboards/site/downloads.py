@@ -3,11 +3,20 @@
 from pathlib import Path
 from typing import Final
 
-from warehouse.editions.folder import CSV, NOTES, NOTES_EN, XLSX, edition_names, edition_path
+from warehouse.editions.folder import (
+    CSV,
+    NOTES,
+    NOTES_EN,
+    NOTICE,
+    NOTICE_EN,
+    XLSX,
+    edition_names,
+    edition_path,
+)
 from warehouse.store import Store
 
 DOWNLOADS: Final = "downloads"
-SHEETS: Final = (CSV, XLSX, NOTES, NOTES_EN)
+SHEETS: Final = (CSV, XLSX, NOTICE, NOTES, NOTICE_EN, NOTES_EN)
 
 
 def copy_sheets(store: Store, folder: Path) -> None:

@@ -215,7 +215,7 @@ def _reproducibility(views: Views, methods: list[str]) -> Page:
         ),
         "variance_components": (
             "components",
-            None,
+            "components_note",
             lambda: views.table("variance_components").drop_nulls("sd_ratio"),
             "method scope component n n_boats sd_ratio lo hi share",
         ),

@@ -30,6 +30,7 @@ OWN_FILES: Final = ("site.css", "site.js")
 DIGITS: Final = (
     ("_kg_m", 2), ("_m_s", 2), ("_deg", 0), ("_kg", 0), ("_w", 1), ("_s", 0), ("cw_sd", 2),
     ("_m", 2), ("step_sd", 4), ("_sd", 1), ("dof", 1), ("before_ratio", 6), ("after_ratio", 6),
+    ("slope", 5), ("slope_lo", 5), ("slope_hi", 5),
 )  # fmt: skip
 """Decimals shown by the ending of a column's name; 4 otherwise."""
 
@@ -62,7 +63,7 @@ CODES: Final = {
 
 LONG: Final = {
     *("flags", "cut_reason", "reason", "speed_reason", "causes", "message", "meaning", "decision"),
-    "candidates",
+    *("candidates", "name"),
 }
 """Columns of texts that may take several lines."""
 
@@ -137,9 +138,9 @@ def chart_specifications() -> str:
 
 
 def _words_of_charts(say: Say) -> dict[str, str]:
-    """Names of columns and codes, and yes and no, for the table of a chart."""
+    """Names of columns and codes, yes and no, for the table of a chart; what an empty one says."""
     named = {key: say(key) for key in WORDS if key.startswith(("column.", "code."))}
-    return named | {"true": say("yes"), "false": say("no")}
+    return named | {"true": say("yes"), "false": say("no"), "no_values": say("no_values")}
 
 
 def specification(figure: Callable[..., Any], say: Callable[[str], str]) -> dict[str, Any]:
@@ -235,10 +236,10 @@ def _cells(column: pl.Series, root: str) -> list[Markup]:
     if column.dtype.is_integer() and name != "direction":
         return [_integer(value) for value in column]
     show = _shower(name, root)
-    cell = _LONG_CELL if name in LONG else _CELL
+    mark = _LONG if name in LONG else Markup("")
 
     def made(value: Any) -> Markup:
-        return _EMPTY if value is None else _shown(value, show, cell)
+        return _EMPTY if value is None else _shown(value, show, mark)
 
     if isinstance(column.dtype, pl.List):
         return [made(value) for value in column]
@@ -246,10 +247,10 @@ def _cells(column: pl.Series, root: str) -> list[Markup]:
     return [of[value] for value in column]
 
 
-_SAME_CELL = Markup("<td>{}</td>")
+_SAME_CELL = Markup("<td{}>{}</td>")
 """A cell whose text is its value; others have the value in `data-v`."""
-_CELL = Markup('<td data-v="{}">{}</td>')
-_LONG_CELL = Markup('<td class="w" data-v="{}">{}</td>')
+_CELL = Markup('<td{} data-v="{}">{}</td>')
+_LONG = Markup(" class=w")
 _EMPTY = Markup("<td></td>")
 
 
@@ -266,17 +267,17 @@ def _integer(value: int | None) -> Markup:
     return Markup(f"<td class=i>{text}</td>")  # noqa: S704 - a number
 
 
-def _shown(value: Any, show: Callable[[Any], Markup], cell: Markup) -> Markup:
+def _shown(value: Any, show: Callable[[Any], Markup], mark: Markup) -> Markup:
     plain = ", ".join(value) if isinstance(value, pl.Series | list) else str(value)
     shown = show(value)
     if shown == escape(plain):
-        return _SAME_CELL.format(shown)
-    return cell.format(plain, shown)
+        return _SAME_CELL.format(mark, shown)
+    return _CELL.format(mark, plain, shown)
 
 
 def _shower(name: str, root: str) -> Callable[[Any], Markup]:
     """How values of a column are shown."""
-    if name == "fsn_no":
+    if name in ("fsn_no", "influence_boat"):
         return lambda value: Markup('<a href="{}{}">{}</a>').format(root, boat_path(value), value)
     return SHOWERS.get(name, _code if name in CODES else _plain)
 

@@ -72,7 +72,7 @@ def _type_tables(views: Views) -> list[Section]:
         )
         shown = outliers.with_columns(after="method")
         table = Table("type_outliers", shown, columns, "types_outliers", ["after", "boat_type"])
-        found.append(Section("types_outliers", tables=[table]))
+        found.append(Section("types_outliers", "types_outliers_note", tables=[table]))
     wanted = {
         "type_consistency": (
             "types_lines",
@@ -81,7 +81,7 @@ def _type_tables(views: Views) -> list[Section]:
         ),
         "type_homogeneity": (
             "types_homogeneity",
-            None,
+            "types_homogeneity_note",
             "boat_type n n_boats p_value power_at_10pct noise_share shared_b_m_s",
         ),
     }

@@ -10,6 +10,7 @@ from typing import Final, TypeAlias
 from dashboards.words.codes import CODES
 from dashboards.words.columns import COLUMNS
 from dashboards.words.pages import PAGES
+from dashboards.words.report import REPORT
 
 LANGUAGES: Final = ("nl", "en")
 
@@ -19,7 +20,7 @@ Say = Callable[[str], str]
 Words: TypeAlias = Mapping[str, tuple[str, str]]
 """Texts in Dutch and English by key."""
 
-WORDS: Final[Words] = PAGES | COLUMNS | CODES
+WORDS: Final[Words] = PAGES | REPORT | COLUMNS | CODES
 
 
 def both(key: str, words: Words = WORDS) -> tuple[str, str]:

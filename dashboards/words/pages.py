@@ -33,76 +33,11 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "search": ("Zoek", "Search"),
     "rows": ("Regels:", "Rows:"),
     "all": ("alle", "all"),
+    "no_values": ("geen waarden", "no values"),
     "choose": ("Toon", "Show"),
     "clear": ("Wis keuze", "Clear selection"),
     "yes": ("ja", "yes"),
     "no": ("nee", "no"),
-    # Report of a rebuild
-    "report": ("Verslag van de herberekening", "Report of the rebuild"),
-    "report_lines": ("Veranderde regels van de concepten", "Changed lines of the drafts"),
-    "report_tows": ("Sleepproeven", "Tows"),
-    "report_set_aside": ("Terzijde gelegd", "Set aside"),
-    "report_factors": ("Logfactoren die verschoven", "Log factors that moved"),
-    "report_checks": ("Controles", "Checks"),
-    "report_none": ("Niets.", "Nothing."),
-    "report_nothing": (
-        "Er is niets veranderd sinds het vorige verslag.",
-        "Nothing changed since the last report.",
-    ),
-    "report_first": ("Eerste verslag: alles is nieuw.", "First report: everything is new."),
-    "report_beyond": ("buiten hun marge", "beyond their interval"),
-    "report_failed": ("De herberekening is mislukt", "The rebuild failed"),
-    "column.what": ("Wat", "What"),
-    "column.old_factor": ("Factor was", "Factor was"),
-    "column.new_factor": ("Factor is", "Factor is"),
-    "column.ratio": ("Verhouding", "Ratio"),
-    "column.old_cw_kg_m": ("Cw was [kg/m]", "Cw was [kg/m]"),
-    "column.new_cw_kg_m": ("Cw is [kg/m]", "Cw is [kg/m]"),
-    "column.gain_in_two_hours_s": ("Winst in 2 uur [s]", "Gain in 2 h [s]"),
-    "column.exceeds_interval": ("Buiten marge", "Beyond interval"),
-    "column.outcome": ("Uitkomst", "Outcome"),
-    "code.number": ("aantal", "number"),
-    "code.first": ("waaronder", "among them"),
-    "code.lost": ("ontbreekt", "missing"),
-    "code.set_aside": ("terzijde gelegd", "set aside"),
-    "code.listed": ("op de lijst", "on the list"),
-    "code.limit": ("hoogstens toegestaan deel", "largest share allowed"),
-    "code.new": ("nieuw", "new"),
-    "code.mended": ("hersteld", "mended"),
-    "code.gone": ("weg", "gone"),
-    "code.samples": ("metingen veranderd", "samples changed"),
-    "code.list": ("lijst veranderd", "list changed"),
-    "code.passed": ("in orde", "passed"),
-    "code.warn": ("LET OP", "WARNING"),
-    "code.error": ("FOUT", "ERROR"),
-    "code.tow": ("andere proef telt", "another tow counts"),
-    "code.other_input": ("andere proeven veranderden", "other tows changed"),
-    "code.input_and_code": ("invoer en code", "input and code"),
-    "code.code_or_other_input": ("code of andere proeven", "code or other tows"),
-    "code.unseparated": ("methode en invoer", "method and input"),
-    "code.unexplained": ("onverklaard", "unexplained"),
-    "code.tables_fit_their_schemas": ("tabellen volgens schema", "tables fit their schemas"),
-    "code.counts_agree": ("aantallen kloppen", "counts agree"),
-    "code.few_tows_set_aside": ("weinig terzijde gelegd", "few tows set aside"),
-    "code.log_factors_stayed": ("logfactoren gelijk gebleven", "log factors stayed"),
-    "code.boats_stayed_within_their_intervals": (
-        "sloepen binnen hun marge gebleven",
-        "boats stayed within their intervals",
-    ),
-    "code.editions_can_be_made_again": (
-        "edities zijn na te rekenen",
-        "editions can be made again",
-    ),
-    "code.every_listed_tow_accounted_for": (
-        "elke proef van de lijst is terug te vinden",
-        "every listed tow accounted for",
-    ),
-    "code.every_tow_has_a_curve_row": ("elke proef heeft een kromme", "every tow has a curve"),
-    "code.most_tows_sound": ("de meeste proeven zijn goed", "most tows are sound"),
-    "code.steps_multiply_to_the_total": (
-        "stappen vermenigvuldigen tot het geheel",
-        "steps multiply to the total",
-    ),
     # Index
     "index_intro": (
         "De weerstand van roeisloepen wordt gemeten met een sleepproef. Deze bladen laten zien wat "
@@ -155,28 +90,30 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     ),
     # Register
     "register_note": (
-        "A, B en Cw gelden van 85 tot 115 % van de opgegeven roeisnelheid. Een editie die "
-        "concept heet, is niet gepubliceerd.",
-        "A, B and Cw hold from 85 to 115 % of the declared speed. An edition called concept is "
-        "a draft: not published.",
+        "A en B gelden van 85 tot 115 % van de opgegeven roeisnelheid; Cw is die bij deze "
+        "snelheid, met haar 95 %-interval. Een verlopen regel heeft geen A, B en Cw. Een editie "
+        "die concept heet, is niet gepubliceerd.",
+        "A and B hold from 85 to 115 % of the declared speed; Cw is that at this speed, with its "
+        "95 % interval. An expired line has no A, B and Cw. An edition called concept is a draft: "
+        "not published.",
     ),
     # Due
     "due_list": ("Wie moet weer slepen", "Who has to tow again"),
     "due_list_note": (
         "Tot wanneer elke proef telt, beoordeeld op de dag van de laatste proef of wedstrijd "
         "(Gezien op), en de snelheid voor de volgende: met 70 tot 90 W per roeier (heren) of 40 "
-        "tot 55 W (dames) op de bekende kromme. Buiten de kromme: verder dan 85 tot 115 % van de "
-        "opgegeven snelheid.",
+        "tot 55 W (dames) op de bekende kromme (Laagste en Hoogste). Buiten de kromme: verder dan "
+        "85 tot 115 % van de opgegeven snelheid.",
         "Until when each tow counts, as judged on the day of the last tow or race (As of), and the "
         "speed of the next one: with 70 to 90 W a rower (men) or 40 to 55 W (women) on the known "
-        "curve. Beyond the curve: outside 85 to 115 % of the declared speed.",
+        "curve (Lowest and Highest). Beyond the curve: outside 85 to 115 % of the declared speed.",
     ),
     "retow_choice": ("Welke proeven het meest leren", "Which tows would tell most"),
     "retow_choice_note": (
         "Sloepen die, opnieuw gesleept met dGPS, de logfactoren van de seizoenen het zekerst "
-        "maken; de eerste leert het meest. Voor en na: standaardafwijking van een factor.",
+        "maken; de eerste leert het meest. Sd: standaardafwijking van een factor, voor en na.",
         "Boats that, towed again with dGPS, make the log factors of the seasons surest; the first "
-        "tells most. Before and after: standard deviation of a factor.",
+        "tells most. Sd: standard deviation of a factor, before and after.",
     ),
     # Boat
     "facts": ("Maten", "Dimensions"),
@@ -208,9 +145,11 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "boat_out_back": ("Heen tegen terug, en de wind", "Out against back, and the wind"),
     "boat_out_back_note": (
         "Cw voor en na de luchtcorrectie, heen (runs 1-3) en terug (runs 4-6). Na de correctie "
-        "horen heen en terug samen te vallen.",
+        "horen heen en terug samen te vallen. Windhoek: 0 en 360 graden is van voren, 180 van "
+        "achteren.",
         "Cw before and after the air correction, out (runs 1-3) and back (runs 4-6). After the "
-        "correction out and back should coincide.",
+        "correction out and back should coincide. Wind angle: 0 and 360 degrees are from ahead, "
+        "180 from behind.",
     ),
     "boat_lineage": ("Herkomst", "Lineage"),
     "boat_lineage_note": (
@@ -220,10 +159,12 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     # Types
     "types_charts": ("B en Cw per type", "B and Cw per type"),
     "types_note": (
-        "Dezelfde sloepen onder twee methoden, op dezelfde assen. Sleep over een grafiek om "
-        "sloepen te kiezen: de lijst eronder toont ze. Klik op een punt om naar de sloep te gaan.",
-        "The same boats under two methods, on the same axes. Drag over a chart to select boats: "
-        "the list below shows them. Click a point to go to the boat.",
+        "De nieuwste proef van elke sloep en ploeg onder twee methoden, op dezelfde assen. Sloepen "
+        "zonder type staan er niet bij. Sleep over een grafiek om sloepen te kiezen: de lijst "
+        "eronder toont ze. Klik op een punt om naar de sloep te gaan.",
+        "The newest tow of each boat and crew under two methods, on the same axes. Boats without "
+        "a type are left out. Drag over a chart to select boats: the list below shows them. Click "
+        "a point to go to the boat.",
     ),
     "b_weight": ("B tegen gewicht", "B against weight"),
     "b_speed": ("B tegen opgegeven snelheid", "B against declared speed"),
@@ -236,10 +177,33 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "pair_second": ("met", "with"),
     "types_lines": ("Hangt het af van gewicht of snelheid?", "Does it follow weight or speed?"),
     "types_lines_note": (
-        "Een rechte lijn per type. Een helling waarvan het interval 0 bevat, is niet aangetoond.",
-        "A straight line per type. A slope whose interval holds 0 is not shown to exist.",
+        "Een rechte lijn per type, door de nieuwste proef van elke sloep en ploeg (n). De helling "
+        "is de verandering van de grootheid per kg of per m/s (van ln tegen ln: de macht); een "
+        "helling waarvan het interval 0 bevat, is niet aangetoond. R²: deel van de spreiding dat "
+        "de lijn verklaart. q is (v/B)²/(1 - (v/B)²) bij de standaardsnelheid, de middelste "
+        "opgegeven snelheid van het type.",
+        "A straight line per type, through the newest tow of each boat and crew (n). The slope is "
+        "the change of the quantity per kg or per m/s (of ln against ln: the power); a slope whose "
+        "interval holds 0 is not shown to exist. R²: share of the spread that the line explains. q "
+        "is (v/B)²/(1 - (v/B)²) at the standard speed, the median declared speed of the type.",
     ),
     "types_homogeneity": ("Kan één B voor het type?", "Could one B serve the type?"),
+    "types_homogeneity_note": (
+        "p: kans op zoveel verschil tussen de bochten van n proeven als alle sloepen dezelfde B "
+        "hebben; een kleine p zegt dat ze die niet hebben. Kans 10 % te zien: hoe waarschijnlijk "
+        "een echte spreiding van 10 % in B hier was opgemerkt. Deel ruis: deel van de spreiding "
+        "dat de runs alleen al geven.",
+        "p: chance of so large a difference between the bends of n tows if all boats have the same "
+        "B; a small p says that they have not. Chance to see 10 %: how likely a true spread of B "
+        "of 10 % would have been noticed here. Share of noise: share of the spread that the runs "
+        "alone give.",
+    ),
+    "types_outliers_note": (
+        "Ver van wat de andere sloepen van het type voorspellen, in standaardafwijkingen (sd) van "
+        "die voorspelling. Een mogelijke verklaring is iets om na te gaan, niet bewezen.",
+        "Far from what the other boats of the type predict, in standard deviations (sd) of that "
+        "prediction. A possible cause is something to look at, not proven.",
+    ),
     "types_outliers": ("Sloepen die afwijken van hun type", "Boats that differ from their type"),
     # Corrections
     "log_factors": ("Logfactor per seizoen", "Log factor per season"),
@@ -278,20 +242,38 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     ),
     "repeats": ("Elk paar", "Every pair"),
     "repeats_note": (
-        "ln(nieuwe Cw / oude Cw). Klik op een punt om naar de sloep te gaan.",
-        "ln(new Cw / old Cw). Click a point to go to the boat.",
+        "ln(nieuwe Cw / oude Cw), bij het seizoen van de nieuwe proef. E_n: het verschil gedeeld "
+        "door beide 95 %-intervallen samen; voorbij 1 spreken twee proeven elkaar tegen. Klik op "
+        "een punt om naar de sloep te gaan.",
+        "ln(new Cw / old Cw), at the season of the new tow. E_n: the difference divided by both "
+        "95 % intervals together; beyond 1 two tows disagree. Click a point to go to the boat.",
     ),
     "components": ("Waar de spreiding vandaan komt", "Where the spread comes from"),
+    "components_note": (
+        "Wat verschillen tussen sloepen, tussen seizoenen, van een sloep tussen seizoenen, en "
+        "tussen runs bijdragen aan de spreiding van Cw: standaardafwijking met 95 %-interval, uit "
+        "één model van alle proeven met een kromme (n). Elke ploeg van een sloep telt apart als "
+        "sloep, en na een verbouwing opnieuw.",
+        "What differences between boats, between seasons, of a boat between seasons, and between "
+        "runs add to the spread of Cw: standard deviation with 95 % interval, from one model of "
+        "all tows with a curve (n). Each crew of a boat counts as a boat, and again after an "
+        "alteration.",
+    ),
     "predicted": ("Voorspeld zonder slepen", "Predicted without towing"),
     "predicted_note": (
-        "Cw uit lengte, gewicht, breedte en type tegen Cw uit de proef. Op de lijn zijn ze gelijk.",
-        "Cw from length, weight, beam and type against Cw from the tow. On the line they agree.",
+        "Cw uit lengte, gewicht, breedte en type tegen Cw uit de proef. Op de lijn zijn ze gelijk. "
+        "Verschilt: meer dan de onzekerheid van beide.",
+        "Cw from length, weight, beam and type against Cw from the tow. On the line they agree. "
+        "Disagrees: by more than the uncertainty of both.",
     ),
     # Changes
     "changes_list": ("Gewijzigde regels", "Changed lines"),
     "changes_note": (
-        "Verhouding nieuw / oud. Een tijd van 0,99 is 1 % sneller bij gelijk vermogen.",
-        "Ratio new / old. A time of 0.99 is 1 % faster at equal power.",
+        "Cw en vermogen: nieuw / oud, bij de oude opgegeven snelheid. Tijd 0,99: voor hetzelfde "
+        "vermogen moet de ploeg 1 % sneller zijn. De factoren onder Oorzaken vermenigvuldigen tot "
+        "Cw nieuw / oud.",
+        "Cw and power: new / old, at the old declared speed. Time 0.99: for the same power the "
+        "crew has to be 1 % faster. The factors under Causes multiply to Cw new / old.",
     ),
     # Quality
     "statuses": ("Stand van de krommen", "Status of the curves"),
@@ -335,8 +317,10 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     ),
     "downloads": ("Downloads", "Downloads"),
     "downloads_note": (
-        "Het register van elke editie zoals uitgegeven, met de toelichting in twee talen.",
-        "The register of every edition as published, with the release notes in Dutch and English.",
+        "Het register van elke editie zoals uitgegeven, met het bericht aan de leden en de "
+        "toelichting in twee talen.",
+        "The register of every edition as published, with the notice to the members and the "
+        "release notes in Dutch and English.",
     ),
     "types_pair": ("Twee typen naast elkaar", "Two types side by side"),
     "types_pair_note": (
@@ -347,24 +331,31 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "season_links_note": (
         "Waar een log binnen een seizoen is vervangen, heeft elk deel een eigen factor; de "
         "grafiek hierboven toont hun gemiddelde. De andere log heeft ook een regel: de methode "
-        "gebruikt hem niet.",
+        "gebruikt hem niet. Grootste invloed: hoever de factor hoogstens verschuift als één sloep "
+        "ontbreekt. Verschil: met de factor die niet let op welke sloep het is (Zonder sloepen).",
         "Where a log was replaced within a season each part has its own factor; the chart above "
-        "shows their mean. The other log has a line too: the method does not use it.",
+        "shows their mean. The other log has a line too: the method does not use it. Largest "
+        "influence: how far the factor moves at most when one boat is left out. Difference: with "
+        "the factor that does not know which boat is which (Without boats).",
     ),
     "season_steps": ("Log of krachtmeter?", "Log or load cell?"),
     "season_steps_note": (
         "Een seizoen kan afwijken van de andere proeven van dezelfde sloepen doordat de log of "
         "doordat de krachtmeter verkeerd wees. De bocht van de krommen onderscheidt die twee. "
-        "Stappen in ln Cw.",
+        "Stappen in ln Cw, met hun standaardafwijking (sd); voor een stap onder 0,03 of onder twee "
+        "keer zijn sd is geen oorzaak gezocht.",
         "A season may differ from the other tows of the same boats because the log or because the "
-        "load cell was wrong. The bend of the curves tells the two apart. Steps in ln Cw.",
+        "load cell was wrong. The bend of the curves tells the two apart. Steps in ln Cw, with "
+        "their standard deviation (sd); for a step below 0.03 or below twice its sd no cause is "
+        "looked for.",
     ),
     "eras": ("Staat een tijdvak apart?", "Does an era stand apart?"),
     "eras_note": (
         "Volgende proef van dezelfde sloepen, in een later tijdvak, tegen die in het tijdvak "
-        "zelf, zonder veroudering: mediaan met 95 %-interval. In de grafiek alle typen samen.",
+        "zelf, zonder veroudering: mediaan van n paren met 95 %-interval. In de grafiek alle "
+        "typen samen.",
         "Next tow of the same boats, in a later era, against that in the era itself, without "
-        "ageing: median with 95 % interval. The chart has all types together.",
+        "ageing: median of n pairs with 95 % interval. The chart has all types together.",
     ),
     "assessments": ("Controles", "Checks"),
     "assessments_note": (

@@ -12,7 +12,7 @@ import polars as pl
 import polars.selectors as cs
 from pydantic import BaseModel, ConfigDict, StringConstraints
 
-from dashboards.site.render import DIGITS, KEPT
+from dashboards.site.render import DIGITS, KEPT, LONG
 from dashboards.workbench.form import controls
 from pipeline.errors import HerijkError
 from pipeline.method import (
@@ -131,6 +131,7 @@ class Bench:
             "boats": _rows(boats.select("fsn_no", "name").sort("name", "fsn_no")),
             "types": boats["boat_type"].drop_nulls().unique().sort().to_list(),
             "digits": DIGITS,
+            "long": sorted(LONG),
             "base": DEFAULT_BASE,
             "against": DEFAULT_AGAINST,
             "trial": TRIAL,

@@ -131,7 +131,7 @@ TEXTS: Final[Words] = {
     "column.gain_in_two_hours_s": ("Tijd in 2 uur [s]", "Time in 2 h [s]"),
     "column.old_rank": ("Plaats voor", "Rank before"),
     "column.new_rank": ("Plaats na", "Rank after"),
-    "column.exceeds_interval": ("Meer dan onzeker", "Beyond uncertainty"),
+    "column.exceeds_interval": ("Meer dan on\u00adzeker", "Beyond un\u00adcer\u00adtainty"),
     # Steps
     "step.speed": ("Snelheid", "Speed"),
     "step.calibration": ("IJking op gps", "Calibration on GPS"),

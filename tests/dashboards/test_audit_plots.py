@@ -31,7 +31,7 @@ def type_plots(built, tmp_path_factory):
             "boat_type, '2009-2011' AS era, 9 AS n, 0.87 AS shift_ratio, 0.85 AS lo, 0.9 AS hi, "
             "true AS apart, 0 AS n_ageing, '' AS reason"
         )
-    return drawn(store, root / "plots", "Kuikensloep")
+    return drawn(store, root / "plots", "Kuikensloep", "Kromhoutwhaler")
 
 
 def words(svg):
@@ -41,8 +41,14 @@ def words(svg):
 def test_a_type_has_its_plots_before_and_after_correction(type_plots):
     for figure in ("a_weight", "b_weight", "cw_standard_weight", "b_speed", "shared_bend"):
         for method in ("as-published", "rebased-2015"):
-            assert f"Kuikensloep, {method}" in words(type_plots[f"{figure}-{method}"])
+            assert f"Kuikensloep, Kromhoutwhaler, {method}" in words(
+                type_plots[f"{figure}-{method}"]
+            )
     assert {"eras-Kuikensloep", "repeats"} <= type_plots.keys()
+
+
+def test_a_plot_of_one_type_names_no_other(type_plots):
+    assert "Kuikensloep" in words(type_plots["eras-Kuikensloep"])
 
 
 def test_a_plot_says_of_what_it_is_and_that_it_is_simulated(type_plots):

@@ -21,6 +21,8 @@ FLAGS = [
     *("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync"),
     *("--disable-background-networking", "--disable-component-update"),
 ]
+HIDDEN_BARS = ["--hide-scrollbars"]
+"""What a browser without a window is told by itself: people's windows have bars."""
 SHOTS = ROOT / "ci-output"
 WIDTHS = {"desktop": (1280, 900), "phone": (390, 844)}
 
@@ -41,7 +43,9 @@ def browser(site):
     from playwright.sync_api import sync_playwright  # noqa: PLC0415 - not needed when skipped
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        browser = playwright.chromium.launch(
+            executable_path=CHROMIUM, args=FLAGS, ignore_default_args=HIDDEN_BARS
+        )
         yield browser
         browser.close()
 
@@ -86,6 +90,17 @@ def visitor(browser, site):
         assert visitor.faults == []
 
 
+def scrolled(page, boxes):
+    """What in these boxes is wider than they are, with a bar at their side as many rows have."""
+    return page.evaluate(
+        "boxes => [...document.querySelectorAll(boxes)].filter(b => {"
+        " if (b.matches('.scroll')) b.style.overflowY = 'scroll';"
+        " return b.scrollWidth > b.clientWidth;"
+        "}).map(b => b.closest('[data-table], figure').outerHTML.slice(0, 80))",
+        boxes,
+    )
+
+
 def shown(page, table):
     return page.locator(f"[data-table={table}] tbody tr:visible")
 
@@ -98,6 +113,10 @@ def test_every_page_opens_and_draws(visitor, attacked, name, width):
     page = visitor.open(boat_path(attacked) if name == "boat" else name)
     visitor.draw_all()
     assert page.evaluate("document.documentElement.scrollWidth") <= columns
+    for _ in page.locator("[data-language]").all():
+        page.locator("[data-language][aria-pressed=false]").click()
+        visitor.draw_all()
+        assert scrolled(page, ".chart, .scroll" if width == "desktop" else ".chart") == []
     assert page.locator(".broken").count() == 0
     SHOTS.mkdir(exist_ok=True)
     page.screenshot(path=SHOTS / f"{name.removesuffix('.html')}-{width}.png", full_page=True)
@@ -180,6 +199,14 @@ def test_the_uncertainty_can_be_read_without_its_chart(visitor, attacked, built)
     )
 
 
+def test_a_chart_s_table_says_out_and_back_in_words(visitor, attacked):
+    page = visitor.open(boat_path(attacked))
+    figure = page.locator("figure[data-figure=out_and_back]")
+    figure.locator("summary").click()
+    text = figure.locator("details tbody").inner_text()
+    assert {"heen", "terug", "zonder luchtcorrectie"} <= set(text.replace("\n", "\t").split("\t"))
+
+
 def test_a_name_is_no_formula_in_a_download(visitor):
     page = visitor.open("register.html")
     with page.expect_download() as caught:
@@ -213,6 +240,25 @@ def test_choosing_a_method_changes_the_curve(visitor, attacked):
         arg=before,
     )
     assert "as-published" in page.locator("figure .picked").first.inner_text()
+
+
+def test_print_says_what_is_chosen(visitor):
+    page = visitor.open("register.html")
+    page.locator("select[name=edition]").select_option(EDITIONS[0])
+    page.emulate_media(media="print")
+    assert page.locator("select[name=edition]").is_visible()
+
+
+def test_a_chart_without_values_says_so(visitor):
+    page = visitor.open("quality.html")
+    page.locator("figure[data-figure=statuses] svg").wait_for()
+    page.evaluate(
+        "document.querySelector('select').append(new Option('none'));"
+        "document.querySelector('select').value = 'none';"
+        "document.querySelector('select').dispatchEvent(new Event('change', {bubbles: true}))"
+    )
+    page.wait_for_function("document.querySelector('figure .chart').hidden")
+    assert page.locator("figure .picked").inner_text() == "none: geen waarden"
 
 
 def test_dragging_over_the_scatter_fills_the_list_and_a_point_leads_to_its_boat(visitor):

@@ -1,5 +1,6 @@
 """Figures draw the columns they name, with units, whatever the frame holds."""
 
+import itertools
 import json
 import re
 
@@ -115,6 +116,33 @@ def test_a_method_of_one_s_own_is_drawn_and_changes_no_other_s_colour():
     assert [method for method, _ in points[1]] == ["rebased", "a-method"]
     assert points[0][0] == points[1][0]
     assert len({colour for _, colour in points[1]}) == 2
+
+
+METHODS = {
+    "season_change": {"season": 2010, "median_ratio": 0.9, "lowest_ratio": 0.8, "highest_ratio": 1},
+    "components": {"scope": "fleet", "component": "boat", "sd_ratio": 0.9, "lo": 0.8, "hi": 1.1},
+    "repeats": {"season": 2012, "season_before": 2010, "ln_ratio": 0.1, "page": "#"},
+    "curves_compared": {"kind": "point", "speed_m_s": 2.5, "cw_kg_m": 30.0, "run": 1, "used": True},
+}
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_one_legend_names_the_methods_that_are_drawn(name):
+    drawn = ["as-published", "werkbank"]
+    picture = svg(name, pl.DataFrame([METHODS[name] | {"method": m} for m in drawn]))
+    labels = re.findall(r'role-legend-label"[^>]*>\s*<text[^>]*>([^<]+)<', picture)
+    assert labels == drawn
+    assert picture.count(">Methode<") == 1
+
+
+def test_statuses_are_told_apart_in_grey_print():
+    spec = FIGURES["statuses"](FRAME, speaker("nl")).to_dict()
+    shades = spec["encoding"]["color"]["scale"]["range"]
+    greys = sorted(
+        0.299 * red + 0.587 * green + 0.114 * blue
+        for red, green, blue in (bytes.fromhex(shade[1:]) for shade in shades)
+    )
+    assert min(b - a for a, b in itertools.pairwise(greys)) > 25  # of 255
 
 
 def test_a_trace_says_why_it_was_cut():

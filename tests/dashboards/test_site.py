@@ -10,9 +10,10 @@ import pytest
 from dashboards.html import as_json
 from dashboards.site import build_site
 from dashboards.site.downloads import SHEETS
-from dashboards.site.pages import MENU
+from dashboards.site.pages import MENU, all_pages
 from dashboards.site.parts import boat_path, default_method
-from dashboards.site.render import KEPT
+from dashboards.site.render import CODES, KEPT
+from dashboards.words import WORDS
 from tests.dashboards.conftest import ATTACK, EDITIONS
 from warehouse.views import Views
 
@@ -114,6 +115,26 @@ def test_a_log_s_factors_are_shown_as_often_as_the_table_has_them(site, store):
         assert found == f'data-table="{name}"'
         assert rest.partition("</section>")[0].count("<tr>") == 1 + frame.height > 1
     assert "andere log" in text
+
+
+def test_a_column_and_a_code_on_a_page_have_a_text(store):
+    with Views(store) as views:
+        pages_made = list(all_pages(views))
+    tables = [t for page in pages_made for s in page.sections for t in s.tables]
+    columns = {c for table in tables for c in table.columns} | {
+        c for page in pages_made for frames in page.data.values() for f in frames for c in f.columns
+    }
+    assert {c for c in columns if f"column.{c}" not in WORDS} <= {"page"}  # a link, not shown
+    codes = {
+        code
+        for table in tables
+        for column in CODES.intersection(table.columns)
+        for value in table.frame[column].drop_nulls().unique()
+        for code in (value.split(",") if isinstance(value, str) else value)
+    }
+    assert "accepted" in codes
+    words = {code for code in codes if re.fullmatch(r"[a-z_]+", code)}
+    assert words - {key.removeprefix("code.") for key in WORDS} == set()
 
 
 def test_nothing_half_made_is_left(store):

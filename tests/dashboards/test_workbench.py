@@ -19,6 +19,7 @@ from dashboards.workbench.server import listen
 from pipeline.checks import CODES
 from pipeline.errors import HerijkError, MissingKnowledgeError
 from pipeline.method import MethodFileError, Steps, parse_method
+from pipeline.run_cache import RunCache
 from tests.architecture.repository import ROOT
 from tests.dashboards.conftest import served
 from warehouse.history import History
@@ -179,7 +180,7 @@ def test_the_register_of_a_saved_file_is_the_one_that_was_shown(bench, history, 
     shown = bench.register(question(bench, **changes))
     path = bench.save(named(bench, **changes))
     read = parse_method(path.read_text(encoding="utf-8"), str(path))
-    again = dataclasses.replace(history, windows={}).under(read).register
+    again = dataclasses.replace(history, cache=RunCache()).under(read).register
     assert_frame_equal(again.drop("edition"), shown.drop("edition"))
 
 

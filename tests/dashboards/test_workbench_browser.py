@@ -36,7 +36,9 @@ def browser(url):
     from playwright.sync_api import sync_playwright  # noqa: PLC0415 - not needed when skipped
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=site.CHROMIUM, args=site.FLAGS)
+        browser = playwright.chromium.launch(
+            executable_path=site.CHROMIUM, args=site.FLAGS, ignore_default_args=site.HIDDEN_BARS
+        )
         yield browser
         browser.close()
 
@@ -102,8 +104,28 @@ def test_it_opens_and_draws_everything(page, width):
     draw_all(page)
     assert page.locator("figure").count() == page.locator("figure svg[role=img]").count() > 0
     assert page.evaluate("document.documentElement.scrollWidth") <= columns
+    assert site.scrolled(page, ".chart, .scroll" if width == "desktop" else ".chart") == []
     site.SHOTS.mkdir(exist_ok=True)
     page.screenshot(path=site.SHOTS / f"workbench-{width}.png", full_page=True)
+
+
+def test_print_shows_whole_tables_and_which_methods_they_compare(page):
+    page.emulate_media(media="print")
+    draw_all(page)
+    cut = "[...document.querySelectorAll('.scroll')].filter(b => b.scrollHeight > b.clientHeight)"
+    assert page.evaluate(f"{cut}.length") == 0
+    assert page.locator("#base").is_visible()
+    assert page.locator("#against").is_visible()
+    assert not page.locator("#steps").is_visible()
+
+
+def test_a_share_of_one_has_decimals_like_the_others(page):
+    page.locator("[data-table=reproducibility]").scroll_into_view_if_needed()
+    column = page.locator("[data-table=reproducibility] tbody td:nth-child(7)")
+    column.first.wait_for()
+    texts = [text for text in column.all_inner_texts() if text]
+    assert texts
+    assert [text for text in texts if "," not in text] == []
 
 
 def test_a_slider_moved_by_keyboard_changes_all_boats(page, bench):
@@ -179,7 +201,7 @@ def test_a_line_and_a_point_lead_to_the_boat(page):
 def test_it_speaks_two_languages(page):
     assert page.locator("#state").inner_text().startswith("40 proeven")
     page.get_by_role("button", name="English").click()
-    page.wait_for_function("document.querySelector('figure svg').textContent.includes('after')")
+    page.wait_for_function("document.querySelector('figure svg').textContent.includes('new')")
     assert "The register" in page.locator("#results").inner_text()
     assert "," not in median(page)
 

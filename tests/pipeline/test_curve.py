@@ -129,7 +129,7 @@ def test_from_b_on_the_resistance_is_infinite():
 def test_capped_curve_has_the_cap_and_a_refitted_height():
     points, *_ = noisy_points(seed=4, n_fits=200, r=(-0.1, 0.4))
     free, cap = curve.fit(points), 5.0
-    capped = curve.fit_capped(points, cap)
+    capped = curve.fit_capped(points, curve.fit(points), cap)
     met = ~(free.b_m_s < cap)
     assert 20 < met.sum() < 180, "both kinds belong to the cases"
     assert capped.b_capped.tolist() == met.tolist()
@@ -152,7 +152,7 @@ def test_given_b_is_linear_least_squares():
 def test_b_below_a_measured_speed_gives_no_curve():
     points = curve.Points.of([2.0, 2.5, 3.0], [30.0, 32.0, 35.0])
     assert not curve.fit_given_b(points, 2.9).converged[0]
-    assert not curve.fit_capped(points, 2.9).converged[0]
+    assert not curve.fit_capped(points, curve.fit(points), 2.9).converged[0]
 
 
 def test_covariance_is_that_of_the_linearised_fit():
@@ -266,6 +266,6 @@ def test_arrays_of_different_shape_or_without_points_are_refused():
 
 def test_no_curves_are_no_error():
     points = curve.Points.of(np.empty((0, 6)), np.empty((0, 6)))
-    fitted = curve.fit_capped(points, 10.0)
+    fitted = curve.fit_capped(points, curve.fit(points), 10.0)
     assert fitted.a_kg_m.shape == (0,)
     assert curve.b_interval(points, fitted, curve.own_scatter(fitted)).hi.shape == (0,)

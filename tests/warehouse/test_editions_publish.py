@@ -479,6 +479,16 @@ def test_a_year_without_a_printed_register_is_named(with_printed):
         publish_register_of(with_printed, 2010)
 
 
+def test_a_printed_register_with_a_line_that_cannot_be_read_is_not_published(with_printed):
+    file = with_printed.archive / "sloepregister" / "sloepregister_2012.csv"
+    file.write_text(
+        file.read_text("utf-8").replace("32,62;5,59;41,63;2,60;2014", "x;5,59;41,63;2,60;2014")
+    )
+    with pytest.raises(MissingKnowledgeError, match=r"2012\.csv: Line 5: column 'A': .*Mend"):
+        publish_register_of(with_printed)
+    assert not folder(with_printed, "gedrukt-2012").exists()
+
+
 def test_a_printed_line_is_rebased_in_closed_form_where_nothing_was_measured(with_printed):
     publish_register_of(with_printed)
     corrected = shipped_method("corrected-2013")

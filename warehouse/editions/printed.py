@@ -16,7 +16,7 @@ from pipeline.method import Method
 from pipeline.register import LINE, valid_until
 from pipeline.speed import log_factor
 from warehouse import intake
-from warehouse.archive import read_published_registers
+from warehouse.archive import Fault, read_published_registers
 from warehouse.editions.folder import Edition
 from warehouse.editions.inputs import INPUTS_HASH
 from warehouse.store import Store, fingerprint
@@ -26,19 +26,24 @@ NO_VALID_CURVE: Final = "no_valid_curve"
 
 
 def printed_path(store: Store, season: int) -> str:
-    """The file of the register printed in a season.
+    """The file of the register printed in a season, to be published whole.
 
     Raises:
-        MissingKnowledgeError: the archive holds no such register.
+        MissingKnowledgeError: the archive holds no such register, or one with a line that cannot be
+            read: an edition stands for ever and must not lack it.
     """
-    found = _registers(store)
+    found, faults = _registers(store)
     paths = found.filter(pl.col("season") == season)["path"].unique()
     if paths.is_empty():
         known = ", ".join(str(s) for s in found["season"].unique().sort()) or "none"
         raise MissingKnowledgeError(
-            f"the archive holds no register printed in {season}; it holds: {known}"
+            f"the archive holds no readable register printed in {season}; it holds: {known}"
         )
-    return str(paths[0])
+    path = str(paths[0])
+    unread = next((fault for fault in faults if fault.path == path), None)
+    if unread is not None:
+        raise MissingKnowledgeError(f"{path}: {unread.message} Mend the line, or take it out")
+    return path
 
 
 def printed_lines(store: Store, path: str) -> pl.DataFrame:
@@ -47,7 +52,7 @@ def printed_lines(store: Store, path: str) -> pl.DataFrame:
     Raises:
         MissingKnowledgeError: the archive is not there, or names a line twice.
     """
-    printed = _registers(store).filter(pl.col("path") == path)
+    printed = _registers(store)[0].filter(pl.col("path") == path)
     _refuse_doubles(printed)
     return printed.select(
         *LINE,
@@ -86,13 +91,13 @@ def with_carried(
     return pl.concat([lines.join(taken, on=LINE, how="anti"), taken], how="diagonal_relaxed")
 
 
-def _registers(store: Store) -> pl.DataFrame:
+def _registers(store: Store) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
     root = intake.archive_root(store)
     if root is None:
         raise MissingKnowledgeError(
             "the archive is not where it was at the last rebuild; rebuild with --archive DIR"
         )
-    return read_published_registers(root)[0]
+    return read_published_registers(root)
 
 
 def _refuse_doubles(printed: pl.DataFrame) -> None:

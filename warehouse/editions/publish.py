@@ -122,7 +122,8 @@ def publish_printed(store: Store, season: int, terms: Terms) -> Place:
 
     Raises:
         BrokenPromiseError: the name is taken, or the folder could not be written.
-        MissingKnowledgeError: the archive holds no such register, or it names a line twice.
+        MissingKnowledgeError: the archive holds no such register, it names a line twice, or a line
+            of it cannot be read.
     """
     check_new_name(store, terms.edition)
     _check_decision(terms)

@@ -177,9 +177,12 @@
     const place = figure.querySelector(".chart");
     const turn = (figure.turn = (figure.turn ?? 0) + 1);
     const spec = structuredClone(window.HERIJK_FIGURES[root.lang][figure.dataset.figure]);
-    spec.datasets = { rows: shownRows(figure) };
+    const rows = shownRows(figure);
+    spec.datasets = { rows };
     fitWidth(spec, figure);
-    figure.querySelector(".picked").textContent = picked(figure);
+    place.hidden = rows.length === 0;
+    figure.querySelector(".picked").textContent =
+      picked(figure) + (place.hidden ? `: ${window.HERIJK_WORDS[root.lang].no_values}` : "");
     tabulate(figure);
     views.get(figure)?.finalize();
     views.delete(figure);
@@ -230,7 +233,7 @@
         const value = row[column] ?? "";
         const cell = line.insertCell();
         if (typeof value === "number") cell.className = "i";
-        cell.textContent = inWords(value, words);
+        cell.textContent = words[`code.${column}.${value}`] ?? inWords(value, words);
       }
     }
     place.querySelector(".scroll").replaceChildren(table);
@@ -252,15 +255,15 @@
     const room = figure.parentElement.clientWidth;
     const isNarrow = room < 550;
     if (typeof spec.width === "number" && spec.width + LABELS > room) {
-      const least = spec.layer?.some((layer) => layer.mark?.type === "text") ? 640 : 0; // legible
-      spec.width = Math.max(room, least);
+      spec.width = room;
       spec.autosize = { type: "fit-x", contains: "padding" };
     }
     for (const part of (spec.vconcat ?? [spec]).filter((part) => part.facet)) {
       fitFacets(part, room, isNarrow);
     }
     if (!isNarrow) return;
-    spec.config = { ...spec.config, legend: { ...spec.config?.legend, orient: "bottom", columns: 1 } };
+    const legend = { ...spec.config?.legend, orient: "bottom", columns: 1 };
+    spec.config = { ...spec.config, legend, axisX: { titleFontSize: 10 } };
   }
 
   function fitFacets(part, room, isNarrow) {

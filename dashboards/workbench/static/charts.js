@@ -48,12 +48,13 @@ async function drawNow(figure) {
   const spec = structuredClone(window.HERIJK_FIGURES[root.lang][figure.dataset.figure]);
   spec.datasets = { rows: structuredClone(rows) };
   const columns = wide.matches ? 2 : 1;
-  const room = byId("results").clientWidth / columns - 110;
+  const beside = spec.facet ? 1 : columns; // a pair of scatters has a row of its own
+  const room = byId("results").clientWidth / beside - 110;
   if (spec.facet) {
     spec.columns = columns;
-    spec.spec.width = Math.max(Math.min(spec.spec.width, room / columns), 190);
+    spec.spec.width = Math.min(spec.spec.width, room / columns);
   } else {
-    spec.width = Math.max(Math.min(spec.width, room), 190);
+    spec.width = Math.min(spec.width, room);
     spec.height = Math.min(spec.height, 260);
   }
   const place = figure.querySelector(".chart");

@@ -33,8 +33,9 @@ export function say(key) {
 }
 
 export function number(value, digits, sign = false) {
-  const text = value.toFixed(digits);
-  return (sign && value > 0 ? "+" : "") + (root.lang === "nl" ? text.replace(".", ",") : text);
+  const text = value.toFixed(digits).replace(/^-(?=[0.]+$)/, ""); // nothing has no sign
+  const plus = sign && Number(text) > 0 ? "+" : "";
+  return plus + (root.lang === "nl" ? text.replace(".", ",") : text);
 }
 
 export function seasonsText(first, last) {

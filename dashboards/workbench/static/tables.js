@@ -35,8 +35,11 @@ function fill(table) {
   table.querySelector("thead").replaceChildren(make("tr", {}, ...columns.map((column) =>
     header(table, column))));
   const rows = rowsOf(table);
+  const counts = new Set(columns.filter((column) =>
+    state.answer[table.dataset.table].every((row) => isCount(row[column]))));
   table.querySelector("tbody").replaceChildren(...rows.map((row) => {
-    const line = make("tr", {}, ...columns.map((column) => cell(row, column)));
+    const line = make("tr", {}, ...columns.map((column) =>
+      cell(row, column, counts.has(column))));
     line.classList.toggle("chosen", row.fsn_no !== undefined && row.fsn_no === byId("boat").value);
     return line;
   }));
@@ -64,7 +67,10 @@ function header(table, column) {
 const digitsOf = (column) =>
   (start.digits.find(([ending]) => column.endsWith(ending)) ?? ["", 4])[1];
 
-function cell(row, column) {
+// A column of nothing but whole numbers counts something; in another a 1 has decimals too.
+const isCount = (value) => value === null || Number.isInteger(value);
+
+function cell(row, column, isOfCounts) {
   const value = row[column];
   if (value === null) return make("td");
   if (column === "fsn_no") {
@@ -73,12 +79,13 @@ function cell(row, column) {
   }
   if (typeof value === "boolean") return make("td", {}, say(value ? "yes" : "no"));
   if (typeof value === "number") {
-    const text = Number.isInteger(value) ? `${value}`
+    const text = isOfCounts ? `${value}`
       : number(value, digitsOf(column), column.startsWith("gain"));
     return make("td", { className: "n" }, text);
   }
   const codes = Array.isArray(value) ? value : [value];
-  return make("td", {}, codes.map(code).join(", "));
+  const className = start.long.includes(column) ? "w" : "";
+  return make("td", { className }, codes.map(code).join(", "));
 }
 
 // Text that a spreadsheet would take for a formula is kept text.

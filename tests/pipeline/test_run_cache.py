@@ -1,0 +1,69 @@
+"""What is remembered of runs is what would be found anew, whatever was asked before."""
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from pipeline.batch import Batch
+from pipeline.resistance import run_means
+from pipeline.run_cache import RunCache
+from pipeline.simulate import WorldSettings
+from pipeline.steady import choose_windows
+from tests.pipeline.methods import method
+from tests.worlds import measure
+
+CHANGES = (
+    {},
+    {"window": '{ rule = "steady" }'},
+    {"window": '{ rule = "steady", minimum_s = 20.0 }'},
+    {"speed": '{ source = "log2", correction = "none" }'},
+    {"speed": '{ source = "mean", correction = "none" }'},
+    {"run_point": '{ estimator = "ratio_of_means" }'},
+    {"run_point": '{ estimator = "ratio_of_means", inertia = "end_speeds" }'},
+    {"wind": '{ model = "head" }'},
+    {"wind": '{ model = "oblique" }'},
+    {"wind": '{ model = "oblique", averaging_s = 5 }'},
+)
+"""Every option that windows or means depend on."""
+
+
+@pytest.fixture(scope="module")
+def batches():
+    world = measure(WorldSettings((2012, 2016), 4, 20, 11))
+    return [Batch.of(world.tows.filter(season=s), world.blocks) for s in (2012, 2016)]
+
+
+def numbers(found):
+    """Every array of windows or means, those of the air parts too."""
+    parts = [getattr(found, field.name) for field in fields(found)]
+    return [n for part in parts for n in (numbers(part) if hasattr(part, "ahead") else [part])]
+
+
+def test_means_and_windows_are_those_found_anew(batches):
+    cache = RunCache()
+    seen = []
+    for _ in range(2):
+        for change in CHANGES:
+            steps = method(**change).for_season(2012)
+            for batch in batches:
+                windows = choose_windows(batch.blocks, steps.window)
+                anew = [windows, run_means(batch, windows.mask, steps)]
+                held = [cache.windows(batch, steps), cache.means(batch, steps)]
+                for mine, other in zip(held, anew, strict=True):
+                    for a, b in zip(numbers(mine), numbers(other), strict=True):
+                        assert np.array_equal(a, b)
+                seen.append(held[1])
+    assert len({id(means) for means in seen}) == len(batches) * len(CHANGES)
+
+
+def test_a_log_factor_leaves_windows_and_means_as_they_are(batches):
+    cache = RunCache()
+    plain, corrected = (
+        method(speed=f'{{ source = "log1", correction = "{correction}" }}').for_season(2012)
+        for correction in ("none", "estimated")
+    )
+    assert cache.means(batches[0], plain) is cache.means(batches[0], corrected)
+    assert len(cache) == 2
+    cache.clear()
+    assert len(cache) == 0
