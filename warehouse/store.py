@@ -162,7 +162,7 @@ def read_parquet(path: Place) -> pl.DataFrame:
     """
     with _damage_named(path):
         source = path if isinstance(path, Path) else pa.BufferReader(path.read_bytes())
-        # Not read_table, which imports all of Arrow's data sets: a fifth of a second per process.
+        # Not read_table: it imports Arrow's data sets, and with them pandas if that is there.
         with pq.ParquetFile(source, page_checksum_verification=True) as file:
             return pl.DataFrame(pl.from_arrow(file.read()))
 
