@@ -56,7 +56,7 @@ $(DEMO)/archief: | $(READY)
 	@$(BIN)/herijk simulate $(DEMO)/archief $(DEMO_WORLD)
 
 test: $(READY)
-	@$(BIN)/python -m pytest -n 2
+	@$(BIN)/python -m pytest -n 2 --dist worksteal
 
 lint: $(READY)
 	@$(BIN)/ruff check .

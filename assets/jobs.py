@@ -6,12 +6,13 @@ from assets import archive, checks, tables
 from assets.resources import Progress, Setup
 from assets.site import site
 
-STEPS = INDEX, READ, COLLECT, APPLY, STUDY, FINISH, CHECK = (
+STEPS = INDEX, READ, COLLECT, APPLY, STUDY, COMPARE, FINISH, CHECK = (
     "index_archive",
     "read_season",
     "collect_archive",
     "apply_method",
     "study_methods",
+    "compare_boats",
     "finish",
     "check",
 )
@@ -40,11 +41,11 @@ JOBS = [
     dg.define_asset_job(COLLECT, dg.AssetSelection.assets(tables.archive_tables) - AFTERWARDS),
     dg.define_asset_job(APPLY, dg.AssetSelection.assets(tables.method_tables) - AFTERWARDS),
     dg.define_asset_job(STUDY, dg.AssetSelection.assets(tables.study_tables)),
+    dg.define_asset_job(COMPARE, dg.AssetSelection.assets(tables.consistency_tables) - AFTERWARDS),
     dg.define_asset_job(
         FINISH,
         dg.AssetSelection.assets(
             tables.register_tables,
-            tables.consistency_tables,
             tables.summary_tables,
             tables.warehouse_database,
             site,

@@ -19,6 +19,7 @@ from assets.jobs import (
     APPLY,
     CHECK,
     COLLECT,
+    COMPARE,
     FINISH,
     INDEX,
     READ,
@@ -178,6 +179,9 @@ class _Rebuild:
         if tables.studies_are_stale(self.store, chosen):
             self.progress.step("finding what each step changes, and how much choices matter")
             self.jobs.run(STUDY)
+        if tables.consistency_is_stale(self.store, chosen):
+            self.progress.step("comparing boats of the same type")
+            self.jobs.run(COMPARE)
 
     def _finish(self) -> None:
         chosen = self.setup.chosen_methods

@@ -304,18 +304,17 @@ def make_studies(store: Store, methods: Sequence[Method], blocks: RunBlocks) -> 
     return {name: frame.height for name, frame in found.items()}
 
 
-def register_made_from(store: Store, methods: Sequence[Method]) -> str:
-    """What the registers, and everything derived from curves, are made from."""
-    curves = {m.name: [store.made_from("curves", m.name), str(m.validity)] for m in methods}
+def consistency_made_from(store: Store, methods: Sequence[Method]) -> str:
+    """What the statistics of boat types are made from; not from editions or decisions."""
+    curves = {m.name: store.made_from("curves", m.name) for m in methods}
     archive = [store.made_from(t) for t in ("tows", "boats")]
-    beside = [published_made_from(store), due_made_from(store)]
-    return fingerprint(curves, archive, beside, code_version())
+    return fingerprint(curves, archive, code_version())
 
 
-def register_is_stale(store: Store, methods: Sequence[Method]) -> bool:
-    """Whether registers and comparisons have to be made again."""
-    made_from = register_made_from(store, methods)
-    return any(store.made_from(t) != made_from for t in (*REGISTER_TABLES, *CONSISTENCY_TABLES))
+def consistency_is_stale(store: Store, methods: Sequence[Method]) -> bool:
+    """Whether the statistics of boat types have to be made again."""
+    made_from = consistency_made_from(store, methods)
+    return any(store.made_from(t) != made_from for t in CONSISTENCY_TABLES)
 
 
 def make_consistency(store: Store, methods: Sequence[Method]) -> dict[str, int]:
@@ -327,10 +326,24 @@ def make_consistency(store: Store, methods: Sequence[Method]) -> dict[str, int]:
     names = [m.name for m in methods]
     curves, run_points = (store.read_all(t, names) for t in ("curves", "run_points"))
     found = consistency_tables(curves, store.read("tows"), store.read("boats"), run_points)
-    made_from = register_made_from(store, methods)
+    made_from = consistency_made_from(store, methods)
     for name in CONSISTENCY_TABLES:
         store.write(name, conform(name, found[name]), made_from)
     return {name: found[name].height for name in CONSISTENCY_TABLES}
+
+
+def register_made_from(store: Store, methods: Sequence[Method]) -> str:
+    """What the registers and comparisons of registers are made from."""
+    curves = {m.name: [store.made_from("curves", m.name), str(m.validity)] for m in methods}
+    archive = [store.made_from(t) for t in ("tows", "boats")]
+    beside = [published_made_from(store), due_made_from(store)]
+    return fingerprint(curves, archive, beside, code_version())
+
+
+def register_is_stale(store: Store, methods: Sequence[Method]) -> bool:
+    """Whether registers and comparisons of registers have to be made again."""
+    made_from = register_made_from(store, methods)
+    return any(store.made_from(t) != made_from for t in REGISTER_TABLES)
 
 
 def make_registers(store: Store, methods: Sequence[Method]) -> dict[str, int]:

@@ -2,13 +2,16 @@
 
 import dagster as dg
 
-from assets.jobs import APPLY, COLLECT, FINISH, INDEX, READ, STUDY, job_defs
+from assets.jobs import APPLY, COLLECT, COMPARE, FINISH, INDEX, READ, STUDY, job_defs
 from assets.rebuild import prepare_home
 from assets.resources import Quiet, Setup
 from tests.assets.test_rebuild import assert_same_tables
 from tests.conftest import METHODS, SMALL, Workbench
 
-PRELOADED = [__name__, "dashboards.site", "scipy.optimize"]
+PRELOADED = [
+    *(__name__, "dashboards.site", "scipy.optimize"),
+    *("dagster._core.storage.sqlite_storage", "dagster._utils.test", "upath.implementations.local"),
+]
 FORKED = {
     "execution": {
         "config": {"multiprocess": {"start_method": {"forkserver": {"preload_modules": PRELOADED}}}}
@@ -37,6 +40,7 @@ def test_the_multiprocess_executor_gives_identical_tables(built, tmp_path, monke
         (COLLECT, None),
         *((APPLY, method) for method in METHODS),
         (STUDY, None),
+        (COMPARE, None),
         (FINISH, None),
     ]
     with dg.DagsterInstance.from_config(str(home)) as instance:

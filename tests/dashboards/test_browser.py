@@ -190,6 +190,7 @@ def test_the_uncertainty_can_be_read_without_its_chart(visitor, attacked, built)
     tow, method = (page.locator(f"select[name={n}]").input_value() for n in ("tow_id", "method"))
     budget = built.table("uncertainty_budget").filter(tow_id=tow, method=method)
     rows = figure.locator("details tbody tr")
+    rows.first.wait_for()
     assert rows.count() == budget.height > 0
     assert "spreiding van de runs" in figure.locator("details tbody").inner_text()
     page.get_by_role("button", name="English").click()
