@@ -31,7 +31,8 @@ SAME_CURVE = 1e-6
 tolerances of their own, and text is held in 32 bits."""
 
 AT_MOST = {
-    ("blocks from Parquet", "decode Parquet"): 1.5,
+    ("blocks from Parquet", "decode Parquet, pyarrow"): 1.5,
+    ("blocks from Parquet", "decode Parquet, polars"): 1.5,
     ("blocks from text", "parse text, write Parquet"): 1.6,
     ("curves from text", "curves from text, duckdb"): 1.0,
     ("curves from text", "curves from text, polars"): 1.0,
@@ -64,7 +65,8 @@ def stages(tows_per_season: int, compared: int, results: Path) -> list[Task]:
         stage("parse text", "parse_text", write=False),
         stage("parse text, write Parquet", "parse_text", write=True),
         stage("blocks from text", "read_text"),
-        stage("decode Parquet", "decode"),
+        stage("decode Parquet, pyarrow", "decode", tool="pyarrow"),
+        stage("decode Parquet, polars", "decode", tool="polars"),
         stage("blocks from Parquet", "add_up"),
         way("curves from text", "herijk_from_text"),
         way("curves from Parquet", "herijk_from_parquet", plain_text=True),

@@ -8,6 +8,7 @@ from typing import Any
 
 import pandas as pd
 import polars as pl
+import pyarrow.parquet as pq
 
 from assets.rebuild import rebuild
 from benchmarks import plain, same
@@ -129,15 +130,27 @@ def _into_lake(world: World, store: Store, tows: pl.DataFrame) -> dict[int, pl.D
 # Parquet
 
 
-def decode(tows_per_season: int, count: int) -> Work:
-    """Polars alone on the lake's files: every column of every sample in memory, once."""
+def decode(tows_per_season: int, count: int, tool: str) -> Work:
+    """A reader alone on the lake's files: every column of every sample in memory, once."""
     world = World(tows_per_season)
     files = _lake_files(world, world.tows(count))
-    return lambda: both(_decoded_rows, files.values())
+    return lambda: both(
+        {"pyarrow": _rows_by_pyarrow, "polars": _rows_by_polars}[tool], files.values()
+    )
 
 
-def _decoded_rows(path: str) -> int:
+def _rows_by_polars(path: str) -> int:
     return pl.read_parquet(path, hive_partitioning=False).height
+
+
+def _rows_by_pyarrow(path: str) -> int:
+    return _samples(path).height
+
+
+def _samples(path: str) -> pl.DataFrame:
+    """As the lake reads them, but for the check of checksums, which no other tool makes."""
+    with pq.ParquetFile(path) as file:
+        return pl.DataFrame(pl.from_arrow(file.read(use_threads=False)))
 
 
 def add_up(tows_per_season: int, count: int) -> Work:
@@ -173,7 +186,7 @@ def herijk_from_parquet(
 
 
 def _sums(path: str) -> pl.DataFrame:
-    return block_sums(pl.read_parquet(path, hive_partitioning=False), RATE_HZ)
+    return block_sums(_samples(path), RATE_HZ)
 
 
 def _blocks(world: World, tows: pl.DataFrame) -> pl.DataFrame:

@@ -10,15 +10,14 @@ other at the end. Importing this module compiles the loop, or finds it compiled:
 
 import math
 from collections.abc import Callable
-from itertools import pairwise
 from typing import Any, Final, ParamSpec, TypeVar
 
 import numpy as np
 import polars as pl
-from numba import float32, float64, int64, njit, types
+from numba import float32, float64, int8, int16, int32, int64, njit, types
 from numpy.typing import NDArray
 
-from pipeline.arrays import FloatArray, IntArray
+from pipeline.arrays import FloatArray
 from pipeline.blocks import SUM_NAMES
 
 LANES: Final = np.uintp(16)
@@ -51,29 +50,20 @@ def block_sums(samples: pl.DataFrame, sample_rate_hz: int) -> pl.DataFrame:
         the samples of its block alone, not on its neighbours, threads or the processor.
     """
     run = samples["run"].to_numpy()
-    start, end, second = _bounds(run, sample_rate_hz)
-    sums = np.empty((_ROWS, len(start)))
-    _add_up(start, end, sums, *(samples[name].to_numpy() for name in _CHANNELS))
-    found, blocks = pl.Series(sums.ravel()), len(start)
+    blocks = _count(run, sample_rate_hz)
+    number, second = np.empty(blocks, np.int8), np.empty(blocks, np.int16)
+    n, sums = np.empty(blocks, np.int32), np.empty((_ROWS, blocks))
+    channels = (samples[name].to_numpy() for name in _CHANNELS)
+    _add_up(run, sample_rate_hz, number, second, n, sums, *channels)
+    found = pl.Series(sums.ravel())
     return pl.DataFrame(
         [
-            pl.Series("run", run[start], pl.Int8),
-            pl.Series("second", second, pl.Int16),
-            pl.Series("n", end - start, pl.Int32),
+            pl.Series("run", number),
+            pl.Series("second", second),
+            pl.Series("n", n),
             *(found.slice(i * blocks, blocks).alias(name) for i, name in enumerate(SUM_NAMES)),
         ]
     )
-
-
-def _bounds(run: NDArray[np.int8], rate_hz: int) -> tuple[IntArray, IntArray, IntArray]:
-    """First sample of each block, the one after its last, and which second of its run it is."""
-    changes = np.flatnonzero(run[1:] != run[:-1]) + 1
-    runs = list(pairwise([0, *changes.tolist(), len(run)]))
-    starts = [np.arange(first, last, rate_hz) for first, last in runs]
-    start = np.concatenate(starts)
-    last = np.repeat([last for _, last in runs], [len(s) for s in starts])
-    second = np.concatenate([np.arange(len(s)) for s in starts])
-    return start, np.minimum(start + rate_hz, last), second
 
 
 P = ParamSpec("P")
@@ -91,6 +81,7 @@ _part = _compiled(inline="always")
 
 Lane = int | np.uintp
 Channel = NDArray[np.float32]
+Runs = NDArray[np.int8]
 
 
 @_part
@@ -138,9 +129,21 @@ def _of_air(along: float, cos: float, sin: float) -> Kind:
 
 
 @_part
-def _of_source(v: float, force: float, air: Kind) -> Kind:
+def _inverse_squares(log1: float, log2: float, mean: float) -> tuple[float, float, float]:
+    """1 / v^2 of the speed sources with one division: it takes as long as ten products.
+
+    The product of three squares of 32-bit numbers is within the range of 64 bits.
+    """
+    a, b, c = log1 * log1, log2 * log2, mean * mean
+    ab = a * b
+    inverse = 1.0 / (ab * c)
+    times_c = inverse * c
+    return times_c * b, times_c * a, inverse * ab
+
+
+@_part
+def _of_source(v: float, inv_v2: float, force: float, air: Kind) -> Kind:
     """What is summed of one speed source."""
-    inv_v2 = 1.0 / (v * v)
     cw = force * inv_v2
     return (
         v,
@@ -182,13 +185,15 @@ def _terms(
 ) -> Terms:
     v1, v2 = np.float64(log1[i]), np.float64(log2[i])
     f, w = np.float64(force[i]), np.float64(wind[i])
+    mean = 0.5 * (v1 + v2)
+    inverse1, inverse2, inverse_mean = _inverse_squares(v1, v2, mean)
     cos, sin = _cos_sin(np.float64(angle_deg[i]))
     air = _of_air(w * cos, cos, sin)
     return (
         (f,),
-        _of_source(v1, f, air),
-        _of_source(v2, f, air),
-        _of_source(0.5 * (v1 + v2), f, air),
+        _of_source(v1, inverse1, f, air),
+        _of_source(v2, inverse2, f, air),
+        _of_source(mean, inverse_mean, f, air),
         air,
         _of_wind(w, cos, sin),
         _of_gps(np.float64(gps[i])),
@@ -213,25 +218,49 @@ def _add(sums: FloatArray, lane: Lane, one: Terms, two: Terms) -> None:
     _add_kind(sums, _GPS, lane, one[6], two[6])
 
 
-_INDICES: Final = types.Array(int64, 1, "C", readonly=True)
-_CHANNEL_TYPE: Final = types.Array(float32, 1, "C", readonly=True)
-_SIGNATURE: Final = types.void(
-    _INDICES, _INDICES, float64[:, ::1], *[_CHANNEL_TYPE] * len(_CHANNELS)
-)
+_RUN: Final = types.Array(int8, 1, "C", readonly=True)
+_SAMPLES: Final = types.Array(float32, 1, "C", readonly=True)
+_FOUND: Final = (int8[::1], int16[::1], int32[::1], float64[:, ::1])
 
 
-def _compiled_once(function: Callable[P, R]) -> Callable[P, R]:
+def _compiled_once(signature: Any) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """Compiled now, or as it was kept beside this file or in the user's folder of caches."""
-    try:
-        return _compiled(_SIGNATURE, nogil=True, cache=True)(function)
-    except RuntimeError:  # neither folder may be written: two seconds of compiling, each time
-        return _compiled(_SIGNATURE, nogil=True)(function)
+
+    def decorator(function: Callable[P, R]) -> Callable[P, R]:
+        try:
+            return _compiled(signature, nogil=True, cache=True)(function)
+        except RuntimeError:  # neither folder may be written: two seconds of compiling, each time
+            return _compiled(signature, nogil=True)(function)
+
+    return decorator
 
 
-@_compiled_once
+@_part
+def _end(run: Runs, first: int, rate_hz: int) -> int:
+    """One after the last sample of the block that begins with the sample `first`."""
+    end = min(first + rate_hz, len(run))
+    while run[end - 1] != run[first]:
+        end -= 1
+    return end
+
+
+@_compiled_once(int64(_RUN, int64))
+def _count(run: Runs, rate_hz: int) -> int:
+    """How many blocks there are."""
+    blocks = first = 0
+    while first < len(run):
+        first = _end(run, first, rate_hz)
+        blocks += 1
+    return blocks
+
+
+@_compiled_once(types.void(_RUN, int64, *_FOUND, *[_SAMPLES] * len(_CHANNELS)))
 def _add_up(
-    start: IntArray,
-    end: IntArray,
+    run: Runs,
+    rate_hz: int,
+    number: Runs,
+    second: NDArray[np.int16],
+    n: NDArray[np.int32],
     found: FloatArray,
     log1: Channel,
     log2: Channel,
@@ -240,11 +269,17 @@ def _add_up(
     wind: Channel,
     angle_deg: Channel,
 ) -> None:
-    """Fills `found`, shape (sums, blocks), from the channels, shape (samples,)."""
+    """Fills `number`, `second` and `n`, shape (blocks,), and `found`, shape (sums, blocks)."""
     sums = np.empty(np.uintp(_ROWS) * LANES)
-    for block in range(len(start)):
+    end = 0
+    for block in range(len(n)):
+        start, end = end, _end(run, end, rate_hz)
+        goes_on = block > 0 and run[start] == number[block - 1]
+        number[block] = run[start]
+        second[block] = second[block - 1] + 1 if goes_on else 0
+        n[block] = end - start
         sums[:] = 0.0
-        first, after = np.uintp(start[block]), np.uintp(end[block])
+        first, after = np.uintp(start), np.uintp(end)
         while first + LANES + LANES <= after:
             for lane in range(LANES):
                 i = first + lane

@@ -44,6 +44,7 @@ SEASON_INDEX_SCHEMA: Final = {
 
 LAKE_FORM: Final = {
     "compression": "lz4",
+    "data_page_size": 1 << 22,
     "use_dictionary": False,
     "write_statistics": False,
 }
@@ -139,7 +140,7 @@ def _bring_in(
         if not blocks_path.exists():
             from pipeline.block_sums import block_sums  # noqa: PLC0415 - compiles on import
 
-            held = read_parquet(path) if samples is None else samples
+            held = read_parquet(path, use_threads=False) if samples is None else samples
             sums = block_sums(held, tow["sample_rate_hz"])
             write_parquet(sums, blocks_path, form=LAKE_FORM)
     except DefectiveInputError as error:

@@ -153,8 +153,12 @@ _UNREADABLE: Final = (
 )
 
 
-def read_parquet(path: Place) -> pl.DataFrame:
+def read_parquet(path: Place, use_threads: bool = True) -> pl.DataFrame:
     """A frame that was written with `write_parquet`, its checksums verified.
+
+    Args:
+        path: the file.
+        use_threads: decode columns side by side; not where files already are.
 
     Raises:
         FileNotFoundError: it is not there.
@@ -164,7 +168,7 @@ def read_parquet(path: Place) -> pl.DataFrame:
         source = path if isinstance(path, Path) else pa.BufferReader(path.read_bytes())
         # Not read_table: it imports Arrow's data sets, and with them pandas if that is there.
         with pq.ParquetFile(source, page_checksum_verification=True) as file:
-            return pl.DataFrame(pl.from_arrow(file.read()))
+            return pl.DataFrame(pl.from_arrow(file.read(use_threads=use_threads)))
 
 
 def count_rows(path: Place) -> int:
@@ -206,10 +210,17 @@ def write_parquet(
 
     Without checksums a changed byte can be read as another number.
     """
+    table = frame.to_arrow()
     with written_whole(path) as target:
         pq.write_table(
-            frame.to_arrow().replace_schema_metadata(metadata),
+            pa.Table.from_arrays(table.columns, schema=_tight_schema(table, metadata)),
             target,
             write_page_checksum=True,
             **form,
         )
+
+
+def _tight_schema(table: pa.Table, metadata: dict[str, str] | None) -> pa.Schema:
+    """Columns without gaps as columns that cannot have any: these are read in half the time."""
+    columns = zip(table.schema, table.columns, strict=True)
+    return pa.schema([f.with_nullable(c.null_count > 0) for f, c in columns], metadata)
