@@ -301,6 +301,12 @@ def _longest_hold(values: Array, counts: NDArray[np.bool_] | None = None) -> tup
     return int(starts[longest]), int(lengths[longest])
 
 
+def _may_hold(values: Array, samples: int) -> bool:
+    """Whether a value may stand for so many samples, two or more: sees two of each such stretch."""
+    seen = values[:: max(samples // 2, 1)]
+    return bool((seen[1:] == seen[:-1]).any())
+
+
 def _check_stuck(runs: list[_Run], tow: Mapping[str, Any]) -> None:
     for run in runs:
         wind = run.channels["wind_speed"]
@@ -311,6 +317,8 @@ def _check_stuck(runs: list[_Run], tow: Mapping[str, Any]) -> None:
             ("wind_speed", STUCK_WIND_SPEED_S, wind != 0),  # cups may stand still
             ("wind_angle", STUCK_VANE_S, wind > VANE_TURNS_M_S),  # a vane needs wind
         ):
+            if not _may_hold(run.channels[key], int(limit_s * run.rate_hz)):
+                continue
             row, length = _longest_hold(run.channels[key], counts)
             if length >= limit_s * run.rate_hz:
                 raise _fault(

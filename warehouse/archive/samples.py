@@ -182,9 +182,8 @@ def _has_stray_return(data: bytes) -> bool:
     if b"\r" not in data:
         return False
     letters = np.frombuffer(data, np.uint8)
-    returns = np.flatnonzero(letters == ord("\r"))
-    last = len(letters) - 1
-    return bool(returns[-1] == last or (letters[returns + 1] != ord("\n")).any())
+    stray = (letters[:-1] == ord("\r")) & (letters[1:] != ord("\n"))
+    return data.endswith(b"\r") or bool(stray.any())
 
 
 def _all_finite(numbers: pl.Series) -> bool:
