@@ -13,15 +13,16 @@ import time
 from pathlib import Path
 
 from benchmarks.harness import machine
-from pipeline.method import shipped_method
-from pipeline.simulate import WorldSettings, simulate_world
-from warehouse import intake, tables
-from warehouse.archive.write import write_simulated_archive
-from warehouse.editions.compare import diff
-from warehouse.editions.folder import read_edition
-from warehouse.editions.publish import Terms, publish
-from warehouse.editions.verify import verify
-from warehouse.store import Store
+from herijk.pipeline.method.definition import shipped_method
+from herijk.simulate import WorldSettings, simulate_world
+from herijk.simulate.archive_writer import write_simulated_archive
+from herijk.warehouse.build import tables
+from herijk.warehouse.editions.compare import diff
+from herijk.warehouse.editions.folder import read_edition
+from herijk.warehouse.editions.publish import Terms, publish
+from herijk.warehouse.editions.verify import verify
+from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.store.store import Store
 
 DAY = dt.date(2018, 6, 1)
 METHODS = ("as-published", "rebased")

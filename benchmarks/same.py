@@ -1,7 +1,7 @@
 """The heavy part of a rebuild in other tools: samples kept, and the sums of every second.
 
 From text each tool writes the samples of a tow as Parquet (32 bits, lz4), as Herijk does; from
-those it makes the sums of `pipeline.blocks`, from which every method can be computed. Nothing is
+those it makes the sums of `pipeline.blocks.run_blocks`, from which every method can be computed. Nothing is
 checked. Each works the way it is best at: pandas tow after tow with NumPy, DuckDB in SQL, Polars in
 lazy expressions; the last two with `THREADS` threads.
 """
@@ -17,8 +17,8 @@ import polars as pl
 
 from benchmarks.harness import THREADS, both
 from benchmarks.world import HEADERS, RATE_HZ
-from pipeline.blocks import AIR_SUMS, SPEED_SOURCES, SUM_NAMES
-from pipeline.channels import SAMPLE_SCHEMA
+from herijk.pipeline.blocks.run_blocks import AIR_SUMS, SPEED_SOURCES, SUM_NAMES
+from herijk.pipeline.channels import SAMPLE_SCHEMA
 
 
 def means_of_runs(sums: pl.DataFrame) -> pl.DataFrame:

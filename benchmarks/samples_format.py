@@ -19,9 +19,9 @@ import polars as pl
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from pipeline.simulate import WorldSettings, simulate_tow, simulate_world
-from warehouse.lake import LAKE_FORM
-from warehouse.store import read_parquet, write_parquet
+from herijk.simulate import WorldSettings, simulate_tow, simulate_world
+from herijk.warehouse.intake.lake import LAKE_FORM
+from herijk.warehouse.store.store import read_parquet, write_parquet
 
 SCALE = 1000.0
 """Integers count thousandths: of a m/s, a N, a degree."""

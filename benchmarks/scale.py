@@ -30,11 +30,14 @@ import polars as pl
 from distributed import Client
 from polars.testing import assert_frame_equal
 
-from assets import rebuild
-from assets.cluster import read_seasons
-from assets.resources import Quiet
 from benchmarks.world import RATE_HZ, SEASONS, World
-from pipeline.method import shipped_method, shipped_methods
+from herijk.assets import rebuild
+from herijk.assets.cluster import read_seasons
+from herijk.assets.resources import Quiet
+from herijk.pipeline.method.definition import shipped_method, shipped_methods
+from herijk.warehouse.editions.publish import Terms, publish
+from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.store.store import Store
 from tests.elsewhere import (
     Cluster,
     assert_same_lake,
@@ -43,9 +46,6 @@ from tests.elsewhere import (
     lie_in_bucket,
     s3_server,
 )
-from warehouse import intake
-from warehouse.editions.publish import Terms, publish
-from warehouse.store import Store
 
 METHODS = tuple(shipped_methods())
 TERMS = Terms("2026-1", dt.date(2026, 5, 8), "benchmark", dt.date(2026, 5, 1))
@@ -176,8 +176,8 @@ def remote_store(data: Path, here: Store) -> Store:
 def warm_up(cluster: Cluster) -> None:
     """Has every worker import what it needs, and the scheduler what it has to unpack."""
     with Client(cluster.address) as client:
-        client.run_on_scheduler(__import__, "assets.cluster")
-        for module in ("assets.cluster", "pipeline.block_sums"):
+        client.run_on_scheduler(__import__, "herijk.assets.cluster")
+        for module in ("herijk.assets.cluster", "herijk.pipeline.blocks.sums"):
             client.run(__import__, module)
 
 

@@ -21,15 +21,15 @@ from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
-from assets.rebuild import rebuild
-from assets.resources import Quiet
-from dashboards.site import build_site
-from dashboards.site.pages import MENU
-from pipeline.method import shipped_methods
-from pipeline.simulate import WorldSettings, simulate_world
-from warehouse.archive.write import write_simulated_archive
-from warehouse.store import Store
-from warehouse.views import Views
+from herijk.assets.rebuild import rebuild
+from herijk.assets.resources import Quiet
+from herijk.dashboards.site import build_site
+from herijk.dashboards.site.pages import MENU
+from herijk.pipeline.method.definition import shipped_methods
+from herijk.simulate import WorldSettings, simulate_world
+from herijk.simulate.archive_writer import write_simulated_archive
+from herijk.warehouse.queries.views import Views
+from herijk.warehouse.store.store import Store
 
 READY = "document.querySelector('.chart.drawn') || !document.querySelector('.chart')"
 COUNTED = "!document.querySelector('.count b:empty')"

@@ -10,19 +10,20 @@ import pandas as pd
 import polars as pl
 import pyarrow.parquet as pq
 
-from assets.rebuild import rebuild
 from benchmarks import plain, same
 from benchmarks.harness import both
 from benchmarks.world import FOLDER, RATE_HZ, World
-from pipeline.block_sums import block_sums
-from pipeline.blocks import stack_blocks
-from pipeline.method import parse_method, shipped_method, shipped_methods
-from pipeline.recompute import recompute
-from warehouse import lake, tables
-from warehouse.archive.files import read_bytes
-from warehouse.archive.profile import read_profiles
-from warehouse.rebase import rebase
-from warehouse.store import Store, write_parquet
+from herijk.assets.rebuild import rebuild
+from herijk.pipeline.blocks.run_blocks import stack_blocks
+from herijk.pipeline.blocks.sums import block_sums
+from herijk.pipeline.method.definition import parse_method, shipped_method, shipped_methods
+from herijk.pipeline.recompute.recompute import recompute
+from herijk.warehouse.archive.files import read_bytes
+from herijk.warehouse.archive.profile import read_profiles
+from herijk.warehouse.build import tables
+from herijk.warehouse.intake import lake
+from herijk.warehouse.queries.rebase import rebase
+from herijk.warehouse.store.store import Store, write_parquet
 
 Work = Callable[[], Any]
 SIDES = {"as_it_was": 0.2, "changed": 0.3}

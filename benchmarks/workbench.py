@@ -17,14 +17,14 @@ from pathlib import Path
 
 import polars as pl
 
-from dashboards.workbench.bench import Base, Bench, Question
-from dashboards.workbench.server import address, listen, serving
-from pipeline.method import Steps
-from pipeline.run_cache import RunCache
-from pipeline.simulate import WorldSettings, simulate_world
+from herijk.dashboards.workbench.bench import Base, Bench, Question
+from herijk.dashboards.workbench.server import address, listen, serving
+from herijk.pipeline.method.definition import Steps
+from herijk.pipeline.recompute.run_cache import RunCache
+from herijk.simulate import WorldSettings, simulate_world
+from herijk.warehouse.queries.history import History
+from herijk.warehouse.store.store import Store
 from tests.worlds import measure
-from warehouse.history import History
-from warehouse.store import Store
 
 SEASONS = tuple(range(2009, 2019))
 CHANGES = {

@@ -10,10 +10,11 @@ from pathlib import Path
 
 import polars as pl
 
-from pipeline.simulate import WorldSettings, simulate_world
-from warehouse import intake, tables
-from warehouse.archive.write import write_simulated_archive
-from warehouse.store import Store
+from herijk.simulate import WorldSettings, simulate_world
+from herijk.simulate.archive_writer import write_simulated_archive
+from herijk.warehouse.build import tables
+from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.store.store import Store
 
 SEASONS = tuple(range(2009, 2026))
 RATE_HZ = 1000

@@ -1,1 +1,1 @@
-"""The front door: the `herijk` command. Reads arguments, shows results, holds no logic."""
+"""Recomputes the history of the Dutch rowing-sloop register from its tow tests."""

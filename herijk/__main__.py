@@ -1,6 +1,6 @@
 """`python -m herijk` is `herijk`."""
 
-from herijk.cli import main
+from herijk.cli.main import main
 
 if __name__ == "__main__":
     main()

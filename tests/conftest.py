@@ -13,12 +13,12 @@ import polars as pl
 import pytest
 from hypothesis import settings
 
-import assets.rebuild
-from assets.rebuild import Done
-from assets.resources import Quiet
-from pipeline.simulate import WorldSettings, simulate_world
-from warehouse.archive.write import write_simulated_archive
-from warehouse.store import Store
+import herijk.assets.rebuild
+from herijk.assets.rebuild import Done
+from herijk.assets.resources import Quiet
+from herijk.simulate import WorldSettings, simulate_world
+from herijk.simulate.archive_writer import write_simulated_archive
+from herijk.warehouse.store.store import Store
 
 # The same examples every time, whatever the machine's speed.
 settings.register_profile("repeatable", deadline=None, derandomize=True)
@@ -51,12 +51,12 @@ class Workbench:
     ) -> Done:
         """A rebuild in this process; Dagster's records are kept in memory to save time."""
         with self.records_in_memory():
-            return assets.rebuild.rebuild(self.archive, self.data, methods, Quiet(), seasons)
+            return herijk.assets.rebuild.rebuild(self.archive, self.data, methods, Quiet(), seasons)
 
     @staticmethod
     def records_in_memory() -> AbstractContextManager[object]:
         """Inside, rebuilds keep no records of Dagster's on disk."""
-        return mock.patch.object(assets.rebuild, "_instance", _dagster_in_memory)
+        return mock.patch.object(herijk.assets.rebuild, "_instance", _dagster_in_memory)
 
     def table(self, name: str) -> pl.DataFrame:
         """A table as a reader of the database gets it."""

@@ -17,9 +17,9 @@ from unittest import mock
 from distributed import Client
 from polars.testing import assert_frame_equal
 
-from warehouse import bucket
-from warehouse.storage import Place
-from warehouse.store import Store, read_parquet
+from herijk.warehouse.store import bucket
+from herijk.warehouse.store.storage import Place
+from herijk.warehouse.store.store import Store, read_parquet
 
 ROOT = Path(__file__).parents[1]
 BUCKET = "herijk-test"

@@ -1,4 +1,4 @@
-"""A simulated world as the frames and arrays that `pipeline.recompute` works on, without files."""
+"""A simulated world as the frames and arrays that `pipeline.recompute.recompute` works on, without files."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
@@ -6,13 +6,13 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 import polars as pl
 
-from pipeline.block_sums import block_sums
-from pipeline.blocks import SPEED_SOURCES, RunBlocks, stack_blocks
-from pipeline.channels import BACK, OUT, TARGET_SPEED_RATIOS
-from pipeline.method import Method
-from pipeline.recompute import recompute
-from pipeline.results import Recomputed
-from pipeline.simulate import (
+from herijk.pipeline.blocks.run_blocks import SPEED_SOURCES, RunBlocks, stack_blocks
+from herijk.pipeline.blocks.sums import block_sums
+from herijk.pipeline.channels import BACK, OUT, TARGET_SPEED_RATIOS
+from herijk.pipeline.method.definition import Method
+from herijk.pipeline.recompute.recompute import recompute
+from herijk.pipeline.recompute.results import Recomputed
+from herijk.simulate import (
     RunTruth,
     Tow,
     World,

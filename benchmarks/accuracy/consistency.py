@@ -12,7 +12,7 @@ import warnings
 import numpy as np
 import polars as pl
 
-from pipeline.consistency import (
+from herijk.pipeline.consistency import (
     consistency_tables,
     observe,
     pooled_curves,
@@ -23,7 +23,7 @@ from pipeline.consistency import (
     type_outliers,
     variance_components,
 )
-from pipeline.consistency.repeats import ERAS
+from herijk.pipeline.consistency.repeats import ERAS
 from tests.pipeline.consistency_fleet import POWER, fleet
 
 

@@ -18,7 +18,9 @@ from dataclasses import replace
 import numpy as np
 import polars as pl
 
-from pipeline import ensemble, season_log, uncertainty
+from herijk.pipeline import season_log
+from herijk.pipeline.uncertainty import ensemble
+from herijk.pipeline.uncertainty import propagation as uncertainty
 from tests.pipeline import season_worlds
 from tests.pipeline.season_worlds import CLEAN, HARD, simulate
 

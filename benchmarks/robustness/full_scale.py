@@ -16,9 +16,9 @@ import tempfile
 import time
 from pathlib import Path
 
-from pipeline.simulate import WorldSettings, simulate_world
-from warehouse.archive.write import write_simulated_archive
-from warehouse.store import Store
+from herijk.simulate import WorldSettings, simulate_world
+from herijk.simulate.archive_writer import write_simulated_archive
+from herijk.warehouse.store.store import Store
 
 SEASONS = tuple(range(2009, 2019))
 LIMIT_GIB = 2.0

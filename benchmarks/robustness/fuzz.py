@@ -27,18 +27,18 @@ import numpy as np
 import polars as pl
 import pyarrow as pa
 
-from assets.settings import read_settings
-from pipeline.channels import SAMPLE_SCHEMA
-from pipeline.errors import HerijkError
-from pipeline.method import parse_method, shipped_methods, shipped_text
-from pipeline.simulate import WorldSettings, simulate_world
-from warehouse.archive import FileHashes, index_archive
-from warehouse.archive.profile import Profiles, read_profiles
-from warehouse.archive.samples import read_samples
-from warehouse.archive.write import write_simulated_archive
-from warehouse.decisions import FILE_NAME as DECISIONS
-from warehouse.decisions import read_decisions
-from warehouse.editions.folder import ABOUT, read_about
+from herijk.assets.settings import read_settings
+from herijk.pipeline.channels import SAMPLE_SCHEMA
+from herijk.pipeline.errors import HerijkError
+from herijk.pipeline.method.definition import parse_method, shipped_methods, shipped_text
+from herijk.simulate import WorldSettings, simulate_world
+from herijk.simulate.archive_writer import write_simulated_archive
+from herijk.warehouse.archive import FileHashes, index_archive
+from herijk.warehouse.archive.profile import Profiles, read_profiles
+from herijk.warehouse.archive.samples import read_samples
+from herijk.warehouse.editions.folder import ABOUT, read_about
+from herijk.warehouse.store.decisions import FILE_NAME as DECISIONS
+from herijk.warehouse.store.decisions import read_decisions
 
 SLOW_S: Final = 2.0
 HANG_S: Final = 20.0

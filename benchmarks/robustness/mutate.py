@@ -21,11 +21,12 @@ from typing import NamedTuple
 import polars as pl
 
 from benchmarks.robustness.faults import spoil_bytes, spoil_row, spoil_samples
-from pipeline.method import shipped_method
-from pipeline.simulate import WorldSettings, simulate_world
-from warehouse import intake, tables
-from warehouse.archive.write import write_simulated_archive
-from warehouse.store import Store
+from herijk.pipeline.method.definition import shipped_method
+from herijk.simulate import WorldSettings, simulate_world
+from herijk.simulate.archive_writer import write_simulated_archive
+from herijk.warehouse.build import tables
+from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.store.store import Store
 
 WORLD = WorldSettings(seasons=(2009,), tows_per_season=20, rate_hz=20, seed=3)
 LIST = "sleeplijsten/sleeplijst_2009.csv"

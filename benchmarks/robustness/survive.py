@@ -25,13 +25,12 @@ from pathlib import Path
 
 import duckdb
 
-import dashboards.report_page  # noqa: F401 - imported late by a rebuild, and slow
-from assets.rebuild import rebuild
-from assets.resources import Quiet
-from dashboards.site import render
-from pipeline.simulate import WorldSettings, simulate_world
-from warehouse.archive.write import write_simulated_archive
-from warehouse.store import Store, fingerprint, table_digest
+from herijk.assets.rebuild import rebuild
+from herijk.assets.resources import Quiet
+from herijk.dashboards.site import render
+from herijk.simulate import WorldSettings, simulate_world
+from herijk.simulate.archive_writer import write_simulated_archive
+from herijk.warehouse.store.store import Store, fingerprint, table_digest
 
 ROOT = Path(__file__).parents[2]
 MYSELF = (sys.executable, "-m", "benchmarks.robustness.survive")

@@ -16,8 +16,8 @@ from dagster._config import process_config, resolve_to_config_type
 from dagster_k8s import K8sRunLauncher
 from kubernetes import client
 
-from assets.settings import read_settings
-from warehouse.storage import read_locations
+from herijk.assets.settings import read_settings
+from herijk.warehouse.store.storage import read_locations
 
 HERE = Path(__file__).parent
 MODELS = {

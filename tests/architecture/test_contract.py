@@ -8,7 +8,7 @@ import re
 
 import pytest
 
-from warehouse.schemas import TABLES
+from herijk.tables.schemas import TABLES
 
 PROMISED = {
     "boats": "fsn_no ht_no name boat_type",

@@ -2,7 +2,7 @@
 
 import dagster as dg
 
-from assets.definitions import defs
+from herijk.assets.definitions import defs
 
 ASSETS = [
     "archive_index",

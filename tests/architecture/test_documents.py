@@ -6,11 +6,11 @@ from typing import Literal, get_args, get_origin
 import pytest
 import typer.main
 
-from herijk.cli import app
-from pipeline.method import Steps, shipped_methods
+from herijk.cli.main import app
+from herijk.pipeline.method.definition import Steps, shipped_methods
+from herijk.tables.schemas import TABLES
+from herijk.warehouse.archive.faults import REASONS
 from tests.architecture.repository import ROOT, read, tracked_files
-from warehouse.archive.faults import REASONS
-from warehouse.schemas import TABLES
 
 OPTIONS = [
     (step, option)

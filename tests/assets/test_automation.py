@@ -14,11 +14,11 @@ from dagster._core.test_utils import create_test_daemon_workspace_context, freez
 from dagster._core.workspace.load_target import ModuleTarget
 from dagster._daemon.sensor import execute_sensor_iteration
 
-from assets.automation import archive_sensor, schedules
-from assets.definitions import build_defs, defs
-from assets.jobs import STEPS
-from assets.rebuild import INSTANCE_SETTINGS
-from assets.settings import Settings
+from herijk.assets.automation import archive_sensor, schedules
+from herijk.assets.definitions import build_defs, defs
+from herijk.assets.jobs import STEPS
+from herijk.assets.rebuild import INSTANCE_SETTINGS
+from herijk.assets.settings import Settings
 from tests.conftest import METHODS
 
 ROOT = Path(__file__).parents[2]
@@ -110,7 +110,7 @@ def test_the_daemon_queues_a_run_for_each_change(archive, tmp_path, monkeypatch)
         ("HERIJK_DATA", tmp_path / "data"),
     ):
         monkeypatch.setenv(name, str(value))
-    target = ModuleTarget("assets.definitions", None, str(ROOT), None)
+    target = ModuleTarget("herijk.assets.definitions", None, str(ROOT), None)
     begin = dt.datetime(2026, 11, 21, 3, tzinfo=dt.UTC)
     with (
         dg.DagsterInstance.from_config(str(tmp_path / "home")) as instance,
@@ -168,9 +168,9 @@ def test_no_job_publishes():
     jobs = {job.name for job in defs.resolve_all_job_defs()} - {"__ASSET_JOB"}
     assert jobs == {*STEPS, "rebuild"}
     found = subprocess.run(
-        [sys.executable, "-c", "import assets.definitions, sys; print(*sys.modules)"],
+        [sys.executable, "-c", "import herijk.assets.definitions, sys; print(*sys.modules)"],
         cwd=ROOT, capture_output=True, text=True, check=True,
     )  # fmt: skip
     loaded = found.stdout.split()
-    assert "warehouse.editions.verify" in loaded
-    assert "warehouse.editions.publish" not in loaded
+    assert "herijk.warehouse.editions.verify" in loaded
+    assert "herijk.warehouse.editions.publish" not in loaded

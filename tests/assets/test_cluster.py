@@ -10,17 +10,17 @@ import dagster as dg
 import dask
 import pytest
 
-from assets import rebuild
-from assets.cluster import read_seasons
-from assets.resources import Quiet
-from pipeline.errors import UnavailableError
-from pipeline.method import shipped_method
+from herijk.assets import rebuild
+from herijk.assets.cluster import read_seasons
+from herijk.assets.resources import Quiet
+from herijk.pipeline.errors import UnavailableError
+from herijk.pipeline.method.definition import shipped_method
+from herijk.warehouse.editions.publish import Terms, publish
+from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.store.store import Store
 from tests.assets.test_rebuild import assert_same_tables
 from tests.conftest import METHODS, SMALL, Workbench
 from tests.elsewhere import assert_same_lake, dask_cluster, edition_hashes, lie_in_bucket
-from warehouse import intake
-from warehouse.editions.publish import Terms, publish
-from warehouse.store import Store
 
 DAY = dt.date(2026, 5, 1)
 

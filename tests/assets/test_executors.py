@@ -2,14 +2,14 @@
 
 import dagster as dg
 
-from assets.jobs import APPLY, COLLECT, COMPARE, FINISH, INDEX, READ, STUDY, job_defs
-from assets.rebuild import prepare_home
-from assets.resources import Quiet, Setup
+from herijk.assets.jobs import APPLY, COLLECT, COMPARE, FINISH, INDEX, READ, STUDY, job_defs
+from herijk.assets.rebuild import prepare_home
+from herijk.assets.resources import Quiet, Setup
 from tests.assets.test_rebuild import assert_same_tables
 from tests.conftest import METHODS, SMALL, Workbench
 
 PRELOADED = [
-    *(__name__, "dashboards.site", "scipy.optimize"),
+    *(__name__, "herijk.dashboards.site", "scipy.optimize"),
     *("dagster._core.storage.sqlite_storage", "dagster._utils.test", "upath.implementations.local"),
 ]
 FORKED = {

@@ -10,12 +10,12 @@ from pathlib import Path
 import duckdb
 import pytest
 
-import warehouse.lake
-from pipeline.errors import UnavailableError
+import herijk.warehouse.intake.lake
+from herijk.pipeline.errors import UnavailableError
+from herijk.warehouse.intake.lake import ArchiveChangedError
+from herijk.warehouse.store.obstacles import obstacles_explained
 from tests.assets.test_rebuild import assert_same_tables, samples_files, spoil
 from tests.conftest import METHODS
-from warehouse.lake import ArchiveChangedError
-from warehouse.obstacles import obstacles_explained
 
 ROOT = Path(__file__).parents[2]
 
@@ -80,10 +80,10 @@ def test_an_error_of_our_own_is_not_called_an_obstacle(tmp_path):
 LIMITED = """
 import resource, sys
 from pathlib import Path
-from assets.rebuild import rebuild
-from assets.resources import Quiet
-from pipeline.errors import UnavailableError
-import dashboards.report_page, dashboards.site
+from herijk.assets.rebuild import rebuild
+from herijk.assets.resources import Quiet
+from herijk.pipeline.errors import UnavailableError
+import herijk.dashboards.report_page, herijk.dashboards.site
 _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
 for limit in (14, 200):
     resource.setrlimit(resource.RLIMIT_NOFILE, (limit, hard))
@@ -127,9 +127,9 @@ NOBODY = 65534
 AS_NOBODY = """
 import os, sys
 from pathlib import Path
-from assets.rebuild import rebuild
-from assets.resources import Quiet
-from pipeline.errors import UnavailableError
+from herijk.assets.rebuild import rebuild
+from herijk.assets.resources import Quiet
+from herijk.pipeline.errors import UnavailableError
 os.setuid(int(sys.argv[3]))
 try:
     rebuild(Path(sys.argv[1]), Path(sys.argv[2]), ["as-published", "rebased-2015"], Quiet())
@@ -208,7 +208,7 @@ def test_an_archive_that_changes_meanwhile_is_read_again(bench, built, monkeypat
     """The file is another than the one that was hashed: its samples would be kept as that one's."""
     file = samples_files(bench, 2009)[3]
     kept = spoil(file)
-    original, changes = warehouse.lake.read_tow_samples, []
+    original, changes = herijk.warehouse.intake.lake.read_tow_samples, []
 
     def changing(root, tow, profile):
         if not changes:
@@ -216,7 +216,7 @@ def test_an_archive_that_changes_meanwhile_is_read_again(bench, built, monkeypat
             file.write_bytes(kept)
         return original(root, tow, profile)
 
-    monkeypatch.setattr(warehouse.lake, "read_tow_samples", changing)
+    monkeypatch.setattr(herijk.warehouse.intake.lake, "read_tow_samples", changing)
     bench.rebuild()
     assert changes
     assert_same_tables(bench.tables(), built.tables())
@@ -225,13 +225,13 @@ def test_an_archive_that_changes_meanwhile_is_read_again(bench, built, monkeypat
 def test_an_archive_that_never_stops_changing_is_left_alone(bench, built, monkeypatch):
     file = samples_files(bench, 2009)[3]
     spoil(file)
-    original = warehouse.lake.read_tow_samples
+    original = herijk.warehouse.intake.lake.read_tow_samples
 
     def changing(root, tow, profile):
         file.write_bytes(file.read_bytes() + b" ")
         return original(root, tow, profile)
 
-    monkeypatch.setattr(warehouse.lake, "read_tow_samples", changing)
+    monkeypatch.setattr(herijk.warehouse.intake.lake, "read_tow_samples", changing)
     with pytest.raises(ArchiveChangedError, match="Try again when nobody is copying"):
         bench.rebuild()
     assert_same_tables(bench.tables(), built.tables())

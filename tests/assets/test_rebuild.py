@@ -8,12 +8,12 @@ import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
 
-import warehouse.lake
-from assets.rebuild import Done
-from pipeline.errors import BrokenPromiseError, MissingKnowledgeError
+import herijk.warehouse.intake.lake
+from herijk.assets.rebuild import Done
+from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
+from herijk.warehouse.build import tables
+from herijk.warehouse.store.store import table_digest
 from tests.conftest import METHODS, SMALL, Workbench
-from warehouse import tables
-from warehouse.store import table_digest
 
 TOWS_2009 = "sleeplijsten/sleeplijst_2009.csv"
 
@@ -46,13 +46,13 @@ def assert_same_tables(one: dict[str, pl.DataFrame], other: dict[str, pl.DataFra
 def files_read(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Tows whose archive files were opened."""
     read: list[str] = []
-    original = warehouse.lake.read_tow_samples
+    original = herijk.warehouse.intake.lake.read_tow_samples
 
     def noted(root, tow, profile):
         read.append(tow["tow_id"])
         return original(root, tow, profile)
 
-    monkeypatch.setattr(warehouse.lake, "read_tow_samples", noted)
+    monkeypatch.setattr(herijk.warehouse.intake.lake, "read_tow_samples", noted)
     return read
 
 
@@ -209,8 +209,8 @@ def test_lost_lake_files_are_made_again_when_their_season_is_read(bench, built, 
 def test_the_old_database_stays_when_a_step_fails(bench, built, monkeypatch):
     spoil(samples_files(bench, 2009)[3])
     for place, error in (
-        ("warehouse.tables.recompute", BrokenPromiseError("a promise was broken")),
-        ("warehouse.database._comment", OSError("disk full")),
+        ("herijk.warehouse.build.tables.recompute", BrokenPromiseError("a promise was broken")),
+        ("herijk.warehouse.store.database._comment", OSError("disk full")),
     ):
         with monkeypatch.context() as patched:
             patched.setattr(place, mock.Mock(side_effect=error))

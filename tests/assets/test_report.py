@@ -13,15 +13,15 @@ import duckdb
 import polars as pl
 import pytest
 
-from assets.notify import Message, Notifier
-from assets.report import failed_checks, tell
-from assets.settings import read_settings
-from dashboards.words import both
-from pipeline.errors import MissingKnowledgeError
+from herijk.assets.notify import Message, Notifier
+from herijk.assets.report import failed_checks, tell
+from herijk.assets.settings import read_settings
+from herijk.dashboards.words import both
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.warehouse.queries.journal import news, reported_database
 from tests.assets.test_rebuild import samples_files, spoil, tow_of
 from tests.conftest import METHODS
 from tests.warehouse.test_faults import Archive, cells, line_of, times
-from warehouse.journal import news, reported_database
 
 NOW = dt.datetime(2026, 11, 21, 3, 5, tzinfo=dt.UTC)
 
@@ -102,7 +102,7 @@ def test_a_rebuild_killed_before_its_report_is_reported_on_by_the_next(bench, mo
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patched:
-        patched.setattr("assets.rebuild.write_report", killed)
+        patched.setattr("herijk.assets.rebuild.write_report", killed)
         with pytest.raises(KeyboardInterrupt):
             bench.rebuild()
     done = bench.rebuild()

@@ -8,12 +8,12 @@ import threading
 import duckdb
 import pytest
 
-from dashboards.site import build_site
-from dashboards.workbench.server import address, listen, serving
-from pipeline.method import shipped_method
+from herijk.dashboards.site import build_site
+from herijk.dashboards.workbench.server import address, listen, serving
+from herijk.pipeline.method.definition import shipped_method
+from herijk.warehouse.editions.publish import Terms, publish
+from herijk.warehouse.store.store import Store
 from tests.conftest import METHODS, Workbench
-from warehouse.editions.publish import Terms, publish
-from warehouse.store import Store
 
 ATTACK = "</script><script>alert(1)</script>"
 FORMULA = "=1+1"

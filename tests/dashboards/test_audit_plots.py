@@ -6,9 +6,9 @@ from xml.etree import ElementTree as ET
 import duckdb
 import pytest
 
-from dashboards.audit_plots import file_name, write_audit_plots
-from warehouse.audit import audit
-from warehouse.store import Store
+from herijk.dashboards.audit_plots import file_name, write_audit_plots
+from herijk.warehouse.queries.audit import audit
+from herijk.warehouse.store.store import Store
 
 SVG = "{http://www.w3.org/2000/svg}"
 

@@ -11,8 +11,8 @@ import shutil
 
 import pytest
 
-from dashboards.site.pages import MENU
-from dashboards.site.parts import boat_path
+from herijk.dashboards.site.pages import MENU
+from herijk.dashboards.site.parts import boat_path
 from tests.architecture.repository import ROOT
 from tests.dashboards.conftest import ATTACK, EDITIONS, FORMULA
 

@@ -8,8 +8,8 @@ import polars as pl
 import pytest
 import vl_convert
 
-from dashboards.figures import FIGURES, png
-from dashboards.words import LANGUAGES, WORDS, both, speaker
+from herijk.dashboards.figures import FIGURES, png
+from herijk.dashboards.words import LANGUAGES, WORDS, both, speaker
 
 FRAME = pl.DataFrame({"kind": ["line"], "method": ["rebased"], "cw_kg_m": [30.0]})
 

@@ -7,15 +7,15 @@ import re
 import polars as pl
 import pytest
 
-from dashboards.html import as_json
-from dashboards.site import build_site
-from dashboards.site.downloads import SHEETS
-from dashboards.site.pages import MENU, all_pages
-from dashboards.site.parts import boat_path, default_method
-from dashboards.site.render import CODES, KEPT
-from dashboards.words import WORDS
+from herijk.dashboards.html import as_json
+from herijk.dashboards.site import build_site
+from herijk.dashboards.site.downloads import SHEETS
+from herijk.dashboards.site.pages import MENU, all_pages
+from herijk.dashboards.site.parts import boat_path, default_method
+from herijk.dashboards.site.render import CODES, KEPT
+from herijk.dashboards.words import WORDS
+from herijk.warehouse.queries.views import Views
 from tests.dashboards.conftest import ATTACK, EDITIONS
-from warehouse.views import Views
 
 
 def pages(site):
@@ -143,7 +143,7 @@ def test_nothing_half_made_is_left(store):
 
 def test_a_failing_build_leaves_the_old_site(store, site, monkeypatch):
     before = hashes(site)
-    monkeypatch.setattr("dashboards.site.render.all_pages", lambda _: 1 / 0)
+    monkeypatch.setattr("herijk.dashboards.site.render.all_pages", lambda _: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         build_site(store)
     assert hashes(site) == before

@@ -10,21 +10,21 @@ import urllib.request
 import pytest
 from polars.testing import assert_frame_equal
 
-from dashboards.site.render import KEPT
-from dashboards.words import LANGUAGES, both
-from dashboards.workbench import texts
-from dashboards.workbench.bench import TRIAL, Base, Bench, Named, Question
-from dashboards.workbench.form import _kind, controls, option_names
-from dashboards.workbench.server import listen
-from pipeline.checks import CODES
-from pipeline.errors import HerijkError, MissingKnowledgeError
-from pipeline.method import MethodFileError, Steps, parse_method
-from pipeline.run_cache import RunCache
+from herijk.dashboards.site.render import KEPT
+from herijk.dashboards.words import LANGUAGES, both
+from herijk.dashboards.workbench import texts
+from herijk.dashboards.workbench.bench import TRIAL, Base, Bench, Named, Question
+from herijk.dashboards.workbench.form import _kind, controls, option_names
+from herijk.dashboards.workbench.server import listen
+from herijk.pipeline.assessment.checks import CODES
+from herijk.pipeline.errors import HerijkError, MissingKnowledgeError
+from herijk.pipeline.method.definition import MethodFileError, Steps, parse_method
+from herijk.pipeline.recompute.run_cache import RunCache
+from herijk.warehouse.queries.history import History
+from herijk.warehouse.queries.rebase import rebase
+from herijk.warehouse.store.store import Store
 from tests.architecture.repository import ROOT
 from tests.dashboards.conftest import served
-from warehouse.history import History
-from warehouse.rebase import rebase
-from warehouse.store import Store
 
 CONTROLS = {(s["step"], c["option"]): c for s in controls() for c in s["options"]}
 PARENT = "rebased-2015"
@@ -311,7 +311,7 @@ def test_the_page_says_that_the_archive_is_simulated(url):
 
 def test_the_command_does_not_load_the_web_stack_before_it_is_asked():
     code = (
-        "import sys, herijk.cli; heavy = {'starlette', 'uvicorn', 'altair', 'dagster'};"
+        "import sys, herijk.cli.main; heavy = {'starlette', 'uvicorn', 'altair', 'dagster'};"
         "sys.exit(', '.join(sorted(heavy & sys.modules.keys())) or 0)"
     )
     done = subprocess.run(

@@ -5,12 +5,12 @@ Needs Chromium, like the tests of the site. Screenshots go to `ci-output/`.
 
 import pytest
 
-from dashboards.workbench.bench import Base, Bench, Question
-from pipeline.method import Steps, parse_method
+from herijk.dashboards.workbench.bench import Base, Bench, Question
+from herijk.pipeline.method.definition import Steps, parse_method
+from herijk.warehouse.queries.history import History
+from herijk.warehouse.store.store import Store
 from tests.dashboards import test_browser as site
 from tests.dashboards.conftest import served
-from warehouse.history import History
-from warehouse.store import Store
 
 pytestmark = site.pytestmark
 

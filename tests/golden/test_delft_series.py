@@ -10,8 +10,9 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from pipeline import curve, friction, hull
-from pipeline.duplicates import duplicate_pairs
+from herijk.pipeline import curve
+from herijk.pipeline.steps import friction, hull
+from herijk.pipeline.studies.duplicates import duplicate_pairs
 from tests.golden.sources import read_table
 
 WATERLINE_M = 8.0

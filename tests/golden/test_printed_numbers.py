@@ -13,8 +13,10 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from pipeline import curve, hull, race
-from pipeline.channels import RUN_SECONDS, RUNS_PER_FILE, SAMPLE_SCHEMA
+from herijk.pipeline import curve
+from herijk.pipeline.channels import RUN_SECONDS, RUNS_PER_FILE, SAMPLE_SCHEMA
+from herijk.pipeline.races import race
+from herijk.pipeline.steps import hull
 from tests.golden.sources import read_table
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from pipeline import curve
+from herijk.pipeline import curve
 from tests.golden.sources import read_table
 
 

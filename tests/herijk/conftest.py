@@ -4,7 +4,7 @@ import sys
 
 import pytest
 
-from herijk.cli import main
+from herijk.cli.main import main
 
 
 @pytest.fixture

@@ -8,9 +8,9 @@ import duckdb
 import polars as pl
 from typer.testing import CliRunner
 
-from herijk.audit_text import audit as page_of
-from herijk.cli import app
-from warehouse.audit import audit
+from herijk.cli.audit_text import audit as page_of
+from herijk.cli.main import app
+from herijk.warehouse.queries.audit import audit
 
 WIDTH = 100
 

@@ -6,7 +6,7 @@ import re
 import pytest
 from typer.main import get_command
 
-from herijk.cli import app
+from herijk.cli.main import app
 from tests.conftest import METHODS
 
 COMMANDS = ("simulate", "rebuild", "methods", "audit")

@@ -4,7 +4,6 @@ import json
 
 import pytest
 
-import pipeline.recompute
 from tests.warehouse.edition_bench import EditionBench
 
 DECISION = ("--decision", "ALV 12-5-2014")
@@ -88,13 +87,13 @@ def test_verify_is_0_when_all_is_well_and_1_when_not(herijk, bench, tmp_path):
 
 
 def test_verify_under_other_code_says_that_what_was_published_stands(herijk, bench, monkeypatch):
-    original = pipeline.recompute.still_air_coefficient_kg_m
+    original = herijk.pipeline.recompute.recompute.still_air_coefficient_kg_m
     monkeypatch.setattr(
-        pipeline.recompute,
+        herijk.pipeline.recompute.recompute,
         "still_air_coefficient_kg_m",
         lambda area, drag: 1.5 * original(area, drag),
     )
-    monkeypatch.setattr("warehouse.editions.verify.code_version", lambda: "0.2.0+other")
+    monkeypatch.setattr("herijk.warehouse.editions.verify.code_version", lambda: "0.2.0+other")
     status, out, _ = herijk("verify", "--data", bench.data)
     assert status == 0
     assert "the code changed, from" in out

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import polars as pl
 
+from herijk.warehouse.store.store import table_digest
 from tests.conftest import METHODS, SMALL, Workbench
-from warehouse.store import table_digest
 
 ROOT = Path(__file__).parents[2]
 THREAD_LIMITS = ("POLARS_MAX_THREADS", "OPENBLAS_NUM_THREADS")

@@ -7,11 +7,11 @@ import pytest
 
 HEAVY = {"altair", "dagster", "dataframely", "duckdb", "numpy", "polars", "scipy", "sqlalchemy"}
 NEEDED = {
-    "herijk.cli": set(),
-    "pipeline.method": set(),
-    "warehouse.reports": {"duckdb", "numpy", "polars"},
-    "warehouse.audit": {"duckdb", "numpy", "polars", "scipy"},
-    "warehouse.editions.lineage": {"numpy", "polars"},
+    "herijk.cli.main": set(),
+    "herijk.pipeline.method.definition": set(),
+    "herijk.warehouse.queries.reports": {"duckdb", "numpy", "polars"},
+    "herijk.warehouse.queries.audit": {"duckdb", "numpy", "polars", "scipy"},
+    "herijk.warehouse.editions.lineage": {"numpy", "polars"},
 }
 UNUSED_PARTS = {"scipy.optimize", "scipy.signal", "scipy.sparse", "scipy.special", "scipy.stats"}
 

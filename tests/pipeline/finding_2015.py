@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import polars as pl
 
-from pipeline.consistency import era_shifts, observe, repeat_pairs, type_consistency
-from pipeline.method import shipped_method
-from pipeline.recompute import recompute
-from pipeline.simulate import World, WorldSettings, simulate_world
+from herijk.pipeline.consistency import era_shifts, observe, repeat_pairs, type_consistency
+from herijk.pipeline.method.definition import shipped_method
+from herijk.pipeline.recompute.recompute import recompute
+from herijk.simulate import World, WorldSettings, simulate_world
 from tests.worlds import measure
 
 PAIR = ("Kromhoutwhaler", "Kuikensloep")

@@ -1,6 +1,6 @@
 """Archives at the level of tows, with known truth: boats, schedule, log errors, repeat tows.
 
-Fast enough for hundreds of worlds; what a tow's samples look like is left to `pipeline.simulate`.
+Fast enough for hundreds of worlds; what a tow's samples look like is left to `herijk.simulate`.
 The set-ups are those of research, method.md 9.3 and 9.4.
 """
 
@@ -10,8 +10,9 @@ import numpy as np
 import polars as pl
 from scipy.signal import lfilter
 
-from pipeline import season_log, uncertainty
-from pipeline.blocks import RunBlocks
+from herijk.pipeline import season_log
+from herijk.pipeline.blocks.run_blocks import RunBlocks
+from herijk.pipeline.uncertainty import propagation as uncertainty
 
 SEASONS = range(2009, 2019)
 ANCHORED_FROM = 2014

@@ -11,9 +11,9 @@ from typing import Any
 import polars as pl
 import pytest
 
-from pipeline.assessment import assess, with_status
-from pipeline.checks import CHECKS, CODES
-from pipeline.method import MethodFileError, parse_method, shipped_method
+from herijk.pipeline.assessment.assess import assess, with_status
+from herijk.pipeline.assessment.checks import CHECKS, CODES
+from herijk.pipeline.method.definition import MethodFileError, parse_method, shipped_method
 
 METHOD = "some-method"
 V0 = 2.5

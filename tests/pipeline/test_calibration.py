@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pipeline.calibration import gps_factor
+from herijk.pipeline.steps.calibration import gps_factor
 
 WAY = np.array([1, 1, 1, -1, -1, -1])
 TOW = np.zeros(6, dtype=np.int64)

@@ -8,7 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pipeline.changes import PART_SCHEMA, register_changes, side_by_side, steps_of_lines
+from herijk.pipeline.register.changes import (
+    PART_SCHEMA,
+    register_changes,
+    side_by_side,
+    steps_of_lines,
+)
 
 LINE = ("FSN1", 8, "H")
 NUMBERS = ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")

@@ -4,8 +4,8 @@ import numpy as np
 import polars as pl
 import pytest
 
-from pipeline.assessment import _held_against_limits
-from pipeline.choice import first_largest
+from herijk.pipeline.assessment.assess import _held_against_limits
+from herijk.pipeline.choice import first_largest
 
 
 @pytest.mark.parametrize(

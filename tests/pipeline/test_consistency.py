@@ -10,7 +10,7 @@ from scipy import optimize, stats
 from statsmodels.regression.mixed_linear_model import MixedLM, VCSpec
 from statsmodels.stats.meta_analysis import combine_effects
 
-from pipeline.consistency import (
+from herijk.pipeline.consistency import (
     ERAS,
     consistency_tables,
     mixed,
@@ -25,11 +25,11 @@ from pipeline.consistency import (
     type_outliers,
     variance_components,
 )
-from pipeline.consistency.lines import LN_CW, quantities
-from pipeline.consistency.observed import newest
-from pipeline.consistency.reml import Problem
+from herijk.pipeline.consistency.lines import LN_CW, quantities
+from herijk.pipeline.consistency.observed import newest
+from herijk.pipeline.consistency.reml import Problem
+from herijk.tables.schemas import conform
 from tests.pipeline.consistency_fleet import fleet
-from warehouse.schemas import conform
 
 
 def within(observed, expected, trials):

@@ -8,11 +8,11 @@ import numpy as np
 import polars as pl
 import pytest
 
-from pipeline.block_sums import block_sums
-from pipeline.blocks import stack_blocks
-from pipeline.channels import SAMPLE_SCHEMA
-from pipeline.recompute import recompute
-from pipeline.simulate import Defects, WorldSettings, simulate_tow, simulate_world
+from herijk.pipeline.blocks.run_blocks import stack_blocks
+from herijk.pipeline.blocks.sums import block_sums
+from herijk.pipeline.channels import SAMPLE_SCHEMA
+from herijk.pipeline.recompute.recompute import recompute
+from herijk.simulate import Defects, WorldSettings, simulate_tow, simulate_world
 from tests.pipeline.methods import method
 from tests.worlds import measure, recompute_world, run_rows, tow_rows
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from pipeline import curve
-from pipeline.errors import BrokenPromiseError
+from herijk.pipeline import curve
+from herijk.pipeline.errors import BrokenPromiseError
 
 RUN_RATIOS = np.array([0.9, 1.0, 1.1, 0.9, 1.0, 1.1])
 

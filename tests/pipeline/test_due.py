@@ -5,7 +5,7 @@ import datetime as dt
 import polars as pl
 import pytest
 
-from pipeline.due import (
+from herijk.pipeline.register.due import (
     HIGHEST_W,
     LIKE_BOATS,
     LOWEST_W,
@@ -16,7 +16,7 @@ from pipeline.due import (
     TOO_FAST,
     due_list,
 )
-from pipeline.due import IN_RANGE as REALISTIC
+from herijk.pipeline.register.due import IN_RANGE as REALISTIC
 
 AS_OF = dt.date(2018, 6, 1)
 A, B, ROWERS = 31.6, 4.44, 8

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from pipeline.duplicates import duplicate_pairs
-from pipeline.errors import BrokenPromiseError
+from herijk.pipeline.errors import BrokenPromiseError
+from herijk.pipeline.studies.duplicates import duplicate_pairs
 
 
 def test_every_pair_of_copies_is_found_once():

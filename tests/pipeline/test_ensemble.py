@@ -4,8 +4,9 @@ import numpy as np
 import polars as pl
 import pytest
 
-from pipeline import ensemble, uncertainty
-from pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.uncertainty import ensemble
+from herijk.pipeline.uncertainty import propagation as uncertainty
 from tests.pipeline.season_worlds import HARD, register, simulate
 
 MANY = 20_000

@@ -4,11 +4,11 @@ import numpy as np
 import polars as pl
 import pytest
 
-from pipeline.ladder import START, STEP_ORDER, ladder
-from pipeline.method import parse_method, shipped_method
-from pipeline.options import ALL_OPTIONS, CHOICES, beside_uncertainty, option_effects
-from pipeline.recompute import recompute
-from pipeline.simulate import WorldSettings
+from herijk.pipeline.method.definition import parse_method, shipped_method
+from herijk.pipeline.recompute.recompute import recompute
+from herijk.pipeline.studies.ladder import START, STEP_ORDER, ladder
+from herijk.pipeline.studies.options import ALL_OPTIONS, CHOICES, beside_uncertainty, option_effects
+from herijk.simulate import WorldSettings
 from tests.worlds import measure
 
 OLD, NEW = shipped_method("as-published"), shipped_method("rebased-2015")

@@ -9,10 +9,10 @@ import numpy as np
 import polars as pl
 import pytest
 
-from pipeline.consistency import consistency_tables
-from pipeline.method import shipped_method
-from pipeline.recompute import recompute
-from pipeline.simulate import WorldSettings, simulate_world
+from herijk.pipeline.consistency import consistency_tables
+from herijk.pipeline.method.definition import shipped_method
+from herijk.pipeline.recompute.recompute import recompute
+from herijk.simulate import WorldSettings, simulate_world
 from tests.numbers import unequal
 from tests.worlds import measure
 

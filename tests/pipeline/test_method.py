@@ -6,8 +6,13 @@ import time
 
 import pytest
 
-from pipeline.errors import MissingKnowledgeError
-from pipeline.method import MethodFileError, parse_method, shipped_method, shipped_methods
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.method.definition import (
+    MethodFileError,
+    parse_method,
+    shipped_method,
+    shipped_methods,
+)
 from tests.pipeline.methods import PLAIN, method_text
 
 LINE_OF = {step: number for number, step in enumerate(PLAIN, 4)}

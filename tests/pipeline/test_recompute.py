@@ -8,12 +8,12 @@ import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
 
-from pipeline.block_sums import block_sums
-from pipeline.blocks import stack_blocks
-from pipeline.errors import MissingKnowledgeError
-from pipeline.method import parse_method, shipped_method
-from pipeline.recompute import recompute
-from pipeline.simulate import WorldSettings, simulate_tow, simulate_world
+from herijk.pipeline.blocks.run_blocks import stack_blocks
+from herijk.pipeline.blocks.sums import block_sums
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.method.definition import parse_method, shipped_method
+from herijk.pipeline.recompute.recompute import recompute
+from herijk.simulate import WorldSettings, simulate_tow, simulate_world
 from tests.pipeline.methods import method, method_text
 from tests.worlds import Measured, measure, run_rows, tow_rows
 

@@ -4,9 +4,9 @@ import numpy as np
 import polars as pl
 import pytest
 
-from pipeline.batch import Batch
-from pipeline.resistance import run_means, temperature_change_kg_m, wetted_surface_m2
-from pipeline.simulate import Defects, WorldSettings
+from herijk.pipeline.blocks.batch import Batch
+from herijk.pipeline.steps.resistance import run_means, temperature_change_kg_m, wetted_surface_m2
+from herijk.simulate import Defects, WorldSettings
 from tests.pipeline.methods import method
 from tests.worlds import measure
 

@@ -5,11 +5,11 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from pipeline.batch import Batch
-from pipeline.resistance import run_means
-from pipeline.run_cache import RunCache
-from pipeline.simulate import WorldSettings
-from pipeline.steady import choose_windows
+from herijk.pipeline.blocks.batch import Batch
+from herijk.pipeline.recompute.run_cache import RunCache
+from herijk.pipeline.steps.resistance import run_means
+from herijk.pipeline.steps.window import choose_windows
+from herijk.simulate import WorldSettings
 from tests.pipeline.methods import method
 from tests.worlds import measure
 

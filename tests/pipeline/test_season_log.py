@@ -8,9 +8,9 @@ import polars as pl
 import pytest
 from scipy.stats import binom
 
-from pipeline import curve
-from pipeline.errors import BrokenPromiseError
-from pipeline.season_log import (
+from herijk.pipeline import curve
+from herijk.pipeline.errors import BrokenPromiseError
+from herijk.pipeline.season_log import (
     GROUP,
     Prior,
     Settings,

@@ -3,7 +3,7 @@
 import polars as pl
 import pytest
 
-from pipeline import summaries
+from herijk.pipeline.studies import summaries
 
 CURVES = pl.DataFrame(
     [

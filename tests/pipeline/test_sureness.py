@@ -3,10 +3,10 @@
 import polars as pl
 import pytest
 
-from pipeline.method import shipped_method
-from pipeline.recompute import recompute
-from pipeline.results import Recomputed
-from pipeline.simulate import WorldSettings
+from herijk.pipeline.method.definition import shipped_method
+from herijk.pipeline.recompute.recompute import recompute
+from herijk.pipeline.recompute.results import Recomputed
+from herijk.simulate import WorldSettings
 from tests.worlds import measure
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from pipeline.season_log.assumed import USUAL
-from pipeline.season_log.scatter import tow_scatter
+from herijk.pipeline.season_log.assumed import USUAL
+from herijk.pipeline.season_log.scatter import tow_scatter
 
 RANDOM_SD = 0.006
 

@@ -5,7 +5,7 @@ import polars as pl
 import pytest
 from scipy import stats
 
-from pipeline.uncertainty import (
+from herijk.pipeline.uncertainty.propagation import (
     COMPONENTS,
     Assumed,
     budget,

@@ -2,8 +2,14 @@
 
 import pytest
 
-from pipeline.method import MethodFileError, SeasonSteps, Steps, parse_method, shipped_method
-from pipeline.variant import Difference, cut_at, differences, variant, variant_text
+from herijk.pipeline.method.definition import (
+    MethodFileError,
+    SeasonSteps,
+    Steps,
+    parse_method,
+    shipped_method,
+)
+from herijk.pipeline.method.variant import Difference, cut_at, differences, variant, variant_text
 from tests.pipeline.methods import method, method_text
 
 SEASONS = range(2009, 2019)

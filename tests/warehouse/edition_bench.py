@@ -7,12 +7,13 @@ from pathlib import Path
 
 import polars as pl
 
-from pipeline.method import Method, shipped_method
-from pipeline.simulate import WorldSettings, simulate_world
-from warehouse import intake, tables
-from warehouse.archive.write import write_simulated_archive
-from warehouse.editions.publish import Terms, publish
-from warehouse.store import Store
+from herijk.pipeline.method.definition import Method, shipped_method
+from herijk.simulate import WorldSettings, simulate_world
+from herijk.simulate.archive_writer import write_simulated_archive
+from herijk.warehouse.build import tables
+from herijk.warehouse.editions.publish import Terms, publish
+from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.store.store import Store
 
 SMALL = WorldSettings(seasons=(2009, 2014), tows_per_season=8, rate_hz=10, seed=5)
 """Season 2009 is written as plain CSV; a line of either season is valid in June 2014."""

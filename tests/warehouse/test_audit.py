@@ -5,10 +5,10 @@ import numpy as np
 import polars as pl
 import pytest
 
-from pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.warehouse.queries.audit import audit
+from herijk.warehouse.queries.audit_types import closest, differences
 from tests.conftest import METHODS
-from warehouse.audit import audit
-from warehouse.audit_types import closest, differences
 
 
 def change(bench, *statements):

@@ -7,10 +7,10 @@ import duckdb
 import polars as pl
 import pytest
 
+from herijk.tables.schemas import TABLES
+from herijk.warehouse.build.tables import METHOD_FILES
+from herijk.warehouse.store.database import build_database
 from tests.conftest import Workbench
-from warehouse.database import build_database
-from warehouse.schemas import TABLES
-from warehouse.tables import METHOD_FILES
 
 CONTRACT = {
     "boats": "fsn_no, ht_no, name, boat_type",

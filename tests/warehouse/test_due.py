@@ -5,10 +5,10 @@ import datetime as dt
 import polars as pl
 import pytest
 
-from pipeline.due import NOT_RACED, SPEED_REASONS
-from pipeline.errors import MissingKnowledgeError
-from warehouse.decisions import FILE_NAME
-from warehouse.due import URGENCIES, due_report
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.register.due import NOT_RACED, SPEED_REASONS
+from herijk.warehouse.build.due import URGENCIES, due_report
+from herijk.warehouse.store.decisions import FILE_NAME
 
 METHOD = "rebased-2015"
 

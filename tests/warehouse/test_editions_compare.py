@@ -8,17 +8,17 @@ import shutil
 import polars as pl
 import pytest
 
-import pipeline.ladder
-import pipeline.recompute
-from pipeline.errors import MissingKnowledgeError
-from pipeline.method import parse_method, shipped_method
-from pipeline.register import LINE
-from pipeline.replay import RaceRules
+import herijk.pipeline.recompute.recompute
+import herijk.pipeline.studies.ladder
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.method.definition import parse_method, shipped_method
+from herijk.pipeline.register.register import LINE
+from herijk.pipeline.register.replay import RaceRules
+from herijk.warehouse.editions.compare import diff, race_effects, report
+from herijk.warehouse.editions.folder import read_edition
+from herijk.warehouse.editions.publish import publish_printed
+from herijk.warehouse.store.decisions import FILE_NAME
 from tests.warehouse.edition_bench import terms
-from warehouse.decisions import FILE_NAME
-from warehouse.editions.compare import diff, race_effects, report
-from warehouse.editions.folder import read_edition
-from warehouse.editions.publish import publish_printed
 
 VARIANT = """
 name = "variant"
@@ -55,9 +55,9 @@ def assert_factors_multiply(lines):
 
 def new_code(monkeypatch):
     """Another version of the code, which finds other run points."""
-    original = pipeline.recompute.still_air_coefficient_kg_m
+    original = herijk.pipeline.recompute.recompute.still_air_coefficient_kg_m
     monkeypatch.setattr(
-        pipeline.recompute,
+        herijk.pipeline.recompute.recompute,
         "still_air_coefficient_kg_m",
         lambda area, drag: 1.5 * original(area, drag),
     )
@@ -84,7 +84,7 @@ def test_log_factors_of_the_editions_are_used_and_not_estimated_again(published,
     def refuse(*_):
         raise AssertionError("estimated again")
 
-    monkeypatch.setattr(pipeline.ladder, "log_factors", refuse)
+    monkeypatch.setattr(herijk.pipeline.studies.ladder, "log_factors", refuse)
     assert_factors_multiply(diff(published.store, "2014-1", "2014-2").lines)
 
 

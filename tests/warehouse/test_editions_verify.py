@@ -9,16 +9,16 @@ import zipfile
 import polars as pl
 import pytest
 
-import pipeline.recompute
-from pipeline.errors import MissingKnowledgeError
-from pipeline.method import parse_method, shipped_method
+import herijk.pipeline.recompute.recompute
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.method.definition import parse_method, shipped_method
+from herijk.tables.schemas import conform
+from herijk.warehouse.editions.folder import read_about, read_edition
+from herijk.warehouse.editions.inputs import same_tows, unchanged_tows
+from herijk.warehouse.editions.lineage import lineage, lineage_rows
+from herijk.warehouse.editions.publish import publish_printed
+from herijk.warehouse.editions.verify import verify
 from tests.warehouse.edition_bench import terms
-from warehouse.editions.folder import read_about, read_edition
-from warehouse.editions.inputs import same_tows, unchanged_tows
-from warehouse.editions.lineage import lineage, lineage_rows
-from warehouse.editions.publish import publish_printed
-from warehouse.editions.verify import verify
-from warehouse.schemas import conform
 
 
 def folder(bench, name="2014-1"):
@@ -222,14 +222,14 @@ def test_a_file_changed_and_rebuilt_makes_another_number_and_says_why(published_
 
 
 def test_other_code_is_told_but_is_no_broken_promise(published_copy, monkeypatch):
-    original = pipeline.recompute.still_air_coefficient_kg_m
+    original = herijk.pipeline.recompute.recompute.still_air_coefficient_kg_m
     monkeypatch.setattr(
-        pipeline.recompute,
+        herijk.pipeline.recompute.recompute,
         "still_air_coefficient_kg_m",
         lambda area, drag: 1.5 * original(area, drag),
     )
     assert verify(published_copy.store)["wrong"]
-    monkeypatch.setattr("warehouse.editions.verify.code_version", lambda: "0.2.0+other")
+    monkeypatch.setattr("herijk.warehouse.editions.verify.code_version", lambda: "0.2.0+other")
     findings, wrong = found(published_copy, kind="differs")
     assert not wrong
     assert all("the code changed, from" in f["message"] for f in findings)

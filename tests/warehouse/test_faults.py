@@ -9,10 +9,11 @@ import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
 
-from pipeline.method import shipped_method
+from herijk.pipeline.method.definition import shipped_method
+from herijk.warehouse.build import tables
+from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.store.database import build_database
 from tests.conftest import METHODS, SMALL, Workbench
-from warehouse import intake, tables
-from warehouse.database import build_database
 
 ROWS = 50 * SMALL.rate_hz
 LIST_2009 = "sleeplijsten/sleeplijst_2009.csv"

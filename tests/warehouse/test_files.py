@@ -2,7 +2,7 @@
 
 import threading
 
-from warehouse.files import put_in_place
+from herijk.warehouse.store.files import put_in_place
 
 
 def filled(folder, text):
@@ -24,7 +24,7 @@ def test_the_older_folder_is_beside_after(tmp_path):
 
 
 def test_the_same_where_names_cannot_be_exchanged(tmp_path, monkeypatch):
-    monkeypatch.setattr("warehouse.files._exchange", lambda one, other: False)
+    monkeypatch.setattr("herijk.warehouse.store.files._exchange", lambda one, other: False)
     target = filled(tmp_path / "site", "old")
     put_in_place(filled(tmp_path / "beside", "new"), target)
     assert (target / "page.html").read_text("utf-8") == "new"

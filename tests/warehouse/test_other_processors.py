@@ -14,10 +14,10 @@ import duckdb
 import numpy as np
 import pytest
 
-from pipeline.simulate import WorldSettings, simulate_world
+from herijk.simulate import WorldSettings, simulate_world
+from herijk.simulate.archive_writer import write_simulated_archive
 from tests.numbers import unequal
 from tests.warehouse.edition_bench import EditionBench
-from warehouse.archive.write import write_simulated_archive
 
 ROOT = Path(__file__).parents[2]
 WORLD = WorldSettings(seasons=(2009, 2014, 2017), tows_per_season=10, rate_hz=10, seed=3)
@@ -27,9 +27,9 @@ EVERYTHING = """
 import json, shutil, sys
 from pathlib import Path
 from tests.warehouse.edition_bench import METHODS, EditionBench
-from pipeline.method import shipped_method
+from herijk.pipeline.method.definition import shipped_method
 from warehouse import summaries, tables
-from warehouse.editions.verify import verify
+from herijk.warehouse.editions.verify import verify
 bench = EditionBench(Path(sys.argv[1]), Path(sys.argv[2]))
 methods = [shipped_method(name) for name in METHODS]
 bench.rebuild(methods)

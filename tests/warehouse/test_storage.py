@@ -9,17 +9,23 @@ import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
 
-from dashboards.site.downloads import copy_sheets
-from pipeline.errors import BrokenPromiseError, MissingKnowledgeError, UnavailableError
-from pipeline.method import shipped_method
+from herijk.dashboards.site.downloads import copy_sheets
+from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError, UnavailableError
+from herijk.pipeline.method.definition import shipped_method
+from herijk.warehouse.editions.folder import edition_names, read_edition, write_folder
+from herijk.warehouse.editions.publish import Terms, publish
+from herijk.warehouse.editions.verify import verify
+from herijk.warehouse.store import storage
+from herijk.warehouse.store.bucket import BucketPath
+from herijk.warehouse.store.store import (
+    DamagedFileError,
+    Store,
+    count_rows,
+    read_parquet,
+    write_parquet,
+)
 from tests.conftest import Workbench
 from tests.elsewhere import BUCKET, lie_in_bucket
-from warehouse import storage
-from warehouse.bucket import BucketPath
-from warehouse.editions.folder import edition_names, read_edition, write_folder
-from warehouse.editions.publish import Terms, publish
-from warehouse.editions.verify import verify
-from warehouse.store import DamagedFileError, Store, count_rows, read_parquet, write_parquet
 
 FRAME = pl.DataFrame({"tow_id": ["a", "b"], "cw_kg_m": [1.5, 2.5]})
 
@@ -177,6 +183,6 @@ def test_of_two_publications_under_one_name_one_stops_and_nothing_is_overwritten
 
 
 def test_a_bucket_without_its_library_is_told_what_to_install(monkeypatch, tmp_path: Path):
-    monkeypatch.setitem(__import__("sys").modules, "warehouse.bucket", None)
+    monkeypatch.setitem(__import__("sys").modules, "herijk.warehouse.store.bucket", None)
     with pytest.raises(MissingKnowledgeError, match=r"herijk\[s3\]"):
         storage.place("s3://roeien/lake", tmp_path)

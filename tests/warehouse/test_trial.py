@@ -4,13 +4,13 @@ import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
 
-from pipeline.errors import MissingKnowledgeError
-from pipeline.method import parse_method, shipped_method
-from pipeline.register import LINE
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.method.definition import parse_method, shipped_method
+from herijk.pipeline.register.register import LINE
+from herijk.warehouse.queries.history import History
+from herijk.warehouse.queries.trial import Trial
+from herijk.warehouse.store.store import Store
 from tests.conftest import METHODS
-from warehouse.history import History
-from warehouse.store import Store
-from warehouse.trial import Trial
 
 UNTOWABLE = """
 name = "none"

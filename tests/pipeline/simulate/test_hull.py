@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from pipeline.simulate import AirCoefficients, WorldSettings, simulate_world
-from pipeline.simulate.boats import POWER_W
-from pipeline.simulate.hull import (
+from herijk.simulate import AirCoefficients, WorldSettings, simulate_world
+from herijk.simulate.boats import POWER_W
+from herijk.simulate.hull import (
     Hull,
     air_force_n,
     friction_coefficient,

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from pipeline.simulate import Defects, WorldSettings, simulate_world
-from pipeline.simulate.papers import RACE_KM, printed_register, race
+from herijk.simulate import Defects, WorldSettings, simulate_world
+from herijk.simulate.papers import RACE_KM, printed_register, race
 
 
 def world_with(**sizes):

@@ -6,8 +6,8 @@ import numpy as np
 import polars as pl
 import pytest
 
-from pipeline.channels import SAMPLE_SCHEMA
-from pipeline.simulate import (
+from herijk.pipeline.channels import SAMPLE_SCHEMA
+from herijk.simulate import (
     AirCoefficients,
     Defects,
     WorldSettings,

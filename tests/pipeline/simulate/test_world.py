@@ -7,8 +7,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from pipeline.errors import HerijkError, MissingKnowledgeError
-from pipeline.simulate import Defects, WorldSettings, simulate_world
+from herijk.pipeline.errors import HerijkError, MissingKnowledgeError
+from herijk.simulate import Defects, WorldSettings, simulate_world
 
 
 def none(season):

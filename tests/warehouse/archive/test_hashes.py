@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from warehouse.archive import FileHashes
+from herijk.warehouse.archive import FileHashes
 
 OLD_NS = 1_600_000_000_000_000_000
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import polars as pl
 import pytest
 
+from herijk.warehouse.archive import REASONS
 from tests.warehouse.archive.conftest import (
     BOATS,
     FIRST,
@@ -20,7 +21,6 @@ from tests.warehouse.archive.conftest import (
     Scan,
     line_of,
 )
-from warehouse.archive import REASONS
 
 Spoil = Callable[[Archive], object]
 ALL = {"2014-001", "2014-002", "2014-003"}

@@ -12,11 +12,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pipeline.channels import SAMPLE_SCHEMA
-from pipeline.errors import DefectiveInputError
+from herijk.pipeline.channels import SAMPLE_SCHEMA
+from herijk.pipeline.errors import DefectiveInputError
+from herijk.warehouse.archive import REASONS, SeasonProfile, read_samples, samples
+from herijk.warehouse.archive.text import parse_number
 from tests.warehouse.archive.conftest import FIRST, HEADER, TOWS, Archive, Scan
-from warehouse.archive import REASONS, SeasonProfile, read_samples, samples
-from warehouse.archive.text import parse_number
 
 PROFILE = SeasonProfile(season=2014)
 ROWS = [

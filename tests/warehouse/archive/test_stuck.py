@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from warehouse.archive.plausibility import _longest_hold, _may_hold
+from herijk.warehouse.archive.plausibility import _longest_hold, _may_hold
 
 
 @given(values=st.lists(st.integers(0, 2), min_size=2, max_size=80), samples=st.integers(2, 30))

@@ -6,10 +6,11 @@ from pathlib import Path
 import polars as pl
 import pytest
 
-from pipeline.method import Method, parse_method
+from herijk.pipeline.method.definition import Method, parse_method
+from herijk.warehouse.build import tables
+from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.store.store import Store
 from tests.warehouse.archive.conftest import TOWS, Archive
-from warehouse import intake, tables
-from warehouse.store import Store
 
 WINDOWS = "sleeplijsten/vensters_2014.csv"
 HEADER = "sleep_id;run;van [s];tot [s];reden\n"

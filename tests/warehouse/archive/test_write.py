@@ -9,16 +9,16 @@ import numpy as np
 import polars as pl
 import pytest
 
-from pipeline.errors import HerijkError, MissingKnowledgeError
-from pipeline.simulate import WorldSettings, simulate_tow, simulate_world
-from pipeline.simulate.papers import printed_register
-from warehouse.archive.write import (
+from herijk.pipeline.errors import HerijkError, MissingKnowledgeError
+from herijk.simulate import WorldSettings, simulate_tow, simulate_world
+from herijk.simulate.archive_writer import (
     LIST_COLUMNS,
     SPELLINGS,
     spelling_of,
     truth_path,
     write_simulated_archive,
 )
+from herijk.simulate.papers import printed_register
 
 SETTINGS = WorldSettings(tows_per_season=2, rate_hz=20)
 

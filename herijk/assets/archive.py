@@ -1,0 +1,85 @@
+"""From archive files to blocks: the heavy part, partitioned by season."""
+
+import datetime as dt
+
+import dagster as dg
+import polars as pl
+
+from herijk.assets.partitions import seasons
+from herijk.assets.resources import Progress, Setup
+from herijk.warehouse.intake import seasons as intake
+
+LOOKED_AT = dg.FreshnessPolicy.time_window(
+    warn_window=dt.timedelta(hours=26), fail_window=dt.timedelta(hours=50)
+)
+"""Every rebuild looks through the archive, also when it finds no change."""
+
+
+@dg.asset(group_name="archive", kinds={"parquet"}, code_version="1", freshness_policy=LOOKED_AT)
+def archive_index(setup: Setup) -> dg.MaterializeResult:
+    """Boats, tow lists and files of the archive, with what is wrong in the lists."""
+    found = intake.index(setup.store, setup.archive_root)
+    return dg.MaterializeResult(
+        metadata={
+            "dagster/row_count": found.tows.height,
+            "boats": found.boats.height,
+            "files": found.files.height,
+            "faults": len(found.faults),
+            "simulated": found.profiles.simulated,
+        }
+    )
+
+
+@dg.asset(
+    deps=[archive_index],
+    partitions_def=seasons,
+    group_name="archive",
+    kinds={"parquet"},
+    code_version="1",
+    check_specs=[dg.AssetCheckSpec("most_tows_sound", asset="samples")],
+)
+def samples(
+    context: dg.AssetExecutionContext, setup: Setup, progress: dg.ResourceParam[Progress]
+) -> dg.MaterializeResult:
+    """The samples of one season's tows, in Parquet; faulty tows are set aside."""
+    return read(setup, int(context.partition_key), progress)
+
+
+def read(setup: Setup, season: int, progress: Progress) -> dg.MaterializeResult:
+    """Brings a season's samples into the lake."""
+    found = intake.read_season(setup.store, setup.archive_root, season, progress.tow_read)
+    faulty = found.filter(pl.col("reason_code").is_not_null())
+    reasons = faulty["reason_code"].value_counts(sort=True).rows()
+    return dg.MaterializeResult(
+        metadata={
+            "dagster/row_count": int(found["samples"].sum()),
+            "tows": found.height - faulty.height,
+            "set_aside": dg.MetadataValue.json(dict(reasons)),
+        },
+        check_results=[
+            dg.AssetCheckResult(
+                check_name="most_tows_sound",
+                passed=2 * faulty.height <= found.height,
+                severity=dg.AssetCheckSeverity.WARN,
+                metadata={"set_aside": faulty.height, "listed": found.height},
+            )
+        ],
+    )
+
+
+@dg.asset(
+    deps=[samples],
+    partitions_def=seasons,
+    group_name="archive",
+    kinds={"parquet"},
+    code_version="1",
+)
+def blocks(context: dg.AssetExecutionContext, setup: Setup) -> dg.MaterializeResult:
+    """Sums over each second of each run of one season."""
+    return add_up(setup, int(context.partition_key))
+
+
+def add_up(setup: Setup, season: int) -> dg.MaterializeResult:
+    """Puts a season's blocks together in one table."""
+    found = intake.collect_blocks(setup.store, season)
+    return dg.MaterializeResult(metadata={"dagster/row_count": found.height})

@@ -1,0 +1,163 @@
+"""When a rebuild happens without anybody asking: every night, in the season, on a changed archive.
+
+The job runs the same rebuild as the command. It makes drafts; publishing is not among the jobs.
+"""
+
+import json
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import dagster as dg
+from pydantic import Field
+
+from herijk.assets.notify import Notifier
+from herijk.assets.rebuild import rebuild
+from herijk.assets.report import failed_checks, tell, tell_failure
+from herijk.assets.resources import Setup
+from herijk.assets.settings import Settings
+from herijk.pipeline.errors import HerijkError, MissingKnowledgeError, UnavailableError
+from herijk.warehouse.intake.seasons import Listing, listing
+
+ONE_AT_A_TIME = {"herijk/rebuild": "data folder"}
+"""The tag of which one run at a time is started (see `INSTANCE_SETTINGS`)."""
+
+TRY_AGAIN_S = 300
+TRIES = 3
+
+
+class LogProgress:
+    """Progress as lines in the log of a run."""
+
+    def __init__(self, context: dg.OpExecutionContext) -> None:
+        self._log = context.log
+
+    def expect(self, tows: int) -> None:
+        """So many tows are going to be read."""
+        self._log.info(f"{tows} tows to read")
+
+    def tow_read(self, tow_id: str, set_aside: bool) -> None:
+        """Only what is set aside is worth a line."""
+        if set_aside:
+            self._log.warning(f"{tow_id} is set aside")
+
+    def step(self, what: str) -> None:
+        """A step begins."""
+        self._log.info(what)
+
+
+class Which(dg.Config):
+    """Seasons to read; none for all."""
+
+    seasons: list[int] = Field(default_factory=list)
+
+
+@dg.op
+def rebuild_archive(
+    context: dg.OpExecutionContext, config: Which, setup: Setup, notifier: Notifier
+) -> None:
+    """The whole rebuild, as `herijk rebuild` does it."""
+    progress = LogProgress(context)
+    data, seasons = Path(setup.data), config.seasons or None
+    try:
+        report = rebuild(setup.archive_root, data, setup.methods, progress, seasons).report
+    except UnavailableError as error:
+        if context.retry_number < TRIES:
+            raise dg.RetryRequested(TRIES, TRY_AGAIN_S) from error
+        raise _failure(notifier, error) from error
+    except HerijkError as error:
+        raise _failure(notifier, error) from error
+    for line in [*report["headlines"], *tell(notifier, report)]:
+        context.log.info(line)
+    context.add_output_metadata(
+        {
+            "nothing_changed": report["nothing_changed"],
+            "headlines": dg.MetadataValue.json(report["headlines"]),
+            "report": dg.MetadataValue.path(str(data / "report" / "latest.html")),
+        }
+    )
+    if failed := failed_checks(report):
+        raise dg.Failure("; ".join(failed), allow_retries=False)
+
+
+def _failure(notifier: Notifier, error: HerijkError) -> dg.Failure:
+    problems = tell_failure(notifier, str(error))
+    return dg.Failure("; ".join([str(error), *problems]), allow_retries=False)
+
+
+@dg.job(name="rebuild", tags=ONE_AT_A_TIME)
+def rebuild_job() -> None:
+    """Everything from the archive to the drafts, the site and a report; publishes nothing."""
+    rebuild_archive()
+
+
+def schedules(settings: Settings) -> list[dg.ScheduleDefinition]:
+    """Everything, every night; and in the months of towing, the season of that year."""
+
+    def of_the_year(context: dg.ScheduleEvaluationContext) -> Mapping[str, Any]:
+        season = context.scheduled_execution_time.year
+        return {"ops": {"rebuild_archive": {"config": {"seasons": [season]}}}}
+
+    common: dict[str, Any] = {
+        "job": rebuild_job,
+        "execution_timezone": settings.timezone,
+        "default_status": dg.DefaultScheduleStatus.RUNNING,
+    }
+    return [
+        dg.ScheduleDefinition(name="nightly", cron_schedule=settings.nightly, **common),
+        dg.ScheduleDefinition(
+            name="campaign", cron_schedule=settings.campaign, run_config_fn=of_the_year, **common
+        ),
+    ]
+
+
+def archive_sensor(archive: Path) -> dg.SensorDefinition:
+    """The sensor that asks for a rebuild when files of the archive came, changed or went."""
+
+    def look(context: dg.SensorEvaluationContext) -> dg.SensorResult | dg.SkipReason:
+        try:
+            return _look(listing(archive), json.loads(context.cursor or "{}"))
+        except MissingKnowledgeError as error:
+            return dg.SkipReason(str(error))
+
+    return dg.SensorDefinition(
+        name="archive_changed",
+        description="Asks for a rebuild when files came, changed or went, and copying has ended.",
+        evaluation_fn=look,
+        job=rebuild_job,
+        minimum_interval_seconds=60,
+        default_status=dg.DefaultSensorStatus.RUNNING,
+    )
+
+
+def _look(now: Listing, cursor: dict[str, Listing]) -> dg.SensorResult:
+    """The cursor holds the listing of the last tick and that of the last request.
+
+    A change counts when two ticks see the same listing: so no clock is asked, and no half copy is
+    read.
+    """
+    asked, before = cursor.get("asked", {}), cursor.get("seen", {})
+    changes = ", ".join(_changes(asked, now))
+    if not changes:
+        skip = "no file of the archive changed"
+    elif now != before:
+        skip = f"{changes}; waiting until the archive is left alone"
+    else:
+        request = dg.RunRequest(tags={"herijk/changes": changes})
+        return dg.SensorResult(run_requests=[request], cursor=_cursor(now, now))
+    return dg.SensorResult(skip_reason=skip, cursor=_cursor(asked, now))
+
+
+def _cursor(asked: Listing, seen: Listing) -> str:
+    return json.dumps({"asked": asked, "seen": seen})
+
+
+def _changes(was: Listing, now: Listing) -> Iterator[str]:
+    found = {
+        "new": now.keys() - was.keys(),
+        "changed": {path for path in now.keys() & was.keys() if now[path] != was[path]},
+        "removed": was.keys() - now.keys(),
+    }
+    for what, paths in found.items():
+        if paths:
+            yield f"{len(paths)} {what}"

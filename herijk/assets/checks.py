@@ -1,0 +1,94 @@
+"""Checks of a finished rebuild, each with how bad it is when it fails.
+
+An error means that a table is not what it promises; a warning, that a person should look.
+"""
+
+from collections.abc import Sequence
+
+import dagster as dg
+
+from herijk.assets.resources import Setup
+from herijk.warehouse.build.soundness import count_faults, schema_faults, set_aside_tows
+from herijk.warehouse.editions.verify import verify
+from herijk.warehouse.queries.journal import news
+
+
+def _result(
+    wrong: Sequence[object], severity: dg.AssetCheckSeverity = dg.AssetCheckSeverity.ERROR
+) -> dg.AssetCheckResult:
+    """Passed where nothing is wrong; else with the first twenty of it."""
+    return dg.AssetCheckResult(
+        passed=not wrong,
+        severity=severity,
+        metadata={
+            "number": len(wrong),
+            "first": dg.MetadataValue.json([_on_a_line(w) for w in wrong[:20]]),
+        },
+    )
+
+
+def _on_a_line(wrong: object) -> str:
+    """A row of a table, or a sentence."""
+    return " ".join(map(str, wrong)) if isinstance(wrong, tuple) else str(wrong)
+
+
+@dg.asset_check(asset="warehouse_database")
+def tables_fit_their_schemas(setup: Setup) -> dg.AssetCheckResult:
+    """Every table of the database has the columns, types and ranges it promises."""
+    return _result(schema_faults(setup.store))
+
+
+@dg.asset_check(asset="warehouse_database")
+def counts_agree(setup: Setup) -> dg.AssetCheckResult:
+    """The database holds what the lake holds, and every method a curve row for every tow."""
+    return _result(count_faults(setup.store, setup.chosen_methods))
+
+
+@dg.asset_check(asset="quarantine")
+def few_tows_set_aside(setup: Setup) -> dg.AssetCheckResult:
+    """Not more of the listed tows are set aside than the settings allow."""
+    aside, listed = set_aside_tows(setup.store)
+    return dg.AssetCheckResult(
+        passed=aside <= setup.set_aside_share * listed,
+        severity=dg.AssetCheckSeverity.WARN,
+        metadata={"set_aside": aside, "listed": listed, "limit": setup.set_aside_share},
+    )
+
+
+@dg.asset_check(asset="log_factors")
+def log_factors_stayed(setup: Setup) -> dg.AssetCheckResult:
+    """No season's log factor jumped since the last report."""
+    moved = news(setup.store).factors
+    jumps = moved.filter((moved["ratio"] - 1.0).abs() > setup.factor_jump)
+    return _result(jumps.rows(), dg.AssetCheckSeverity.WARN)
+
+
+@dg.asset_check(asset="register")
+def boats_stayed_within_their_intervals(setup: Setup) -> dg.AssetCheckResult:
+    """No line of a draft moved by more than its intervals since the last report."""
+    lines = news(setup.store).lines
+    beyond = lines.filter(lines["exceeds_interval"].fill_null(value=False))
+    columns = ["to_edition", "fsn_no", "rowers", "crew_class"]
+    return _result(beyond.select(columns).rows(), dg.AssetCheckSeverity.WARN)
+
+
+@dg.asset_check(asset="register")
+def editions_can_be_made_again(setup: Setup) -> dg.AssetCheckResult:
+    """Published editions are what they were, and archive and code of today give them again.
+
+    A file of the archive may be mended after publication, so only a changed edition is an error.
+    """
+    wrong = [f for f in verify(setup.store)["findings"] if f["wrong"]]
+    changed = any(f["kind"] == "altered" for f in wrong)
+    severity = dg.AssetCheckSeverity.ERROR if changed else dg.AssetCheckSeverity.WARN
+    return _result([f"{f['edition']}: {f['message']}" for f in wrong], severity)
+
+
+ALL = [
+    tables_fit_their_schemas,
+    counts_agree,
+    few_tows_set_aside,
+    log_factors_stayed,
+    boats_stayed_within_their_intervals,
+    editions_can_be_made_again,
+]

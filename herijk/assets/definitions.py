@@ -1,0 +1,44 @@
+"""The Dagster code location: everything that `dg` and `herijk serve` load."""
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+import dagster as dg
+
+from herijk.assets import automation
+from herijk.assets.jobs import job_defs
+from herijk.assets.notify import notifier_of
+from herijk.assets.resources import Quiet, Setup
+from herijk.assets.settings import Settings, read_settings
+from herijk.pipeline.method.definition import shipped_methods
+
+
+def build_defs(
+    archive: str, data: str, methods: Sequence[str], settings: Settings
+) -> dg.Definitions:
+    """The jobs of a rebuild, and what starts them when nobody asks."""
+    setup = Setup(
+        archive=archive,
+        data=data,
+        methods=list(methods),
+        set_aside_share=settings.set_aside_share,
+        factor_jump=settings.factor_jump,
+    )
+    return dg.Definitions.merge(
+        job_defs(setup, Quiet()),
+        dg.Definitions(
+            jobs=[automation.rebuild_job],
+            schedules=automation.schedules(settings),
+            sensors=[automation.archive_sensor(Path(archive))],
+            resources={"notifier": notifier_of(data, settings)},
+        ),
+    )
+
+
+defs = build_defs(
+    os.environ.get("HERIJK_ARCHIVE", "archive"),
+    os.environ.get("HERIJK_DATA", "data"),
+    shipped_methods(),
+    read_settings(Path(os.environ.get("HERIJK_DATA", "data"))),
+)

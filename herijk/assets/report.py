@@ -1,0 +1,100 @@
+"""What a rebuild leaves to be read: a page, JSON, and a message to who wants one.
+
+They stand under `report/` in the data folder: `latest.json` about the last rebuild, `latest.html`
+about the last that changed something, and a dated JSON for each of those.
+"""
+
+import datetime as dt
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import dagster as dg
+
+from herijk.assets.notify import Message, Notifier
+from herijk.dashboards.report import found_in_words, headlines, mail
+from herijk.dashboards.words import speaker
+from herijk.warehouse.queries.journal import as_plain, news, remember
+from herijk.warehouse.store.code import code_version
+from herijk.warehouse.store.files import written_beside
+from herijk.warehouse.store.store import Store
+
+Report = dict[str, Any]
+
+
+def write_report(
+    store: Store, done: Report, checks: Sequence[dg.AssetCheckEvaluation], now: dt.datetime
+) -> Report:
+    """Finds out what changed, writes page and JSON, and returns the JSON as plain data.
+
+    Where nothing changed, the page about the last change stays.
+    """
+    found = news(store)
+    about = store.read("about_archive")
+    report = {
+        "made_at": now.isoformat(timespec="seconds"),
+        "archive": about["root"][0],
+        "simulated": about["simulated"][0],
+        "code_version": code_version(),
+        "done": done,
+        **as_plain(found),
+        "checks": [_plain(check) for check in checks],
+    }
+    report["headlines"] = headlines(report, speaker("en"))
+    text = json.dumps(report, default=str, indent=1)
+    folder = store.root / "report"
+    if not found.nothing:
+        from herijk.dashboards.report_page import report_page  # noqa: PLC0415 - Altair takes a second
+
+        _write(folder / "latest.html", report_page(store, found, report))
+        _write(folder / f"{now:%Y-%m-%dT%H%M%S}.json", text)
+    _write(folder / "latest.json", text)
+    remember(store)
+    return report
+
+
+def _plain(check: dg.AssetCheckEvaluation) -> Report:
+    return {
+        "asset": check.asset_key.to_user_string(),
+        "check": check.check_name,
+        "passed": check.passed,
+        "severity": check.severity.value,
+        "found": {name: value.value for name, value in check.metadata.items()},
+    }
+
+
+def _write(path: Path, text: str) -> None:
+    with written_beside(path) as beside:
+        beside.write_text(text, encoding="utf-8")
+
+
+def failed_checks(report: Report) -> list[str]:
+    """Checks whose failing means that a table is not what it promises."""
+    return [
+        f"{check['check']}: {found_in_words(check, speaker('en'))}"
+        for check in report["checks"]
+        if not check["passed"] and check["severity"] == dg.AssetCheckSeverity.ERROR.value
+    ]
+
+
+def tell(notifier: Notifier, report: Report) -> list[str]:
+    """Sends the report to who wants it, where something changed or a check failed.
+
+    Returns:
+        A sentence for each message that could not be sent.
+    """
+    if report["nothing_changed"] and not failed_checks(report):
+        return []
+    subject, text = mail(report)
+    return notifier.send(Message(subject, text, report, _now()))
+
+
+def tell_failure(notifier: Notifier, failure: str) -> list[str]:
+    """Says that a rebuild that nobody watched could not be done."""
+    subject = speaker("nl")("report_failed")
+    return notifier.send(Message(subject, f"{failure}\n", {"failed": failure}, _now()))
+
+
+def _now() -> dt.datetime:
+    return dt.datetime.now().astimezone()

@@ -1,0 +1,80 @@
+"""What assets are given: the folders, and someone to tell how far they are.
+
+Resources load nothing and compute nothing; they hand plain objects to `warehouse` and `pipeline`.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Protocol
+
+import dagster as dg
+from pydantic import Field
+
+from herijk.assets.settings import Settings
+from herijk.pipeline.method.definition import Method, shipped_method, shipped_methods
+from herijk.warehouse.store.lock import only_writer
+from herijk.warehouse.store.store import Store
+
+QUIET_LOG = {"loggers": {"console": {"config": {"log_level": "CRITICAL"}}}}
+"""Nothing on the terminal: what Dagster says stands in its records."""
+
+
+class Setup(dg.ConfigurableResource):
+    """The archive that comes in, the data folder that goes out, and the methods to apply.
+
+    While a step runs, nobody else writes in the data folder: another waits for its turn.
+    """
+
+    archive: str
+    data: str
+    methods: list[str] = Field(default_factory=lambda: list(shipped_methods()))
+    set_aside_share: float = Settings().set_aside_share
+    factor_jump: float = Settings().factor_jump
+
+    @contextmanager
+    def yield_for_execution(self, context: dg.InitResourceContext) -> Iterator["Setup"]:  # noqa: ARG002 - Dagster's signature
+        """The folders, with the right to write."""
+        with only_writer(self.store.root, wait=True):
+            yield self
+
+    @property
+    def archive_root(self) -> Path:
+        """The archive."""
+        return Path(self.archive)
+
+    @property
+    def store(self) -> Store:
+        """The data folder."""
+        return Store(Path(self.data))
+
+    @property
+    def chosen_methods(self) -> list[Method]:
+        """The methods to apply; the first is what the others are compared with."""
+        return [shipped_method(name) for name in self.methods]
+
+
+class Progress(Protocol):
+    """Is told what happens; shows it or keeps quiet."""
+
+    def expect(self, tows: int) -> None:
+        """So many tows are going to be read."""
+
+    def tow_read(self, tow_id: str, set_aside: bool) -> None:
+        """A tow was read or set aside."""
+
+    def step(self, what: str) -> None:
+        """A step begins."""
+
+
+class Quiet:
+    """Progress that shows nothing."""
+
+    def expect(self, tows: int) -> None:
+        """Nothing is shown."""
+
+    def tow_read(self, tow_id: str, set_aside: bool) -> None:
+        """Nothing is shown."""
+
+    def step(self, what: str) -> None:
+        """Nothing is shown."""

@@ -1,0 +1,50 @@
+"""`beheer.toml`: when to rebuild, whom to tell and who helps, written by who runs it.
+
+It lies in the data folder and may be left out. No setting in it can change a number.
+"""
+
+from pathlib import Path
+from typing import Final
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from herijk.warehouse.store.settings_file import read_settings_file
+
+FILE_NAME: Final = "beheer.toml"
+
+
+class Settings(BaseModel):
+    """What `beheer.toml` can say.
+
+    Attributes:
+        nightly: when everything is looked at; a cron line.
+        campaign: when the season of that year is looked at, while it is towed.
+        timezone: of both.
+        mail_to, mail_from: with `mail_to`, a mail about each report is put into `outbox/`.
+        webhook: an address to which each report is posted as JSON.
+        set_aside_share: more of the tows set aside gives a warning.
+        factor_jump: a log factor that moves more gives a warning; a ratio minus 1.
+        dask: scheduler of the Dask cluster that reads the seasons: `tcp://host:8786`; without it
+            they are read in the process of the rebuild.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    nightly: str = "0 3 * * *"
+    campaign: str = "0 7 * 4-9 1"
+    timezone: str = "Europe/Amsterdam"
+    mail_to: str | None = None
+    mail_from: str = "herijk@localhost"
+    webhook: str | None = Field(default=None, pattern=r"^https?://")
+    set_aside_share: float = Field(default=0.1, ge=0, le=1)
+    factor_jump: float = Field(default=0.01, gt=0)
+    dask: str | None = Field(default=None, pattern=r"^(tcp|tls)://")
+
+
+def read_settings(data: Path) -> Settings:
+    """The settings of a data folder; those above where there is no file.
+
+    Raises:
+        MissingKnowledgeError: the file cannot be understood.
+    """
+    return read_settings_file(data / FILE_NAME, Settings, ", ".join(Settings.model_fields))

@@ -1,0 +1,1 @@
+"""The command `herijk`: reads arguments, shows progress and results, holds no logic."""

@@ -1,0 +1,27 @@
+"""The pages of `herijk audit` in plain words, each statement with its figures and its n.
+
+Words only: every figure and every verdict comes from `warehouse.queries.audit`. True, false and None of a
+verdict are three different things: yes, not seen, and not claimed.
+"""
+
+from pathlib import Path
+
+from herijk.cli.audit_text.boat import boat_page
+from herijk.cli.audit_text.one_type import one_type
+from herijk.cli.audit_text.two_types import two_types
+from herijk.cli.audit_text.words import Report
+from herijk.cli.text import SIMULATED
+
+
+def audit(report: Report) -> str:
+    """The page of a boat, of one type, or of two types side by side."""
+    parts = [SIMULATED] if report["simulated"] else []
+    if report["about"] == "boat":
+        parts += boat_page(report)
+    elif len(report["types"]) == 1:
+        parts += one_type(report)
+    else:
+        parts += two_types(report)
+    if report.get("plots"):
+        parts.append(f"{len(report['plots'])} plots in {Path(report['plots'][0]).parent}")
+    return "\n\n".join(parts)

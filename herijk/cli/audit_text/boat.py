@@ -1,0 +1,228 @@
+"""The page of a boat: its tows step by step, its place in its type, and its own history."""
+
+from collections.abc import Iterator
+from math import exp
+from typing import Final
+
+from herijk.cli.audit_text.words import (
+    EXPLANATIONS,
+    Report,
+    change,
+    distance,
+    nothing,
+    second_opinion,
+    section,
+    share,
+    slow_tow,
+    wrapped,
+)
+from herijk.cli.text import table
+
+LEAST_TOLD: Final = 5e-5
+"""Part of Cw below which a cause of uncertainty is nothing in two decimals of a per cent."""
+
+
+def boat_page(report: Report) -> list[str]:
+    """The parts of the page."""
+    boat = report["boat"]
+    parts = [_boat_title(boat, report["tows"])]
+    parts += [_tow(tow) for tow in report["tows"]]
+    if not report["tows"]:
+        parts.append("No tow of this boat was accepted.")
+    sections = [
+        (_place_title(report), _place(report)),
+        ("If it shared its type's bend:", [_pooled(row) for row in _not_own(report["pooled"])]),
+        (
+            "Slow tow:",
+            [f"  {r['method']}: {slow_tow(r | {'name': ''})}" for r in report["slow_tows"]],
+        ),
+        (
+            "Its repeat tows (without an alteration between them; E_n above 1: they disagree):",
+            [_pair(row) for row in report["repeat_pairs"]] or ["  none: n 0"],
+        ),
+        (
+            "As predicted from weight, length, beam and type by the other boats:",
+            [_predicted(row) for row in report["predicted"]] or ["  not predicted: n 0"],
+        ),
+        ("In the registers:", [_register(row) for row in report["register"]] or ["  no line"]),
+        (
+            "Set aside, by its number or the name of its file:",
+            [_set_aside(row) for row in report["set_aside"]] or ["  nothing"],
+        ),
+    ]
+    laid = [(title, [wrapped(line.strip()) for line in lines]) for title, lines in sections]
+    return [*parts, *(section(*one) for one in laid if one[1])]
+
+
+def _boat_title(boat: Report, tows: list[Report]) -> str:
+    title = f"{boat['fsn_no']} {boat['name']}, type {boat['boat_type'] or 'not known'}"
+    crews = sorted({f"{tow['rowers']}{tow['crew_class']}" for tow in tows})
+    if len(crews) < 2:
+        return title
+    return wrapped(
+        f"{title}; towed for {len(crews)} crews ({', '.join(crews)}): each has a register line and "
+        "repeats of its own; in the statistics of a type they are one boat",
+        0,
+    )
+
+
+def _place_title(report: Report) -> str:
+    size = report["type_size"]
+    return (
+        f"Its place among {size['n_towed']} towed boats of its type ({size['boat_type']}), newest "
+        "tow of each boat and crew:"
+    )
+
+
+def _place(report: Report) -> list[str]:
+    lines = []
+    for row in report["in_type"]:
+        codes = ", ".join(EXPLANATIONS.get(code, code) for code in row["candidates"])
+        place = "outside" if row["outside"] else "within"
+        lines.append(
+            f"  {row['method']}, {row['rowers']}{row['crew_class']}, {row['tow_id']}: "
+            f"{distance(row)}, {row['deviation_sd']:+.1f} sd, {place}{codes and f' ({codes})'}"
+        )
+    size = report["type_size"]
+    unknown = report["boat"]["boat_type"] is None
+    reason = {"reason": "no_type" if unknown else "few_boats", "n": 0, "n_boats": size["n_towed"]}
+    return lines or [f"  {nothing(reason)}"]
+
+
+def _not_own(pooled: list[Report]) -> Iterator[Report]:
+    """Curves with a bend drawn to the type's, with the own Cw beside them."""
+    own = {(row["method"], row["tow_id"]): row for row in pooled if row["pooling"] == "own"}
+    for row in pooled:
+        if row["pooling"] != "own":
+            yield row | {"own": own[row["method"], row["tow_id"]]}
+
+
+def _pooled(row: Report) -> str:
+    own = row["own"]
+    words = {"partial": "in part", "shared": "wholly"}[row["pooling"]]
+    b = [f"{c['b_m_s']:.2f} m/s" if c["b_m_s"] else "not determined" for c in (own, row)]
+    at_115 = [c["cw_115_kg_m"] for c in (own, row)]
+    moved = "" if None in at_115 else f", Cw at 115 % {change(at_115[1] / at_115[0])} %"
+    return (
+        f"  {row['method']}, {row['tow_id']}, {words}: B {b[0]} to {b[1]}, Cw at the declared "
+        f"speed {change(row['cw_kg_m'] / own['cw_kg_m'])} %{moved}"
+    )
+
+
+def _pair(row: Report) -> str:
+    e_n = "not known" if row["e_n"] is None else f"{row['e_n']:+.2f}"
+    return (
+        f"  {row['method']}, {row['rowers']}{row['crew_class']}, {row['tow_id_before']} to "
+        f"{row['tow_id']}: Cw {change(exp(row['ln_ratio']))} %, E_n {e_n}"
+    )
+
+
+def _predicted(row: Report) -> str:
+    if row["predicted_cw_kg_m"] is None:
+        return f"  {row['method']}: {nothing({'reason': row['reason'] or 'few_boats', 'n': 0})}"
+    verdict = "they disagree" if row["disagrees"] else "they agree"
+    return f"  {row['method']}, {row['tow_id']}: {second_opinion(row)}; {verdict}"
+
+
+def _register(row: Report) -> str:
+    line = f"  {row['edition']}, {row['rowers']}{row['crew_class']}: {row['status']}"
+    if row["cw_kg_m"] is None:
+        return line
+    b = "B not determined" if row["b_m_s"] is None else f"B {row['b_m_s']:.2f}"
+    return (
+        f"{line}, A {row['a_kg_m']:.2f}, {b}, Cw {row['cw_kg_m']:.2f} at "
+        f"{row['declared_speed_m_s']:.2f} m/s, tow {row['tow_id']}, until {row['valid_until']}"
+    )
+
+
+def _set_aside(row: Report) -> str:
+    tow = "" if row["tow_id"] is None else f" (tow {row['tow_id']})"
+    line = "" if row["line"] is None else f", line {row['line']}"
+    return f"  {row['path']}{line}{tow}: {row['message']}"
+
+
+def _tow(tow: Report) -> str:
+    weight = "weight not known" if tow["weight_kg"] is None else f"{tow['weight_kg']:.0f} kg"
+    head = (
+        f"Tow {tow['tow_id']} of {tow['tow_date']}: {tow['rowers']}{tow['crew_class']}, declared "
+        f"{tow['declared_speed_m_s']:.2f} m/s, {tow['waterline_length_m']:.2f} x "
+        f"{tow['beam_m']:.2f} x {tow['bow_height_m']:.2f} m, {weight}, from {tow['samples_path']}"
+    )
+    return "\n".join([head, *_steps(tow["steps"]), *(_curve(curve) for curve in tow["curves"])])
+
+
+def _steps(steps: list[Report]) -> list[str]:
+    """What each step of a correction does to the tow's Cw; steps that do nothing are left out."""
+    lines = []
+    for ends in dict.fromkeys((step["from_method"], step["to_method"]) for step in steps):
+        own = [s for s in steps if (s["from_method"], s["to_method"]) == ends]
+        felt = [f"{s['step']} {change(s['factor'])} %" for s in own if abs(s["factor"] - 1) > 5e-4]
+        total = change(own[-1]["cw_kg_m"] / own[0]["cw_kg_m"])
+        lines.append(
+            f"  {ends[0]} to {ends[1]}: Cw {total} %{' = ' if felt else ''}{', '.join(felt)}"
+        )
+    return lines
+
+
+def _curve(curve: Report) -> str:
+    head = (
+        "run",
+        "window s",
+        "cut because",
+        "factor",
+        "v m/s",
+        "gross",
+        "-inertia",
+        "-air",
+        "+still",
+        "+temp",
+        "Cw",
+        "curve",
+        "",
+    )
+    rows = [
+        (
+            p["run"],
+            "-"
+            if p["window_start_s"] is None
+            else f"{p['window_start_s']:.0f}-{p['window_end_s']:.0f}",
+            p["cut_reason"],
+            p["speed_factor"],
+            p["speed_m_s"],
+            p["gross_cw_kg_m"],
+            p["inertia_cw_kg_m"],
+            p["air_cw_kg_m"],
+            p["still_air_cw_kg_m"],
+            p["temperature_cw_kg_m"],
+            p["cw_kg_m"],
+            p["fitted_cw_kg_m"],
+            p["reason"],
+        )
+        for p in curve["run_points"]
+    ]
+    found = [f"  {curve['method']}: {_result(curve)}", table(head, rows), _budget(curve["budget"])]
+    return "\n".join(part for part in found if part)
+
+
+def _budget(budget: list[Report]) -> str:
+    """What makes Cw uncertain, the largest first; with whom it is shared where it is."""
+    felt = [
+        f"{row['component'].replace('_', ' ')} {share(row['u_ratio'], 2)}"
+        + ("" if row["shared"] == "single" else f" ({row['shared']})")
+        for row in budget
+        if row["u_ratio"] and row["u_ratio"] >= LEAST_TOLD
+    ]
+    return wrapped(f"standard uncertainty of Cw: {', '.join(felt)}", 4) if felt else ""
+
+
+def _result(curve: Report) -> str:
+    flags = f" ({', '.join(curve['flags'])})" if curve["flags"] else ""
+    if curve["cw_kg_m"] is None:
+        return f"no curve, {curve['status']}{flags}"
+    b = "B not determined" if curve["b_m_s"] is None else f"B {curve['b_m_s']:.2f} m/s"
+    upper = "no upper bound" if curve["b_hi_m_s"] is None else f"{curve['b_hi_m_s']:.2f}"
+    return (
+        f"A {curve['a_kg_m']:.2f} kg/m, {b} (95 %: {curve['b_lo_m_s']:.2f} to {upper}), Cw "
+        f"{curve['cw_kg_m']:.2f} kg/m (95 %: {curve['cw_lo_kg_m']:.2f} to "
+        f"{curve['cw_hi_kg_m']:.2f}), {curve['power_w']:.1f} W a rower, {curve['status']}{flags}"
+    )

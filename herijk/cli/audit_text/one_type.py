@@ -1,0 +1,378 @@
+"""The page of one type: are equal boats equal?"""
+
+from collections.abc import Callable, Iterator
+from typing import Any, Final
+
+from herijk.cli.audit_text.words import (
+    AGAINST,
+    LETTERS,
+    LINES,
+    NOTE,
+    QUANTITIES,
+    REASONS,
+    Report,
+    apart,
+    change,
+    heading,
+    interval,
+    line_of,
+    listed,
+    nothing,
+    outsider,
+    second_opinion,
+    section,
+    share,
+    slow_tow,
+    step_of,
+    who,
+    wrapped,
+    yes,
+)
+from herijk.cli.text import table
+from herijk.pipeline.consistency import ERAS
+from herijk.pipeline.consistency.tow_speed import SLOW_POWER_W
+
+NAMES: Final = {
+    "boat": "boats",
+    "season": "seasons",
+    "boat_season": "a boat's seasons",
+    "run": "runs",
+}
+"""Causes of spread, by the codes in `variance_components`."""
+
+
+def one_type(report: Report) -> list[str]:
+    """The parts of the page."""
+    found, fleet = report["types"][0], report["fleet"]
+    under = found["under"]
+    repeats = [
+        *_eras(under, fleet),
+        *_agreement(fleet),
+        *_each(under, _repeats),
+        *_each(fleet, _causes),
+    ]
+    opinion = [line for m in under for line in _prediction(m, under[m], fleet[m])]
+    sections = [
+        (_first_title(under), _lines(under)),
+        ("2. Can all boats have the same bend?", _each(under, _equal_bends)),
+        (
+            "3. Does the bend q = (v/B)^2 / (1 - (v/B)^2) follow the tow speed? A true "
+            "hyperbola's does not.",
+            _each(under, _speed_trend),
+        ),
+        (
+            "4. If like boats shared one bend: B, and most change of a register's Cw by speed",
+            _shared(under),
+        ),
+        ("5. Which boats lie outside their type?", _each(under, _outside)),
+        (_slow_title(), _each(under, _slow)),
+        ("7. Do repeat tows of unaltered boats agree, before and after correction?", repeats),
+        ("8. Second opinion without towing: Cw from weight, length, beam and type", opinion),
+    ]
+    top = (f"{found['boat_type']}: are equal boats equal?", heading(found), NOTE)
+    return ["\n".join(wrapped(line, 0, 0) for line in top), *(section(*one) for one in sections)]
+
+
+def _first_title(under: Report) -> str:
+    lines = [line_of(figures, "cw_standard_kg_m", "weight_kg") for figures in under.values()]
+    speeds = {f"{x['standard_speed_m_s']:.2f} m/s" for x in lines if "standard_speed_m_s" in x}
+    at = f" at a standard {' or '.join(sorted(speeds))}" if speeds else ""
+    return f"1. Do A [kg/m] and B [m/s] follow weight or tow speed, q weight? Cw [kg/m]{at}?"
+
+
+def _each(under: Report, say: Callable[[Report], list[str]]) -> list[str]:
+    """What a section says of every method; methods of which the same holds share a line."""
+    said: dict[tuple[str, ...], list[str]] = {}
+    for method, figures in under.items():
+        said.setdefault(tuple(say(figures)), []).append(method)
+    lines = []
+    for (first, *rest), methods in said.items():
+        lines += [wrapped(f"{', '.join(methods)}: {first}"), *(wrapped(r, 4) for r in rest)]
+    return lines
+
+
+def _lines(under: Report) -> list[str]:
+    """The table of lines, what is not claimed, and which quantity lies closest together."""
+    cells, silent = [], []
+    for quantity, explaining in LINES:
+        letter, against = LETTERS[quantity], AGAINST[explaining][0]
+        label = f"{letter} per {step_of(quantity, explaining)[1]}"
+        for method, figures in under.items():
+            line = line_of(figures, quantity, explaining)
+            if line["reason"]:
+                silent.append((method, f"{letter} against {against}", nothing(line)))
+                continue
+            cells.append((label, method, _slope(line), *_line_figures(line)))
+            label = ""
+    label = "Cw, power of m"
+    for method, figures in under.items():
+        line = line_of(figures, "ln_cw_standard", "ln_displacement")
+        if not line["reason"]:
+            power = interval(line["slope"], line["slope_lo"], line["slope_hi"], digits=2)
+            cells.append((label, method, power, *_line_figures(line)))
+            label = ""
+    head = ("", "method", "slope", "explained", "spread", "noise", "n", "")
+    shown = [table(head, cells)] if cells else []
+    return shown + _silent(silent) + (_each(under, _closest) if cells else [])
+
+
+def _slope(line: Report) -> str:
+    step, _ = step_of(line["quantity"], line["explaining"])
+    return interval(*(step * line[end] for end in ("slope", "slope_lo", "slope_hi")), digits=2)
+
+
+def _line_figures(line: Report) -> tuple[Any, ...]:
+    digits = 0 if line["quantity"] == "q" else 1  # q spreads by many per cent
+    return (
+        share(line["r2"]),
+        share(line["residual_sd_ratio"], digits),
+        share(line["noise_sd_ratio"], digits),
+        line["n"],
+        yes(line["follows"]),
+    )
+
+
+def _silent(silent: list[tuple[str, str, str]]) -> list[str]:
+    """What is not claimed, for methods and lines of the same reason at once."""
+    methods: dict[str, dict[str, None]] = {}
+    lines: dict[str, dict[str, None]] = {}
+    for method, what, reason in silent:
+        methods.setdefault(reason, {})[method] = None
+        lines.setdefault(reason, {})[what] = None
+    return [
+        wrapped(f"{', '.join(methods[reason])}: {reason}: {', '.join(lines[reason])}")
+        for reason in methods
+    ]
+
+
+def _closest(under: Report) -> list[str]:
+    """Spread about the line on weight: does Cw at one speed lie closer together than A and B?"""
+    closest = under["closest"]
+    if closest["reason"]:
+        return [nothing(closest)]
+    verdict = {
+        True: "Cw lies closer together than both",
+        False: "Cw lies further apart",
+        None: "these differ no more than chance lets them",
+    }[closest["cw_closest"]]
+    found = {letter: line_of(under, q, "weight_kg") for q, letter in QUANTITIES.items()}
+    spreads = ", ".join(
+        f"{letter} {share(line['residual_sd_ratio'], 1)} (n {line['n']})"
+        for letter, line in found.items()
+    )
+    return [f"spread about weight: {spreads}: {verdict}."]
+
+
+def _equal_bends(under: Report) -> list[str]:
+    test = under["bends"]
+    if test["reason"]:
+        return [nothing(test)]
+    verdict = {
+        True: "yes, equal bends are possible",
+        False: "no, they differ by more than noise",
+        None: "not claimed, too weak a test",
+    }[test["equal_possible"]]
+    said = (
+        f"{verdict}: p {test['p_value']:.3f} (F {test['f_value']:.2f} on {test['dof_between']} and "
+        f"{test['dof_within']}, n {test['n']})."
+    )
+    if test["power_at_5pct"] is None:
+        return [f"{said} The shared curve does not bend upwards: there is no B to compare."]
+    return [
+        f"{said} Chance to see a true spread of B of 5 %: {share(test['power_at_5pct'])}, of "
+        f"10 %: {share(test['power_at_10pct'])}. {_noise(test)}"
+    ]
+
+
+def _noise(test: Report) -> str:
+    noise = f"Noise alone gives {share(test['noise_share'])} of the variance of the bends"
+    if test["b_sd_ratio"] is None or test["ab_correlation"] is None:
+        return f"{noise}."
+    return (
+        f"{noise}, B a spread of {share(test['b_noise_sd_ratio'], 1)} (seen "
+        f"{share(test['b_sd_ratio'], 1)}), A and B a correlation of "
+        f"{test['ab_noise_correlation']:.2f} (seen {test['ab_correlation']:.2f})."
+    )
+
+
+def _speed_trend(under: Report) -> list[str]:
+    trend = under["speed_trend"]
+    if trend["reason"]:
+        return [nothing(trend)]
+    ends = interval(*(0.1 * trend[end] for end in ("slope", "slope_lo", "slope_hi")), digits=3)
+    return [f"{yes(trend['follows'])}: 10 % more tow speed, q {ends}, n {trend['n']}."]
+
+
+def _shared(under: Report) -> list[str]:
+    """What becomes of the register when boats share their bend: B, and how far Cw would move."""
+    cells, silent = [], []
+    for method, figures in under.items():
+        found = {row["pooling"]: row for row in figures["shared"]}
+        if "shared" not in found:
+            reason = {"reason": figures["bends"]["reason"] or "few_boats"}
+            silent.append((method, "shared bend", nothing(figures["bends"] | reason)))
+            continue
+        own, part, shared = (found[pooling] for pooling in ("own", "partial", "shared"))
+        b = shared["median_b_m_s"]
+        spreads = [share(row["b_sd_ratio"], 1) for row in (own, part)]
+        moves = [share(shared[f"most_{at}"], 1) for at in ("085", "100", "115")]
+        place = "none" if b is None else f"{b:.2f} m/s"
+        cells.append((method, place, *spreads, *moves, shared["most_fsn_no"], shared["n"]))
+    head = ("method", "shared B", "own B spread", "in part", "85 %", "100 %", "115 %", "boat", "n")
+    return ([table(head, cells)] if cells else []) + _silent(silent)
+
+
+def _judged(under: Report) -> str:
+    counts = {row["quantity"]: row["n"] for row in under["judged"]}
+    return ", ".join(
+        f"n {counts[code]} by {words}" if code in counts else f"too few boats to judge {words}"
+        for code, words in (("ln_cw_standard", "Cw"), ("bend", "the bend"))
+    )
+
+
+def _outside(under: Report) -> list[str]:
+    if not under["judged"]:
+        reason = under["bends"]["reason"] or "few_boats"
+        return [nothing(under["bends"] | {"reason": reason})]
+    boats = [outsider(row) for row in under["outside"]]
+    return [f"{len(boats) or 'none'} outside ({_judged(under)}).", *listed(boats)]
+
+
+def _slow_title() -> str:
+    men, women = SLOW_POWER_W["H"], SLOW_POWER_W["D"]
+    return f"6. Slow tows: under {men:.0f} W (men) or {women:.0f} W (women) a rower"
+
+
+def _slow(under: Report) -> list[str]:
+    counted = f"of n {under['bends']['n']}"
+    lines = [slow_tow(row) for row in under["slow_tows"]]
+    return [f"{len(lines) or 'none'} {counted}.", *listed(lines)]
+
+
+def _eras(under: Report, fleet: Report) -> list[str]:
+    """Whether the tows of an era stand apart from the next tow of the same boats."""
+    cells = []
+    for index, era in enumerate(next(iter(under.values()))["eras"]):
+        label = f"{era['era']} to later"
+        for method, figures in under.items():
+            own, everyone = figures["eras"][index], fleet[method]["eras"].get(era["era"], era)
+            cells.append((label, method, *_shift(own), *_shift(everyone)))
+            label = ""
+    head = ("towed in", "method", "new / old Cw, %", "", "n", "all types, %", "", "n")
+    return [table(head, cells), *_each(fleet, _ageing)]
+
+
+def _shift(era: Report) -> tuple[str, str, int]:
+    if era["reason"]:
+        return REASONS[era["reason"]], "-", era["n"]
+    shift, lo, hi = (change(era[end]) for end in ("shift_ratio", "lo", "hi"))
+    return f"{shift} ({lo} to {hi})", apart(era), era["n"]
+
+
+def _ageing(fleet: Report) -> list[str]:
+    """How boats age by the pairs of the last era, which is not in the shift of an era."""
+    known = [era for era in fleet["eras"].values() if era["ageing_per_year"] is not None]
+    if not known:
+        return ["ageing is not taken out: fewer than six pairs within the last era."]
+    yearly = (100 * known[0][f"ageing_{end}"] for end in ("per_year", "lo", "hi"))
+    return [
+        f"ageing taken out: Cw {interval(*yearly, digits=2)} % a year, by n {known[0]['n_ageing']} "
+        "pairs of all types within the last era."
+    ]
+
+
+def _agreement(fleet: Report) -> list[str]:
+    """How well repeat tows of all types agree, per method and era (ISO 5725)."""
+    cells = [
+        (
+            method if row["scope"] == figures["reproducibility"][0]["scope"] else "",
+            row["scope"],
+            share(row["within_sd_ratio"], 1),
+            _between(row),
+            *(share(row[f"share_{which}"]) for which in ("within_1pct", "within_2pct")),
+            share(row["share_e_n_above_1"]),
+            row["n_pairs"],
+            _classes(row),
+        )
+        for method, figures in fleet.items()
+        for row in figures["reproducibility"]
+    ]
+    head = (
+        "all types",
+        "older tow",
+        "s_r",
+        "s_R",
+        "in 1 %",
+        "in 2 %",
+        "E_n > 1",
+        "pairs",
+        "classes",
+    )
+    meaning = (
+        "s_r: within a tow; s_R: between tows of one boat (ISO 5725); classes: how many classes of "
+        "boats of a type can be told apart."
+    )
+    return [table(head, cells), wrapped(meaning)]
+
+
+def _classes(row: Report) -> str:
+    """How many classes of boats the test tells apart."""
+    return "-" if row["distinct_categories"] is None else f"{row['distinct_categories']:.1f}"
+
+
+def _between(row: Report) -> str:
+    if not row["n_pairs"]:
+        return "-"
+    return f"{share(row['sd_ratio'], 1)} ({share(row['lo'], 1)} to {share(row['hi'], 1)})"
+
+
+def _repeats(figures: Report) -> list[str]:
+    """How well repeat tows of this type agree."""
+    pairs = figures["repeats"]
+    if not pairs["n_pairs"]:
+        return ["no repeat pairs of this type (n 0)."]
+    return [
+        f"this type: s_R {share(pairs['sd_ratio'], 1)} (n {pairs['n_pairs']} pairs, "
+        f"{pairs['n_disagree']} of {pairs['n_e_n']} disagree by E_n)."
+    ]
+
+
+def _cause(row: Report) -> str:
+    if row["lo"] is None:
+        return share(row["sd_ratio"], 1)
+    upper = "no bound" if row["hi"] is None else share(row["hi"], 1)
+    return f"{share(row['sd_ratio'], 1)} ({share(row['lo'], 1)} to {upper})"
+
+
+def _causes(fleet: Report) -> list[str]:
+    """Spread of Cw within types by cause."""
+    found = {row["component"]: row for row in fleet["components"]}
+    if "boat" not in found or found["boat"]["reason"]:
+        reason = found["boat"]["reason"] if "boat" in found else "no_curves"
+        return [f"spread by cause: nothing claimed, {REASONS[reason]}."]
+    causes = ", ".join(f"{words} {_cause(found[name])}" for name, words in NAMES.items())
+    return [f"within types, at one speed: {causes} (n {found['boat']['n']})."]
+
+
+def _newest_reproducibility(fleet: Report) -> str:
+    """s_R of the last era, what a tow test can do now."""
+    rows = [row for row in fleet["reproducibility"] if row["scope"] == ERAS[-1].name]
+    known = [row for row in rows if row["n_pairs"]]
+    if not known:
+        return "not known (n 0 pairs)"
+    return f"{share(known[0]['sd_ratio'], 1)} ({ERAS[-1].name}, n {known[0]['n_pairs']} pairs)"
+
+
+def _prediction(method: str, under: Report, fleet: Report) -> Iterator[str]:
+    own, everyone = under["prediction"], fleet["prediction_error"]
+    if not own["n_predicted"] or everyone is None:
+        yield wrapped(f"{method}: {nothing({'reason': 'few_boats', 'n': own['n']})}")
+        return
+    yield wrapped(
+        f"{method}: off by {share(own['rmse_ratio'], 1)} (n {own['n_predicted']}; all types "
+        f"{share(everyone['rmse_ratio'], 1)}, n {everyone['n']}); the tow test itself "
+        f"{share(own['tow_sd_ratio'], 1)}, between seasons {_newest_reproducibility(fleet)}; "
+        f"{own['n_disagree']} of {own['n_predicted']} disagree."
+    )
+    boats = [f"{who(row)}: {second_opinion(row)}" for row in under["disagreeing"]]
+    yield from (wrapped(line, 4) for line in listed(boats))

@@ -1,0 +1,145 @@
+"""The page of two types side by side, and what differs."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from herijk.cli.audit_text.words import (
+    AGAINST,
+    NOTE,
+    QUANTITIES,
+    Report,
+    apart,
+    change,
+    heading,
+    line_of,
+    section,
+    share,
+    step_of,
+    wrapped,
+)
+from herijk.cli.text import table
+
+Cell = Callable[[Report], str]
+"""The words in a cell, from the figures of a type."""
+
+
+class Row(NamedTuple):
+    """A row of the table: its label, its name among the differences, and its cells."""
+
+    label: str
+    name: str
+    cell: Cell
+
+
+def _headline(eras: list[str]) -> list[Row]:
+    lines = [
+        Row(f"{letter} against {against}", f"{quantity} {explaining}", _line(quantity, explaining))
+        for explaining, (against, _, _) in AGAINST.items()
+        for quantity, letter in QUANTITIES.items()
+    ]
+    return [
+        *lines,
+        Row("q against weight", "q weight_kg", _line("q", "weight_kg")),
+        Row("spread about weight", "closest", _spread),
+        Row("equal bends possible", "bends", _bends),
+        Row("q per 10 % tow speed", "speed_trend", _trend),
+        Row("boats outside", "", _outside),
+        Row("slow tows", "", lambda u: f"{len(u['slow_tows'])} of n {u['bends']['n']}"),
+        *(Row(f"{era}, next tow", era, _era(i)) for i, era in enumerate(eras)),
+        Row("repeats: s_R", "", _repeat),
+        Row("off from dimensions", "", _prediction),
+    ]
+
+
+def _trend_seen(line: Report) -> str:
+    return "follows" if line["follows"] else "none seen"
+
+
+def _nothing(row: Report) -> str:
+    return f"- {row['reason'].replace('_', ' ')}, n {row['n']}"
+
+
+def _line(quantity: str, explaining: str) -> Cell:
+    def cell(under: Report) -> str:
+        line = line_of(under, quantity, explaining)
+        if line["reason"]:
+            return _nothing(line)
+        slope = f"{step_of(quantity, explaining)[0] * line['slope']:+.2f}"
+        return f"{_trend_seen(line)}, {slope}, {share(line['r2'])}, n {line['n']}"
+
+    return cell
+
+
+def _spread(under: Report) -> str:
+    closest = under["closest"]
+    if closest["reason"]:
+        return _nothing(closest)
+    found = [line_of(under, quantity, "weight_kg") for quantity in QUANTITIES]
+    b, a, cw = (line["residual_sd_ratio"] for line in found)
+    return f"B {100 * b:.1f}, A {100 * a:.1f}, Cw {100 * cw:.1f} %, n {closest['n']}"
+
+
+def _bends(under: Report) -> str:
+    test = under["bends"]
+    if test["reason"]:
+        return _nothing(test)
+    word = {True: "yes", False: "no", None: "not claimed"}[test["equal_possible"]]
+    return f"{word}, p {test['p_value']:.3f}, noise {share(test['noise_share'])}, n {test['n']}"
+
+
+def _trend(under: Report) -> str:
+    trend = under["speed_trend"]
+    if trend["reason"]:
+        return _nothing(trend)
+    return f"{_trend_seen(trend)}, {0.1 * trend['slope']:+.3f}, n {trend['n']}"
+
+
+def _outside(under: Report) -> str:
+    judged = max((row["n"] for row in under["judged"]), default=0)
+    return f"{len(under['outside'])} of n {judged}"
+
+
+def _era(index: int) -> Cell:
+    def cell(under: Report) -> str:
+        era = under["eras"][index]
+        if era["reason"]:
+            return _nothing(era)
+        return f"{apart(era)}, {change(era['shift_ratio'])} %, n {era['n']}"
+
+    return cell
+
+
+def _repeat(under: Report) -> str:
+    pairs = under["repeats"]
+    return f"{share(pairs['sd_ratio'], 1)}, n {pairs['n_pairs']} pairs"
+
+
+def _prediction(under: Report) -> str:
+    own = under["prediction"]
+    return f"{share(own['rmse_ratio'], 1)}, n {own['n_predicted']}"
+
+
+def two_types(report: Report) -> list[str]:
+    """The parts of the page."""
+    types, methods = report["types"], report["methods"]
+    names = [one["boat_type"] for one in types]
+    eras = [era["era"] for era in types[0]["under"][methods[0]]["eras"]]
+    cells, differing = [], []
+    for row in _headline(eras):
+        for method in methods:
+            words = [row.cell(one["under"][method]) for one in types]
+            cells.append((row.label if method == methods[0] else "", method, *words))
+            if row.name in report["differences"][method]:
+                said = "; ".join(f"{n} {w}" for n, w in zip(names, words, strict=True))
+                differing.append(wrapped(f"{row.label}, {method}: {said}"))
+    intro = [f"{one['boat_type']}: {heading(one)}" for one in types]
+    intro.append(
+        f"{NOTE} Beside a verdict stand the slope, per 100 kg (q: 1000 kg) or 0.1 m/s, and the "
+        "share of the spread that the line explains."
+    )
+    title = "What differs: slopes and shifts by more than both intervals together, and verdicts"
+    return [
+        "\n".join(wrapped(line, 0, 0) for line in intro),
+        table(("", "method", *names), cells),
+        section(title, differing or ["  nothing"]),
+    ]

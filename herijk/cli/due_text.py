@@ -1,0 +1,108 @@
+"""The due list as text for a person."""
+
+from collections import Counter
+from typing import Any, Final
+
+from herijk.cli.text import SIMULATED, table
+
+Report = dict[str, Any]
+
+REASONS: Final = {
+    "in_range": "as declared",
+    "brought_down": "declared speed takes too much: upper end",
+    "brought_up": "declared speed is low and was rowed faster",
+    "low_but_rowed": "low, but really rowed so: if the crew expects no more",
+    "low_not_raced": "declared speed is low and no race tells: lower end, ask the crew",
+    "like_boats": "no curve yet: middle of boats of this type",
+    "nothing_known": "no curve and no boats like it: the committee decides",
+}
+URGENCIES: Final = {
+    "expired": "Expired: does not count any more",
+    "this_year": "Expires at the end of this year: tow before the next season",
+    "without_curve": "Without a curve: never towed, or no tow gave one",
+    "later": "Later",
+}
+
+
+def due(report: Report) -> str:
+    """Who is due, at what speed, and which boats would make the season factors surest."""
+    counts = Counter(line["urgency"] for line in report["lines"])
+    parts = [SIMULATED] if report["simulated"] else []
+    parts.append(
+        f"Due list as of {report['as_of']}, the day of the last tow or race; curves of method "
+        f"{report['method']}. {len(report['lines'])} boats and crews: {counts['expired']} expired, "
+        f"{counts['this_year']} expire this year, {counts['without_curve']} without a curve."
+    )
+    parts += [
+        f"{title}\n{_lines([line for line in report['lines'] if line['urgency'] == urgency])}"
+        for urgency, title in URGENCIES.items()
+        if counts[urgency]
+    ]
+    parts.append(
+        "The speed takes 70-90 W a rower (men) or 40-55 W (women) on the known curve. A boat that "
+        "was altered\nsince may be towed at another one. * lies outside 85-115 % of the last "
+        "declared speed, where its curve does not hold."
+    )
+    parts.append(_choice(report["retow_choice"]))
+    return "\n\n".join(parts)
+
+
+def _lines(lines: list[Report]) -> str:
+    head = (
+        *("valid until", "boat", "name", "crew", "last tow", "declared", "W", "raced"),
+        *("from", "to", "tow at m/s", "why"),
+    )
+    return table(head, [_line(line) for line in lines])
+
+
+def _line(line: Report) -> tuple[Any, ...]:
+    tow_at = _speed(line["tow_speed_m_s"]) + ("*" if line["beyond_curve"] else "")
+    return (
+        _day(line["valid_until"]),
+        line["fsn_no"],
+        line["name"] or "-",
+        f"{line['rowers']}{line['crew_class']}",
+        line["tow_id"],
+        _speed(line["declared_speed_m_s"]),
+        "-" if line["power_w"] is None else f"{line['power_w']:.0f}",
+        _speed(line["raced_speed_m_s"]),
+        _speed(line["lowest_speed_m_s"]),
+        _speed(line["highest_speed_m_s"]),
+        tow_at,
+        REASONS[line["speed_reason"]],
+    )
+
+
+def _choice(choice: list[Report]) -> str:
+    title = "To tie the seasons together best, tow these again, in this order"
+    if not choice:
+        return f"{title}: nobody, this method estimates no log error that a tow would make surer."
+    rows = [
+        (
+            c["position"],
+            c["fsn_no"],
+            c["name"] or "-",
+            f"{c['rowers']}{c['crew_class']}",
+            c["seasons"],
+            _day(c["valid_until"]),
+            _speed(c["tow_speed_m_s"]),
+            f"{100 * c['factor_sd_after_ratio']:.3f} %",
+        )
+        for c in choice
+    ]
+    head = ("", "boat", "name", "crew", "towed in", "valid until", "tow at m/s", "uncertainty then")
+    before = 100 * choice[0]["factor_sd_before_ratio"]
+    after = 100 * choice[-1]["factor_sd_after_ratio"]
+    return (
+        f"{title}.\nAll of them together bring the uncertainty of a season's log error from "
+        f"{before:.3f} % to {after:.3f} % of speed (standard\ndeviation); the last column says how "
+        f"far it is after each.\n{table(head, rows)}"
+    )
+
+
+def _speed(value: float | None) -> str:
+    return "-" if value is None else f"{value:.2f}"
+
+
+def _day(value: Any) -> str:
+    return "-" if value is None else str(value)

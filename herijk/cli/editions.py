@@ -1,0 +1,168 @@
+"""The commands about editions, and about who has to tow before the next one.
+
+What they do stands in `warehouse.editions` and `warehouse.build.due`; how a result looks as text, in
+`cli.editions_text` and `cli.due_text`.
+"""
+
+import datetime as dt
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from herijk.cli import due_text
+from herijk.cli import editions_text as text
+from herijk.cli.arguments import AsJson, DataFolder, show
+
+
+def add_to(app: typer.Typer) -> None:
+    """Adds these commands to the command line."""
+    for command in (publish, diff, verify, lineage, due):
+        app.command()(command)
+
+
+def _day(value: str | dt.date) -> dt.date:
+    if isinstance(value, dt.date):
+        return value
+    try:
+        return dt.date.fromisoformat(value)
+    except ValueError as error:
+        raise typer.BadParameter("write a day as 2026-05-08") from error
+
+
+def _one_of(known: tuple[str, ...], value: str, option: str) -> str:
+    if value not in known:
+        raise typer.BadParameter(f"{option} is one of {', '.join(known)}, not {value!r}")
+    return value
+
+
+EditionName = Annotated[str, typer.Argument(metavar="EDITION", help="Name of an edition.")]
+
+
+def publish(
+    edition: Annotated[
+        str, typer.Argument(metavar="EDITION", help="Name of the new edition, for example 2026-1.")
+    ],
+    valid_from: Annotated[
+        dt.date,
+        typer.Option(parser=_day, metavar="DATE", help="Day from which it counts: 2026-05-08."),
+    ],
+    decision: Annotated[str, typer.Option(help="Who decided it, and where.")],
+    method: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Method that the last rebuild applied.")
+    ] = None,
+    printed: Annotated[
+        int | None,
+        typer.Option(metavar="YEAR", help="Instead of a method: the register printed that year."),
+    ] = None,
+    carry: Annotated[
+        str | None,
+        typer.Option(
+            metavar="EDITION",
+            help="Printed edition whose lines are re-based for boats without measurements.",
+        ),
+    ] = None,
+    published_on: Annotated[
+        dt.date | None,
+        typer.Option(parser=_day, metavar="DATE", help="Day of publication; today when left out."),
+    ] = None,
+    data: DataFolder = Path("data"),
+    as_json: AsJson = False,
+) -> None:
+    """Freeze an edition of the register: it is never changed afterwards."""
+    from herijk.pipeline.method.definition import shipped_method
+    from herijk.warehouse.editions.folder import read_edition
+    from herijk.warehouse.editions.publish import Terms, publish_printed
+    from herijk.warehouse.editions.publish import publish as publish_edition
+    from herijk.warehouse.store.store import Store
+
+    if (method is None) == (printed is None):
+        raise typer.BadParameter("give --method NAME, or --printed YEAR, and not both")
+    if printed is not None and carry is not None:
+        raise typer.BadParameter("--carry goes with --method")
+    terms = Terms(edition, valid_from, decision, published_on or dt.date.today())
+    store = Store(data)
+    if printed is not None:
+        folder = publish_printed(store, printed, terms)
+    else:
+        folder = publish_edition(store, shipped_method(str(method)), terms, carry)
+    made = read_edition(store, folder.name)
+    counts = made.register["status"].value_counts().sort("count", "status", descending=True)
+    found = made.about.model_dump(mode="json") | {
+        "folder": str(folder),
+        "statuses": dict(counts.rows()),
+    }
+    show(found, text.published, as_json)
+
+
+def diff(
+    old: Annotated[str, typer.Argument(metavar="EDITION", help="The old edition.")],
+    new: Annotated[str, typer.Argument(metavar="EDITION", help="The new edition.")],
+    data: DataFolder = Path("data"),
+    fatigue: Annotated[
+        str,
+        typer.Option(help="Fatigue correction of races: none, known (2 to 3 h only) or extend."),
+    ] = "extend",
+    stream: Annotated[
+        str, typer.Option(help="Stream in races: distance_first or net_speed_over_legs.")
+    ] = "distance_first",
+    as_json: AsJson = False,
+) -> None:
+    """Two editions side by side: who gains, who loses, why, and what it does to races."""
+    from herijk.pipeline.register.replay import FATIGUES, STREAMS, RaceRules
+    from herijk.warehouse.editions import compare
+    from herijk.warehouse.store.store import Store
+
+    rules = RaceRules(
+        fatigue=_one_of(FATIGUES, fatigue, "--fatigue"),  # type: ignore[arg-type]
+        stream=_one_of(STREAMS, stream, "--stream"),  # type: ignore[arg-type]
+    )
+    store = Store(data)
+    found = compare.diff(store, old, new)
+    races = compare.race_effects(store, found.old, found.new, rules)
+    report = compare.report(found) | {
+        "race_rules": vars(rules),
+        "races": None if races is None else races.results.to_dicts(),
+        "winners": None if races is None else races.winners.to_dicts(),
+    }
+    show(report, text.diff, as_json)
+
+
+def verify(data: DataFolder = Path("data"), as_json: AsJson = False) -> None:
+    """Check that editions and archive are what they were, and make the editions again."""
+    from herijk.warehouse.editions.verify import verify as verify_editions
+    from herijk.warehouse.store.store import Store
+
+    report = verify_editions(Store(data))
+    show(report, text.verify, as_json)
+    if report["wrong"]:
+        raise typer.Exit(1)
+
+
+def lineage(
+    edition: EditionName,
+    fsn_no: Annotated[str, typer.Argument(metavar="FSN_NO", help="Boat, for example FSN211.")],
+    data: DataFolder = Path("data"),
+    as_json: AsJson = False,
+) -> None:
+    """From a printed line to the files, runs and seconds behind it."""
+    from herijk.warehouse.editions.lineage import lineage as find_lineage
+    from herijk.warehouse.store.store import Store
+
+    show(find_lineage(Store(data), edition, fsn_no), text.lineage, as_json)
+
+
+def due(
+    data: DataFolder = Path("data"),
+    method: Annotated[
+        str, typer.Option(metavar="NAME", help="Method whose curves are asked for the speeds.")
+    ] = "rebased",
+    as_json: AsJson = False,
+) -> None:
+    """Whose tow expires when, at what speed to tow each next, and who would tell most."""
+    from herijk.pipeline.method.definition import shipped_text
+    from herijk.warehouse.build.due import due_report
+    from herijk.warehouse.store.store import Store
+
+    shipped_text(method)
+    show(due_report(Store(data), method), due_text.due, as_json)

@@ -1,0 +1,287 @@
+"""The command `herijk`: arguments in, results out. Messages go to stderr, results to stdout.
+
+Exit status: 0 done (also with tows set aside: they are listed), 1 could not do it, 2 wrong
+arguments. What a command does stands in `assets`, `warehouse` and `pipeline`; how a result looks
+as text, in `cli.text`.
+
+A command imports what it needs when it runs: Polars, SciPy, Altair and Dagster take seconds
+together, and `herijk --help` needs none of them.
+"""
+
+import re
+import sys
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Final
+
+import typer
+
+from herijk.cli import editions as commands_editions
+from herijk.cli import text
+from herijk.cli.arguments import AsJson, DataFolder, show
+from herijk.pipeline.errors import BrokenPromiseError, HerijkError, MissingKnowledgeError
+
+if TYPE_CHECKING:
+    from herijk.pipeline.method.definition import Method
+    from herijk.warehouse.store.store import Store
+
+app = typer.Typer(
+    help="Recomputes the history of the Dutch rowing-sloop register from its tow tests.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+methods_app = typer.Typer(help="The methods that ship with Herijk.", rich_markup_mode=None)
+app.add_typer(methods_app, name="methods", invoke_without_command=True)
+
+commands_editions.add_to(app)
+
+MOST_TYPES: Final = 2
+
+
+def main() -> None:
+    """Runs the command; an error that a user can act on becomes one sentence and status 1."""
+    try:
+        app()
+    except HerijkError as error:
+        typer.echo(f"herijk: {error}", err=True)
+        sys.exit(1)
+
+
+def _seasons(value: str) -> range:
+    match = re.fullmatch(r"(\d{4})(?::(\d{4}))?", value)
+    if match is None or int(match[2] or match[1]) < int(match[1]):
+        raise typer.BadParameter("write a season, 2014, or a range, 2009:2018")
+    return range(int(match[1]), int(match[2] or match[1]) + 1)
+
+
+Seasons = Annotated[
+    range,
+    typer.Option(parser=_seasons, metavar="A:B", help="Seasons, both ends included."),
+]
+
+
+@app.command()
+def rebuild(
+    archive: Annotated[Path, typer.Option(help="The archive folder.", metavar="DIR")],
+    data: DataFolder = Path("data"),
+    method: Annotated[
+        list[str] | None,
+        typer.Option(help="Method to apply; repeat for more. Default: all that ship."),
+    ] = None,
+    seasons: Annotated[
+        range | None,
+        typer.Option(parser=_seasons, metavar="A:B", help="Read these seasons only."),
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """From the archive to registers and tables; only what changed is done again."""
+    from herijk.assets.notify import notifier_of
+    from herijk.assets.rebuild import rebuild as run
+    from herijk.assets.report import failed_checks, tell
+    from herijk.assets.settings import read_settings
+    from herijk.cli.progress import TerminalProgress
+    from herijk.pipeline.method.definition import shipped_methods, shipped_text
+    from herijk.warehouse.queries import reports
+    from herijk.warehouse.store.store import Store
+
+    chosen = method or list(shipped_methods())
+    for name in chosen:
+        shipped_text(name)
+    with TerminalProgress() as progress:
+        done = run(archive, data, chosen, progress, seasons)
+    report = reports.rebuild_report(Store(data)) | {"done": done.work, "since": done.report}
+    show(report, text.rebuild, as_json)
+    notifier = notifier_of(str(data), read_settings(data))
+    for problem in tell(notifier, done.report):
+        typer.echo(f"herijk: {problem}", err=True)
+    if failed := failed_checks(done.report):
+        raise BrokenPromiseError(f"a check failed: {'; '.join(failed)}")
+
+
+@app.command()
+def serve(
+    archive: Annotated[Path, typer.Option(help="The archive folder.", metavar="DIR")],
+    data: DataFolder = Path("data"),
+    host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
+    port: Annotated[
+        int, typer.Option(min=1, max=65534, help="Port of Dagster's page; the site has the next.")
+    ] = 3000,
+) -> None:
+    """Rebuild by itself: schedules and sensor, with Dagster's page and the site, until stopped."""
+    from herijk.assets.rebuild import prepare_home
+    from herijk.assets.settings import read_settings
+    from herijk.cli.serving import Served, serve_until_stopped
+    from herijk.warehouse.store.obstacles import obstacles_explained
+    from herijk.warehouse.store.store import Store
+
+    read_settings(data)
+    with obstacles_explained(data):
+        home = prepare_home(Store(data))
+        serve_until_stopped(
+            Served(archive, data, host, port), home, lambda line: typer.echo(line, err=True)
+        )
+
+
+@methods_app.callback()
+def methods(context: typer.Context, as_json: AsJson = False) -> None:
+    """List the methods."""
+    from herijk.pipeline.method.definition import shipped_method, shipped_methods
+
+    if context.invoked_subcommand is None:
+        known = [shipped_method(name) for name in shipped_methods()]
+        rows = [
+            {"method": m.name, "title": m.title_en, "content_hash": m.content_hash} for m in known
+        ]
+        show({"methods": rows}, text.methods, as_json)
+
+
+@methods_app.command("show")
+def show_method(name: Annotated[str, typer.Argument(help="Name of a method.")]) -> None:
+    """One method in words, with what differs from the one it extends."""
+    from herijk.cli.method_text import method_in_words
+    from herijk.pipeline.method.definition import shipped_method
+
+    shown = _method(name)
+    parent = None if shown.extends is None else shipped_method(shown.extends)
+    typer.echo(method_in_words(shown, parent))
+
+
+@app.command()
+def rebase(
+    method: Annotated[
+        str, typer.Argument(metavar="METHOD_OR_FILE", help="A method's name, or a TOML file.")
+    ],
+    data: DataFolder = Path("data"),
+    against: Annotated[
+        str,
+        typer.Option(metavar="EDITION", help="Edition, method or file it is compared with."),
+    ] = "as-published",
+    as_json: AsJson = False,
+) -> None:
+    """All of history under a method: what changes and why. Nothing is published or stored."""
+    from herijk.warehouse.editions.folder import edition_names, method_of_edition
+    from herijk.warehouse.queries.rebase import rebase as rebase_history
+    from herijk.warehouse.store.store import Store
+
+    store = Store(data)
+    old = method_of_edition(store, against) if against in edition_names(store) else _method(against)
+    report = rebase_history(store, _method(method), old)
+    show(report, text.rebase, as_json)
+
+
+def _method(name_or_file: str) -> "Method":
+    """A method that ships, or one from a file; a draft's name stands for its method."""
+    from herijk.pipeline.method.definition import parse_method, shipped_method
+    from herijk.pipeline.register.register import draft_name
+
+    file = Path(name_or_file)
+    if file.suffix == ".toml":
+        if not file.is_file():
+            raise MissingKnowledgeError(f"there is no method file {file}")
+        return parse_method(file.read_text(encoding="utf-8"), str(file))
+    return shipped_method(name_or_file.removeprefix(draft_name("")))
+
+
+@app.command()
+def audit(
+    names: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="FSN_NO|TYPE [TYPE]", help="A boat, FSN211, or one or two types of boat."
+        ),
+    ],
+    data: DataFolder = Path("data"),
+    method: Annotated[str | None, typer.Option(help="Show this method only.")] = None,
+    plots: Annotated[
+        Path | None,
+        typer.Option(help="Folder for the plots. Default: audit/NAME in --data.", metavar="DIR"),
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Where a boat's numbers come from, step by step; or whether boats of a type are equal."""
+    from herijk.cli import audit_text
+    from herijk.dashboards.audit_plots import file_name
+    from herijk.pipeline.method.definition import shipped_text
+    from herijk.warehouse.queries.audit import audit as audit_report
+    from herijk.warehouse.store.store import Store
+
+    if len(names) > MOST_TYPES:
+        raise typer.BadParameter("give a boat, or one or two types; quote a name with blanks")
+    if method is not None:
+        shipped_text(method)
+    store = Store(data)
+    report = audit_report(store, names, method)
+    folder = plots or store.root / "audit" / file_name(" ".join(names))
+    drawn = _plots(store, report, folder)
+    show(report | {"plots": [str(path) for path in drawn]}, audit_text.audit, as_json)
+
+
+def _plots(store: "Store", report: dict[str, Any], folder: Path) -> list[Path]:
+    """The plots of an audit; none, and said so, where they cannot be written: the page stands."""
+    from herijk.dashboards.audit_plots import write_audit_plots
+
+    try:
+        return write_audit_plots(store, report, folder)
+    except OSError as error:
+        reason = f"herijk: no plots, for {folder} cannot be written ({error.strerror})"
+        typer.echo(f"{reason}; give another folder with --plots", err=True)
+        return []
+
+
+@app.command()
+def workbench(
+    data: DataFolder = Path("data"),
+    port: Annotated[
+        int, typer.Option(min=0, max=65535, help="Port on this machine; 0 for any that is free.")
+    ] = 8765,
+) -> None:
+    """Change a method's options in a browser and see at once what happens to all boats."""
+    from herijk.dashboards.workbench.bench import Bench
+    from herijk.dashboards.workbench.server import address, listen, serving
+    from herijk.warehouse.queries.history import History
+    from herijk.warehouse.store.store import Store
+
+    held, store = listen(port), Store(data)
+    bench = Bench(store, History.of(store))
+    typer.echo(f"The workbench is at {address(held)} (on this machine only); Ctrl-C stops it.")
+    with suppress(KeyboardInterrupt):
+        serving(bench).run(sockets=[held])
+
+
+@app.command("log-error")
+def log_error(
+    data: DataFolder = Path("data"),
+    method: Annotated[str, typer.Option(help="Method whose factors are shown.")] = "rebased",
+    as_json: AsJson = False,
+) -> None:
+    """How wrong the speed log was in each season, how sure that is, and what it rests on."""
+    from herijk.pipeline.method.definition import shipped_text
+    from herijk.warehouse.queries import reports
+    from herijk.warehouse.store.store import Store
+
+    shipped_text(method)
+    show(reports.log_error_report(Store(data), method), text.log_error, as_json)
+
+
+@app.command()
+def simulate(
+    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder to make.")],
+    seasons: Seasons = "2009:2018",  # type: ignore[assignment]
+    tows_per_season: Annotated[int, typer.Option(min=1, max=1000, help="Tows in each.")] = 24,
+    rate: Annotated[int, typer.Option(min=5, max=1000, help="Samples a second.")] = 1000,
+    seed: Annotated[int, typer.Option(min=0, help="Decides all that is drawn.")] = 1,
+) -> None:
+    """Write a simulated archive with known truth (the truth lies beside it, not in it)."""
+    from herijk.cli.progress import TerminalProgress
+    from herijk.simulate import WorldSettings, simulate_world
+    from herijk.simulate.archive_writer import write_simulated_archive
+
+    settings = WorldSettings(tuple(seasons), tows_per_season, rate, seed)
+    with TerminalProgress() as progress:
+        progress.expect(len(seasons) * tows_per_season)
+        truth = write_simulated_archive(
+            directory, simulate_world(settings), lambda done, _: progress.tow_read(str(done), False)
+        )
+    typer.echo(f"Simulated archive: {directory}\nIts truth: {truth}")

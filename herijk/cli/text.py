@@ -1,0 +1,263 @@
+"""Results as text for a person: one function per command, from plain data to lines.
+
+The pages of `herijk audit` are in `cli.audit_text`.
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+Report = dict[str, Any]
+SIMULATED = "SIMULATED archive: made by `herijk simulate`, not the federation's measurements."
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
+    """Columns lined up; numbers to the right."""
+    held = [list(row) for row in rows]
+    cells = [[_cell(value) for value in row] for row in held]
+    widths = [max(len(line[i]) for line in [list(head), *cells]) for i in range(len(head))]
+    right = [any(isinstance(row[i], int | float) for row in held) for i in range(len(head))]
+    lines = [
+        "  ".join(
+            c.rjust(w) if r else c.ljust(w) for c, w, r in zip(line, widths, right, strict=True)
+        )
+        for line in [list(head), *cells]
+    ]
+    return "\n".join(f"  {line.rstrip()}" for line in lines)
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return "-"
+    if isinstance(value, float):
+        return f"{value:.3f}"
+    return str(value)
+
+
+def _per_cent(ratio: float | None) -> str:
+    return "-" if ratio is None else f"{100 * (ratio - 1):+.1f} %"
+
+
+def rebuild(report: Report) -> str:
+    """The closing summary of a rebuild."""
+    done = report["done"]
+    parts = [SIMULATED] if report["simulated"] else []
+    parts.append(_work_done(done))
+    parts.append("Since the last report:\n" + _indented(report["since"]["headlines"]))
+    parts.append(
+        "Tows accepted: "
+        + ", ".join(f"{row['season']}: {row['tows']}" for row in report["seasons"])
+    )
+    if report["set_aside"]:
+        rows = [(r["reason_code"], r["number"]) for r in report["set_aside"]]
+        parts.append("Set aside:\n" + table(("reason", "number"), rows))
+        parts.append(_faults(report["first_faults"], sum(number for _, number in rows)))
+    else:
+        parts.append("Set aside: nothing.")
+    rows = [(r["method"], r["status"], r["number"]) for r in report["curves"]]
+    parts.append("Curves:\n" + table(("method", "status", "number"), rows))
+    if report["by_season"]:
+        parts.append(_by_season(report["by_season"]))
+        parts.append(_biggest(report["biggest_changes"]))
+    parts.append(
+        f"Tables: {report['database']}\nSite: {report['site']}\nReport: {report['report']}"
+    )
+    return "\n\n".join(parts)
+
+
+def _work_done(done: Report) -> str:
+    if not done["database"]:
+        return "Nothing changed: no file was read again, all tables are up to date."
+    seasons = ", ".join(str(s) for s in done["seasons"]) or "none"
+    methods = ", ".join(done["methods"]) or "none"
+    return f"Seasons read: {seasons}. Methods applied: {methods}."
+
+
+def _indented(lines: Iterable[str]) -> str:
+    return "\n".join(f"  {line}" for line in lines)
+
+
+def _faults(first: list[Report], number: int) -> str:
+    lines = [f"  {_place(fault)}: {fault['message']}" for fault in first]
+    if number > len(first):
+        lines.append(f"  and {number - len(first)} more: see the table quarantine")
+    return "\n".join(lines)
+
+
+def _place(fault: Report) -> str:
+    line = "" if fault["line"] is None else f", line {fault['line']}"
+    tow = "" if fault["tow_id"] is None else f" (tow {fault['tow_id']})"
+    return f"{fault['path']}{line}{tow}"
+
+
+def _by_season(rows: list[Report]) -> str:
+    lines = [
+        (
+            r["method"],
+            r["season"],
+            r["tows"],
+            _per_cent(r["median_ratio"]),
+            _per_cent(r["lowest_ratio"]),
+            _per_cent(r["highest_ratio"]),
+        )
+        for r in rows
+    ]
+    head = ("method", "season", "tows", "median", "lowest", "highest")
+    return f"Change of Cw at the declared speed against {rows[0]['compared_with']}:\n" + table(
+        head, lines
+    )
+
+
+def _biggest(rows: list[Report]) -> str:
+    lines = [
+        (
+            r["to_edition"],
+            r["fsn_no"],
+            r["name"] or "-",
+            f"{r['rowers']}{r['crew_class']}",
+            _per_cent(r["cw_ratio"]),
+            f"{7200 * (r['time_ratio'] - 1):+.0f} s",
+        )
+        for r in rows
+    ]
+    head = ("register", "boat", "name", "crew", "Cw", "in 2 h at equal power")
+    return f"Biggest changes against {rows[0]['from_edition']}:\n" + table(head, lines)
+
+
+def methods(report: Report) -> str:
+    """The list of methods."""
+    rows = [(m["method"], m["title"], m["content_hash"][:12]) for m in report["methods"]]
+    return table(("method", "title", "hash"), rows)
+
+
+PLOT_WIDTH = 41
+PLOT_RANGE = (0.94, 1.08)
+
+
+def log_error(report: Report) -> str:
+    """The season table with a small plot of each factor and its interval."""
+    parts = [SIMULATED] if report["simulated"] else []
+    parts.append(f"True speed = log speed x factor, under {report['method']} (95 % intervals):")
+    head = (
+        "season",
+        "factor",
+        "from",
+        "to",
+        "source",
+        "tows",
+        "links",
+        "without boats",
+        "sd apart",
+        "step is of",
+    )
+    rows = [
+        (
+            r["season"],
+            _factor(r["factor"]),
+            _factor(r["lo"]),
+            _factor(r["hi"]),
+            r["source"],
+            r["n_tows"],
+            r["n_links"],
+            _factor(r["factor_no_boats"]),
+            "-" if r["agreement"] is None else f"{r['agreement']:+.1f}",
+            r["cause"],
+        )
+        for r in report["factors"]
+    ]
+    parts.append(table(head, rows))
+    low, high = PLOT_RANGE
+    scale = (
+        f"{low:<{_place_on_line(1.0)}.2f}{'1':<{PLOT_WIDTH - _place_on_line(1.0) - 4}}{high:.2f}"
+    )
+    plots = [f"  {r['season']}  {_plot(r)}" for r in report["factors"]]
+    parts.append("\n".join([f"  {'':4}  {scale}", *plots]))
+    parts.append(
+        "links: boats also towed in other seasons; without boats: a second estimate that does not\n"
+        "know which boat is which; sd apart: how far the two are, in standard deviations; step is\n"
+        "of: whether the season differs by its log or by its load cell (force), as the bend of\n"
+        "the same boats' curves tells; prescribed: nothing ties the season to one with dGPS, so\n"
+        "its factor is not determined and the method's prescribed one is used."
+    )
+    lacking = _seasons_between([r["season"] for r in report["factors"]])
+    if lacking:
+        parts.append(f"No sound tow in {lacking}: nothing is known of the log there.")
+    if report["parts"]:
+        parts += ["Each log, and each part of a season in which one was replaced:", _parts(report)]
+    return "\n\n".join(parts)
+
+
+def _seasons_between(seasons: list[int]) -> str:
+    """Seasons that are missing between the first and the last."""
+    every = range(min(seasons, default=0), max(seasons, default=0))
+    return ", ".join(str(season) for season in every if season not in seasons)
+
+
+def _parts(report: Report) -> str:
+    head = ("season", "log", "part", "factor", "from", "to", "source", "tows", "links")
+    rows = [
+        (
+            r["season"],
+            r["log"],
+            r["part"] + 1,
+            *(_factor(r[name]) for name in ("factor", "lo", "hi")),
+            r["source"],
+            r["n_tows"],
+            r["n_links"],
+        )
+        for r in report["parts"]
+    ]
+    return table(head, rows)
+
+
+def _factor(value: float | None) -> str:
+    return "-" if value is None else f"{value:.4f}"
+
+
+def _plot(row: Report) -> str:
+    """A line of text: the interval as dashes, the factor as o, no error at the bar."""
+    marks = [" "] * PLOT_WIDTH
+    marks[_place_on_line(1.0)] = "|"
+    if row["lo"] is not None and row["hi"] is not None:
+        for i in range(_place_on_line(row["lo"]), _place_on_line(row["hi"]) + 1):
+            marks[i] = "-"
+    marks[_place_on_line(row["factor"])] = "o"
+    return "".join(marks).rstrip()
+
+
+def _place_on_line(factor: float) -> int:
+    low, high = PLOT_RANGE
+    place = round((factor - low) / (high - low) * (PLOT_WIDTH - 1))
+    return min(max(place, 0), PLOT_WIDTH - 1)
+
+
+def rebase(report: Report) -> str:
+    """What a method changes: the ladder per season, and the boats most affected."""
+    parts = [SIMULATED] if report["simulated"] else []
+    parts.append(f"{report['method']} against {report['against']}; nothing was stored.")
+    counts = ", ".join(f"{row['count']} {row['change']}" for row in report["changes"])
+    parts.append(f"Register lines: {counts}.")
+    seasons = report["by_season"]
+    steps = [key for key in seasons[0] if key not in ("season", "tows", "total")]
+    head = ("season", "tows", *steps, "total")
+    lines = [
+        (row["season"], row["tows"], *(_per_cent(row[step]) for step in (*steps, "total")))
+        for row in seasons
+    ]
+    parts.append(
+        "Change of Cw at the declared speed by each step, median of the season's tows; a tow's\n"
+        "own steps multiply to its total, medians need not:\n" + table(head, lines)
+    )
+    boats = [
+        (
+            row["fsn_no"],
+            row["name"] or "-",
+            f"{row['rowers']}{row['crew_class']}",
+            *(_per_cent(row[step]) for step in steps),
+            _per_cent(row["cw_ratio"]),
+            f"{7200 * (row['time_ratio'] - 1):+.0f} s",
+        )
+        for row in report["boats"]
+    ]
+    head = ("boat", "name", "crew", *steps, "Cw", "in 2 h")
+    parts.append("Register lines most affected:\n" + table(head, boats))
+    return "\n\n".join(parts)

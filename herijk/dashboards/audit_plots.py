@@ -1,0 +1,120 @@
+"""The plots beside a page of `herijk audit`: one SVG each, readable without a network.
+
+They draw what the tables say. Does not belong here: what a figure looks like
+(`dashboards.figures`), and the words of the page (`cli.audit_text`).
+"""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import altair as alt
+import polars as pl
+import vl_convert
+
+from herijk.dashboards.figures import FIGURES
+from herijk.dashboards.site.parts import default_method
+from herijk.dashboards.words import speaker
+from herijk.warehouse.queries.views import Views
+from herijk.warehouse.store.files import written_beside
+from herijk.warehouse.store.store import Store
+
+SCATTERS: Final = ("a_weight", "b_weight", "cw_standard_weight", "b_speed", "cw_standard_speed")
+VEGA_LITE: Final = ".".join(alt.SCHEMA_VERSION.removeprefix("v").split(".")[:2])
+
+
+class Plot(NamedTuple):
+    """A figure with its rows, and which method or type they are of, if they are of one."""
+
+    figure: str
+    rows: pl.DataFrame
+    of: str = ""
+
+
+def write_audit_plots(store: Store, report: dict[str, Any], folder: Path) -> list[Path]:
+    """Writes the plots of a report of `warehouse.queries.audit`, replacing those of the same name.
+
+    Returns:
+        The files; a plot without rows is left out.
+    """
+    with Views(store) as views:
+        plots = _of_boat(views, report) if report["about"] == "boat" else _of_types(views, report)
+        return [_write(plot, report, folder) for plot in plots if plot.rows.height]
+
+
+def _of_types(views: Views, report: dict[str, Any]) -> Iterator[Plot]:
+    """Eras and repeats under all methods; the rest before and after correction."""
+    methods, types = report["methods"], _types(report)
+    own = pl.col("boat_type").is_in(types) & pl.col("method").is_in(methods)
+    shifts = views.table("era_shifts").filter(own, pl.col("shift_ratio").is_not_null())
+    for boat_type in types:
+        yield Plot("eras", shifts.filter(boat_type=boat_type), boat_type)
+    boats = views.type_boats().filter(own)
+    yield Plot(
+        "repeats",
+        boats.select("method", "fsn_no")
+        .unique()
+        .join(views.repeat_pairs(), on=["method", "fsn_no"]),
+    )
+    predicted, bends = views.predicted().filter(own), views.shared_bends().filter(own)
+    for method in dict.fromkeys((methods[0], default_method(methods))):
+        yield from _scatters(boats, method)
+        yield Plot("shared_bend", bends.filter(method=method), method)
+        yield Plot("predicted", predicted.filter(method=method), method)
+
+
+def _of_boat(views: Views, report: dict[str, Any]) -> Iterator[Plot]:
+    """Its history under all methods, and its place in its type by the default method."""
+    methods, boat = report["methods"], report["boat"]
+    own = (pl.col("fsn_no") == boat["fsn_no"]) & pl.col("method").is_in(methods)
+    tow = pl.format("{} {}{}", "tow_id", "rowers", "crew_class")
+    yield Plot("history", views.curves().filter(own).with_columns(tow=tow))
+    yield Plot("repeats", views.repeat_pairs().filter(own))
+    like = views.type_boats().filter(pl.col("boat_type") == (boat["boat_type"] or ""))
+    yield from _scatters(like, default_method(methods))
+
+
+def _scatters(boats: pl.DataFrame, method: str) -> Iterator[Plot]:
+    for name in SCATTERS:
+        yield Plot(name, boats.filter(method=method), method)
+
+
+def _write(plot: Plot, report: dict[str, Any], folder: Path) -> Path:
+    """One SVG, its title saying of what and whether it was simulated; a boat stands out."""
+    say = speaker("en")
+    about = [report["boat"]["fsn_no"]] if report["about"] == "boat" else _types(report)
+    of = [plot.of] if plot.of in about else [*about, plot.of]
+    title = alt.Title(
+        ", ".join(filter(None, of)),
+        subtitle=[say("simulated")] if report["simulated"] else [],
+    )
+    spec = FIGURES[plot.figure](plot.rows, say).properties(title=title).to_dict()
+    _drop_links(spec)
+    for parameter in spec.get("params", []):
+        if parameter["name"] == "chosen":
+            parameter["value"] = about[0]
+    path = folder / f"{file_name(f'{plot.figure} {plot.of}')}.svg"
+    svg = vl_convert.vegalite_to_svg(spec, vl_version=VEGA_LITE)
+    with written_beside(path) as beside:
+        beside.write_text(svg, encoding="utf-8")
+    return path
+
+
+def _drop_links(part: Any) -> None:
+    """Takes out the links to pages of the site, which a file of its own does not have beside it."""
+    if isinstance(part, dict):
+        part.pop("href", None)
+    for inner in (
+        part.values() if isinstance(part, dict) else part if isinstance(part, list) else ()
+    ):
+        _drop_links(inner)
+
+
+def _types(report: dict[str, Any]) -> list[str]:
+    return [found["boat_type"] for found in report["types"]]
+
+
+def file_name(text: str) -> str:
+    """A text as the name of a file: letters, digits and dashes."""
+    return re.sub(r"[^\w-]+", "-", text.strip())

@@ -1,0 +1,60 @@
+"""Figures: functions from a frame to a chart, the same for every place that shows them.
+
+A figure draws the columns it names and computes nothing; its Vega-Lite does not depend on what the
+frame holds, so that one specification serves every boat. Axis titles carry units; colours are
+Okabe and Ito's, which colour-blind people tell apart, and a shape or dash says the same in print.
+Does not belong here: reading tables, pages, and texts (`dashboards.words`).
+"""
+
+from collections.abc import Callable
+from typing import Final
+
+import altair as alt
+import polars as pl
+import vl_convert
+
+from herijk.dashboards.figures import boat, compared, corrections, quality, reproducibility, types
+from herijk.dashboards.words import Say
+
+Figure = Callable[[pl.DataFrame, Say], alt.TopLevelMixin]
+
+FIGURES: Final[dict[str, Figure]] = {
+    "resistance_curve": boat.resistance_curve,
+    "curves_compared": compared.curves_compared,
+    "history": boat.history,
+    "traces": boat.traces,
+    "out_and_back": boat.out_and_back,
+    "wind": boat.wind,
+    "budget": boat.budget,
+    "b_weight": types.b_against_weight,
+    "b_speed": types.b_against_speed,
+    "cw_weight": types.cw_against_weight,
+    "cw_speed": types.cw_against_speed,
+    "a_weight": types.a_against_weight,
+    "cw_standard_weight": types.cw_standard_against_weight,
+    "cw_standard_speed": types.cw_standard_against_speed,
+    "shared_bend": types.shared_bend,
+    "pair_b_weight": types.pair_b_against_weight,
+    "pair_b_speed": types.pair_b_against_speed,
+    "pair_cw_weight": types.pair_cw_against_weight,
+    "pair_cw_speed": types.pair_cw_against_speed,
+    "log_factors": corrections.log_factors,
+    "ladder": corrections.season_ladder,
+    "season_change": corrections.season_change,
+    "options": corrections.option_study,
+    "reproducibility": reproducibility.spread,
+    "eras": reproducibility.era_shifts,
+    "repeats": reproducibility.repeat_pairs,
+    "components": reproducibility.components,
+    "predicted": reproducibility.predicted,
+    "changes": reproducibility.register_changes,
+    "race_ranks": reproducibility.race_ranks,
+    "statuses": quality.statuses,
+}
+"""Every figure by name."""
+
+
+def png(name: str, frame: pl.DataFrame, say: Say) -> bytes:
+    """A figure as a picture, for places that show no Vega."""
+    text = FIGURES[name](frame, say).to_json()
+    return bytes(vl_convert.vegalite_to_png(text))

@@ -1,0 +1,237 @@
+"""Figures of one boat: curve, history, traces, wind, out against back, and uncertainty."""
+
+import json
+from collections.abc import Sequence
+
+import altair as alt
+import polars as pl
+
+from herijk.dashboards.figures.style import (
+    BACK,
+    GREY,
+    HEIGHT,
+    OKABE_ITO,
+    OUT,
+    WIDTH,
+    by_method,
+    named,
+    number,
+    tips,
+)
+from herijk.dashboards.words import Say
+from herijk.pipeline.steps.window import CUT_REASONS
+
+COMPONENTS = (
+    *("anemometer", "calibration", "force", "mass", "random", "season_log", "straightness"),
+    *("stream_drift", "temperature", "wind"),
+)
+DIRECTION = "datum.value == 1 ? '{out}' : '{back}'"
+
+
+def _direction_legend(say: Say) -> alt.Legend:
+    return alt.Legend(labelExpr=DIRECTION.format(out=say("out"), back=say("back")))
+
+
+def _direction_colour(say: Say) -> alt.Color:
+    return alt.Color(
+        "direction:N",
+        title=say("direction"),
+        scale=alt.Scale(domain=[1, -1], range=[OUT, BACK]),
+        legend=_direction_legend(say),
+    )
+
+
+def _direction_shape(say: Say) -> alt.Shape:
+    return alt.Shape(
+        "direction:N",
+        title=say("direction"),
+        scale=alt.Scale(domain=[1, -1], range=["circle", "triangle-up"]),
+        legend=_direction_legend(say),
+    )
+
+
+def resistance_curve(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+    """The curve with its run points, 95 % band, and interval at the declared speed.
+
+    Args:
+        frame: rows of `kind` line, point and declared, with `speed_m_s, cw_kg_m, cw_lo_kg_m,
+            cw_hi_kg_m, run, direction, used`.
+        say: gives texts.
+    """
+    x = number(alt.X, "speed_m_s", say("speed"))
+    y = number(alt.Y, "cw_kg_m", say("cw"))
+    whole = alt.Chart(frame)
+    line = whole.transform_filter("datum.kind == 'line'")
+    point = whole.transform_filter("datum.kind == 'point'")
+    declared = whole.transform_filter("datum.kind == 'declared'")
+    low, high = alt.Y("cw_lo_kg_m:Q", title=say("cw")), alt.Y2("cw_hi_kg_m:Q")
+    point_tips = tips(
+        ("run:O", say("run")), ("speed_m_s:Q", say("speed")), ("cw_kg_m:Q", say("cw"))
+    )
+    declared_tips = tips(("speed_m_s:Q", say("tow_speed")), ("cw_kg_m:Q", say("cw_declared")))
+    return alt.layer(
+        line.mark_area(color=OKABE_ITO[5], opacity=0.35).encode(x, low, high),
+        line.mark_line(color="black").encode(x, y),
+        declared.mark_rule(color="black", strokeWidth=3).encode(x, low, high),
+        declared.mark_point(shape="stroke", color="black", size=300, strokeWidth=2).encode(
+            x, y, tooltip=declared_tips
+        ),
+        point.mark_point(size=90, strokeWidth=2).encode(
+            x,
+            y,
+            _direction_colour(say),
+            _direction_shape(say),
+            fillOpacity=alt.condition("datum.used", alt.value(0.9), alt.value(0)),
+            fill=_direction_colour(say),
+            tooltip=point_tips,
+        ),
+    ).properties(width=WIDTH, height=HEIGHT)
+
+
+def history(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+    """Cw at the declared speed of every tow under every method, with intervals.
+
+    Args:
+        frame: rows of `curves` with `tow_date` and `crew`.
+        say: gives texts.
+    """
+    base = alt.Chart(frame).encode(alt.X("tow:O", title=say("tow"), axis=alt.Axis(labelAngle=-30)))
+    value, ends = ("cw_kg_m", say("cw_declared")), ("cw_lo_kg_m", "cw_hi_kg_m")
+    more = (("tow:N", say("tow")), ("a_kg_m:Q", say("a")), ("b_m_s:Q", say("b")))
+    return alt.layer(*by_method(base, say, value, ends, more)).properties(
+        width=WIDTH, height=HEIGHT
+    )
+
+
+def traces(frame: pl.DataFrame, say: Say) -> alt.VConcatChart:
+    """Speed, force and wind over each run, with the window that counts.
+
+    Args:
+        frame: rows of `kind` trace (`run, second, speed_m_s, gps_m_s, force_n, wind_m_s`) and
+            window (`run, window_start_s, window_end_s, cut_reason`).
+        say: gives texts.
+    """
+    rows = [
+        (("speed_m_s", OKABE_ITO[0], [1, 0]), ("gps_m_s", OKABE_ITO[1], [3, 2])),
+        (("force_n", OKABE_ITO[2], [1, 0]),),
+        (("wind_m_s", OKABE_ITO[6], [1, 0]),),
+    ]
+    titles = (say("speed_short"), say("force"), say("wind"))
+    first, *others = zip(rows, titles, strict=True)
+    return alt.vconcat(
+        _trace_row(frame, say, *first, _cut_reasons(say)),
+        *(_trace_row(frame, say, *row) for row in others),
+    )
+
+
+def _cut_reasons(say: Say) -> list[alt.Chart]:
+    """Why the rest of a run was cut, in words, a line a reason, readable over the traces."""
+    text = "datum.cut_reason"
+    for code in CUT_REASONS:
+        text = f"replace({text}, '{code}', {json.dumps(say(f'code.{code}'))})"
+    why = (
+        alt.Chart()
+        .transform_filter("datum.kind == 'window' && datum.cut_reason")
+        .transform_calculate(why=text)
+        .encode(x=alt.value(3), y=alt.value(3), text="why:N")
+    )
+    look = {"align": "left", "baseline": "top", "fontSize": 10, "lineBreak": ","}
+    return [why.mark_text(**look, stroke="white", strokeWidth=3), why.mark_text(**look)]
+
+
+def _trace_row(
+    frame: pl.DataFrame,
+    say: Say,
+    fields: tuple[tuple[str, str, list[int]], ...],
+    title: str,
+    above: Sequence[alt.Chart] = (),
+) -> alt.FacetChart:
+    x = alt.X("second:Q", title=say("time"))
+    window = (
+        alt.Chart()
+        .transform_filter("datum.kind == 'window' && isValid(datum.window_start_s)")
+        .mark_rect(color=GREY, opacity=0.22)
+        .encode(alt.X("window_start_s:Q", title=say("time")), alt.X2("window_end_s:Q"))
+    )
+    lines = [
+        alt.Chart()
+        .transform_filter("datum.kind == 'trace'")
+        .mark_line(color=ink, strokeDash=dash, strokeWidth=1.3)
+        .encode(x, number(alt.Y, field, title), tooltip=tips((f"{field}:Q", title)))
+        for field, ink, dash in fields
+    ]
+    return (
+        alt.layer(window, *lines, *above, data=frame)
+        .properties(width=150, height=110)
+        .facet(alt.Facet("run:O", title=say("run")), columns=6)
+    )
+
+
+def out_and_back(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+    """Cw of the runs before and after the air correction, out and back.
+
+    Args:
+        frame: rows with `stage` (gross or net), `speed_m_s, cw_kg_m, direction, run`.
+        say: gives texts.
+    """
+    label = f"datum.value == 'gross' ? '{say('gross')}' : '{say('net')}'"
+    return (
+        alt.Chart(frame)
+        .mark_point(size=80, filled=True, opacity=0.9)
+        .encode(
+            number(alt.X, "speed_m_s", say("speed")),
+            number(alt.Y, "cw_kg_m", say("cw")),
+            _direction_colour(say),
+            _direction_shape(say),
+            tooltip=tips(("run:O", say("run")), ("cw_kg_m:Q", say("cw"))),
+        )
+        .properties(width=280, height=240)
+        .facet(alt.Facet("stage:N", title=None, header=alt.Header(labelExpr=label)), columns=2)
+    )
+
+
+def wind(frame: pl.DataFrame, say: Say) -> alt.Chart:
+    """Mean apparent wind of each run, by its angle: 0 and 360 are from ahead.
+
+    Args:
+        frame: rows of `run_points`.
+        say: gives texts.
+    """
+    angles = alt.Scale(domain=[0, 360])
+    return (
+        alt.Chart(frame)
+        .mark_point(size=80, filled=True, opacity=0.9)
+        .encode(
+            alt.X(
+                "wind_angle_deg:Q",
+                title=say("wind_angle"),
+                scale=angles,
+                axis=alt.Axis(values=[0, 45, 90, 135, 180, 225, 270, 315, 360]),
+            ),
+            number(alt.Y, "wind_m_s", say("wind"), zero=True),
+            _direction_colour(say),
+            _direction_shape(say),
+            tooltip=tips(("run:O", say("run")), ("wind_m_s:Q", say("wind"))),
+        )
+        .properties(width=WIDTH, height=200)
+    )
+
+
+def budget(frame: pl.DataFrame, say: Say) -> alt.Chart:
+    """What makes Cw uncertain, the largest first; `frame` is `uncertainty_budget`."""
+    label = named(COMPONENTS, say)
+    return (
+        alt.Chart(frame)
+        .mark_bar(color=OKABE_ITO[0])
+        .encode(
+            alt.X("u_ratio:Q", title=say("u_ratio")),
+            alt.Y(
+                "component:N",
+                title=say("component"),
+                sort="-x",
+                axis=alt.Axis(labelExpr=label, labelLimit=220),
+            ),
+            tooltip=tips(("component:N", say("component")), ("u_ratio:Q", say("u_ratio"))),
+        )
+        .properties(width=480, height=alt.Step(20))
+    )

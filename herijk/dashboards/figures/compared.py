@@ -1,0 +1,48 @@
+"""Figures of two methods laid over each other."""
+
+import altair as alt
+import polars as pl
+
+from herijk.dashboards.figures.style import HEIGHT, OKABE_ITO, SHAPES, WIDTH, number, tips
+from herijk.dashboards.words import Say
+
+
+def curves_compared(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+    """A tow's curve and run points under two methods, with the interval at the declared speed.
+
+    Args:
+        frame: rows of `kind` line, point and declared (`warehouse.queries.trial.Trial.boat_figure`).
+        say: gives texts.
+    """
+    x = number(alt.X, "speed_m_s", say("speed"))
+    y = number(alt.Y, "cw_kg_m", say("cw"))
+    low, high = alt.Y("cw_lo_kg_m:Q", title=say("cw")), alt.Y2("cw_hi_kg_m:Q")
+    # What as-published and a method on trial look like in the figures of all methods.
+    ink, marks = (alt.Scale(range=[looks[0], looks[4]]) for looks in (OKABE_ITO, SHAPES))
+    dashes = alt.Scale(range=[[5, 4], [1, 0]])
+    # One legend, that of the points: colour and dash of the lines would each have their own.
+    colour = alt.Color("method:N", scale=ink, sort=None, legend=None)
+    dash = alt.StrokeDash("method:N", scale=dashes, sort=None, legend=None)
+    look = {"title": say("method"), "sort": None}
+    base = alt.Chart(frame)
+    line = base.transform_filter("datum.kind == 'line'")
+    point = base.transform_filter("datum.kind == 'point'")
+    declared = base.transform_filter("datum.kind == 'declared'")
+    return alt.layer(
+        line.mark_line(strokeWidth=2).encode(x, y, colour, dash),
+        declared.mark_rule(strokeWidth=3, opacity=0.6).encode(x, low, high, colour),
+        point.mark_point(size=70, strokeWidth=2).encode(
+            x,
+            y,
+            colour,
+            alt.Shape("method:N", scale=marks, **look),
+            alt.Fill("method:N", scale=ink, **look),
+            fillOpacity=alt.condition("datum.used", alt.value(0.85), alt.value(0)),
+            tooltip=tips(
+                ("method:N", say("method")),
+                ("run:O", say("run")),
+                ("speed_m_s:Q", say("speed")),
+                ("cw_kg_m:Q", say("cw")),
+            ),
+        ),
+    ).properties(width=WIDTH, height=HEIGHT)

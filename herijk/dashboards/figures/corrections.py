@@ -1,0 +1,102 @@
+"""Figures of what corrections do: log factors, the ladder of steps, choices of judgement."""
+
+import altair as alt
+import polars as pl
+
+from herijk.dashboards.figures.style import (
+    GREY,
+    HEIGHT,
+    OKABE_ITO,
+    WIDTH,
+    by_method,
+    named,
+    number,
+    tips,
+)
+from herijk.dashboards.words import Say
+from herijk.pipeline.studies.ladder import STEP_ORDER
+from herijk.pipeline.studies.options import CHOICES
+
+
+def _at_one(frame: pl.DataFrame, channel: str) -> alt.Chart:
+    line = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3])
+    return line.encode(**{channel: alt.datum(1.0)})
+
+
+def log_factors(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+    """True speed / log speed per season and method, with 95 % intervals; `frame` is the table."""
+    more = (("season:O", say("season")), ("source:N", say("source")))
+    return _per_season(frame, say, ("factor", say("factor")), ("lo", "hi"), more)
+
+
+def season_change(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+    """Cw re-based / as published: median and range per season; `frame` is `season_changes`."""
+    value, ends = ("median_ratio", say("ratio_cw")), ("lowest_ratio", "highest_ratio")
+    return _per_season(
+        frame, say, value, ends, (("season:O", say("season")), ("tows:Q", say("number")))
+    )
+
+
+def _per_season(
+    frame: pl.DataFrame,
+    say: Say,
+    value: tuple[str, str],
+    ends: tuple[str, str],
+    more: tuple[tuple[str, str], ...],
+) -> alt.LayerChart:
+    base = alt.Chart(frame).encode(alt.X("season:O", title=say("season")))
+    layers = by_method(base, say, value, ends, more)
+    return alt.layer(_at_one(frame, "y"), *layers).properties(width=WIDTH, height=HEIGHT)
+
+
+def season_ladder(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+    """Factor on Cw of each step in each season, as a coloured table with its numbers.
+
+    Args:
+        frame: `season_ladder` of one pair of methods.
+        say: gives texts.
+    """
+    order = alt.EncodingSortField("position", order="ascending")
+    label = named(STEP_ORDER, say)
+    base = alt.Chart(frame).encode(
+        alt.X(
+            "step:N",
+            title=say("step"),
+            sort=order,
+            axis=alt.Axis(labelExpr=label, labelAngle=-45, orient="top"),
+        ),
+        alt.Y("season:O", title=say("season")),
+    )
+    shades = alt.Scale(
+        domain=[0.8, 1.0, 1.2],
+        range=[OKABE_ITO[5], "#ffffff", OKABE_ITO[4]],
+        clamp=True,
+        interpolate="rgb",
+    )
+    return alt.layer(
+        base.mark_rect(stroke="#dddddd").encode(
+            alt.Color("factor:Q", title=say("factor"), scale=shades),
+            tooltip=tips(
+                ("season:O", say("season")), ("step:N", say("step")), ("factor:Q", say("factor"))
+            ),
+        ),
+        base.mark_text(color="black").encode(alt.Text("factor:Q", format=".3f")),
+    ).properties(width=WIDTH, height=HEIGHT)
+
+
+def option_study(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+    """What other choices of judgement do to Cw; `frame` is `option_summary`."""
+    label = named([c.name for c in CHOICES], say)
+    base = alt.Chart(frame).encode(
+        alt.Y("option:N", title=say("option"), axis=alt.Axis(labelExpr=label, labelLimit=260))
+    )
+    return alt.layer(
+        _at_one(frame, "x"),
+        base.mark_rule(strokeWidth=3, color=OKABE_ITO[0]).encode(
+            number(alt.X, "lo_ratio", say("ratio_cw")), alt.X2("hi_ratio:Q")
+        ),
+        base.mark_point(filled=True, size=80, color="black", opacity=1).encode(
+            number(alt.X, "median_ratio", say("ratio_cw")),
+            tooltip=tips(("option:N", say("option")), ("median_ratio:Q", say("ratio_cw"))),
+        ),
+    ).properties(width=480, height=220)

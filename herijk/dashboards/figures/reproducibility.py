@@ -1,0 +1,173 @@
+"""Figures of agreement: repeat tows, causes of spread, prediction, and editions compared."""
+
+import altair as alt
+import polars as pl
+
+from herijk.dashboards.figures.style import (
+    GREY,
+    HEIGHT,
+    WIDTH,
+    by_method,
+    colour,
+    method_colour,
+    method_shape,
+    named,
+    number,
+    shape,
+    tips,
+    type_legend,
+)
+from herijk.dashboards.words import Say
+
+
+def spread(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+    """Standard deviation of one tow per era and method; `frame` is `reproducibility`."""
+    base = alt.Chart(frame).encode(
+        alt.X(
+            "scope:N",
+            title=say("scope"),
+            axis=alt.Axis(labelAngle=0, labelExpr=named(["all"], say)),
+        )
+    )
+    value, more = (
+        ("sd_ratio", say("sd_ratio")),
+        (("scope:N", say("scope")), ("n_pairs:Q", say("number"))),
+    )
+    layers = by_method(base, say, value, ("lo", "hi"), more, zero=True)
+    return alt.layer(*layers).properties(width=WIDTH, height=HEIGHT)
+
+
+def era_shifts(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+    """Next tow of the same boats against the tows of an era; `frame` is `era_shifts`."""
+    base = alt.Chart(frame).encode(alt.X("era:N", title=say("scope"), axis=alt.Axis(labelAngle=0)))
+    same = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3]).encode(y=alt.datum(1.0))
+    value, more = ("shift_ratio", say("shift_ratio")), (("n:Q", say("number")),)
+    layers = by_method(base, say, value, ("lo", "hi"), more)
+    return alt.layer(same, *layers).properties(width=WIDTH, height=HEIGHT)
+
+
+def repeat_pairs(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+    """Every pair of repeat tows, by the season of the newer; `frame` has `page`."""
+    zero = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3]).encode(y=alt.datum(0.0))
+    points = (
+        alt.Chart(frame)
+        .mark_point(size=45, filled=True, opacity=0.8, cursor="pointer")
+        .encode(
+            alt.X("season:O", title=say("season")),
+            number(alt.Y, "ln_ratio", say("ln_ratio")),
+            method_colour(say),
+            method_shape(say),
+            xOffset="method:N",
+            href="page:N",
+            tooltip=tips(
+                ("name:N", say("name")),
+                ("fsn_no:N", "FSN"),
+                ("method:N", say("method")),
+                ("season_before:O", say("season")),
+                ("ln_ratio:Q", say("ln_ratio")),
+            ),
+        )
+    )
+    return alt.layer(zero, points).properties(width=WIDTH, height=HEIGHT)
+
+
+def components(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+    """Spread by cause; `frame` is `variance_components`."""
+    base = alt.Chart().encode(
+        alt.X(
+            "component:N",
+            title=say("component"),
+            axis=alt.Axis(
+                labelExpr=named(["boat", "season", "boat_season", "run"], say), labelAngle=0
+            ),
+        )
+    )
+    layers = by_method(base, say, ("sd_ratio", say("sd_ratio")), ("lo", "hi"), zero=True)
+    header = alt.Header(labelExpr=named(["fleet", "within_type"], say))
+    return (
+        alt.layer(*layers, data=frame)
+        .properties(width=300, height=240)
+        .facet(alt.Facet("scope:N", title=None, header=header), columns=2)
+    )
+
+
+def predicted(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+    """Cw of the tow against Cw predicted without towing; `frame` has `page`."""
+    equal = (
+        alt.Chart(frame)
+        .mark_line(color=GREY, strokeDash=[4, 3])
+        .encode(number(alt.X, "cw_kg_m", say("tow_cw")), number(alt.Y, "cw_kg_m", ""))
+    )
+    points = (
+        alt.Chart(frame)
+        .mark_point(size=60, filled=True, opacity=0.85, cursor="pointer")
+        .encode(
+            number(alt.X, "cw_kg_m", say("tow_cw")),
+            number(alt.Y, "predicted_cw_kg_m", say("predicted_cw")),
+            colour("boat_type", say("type"), legend=type_legend(say)),
+            shape("boat_type", say("type"), legend=type_legend(say)),
+            href="page:N",
+            tooltip=tips(
+                ("name:N", say("name")),
+                ("fsn_no:N", "FSN"),
+                ("cw_kg_m:Q", say("tow_cw")),
+                ("predicted_cw_kg_m:Q", say("predicted_cw")),
+            ),
+        )
+    )
+    return alt.layer(equal, points).properties(width=480, height=360)
+
+
+def register_changes(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+    """Time and Cw of every changed register line, new / old; `frame` has `page`."""
+    one = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3])
+    points = (
+        alt.Chart(frame)
+        .mark_point(size=60, filled=True, opacity=0.85, cursor="pointer")
+        .encode(
+            number(alt.X, "cw_ratio", say("column.cw_ratio")),
+            number(alt.Y, "time_ratio", say("time_ratio")),
+            colour("to_edition", say("edition")),
+            shape("to_edition", say("edition")),
+            href="page:N",
+            tooltip=tips(
+                ("name:N", say("name")),
+                ("fsn_no:N", "FSN"),
+                ("cw_ratio:Q", say("column.cw_ratio")),
+                ("time_ratio:Q", say("time_ratio")),
+            ),
+        )
+    )
+    return alt.layer(one.encode(x=alt.datum(1.0)), one.encode(y=alt.datum(1.0)), points).properties(
+        width=WIDTH, height=HEIGHT
+    )
+
+
+def race_ranks(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+    """Place of every result under the old and the new edition; `frame` is `race_changes`."""
+    same = (
+        alt.Chart(frame)
+        .mark_line(color=GREY, strokeDash=[4, 3])
+        .encode(alt.X("old_rank:Q", title=say("old_rank")), alt.Y("old_rank:Q", title=""))
+    )
+    points = (
+        alt.Chart(frame)
+        .mark_point(size=60, filled=True, opacity=0.85, cursor="pointer")
+        .encode(
+            alt.X("old_rank:Q", title=say("old_rank"), axis=alt.Axis(tickMinStep=1, format="d")),
+            alt.Y("new_rank:Q", title=say("new_rank"), axis=alt.Axis(tickMinStep=1, format="d")),
+            colour("crew_class", say("class")),
+            shape("crew_class", say("class")),
+            href="page:N",
+            tooltip=tips(
+                ("race:N", say("race")),
+                ("name:N", say("name")),
+                ("fsn_no:N", "FSN"),
+                ("old_rank:Q", say("old_rank")),
+                ("new_rank:Q", say("new_rank")),
+                ("old_power_w:Q", say("old_power")),
+                ("new_power_w:Q", say("new_power")),
+            ),
+        )
+    )
+    return alt.layer(same, points).properties(width=480, height=360)

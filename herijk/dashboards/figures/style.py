@@ -1,0 +1,115 @@
+"""What the figures share: colours, shapes, sizes, titles, and links to a boat."""
+
+import json
+from collections.abc import Iterable, Sequence
+from typing import Any, Final
+
+import altair as alt
+
+from herijk.dashboards.words import Say
+from herijk.pipeline.method.definition import shipped_methods
+
+OKABE_ITO: Final = (
+    "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999",
+)  # fmt: skip
+"""Okabe and Ito (2008), dark ones first; yellow is left out, it cannot be seen on white."""
+
+SHAPES: Final = ("circle", "square", "triangle-up", "diamond", "cross", "triangle-down")
+GREY: Final = "#666666"
+WIDTH: Final = 620
+HEIGHT: Final = 320
+
+OUT: Final = OKABE_ITO[0]
+BACK: Final = OKABE_ITO[1]
+
+
+def colour(field: str, title: str, **more: Any) -> alt.Color:
+    """A category by colour."""
+    return alt.Color(f"{field}:N", title=title, scale=alt.Scale(range=list(OKABE_ITO)), **more)
+
+
+def method_colour(say: Say) -> alt.Color:
+    """A method by colour: every method that ships has the same in every figure."""
+    scale = _of_methods(OKABE_ITO)
+    return alt.Color("method:N", title=say("method"), scale=scale, sort=None, legend=_drawn())
+
+
+def method_shape(say: Say) -> alt.Shape:
+    """The same method by shape."""
+    scale = _of_methods(SHAPES)
+    return alt.Shape("method:N", title=say("method"), scale=scale, sort=None, legend=_drawn())
+
+
+def _drawn() -> alt.Legend:
+    """Only methods that are drawn: those that stand side by side, of all that have a look."""
+    return alt.Legend(values=alt.ExprRef("domain('xOffset')"))
+
+
+def _of_methods(looks: Sequence[str]) -> alt.Scale:
+    """Looks of the methods that ship, then of others that the data hold, as on the workbench."""
+    known = alt.DomainUnionWith(unionWith=list(shipped_methods()))
+    return alt.Scale(domain=known, range=list(looks))
+
+
+def shape(field: str, title: str, **more: Any) -> alt.Shape:
+    """The same category by shape, for print without colour; both share one legend."""
+    return alt.Shape(f"{field}:N", title=title, scale=alt.Scale(range=list(SHAPES)), **more)
+
+
+def number(channel: Any, field: str, title: str, zero: bool = False, **more: Any) -> Any:
+    """A quantity on an axis that need not begin at zero; labels below it keep apart."""
+    across = {"axis": alt.Axis(tickCount=8)} if channel is alt.X else {}
+    return channel(f"{field}:Q", title=title, scale=alt.Scale(zero=zero), **across | more)
+
+
+def type_legend(say: Say, **more: Any) -> alt.Legend:
+    """A legend of boat types, of which one is not known."""
+    return alt.Legend(labelExpr=named(["unknown"], say), **more)
+
+
+def tips(*pairs: tuple[str, str]) -> list[alt.Tooltip]:
+    """Tooltips of `field:type` with their titles; numbers with five digits."""
+    return [
+        alt.Tooltip(field, title=title, **({"format": ".5~g"} if field.endswith(":Q") else {}))
+        for field, title in pairs
+    ]
+
+
+def by_method(
+    base: alt.Chart,
+    say: Say,
+    value: tuple[str, str],
+    ends: tuple[str, str],
+    more: Sequence[tuple[str, str]] = (),
+    zero: bool = False,
+) -> list[alt.Chart]:
+    """A value with its interval for every method, side by side: a bar and a point.
+
+    Args:
+        base: the chart with its x encoded.
+        say: gives texts.
+        value: column of the point, and the title of the y axis.
+        ends: columns of the lower and upper end of the bar.
+        more: what the tooltip shows besides method and value.
+        zero: whether the y axis begins at zero.
+    """
+    (field, title), (low, high) = value, ends
+    beside = base.encode(xOffset="method:N")
+    # The bar takes the colours of the point: given twice, colour and shape would have two legends.
+    bar = beside.mark_rule(strokeWidth=2).encode(
+        number(alt.Y, low, title, zero), alt.Y2(f"{high}:Q"), alt.Color("method:N")
+    )
+    limits = [(f"{low}:Q", say("lowest")), (f"{high}:Q", say("highest"))]
+    point = beside.mark_point(filled=True, size=65, opacity=1).encode(
+        number(alt.Y, field, title, zero),
+        method_colour(say),
+        method_shape(say),
+        tooltip=tips(("method:N", say("method")), *more, (f"{field}:Q", title), *limits),
+    )
+    return [bar, point]
+
+
+def named(codes: Iterable[str], say: Say) -> str:
+    """A Vega expression that gives codes on an axis their text, and leaves others as they are."""
+    texts = {code: say(f"code.{code}") for code in codes}
+    return f"({json.dumps(texts)})[datum.value] || datum.value"

@@ -1,0 +1,58 @@
+"""The page about a rebuild: what came in, what was set aside, what changed and why, the checks.
+
+It lies beside the site and uses its style.
+"""
+
+from typing import Any, Final
+
+import polars as pl
+
+from herijk.dashboards.report import outcome_of, values_found
+from herijk.dashboards.site.parts import Page, Section, Table
+from herijk.dashboards.site.render import render_page
+from herijk.warehouse.queries.journal import News
+from herijk.warehouse.queries.views import Views
+from herijk.warehouse.store.store import Store
+
+TO_SITE: Final = "../site/"
+
+_COLUMNS: Final = {
+    "tows": ("what", "tow_id", "fsn_no", "season"),
+    "set_aside": ("what", "path", "tow_id", "line", "reason_code", "message"),
+    "factors": ("method", "season", "old_factor", "new_factor", "ratio"),
+    "lines": (
+        *("to_edition", "name", "fsn_no", "rowers", "crew_class", "change"),
+        *("old_cw_kg_m", "new_cw_kg_m", "cw_ratio", "gain_in_two_hours_s"),
+        *("exceeds_interval", "causes"),
+    ),
+    "checks": ("check", "outcome", "quantity", "value"),
+}
+
+
+def report_page(store: Store, found: News, report: dict[str, Any]) -> str:
+    """The page: what came in, what was set aside, what changed and why, what the checks say."""
+    checks = pl.DataFrame(
+        [
+            [check["check"], outcome_of(check), *found]
+            for check in report["checks"]
+            for found in ([("", "")] if check["passed"] else values_found(check))
+        ],
+        schema=dict.fromkeys(_COLUMNS["checks"], pl.String),
+        orient="row",
+    )
+    frames = {
+        "lines": found.lines,
+        "tows": found.tows,
+        "set_aside": found.set_aside,
+        "factors": found.factors,
+        "checks": checks,
+    }
+    sections = [
+        Section(f"report_{name}", tables=[Table(name, frame, _COLUMNS[name], f"report_{name}")])
+        if frame.height
+        else Section(f"report_{name}", empty="report_none")
+        for name, frame in frames.items()
+    ]
+    page = Page("report.html", "report", sections, site=TO_SITE)
+    with Views(store) as views:
+        return render_page(views, page)

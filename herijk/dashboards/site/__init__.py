@@ -1,0 +1,9 @@
+"""The site of plain files: every page made from the tables, written beside and swapped in whole.
+
+`pages` says what stands on which page, `render` turns that into files; texts stand in
+`dashboards.words`, charts in `dashboards.figures`, numbers in the warehouse.
+"""
+
+from herijk.dashboards.site.render import build_site
+
+__all__ = ["build_site"]

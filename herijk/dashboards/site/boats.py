@@ -1,0 +1,192 @@
+"""One page per boat: its lines, curve, history, runs, traces and lineage."""
+
+from collections.abc import Iterator, Sequence
+
+import polars as pl
+
+from herijk.dashboards.site.parts import (
+    Chart,
+    Page,
+    Section,
+    Select,
+    Table,
+    boat_path,
+    default_method,
+)
+from herijk.warehouse.queries.views import Views
+
+OF_THE_CURVE = {"tow_id": "tow_id", "method": "method"}
+FOLLOWS = ["tow_id", "method"]
+EXTRA = {
+    "assessments": ("tow_id", "method", "check", "severity", "observed", "limit", "unit"),
+    "hand_windows": ("tow_id", "run", "start_s", "end_s", "reason"),
+}
+"""Tables about tows that are shown where there are any, with the columns shown."""
+
+
+def boat_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
+    """The page of every boat that the archive lists."""
+    frames = _frames(views)
+    by_boat = {name: _by_boat(frame) for name, frame in frames.items()}
+    for fsn_no in frames["boats"]["fsn_no"]:
+        own = {name: by_boat[name].get(fsn_no, frame.head(0)) for name, frame in frames.items()}
+        yield _page(fsn_no, own, methods)
+
+
+def _by_boat(frame: pl.DataFrame) -> dict[str, pl.DataFrame]:
+    parts = frame.partition_by("fsn_no", as_dict=True, maintain_order=True)
+    return {str(key[0]): part for key, part in parts.items()}
+
+
+def _frames(views: Views) -> dict[str, pl.DataFrame]:
+    """Everything a boat's page draws, of all boats at once."""
+    boat_of = views.table("tows").select("tow_id", "fsn_no")
+    points = views.run_points()
+    curves = views.curves().with_columns(
+        tow=pl.format("{} · {}{}", "tow_id", "rowers", "crew_class")
+    )
+    declared = curves.drop_nulls("cw_kg_m").with_columns(speed_m_s="declared_speed_m_s")
+    lines = views.table("curve_points").join(boat_of, on="tow_id")
+    lineage = views.table("lineage").with_columns(
+        pl.format("{}{}", "rowers", "crew_class").alias("crew")
+    )
+    found = {
+        "boats": views.table("boats"),
+        "register": views.register(),
+        "curves": curves,
+        "runs": points,
+        "line": _kind(lines, "line", "method", *NUMBERS),
+        "point": _kind(points.drop_nulls("cw_kg_m"), "point", "method", *POINT),
+        "declared": _kind(declared, "declared", "method", *NUMBERS),
+        "stages": _stages(points),
+        "trace": _seconds(views.table("trace_seconds").join(boat_of, on="tow_id")),
+        "window": _kind(points, "window", "method", "run", *WINDOW),
+        "lineage": lineage,
+        "budget": views.table("uncertainty_budget")
+        .select(*FOLLOWS, "component", "shared", "u_ratio", "dof")
+        .join(boat_of, on="tow_id", maintain_order="left"),
+    }
+    for name in EXTRA:
+        if views.has(name):
+            rows = views.flagged() if name == "assessments" else views.table(name)
+            found[name] = rows.join(boat_of, on="tow_id", maintain_order="left")
+    return found
+
+
+POINT = ["run", "direction", "speed_m_s", "cw_kg_m", "used"]
+WINDOW = ["window_start_s", "window_end_s", "cut_reason"]
+NUMBERS = ["speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"]
+
+
+def _kind(frame: pl.DataFrame, kind: str, *columns: str) -> pl.DataFrame:
+    return frame.select("fsn_no", "tow_id", *columns, kind=pl.lit(kind))
+
+
+def _stages(points: pl.DataFrame) -> pl.DataFrame:
+    """The runs that count, before and after the air correction."""
+    seen = points.filter("used")
+    shared = ("fsn_no", "method", "tow_id", "run", "direction", "speed_m_s")
+    return pl.concat(
+        [
+            seen.select(*shared, cw_kg_m="gross_cw_kg_m", stage=pl.lit("gross")),
+            seen.select(*shared, "cw_kg_m", stage=pl.lit("net")),
+        ]
+    )
+
+
+def _seconds(traces: pl.DataFrame) -> pl.DataFrame:
+    """Seconds of every run, to the digits that a chart of 110 pixels can show."""
+    fields = ("speed_m_s", "gps_m_s", "wind_m_s")
+    rounded = traces.with_columns(
+        pl.col(*fields).round(2), pl.col("force_n").round().cast(pl.Int32)
+    )
+    return _kind(rounded, "trace", "run", "second", *fields, "force_n")
+
+
+LINE_COLUMNS = (
+    *("edition", "rowers", "crew_class", "tow_id", "tow_date", "valid_until", "status"),
+    *("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),
+    *("verification_code", "method"),
+)
+CURVE_COLUMNS = (
+    *("tow_id", "tow_date", "rowers", "crew_class", "method", "declared_speed_m_s", "a_kg_m"),
+    *("b_m_s", "b_lo_m_s", "b_hi_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", "power_w"),
+    *("weight_kg", "altered", "runs_used", "status", "flags"),
+)
+RUN_COLUMNS = (
+    *("run", "direction", "window_start_s", "window_end_s", "cut_reason", "used", "reason"),
+    *("speed_m_s", "gross_cw_kg_m", "air_cw_kg_m", "still_air_cw_kg_m", "cw_kg_m", "cw_sd"),
+    *("wind_m_s", "wind_angle_deg", "tow_id", "method"),
+)
+FACT_COLUMNS = (
+    *("name", "fsn_no", "ht_no", "boat_type", "waterline_length_m", "beam_m", "bow_height_m"),
+    "weight_kg",
+)
+LINEAGE_COLUMNS = ("edition", "crew", "tow_id", "path", "sha256", "method_hash", "code_version")
+
+
+def _page(fsn_no: str, own: dict[str, pl.DataFrame], methods: Sequence[str]) -> Page:
+    facts = Section("facts", tables=[Table("boats", own["boats"], FACT_COLUMNS, "facts")])
+    name = own["boats"]["name"][0]
+    tows = own["curves"]["tow_id"].unique(maintain_order=True).to_list()
+    if not tows:
+        return Page(boat_path(fsn_no), "boat", [facts], name=name)
+    selects = [
+        Select("tow_id", "tow", tows, tows[-1]),
+        Select("method", "method", methods, default_method(methods)),
+    ]
+    return Page(
+        boat_path(fsn_no),
+        "boat",
+        [facts, *_sections(own)],
+        name=name,
+        selects=selects,
+        data=_data(own),
+    )
+
+
+def _data(own: dict[str, pl.DataFrame]) -> dict[str, list[pl.DataFrame]]:
+    """What the charts draw; rows of several kinds stand one below the other."""
+    wind = ("method", "tow_id", "run", "direction", "wind_m_s", "wind_angle_deg")
+    history = ("method", "tow", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", "a_kg_m", "b_m_s")
+    parts = {"curve": ("line", "point", "declared"), "traces": ("trace", "window")}
+    found = {name: [own[part].drop("fsn_no") for part in held] for name, held in parts.items()}
+    return found | {
+        "stages": [own["stages"].drop("fsn_no")],
+        "runs": [own["runs"].select(wind)],
+        "curves": [own["curves"].select(history)],
+        "budget": [own["budget"].drop("fsn_no")],
+    }
+
+
+def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
+    curve = Chart("resistance_curve", "curve", "boat_curve", OF_THE_CURVE)
+    history = Chart("history", "curves", "boat_history")
+    traces = Chart("traces", "traces", "boat_traces", OF_THE_CURVE)
+    budget = Chart("budget", "budget", "uncertainty_budget", OF_THE_CURVE)
+    sides = [
+        Chart("out_and_back", "stages", "boat_out_back", OF_THE_CURVE),
+        Chart("wind", "runs", "wind", OF_THE_CURVE),
+    ]
+    curves = Table("curves", own["curves"], CURVE_COLUMNS, "boat_history")
+    runs = Table("run_points", own["runs"], RUN_COLUMNS, "boat_runs", FOLLOWS)
+    found = [
+        Section(
+            "boat_lines", tables=[Table("register", own["register"], LINE_COLUMNS, "boat_lines")]
+        ),
+        Section("boat_curve", "boat_curve_note", [curve]),
+        Section("boat_history", "boat_history_note", [history], [curves]),
+        Section("boat_traces", "boat_traces_note", [traces], [runs]),
+        Section("boat_out_back", "boat_out_back_note", sides),
+        Section("uncertainty_budget", "uncertainty_budget_note", [budget]),
+    ]
+    for name, columns in EXTRA.items():
+        rows = own.get(name)
+        if rows is not None and rows.height:
+            follows = [c for c in FOLLOWS if c in columns]
+            table = Table(name, rows, columns, name, follows)
+            found.append(Section(name, f"{name}_note", tables=[table]))
+    lineage = Table("lineage", own["lineage"], LINEAGE_COLUMNS, "boat_lineage")
+    if own["lineage"].height:
+        found.append(Section("boat_lineage", "boat_lineage_note", tables=[lineage]))
+    return found

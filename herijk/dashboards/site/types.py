@@ -1,0 +1,101 @@
+"""The page of boat types: are equal boats equal, before and after."""
+
+from collections.abc import Sequence
+
+import polars as pl
+
+from herijk.dashboards.site.parts import (
+    Chart,
+    Page,
+    Section,
+    Select,
+    Table,
+    default_method,
+    with_page,
+)
+from herijk.warehouse.queries.views import Views
+
+QUANTITIES = ("b_weight", "b_speed", "cw_weight", "cw_speed")
+SIDES = ("before", "after")
+"""Selectors of the two methods that stand side by side."""
+PAIR = ("kromhout", "kuiken")
+"""Two types of which many boats are said to be equal: shown side by side at first."""
+PAIR_SELECTORS = ("pair_first", "pair_second")
+
+
+def types_page(views: Views, methods: Sequence[str]) -> Page:
+    """B and Cw of every boat against weight and speed, types side by side, and what differs."""
+    if not views.has("pooled_curves"):
+        return Page("types.html", "types", [])
+    boats = with_page(views.type_boats())
+    types = boats["boat_type"].unique().sort().to_list()
+    columns = (
+        *("name", "fsn_no", "boat_type", "rowers", "crew_class", "season", "weight_kg"),
+        *("declared_speed_m_s", "b_m_s", "b_lo_m_s", "b_hi_m_s", "cw_kg_m", "cw_lo_kg_m"),
+        "cw_hi_kg_m",
+    )
+    table = Table(
+        "type_boats", boats.with_columns(after="method"), columns, "types_list",
+        ["after", "boat_type"], search=True, linked=True,
+    )  # fmt: skip
+    first, second = _pair(types)
+    return Page(
+        "types.html",
+        "types",
+        [
+            Section("types_charts", "types_note", _before_after("", "boat_type")),
+            Section("types_list", tables=[table]),
+            Section("types_pair", "types_pair_note", _before_after("pair_", PAIR_SELECTORS)),
+            *_type_tables(views),
+        ],
+        selects=[
+            Select("before", "before", methods, methods[0]),
+            Select("after", "after", methods, default_method(methods)),
+            Select("boat_type", "type", types, "", with_all=True),
+            Select("pair_first", "pair_first", types, first),
+            Select("pair_second", "pair_second", types, second),
+        ],
+        data={"type_boats": [boats.select("method", "page", *columns)]},
+    )
+
+
+def _before_after(prefix: str, of_type: str | Sequence[str]) -> list[Chart]:
+    follows = {"method": SIDES, "boat_type": of_type}
+    return [Chart(f"{prefix}{name}", "type_boats", name, follows) for name in QUANTITIES]
+
+
+def _pair(types: Sequence[str]) -> tuple[str, str]:
+    """The types of `PAIR` where the archive has them, else the first and last."""
+    known = [next((t for t in types if t.lower().startswith(name)), None) for name in PAIR]
+    return known[0] or types[0], known[1] or types[-1]
+
+
+def _type_tables(views: Views) -> list[Section]:
+    found = []
+    outliers = views.outliers() if views.has("type_outliers") else pl.DataFrame()
+    if outliers.height:
+        columns = (
+            *("name", "fsn_no", "boat_type", "rowers", "crew_class", "season", "quantity", "value"),
+            *("expected", "deviation_sd", "candidates"),
+        )
+        shown = outliers.with_columns(after="method")
+        table = Table("type_outliers", shown, columns, "types_outliers", ["after", "boat_type"])
+        found.append(Section("types_outliers", "types_outliers_note", tables=[table]))
+    wanted = {
+        "type_consistency": (
+            "types_lines",
+            "types_lines_note",
+            "boat_type quantity explaining n slope slope_lo slope_hi r2 residual_sd_ratio",
+        ),
+        "type_homogeneity": (
+            "types_homogeneity",
+            "types_homogeneity_note",
+            "boat_type n n_boats p_value power_at_10pct noise_share shared_b_m_s",
+        ),
+    }
+    for name, (title, note, columns) in wanted.items():
+        if views.has(name):
+            shown = views.table(name).with_columns(after="method")
+            table = Table(name, shown, columns.split(), title, ["after", "boat_type"])
+            found.append(Section(title, note, tables=[table]))
+    return found

@@ -1,0 +1,38 @@
+"""Every text that people read, in Dutch and English, in one table.
+
+A code of the warehouse (a status, a flag, a step) has a line too; a code without one is shown as
+it is. Names of boats, methods and editions are data and never translated.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Final, TypeAlias
+
+from herijk.dashboards.words.codes import CODES
+from herijk.dashboards.words.columns import COLUMNS
+from herijk.dashboards.words.pages import PAGES
+from herijk.dashboards.words.report import REPORT
+
+LANGUAGES: Final = ("nl", "en")
+
+Say = Callable[[str], str]
+"""Gives the text of a key in one language."""
+
+Words: TypeAlias = Mapping[str, tuple[str, str]]
+"""Texts in Dutch and English by key."""
+
+WORDS: Final[Words] = PAGES | REPORT | COLUMNS | CODES
+
+
+def both(key: str, words: Words = WORDS) -> tuple[str, str]:
+    """A text in Dutch and English; a code or column without one stands for itself."""
+    known = words.get(key)
+    if known is None and "." not in key:
+        raise KeyError(key)
+    bare = key.split(".", 1)[-1]
+    return known or (bare, bare)
+
+
+def speaker(language: str) -> Say:
+    """The texts of one language."""
+    place = LANGUAGES.index(language)
+    return lambda key: both(key)[place]

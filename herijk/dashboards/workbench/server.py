@@ -1,0 +1,176 @@
+"""The workbench on loopback: routes, and what keeps other programs and sites away.
+
+It listens on 127.0.0.1 only. A page of another site that reaches it by a name of its own (DNS
+rebinding) is refused by its Host header, one that sends a form or script by its Origin and type;
+nothing is fetched from elsewhere, and the page may not be framed.
+"""
+
+import socket
+from collections.abc import Callable
+from pathlib import Path
+from threading import Lock
+from typing import Any, Final, TypeVar
+
+import uvicorn
+from markupsafe import Markup
+from pydantic import BaseModel, ValidationError
+from starlette.applications import Starlette
+from starlette.concurrency import run_in_threadpool
+from starlette.exceptions import HTTPException
+from starlette.middleware import Middleware
+from starlette.middleware.trustedhost import TrustedHostMiddleware
+from starlette.requests import Request
+from starlette.responses import HTMLResponse, JSONResponse, Response
+from starlette.routing import Route
+
+from herijk.dashboards.html import as_json, environment, in_both
+from herijk.dashboards.site.render import chart_specifications, vega_bundle
+from herijk.dashboards.words import both
+from herijk.dashboards.workbench.bench import Base, Bench, Named, Question
+from herijk.dashboards.workbench.texts import TEXTS
+from herijk.pipeline.errors import HerijkError, MissingKnowledgeError
+
+LOOPBACK: Final = "127.0.0.1"
+HOSTS: Final = (LOOPBACK, "localhost")
+HERE: Final = Path(__file__).parent
+SITE: Final = HERE.parent / "site" / "static"
+
+HEADERS: Final = {
+    # Vega compiles its expressions, and its tooltips bring a style of their own.
+    "Content-Security-Policy": (
+        "default-src 'none'; script-src 'self' 'unsafe-eval'; style-src 'self' 'unsafe-inline'; "
+        "img-src data:; connect-src 'self'; form-action 'none'; frame-ancestors 'none'; "
+        "base-uri 'none'"
+    ),
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cache-Control": "no-store",
+}
+
+Wanted = TypeVar("Wanted", bound=BaseModel)
+
+
+def application(bench: Bench) -> Starlette:
+    """The workbench as a web application."""
+    page = _page(bench)
+    files = {
+        "vega.js": vega_bundle(),
+        "figures.js": chart_specifications(),
+        "site.css": (SITE / "site.css").read_text(encoding="utf-8"),
+    } | {f.name: f.read_text(encoding="utf-8") for f in (HERE / "static").iterdir()}
+
+    async def index(_: Request) -> Response:
+        return HTMLResponse(page, headers=HEADERS)
+
+    async def static(request: Request) -> Response:
+        name = request.path_params["name"]
+        if name not in files:
+            raise HTTPException(404)
+        kind = "text/css" if name.endswith(".css") else "text/javascript"
+        return Response(files[name], media_type=kind, headers=HEADERS)
+
+    def saved(wish: Named) -> dict[str, Any]:
+        path = bench.save(wish)
+        return {"path": str(path), "command": f"herijk rebase {path} --data {path.parents[1]}"}
+
+    return Starlette(
+        routes=[
+            Route("/", index),
+            Route("/static/{name}", static),
+            _asked("/base", Base, bench.base),
+            _asked("/answer", Question, bench.answer),
+            _asked("/file", Named, lambda wish: {"text": bench.method_file(wish)}),
+            _asked("/save", Named, saved),
+        ],
+        middleware=[
+            Middleware(TrustedHostMiddleware, allowed_hosts=list(HOSTS), www_redirect=False),
+        ],
+    )
+
+
+def _asked(path: str, model: type[Wanted], answer: Callable[[Wanted], dict[str, Any]]) -> Route:
+    """A route that takes a model as JSON.
+
+    What cannot be is answered with a sentence in `refused`, and with status 200: it is an answer,
+    and a browser reports other statuses as errors of the page.
+    """
+    one_at_a_time = Lock()
+
+    def work(body: bytes) -> Response:
+        try:
+            wanted = model.model_validate_json(body)
+            with one_at_a_time:
+                return JSONResponse(answer(wanted), headers=HEADERS)
+        except ValidationError as error:
+            return JSONResponse(_refusal(error), headers=HEADERS)
+        except HerijkError as error:
+            return JSONResponse({"refused": str(error)}, headers=HEADERS)
+
+    async def endpoint(request: Request) -> Response:
+        _from_own_page(request)
+        return await run_in_threadpool(work, await request.body())
+
+    return Route(path, endpoint, methods=["POST"])
+
+
+def _from_own_page(request: Request) -> None:
+    """Refuses what a page of another site could send."""
+    origin = request.headers.get("origin", "")
+    if origin != f"{request.url.scheme}://{request.url.netloc}":
+        raise HTTPException(403, "only the workbench's own page may ask")
+    if request.headers.get("content-type") != "application/json":
+        raise HTTPException(415, "JSON is needed")
+
+
+def _refusal(error: ValidationError) -> dict[str, Any]:
+    """The first thing that is wrong, with the option it is about."""
+    first = error.errors(include_url=False, include_context=False)[0]
+    where = [part for part in first["loc"] if isinstance(part, str) and part != "steps"]
+    message = first["msg"]
+    shown = "" if first["type"] == "json_invalid" else f", not {first['input']!r}"
+    return {
+        "refused": f"{'.'.join(where)}: {message[0].lower()}{message[1:]}{shown}",
+        "where": ".".join(where),
+    }
+
+
+def _page(bench: Bench) -> str:
+    start = bench.start()
+    data = Markup(as_json(start | {"words": TEXTS}))  # noqa: S704 - as_json escapes
+    made = environment(HERE / "templates", t=_text, both=lambda key: both(key, TEXTS))
+    return made.get_template("workbench.html.j2").render(start=start, data=data)
+
+
+def _text(key: str) -> Markup:
+    return in_both(both(key, TEXTS))
+
+
+def listen(port: int) -> socket.socket:
+    """A socket on loopback; port 0 takes any that is free.
+
+    Raises:
+        MissingKnowledgeError: another program has that port.
+    """
+    held = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    held.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        held.bind((LOOPBACK, port))
+        held.listen()
+    except OSError as error:
+        held.close()
+        raise MissingKnowledgeError(
+            f"port {port} cannot be used ({error.strerror}); choose another with --port, or 0 for "
+            "any that is free"
+        ) from error
+    return held
+
+
+def address(held: socket.socket) -> str:
+    """Where a browser finds the workbench."""
+    return f"http://{LOOPBACK}:{held.getsockname()[1]}/"
+
+
+def serving(bench: Bench) -> uvicorn.Server:
+    """The server, to be run on a socket of `listen`."""
+    config = uvicorn.Config(application(bench), ws="none", log_level="warning", access_log=False)
+    return uvicorn.Server(config)

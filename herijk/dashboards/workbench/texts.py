@@ -1,0 +1,213 @@
+"""Every text of the workbench in Dutch and English: `dashboards.words`, and its own.
+
+An option or value without a text here is shown by its name in the method file.
+"""
+
+from typing import Final
+
+from herijk.dashboards.words import WORDS, Words
+
+TEXTS: Final[Words] = {
+    **WORDS,
+    "workbench": ("Werkbank", "Workbench"),
+    "intro": (
+        "Verander een keuze in de rekenmethode en zie meteen wat er met alle sloepen gebeurt. "
+        "Er wordt niets gepubliceerd of in de tabellen bewaard.",
+        "Change a choice in the method and see at once what happens to all boats. Nothing is "
+        "published or stored in the tables.",
+    ),
+    "base": ("Begin met methode", "Start from method"),
+    "open_file": ("of open een methodebestand", "or open a method file"),
+    "against": ("Vergelijk met", "Compare with"),
+    "group_methods": ("Rekenmethoden", "Methods"),
+    "group_editions": ("Uitgegeven edities", "Published editions"),
+    "group_saved": ("Zelf bewaard", "Saved here"),
+    "options": ("Keuzes", "Options"),
+    "all_seasons": ("Alle seizoenen", "All seasons"),
+    "per_season": ("Per seizoen", "Per season"),
+    "and_later": ("en later", "and later"),
+    "no_tows": ("geen proeven", "no tows"),
+    "differs": ("verschilt", "differs"),
+    "fixed": ("alleen in het methodebestand", "only in the method file"),
+    "nothing": ("niets", "nothing"),
+    "changed_options": ("Veranderd", "Changed"),
+    "nothing_changed": (
+        "Nog niets: dit is de methode zelf.",
+        "Nothing yet: this is the method itself.",
+    ),
+    "reset": ("Alles terug", "Reset all"),
+    "busy": ("Bezig met herrekenen ...", "Recomputing ..."),
+    "done_in": ("Herrekend en getekend in", "Recomputed and drawn in"),
+    "tows_in_all": ("proeven", "tows"),
+    "refused": ("Dit kan niet:", "This cannot be:"),
+    "failed": (
+        "De werkbank gaf een fout; in het venster waar hij gestart is, staat meer.",
+        "The workbench failed; the terminal it was started in says more.",
+    ),
+    "gone": (
+        "De werkbank antwoordt niet meer. Start hem opnieuw met herijk workbench.",
+        "The workbench no longer answers. Start it again with herijk workbench.",
+    ),
+    "left_out": (
+        "Niet bij elke wijziging berekend: de band om een kromme over haar hele bereik (haar "
+        "interval bij de opgegeven snelheid wel), de rechte lijnen en uitschieters per type en de "
+        "oorzaken van spreiding. Die staan op de site na een herrekening.",
+        "Not computed at every change: the band round a curve over its whole range (its interval "
+        "at the declared speed is), the lines and outliers per type and the causes of spread. "
+        "They are on the site after a rebuild.",
+    ),
+    # Results
+    "count_changed": ("regels gewijzigd", "lines changed"),
+    "count_gains": ("winnen tijd", "gain time"),
+    "count_loses": ("verliezen tijd", "lose time"),
+    "count_added": ("regels erbij", "lines added"),
+    "count_removed": ("regels vervallen", "lines removed"),
+    "median_cw": ("mediaan Cw na / voor", "median Cw after / before"),
+    "within_1": ("herhalingen binnen 1 %", "repeats within 1 %"),
+    "within_2": ("herhalingen binnen 2 %", "repeats within 2 %"),
+    "sd_tow": ("sd van één proef", "sd of one tow"),
+    "was": ("was", "was"),
+    "in_register": ("Het register", "The register"),
+    "in_register_note": (
+        "Elke regel tegen de gekozen methode, de grootste wijziging boven. Tijd: wat de nieuwe "
+        "regel in een wedstrijd van twee uur geeft (+) of kost (-) bij gelijk vermogen.",
+        "Every line against the chosen method, the largest change first. Time: what the new line "
+        "gives (+) or costs (-) in a two-hour race at equal power.",
+    ),
+    "scatter_changes": (
+        "Cw en tijd van elke gewijzigde regel; klik een punt aan voor de sloep",
+        "Cw and time of every changed line; click a point for its boat",
+    ),
+    "season_changes": (
+        "Cw na / voor per seizoen: mediaan en uitersten",
+        "Cw after / before per season: median and range",
+    ),
+    "factors_caption": (
+        "Ware snelheid / logsnelheid per seizoen, met 95 %-interval",
+        "True speed / log speed per season, with its 95 % interval",
+    ),
+    "in_types": ("Typen: zijn gelijke sloepen gelijk?", "Types: are equal boats equal?"),
+    "in_types_note": (
+        "De nieuwste proef van elke sloep. De tabel toetst of sloepen van een type één B kunnen "
+        "delen: een kleine p zegt van niet.",
+        "The newest tow of each boat. The table tests whether boats of a type can share one B: a "
+        "small p says no.",
+    ),
+    "in_repeats": (
+        "Herhaalbaarheid: dezelfde sloep nog eens",
+        "Reproducibility: the same boat again",
+    ),
+    "in_repeats_note": (
+        "Twee opeenvolgende proeven van een niet verbouwde sloep met dezelfde ploeg.",
+        "Two consecutive tows of an unaltered boat with the same crew.",
+    ),
+    "in_boat": ("Een sloep", "A boat"),
+    "in_boat_note": (
+        "De kromme en de runs voor en na. Open tekens tellen niet mee; de streep bij de "
+        "opgegeven snelheid is het 95 %-interval.",
+        "The curve and the runs before and after. Open marks do not count; the bar at the "
+        "declared speed is the 95 % interval.",
+    ),
+    "choose_boat": ("Kies sloep", "Choose boat"),
+    "figure_curve": ("Weerstandskrommen van deze proef", "Resistance curves of this tow"),
+    "figure_repeats": ("Standaardafwijking van één proef", "Standard deviation of one tow"),
+    # Saving
+    "save": ("Bewaren als methodebestand", "Save as a method file"),
+    "save_note": (
+        "In het bestand staat alleen wat anders is dan de methode waarvan het uitgaat. Het "
+        "komt in de map methods van de datamap; herijk rebase neemt het aan.",
+        "The file holds only what differs from the method it starts from. It goes into the folder "
+        "methods of the data folder; herijk rebase takes it.",
+    ),
+    "name": ("Naam (kleine letters, cijfers, streepjes)", "Name (small letters, digits, hyphens)"),
+    "title": ("Titel", "Title"),
+    "reason": ("Waarom", "Reason"),
+    "save_button": ("Bewaar in de datamap", "Save in the data folder"),
+    "download_button": ("Download", "Download"),
+    "saved_as": ("Bewaard. Alle gevolgen op een rij:", "Saved. To see all that follows:"),
+    # Columns
+    "column.old_cw_kg_m": ("Cw voor [kg/m]", "Cw before [kg/m]"),
+    "column.new_cw_kg_m": ("Cw na [kg/m]", "Cw after [kg/m]"),
+    "column.gain_in_two_hours_s": ("Tijd in 2 uur [s]", "Time in 2 h [s]"),
+    "column.old_rank": ("Plaats voor", "Rank before"),
+    "column.new_rank": ("Plaats na", "Rank after"),
+    "column.exceeds_interval": ("Meer dan on\u00adzeker", "Beyond un\u00adcer\u00adtainty"),
+    # Steps
+    "step.speed": ("Snelheid", "Speed"),
+    "step.calibration": ("IJking op gps", "Calibration on GPS"),
+    "step.window": ("Venster (knippen)", "Window"),
+    "step.wind": ("Wind", "Wind"),
+    "step.run_point": ("Runpunt", "Run point"),
+    "step.temperature": ("Watertemperatuur", "Water temperature"),
+    "step.runs": ("Runs die tellen", "Runs that count"),
+    "step.curve": ("Kromme", "Curve"),
+    "step.assessment": ("Beoordeling", "Assessment"),
+    # Options
+    "speed.source": ("Welk log", "Which log"),
+    "speed.correction": ("Fout van het log", "Error of the log"),
+    "speed.correction_ratio": (
+        "Voorgeschreven correctie (0,06 is 6 %)",
+        "Prescribed correction (0.06 is 6 %)",
+    ),
+    "speed.operation": ("Hoe de correctie werkt", "How the correction works"),
+    "calibration.rule": ("Gps-factor", "GPS factor"),
+    "window.rule": ("Welk deel van een run", "Which part of a run"),
+    "window.minimum_s": ("Kortste venster", "Shortest window"),
+    "window.speed_drift_m_s": ("Verloop van de snelheid", "Drift of the speed"),
+    "window.force_ends_ratio": (
+        "Verschil van kracht, begin en eind",
+        "Difference of force at the ends",
+    ),
+    "window.ramp_m_s": ("Kleinste aanloop die eraf gaat", "Smallest ramp that is cut"),
+    "window.peak_sd": ("Grens voor een krachtpiek", "Limit of a force peak"),
+    "window.gust_sd": ("Grens voor een windvlaag", "Limit of a gust"),
+    "wind.model": ("Windmodel", "Wind model"),
+    "wind.coefficients": ("Omstroomcoëfficiënten", "Drag coefficients"),
+    "wind.ahead": ("Coëfficiënt van voren", "Coefficient ahead"),
+    "wind.behind": ("Coëfficiënt van achteren", "Coefficient behind"),
+    "wind.side": ("Coëfficiënt van opzij", "Coefficient of the side"),
+    "wind.averaging_s": ("Wind gemiddeld over", "Wind averaged over"),
+    "wind.reading": ("Hoe de wind gelezen is", "How the wind was read"),
+    "run_point.estimator": ("Gemiddelde van een run", "Mean of a run"),
+    "run_point.inertia": ("Versnellen van de sloep eraf", "Take acceleration off"),
+    "run_point.added_mass_ratio": ("Meegesleept water", "Added mass"),
+    "temperature.rule": ("Watertemperatuur verrekenen", "Correct for water temperature"),
+    "temperature.reference_c": ("Naar water van", "To water of"),
+    "runs.highest_target_ratio": (
+        "Snelste run / opgegeven snelheid",
+        "Fastest run / declared speed",
+    ),
+    "runs.minimum": ("Minste aantal runs", "Fewest runs"),
+    "curve.b": ("B van de kromme", "B of the curve"),
+    "curve.cap_hull_speeds": ("B hoogstens, in rompsnelheden", "B at most, in hull speeds"),
+    "assessment.reject": ("Keurt een proef af", "Rejects a tow"),
+    # Values
+    "choice.log1": ("log 1", "log 1"),
+    "choice.log2": ("log 2", "log 2"),
+    "choice.mean": ("beide", "both"),
+    "choice.none": ("niet", "none"),
+    "choice.prescribed": ("voorgeschreven", "prescribed"),
+    "choice.estimated": ("geschat", "estimated"),
+    "choice.multiply": ("maal 1 + p", "times 1 + p"),
+    "choice.divide": ("gedeeld door 1 - p", "divided by 1 - p"),
+    "choice.gps_per_tow": ("per proef", "per tow"),
+    "choice.gps_per_season": ("per seizoen", "per season"),
+    "choice.all": ("alles", "all"),
+    "choice.steady": ("het rustige deel", "the steady part"),
+    "choice.by_hand": ("met de hand", "by hand"),
+    "choice.head": ("tegenwind", "head wind"),
+    "choice.oblique": ("schuine wind", "oblique wind"),
+    "choice.fixed": ("vast", "fixed"),
+    "choice.per_run": ("per run gezocht", "searched per run"),
+    "choice.per_tow": ("per proef gezocht", "searched per tow"),
+    "choice.archive": ("één uit alle proeven", "one from all tows"),
+    "choice.as_felt": ("zoals gevoeld", "as felt"),
+    "choice.cw_vac_2014": ("'Cw vac' van 2014", "'Cw vac' of 2014"),
+    "choice.mean_of_ratios": ("gemiddelde van quotiënten", "mean of ratios"),
+    "choice.ratio_of_means": ("quotiënt van gemiddelden", "ratio of means"),
+    "choice.end_speeds": ("uit de eindsnelheden", "from the end speeds"),
+    "choice.ittc57": ("ITTC-57", "ITTC-57"),
+    "choice.free": ("vrij", "free"),
+    "choice.capped": ("begrensd", "capped"),
+    "choice.hull_speed": ("de rompsnelheid", "the hull speed"),
+}

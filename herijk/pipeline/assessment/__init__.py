@@ -1,0 +1,1 @@
+"""Whether a tow may be believed: the checks of the federation and their limits."""

@@ -1,0 +1,266 @@
+"""Assessment: what a person should look at in a tow. A flag never changes a number.
+
+Here each check's number is observed, from the finished curves and run points of all tows of a
+method at once, since a tow is also compared with earlier ones and with like boats. The checks are
+those of the federation's first assessment (Sleepproef, R. Pot 2017, "Eerste beoordeling" and
+"Opmetingen en keuring"); their limits are data and stand in `pipeline.assessment.checks`. Which of them
+reject a tow, the method says.
+"""
+
+from collections.abc import Sequence
+from typing import Final
+
+import polars as pl
+
+from herijk.pipeline.assessment.checks import CHECKS, CODES
+from herijk.pipeline.channels import TARGET_SPEED_RATIOS
+from herijk.pipeline.choice import SAME_SHARE
+
+LINE: Final = ("fsn_no", "rowers", "crew_class")
+LIKE: Final = ("boat_type", "rowers", "crew_class")
+FEWEST_LIKE_BOATS: Final = 4
+"""A type needs so many boats before one of them can stick out (inferred)."""
+
+FREEBOARDS: Final = ("freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m")
+SIZES: Final = {
+    "weight_changed": "weight_kg",
+    "length_changed": "waterline_length_m",
+    "beam_changed": "beam_m",
+    "bow_height_changed": "bow_height_m",
+}
+
+_LAST_SEASON: Final = {check.code: check.last_season for check in CHECKS}
+
+
+def assess(curves: pl.DataFrame, run_points: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+    """Every check of every tow with what was observed and what it is held against.
+
+    Args:
+        curves, run_points: the tables of one method, curves without `status` and `flags`.
+        tows: rows of `tows`, with `boat_type` where it is known; without the column no tow is
+            compared with like boats.
+
+    Returns:
+        Rows of the table `assessments`. A check that could not be made (nothing to compare with,
+        weight not known, season after its last) has no row.
+    """
+    observed = [
+        _of_curves(curves),
+        _of_runs(curves, run_points),
+        _of_sizes(tows),
+        _of_previous_curve(curves, tows),
+        _of_like_boats(curves, tows),
+    ]
+    long = pl.concat([_long(frame) for frame in observed])
+    return _held_against_limits(long, curves)
+
+
+def with_status(
+    curves: pl.DataFrame, assessments: pl.DataFrame, rejecting: Sequence[tuple[int, str]]
+) -> pl.DataFrame:
+    """The curves with `status` and `flags`.
+
+    Rejected is a tow without a curve or with a flag that rejects; flagged one that a person should
+    look at; the others are accepted. Notes are not listed, unless they reject.
+
+    Args:
+        curves: curves of one method.
+        assessments: their assessments.
+        rejecting: pairs of season and check that reject.
+    """
+    pairs = pl.DataFrame(
+        list(rejecting), schema={"season": pl.Int32(), "check": pl.String()}, orient="row"
+    ).with_columns(pl.lit(True).alias("rejects"))
+    found = (
+        assessments.filter("flagged")
+        .join(curves.select("tow_id", "season"), on="tow_id")
+        .join(pairs, on=["season", "check"], how="left")
+        .with_columns(pl.col("rejects").fill_null(False) | (pl.col("check") == "no_curve"))
+        .filter((pl.col("severity") == "flag") | pl.col("rejects"))
+        .sort(pl.col("check").replace_strict(CODES, range(len(CODES))))
+        .group_by("tow_id")
+        .agg(pl.col("check").alias("flags"), pl.col("rejects").any())
+    )
+    status = (
+        pl.when("rejects")
+        .then(pl.lit("rejected"))
+        .when(pl.col("flags").is_not_null())
+        .then(pl.lit("flagged"))
+        .otherwise(pl.lit("accepted"))
+    )
+    return (
+        curves.join(found, on="tow_id", how="left", maintain_order="left")
+        .with_columns(status.alias("status"), pl.col("flags").fill_null([]))
+        .drop("rejects")
+    )
+
+
+def _long(frame: pl.DataFrame) -> pl.DataFrame:
+    """One row a tow and check, from a column a check; what is not known is left out."""
+    return (
+        frame.with_columns(pl.exclude("tow_id").cast(pl.Float64))
+        .unpivot(index="tow_id", variable_name="check", value_name="observed")
+        .filter(pl.col("observed").is_finite())
+    )
+
+
+def _limits() -> pl.DataFrame:
+    rows = [
+        (check.code, crew_class, *check.limits(crew_class), check.unit, check.severity)
+        for check in CHECKS
+        for crew_class in ("H", "D")
+    ]
+    names = ("check", "crew_class", "lowest", "highest", "unit", "severity")
+    schema = dict.fromkeys(names, pl.String()) | dict.fromkeys(names[2:4], pl.Float64())
+    return pl.DataFrame(rows, schema=schema, orient="row")
+
+
+def _held_against_limits(observed: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
+    """Adds the limit that is exceeded or nearest, and whether it is exceeded."""
+    x, lowest, highest = pl.col("observed"), pl.col("lowest"), pl.col("highest")
+    # Of two that are as near, but for rounding, the highest: as where nothing differs at all.
+    nearer = (highest - x) - (x - lowest) > SAME_SHARE * (highest - lowest)
+    nearer_lowest = highest.is_null() | nearer
+    last = pl.col("check").replace_strict(_LAST_SEASON, return_dtype=pl.Int32)
+    return (
+        observed.join(curves.select("method", "tow_id", "season", "crew_class"), on="tow_id")
+        .filter(last.is_null() | (pl.col("season") <= last))
+        .join(_limits(), on=["check", "crew_class"])
+        .select(
+            "method",
+            "tow_id",
+            "check",
+            "severity",
+            "observed",
+            pl.when(nearer_lowest).then(lowest).otherwise(highest).alias("limit"),
+            "unit",
+            ((x < lowest).fill_null(False) | (x > highest).fill_null(False)).alias("flagged"),
+        )
+    )
+
+
+# A tow by itself
+
+
+def _of_curves(curves: pl.DataFrame) -> pl.DataFrame:
+    found = pl.col("a_kg_m").is_not_null()
+    return curves.select(
+        "tow_id",
+        no_curve=found,
+        few_runs="runs_used",
+        residual_large="residual_sd_ratio",
+        unusual_calibration="calibration_factor",
+        b_at_cap=pl.when(found).then("b_capped"),
+        b_not_determined=pl.when(found).then(pl.col("b_m_s").is_null()),
+        power_outside_range="power_w",
+        slow_tow="power_w",
+    )
+
+
+def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
+    speed, cw, way = pl.col("speed_m_s"), pl.col("cw_kg_m"), pl.col("direction")
+    declared = pl.col("declared_speed_m_s")
+    on_curve = cw / pl.col("fitted_cw_kg_m")
+    lowest, highest = min(TARGET_SPEED_RATIOS), max(TARGET_SPEED_RATIOS)
+    shortfall = pl.max_horizontal(
+        (speed / declared).min() - lowest, highest - (speed / declared).max()
+    )
+    log1 = speed / pl.col("speed_factor")
+    return (
+        run_points.filter("used")
+        .join(curves.select("tow_id", "declared_speed_m_s"), on="tow_id")
+        .group_by("tow_id")
+        .agg(
+            unbalanced_runs=way.cast(pl.Int32).sum().abs(),
+            out_and_back_differ=on_curve.filter(way > 0).mean() / on_curve.filter(way < 0).mean()
+            - 1,
+            log2_differs=((pl.col("log2_ratio") - 1) * log1).abs().max(),
+            large_scatter_in_run=(pl.col("cw_sd") / cw.abs()).max(),
+            off_target_speed=(speed / (pl.col("target_speed_ratio") * declared) - 1).abs().max(),
+            range_not_covered=shortfall,
+        )
+    )
+
+
+# Against earlier tows
+
+
+def _before(column: str, group: Sequence[str]) -> pl.Expr:
+    return pl.col(column).shift(1).over(group)
+
+
+def _of_sizes(tows: pl.DataFrame) -> pl.DataFrame:
+    """Weight after, and measurements against those of the boat's previous tow with any crew."""
+    same = ~pl.col("altered")
+    freeboards = [(pl.col(c) - _before(c, ["fsn_no"])).abs() for c in FREEBOARDS]
+    return tows.sort("tow_date", "tow_id").select(
+        "tow_id",
+        (pl.col("weight_after_kg") / pl.col("weight_kg") - 1).alias("heavier_after"),
+        pl.when(same).then(pl.max_horizontal(freeboards)).alias("freeboard_changed"),
+        *(
+            pl.when(same).then(pl.col(column) / _before(column, ["fsn_no"]) - 1).alias(code)
+            for code, column in SIZES.items()
+        ),
+    )
+
+
+def _with_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+    """Curves that were found, with the boat of the day, sorted by date.
+
+    `size` is sqrt(displacement x waterline length): wetted surface follows it (docs of
+    `pipeline.steps.resistance`), and friction, most of Cw, follows wetted surface. `s_s2_m2` is 1/B^2,
+    also of a flat or falling curve, from A and Cw at the declared speed.
+    """
+    kept = ("tow_date", "altered", "waterline_length_m", "weight_kg", "crew_weight_kg")
+    types = [c for c in ("boat_type",) if c in tows.columns]
+    displacement = pl.col("weight_kg") + pl.col("crew_weight_kg")
+    return (
+        curves.filter(pl.col("a_kg_m").is_not_null())
+        .join(tows.select("tow_id", *kept, *types), on="tow_id")
+        .with_columns(
+            size=(displacement * pl.col("waterline_length_m")).sqrt(),
+            s_s2_m2=(1 - pl.col("a_kg_m") / pl.col("cw_kg_m")) / pl.col("declared_speed_m_s") ** 2,
+        )
+        .sort("tow_date", "tow_id")
+    )
+
+
+def _cw_at(speed: pl.Expr) -> pl.Expr:
+    """Cw of each curve at a speed; null from B on."""
+    below_b = 1 - pl.col("s_s2_m2") * speed**2
+    return pl.when(below_b > 0).then(pl.col("a_kg_m") / below_b)
+
+
+def _of_previous_curve(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+    """Against the previous tow of boat and crew that has a curve, at its declared speed."""
+    change = _cw_at(_before("declared_speed_m_s", LINE)) / _before("cw_kg_m", LINE)
+    by_size = (pl.col("size") / _before("size", LINE)).fill_null(1.0)
+    return _with_boats(curves, tows).select(
+        "tow_id",
+        curve_changed=change - 1,
+        curve_change_unexplained=pl.when(~pl.col("altered")).then(change / by_size - 1),
+    )
+
+
+# Against like boats
+
+
+def _of_like_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+    """Excess of each tow over boats of its type with the same crew.
+
+    Cw at the type's common speed, over its size, against the type's median; less the season's
+    median, which holds the error of its log. Medians, so that a tow pulled askew does not move
+    what it is held against.
+    """
+    boats = _with_boats(curves, tows)
+    if "boat_type" not in boats.columns:
+        return pl.DataFrame(schema={"tow_id": pl.String(), "pulled_askew": pl.Float64()})
+    common_speed = pl.col("declared_speed_m_s").median().over(LIKE)
+    return (
+        boats.drop_nulls(["boat_type", "size"])
+        .filter(pl.col("fsn_no").n_unique().over(LIKE) >= FEWEST_LIKE_BOATS)
+        .with_columns(ln_excess=(_cw_at(common_speed) / pl.col("size")).log())
+        .with_columns(pl.col("ln_excess") - pl.col("ln_excess").median().over(LIKE))
+        .with_columns(pl.col("ln_excess") - pl.col("ln_excess").median().over("season"))
+        .select("tow_id", pulled_askew=pl.col("ln_excess").exp() - 1)
+    )

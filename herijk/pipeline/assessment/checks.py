@@ -1,0 +1,244 @@
+"""The checks of the assessment as data: code, meaning, limits, unit, severity, source.
+
+One table, `CHECKS`; how each number is observed stands in `pipeline.assessment.assess`. A source in
+brackets is "inferred" where the texts ask for the check but give no number.
+
+Severity says whom a check serves. A `flag` means that a person should look at the tow: its curve
+may be wrong, or rest on a boat that is not what the papers say. A `note` is worth knowing when
+someone looks, but does not by itself ask for it, because most sound tows of some season exceed it
+(log 2, the scatter at 1000 Hz) or because it is a property of how the curve may be used.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final, Literal, TypeAlias
+
+Limit: TypeAlias = float | Mapping[str, float] | None
+"""One number, one for each class (`H` men, `D` women), or no limit on this side."""
+
+
+@dataclass(frozen=True)
+class Check:
+    """A check and what it is held against.
+
+    Attributes:
+        code: stable name; stands in `curves.flags` and `assessments.check`.
+        meaning: one line for people: what the observed number is and why it matters.
+        unit: of the observed number and its limits.
+        source: where the limit comes from, or "inferred" and why.
+        lowest, highest: a number outside them is marked.
+        severity: `flag`, a person should look; `note`, worth knowing.
+        last_season: the check is made up to this season only.
+    """
+
+    code: str
+    meaning: str
+    unit: str
+    source: str
+    lowest: Limit = None
+    highest: Limit = None
+    severity: Literal["flag", "note"] = "flag"
+    last_season: int | None = None
+
+    def limits(self, crew_class: str) -> tuple[float | None, float | None]:
+        """Lowest and highest for a class."""
+        return _of_class(self.lowest, crew_class), _of_class(self.highest, crew_class)
+
+
+def _of_class(limit: Limit, crew_class: str) -> float | None:
+    return limit[crew_class] if isinstance(limit, Mapping) else limit
+
+
+CHECKS: Final = (
+    # The curve itself
+    Check(
+        "no_curve",
+        "whether the runs give a curve at all (1) or not (0)",
+        "1",
+        "without a curve there is nothing to register",
+        lowest=1.0,
+    ),
+    Check(
+        "few_runs",
+        "runs that the curve is fitted through",
+        "1",
+        "Sleepproef 2017, '6 Runs'",
+        lowest=6.0,
+    ),
+    Check(
+        "unbalanced_runs",
+        "difference between the number of runs out and back; stream and wind then do not cancel",
+        "1",
+        "Sleepproef 2017, '6 Runs': three each way",
+        highest=0.0,
+    ),
+    Check(
+        "residual_large",
+        "scatter of the run points about the curve / Cw",
+        "1",
+        "inferred: Sleepproef 2017, 'Berekening kromme' rejects a large sum of squares; 3 % is "
+        "what one simulated sound tow in thirty exceeds",
+        highest=0.03,
+    ),
+    Check(
+        "out_and_back_differ",
+        "Cw out / Cw back, each over the curve, less 1; after the wind correction they agree",
+        "1",
+        "inferred: Sleepproef 2017, 'Wind' says about the same",
+        lowest=-0.03,
+        highest=0.03,
+    ),
+    Check(
+        "unusual_calibration",
+        "GPS speed / log speed of the tow",
+        "1",
+        "Sleepproef 2017, 'IJking snelheid'",
+        lowest=0.98,
+        highest=1.02,
+    ),
+    Check(
+        "b_at_cap",
+        "whether B was brought down to its cap (1) or not (0): the bend is then prescribed",
+        "1",
+        "presentation 24-01-2015: B at most three times the hull speed",
+        highest=0.0,
+        severity="note",
+    ),
+    Check(
+        "b_not_determined",
+        "whether the curve is flat or falling and has no B (1) or has one (0)",
+        "1",
+        "Cw at the declared speed is sound all the same",
+        highest=0.0,
+        severity="note",
+    ),
+    # The runs
+    Check(
+        "log2_differs",
+        "largest difference of a run's mean speed between log 2 and log 1",
+        "m/s",
+        "Sleepproef 2017, 'Log 1 en 2'; a note, as no log 2 of 2014 met it and log 1 counts",
+        highest=0.01,
+        severity="note",
+    ),
+    Check(
+        "large_scatter_in_run",
+        "largest standard deviation of a run's samples / Cw",
+        "1",
+        "Sleepproef 2017, 'Eerste beoordeling'; a note, as samples of 1 ms scatter 8 to "
+        "11 % in the printed runs of 2014, whose means are sound",
+        highest=0.10,
+        severity="note",
+    ),
+    Check(
+        "off_target_speed",
+        "largest difference of a run's speed from the intended one / that speed",
+        "1",
+        "inferred: half the step between intended speeds; Sleepproef 2017, 'Eerste beoordeling'",
+        highest=0.05,
+    ),
+    Check(
+        "range_not_covered",
+        "how far the runs fall short of 90 or 110 % of the declared speed, as a part of it: used "
+        "from 85 to 115 %, the curve is then extrapolated",
+        "1",
+        "Cw-kromme 2015, 'Hyperbool als beste benadering': never over 5 % from a measured speed",
+        highest=0.05,
+        severity="note",
+    ),
+    # The declared speed
+    Check(
+        "power_outside_range",
+        "power a rower at the declared speed",
+        "W",
+        "Sleepproef 2017, 'Sleepsnelheid'",
+        lowest={"H": 70.0, "D": 40.0},
+        highest={"H": 90.0, "D": 55.0},
+        severity="note",
+    ),
+    Check(
+        "slow_tow",
+        "power a rower at the declared speed: so slow that a race at full power lies off the curve",
+        "W",
+        "Cw-kromme 2015, 'Effect van verkeerde snelheid kiezen': under 60-70 W; women inferred, "
+        "in proportion to the lower ends 40 and 70 W",
+        lowest={"H": 60.0, "D": 34.0},
+    ),
+    # The boat of the day
+    Check(
+        "heavier_after",
+        "weight after the tow / before it, less 1: a boat that leaks",
+        "1",
+        "inferred: Sleepproef 2017, 'Opmetingen en keuring' says much higher",
+        highest=0.02,
+    ),
+    Check(
+        "weight_changed",
+        "weight / that of the previous tow, less 1, without a reported alteration",
+        "1",
+        "inferred: Sleepproef 2017, 'Opmetingen en keuring' says strongly different",
+        lowest=-0.02,
+        highest=0.02,
+    ),
+    Check(
+        "length_changed",
+        "waterline length / that of the previous tow, less 1, without a reported alteration",
+        "1",
+        "inferred, as weight_changed",
+        lowest=-0.01,
+        highest=0.01,
+    ),
+    Check(
+        "beam_changed",
+        "breadth / that of the previous tow, less 1, without a reported alteration",
+        "1",
+        "inferred, as weight_changed",
+        lowest=-0.02,
+        highest=0.02,
+    ),
+    Check(
+        "bow_height_changed",
+        "height of the bow / that of the previous tow, less 1, without a reported alteration",
+        "1",
+        "inferred, as weight_changed; the height depends on trim",
+        lowest=-0.05,
+        highest=0.05,
+    ),
+    Check(
+        "freeboard_changed",
+        "largest change of a freeboard since the previous tow, without a reported alteration",
+        "m",
+        "inferred, as weight_changed",
+        highest=0.03,
+    ),
+    # The curve against others
+    Check(
+        "curve_changed",
+        "Cw / that of the boat and crew's previous tow at its declared speed, less 1",
+        "1",
+        "inferred: tows agree within 2 % (presentation 24-01-2015), so two differ under 5 %",
+        lowest=-0.05,
+        highest=0.05,
+        severity="note",
+    ),
+    Check(
+        "curve_change_unexplained",
+        "the same after taking off what weight and length explain, without a reported alteration",
+        "1",
+        "as curve_changed; Sleepproef 2017, 'Eerste beoordeling'",
+        lowest=-0.05,
+        highest=0.05,
+    ),
+    Check(
+        "pulled_askew",
+        "excess of Cw over like boats that weight, length and season leave unexplained: the boat "
+        "may have been pulled askew",
+        "1",
+        "presentation 24-01-2015: 5 to 10 % too high; straight steering was aided from 2014 on",
+        highest=0.05,
+        last_season=2013,
+    ),
+)
+"""Every check, in the order in which flags are listed."""
+
+CODES: Final = tuple(check.code for check in CHECKS)

@@ -1,0 +1,96 @@
+"""A batch: tows that share every option of a method, with their runs as arrays.
+
+Here the bookkeeping between tows and runs: which run is whose, columns as arrays, one number a
+tow spread over its runs. No formula of the method.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import polars as pl
+
+from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
+from herijk.pipeline.blocks.run_blocks import RunBlocks
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Tows and their runs, both sorted by tow.
+
+    Attributes:
+        tows: rows of the table `tows`.
+        blocks: their runs; `blocks.runs` has the columns of the table `tow_runs`.
+        tow: index of each run's tow, shape (runs,).
+    """
+
+    tows: pl.DataFrame
+    blocks: RunBlocks
+    tow: IntArray
+
+    @classmethod
+    def of(cls, tows: pl.DataFrame, blocks: RunBlocks) -> "Batch":
+        """The given tows with those of the given runs that are theirs."""
+        tows = tows.sort("tow_id")
+        mine = blocks.take(blocks.runs["tow_id"].is_in(tows["tow_id"].implode()).to_numpy())
+        index = tows["tow_id"].search_sorted(mine.runs["tow_id"])
+        return cls(tows, mine, index.to_numpy().astype(np.int64))
+
+    @property
+    def size(self) -> int:
+        """Number of tows."""
+        return self.tows.height
+
+    @cached_property
+    def seasons(self) -> tuple[int, ...]:
+        """Seasons of the tows, sorted."""
+        return tuple(self.tows["season"].unique().sort())
+
+    def of_tow(self, column: str) -> FloatArray:
+        """A number of each tow, shape (tows,); NaN where it is not known."""
+        return self.tows[column].cast(pl.Float64).to_numpy()
+
+    def of_run(self, column: str) -> FloatArray:
+        """A number of each run's tow, shape (runs,); NaN where it is not known."""
+        return self.of_tow(column)[self.tow]
+
+    @property
+    def direction(self) -> IntArray:
+        """1 out, -1 back, shape (runs,)."""
+        return self.blocks.runs["direction"].to_numpy().astype(np.int64)
+
+    @property
+    def target_speed_ratio(self) -> FloatArray:
+        """Intended speed / declared speed, shape (runs,)."""
+        return self.blocks.runs["target_speed_ratio"].to_numpy()
+
+    @property
+    def selected(self) -> BoolArray:
+        """Runs that the tow list says to use, shape (runs,)."""
+        return self.blocks.runs["selected"].to_numpy()
+
+    def count(self, runs: BoolArray) -> IntArray:
+        """Number of marked runs of each tow, shape (tows,)."""
+        return np.bincount(self.tow, runs, self.size).astype(np.int64)
+
+    def any(self, runs: BoolArray) -> BoolArray:
+        """Whether any run of a tow is marked, shape (tows,)."""
+        return self.count(runs) > 0
+
+    def mean(self, values: FloatArray, runs: BoolArray) -> FloatArray:
+        """Mean of a run quantity over the marked runs of each tow; 0 where there are none."""
+        total = np.bincount(self.tow, np.where(runs, values, 0.0), self.size)
+        return np.asarray(total / np.maximum(self.count(runs), 1), dtype=np.float64)
+
+    @cached_property
+    def place(self) -> IntArray:
+        """Rank of each run within its tow: 0, 1, 2, ..., shape (runs,)."""
+        first = np.searchsorted(self.tow, self.tow, side="left")
+        return np.asarray(np.arange(len(self.tow)) - first, dtype=np.int64)
+
+    def by_tow(self, values: FloatArray | BoolArray) -> FloatArray:
+        """A run quantity as one row a tow, shape (tows, most runs of a tow); 0 where no run is."""
+        place = self.place
+        rows = np.zeros((self.size, int(place.max(initial=0)) + 1))
+        rows[self.tow, place] = values
+        return rows

@@ -1,0 +1,130 @@
+"""Blocks: sums over each second of a run, from which every method can be computed.
+
+Every formula of every method is linear in a few sums over samples, so a tow's samples are read
+once and added up per second (HOUSE, idea 1). Means over any window that starts on a second are
+then exactly those over the samples. What belongs here: which sums there are and how they are
+stacked. What does not: making them (`pipeline.blocks.sums`), nor any choice of a method (which log,
+which window, which coefficient).
+
+The sums of one block, over its `n` samples, with F the tow force, v a speed source
+(`log1`, `log2`, or `mean`, the mean of both), w and a the apparent wind:
+
+- `force`: F [N]
+- `<source>_v`, `<source>_inv_v2`: v, 1/v^2
+- `<source>_cw`, `<source>_cw2`: F/v^2 [kg/m] and its square
+- `<air>`: the terms of `pipeline.steps.wind` [m2/s2]: `head` and `front`, each for wind from `ahead` and
+  from `behind`, and `side`
+- `<source>_<air>`: the same divided by v^2
+- `wind_v`: w; `wind_cos`, `wind_sin`: cos a, sin a; `wind_x`, `wind_y`: w cos a, w sin a
+- `gps`, `gps_n`: ground speed, and how many samples have one
+"""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import polars as pl
+
+from herijk.pipeline.arrays import BoolArray, FloatArray
+from herijk.pipeline.errors import BrokenPromiseError
+
+SPEED_SOURCES: Final = ("log1", "log2", "mean")
+AIR_SUMS: Final = ("head_ahead", "head_behind", "front_ahead", "front_behind", "side")
+SUM_NAMES: Final = (
+    "force",
+    *(f"{s}_{q}" for s in SPEED_SOURCES for q in ("v", "inv_v2", "cw", "cw2", *AIR_SUMS)),
+    *AIR_SUMS,
+    *("wind_v", "wind_cos", "wind_sin", "wind_x", "wind_y"),
+    *("gps", "gps_n"),
+)
+
+
+@dataclass(frozen=True)
+class RunBlocks:
+    """The blocks of many runs as arrays of shape (runs, seconds).
+
+    Attributes:
+        runs: one row a run, sorted by `tow_id` and `run`; row i belongs to row i of the arrays.
+        n: samples in each block, 0 where the run has none.
+        sums: the sums of `SUM_NAMES`, 0 where the run has no block.
+    """
+
+    runs: pl.DataFrame
+    n: FloatArray
+    sums: dict[str, FloatArray]
+
+    def __getitem__(self, name: str) -> FloatArray:
+        return self.sums[name]
+
+    @property
+    def seconds(self) -> int:
+        """Length of the longest run, in blocks."""
+        return int(self.n.shape[1])
+
+    def take(self, rows: BoolArray) -> "RunBlocks":
+        """The runs marked in `rows`, shape (runs,); neighbours are not copied."""
+        places = np.flatnonzero(rows)
+        first, last = (int(places[0]), int(places[-1]) + 1) if len(places) else (0, 0)
+        chosen = slice(first, last) if last - first == len(places) else places
+        return RunBlocks(
+            self.runs.filter(pl.Series(rows)),
+            self.n[chosen],
+            {name: values[chosen] for name, values in self.sums.items()},
+        )
+
+    def total(self, name: str, window: BoolArray) -> FloatArray:
+        """Sum over the blocks marked in `window`, shape (runs, seconds), giving shape (runs,)."""
+        return _masked_sum(self.sums[name], window)
+
+    def count(self, window: BoolArray) -> FloatArray:
+        """Samples in the blocks marked in `window`, shape (runs,)."""
+        return _masked_sum(self.n, window)
+
+    def mean(self, name: str, window: BoolArray) -> FloatArray:
+        """Mean over the samples of a window, shape (runs,); 0 where the window is empty."""
+        return self.total(name, window) / np.maximum(self.count(window), 1.0)
+
+    def block_means(self, name: str) -> FloatArray:
+        """Mean of each block, shape (runs, seconds); 0 where there is none."""
+        return self.sums[name] / np.maximum(self.n, 1.0)
+
+
+def _masked_sum(values: FloatArray, window: BoolArray) -> FloatArray:
+    return np.asarray(np.where(window, values, 0.0).sum(axis=1), dtype=np.float64)
+
+
+def stack_blocks(blocks: pl.DataFrame, runs: pl.DataFrame) -> RunBlocks:
+    """Arranges blocks of many tows as arrays of one row a run.
+
+    Args:
+        blocks: `tow_id`, and the columns that `block_sums` gives.
+        runs: one row a run with at least `tow_id` and `run`.
+
+    Raises:
+        BrokenPromiseError: a run without blocks.
+    """
+    runs = runs.sort("tow_id", "run").with_row_index("row")
+    rows = runs.select("tow_id", "run", "row")
+    place = blocks.select("tow_id", "run").join(
+        rows, on=["tow_id", "run"], how="left", maintain_order="left"
+    )["row"]
+    missing = runs.filter(~pl.col("row").is_in(place.unique().implode()))
+    if missing.height:
+        tow, run = missing.row(0, named=True)["tow_id"], missing.row(0, named=True)["run"]
+        raise BrokenPromiseError(
+            f"tow {tow}, run {run}: no blocks, though its samples were read; "
+            "rebuild with an empty data folder"
+        )
+    if place.null_count():
+        blocks, place = blocks.filter(place.is_not_null()), place.drop_nulls()
+    second = blocks["second"].to_numpy()
+    seconds = int(second.max()) + 1 if len(second) else 0
+    cell = place.to_numpy() * seconds + second
+
+    def placed(values: pl.Series) -> FloatArray:
+        cells = np.zeros(runs.height * seconds)
+        cells[cell] = values.to_numpy()
+        return cells.reshape(runs.height, seconds)
+
+    sums = {name: placed(blocks[name]) for name in SUM_NAMES}
+    return RunBlocks(runs.drop("row"), placed(blocks["n"]), sums)

@@ -1,0 +1,76 @@
+"""Are equal boats equal? Statistics of boats of one type and of repeated tows.
+
+Belongs here: what a table of curves says about boats of a type (`lines`, `homogeneity`), about the
+speed of the tow (`tow_speed`), about repeats (`repeats`, `eras`, `components`) and about a boat
+that was only measured (`prediction`). Does not belong here: how a curve is made, which differences
+matter to a race (`pipeline.register.changes`), and any judgement: tables say, people decide.
+
+`observed` joins the tables and carries the measuring errors; `mixed` is the one statistical model.
+"""
+
+import polars as pl
+
+from herijk.pipeline.consistency.components import variance_components
+from herijk.pipeline.consistency.eras import ERAS, Era, era_shifts
+from herijk.pipeline.consistency.homogeneity import pooled_curves, type_homogeneity
+from herijk.pipeline.consistency.lines import type_consistency, type_outliers
+from herijk.pipeline.consistency.observed import Observed, observe
+from herijk.pipeline.consistency.prediction import predicted_cw, prediction_error
+from herijk.pipeline.consistency.repeats import repeat_pairs, reproducibility, told_apart
+from herijk.pipeline.consistency.tow_speed import slow_tows, speed_trend
+
+__all__ = [
+    "ERAS",
+    "Era",
+    "Observed",
+    "consistency_tables",
+    "era_shifts",
+    "observe",
+    "pooled_curves",
+    "predicted_cw",
+    "prediction_error",
+    "repeat_pairs",
+    "reproducibility",
+    "slow_tows",
+    "speed_trend",
+    "type_consistency",
+    "type_homogeneity",
+    "type_outliers",
+    "variance_components",
+]
+
+
+def consistency_tables(
+    curves: pl.DataFrame,
+    tows: pl.DataFrame,
+    boats: pl.DataFrame,
+    run_points: pl.DataFrame,
+    eras: tuple[Era, ...] = ERAS,
+) -> dict[str, pl.DataFrame]:
+    """All tables of the consistency analysis, for all methods in `curves`.
+
+    Args:
+        curves, tows, boats, run_points: the warehouse's tables.
+        eras: seasons with like instruments.
+
+    Returns:
+        The frames by the name of their table.
+    """
+    observed = observe(curves, tows, boats, run_points)
+    pairs = repeat_pairs(curves, tows)
+    components = variance_components(observed)
+    predicted = predicted_cw(observed)
+    return {
+        "type_consistency": type_consistency(observed),
+        "type_outliers": type_outliers(observed, eras),
+        "type_homogeneity": type_homogeneity(observed),
+        "pooled_curves": pooled_curves(observed),
+        "speed_trend": speed_trend(observed),
+        "slow_tows": slow_tows(observed),
+        "repeat_pairs": pairs,
+        "era_shifts": era_shifts(pairs, boats, eras),
+        "reproducibility": told_apart(reproducibility(pairs, observed, eras), components),
+        "variance_components": components,
+        "predicted_cw": predicted,
+        "prediction_error": prediction_error(predicted),
+    }

@@ -1,0 +1,290 @@
+"""Equal boats, equal B? A test, its power, and what the register would be if boats shared a bend.
+
+Boats of a type may differ in the height of their curve; asked is whether they differ in its bend,
+s = 1/B^2. Scatter of the runs is relative and pooled over the type. One row per boat and crew, its
+newest tow. B counts as free, also where the method caps it.
+"""
+
+from typing import Any, Final
+
+import numpy as np
+import polars as pl
+import scipy
+
+from herijk.pipeline import curve
+from herijk.pipeline.arrays import FloatArray
+from herijk.pipeline.consistency import mixed
+from herijk.pipeline.consistency.observed import (
+    LINE,
+    TOW_SCHEMA,
+    UNKNOWN_TYPE,
+    Observed,
+    newest,
+    q_at,
+)
+from herijk.pipeline.consistency.reml import Problem
+
+LEVEL: Final = 0.05
+FEWEST_BOATS: Final = 3
+POWER_AT: Final = (0.05, 0.10)
+"""True coefficients of variation of B at which the power of the test is stated."""
+
+SPEED_RATIOS: Final = {"cw_085_kg_m": 0.85, "cw_kg_m": 1.0, "cw_115_kg_m": 1.15}
+
+BEND_BOUNDS: Final = (-2.0, 0.999)
+"""Of the shared s, as a share of that which puts B on the fastest point."""
+
+BEND_MARGIN: Final = 1e-3
+"""Within this of the least that a plain search finds lies the least itself."""
+
+OWN, PARTIAL, SHARED = "own", "partial", "shared"
+
+
+def shared_bend(boats: Observed) -> float:
+    """The one s = 1/B^2 [s2/m2] that fits all boats best, each with its own height."""
+    fastest = float(np.where(boats.points.used, boats.points.speed_m_s, 0.0).max()) ** 2
+    lowest, highest = BEND_BOUNDS
+    found = scipy.optimize.minimize_scalar(
+        lambda r: _misfit(boats, r / fastest), bounds=BEND_BOUNDS, method="bounded"
+    )
+    below = max(float(found.x) - BEND_MARGIN, lowest)
+    above = min(float(found.x) + BEND_MARGIN, highest)
+    if _misfit_slope(boats, below / fastest) >= 0.0:
+        return below / fastest
+    if _misfit_slope(boats, above / fastest) <= 0.0:
+        return above / fastest
+    # The least of a smooth function is flat over the root of its rounding; its slope is not.
+    least = scipy.optimize.brentq(
+        lambda r: _misfit_slope(boats, r / fastest), below, above, xtol=1e-15
+    )
+    return float(least) / fastest
+
+
+def height_given_bend(points: curve.Points, s_s2_m2: FloatArray) -> FloatArray:
+    """A [kg/m] of each curve by least squares with its s given, shape (rows,).
+
+    s leaves every used speed below B.
+    """
+    g = points.used / (1.0 - s_s2_m2[:, None] * np.where(points.used, points.speed_m_s, 0.0) ** 2)
+    return np.asarray((g * points.cw_kg_m).sum(axis=1) / (g * g).sum(axis=1))
+
+
+def _misfit(boats: Observed, s_s2_m2: float) -> float:
+    """Residual sum of squares relative to each boat's own Cw, with one s for all."""
+    points, s = boats.points, np.full(boats.table.height, s_s2_m2)
+    fitted = curve.cw(height_given_bend(points, s)[:, None], s[:, None], points.speed_m_s)
+    residual = np.where(points.used, points.cw_kg_m - fitted, 0.0)
+    return float(((residual / boats.column("c0_kg_m")[:, None]) ** 2).sum())
+
+
+def _misfit_slope(boats: Observed, s_s2_m2: float) -> float:
+    """Derivative of `_misfit` along s: a height at its best does not count (envelope theorem)."""
+    points = boats.points
+    v2 = np.where(points.used, points.speed_m_s, 0.0) ** 2
+    a = height_given_bend(points, np.full(boats.table.height, s_s2_m2))[:, None]
+    fitted = a * points.used / (1.0 - s_s2_m2 * v2)
+    residual = np.where(points.used, points.cw_kg_m - fitted, 0.0)
+    slope = fitted * v2 / (1.0 - s_s2_m2 * v2)
+    return float((-2.0 * residual * slope / boats.column("c0_kg_m")[:, None] ** 2).sum())
+
+
+def type_homogeneity(observed: Observed) -> pl.DataFrame:
+    """Test per method and type whether boats share a bend, and what noise alone would give.
+
+    Returns:
+        Rows of the table `type_homogeneity`; where nothing is claimed, `reason` says why.
+    """
+    rows = [
+        {"method": method, "boat_type": boat_type} | _tested(boats, boat_type)
+        for (method, boat_type), boats in newest(observed).groups("method", "boat_type")
+    ]
+    numbers = (
+        "standard_speed_m_s",
+        "run_sd_ratio",
+        "f_value",
+        "p_value",
+        "power_at_5pct",
+        "power_at_10pct",
+        "noise_share",
+        "between_b_sd_ratio",
+        "b_sd_ratio",
+        "b_noise_sd_ratio",
+        "cw_noise_sd_ratio",
+        "ab_correlation",
+        "ab_noise_correlation",
+        "shared_q",
+        "shared_b_m_s",
+    )
+    schema = (
+        {"method": pl.String(), "boat_type": pl.String()}
+        | dict.fromkeys(("n", "n_boats", "dof_between", "dof_within"), pl.Int32())
+        | dict.fromkeys(numbers, pl.Float64())
+        | {"reason": pl.String()}
+    )
+    return pl.DataFrame(rows, schema=schema)
+
+
+def _tested(boats: Observed, boat_type: str) -> dict[str, Any]:
+    n_boats = boats.table["fsn_no"].n_unique()
+    counts = {"n": boats.table.height, "n_boats": n_boats}
+    if boat_type == UNKNOWN_TYPE:
+        return counts | {"reason": "no_type"}
+    if n_boats < FEWEST_BOATS:
+        return counts | {"reason": "few_boats"}
+    within = float(boats.column("run_rss_ratio2").sum())
+    dof = boats.table.height - 1, int(boats.column("run_dof").sum())
+    if within <= 1e-20 * boats.table.height:
+        return counts | {"reason": "no_scatter"}
+    shared = shared_bend(boats)
+    f = max(_misfit(boats, shared) - within, 0.0) / dof[0] / (within / dof[1])
+    sigma = float(np.sqrt(within / dof[1]))
+    return (
+        counts
+        | {"dof_between": dof[0], "dof_within": dof[1], "f_value": f, "run_sd_ratio": sigma}
+        | {"p_value": float(scipy.special.fdtrc(*dof, f)), "reason": ""}
+        | _spread(boats, shared, sigma, f)
+    )
+
+
+def _spread(boats: Observed, shared: float, sigma: float, f: float) -> dict[str, Any]:
+    """Power, share of noise, and correlation of A and B by noise alone."""
+    speed = float(np.median(boats.column("declared_speed_m_s")))
+    r = shared * speed**2
+    facts: dict[str, Any] = {
+        "standard_speed_m_s": speed,
+        "noise_share": min(1.0, 1.0 / f) if f > 0 else 1.0,
+        "cw_noise_sd_ratio": sigma * float(np.sqrt(boats.column("c0_unit_variance").mean())),
+    }
+    if not 0.0 < r < 1.0:
+        return facts
+    q = r / (1.0 - r)
+    s = boats.column("s_s2_m2")
+    has_b = s > 0
+    b = 1.0 / np.sqrt(s[has_b])
+    a = (boats.column("c0_kg_m") / (1.0 + boats.column("q")))[has_b]
+    several = len(b) >= FEWEST_BOATS
+    noise = sigma * float(np.sqrt(boats.column("q_unit_variance").mean())) / (2 * q * (1 + q))
+    dof = boats.table.height - 1, int(boats.column("run_dof").sum())
+    powers = {
+        f"power_at_{round(100 * cv)}pct": power(boats, shared, sigma, cv, dof) for cv in POWER_AT
+    }
+    return (
+        facts
+        | powers
+        | {
+            "shared_q": q,
+            "shared_b_m_s": float(1.0 / np.sqrt(shared)),
+            "between_b_sd_ratio": _bend_prior(boats, speed, sigma)[1] / (2.0 * q * (1.0 + q)),
+            "b_sd_ratio": float(b.std(ddof=1) / b.mean()) if several else None,
+            "b_noise_sd_ratio": noise,
+            "ab_correlation": _correlation(np.log(a), np.log(b)) if several else None,
+            "ab_noise_correlation": _noise_correlation(boats, q),
+        }
+    )
+
+
+def power(
+    boats: Observed, shared_s2_m2: float, run_sd_ratio: float, b_cv: float, dof: tuple[int, int]
+) -> float:
+    """Chance that the test sees boats whose B truly spread with a coefficient of variation.
+
+    With a normal spread tau of q the sum of squares between is (1 + tau^2 w) chi^2, w the mean
+    weight as in DerSimonian and Laird; exact for equal weights. Each boat's tau follows from its
+    own tow speed, r = s v0^2: dq = 2 q (1 + q) dB/B.
+    """
+    r = np.clip(shared_s2_m2 * boats.column("declared_speed_m_s") ** 2, 0.0, 0.95)
+    q = r / (1.0 - r)
+    weight = (2.0 * q * (1.0 + q)) ** 2 / (boats.column("q_unit_variance") * run_sd_ratio**2)
+    mean = (weight.sum() - (weight**2).sum() / weight.sum()) / dof[0]
+    limit = float(scipy.special.fdtri(*dof, 1.0 - LEVEL))
+    return float(scipy.special.fdtrc(*dof, limit / (1.0 + b_cv**2 * mean)))
+
+
+def _correlation(x: FloatArray, y: FloatArray) -> float | None:
+    dx, dy = x - x.mean(), y - y.mean()
+    scale = float(np.sqrt((dx**2).sum() * (dy**2).sum()))
+    return float((dx * dy).sum()) / scale if scale > 0 else None
+
+
+def _noise_correlation(boats: Observed, q: float) -> float:
+    """Correlation of ln A and ln B from run noise: d ln A = dC0/C0 - dq/(1+q), d ln B ~ -dq."""
+    var_c, var_q = (boats.column(c).mean() for c in ("c0_unit_variance", "q_unit_variance"))
+    cov = boats.column("c0_q_unit_covariance").mean()
+    var_a = var_c - 2.0 * cov / (1.0 + q) + var_q / (1.0 + q) ** 2
+    return float((var_q / (1.0 + q) - cov) / np.sqrt(var_a * var_q))
+
+
+def _bend_prior(boats: Observed, speed_m_s: float, sigma: float) -> tuple[float, float]:
+    """Mean of q at the standard speed and its true standard deviation between boats (REML)."""
+    q, unit = q_at(boats, speed_m_s)
+    known = np.isfinite(q)
+    problem = Problem.of(
+        q[known],
+        np.ones(known.sum()),
+        unit[known] * sigma**2,
+        boats.table["fsn_no"].to_numpy()[known],
+    )
+    fit = mixed.fit(problem, (mixed.BOAT,))
+    return float(fit.beta[0]), fit.sd[0]
+
+
+def pooled_curves(observed: Observed) -> pl.DataFrame:
+    """The register if boats of a type kept their own bend, shared it in part, or wholly.
+
+    In part: q at the standard speed is drawn to the type's mean, the more the noisier it is
+    (empirical Bayes). Heights are fitted anew to the runs, so Cw near the tow hardly moves.
+
+    Returns:
+        Rows of the table `pooled_curves`, three per method and tow; of types of fewer than three
+        boats, and boats of no type, only the own curve.
+    """
+    parts = [
+        frame
+        for (_, boat_type), boats in newest(observed).groups("method", "boat_type")
+        for frame in _poolings(boats, boat_type)
+    ]
+    schema = TOW_SCHEMA | {
+        "pooling": pl.String(),
+        "standard_speed_m_s": pl.Float64(),
+    }
+    numbers = ("q", "a_kg_m", "b_m_s", *SPEED_RATIOS)
+    return pl.concat([pl.DataFrame(schema=schema | dict.fromkeys(numbers, pl.Float64())), *parts])
+
+
+def _poolings(boats: Observed, boat_type: str) -> list[pl.DataFrame]:
+    speed = float(np.median(boats.column("declared_speed_m_s")))
+    own = boats.column("s_s2_m2")
+    bends = {OWN: own}
+    if boat_type != UNKNOWN_TYPE and boats.table["fsn_no"].n_unique() >= FEWEST_BOATS:
+        q, unit = q_at(boats, speed)
+        sigma = float(boats.column("run_sd_ratio")[0])
+        mean, between = _bend_prior(boats, speed, sigma)
+        noise = unit * sigma**2
+        share = between**2 / np.maximum(between**2 + noise, 1e-300)
+        drawn = mean + np.where(np.isfinite(q), share * (q - mean), 0.0)
+        ceiling = 0.999 / np.where(boats.points.used, boats.points.speed_m_s, 0.0).max(axis=1) ** 2
+        bends[PARTIAL] = np.minimum(drawn / (1.0 + drawn) / speed**2, ceiling)
+        bends[SHARED] = np.full(len(own), shared_bend(boats))
+    return [_pooled(boats, pooling, s, speed) for pooling, s in bends.items()]
+
+
+def _pooled(boats: Observed, pooling: str, s: FloatArray, speed_m_s: float) -> pl.DataFrame:
+    a = height_given_bend(boats.points, s)
+    declared = boats.column("declared_speed_m_s")
+    q = curve.cw(1.0, s, np.full(len(s), speed_m_s)) - 1.0
+    b = np.where(s > 0, 1.0 / np.sqrt(np.where(s > 0, s, 1.0)), np.inf)
+    numbers = {"q": q, "a_kg_m": a, "b_m_s": b} | {
+        name: curve.cw(a, s, ratio * declared) for name, ratio in SPEED_RATIOS.items()
+    }
+    return boats.table.select(
+        "method",
+        "tow_id",
+        *LINE,
+        "boat_type",
+        pl.lit(pooling).alias("pooling"),
+        pl.lit(speed_m_s).alias("standard_speed_m_s"),
+        *(
+            pl.Series(name, np.where(np.isfinite(v), v, np.nan)).fill_nan(None)
+            for name, v in numbers.items()
+        ),
+    )

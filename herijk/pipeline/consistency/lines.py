@@ -1,0 +1,328 @@
+"""Does a quantity follow weight or tow speed within a type, and which boats lie outside?
+
+One row per boat and crew, its newest tow. Lines are weighted: each tow has its own measuring error,
+and boats differ truly by a standard deviation that is estimated (REML); two crews of one boat
+share that difference. Women's and men's crews differ in weight and speed, so lines against the
+boat's weight compare boats within a crew; displacement contains the crew.
+"""
+
+from collections.abc import Iterator
+from typing import Any, Final
+
+import numpy as np
+import polars as pl
+import scipy
+
+from herijk.pipeline.arrays import BoolArray, FloatArray
+from herijk.pipeline.consistency import mixed
+from herijk.pipeline.consistency.eras import Era
+from herijk.pipeline.consistency.observed import (
+    LINE,
+    TOW_SCHEMA,
+    UNKNOWN_TYPE,
+    Observed,
+    bend_at,
+    curve_at,
+    ln_cw_unit_variance,
+    newest,
+    q_at,
+)
+from herijk.pipeline.consistency.reml import Problem
+from herijk.pipeline.consistency.tow_speed import is_slow
+
+LN_CW, BEND = "ln_cw_standard", "bend"
+"""What tells an outlier: height and bend (v/B)^2 of the curve, both at the standard speed. Of the
+forms of the bend this one has the most even spread: where B truly spreads 10 %, 27 % of types of 24
+boats had an outlier by q, 11 % have one by this."""
+
+EXPLAINING: Final = ("weight_kg", "displacement_kg", "declared_speed_m_s")
+FEWEST_BOATS: Final = 3
+
+NO_TYPE = "no_type"
+FEW_BOATS = "few_boats"
+EQUAL_VALUES = "equal_values"
+
+OUTSIDE_LEVEL: Final = 0.05
+"""Chance that any boat of a type of like boats is called outside (Bonferroni)."""
+
+UNUSUAL_SD: Final = 2.0
+"""A weight, length or season counts as unusual from this many standard deviations on."""
+
+ASKEW_EXCESS: Final = 0.03
+"""Pulled askew gave 5-10 % too high, once 40 % (presentation 2015); less is not worth naming."""
+
+
+def standard_speed_m_s(observed: Observed) -> float:
+    """The common speed at which boats of a type are compared: their median declared speed."""
+    return float(np.median(observed.column("declared_speed_m_s")))
+
+
+Measured = tuple[FloatArray, FloatArray]
+"""Values and their variances for a run scatter of 1, shape (rows,); NaN where there is none."""
+
+
+def quantities(observed: Observed) -> dict[str, Measured]:
+    """What is compared within a type.
+
+    Errors of A and B are taken at the type's middle bend, not at each tow's own: else boats with a
+    small B, whose error looks small, would weigh most.
+    """
+    speed = standard_speed_m_s(observed)
+    a, cw = observed.column("a_kg_m"), observed.column("cw_kg_m")
+    b = observed.table["b_m_s"].to_numpy().astype(np.float64)
+    b = np.where(observed.table["b_capped"].to_numpy(), np.nan, b)
+    q = max(float(np.median(observed.column("q"))), 0.05)
+    var_c, var_q = observed.column("c0_unit_variance"), observed.column("q_unit_variance")
+    cov = observed.column("c0_q_unit_covariance")
+    standard = curve_at(observed, speed)
+    standard_unit = ln_cw_unit_variance(observed, speed)
+    with np.errstate(invalid="ignore"):
+        ln_standard = np.log(standard)
+    return {
+        "b_m_s": (b, b * b * var_q / (2.0 * q * (1.0 + q)) ** 2),
+        "a_kg_m": (a, a * a * (var_c - 2.0 * cov / (1.0 + q) + var_q / (1.0 + q) ** 2)),
+        "q": q_at(observed, speed),
+        BEND: bend_at(observed, speed),
+        "cw_kg_m": (cw, cw * cw * var_c),
+        "cw_standard_kg_m": (standard, standard * standard * standard_unit),
+        LN_CW: (ln_standard, standard_unit),
+    }
+
+
+def type_consistency(observed: Observed) -> pl.DataFrame:
+    """Straight line of each quantity on each explaining variable, per method and boat type.
+
+    The physics model is among them: the slope of ln Cw on ln displacement is the power with which
+    resistance grows.
+
+    Returns:
+        Rows of the table `type_consistency`; where no line is drawn, `reason` says why.
+    """
+    rows = [
+        {
+            "method": method,
+            "boat_type": boat_type,
+            "quantity": quantity,
+            "explaining": explaining,
+            "standard_speed_m_s": standard_speed_m_s(boats),
+        }
+        | _line(boats, quantity, measured, explaining)
+        for (method, boat_type), boats in newest(observed).groups("method", "boat_type")
+        for quantity, explaining, measured in _pairs(boats)
+    ]
+    text = ("method", "boat_type", "quantity", "explaining", "reason")
+    numbers = (
+        "standard_speed_m_s",
+        "slope",
+        "slope_lo",
+        "slope_hi",
+        "r2",
+        "residual_sd_ratio",
+        "between_sd_ratio",
+        "noise_sd_ratio",
+    )
+    schema = (
+        dict.fromkeys(text, pl.String())
+        | {"n": pl.Int32(), "n_boats": pl.Int32()}
+        | dict.fromkeys(numbers, pl.Float64())
+    )
+    return pl.DataFrame(rows, schema=schema)
+
+
+def _pairs(boats: Observed) -> Iterator[tuple[str, str, Measured]]:
+    for quantity, measured in quantities(boats).items():
+        if quantity == LN_CW:
+            yield quantity, "ln_displacement", measured
+        elif quantity != BEND:
+            yield from ((quantity, explaining, measured) for explaining in EXPLAINING)
+
+
+def _line(boats: Observed, quantity: str, measured: Measured, explaining: str) -> dict[str, Any]:
+    y, unit = measured
+    x = _explaining(boats, explaining)
+    known = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
+    boats, x, y = boats.take(known), x[known], y[known]
+    n_boats = boats.table["fsn_no"].n_unique()
+    counts = {"n": len(y), "n_boats": n_boats}
+    if (boats.table["boat_type"] == UNKNOWN_TYPE).any():
+        return counts | {"reason": NO_TYPE}
+    crews = _crew_effects(boats) if explaining == "weight_kg" else np.ones((len(y), 1))
+    if n_boats < max(FEWEST_BOATS, crews.shape[1] + 2):
+        return counts | {"reason": FEW_BOATS}
+    centred = x - crews @ np.linalg.lstsq(crews, x)[0]
+    if np.abs(centred).max() <= 1e-9 * np.abs(x).max():
+        return counts | {"reason": EQUAL_VALUES}
+    level = 1.0 if quantity == LN_CW else abs(y.mean())
+    return counts | _fitted_line(boats, crews, centred, y, unit[known], level)
+
+
+def _fitted_line(
+    boats: Observed,
+    crews: FloatArray,
+    centred: FloatArray,
+    y: FloatArray,
+    unit: FloatArray,
+    level: float,
+) -> dict[str, Any]:
+    """The line itself, its spread as share of `level`.
+
+    X is scaled to one so that no power of a unit gets lost in rounding.
+    """
+    variance = unit * boats.column("run_sd_ratio") ** 2
+    width = np.abs(centred).max()
+    problem = Problem.of(
+        y, np.column_stack([crews, centred / width]), variance, boats.table["fsn_no"].to_numpy()
+    )
+    fit = mixed.fit(problem, (mixed.BOAT,))
+    slope, lo, hi = (float(end[-1]) / width for end in fit.coefficients())
+    residual = y - problem.x @ fit.beta
+    total = fit.total_misfit
+    return {
+        "slope": slope,
+        "slope_lo": lo,
+        "slope_hi": hi,
+        "r2": min(max(1.0 - fit.misfit / total, 0.0), 1.0) if total > 0 else None,
+        "residual_sd_ratio": float(np.sqrt((residual**2).sum() / (len(y) - problem.x.shape[1])))
+        / level,
+        "between_sd_ratio": fit.sd[0] / level,
+        "noise_sd_ratio": float(np.sqrt(variance.mean())) / level,
+        "reason": "",
+    }
+
+
+def _explaining(boats: Observed, name: str) -> FloatArray:
+    """An explaining variable, NaN where missing."""
+    if name == "ln_displacement":
+        return np.log(_explaining(boats, "displacement_kg"))
+    return np.asarray(boats.table[name].to_numpy(), dtype=np.float64)
+
+
+def _crew_effects(boats: Observed) -> FloatArray:
+    """One indicator column per crew (rowers and class)."""
+    crews = boats.table.select(pl.struct("rowers", "crew_class").rank("dense") - 1).to_series()
+    number = crews.to_numpy().astype(np.int64)
+    return np.asarray(np.eye(int(number.max(initial=0)) + 1)[number])
+
+
+def type_outliers(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
+    """Every boat against the others of its type, with what could explain a difference.
+
+    Compared are ln Cw at the standard speed, after the line on ln displacement where that is known,
+    and the bend. A boat's expectation comes from the other boats alone; the deviation is in
+    standard deviations of a prediction (externally Studentised).
+
+    Returns:
+        Rows of the table `type_outliers`: one per method, tow and quantity, `outside` or not.
+    """
+    boats = newest(observed)
+    parts = [
+        _against_type(group, quantity, eras)
+        for (_, boat_type), group in boats.groups("method", "boat_type")
+        if boat_type != UNKNOWN_TYPE
+        for quantity in (LN_CW, BEND)
+    ]
+    schema = TOW_SCHEMA | {
+        "season": pl.Int32(),
+        "quantity": pl.String(),
+        "standard_speed_m_s": pl.Float64(),
+        "value": pl.Float64(),
+        "expected": pl.Float64(),
+        "deviation_sd": pl.Float64(),
+        "outside": pl.Boolean(),
+        "candidates": pl.List(pl.String()),
+    }
+    everything = pl.concat([pl.DataFrame(schema=schema), *(p for p in parts if p is not None)])
+    return _with_season(everything)
+
+
+def _against_type(boats: Observed, quantity: str, eras: tuple[Era, ...]) -> pl.DataFrame | None:
+    y, unit = quantities(boats)[quantity]
+    speed = standard_speed_m_s(boats)
+    displacement = _explaining(boats, "ln_displacement")
+    weighed = quantity == LN_CW and bool(np.isfinite(displacement).all())
+    known = np.flatnonzero(np.isfinite(y))
+    boats, y, displacement = boats.take(known), y[known], displacement[known]
+    if len(y) == 0:
+        return None
+    x = np.ones((len(y), 1))
+    if weighed and np.ptp(displacement) > 1e-9:
+        x = np.column_stack([x, displacement - displacement.mean()])
+    n_boats = boats.table["fsn_no"].n_unique()
+    if n_boats < x.shape[1] + FEWEST_BOATS:
+        return None
+    variance = unit[known] * boats.column("run_sd_ratio") ** 2
+    problem = Problem.of(y, x, variance, boats.table["fsn_no"].to_numpy())
+    fit = mixed.fit(problem, (mixed.BOAT,))
+    left_out = fit.leave_boats_out()
+    deviation = _studentised(left_out.error / np.sqrt(left_out.variance * fit.scale), fit)
+    limit = float(scipy.special.stdtrit(max(fit.dof - 1, 1), 1.0 - OUTSIDE_LEVEL / (2.0 * len(y))))
+    return boats.table.select(
+        "method",
+        "tow_id",
+        *LINE,
+        "boat_type",
+        "season",
+        pl.lit(quantity).alias("quantity"),
+        pl.lit(speed).alias("standard_speed_m_s"),
+        pl.Series("value", y),
+        pl.Series("expected", y - left_out.error),
+        pl.Series("deviation_sd", deviation),
+        pl.Series("outside", np.abs(deviation) > limit),
+        pl.Series("candidates", _candidates(boats, quantity, left_out.error, eras)),
+    )
+
+
+def _studentised(internal: FloatArray, fit: mixed.Fit) -> FloatArray:
+    """Deviation with the boat itself taken out of the spread (Cook & Weisberg 1982, 2.2.1)."""
+    dof = max(fit.dof, 2)
+    return np.asarray(internal * np.sqrt((dof - 1) / np.maximum(dof - internal**2, 0.05)))
+
+
+def _candidates(
+    boats: Observed, quantity: str, error: FloatArray, eras: tuple[Era, ...]
+) -> list[list[str]]:
+    """What could explain a boat's place, as codes; the season is judged afterwards."""
+    table = boats.table
+    unchecked = np.array([not _steering_checked(season, eras) for season in table["season"]])
+    high = (error > ASKEW_EXCESS) & (quantity == LN_CW)
+    differ = table["flags"].list.contains("out_and_back_differ").to_numpy()
+    checks = {
+        "weight": _unusual(_explaining(boats, "weight_kg")),
+        "length": _unusual(_explaining(boats, "waterline_length_m")),
+        "log": table["flags"].list.contains("unusual_calibration").to_numpy(),
+        "altered": table["altered"].to_numpy(),
+        "slow_tow": is_slow(table),
+        "askew": differ | (high & unchecked),
+        "b_at_cap": table["b_capped"].to_numpy(),
+        "b_not_determined": table["b_m_s"].is_null().to_numpy(),
+    }
+    return [[code for code, found in checks.items() if found[i]] for i in range(table.height)]
+
+
+def _steering_checked(season: int, eras: tuple[Era, ...]) -> bool:
+    return any(era.steering_checked and era.first <= season <= era.last for era in eras)
+
+
+def _unusual(values: FloatArray) -> BoolArray:
+    """Whether a value lies far from the other boats', each judged by the others."""
+    found = np.zeros(len(values), bool)
+    for i, value in enumerate(values):
+        others = np.delete(values, i)
+        others = others[np.isfinite(others)]
+        if np.isfinite(value) and len(others) >= FEWEST_BOATS:
+            found[i] = abs(value - others.mean()) > UNUSUAL_SD * max(others.std(ddof=1), 1e-9)
+    return found
+
+
+def _with_season(outliers: pl.DataFrame) -> pl.DataFrame:
+    """Adds the candidate `season` where the season's other boats lie on the same side."""
+    group = ["method", "quantity", "season"]
+    others = pl.len().over(group) - 1
+    mean = (pl.col("deviation_sd").sum().over(group) - pl.col("deviation_sd")) / others
+    along = mean * pl.col("deviation_sd").sign() * others.sqrt() > UNUSUAL_SD
+    return outliers.with_columns(
+        pl.when((others > 0) & along)
+        .then(pl.col("candidates").list.concat(pl.lit(["season"])))
+        .otherwise("candidates")
+        .alias("candidates")
+    ).sort("method", "boat_type", "tow_id", "quantity")

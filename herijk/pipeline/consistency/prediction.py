@@ -1,0 +1,167 @@
+"""A second opinion without towing: Cw from what a tape and a scale say.
+
+ln Cw of boats at a standard speed against ln displacement, length, beam and that speed, with a
+random effect of the type; every boat is predicted from the other boats alone.
+"""
+
+from typing import Any, Final
+
+import numpy as np
+import polars as pl
+import scipy
+
+from herijk.pipeline.arrays import FloatArray
+from herijk.pipeline.consistency import mixed
+from herijk.pipeline.consistency.observed import (
+    LINE,
+    TOW_SCHEMA,
+    UNKNOWN_TYPE,
+    Observed,
+    curve_at,
+    ln_cw_unit_variance,
+    newest,
+)
+from herijk.pipeline.consistency.reml import Problem
+
+LEVEL: Final = 0.95
+NORMAL_95: Final = 1.959963984540054
+FEWEST_BOATS_PER_COLUMN: Final = 3
+MEASURES: Final = ("displacement_kg", "waterline_length_m", "beam_m", "standard_speed_m_s")
+
+
+def predicted_cw(observed: Observed) -> pl.DataFrame:
+    """Cw of each boat and crew by its newest tow, and as predicted from all other boats.
+
+    The standard speed is the median declared speed of the type and crew class: known without a
+    tow, and within the speeds at which most curves count. A tow's uncertainty is that of its runs
+    at the standard speed or, where wider, that of its interval, which also knows of the log. A tow
+    disagrees where the difference is more than both 95 % uncertainties together (root of the sum of
+    squares). The variances are estimated once, with all boats.
+
+    Returns:
+        Rows of the table `predicted_cw`; tows without weight, or whose curve does not count at the
+        standard speed, are left out; the prediction is empty where there are too few boats.
+    """
+    boats = newest(observed)
+    speed = pl.col("declared_speed_m_s").median().over("method", "boat_type", "crew_class")
+    boats = Observed(boats.table.with_columns(speed.alias("standard_speed_m_s")), boats.points)
+    parts = [_predicted(fleet) for _, fleet in boats.groups("method")]
+    schema = TOW_SCHEMA | {
+        "standard_speed_m_s": pl.Float64(),
+        "cw_kg_m": pl.Float64(),
+        "cw_sd_ratio": pl.Float64(),
+        "predicted_cw_kg_m": pl.Float64(),
+        "predicted_lo_kg_m": pl.Float64(),
+        "predicted_hi_kg_m": pl.Float64(),
+        "predicted_sd_ratio": pl.Float64(),
+        "ln_ratio": pl.Float64(),
+        "disagrees": pl.Boolean(),
+        "reason": pl.String(),
+    }
+    return pl.concat([pl.DataFrame(schema=schema), *parts])
+
+
+def _predicted(fleet: Observed) -> pl.DataFrame:
+    cw = curve_at(fleet, fleet.column("standard_speed_m_s"))
+    weighed = fleet.table["displacement_kg"].is_not_null().to_numpy()
+    fleet = fleet.take(np.flatnonzero(np.isfinite(cw) & weighed))
+    speed = fleet.column("standard_speed_m_s")
+    cw = curve_at(fleet, speed)
+    variance = _tow_variance(fleet, speed)
+    found = fleet.table.select(
+        "method",
+        "tow_id",
+        *LINE,
+        "boat_type",
+        "standard_speed_m_s",
+        pl.Series("cw_kg_m", cw),
+        pl.Series("cw_sd_ratio", np.sqrt(variance)),
+    )
+    x = _columns(fleet)
+    n_boats = fleet.table["fsn_no"].n_unique()
+    enough = n_boats >= FEWEST_BOATS_PER_COLUMN * (x.shape[1] + 1)
+    numbers = _second_opinion(fleet, x, cw, variance) if enough else _nothing(len(cw))
+    return found.with_columns(
+        *(pl.Series(name, values, pl.Float64).fill_nan(None) for name, values in numbers.items())
+    ).with_columns(_disagrees(), pl.lit("" if enough else "few_boats").alias("reason"))
+
+
+def _tow_variance(fleet: Observed, speed_m_s: FloatArray) -> FloatArray:
+    """Variance of ln Cw of each tow: by its runs or by its interval, the larger, shape (rows,)."""
+    runs = ln_cw_unit_variance(fleet, speed_m_s) * fleet.column("run_sd_ratio") ** 2
+    half = 0.5 * np.log(fleet.column("cw_hi_kg_m") / fleet.column("cw_lo_kg_m"))
+    return np.fmax(runs, (half / NORMAL_95) ** 2)
+
+
+def _second_opinion(
+    fleet: Observed, x: FloatArray, cw: FloatArray, variance: FloatArray
+) -> dict[str, FloatArray]:
+    problem = Problem.of(np.log(cw), x, variance, fleet.table["fsn_no"].to_numpy(), _types(fleet))
+    fit = mixed.fit(problem, (mixed.BOAT, mixed.OTHER))
+    left_out = fit.leave_boats_out()
+    known = np.isfinite(left_out.variance)
+    ratio = np.where(known, left_out.error, np.nan)
+    total = np.where(known, left_out.variance * fit.scale, np.nan)
+    sd = np.sqrt(np.maximum(total - variance, 0.0))
+    half = float(scipy.special.stdtrit(fit.dof, 0.5 + LEVEL / 2)) * sd
+    return {
+        "predicted_cw_kg_m": cw * np.exp(-ratio),
+        "predicted_lo_kg_m": cw * np.exp(-ratio - half),
+        "predicted_hi_kg_m": cw * np.exp(-ratio + half),
+        "predicted_sd_ratio": sd,
+        "ln_ratio": ratio,
+    }
+
+
+def _nothing(rows: int) -> dict[str, FloatArray]:
+    names = ("cw_kg_m", "lo_kg_m", "hi_kg_m", "sd_ratio")
+    return {n: np.full(rows, np.nan) for n in (*(f"predicted_{n}" for n in names), "ln_ratio")}
+
+
+def _disagrees() -> pl.Expr:
+    both = NORMAL_95 * (pl.col("cw_sd_ratio") ** 2 + pl.col("predicted_sd_ratio") ** 2).sqrt()
+    return (pl.col("ln_ratio").abs() > both).alias("disagrees")
+
+
+def _columns(fleet: Observed) -> FloatArray:
+    """Level and centred logarithms of the measures, without those that add nothing."""
+    kept = np.ones((fleet.table.height, 1))
+    for name in MEASURES:
+        values = np.log(fleet.column(name))
+        rest = values - kept @ np.linalg.lstsq(kept, values)[0] if len(values) else values
+        if len(values) and np.sqrt((rest**2).mean()) > 1e-6:
+            kept = np.column_stack([kept, values - values.mean()])
+    return kept
+
+
+def _types(fleet: Observed) -> list[str]:
+    """The type of each boat; a boat of no type stands alone."""
+    named = zip(fleet.table["boat_type"], fleet.table["fsn_no"], strict=True)
+    return [f"{UNKNOWN_TYPE}/{fsn}" if t == UNKNOWN_TYPE else t for t, fsn in named]
+
+
+def prediction_error(predicted: pl.DataFrame) -> pl.DataFrame:
+    """Cross-validated error of the prediction, next to the uncertainty of a tow, per method.
+
+    Args:
+        predicted: rows of `predicted_cw`.
+
+    Returns:
+        Rows of the table `prediction_error`.
+    """
+    known = predicted.drop_nulls("ln_ratio")
+    rows: list[dict[str, Any]] = [
+        {
+            "method": method,
+            "n": group.height,
+            "n_boats": group["fsn_no"].n_unique(),
+            "rmse_ratio": float(np.sqrt((group["ln_ratio"].to_numpy() ** 2).mean())),
+            "tow_sd_ratio": float(np.sqrt((group["cw_sd_ratio"].to_numpy() ** 2).mean())),
+            "share_disagreeing": float(group["disagrees"].to_numpy().mean()),
+        }
+        for (method,), group in known.sort("method").group_by("method", maintain_order=True)
+    ]
+    counts = {"n": pl.Int32(), "n_boats": pl.Int32()}
+    numbers = ("rmse_ratio", "tow_sd_ratio", "share_disagreeing")
+    schema = {"method": pl.String()} | counts | dict.fromkeys(numbers, pl.Float64())
+    return pl.DataFrame(rows, schema=schema)

@@ -1,0 +1,1 @@
+"""A method is data: what it may say, how its file is read, written and varied."""

@@ -1,0 +1,455 @@
+"""A method is data: the named option of every step, with season ranges that override.
+
+A method file is TOML that a committee member can read (`herijk/pipeline/methods/`). `[steps.<step>]`
+gives options for every season; each `[[overrides]]` block replaces some of them for a range; a
+method may `extend` another. Here such a text becomes a frozen, validated `Method`; nothing is
+computed with a method that has an error. What a step does with its options stands in the step's
+own module.
+"""
+
+import hashlib
+import itertools
+import json
+import re
+import tomllib
+from collections.abc import Callable, Iterable, Mapping
+from importlib import resources
+from typing import Annotated, Any, Final, Literal
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    ValidationError,
+    WithJsonSchema,
+)
+from pydantic_core import PydanticCustomError
+
+from herijk.pipeline.assessment.checks import CODES
+from herijk.pipeline.errors import HerijkError, MissingKnowledgeError
+
+LAST_SEASON: Final = 9999
+"""End of a range written as `2015:`, which holds until a later method says otherwise."""
+
+
+class MethodFileError(HerijkError):
+    """A method file that cannot be used; the text names file, line, key and what is allowed."""
+
+
+class _Options(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class Speed(_Options):
+    """Which speed through the water, and what is known to be wrong with it."""
+
+    source: Literal["log1", "log2", "mean"]
+    correction: Literal["none", "prescribed", "estimated"]
+    correction_ratio: float = Field(default=0.0, ge=-0.15, le=0.15)
+    operation: Literal["multiply", "divide"] = "multiply"
+
+
+class Calibration(_Options):
+    """The factor that brings the log to ground speed."""
+
+    rule: Literal["none", "gps_per_tow", "gps_per_season"]
+
+
+class Window(_Options):
+    """Which part of a run counts."""
+
+    rule: Literal["all", "steady", "by_hand"]
+    minimum_s: float = Field(default=30.0, ge=5.0, le=50.0)
+    speed_drift_m_s: float = Field(default=0.02, gt=0.0, le=0.2)
+    force_ends_ratio: float = Field(default=0.04, gt=0.0, le=0.2)
+    ramp_m_s: float = Field(default=0.08, gt=0.0, le=0.2)
+    peak_sd: float = Field(default=3.0, ge=1.0, le=10.0)
+    gust_sd: float = Field(default=2.4, ge=1.0, le=10.0)
+
+
+class Wind(_Options):
+    """How the resistance in air is taken off."""
+
+    model: Literal["none", "head", "oblique"]
+    coefficients: Literal["fixed", "per_run", "per_tow", "archive"] = "fixed"
+    ahead: float = Field(default=0.5, ge=0.0, le=2.0)
+    behind: float = Field(default=0.5, ge=0.0, le=2.0)
+    side: float = Field(default=0.2, ge=0.0, le=2.0)
+    averaging_s: int = Field(default=0, ge=0, le=15)
+    reading: Literal["as_felt", "cw_vac_2014"] = "as_felt"
+
+
+class RunPoint(_Options):
+    """How the samples of a window become one point."""
+
+    estimator: Literal["mean_of_ratios", "ratio_of_means"]
+    inertia: Literal["none", "end_speeds"] = "none"
+    added_mass_ratio: float = Field(default=0.08, ge=0.0, le=0.5)
+
+
+class Temperature(_Options):
+    """Whether resistance is brought to one water temperature."""
+
+    rule: Literal["none", "ittc57"]
+    reference_c: float = Field(default=15.0, ge=0.0, le=30.0)
+
+
+class Runs(_Options):
+    """Which runs count."""
+
+    highest_target_ratio: float = Field(default=1.15, ge=1.0, le=1.5)
+    minimum: int = Field(default=4, ge=3, le=6)
+
+
+class Curve(_Options):
+    """How the hyperbola is fitted."""
+
+    b: Literal["free", "capped", "hull_speed"]
+    cap_hull_speeds: float = Field(default=3.0, ge=1.0, le=10.0)
+
+
+def _known_check(code: str) -> str:
+    if code not in CODES:
+        raise PydanticCustomError("unknown_check", f"Must be one of {', '.join(CODES)}")
+    return code
+
+
+class Assessment(_Options):
+    """Which checks of the assessment reject a tow, by their code (`pipeline.assessment.checks`)."""
+
+    reject: tuple[
+        Annotated[
+            str,
+            AfterValidator(_known_check),
+            WithJsonSchema({"type": "string", "enum": sorted(CODES)}),
+        ],
+        ...,
+    ] = ()
+
+
+class Steps(_Options):
+    """The option of every step, for one season."""
+
+    speed: Speed
+    calibration: Calibration
+    window: Window
+    wind: Wind
+    run_point: RunPoint
+    temperature: Temperature
+    runs: Runs
+    curve: Curve
+    assessment: Assessment
+
+
+class RegisterRule(_Options):
+    """How long a tow counts. It changes no curve, only which lines of a register are valid."""
+
+    valid_years: int = Field(default=5, ge=1, le=20)
+    six_years_from: int | None = Field(default=None, ge=1990, le=2100)
+
+
+class SeasonSteps(_Options):
+    """The steps of the seasons `first` to `last`, both included."""
+
+    first: int
+    last: int
+    steps: Steps
+
+
+class Method(_Options):
+    """A complete method: for every season of its range the option of every step.
+
+    Attributes:
+        title_en: the title where a text is English; that of a file without one is `title`.
+    """
+
+    name: str
+    title: str
+    title_en: str
+    description: str
+    extends: str | None
+    ranges: tuple[SeasonSteps, ...]
+    validity: RegisterRule = RegisterRule()
+
+    def for_season(self, season: int) -> Steps:
+        """The steps of a season.
+
+        Raises:
+            MissingKnowledgeError: the method does not cover that season.
+        """
+        for held in self.ranges:
+            if held.first <= season <= held.last:
+                return held.steps
+        raise MissingKnowledgeError(
+            f"method {self.name} says nothing about season {season}; "
+            f"it covers {self.ranges[0].first} to {_season_text(self.ranges[-1].last)}. "
+            "Leave that season out with --seasons, or widen the method's `seasons`"
+        )
+
+    @property
+    def definition(self) -> str:
+        """Everything that can change a curve, as canonical JSON; the register's rule cannot."""
+        held = [r.model_dump(mode="json") for r in self.ranges]
+        return json.dumps(held, sort_keys=True, separators=(",", ":"))
+
+    @property
+    def content_hash(self) -> str:
+        """SHA-256 of `definition`, in hex: equal for methods that give equal curves."""
+        return hashlib.sha256(self.definition.encode()).hexdigest()
+
+
+def shipped_methods() -> tuple[str, ...]:
+    """Names of the methods that come with the package, in alphabetical order."""
+    files = resources.files("herijk.pipeline.methods").iterdir()
+    return tuple(sorted(f.name.removesuffix(".toml") for f in files if f.name.endswith(".toml")))
+
+
+def shipped_text(name: str) -> str:
+    """The TOML text of a method that comes with the package.
+
+    Raises:
+        MissingKnowledgeError: there is no such method.
+    """
+    if name not in shipped_methods():
+        raise MissingKnowledgeError(
+            f"there is no method {name!r}; the methods are {', '.join(shipped_methods())}"
+        )
+    return (resources.files("herijk.pipeline.methods") / f"{name}.toml").read_text(encoding="utf-8")
+
+
+def shipped_method(name: str) -> Method:
+    """A method that comes with the package."""
+    return parse_method(shipped_text(name), f"{name}.toml")
+
+
+def parse_method(text: str, file_name: str, text_of: Callable[[str], str] = shipped_text) -> Method:
+    """Reads and checks the text of a method file.
+
+    Args:
+        text: TOML.
+        file_name: for error messages.
+        text_of: gives the text of a method that this one extends.
+
+    Raises:
+        MethodFileError: with file, line, key and what is allowed.
+    """
+    reader = _Reader(text, file_name)
+    head = reader.head()
+    layers = _layers(reader, head, text_of, seen=(head.name,))
+    seasons = _Range.parse(head.seasons, reader, "seasons")
+    return Method(
+        name=head.name,
+        title=head.title,
+        title_en=head.title_en or head.title,
+        description=head.description,
+        extends=head.extends,
+        ranges=_ranges(reader, layers, seasons),
+        validity=_register_rule(reader, head, text_of),
+    )
+
+
+class _Head(_Options):
+    """The part of a method file outside the steps."""
+
+    name: str = Field(pattern=r"^[a-z0-9][a-z0-9-]*$")
+    title: str
+    title_en: str = ""
+    description: str = ""
+    extends: str | None = None
+    seasons: str = "2009:"
+    validity: dict[str, Any] = Field(default={}, alias="register")
+    steps: dict[str, Any] = {}
+    overrides: list[dict[str, Any]] = []
+
+
+class _Range(_Options):
+    first: int
+    last: int
+
+    @classmethod
+    def parse(cls, text: object, reader: "_Reader", key: str) -> "_Range":
+        match = re.fullmatch(r"(\d{4})(:(\d{4})?)?", text) if isinstance(text, str) else None
+        if match is None:
+            raise reader.error(key, f"{text!r} is no season range; write 2009:2011, 2015: or 2014")
+        first = int(match[1])
+        last = int(match[3]) if match[3] else (LAST_SEASON if match[2] else first)
+        if last < first:
+            raise reader.error(key, f"range {text!r} ends before it begins")
+        return cls(first=first, last=last)
+
+
+class _Layer(_Options):
+    """One set of overrides: all seasons of `held` get `options`."""
+
+    held: _Range
+    options: dict[str, dict[str, Any]]
+
+
+_KEYS: Final = re.compile(r"(?<![\w-])([\w-]++)\s*+=")
+"""Tried at the beginning of a word only: a long word would otherwise be tried at each letter."""
+
+
+class _Reader:
+    """A method text with its file name, so that every error can say where it is."""
+
+    def __init__(self, text: str, file_name: str) -> None:
+        self.text, self.file_name = text, file_name
+
+    def head(self) -> _Head:
+        try:
+            return _Head.model_validate(tomllib.loads(self.text))
+        except ValidationError as error:
+            raise self.from_validation(error, allowed=_Head) from error
+        except (ValueError, RecursionError) as error:
+            raise MethodFileError(f"{self.file_name}: not valid TOML: {error}") from error
+
+    def error(self, key: str, message: str, where: str | None = None) -> MethodFileError:
+        """An error about `key`, on the line of `where`, which is the key unless it is missing."""
+        line = self._line(key if where is None else where)
+        return MethodFileError(f"{self.file_name}{line}: {key}: {message}")
+
+    def from_validation(
+        self, error: ValidationError, allowed: type[BaseModel], season: str = ""
+    ) -> MethodFileError:
+        first = error.errors()[0]
+        path = [part for part in first["loc"] if isinstance(part, str)]
+        message = first["msg"]
+        if first["type"] == "extra_forbidden":
+            message = f"unknown key; allowed here: {', '.join(_keys_at(allowed, path[:-1]))}"
+        elif first["type"] == "missing":
+            message = "missing"
+        else:
+            message = f"{message[0].lower()}{message[1:]}, not {first['input']!r}"
+        where = path[:-1] if first["type"] == "missing" else path
+        return self.error(".".join(path), message + season, where=".".join(where))
+
+    def _line(self, key: str) -> str:
+        """Where the key stands: the last line that holds it, or else the step it belongs to."""
+        parts = key.split(".")
+        for wanted in (parts[-2:], parts[-1:], parts[-2:-1]):
+            lines = [number for number, held in self._keys_of_lines() if set(wanted) <= held]
+            if lines:
+                return f", line {lines[-1]}"
+        return ""
+
+    def _keys_of_lines(self) -> list[tuple[int, set[str]]]:
+        """The keys named on each line, with those of the table it stands in."""
+        table: set[str] = set()
+        found = []
+        for number, line in enumerate(self.text.splitlines(), 1):
+            header = re.match(r"\s*\[+([\w.-]+)\]+", line)
+            if header:
+                table = set(header[1].split("."))
+            found.append((number, table | set(_KEYS.findall(line))))
+        return found
+
+
+def _keys_at(model: type[BaseModel], path: list[str]) -> list[str]:
+    for part in path:
+        inner = model.model_fields[part].annotation if part in model.model_fields else None
+        if not (isinstance(inner, type) and issubclass(inner, BaseModel)):
+            return []
+        model = inner
+    return sorted(model.model_fields)
+
+
+def _layers(
+    reader: _Reader, head: _Head, text_of: Callable[[str], str], seen: tuple[str, ...]
+) -> list[_Layer]:
+    """The overrides of a method in the order in which they apply, its ancestors' first."""
+    layers: list[_Layer] = []
+    if head.extends is not None:
+        if head.extends in seen:
+            raise reader.error("extends", f"circle: {' extends '.join((*seen, head.extends))}")
+        try:
+            parent_text = text_of(head.extends)
+        except MissingKnowledgeError as error:
+            raise reader.error("extends", str(error)) from error
+        parent = _Reader(parent_text, f"{head.extends}.toml")
+        layers += _layers(parent, parent.head(), text_of, (*seen, head.extends))
+    everywhere = _Range(first=0, last=LAST_SEASON)
+    layers.append(_Layer(held=everywhere, options=_step_tables(reader, head.steps, "steps")))
+    own = []
+    for block in head.overrides:
+        options = {key: value for key, value in block.items() if key not in ("range", "why")}
+        held = _Range.parse(block.get("range"), reader, "overrides.range")
+        own.append(_Layer(held=held, options=_step_tables(reader, options, "overrides")))
+    _refuse_overlap(reader, own)
+    return layers + own
+
+
+def _register_rule(reader: _Reader, head: _Head, text_of: Callable[[str], str]) -> RegisterRule:
+    """The rule of validity, with what the methods it extends say where it says nothing."""
+    table, own = dict(head.validity), head
+    while own.extends is not None:
+        own = _Reader(text_of(own.extends), f"{own.extends}.toml").head()
+        table = own.validity | table
+    try:
+        return RegisterRule.model_validate(table)
+    except ValidationError as error:
+        raise reader.from_validation(error, RegisterRule, " ([register])") from error
+
+
+def _step_tables(
+    reader: _Reader, options: Mapping[str, Any], where: str
+) -> dict[str, dict[str, Any]]:
+    for step, table in options.items():
+        if step not in Steps.model_fields:
+            allowed = ", ".join(Steps.model_fields)
+            raise reader.error(f"{where}.{step}", f"unknown step; allowed here: {allowed}")
+        if not isinstance(table, dict):
+            raise reader.error(f"{where}.{step}", f"a table of options is needed, not {table!r}")
+    return dict(options)
+
+
+def _refuse_overlap(reader: _Reader, layers: list[_Layer]) -> None:
+    for i, one in enumerate(layers):
+        for other in layers[i + 1 :]:
+            first = max(one.held.first, other.held.first)
+            if first > min(one.held.last, other.held.last):
+                continue
+            for step in one.options.keys() & other.options.keys():
+                for key in one.options[step].keys() & other.options[step].keys():
+                    raise reader.error(
+                        f"overrides.{step}.{key}", f"given twice for season {first}; ranges overlap"
+                    )
+
+
+def _ranges(reader: _Reader, layers: list[_Layer], seasons: _Range) -> tuple[SeasonSteps, ...]:
+    """The complete steps of every season, neighbouring seasons with equal steps together."""
+    edges = {seasons.first, seasons.last + 1}
+    for layer in layers:
+        edges |= {layer.held.first, layer.held.last + 1}
+    inside = sorted(e for e in edges if seasons.first <= e <= seasons.last + 1)
+    return joined(
+        SeasonSteps(first=first, last=end - 1, steps=_steps_of_season(reader, layers, first))
+        for first, end in itertools.pairwise(inside)
+    )
+
+
+def joined(ranges: Iterable[SeasonSteps]) -> tuple[SeasonSteps, ...]:
+    """Neighbouring ranges with equal steps together, so that equal methods have equal hashes."""
+    found: list[SeasonSteps] = []
+    for held in ranges:
+        if found and found[-1].steps == held.steps:
+            found[-1] = SeasonSteps(first=found[-1].first, last=held.last, steps=held.steps)
+        else:
+            found.append(held)
+    return tuple(found)
+
+
+def _steps_of_season(reader: _Reader, layers: list[_Layer], season: int) -> Steps:
+    merged: dict[str, dict[str, Any]] = {step: {} for step in Steps.model_fields}
+    for layer in layers:
+        if layer.held.first <= season <= layer.held.last:
+            for step, options in layer.options.items():
+                merged[step] |= options
+    try:
+        return Steps.model_validate(merged)
+    except ValidationError as error:
+        raise reader.from_validation(error, Steps, f" (season {season})") from error
+
+
+def _season_text(season: int) -> str:
+    return "the present" if season == LAST_SEASON else str(season)

@@ -1,0 +1,164 @@
+"""A variant: a method made from another by changing options, and its text as a method file.
+
+Here options of some seasons are replaced, the differences from the method it extends are found,
+and a file is written that names only those. Reading a file stands in `pipeline.method.definition`.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from herijk.pipeline.method.definition import (
+    Method,
+    MethodFileError,
+    SeasonSteps,
+    Steps,
+    joined,
+    parse_method,
+    shipped_method,
+    shipped_methods,
+)
+from herijk.pipeline.method.writing import (
+    method_text,
+    override_lines,
+    range_text,
+    step_lines,
+    toml_value,
+)
+
+
+@dataclass(frozen=True)
+class Difference:
+    """An option that is not what it was, in neighbouring seasons.
+
+    Attributes:
+        step, option: names as in a method file.
+        first, last: seasons, both included.
+        before: the values it replaces, the oldest season's first.
+        after: the value.
+    """
+
+    step: str
+    option: str
+    first: int
+    last: int
+    before: tuple[Any, ...]
+    after: Any
+
+
+def cut_at(method: Method, seasons: Iterable[int]) -> tuple[SeasonSteps, ...]:
+    """The ranges of a method, cut before each of the given seasons that it covers."""
+    whole_first, whole_last = _whole(method)
+    cuts = {held.first for held in method.ranges}
+    firsts = sorted(cuts | {s for s in seasons if whole_first < s <= whole_last})
+    lasts = [*(first - 1 for first in firsts[1:]), whole_last]
+    return tuple(
+        SeasonSteps(first=first, last=last, steps=method.for_season(first))
+        for first, last in zip(firsts, lasts, strict=True)
+    )
+
+
+def variant(
+    base: Method, name: str, title: str, description: str, ranges: Sequence[SeasonSteps]
+) -> Method:
+    """A method with the given steps; it extends its base, or what that extends if it is a file.
+
+    Args:
+        base: where it comes from; its register rule is kept.
+        name, title, description: of the new method.
+        ranges: its steps, in order, over the seasons of `base`.
+
+    Raises:
+        MethodFileError: the ranges leave out a season of `base`, or have one twice.
+    """
+    seasons = [(held.first, held.last) for held in ranges]
+    if seasons != [(held.first, held.last) for held in cut_at(base, (s[0] for s in seasons))]:
+        raise MethodFileError(f"{name}: the seasons {seasons} are not those of {base.name}")
+    ships = base.name in shipped_methods() and base == shipped_method(base.name)
+    return Method(
+        name=name,
+        title=title,
+        title_en=title,
+        description=description,
+        extends=base.name if ships else base.extends,
+        ranges=joined(ranges),
+        validity=base.validity,
+    )
+
+
+def differences(method: Method, parent: Method) -> list[Difference]:
+    """Options in which a method differs from another that covers its seasons.
+
+    Returns:
+        By step and option in the order of `Steps`, then by season.
+    """
+    pieces = cut_at(method, (held.first for held in parent.ranges))
+    found: list[Difference] = []
+    for step, option in _options():
+        for held in pieces:
+            old, new = (
+                getattr(getattr(steps, step), option)
+                for steps in (parent.for_season(held.first), held.steps)
+            )
+            if old != new:
+                one = Difference(step, option, held.first, held.last, (old,), new)
+                found[-1:] = _together(found[-1:], one)
+    return found
+
+
+def variant_text(method: Method) -> str:
+    """A method as the text of a method file that names only what differs from what it extends.
+
+    A method that extends none is written out in full. Reading the text gives a method with the
+    same content hash and register rule.
+
+    Raises:
+        MethodFileError: the method it extends says nothing about one of its seasons.
+    """
+    if method.extends is None:
+        return method_text(method)
+    first, last = _whole(method)
+    head = [
+        f"name = {toml_value(method.name)}",
+        f"title = {toml_value(method.title)}",
+        f"description = {toml_value(method.description)}",
+        f"extends = {toml_value(method.extends)}",
+        f"seasons = {toml_value(range_text(first, last))}",
+    ]
+    parent = parse_method("\n".join(head), f"{method.name}.toml")
+    changed: dict[tuple[int, int], dict[str, dict[str, Any]]] = {}
+    for one in differences(method, parent):
+        steps = changed.setdefault((one.first, one.last), {})
+        steps.setdefault(one.step, {})[one.option] = one.after
+    everywhere = changed.pop((first, last), {})
+    blocks = [_register_lines(method, parent)]
+    blocks.append(["[steps]", *step_lines(everywhere)] if everywhere else [])
+    blocks += [override_lines(range_text(*seasons), steps) for seasons, steps in changed.items()]
+    return "\n\n".join("\n".join(block) for block in [head, *blocks] if block) + "\n"
+
+
+def _register_lines(method: Method, parent: Method) -> list[str]:
+    inherited = parent.validity.model_dump()
+    own = {k: v for k, v in method.validity.model_dump().items() if v != inherited[k]}
+    return ["[register]", *(f"{k} = {toml_value(v)}" for k, v in own.items())] if own else []
+
+
+def _whole(method: Method) -> tuple[int, int]:
+    return method.ranges[0].first, method.ranges[-1].last
+
+
+def _options() -> Iterator[tuple[str, str]]:
+    for step, field in Steps.model_fields.items():
+        options = field.annotation
+        assert options is not None  # noqa: S101 - every step of `Steps` is a model
+        yield from ((step, option) for option in options.model_fields)
+
+
+def _together(last: list[Difference], one: Difference) -> list[Difference]:
+    """A difference joined to the one before it, where it goes on in the next season."""
+    for held in last:
+        here = (held.step, held.option, held.last + 1, held.after)
+        if here == (one.step, one.option, one.first, one.after):
+            before = held.before + tuple(v for v in one.before if v not in held.before)
+            return [replace(held, last=one.last, before=before)]
+    return [*last, one]

@@ -1,0 +1,58 @@
+"""A method as the text of a method file; reading one stands in `pipeline.method.definition`."""
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from herijk.pipeline.method.definition import LAST_SEASON, Method
+
+
+def method_text(method: Method) -> str:
+    """A method as TOML that stands alone: every option of every season, nothing inherited.
+
+    Reading it gives a method with the same content hash and register rule.
+    """
+    years = {k: v for k, v in method.validity.model_dump().items() if v is not None}
+    seasons = range_text(method.ranges[0].first, method.ranges[-1].last)
+    lines = [
+        *(
+            f"{key} = {toml_value(value)}"
+            for key, value in (
+                ("name", method.name),
+                ("title", method.title),
+                ("title_en", method.title_en),
+                ("description", method.description),
+                ("seasons", seasons),
+            )
+        ),
+        "",
+        "[register]",
+        *(f"{key} = {toml_value(value)}" for key, value in years.items()),
+    ]
+    for held in method.ranges:
+        steps = held.steps.model_dump(mode="json", exclude_none=True)
+        lines += ["", *override_lines(range_text(held.first, held.last), steps)]
+    return "\n".join(lines) + "\n"
+
+
+def override_lines(range_of: str, steps: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """The lines of an `[[overrides]]` block."""
+    return ["[[overrides]]", f"range = {toml_value(range_of)}", *step_lines(steps)]
+
+
+def step_lines(steps: Mapping[str, Mapping[str, Any]]) -> list[str]:
+    """One line a step, with its options."""
+    return [
+        f"{step} = {{ {', '.join(f'{key} = {toml_value(value)}' for key, value in held.items())} }}"
+        for step, held in steps.items()
+    ]
+
+
+def toml_value(value: Any) -> str:
+    """A text, number, truth value or list as TOML, which differs from JSON in one character."""
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def range_text(first: int, last: int) -> str:
+    """A season range as method files write it."""
+    return f"{first}:" if last == LAST_SEASON else f"{first}:{last}"

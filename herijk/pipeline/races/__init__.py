@@ -1,0 +1,1 @@
+"""Races: from time and distance to speed and power, and back."""

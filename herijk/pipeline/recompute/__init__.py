@@ -1,0 +1,1 @@
+"""All tows under one method: the steps in their order, and the tables that come out."""

@@ -1,0 +1,223 @@
+"""How sure a curve is: the random part from its points, and the budget of every component.
+
+Here outcomes are given to `pipeline.uncertainty.propagation`, which has the formulas, and the interval of Cw
+at the declared speed comes back. A method with estimated season factors knows the whole archive:
+its scatter is pooled over a season. Any other method is taken at its word, tow by tow: its
+interval rests on the tow's own points and holds if its log factors are right.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+import polars as pl
+
+from herijk.pipeline import curve
+from herijk.pipeline.arrays import FloatArray
+from herijk.pipeline.recompute.outcome import Outcome
+from herijk.pipeline.season_log import SeasonFactors
+from herijk.pipeline.steps.speed import log_part
+from herijk.pipeline.uncertainty.propagation import (
+    Assumed,
+    budget,
+    combine,
+    residual_scatter,
+    run_point_uncertainty,
+)
+
+ARCHIVE_COEFFICIENT_SD: Final = 0.01
+"""Of the one coefficient found for the whole archive (research, method.md 0.9; measured here)."""
+
+DECLARED: Final = 1.0
+"""The declared speed among speed ratios."""
+
+CURVE_SPEED_RATIOS: Final = tuple(thousandths / 1000 for thousandths in range(850, 1151, 25))
+"""Speeds of the points of a curve / declared speed: the range in which a curve is valid, with
+`DECLARED` in the middle."""
+
+USUAL_BEND: Final = 0.4
+"""q where the archive is not asked for it (research, method.md 0.7: r of 0.3)."""
+
+
+def scatter_of(o: Outcome, pooled: bool) -> curve.Scatter:
+    """Scatter of single run points: of the season, or of each tow alone."""
+    return pooled_scatter(o) if pooled else curve.own_scatter(o.free)
+
+
+def pooled_scatter(o: Outcome) -> curve.Scatter:
+    """Scatter of single run points about their curve, pooled over the tows of a season."""
+    on_curve = curve.cw(
+        o.free.a_kg_m[:, None],
+        o.free.s_s2_m2[:, None],
+        np.where(o.points.used, o.points.speed_m_s, 0.0),
+    )
+    used = o.points.used & np.isfinite(on_curve) & o.free.converged[:, None]
+    ratio = np.where(used, o.points.cw_kg_m / np.where(used, on_curve, 1.0) - 1.0, 0.0)
+    season = o.batch.of_tow("season").astype(np.int64)
+    residual, dof = residual_scatter(ratio, used, season)
+    known = np.isfinite(residual)
+    relative = np.where(known, residual, 0.0)
+    height = np.where(used, on_curve, 0.0).sum(axis=1) / np.maximum(used.sum(axis=1), 1)
+    return curve.Scatter((relative * height) ** 2, np.where(known, dof, 0.0))
+
+
+def run_point_ratio(o: Outcome) -> FloatArray:
+    """Relative uncertainty of each run point from within the runs of its season, shape (runs,)."""
+    season = o.batch.of_tow("season").astype(np.int64)[o.batch.tow]
+    return run_point_uncertainty(o.batch.blocks, o.windows.mask, season, o.steps.speed.source)
+
+
+def budget_of(
+    outcomes: Sequence[Outcome], found: SeasonFactors | None, speed_ratios: Sequence[float]
+) -> pl.DataFrame:
+    """Every component of the uncertainty of Cw at some speeds, per tow with a curve.
+
+    Away from the declared speed the random part grows, and a speed error acts through the
+    elasticity there.
+
+    Args:
+        outcomes: all batches of a method.
+        found: its season factors, if it has estimated ones.
+        speed_ratios: those speeds / declared speed.
+
+    Returns:
+        Rows as `pipeline.uncertainty.propagation.budget` gives them.
+    """
+    return pl.concat([_budget_of_batch(o, found, speed_ratios) for o in outcomes])
+
+
+def curve_points(outcomes: Sequence[Outcome], bounds: pl.DataFrame) -> pl.DataFrame:
+    """Curves over the speeds at which they are valid, with the 95 % interval of Cw at each.
+
+    Args:
+        outcomes: all batches of a method.
+        bounds: those of `cw_bounds` at `CURVE_SPEED_RATIOS`.
+
+    Returns:
+        `tow_id, speed_m_s, cw_kg_m, cw_lo_kg_m, cw_hi_kg_m`: a row per tow and speed of
+        `CURVE_SPEED_RATIOS`, none at speeds from B on.
+    """
+    points = pl.concat([_at_speeds(o, CURVE_SPEED_RATIOS) for o in outcomes])
+    at = ["tow_id", "speed_ratio"]
+    return points.join(bounds, on=at, maintain_order="left").select(
+        "tow_id",
+        "speed_m_s",
+        "cw_kg_m",
+        (pl.col("cw_kg_m") * pl.col("lo_ratio")).alias("cw_lo_kg_m"),
+        (pl.col("cw_kg_m") * pl.col("hi_ratio")).alias("cw_hi_kg_m"),
+    )
+
+
+def cw_bounds(held: pl.DataFrame) -> pl.DataFrame:
+    """Bounds of the 95 % interval of Cw relative to Cw, per tow and speed of a budget.
+
+    Returns:
+        `tow_id, speed_ratio, lo_ratio, hi_ratio`.
+    """
+    return combine(held).select("tow_id", "speed_ratio", "lo_ratio", "hi_ratio")
+
+
+def _budget_of_batch(
+    o: Outcome, found: SeasonFactors | None, speed_ratios: Sequence[float]
+) -> pl.DataFrame:
+    bend = USUAL_BEND if found is None else _median_bend(o)
+    scatter = scatter_of(o, found is not None)
+    terms = _terms_of_tows(o, found, scatter)
+    cw, r = pl.col("cw_kg_m"), bend / (1.0 + bend) * pl.col("speed_ratio") ** 2
+    random = np.concatenate([_random_ratio(o, scatter, ratio) for ratio in speed_ratios])
+    rows = (
+        _at_speeds(o, speed_ratios)
+        .with_columns(pl.Series("random_ratio", random))
+        .filter(cw.is_finite())
+        .join(terms, on="tow_id", maintain_order="left")
+        .with_columns(
+            (2.0 / (1.0 - r)).alias("kappa"),
+            (pl.col("net_air_kg_m") / cw).alias("air_ratio"),
+            (pl.col("air_per_coefficient_kg_m") / cw).alias("air_per_coefficient"),
+        )
+    )
+    return budget(rows, _assumed(o, found, bend, terms["net_air_kg_m"].to_numpy()))
+
+
+def _at_speeds(o: Outcome, speed_ratios: Sequence[float]) -> pl.DataFrame:
+    """Every tow at every speed: `tow_id, speed_ratio, speed_m_s, cw_kg_m`, NaN from B on."""
+    return pl.concat(
+        [
+            o.batch.tows.select(
+                "tow_id",
+                pl.lit(ratio).alias("speed_ratio"),
+                (ratio * pl.col("declared_speed_m_s")).alias("speed_m_s"),
+                pl.Series("cw_kg_m", o.cw_at(ratio)),
+            )
+            for ratio in speed_ratios
+        ]
+    )
+
+
+def _random_ratio(o: Outcome, scatter: curve.Scatter, speed_ratio: float) -> FloatArray:
+    """Relative random uncertainty of Cw at a speed / declared speed, shape (tows,)."""
+    speed = speed_ratio * o.batch.of_tow("declared_speed_m_s")
+    errors = curve.covariance(o.points, o.free, scatter, speed)
+    cw = o.free.cw_at(speed)
+    known = np.isfinite(cw) & np.isfinite(errors.c0_variance_kg2_m2)
+    variance = np.where(known, errors.c0_variance_kg2_m2, 1.0)
+    return np.where(known, np.sqrt(variance) / np.where(known, cw, 1.0), 1.0)
+
+
+def _terms_of_tows(o: Outcome, found: SeasonFactors | None, scatter: curve.Scatter) -> pl.DataFrame:
+    """What `pipeline.uncertainty.propagation.budget` asks of tows, as far as it is the same at any speed."""
+    batch = o.batch
+    estimated = np.isfinite(o.estimated.factor)
+    net_air = batch.mean(o.air_kg_m - o.still_air_kg_m, o.used)
+    # A larger coefficient takes more off as felt and puts more back for still air.
+    still_unit = o.still_air_kg_m / np.maximum(o.still_air_coefficient, 1e-9)
+    per_coefficient = batch.mean(still_unit - o.air_unit_kg_m, o.used)
+    return batch.tows.select(
+        "tow_id",
+        "season",
+        log_part(o.steps.speed.source),
+        pl.lit(o.steps.speed.source).alias("log"),
+        pl.Series("random_dof", scatter.dof),
+        pl.Series("calibrated", o.calibrated),
+        pl.Series("log_sd", np.where(estimated, o.estimated.ln_sd, 0.0)),
+        pl.Series("log_dof", np.where(estimated, o.estimated.dof, np.inf)),
+        pl.Series("wander_sd", np.where(o.calibrated, 0.0, _wander(o, found))),
+        pl.Series("net_air_kg_m", net_air),
+        pl.Series("air_per_coefficient_kg_m", per_coefficient),
+        pl.Series("temperature_known", o.temperature_known),
+    )
+
+
+def _median_bend(o: Outcome) -> float:
+    """Median of q at the declared speed over the batch."""
+    declared = o.batch.of_tow("declared_speed_m_s")
+    r = np.where(o.free.converged, o.free.s_s2_m2 * declared**2, np.nan)
+    known = np.isfinite(r) & (r > 0.0) & (r < 1.0)
+    return float(np.median(r[known] / (1.0 - r[known]))) if known.any() else USUAL_BEND
+
+
+def _wander(o: Outcome, found: SeasonFactors | None) -> FloatArray:
+    """Standard deviation of ln of the log factor from tow to tow, by era."""
+    if found is None:
+        return np.zeros(o.batch.size)
+    season = o.batch.of_tow("season")
+    wander = np.zeros(o.batch.size)
+    for first, sd in sorted(found.wander_sd.items()):
+        wander = np.where(season >= first, sd, wander)
+    return wander
+
+
+def _assumed(
+    o: Outcome, found: SeasonFactors | None, bend: float, net_air_kg_m: FloatArray
+) -> Assumed:
+    """What is assumed, or shown by repeat tows: of Cw at the declared speed, whatever is asked."""
+    assumed = Assumed()
+    if o.steps.wind.coefficients == "archive":
+        assumed = replace(assumed, wind_coefficient=ARCHIVE_COEFFICIENT_SD)
+    if found is None:
+        return assumed
+    sound = np.isfinite(o.cw_at_declared)
+    air_ratio = net_air_kg_m[sound] / o.cw_at_declared[sound]
+    usual_air = float(np.sqrt(np.mean(air_ratio**2))) if sound.any() else 0.0
+    return assumed.as_repeats_show(found.tow_sd, 2.0 * (1.0 + bend), usual_air)

@@ -1,0 +1,267 @@
+"""The results of a method as tables of the warehouse.
+
+Arrays in, frames out; a number that is not known becomes null here, never NaN. What is computed
+stands in `pipeline.recompute.recompute`; how sure it is, in `pipeline.recompute.budget`; what a person should look
+at, in `pipeline.assessment.assess`.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import polars as pl
+import scipy
+from numpy.typing import ArrayLike
+
+from herijk.pipeline import curve
+from herijk.pipeline.arrays import BoolArray
+from herijk.pipeline.assessment.assess import assess, with_status
+from herijk.pipeline.method.definition import Method
+from herijk.pipeline.races.race import power_per_rower_w
+from herijk.pipeline.recompute.budget import (
+    CURVE_SPEED_RATIOS,
+    DECLARED,
+    budget_of,
+    curve_points,
+    cw_bounds,
+    run_point_ratio,
+    scatter_of,
+)
+from herijk.pipeline.recompute.outcome import Outcome
+from herijk.pipeline.season_log import SeasonFactors, log_or_force, other_log_factors, retow_choice
+from herijk.pipeline.season_log.ties import TIE_SCHEMA
+from herijk.pipeline.steps.speed import log_factor
+from herijk.pipeline.steps.wind import mean_wind_angle_deg
+
+LEVEL = 0.95
+
+
+@dataclass(frozen=True)
+class Recomputed:
+    """The tables of one method, named as in the warehouse, and the season factors behind them.
+
+    Attributes:
+        factors: with their covariance, for the ensemble; None if the method estimates none.
+    """
+
+    run_points: pl.DataFrame
+    curves: pl.DataFrame
+    log_factors: pl.DataFrame
+    assessments: pl.DataFrame
+    uncertainty_budget: pl.DataFrame
+    curve_points: pl.DataFrame
+    season_links: pl.DataFrame
+    retow_choice: pl.DataFrame
+    season_steps: pl.DataFrame
+    factors: SeasonFactors | None
+
+
+def as_tables(
+    method: Method,
+    tows: pl.DataFrame,
+    outcomes: Sequence[Outcome],
+    found: SeasonFactors | None,
+    with_bands: bool = True,
+) -> Recomputed:
+    """The tables of a method from its batches; tows are assessed when all curves are there."""
+    name = pl.lit(method.name).alias("method")
+
+    def together(frames: list[pl.DataFrame]) -> pl.DataFrame:
+        return pl.concat(frames).select(name, pl.all())
+
+    pooled, at_declared = found is not None, pl.col("speed_ratio") == DECLARED
+    run_points = together([_run_points(o, pooled) for o in outcomes])
+    budget = budget_of(outcomes, found, CURVE_SPEED_RATIOS if with_bands else (DECLARED,))
+    bounds = cw_bounds(budget)
+    curves = together([_curves(o, bounds.filter(at_declared), pooled) for o in outcomes])
+    assessments = assess(curves, run_points, tows)
+    rejecting = [
+        (season, check)
+        for season in tows["season"].unique().sort()
+        for check in method.for_season(season).assessment.reject
+    ]
+    return Recomputed(
+        run_points=run_points,
+        curves=with_status(curves, assessments, rejecting),
+        log_factors=together([_log_factors(o, found) for o in outcomes]),
+        assessments=assessments,
+        uncertainty_budget=budget.filter(at_declared).select(
+            name,
+            pl.exclude("speed_ratio", "dof"),
+            pl.when(pl.col("dof").is_finite()).then("dof").alias("dof"),
+        ),
+        curve_points=curve_points(outcomes, bounds).select(name, pl.all())
+        if with_bands
+        else pl.DataFrame(),
+        season_links=_season_links(found).select(name, pl.all()),
+        retow_choice=_retow_choice(found).select(name, pl.all()),
+        season_steps=_season_steps(found).select(name, pl.all()),
+        factors=found,
+    )
+
+
+def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
+    blocks, mask, found = o.batch.blocks, o.windows.mask, o.windows.found
+    tow = o.batch.tow
+    on_curve = curve.cw(o.curves.a_kg_m[tow], o.curves.s_s2_m2[tow], o.speed_m_s)
+    log1 = np.where(found, blocks.mean("log1_v", mask), 1.0)
+    gps_samples = blocks.total("gps_n", mask)
+    gps = blocks.total("gps", mask) / np.maximum(gps_samples, 1.0)
+    numbers = {
+        "window_start_s": o.windows.start_s,
+        "window_end_s": o.windows.end_s,
+        "speed_factor": o.speed_factor,
+        "speed_m_s": o.speed_m_s,
+        "gross_cw_kg_m": o.gross_kg_m,
+        "inertia_cw_kg_m": o.inertia_kg_m,
+        "air_cw_kg_m": o.air_kg_m,
+        "still_air_cw_kg_m": o.still_air_kg_m,
+        "temperature_cw_kg_m": o.temperature_kg_m,
+        "wind_coefficient_ahead": o.ahead,
+        "wind_coefficient_behind": o.behind,
+        "cw_kg_m": o.cw_kg_m,
+        "cw_sd": o.sd_kg_m,
+        "u_ratio": run_point_ratio(o) if pooled else np.full(len(tow), np.nan),
+        "wind_m_s": blocks.mean("wind_v", mask),
+        "wind_angle_deg": mean_wind_angle_deg(blocks, mask),
+        "log2_ratio": blocks.mean("log2_v", mask) / log1,
+    }
+    return blocks.runs.select("tow_id", "run", "direction", "target_speed_ratio").with_columns(
+        *(_column(name, values, found) for name, values in numbers.items()),
+        _column("gps_ratio", gps / log1, found & (gps_samples > 0)),
+        _column("fitted_cw_kg_m", on_curve, found & o.curves.converged[tow]),
+        pl.Series("cut_reason", o.windows.reasons, pl.String),
+        pl.Series("used", o.used),
+        pl.Series("reason", o.reasons, pl.String),
+    )
+
+
+def _curves(o: Outcome, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
+    tows = o.batch.tows
+    declared = o.batch.of_tow("declared_speed_m_s")
+    cw = o.curves.cw_at(declared)
+    sound = o.curves.converged & np.isfinite(cw)
+    mine = tows.select("tow_id").join(bounds, on="tow_id", how="left", maintain_order="left")
+    lo, hi = (mine[name].fill_null(np.nan).to_numpy() for name in ("lo_ratio", "hi_ratio"))
+    b_interval = curve.b_interval(o.points, o.free, scatter_of(o, pooled))
+    safe_cw = np.where(sound, cw, 1.0)
+    residual = np.sqrt(o.curves.rss_kg2_m2 / np.maximum(o.curves.n_points - 2, 1)) / safe_cw
+    numbers = {
+        "a_kg_m": o.curves.a_kg_m,
+        "cw_kg_m": cw,
+        "cw_lo_kg_m": cw * lo,
+        "cw_hi_kg_m": cw * hi,
+        "b_lo_m_s": b_interval.lo,
+        "b_hi_m_s": b_interval.hi,
+        "power_w": power_per_rower_w(safe_cw, declared, o.batch.of_tow("rowers")),
+        "residual_sd_ratio": residual,
+    }
+    return tows.select(
+        "tow_id", "fsn_no", "season", "rowers", "crew_class", "declared_speed_m_s"
+    ).with_columns(
+        *(_column(name, values, sound) for name, values in numbers.items()),
+        _column("b_m_s", o.curves.b_m_s, sound & o.curves.b_determined),
+        _column("calibration_factor", o.calibration_factor, _calibrated(o)),
+        pl.Series("b_capped", o.curves.b_capped),
+        pl.Series("runs_used", o.batch.count(o.used), pl.Int8),
+    )
+
+
+def _calibrated(o: Outcome) -> BoolArray:
+    return np.full(o.batch.size, o.steps.calibration.rule != "none")
+
+
+def _log_factors(o: Outcome, found: SeasonFactors | None) -> pl.DataFrame:
+    """The factor of each season: from GPS, estimated, prescribed or none, in this order.
+
+    With a calibration per tow it is the mean of the tows' factors, with a t interval of that mean.
+    A tow's own factor stands in `run_points.speed_factor`.
+    """
+    seasons = o.batch.tows["season"].unique().sort()
+    if o.steps.calibration.rule != "none":
+        rows = [_mean_factor(o, season) for season in seasons]
+    else:
+        rows = [_factor_row(o, season, found) for season in seasons]
+    schema = {"season": pl.Int32(), "factor": pl.Float64(), "lo": pl.Float64(), "hi": pl.Float64()}
+    return pl.DataFrame(rows, schema=schema | {"source": pl.String()}, orient="row")
+
+
+FactorRow = tuple[int, float, float | None, float | None, str]
+
+
+def _mean_factor(o: Outcome, season: int) -> FactorRow:
+    mine = (o.batch.of_tow("season") == season) & o.calibrated
+    ln_factor = np.log((o.known_factor * o.calibration_factor)[mine])
+    n = len(ln_factor)
+    if n == 0:
+        return season, 1.0, None, None, "none"
+    mean = float(ln_factor.mean())
+    if n == 1:
+        return season, float(np.exp(mean)), None, None, "gps"
+    half = float(scipy.special.stdtrit(n - 1, 0.5 + LEVEL / 2) * ln_factor.std(ddof=1) / np.sqrt(n))
+    return (
+        season,
+        float(np.exp(mean)),
+        float(np.exp(mean - half)),
+        float(np.exp(mean + half)),
+        "gps",
+    )
+
+
+def _factor_row(o: Outcome, season: int, found: SeasonFactors | None) -> FactorRow:
+    speed = o.steps.speed
+    if found is not None and speed.correction == "estimated":
+        known = found.of_season(season, speed.source)
+        if known is not None:
+            return (season, *known)
+    nothing = np.array([np.nan])
+    factor = float(log_factor(speed, nothing, nothing)[0])
+    return season, factor, None, None, "none" if factor == 1.0 else "prescribed"
+
+
+def _season_links(found: SeasonFactors | None) -> pl.DataFrame:
+    """What each estimated factor rests on; no rows where nothing was estimated."""
+    if found is None:
+        return pl.DataFrame(schema=LINK_SCHEMA)
+    rows = pl.concat([found.factors, other_log_factors(found)], how="diagonal_relaxed")
+    return rows.select(pl.col(name).cast(kind) for name, kind in LINK_SCHEMA.items())
+
+
+def _season_steps(found: SeasonFactors | None) -> pl.DataFrame:
+    """Whether a season's step is the log's or the load cell's; no rows without an estimate."""
+    if found is None:
+        return pl.DataFrame(schema=STEP_SCHEMA)
+    told = log_or_force(found.tows, found)
+    return told.select(pl.col(name).cast(kind) for name, kind in STEP_SCHEMA.items())
+
+
+STEP_SCHEMA = (
+    {"season": pl.Int32(), "part": pl.Int32(), "log": pl.String(), "n_boats": pl.Int32()}
+    | dict.fromkeys(("level_step", "level_step_sd", "force_step", "force_step_sd"), pl.Float64())
+    | {"cause": pl.String()}
+)
+
+
+def _retow_choice(found: SeasonFactors | None) -> pl.DataFrame:
+    """The boats that would make estimated factors surer; no rows where nothing was estimated."""
+    return pl.DataFrame(schema=TIE_SCHEMA) if found is None else retow_choice(found)
+
+
+LINK_SCHEMA = (
+    {"season": pl.Int32(), "part": pl.Int32(), "log": pl.String(), "source": pl.String()}
+    | dict.fromkeys(("n_tows", "n_links", "component", "critical_boats"), pl.Int32())
+    | dict.fromkeys(("factor", "lo", "hi", "ln_sd", "dof", "influence"), pl.Float64())
+    | {"influence_boat": pl.String()}
+    | dict.fromkeys(
+        ("weakest_mode", "factor_no_boats", "lo_no_boats", "hi_no_boats", "agreement"),
+        pl.Float64(),
+    )
+)
+
+
+def _column(name: str, values: ArrayLike, known: BoolArray) -> pl.Series:
+    """A column of numbers, null where nothing is known or the number is infinite."""
+    numbers = np.asarray(values, dtype=np.float64)
+    sound = known & np.isfinite(numbers)
+    column = pl.Series(name, np.where(sound, numbers, 0.0))
+    return pl.select(pl.when(pl.Series(sound)).then(column).alias(name)).to_series()

@@ -1,0 +1,51 @@
+"""Windows and means of runs that were found before: half of the time of a recompute goes into them.
+
+Most changes of a method leave them as they are: they depend on few of its options. Only those
+belong here that do not depend on a log factor or on other tows.
+"""
+
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+from herijk.pipeline.blocks.batch import Batch
+from herijk.pipeline.method.definition import RunPoint, Steps, Wind, Window
+from herijk.pipeline.steps.resistance import RunMeans, run_means
+from herijk.pipeline.steps.window import Windows, choose_windows
+
+Seasons: TypeAlias = tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class RunCache:
+    """Windows and means of all tows of some seasons by the options that they depend on.
+
+    Of one set of tows; another needs a cache of its own.
+    """
+
+    _windows: dict[tuple[Seasons, Window], Windows] = field(default_factory=dict)
+    _means: dict[tuple[Seasons, Window, str, RunPoint, Wind], RunMeans] = field(
+        default_factory=dict
+    )
+
+    def windows(self, batch: Batch, steps: Steps) -> Windows:
+        """The window of every run of a batch."""
+        key = (batch.seasons, steps.window)
+        if key not in self._windows:
+            self._windows[key] = choose_windows(batch.blocks, steps.window)
+        return self._windows[key]
+
+    def means(self, batch: Batch, steps: Steps) -> RunMeans:
+        """The means of every run of a batch over its window."""
+        key = (batch.seasons, steps.window, steps.speed.source, steps.run_point, steps.wind)
+        if key not in self._means:
+            self._means[key] = run_means(batch, self.windows(batch, steps).mask, steps)
+        return self._means[key]
+
+    def __len__(self) -> int:
+        """Entries held."""
+        return len(self._windows) + len(self._means)
+
+    def clear(self) -> None:
+        """Forgets everything."""
+        self._windows.clear()
+        self._means.clear()

@@ -1,0 +1,210 @@
+"""Season factors: what the joint estimate is given, and what it gives to the tows.
+
+Every tow is first computed without any factor for the seasons whose factor is estimated; from
+those curves the factors follow, once, and are applied after (never tuned in a loop). The statistics
+stand in `pipeline.season_log`.
+"""
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+import polars as pl
+
+from herijk.pipeline import curve
+from herijk.pipeline.arrays import FloatArray
+from herijk.pipeline.blocks.batch import Batch
+from herijk.pipeline.method.definition import Steps
+from herijk.pipeline.recompute.budget import pooled_scatter
+from herijk.pipeline.recompute.outcome import Outcome, TowFactor
+from herijk.pipeline.season_log import GROUP, LINE, SeasonFactors, estimate_season_factors
+from herijk.pipeline.steps.calibration import gps_factor
+from herijk.pipeline.steps.speed import log_part
+
+FEWEST_OF_TYPE: Final = 5
+"""A type's own bend is taken from so many anchored tows on."""
+
+LEAST_SPREAD: Final = 1e-6
+"""Variance of the bend between boats of a type: none at all would leave nothing to divide by."""
+
+GPS: Final = "gps_per_tow"
+
+OTHER_LOG: Final = {"log1": "log2", "log2": "log1"}
+"""The log beside the one in use; none where their mean is used."""
+
+
+def is_estimated(steps: Steps) -> bool:
+    """Whether these steps ask for an estimated log factor."""
+    return steps.speed.correction == "estimated"
+
+
+def without_factor(steps: Steps) -> Steps:
+    """The steps with the log as it reads where its factor is to be estimated."""
+    if not is_estimated(steps):
+        return steps
+    speed = steps.speed.model_copy(update={"correction": "none"})
+    return steps.model_copy(update={"speed": speed})
+
+
+def find_season_factors(outcomes: Sequence[Outcome]) -> SeasonFactors:
+    """The log factors of all seasons, from tows computed without them.
+
+    Args:
+        outcomes: all batches under `without_factor`.
+    """
+    return estimate_season_factors(_with_kappa(_tow_rows(outcomes)))
+
+
+def _tow_rows(outcomes: Sequence[Outcome]) -> pl.DataFrame:
+    """One row a tow with a sound curve, at one speed per line: its median declared speed."""
+    declared = pl.concat([o.batch.tows.select(*LINE, "declared_speed_m_s") for o in outcomes])
+    reference = declared.group_by(LINE).agg(pl.col("declared_speed_m_s").median().alias("speed"))
+    return pl.concat([_rows(o, reference) for o in outcomes]).drop_nulls("ln_cw")
+
+
+def factor_of_tows(batch: Batch, steps: Steps, factors: pl.DataFrame | None) -> TowFactor:
+    """The estimated factor of each tow's log, in its part of the season.
+
+    Args:
+        batch: the tows.
+        steps: what is asked of them.
+        factors: rows of `SeasonFactors.factors`, or of the table `season_links`.
+    """
+    if factors is None or not is_estimated(steps):
+        nothing = np.full(batch.size, np.nan)
+        return TowFactor(nothing, nothing, nothing)
+    held = batch.tows.select(*log_group(steps)).join(
+        factors.select(*GROUP, "factor", "ln_sd", "dof"),
+        on=GROUP,
+        how="left",
+        maintain_order="left",
+    )
+    columns = (held[name].cast(pl.Float64).to_numpy() for name in ("factor", "ln_sd", "dof"))
+    return TowFactor(*columns)
+
+
+def log_group(steps: Steps) -> tuple[pl.Expr, pl.Expr, pl.Expr]:
+    """What names the log of a tow: `GROUP`, from the columns of `tows`."""
+    source = steps.speed.source
+    return pl.col("season"), log_part(source), pl.lit(source).alias("log")
+
+
+def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
+    """One row a tow: its curve at its line's `speed`, how sure it is, and its GPS ratio."""
+    batch, steps = o.batch, o.steps
+    held = batch.tows.select(LINE).join(reference, on=LINE, how="left", maintain_order="left")
+    speed = held["speed"].to_numpy()
+    water = _water_points(o)
+    curves = curve.fit(water)
+    cw, r = curves.cw_at(speed), curves.s_s2_m2 * speed**2
+    errors = curve.covariance(water, curves, pooled_scatter(o), speed)
+    sound = curves.converged & np.isfinite(cw)
+    sure = sound & np.isfinite(errors.c0_variance_kg2_m2)
+    safe, safe_r = np.where(sound, cw, 1.0), np.where(sound, r, 0.0)
+    calibrated = steps.calibration.rule == GPS
+    gps, gps_sd, has_gps = _gps_ratio(o)
+    numbers = {
+        "ln_cw": np.where(sound, np.log(safe), np.nan),
+        "ln_cw_sd": np.where(sure, np.sqrt(errors.c0_variance_kg2_m2) / safe, 1.0),
+        "q": safe_r / (1.0 - safe_r),
+        "q_sd": np.where(sure, np.sqrt(errors.q_variance), 1.0),
+        "other_ln_ratio": _other_ln_ratio(o),
+        "gps_ln_ratio": np.where(has_gps & (not calibrated), gps, np.nan),
+        "gps_sd": np.where(has_gps & (not calibrated), gps_sd, np.nan),
+    }
+    names = ("tow_id", *LINE, "altered", "declared_speed_m_s")
+    return batch.tows.select(
+        *names,
+        pl.col("weight_kg", "waterline_length_m").cast(pl.Float64),
+        _boat_type(batch.tows),
+        *log_group(steps),
+        pl.lit(OTHER_LOG.get(steps.speed.source)).alias("other_log"),
+        log_part(OTHER_LOG.get(steps.speed.source, "mean")).alias("other_part"),
+        pl.lit(calibrated).alias("anchored"),
+        *(pl.Series(name, values).fill_nan(None) for name, values in numbers.items()),
+    )
+
+
+def _water_points(o: Outcome) -> curve.Points:
+    """Run points of the water alone: the still-air part does not scale with the log's error."""
+    water = o.batch.by_tow(o.cw_kg_m - o.still_air_kg_m)
+    return curve.Points(o.points.speed_m_s, water, o.points.used & (water > 0))
+
+
+def _other_ln_ratio(o: Outcome) -> FloatArray:
+    """Gives ln(log in use / other log), mean over each tow's runs; NaN where there is none."""
+    source = o.steps.speed.source
+    if source not in OTHER_LOG:
+        return np.full(o.batch.size, np.nan)
+    mean = {log: o.batch.blocks.mean(f"{log}_v", o.windows.mask) for log in ("log1", "log2")}
+    turning = o.used & (mean["log1"] > 0) & (mean["log2"] > 0)
+    ratio = mean[source] / np.where(turning, mean[OTHER_LOG[source]], 1.0)
+    ln_ratio = np.log(np.where(turning, ratio, 1.0))
+    return np.where(o.batch.any(turning), o.batch.mean(ln_ratio, turning), np.nan)
+
+
+def _boat_type(tows: pl.DataFrame) -> pl.Expr:
+    known = "boat_type" in tows.columns
+    return pl.col("boat_type") if known else pl.lit(None, dtype=pl.String).alias("boat_type")
+
+
+def _gps_ratio(o: Outcome) -> tuple[FloatArray, FloatArray, np.ndarray]:
+    """Gives ln(GPS / log) of each tow with runs both ways, its random part, and where known.
+
+    The random part is the scatter of run ratios about their direction's mean, pooled over the
+    batch: one tow's six runs are too few.
+    """
+    batch, mask = o.batch, o.windows.mask
+    samples = batch.blocks.total("gps_n", mask)
+    gps = batch.blocks.total("gps", mask) / np.maximum(samples, 1.0)
+    used = o.used & (samples > 0)
+    log = o.speed_m_s / o.speed_factor
+    y, both = gps_factor(gps, log, batch.direction, batch.tow, used, batch.size)
+    ratio = np.where(used, gps / np.where(used, log, 1.0), 1.0)
+    spread, count = 0.0, 0.0
+    for way in (1, -1):
+        mine = used & (batch.direction == way)
+        deviation = np.where(mine, ratio - batch.mean(ratio, mine)[batch.tow], 0.0)
+        spread += float((deviation**2).sum())
+        count += float(np.maximum(batch.count(mine) - 1, 0).sum())
+    run_sd = np.sqrt(spread / count) if count else 1.0
+    runs = np.maximum(batch.count(used), 1)
+    return np.log(np.where(both, y, 1.0)), run_sd / np.sqrt(runs), both
+
+
+def _with_kappa(rows: pl.DataFrame) -> pl.DataFrame:
+    """Adds `kappa`, the elasticity of the line's true curve, from the bend of its anchored tows.
+
+    One tow's bend is uncertain, boats of a type differ: the mean of a line's own anchored tows is
+    drawn towards its type (the fleet, where that has few) as far as its uncertainty is large
+    against the spread between boats. Without this the difference between boats, times a log error
+    of 5 %, passes for wander of the log.
+    """
+    anchored = rows.filter("anchored")
+    trusted = anchored if anchored.height else rows
+    by_type = trusted.group_by("boat_type").agg(pl.col("q").median().alias("q_type"), pl.len())
+    usual = by_type.filter(pl.col("len") >= FEWEST_OF_TYPE).select("boat_type", "q_type")
+    fleet = trusted["q"].median()
+
+    def typed(frame: pl.DataFrame) -> pl.DataFrame:
+        return frame.join(
+            usual, on="boat_type", how="left", nulls_equal=True, maintain_order="left"
+        ).with_columns(pl.col("q_type").fill_null(pl.lit(fleet, pl.Float64)))
+
+    deviation = (pl.col("q") - pl.col("q_type")).alias("deviation")
+    seen = typed(anchored).with_columns(deviation)
+    # The median of a squared standard normal number is 0.455.
+    spread = seen.select((deviation**2).median() / 0.455 - (pl.col("q_sd") ** 2).median()).item()
+    own = seen.group_by(LINE).agg(
+        (pl.col("deviation") / pl.col("q_sd") ** 2).sum().alias("pull"),
+        (pl.col("q_sd") ** -2.0).sum().alias("weight"),
+    )
+    between = max(spread or 0.0, LEAST_SPREAD)
+    shift = pl.col("pull") / (pl.col("weight") + 1.0 / between)
+    q = pl.col("q_type") + shift.fill_null(0.0)
+    return (
+        typed(rows)
+        .join(own, on=LINE, how="left", maintain_order="left")
+        .with_columns((2.0 + 2.0 * q).alias("kappa"))
+        .drop("q_type", "pull", "weight")
+    )

@@ -1,0 +1,104 @@
+"""The register: which tow counts for a boat and crew, and until when.
+
+Here the rule of validity and the choice of the tow. How decisions of people are written down, and
+the freezing of an edition, belong to `warehouse`. A boat without a valid tow is listed as such: the
+pair A, B with Cw = 1 of the old spreadsheet never comes back.
+"""
+
+import datetime as dt
+from typing import Final
+
+import polars as pl
+
+from herijk.pipeline.method.definition import RegisterRule
+
+LINE: Final = ("fsn_no", "rowers", "crew_class")
+CURVE_COLUMNS: Final = (
+    "tow_id",
+    "tow_date",
+    "valid_until",
+    "declared_speed_m_s",
+    "a_kg_m",
+    "b_m_s",
+    "cw_kg_m",
+    "cw_lo_kg_m",
+    "cw_hi_kg_m",
+)
+FIVE_YEARS: Final = RegisterRule()
+"""A tow counts until the end of the fifth calendar year after it (FSN notice, January 2013)."""
+
+EXCLUDE, PREFER = "exclude", "prefer"
+DECISION_SCHEMA: Final = {"tow_id": pl.String(), "verdict": pl.String()}
+NO_DECISIONS: Final = pl.DataFrame(schema=DECISION_SCHEMA)
+
+
+def draft_name(method: str) -> str:
+    """Name of the unpublished edition that a method would give."""
+    return f"concept-{method}"
+
+
+def valid_until(tow_date: pl.Expr, rule: RegisterRule) -> pl.Expr:
+    """The last day on which a tow counts: the end of its last calendar year."""
+    year = tow_date.dt.year()
+    years = pl.lit(rule.valid_years)
+    if rule.six_years_from is not None:
+        years = pl.when(year >= rule.six_years_from).then(6).otherwise(years)
+    return pl.date(year + years, 12, 31)
+
+
+def draft_register(
+    curves: pl.DataFrame,
+    tows: pl.DataFrame,
+    boats: pl.DataFrame,
+    on_date: dt.date,
+    rule: RegisterRule = FIVE_YEARS,
+    decisions: pl.DataFrame = NO_DECISIONS,
+) -> pl.DataFrame:
+    """One line per boat and crew under one method: the newest sound tow, valid or not.
+
+    Args:
+        curves: rows of the warehouse's `curves` of one method.
+        tows: rows of `tows`.
+        boats: listed boats with `fsn_no`, `rowers`, `crew_class`; those never towed are listed too.
+        on_date: the day on which validity is judged; later tows do not exist yet.
+        rule: how long a tow counts.
+        decisions: `tow_id` and `verdict`: a tow to `exclude`, or to `prefer` over newer ones.
+
+    Returns:
+        Rows of the table `register`, with status `valid`, `expired`, `rejected` (towed, but no tow
+        gives a curve), `excluded` (by decision, and there is no other tow) or `never_towed`.
+    """
+    towed = curves.join(
+        tows.filter(pl.col("tow_date") <= on_date).select("tow_id", "tow_date"), on="tow_id"
+    )
+    sound = towed.filter(pl.col("status") != "rejected")
+    allowed = sound.join(_with_verdict(decisions, EXCLUDE), on="tow_id", how="anti")
+    preferred = pl.col("tow_id").is_in(_with_verdict(decisions, PREFER)["tow_id"].implode())
+    chosen = (
+        allowed.sort(preferred, "tow_date", "tow_id")
+        .group_by(LINE, maintain_order=True)
+        .last()
+        .with_columns(valid_until(pl.col("tow_date"), rule).alias("valid_until"))
+        .with_columns(
+            pl.when(pl.col("valid_until") >= on_date)
+            .then(pl.lit("valid"))
+            .otherwise(pl.lit("expired"))
+            .alias("status")
+        )
+        .select(*LINE, *CURVE_COLUMNS, "status")
+    )
+    crews = boats.drop_nulls(["rowers", "crew_class"]).select(LINE)
+    without = [
+        (sound.join(chosen, on=LINE, how="anti"), "excluded"),
+        (towed.join(sound, on=LINE, how="anti"), "rejected"),
+        (crews.join(towed, on="fsn_no", how="anti"), "never_towed"),
+    ]
+    lines = [
+        frame.select(LINE).unique().with_columns(pl.lit(status).alias("status"))
+        for frame, status in without
+    ]
+    return pl.concat([chosen, *lines], how="diagonal").sort(LINE)
+
+
+def _with_verdict(decisions: pl.DataFrame, verdict: str) -> pl.DataFrame:
+    return decisions.filter(pl.col("verdict") == verdict)

@@ -1,0 +1,226 @@
+"""From tows to season factors: the joint estimate, its uncertainty and check, as one table."""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import polars as pl
+import scipy
+
+from herijk.pipeline.arrays import FloatArray, IntArray
+from herijk.pipeline.choice import first_largest
+from herijk.pipeline.errors import BrokenPromiseError
+from herijk.pipeline.season_log.assumed import USUAL, Settings
+from herijk.pipeline.season_log.joint import AGEING, Fit, Rows, fit_jointly, leave_boats_out
+from herijk.pipeline.season_log.left_out import LeftOut
+from herijk.pipeline.season_log.network import GROUP, Network
+from herijk.pipeline.season_log.scatter import tow_scatter
+from herijk.pipeline.season_log.without_boats import Second, without_boats
+
+LEVEL: Final = 0.95
+ESTIMATED: Final = "estimated"
+GPS: Final = "gps"
+NOT_DETERMINED: Final = "not determined"
+
+
+@dataclass(frozen=True)
+class SeasonFactors:
+    """Log factors with all that is known about them.
+
+    Attributes:
+        factors: one row per season, part and log that has tows without dGPS calibration, sorted:
+            `season, part, log, factor, lo, hi, source, ln_sd, dof, n_tows, n_links, component,
+            influence, influence_boat, critical_boats, weakest_mode, factor_no_boats,
+            lo_no_boats, hi_no_boats, agreement`. See `estimate_season_factors`.
+        covariance: covariance of ln factor between the rows of `factors` that are determined, in
+            their order.
+        wander_sd: standard deviation of ln factor from tow to tow, by first season of the era.
+        tow_sd: standard deviation of ln Cw of a calibrated tow beyond its random part, without
+            boats that changed.
+        ageing_per_year: change of ln Cw per year, with `ageing_sd`.
+        weakest_mode_sd: standard deviation of the combination of ln factors that is known worst.
+        tows: what it was estimated from.
+    """
+
+    factors: pl.DataFrame
+    covariance: FloatArray
+    wander_sd: dict[int, float]
+    tow_sd: float
+    ageing_per_year: float
+    ageing_sd: float
+    weakest_mode_sd: float
+    tows: pl.DataFrame
+
+    def of_season(self, season: int, log: str) -> tuple[float, float, float, str] | None:
+        """Factor, bounds and source of a season; None where not determined.
+
+        Where the log was replaced it is the mean over the tows of its determined parts.
+        """
+        known = self.factors.drop_nulls("factor")
+        mine = (known["season"] == season) & (known["log"] == log)
+        parts = known.filter(mine)
+        if parts.height < 2:
+            return next(parts.select("factor", "lo", "hi", "source").iter_rows(), None)
+        count = np.where(mine, known["n_tows"].to_numpy(), 0)
+        share = count / count.sum()
+        ln_factor = share @ known["factor"].log().to_numpy()
+        sd = np.sqrt(share @ self.covariance @ share)
+        half = sd * scipy.special.stdtrit(parts["dof"].to_numpy().min(), 0.5 * (1.0 + LEVEL))
+        factor, lo, hi = np.exp(ln_factor + np.array([0.0, -half, half])).tolist()
+        return factor, lo, hi, ESTIMATED if (parts["source"] == ESTIMATED).any() else GPS
+
+
+def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> SeasonFactors:
+    """Log factors of all seasons at once, from repeat tows and plain GPS.
+
+    Args:
+        tows: one row per sound tow:
+            `tow_id, season, part, log`; `fsn_no, rowers, crew_class` (the line);
+            `ln_cw`, ln Cw at one reference speed of the line, by the log as it reads (anchored
+            tows: as calibrated) and corrected for everything else;
+            `kappa`, elasticity 2 / (1 - r) of the line's true curve there, from pooled q;
+            `ln_cw_sd`, its random part; `weight_kg, waterline_length_m` (may be null);
+            `boat_type` (may be null); `altered`, reported, since the line's previous tow;
+            `declared_speed_m_s`; `gps_ln_ratio`, ln(mean GPS / log), null without, with `gps_sd`,
+            its random part; `anchored`, calibrated on dGPS: no log error is left.
+        settings: what is assumed beforehand.
+
+    Returns:
+        The factors. `source` is `estimated` with boats that link the season to others, `gps` with
+        GPS alone, `not determined` (numbers null) where neither ties it to an anchored season.
+        `n_links` counts boats also towed elsewhere, `component` the connected part of the network
+        (0 has the anchor), `influence` is the largest change of the factor when one boat
+        (`influence_boat`) is left out, `critical_boats` how many boats would leave the season
+        undetermined, `weakest_mode` its share in the combination of seasons that is known worst,
+        `agreement` (factor - the one without boat identity) in standard deviations.
+
+    Raises:
+        BrokenPromiseError: a number that every tow must have is missing or not positive.
+    """
+    _refuse_unknown(tows)
+    network = Network.of(tows)
+    rows = Rows.of(network, settings)
+    # Ageing, weight and length first, with whatever scatter fits; then the scatter of tows, apart
+    # from wander and changed boats; then everything with it.
+    first = fit_jointly(rows, settings)
+    tow_sd = tow_scatter(*rows.anchored_pairs(first.solution), settings)
+    fit = fit_jointly(rows, settings, tow_sd)
+    spread = leave_boats_out(rows, fit, settings)
+    ageing = fit.ageing_per_year, float(np.sqrt(spread.covariance[AGEING, AGEING]))
+    second = without_boats(network, ageing, settings)
+    n = rows.groups
+    covariance = spread.covariance[:n, :n]
+    mode_sd, mode = _weakest_mode(covariance)
+    # The scale of a t distribution is less than its standard deviation.
+    as_sd = float(np.sqrt(settings.t_dof / (settings.t_dof - 2.0)))
+    wander_sd = (as_sd * np.sqrt(fit.variances[2:])).tolist()
+    return SeasonFactors(
+        factors=_described(_numbers(network, fit, spread, mode), network, second),
+        covariance=covariance,
+        wander_sd=dict(zip(settings.era_starts, wander_sd, strict=True)),
+        tow_sd=tow_sd,
+        ageing_per_year=ageing[0],
+        ageing_sd=ageing[1],
+        weakest_mode_sd=mode_sd,
+        tows=tows,
+    )
+
+
+def _refuse_unknown(tows: pl.DataFrame) -> None:
+    for name in ("ln_cw", "kappa", "ln_cw_sd", "declared_speed_m_s"):
+        least = -np.inf if name == "ln_cw" else 0.0
+        sound = pl.col(name).is_finite() & (pl.col(name) > least)
+        faulty = tows.filter(~sound.fill_null(False))
+        if faulty.height:
+            raise BrokenPromiseError(
+                f"season factors: {name} of tow {faulty['tow_id'][0]} is {faulty[name][0]}, and "
+                f"{faulty.height - 1} more; give only tows with a sound curve"
+            )
+
+
+def _weakest_mode(covariance: FloatArray) -> tuple[float, FloatArray]:
+    """The combination of ln factors that is known worst: its sd, and the share of each in it."""
+    if not len(covariance):
+        return 0.0, np.zeros(0)
+    variance, modes = np.linalg.eigh(covariance)
+    mode = modes[:, -1]
+    sign = np.sign(mode[first_largest(np.abs(mode))])  # which way round is arbitrary
+    return float(np.sqrt(variance[-1])), mode * sign
+
+
+def _numbers(network: Network, fit: Fit, spread: LeftOut, weakest_mode: FloatArray) -> pl.DataFrame:
+    """What the joint estimate says about each group; null where it is not determined."""
+    known = np.flatnonzero(network.determined)
+    n = len(known)
+    ln_factor, lost = fit.solution[:n], spread.lost[:, :n]
+    move = np.abs(np.expm1(spread.change[:, :n])) * np.exp(ln_factor)
+    move = np.where(lost, np.inf, move)
+    influence = move.max(axis=0, initial=0.0)
+    boat = first_largest(move) if move.size else np.zeros(n)
+    placed = {
+        "ln_factor": ln_factor,
+        "ln_sd": np.sqrt(np.diag(spread.covariance)[:n]),
+        "dof": spread.dof[:n],
+        "influence": np.where(np.isfinite(influence), influence, np.nan),
+        "boat": boat,
+        "critical_boats": lost.sum(axis=0),
+        "weakest_mode": weakest_mode,
+    }
+    return network.groups.with_columns(
+        *(_placed(name, values, known, network) for name, values in placed.items()),
+        pl.Series("n_tows", np.bincount(network.group[network.group >= 0]), pl.Int64),
+        pl.Series("n_links", network.links, pl.Int64),
+        pl.Series("component", network.component, pl.Int64),
+        pl.Series("has_gps", network.has_gps),
+    )
+
+
+def _placed(name: str, values: FloatArray, known: IntArray, network: Network) -> pl.Series:
+    """Values of the determined groups as a column of all groups, null for the others."""
+    column = np.full(network.groups.height, np.nan)
+    column[known] = values
+    return pl.Series(name, column, pl.Float64).fill_nan(None)
+
+
+def _described(table: pl.DataFrame, network: Network, second: Second) -> pl.DataFrame:
+    """Factors and intervals from the ln factors, with where they come from."""
+    names = pl.Series(network.boat_names, dtype=pl.String)
+    boat = table["boat"].cast(pl.Int64)
+    source = (
+        pl.when(pl.col("ln_factor").is_null())
+        .then(pl.lit(NOT_DETERMINED))
+        .when((pl.col("n_links") == 0) & pl.col("has_gps"))
+        .then(pl.lit(GPS))
+        .otherwise(pl.lit(ESTIMATED))
+    )
+    half = _half_width(table["ln_sd"], table["dof"])
+    other = pl.Series(np.where(second.known, second.ln_factor, np.nan)).fill_nan(None)
+    other_sd = pl.Series(second.sd)
+    other_half = _half_width(other_sd, pl.Series(second.dof))
+    ln_factor = table["ln_factor"]
+    apart = (ln_factor - other) / (table["ln_sd"] ** 2 + other_sd**2).sqrt()
+    return table.select(
+        *GROUP,
+        ln_factor.exp().alias("factor"),
+        (ln_factor - half).exp().alias("lo"),
+        (ln_factor + half).exp().alias("hi"),
+        source.alias("source"),
+        "ln_sd",
+        "dof",
+        "n_tows",
+        "n_links",
+        "component",
+        "influence",
+        names.gather(boat).alias("influence_boat"),
+        pl.col("critical_boats").cast(pl.Int64),
+        "weakest_mode",
+        other.exp().alias("factor_no_boats"),
+        (other - other_half).exp().alias("lo_no_boats"),
+        (other + other_half).exp().alias("hi_no_boats"),
+        apart.alias("agreement"),
+    )
+
+
+def _half_width(sd: pl.Series, dof: pl.Series) -> pl.Series:
+    quantile = scipy.special.stdtrit(dof.fill_null(1.0).clip(1.0).to_numpy(), 0.5 * (1.0 + LEVEL))
+    return sd * pl.Series(quantile)

@@ -1,0 +1,1 @@
+"""The steps from samples to run points: window, speed, calibration, wind, resistance."""

@@ -1,0 +1,190 @@
+"""From a window of a run to its point: means, and what is corrected on the coefficient.
+
+Per sample the gross coefficient is `Cw = F / (v y)^2` (Sleepproef, R. Pot 2017, "IJking
+snelheid"). Everything here is in the speed that the log reads; a factor k that turns it into true
+speed divides every coefficient by k^2, and is applied last (`true_cw_kg_m`). Which runs count and
+which factor holds is decided elsewhere.
+"""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from herijk.pipeline.arrays import BoolArray, FloatArray
+from herijk.pipeline.blocks.batch import Batch
+from herijk.pipeline.method.definition import RunPoint, Steps, Temperature
+from herijk.pipeline.steps.friction import friction_cw_kg_m, water_density_kg_m3
+from herijk.pipeline.steps.hull import front_area_m2, side_area_m2
+from herijk.pipeline.steps.wind import AirParts, air_parts, air_sums, averaged_terms
+from herijk.pipeline.steps.window import END_SECONDS
+
+LOG2_AGREES_RATIO: Final = 0.01
+"""Log 2 takes part in a mean of both only if its speed is within 1 % of log 1 (inferred from the
+0.01 m/s of Sleepproef 2017, "Log 1 en 2", which no pair of 2014 met)."""
+
+WETTED_SURFACE_RATIO: Final = 3.0
+"""Wetted surface / sqrt(displaced volume x waterline length). Stated assumption: the Delft formula
+`(1.97 + 0.171 B/T) (0.65/Cm)^(1/3)` gives it at a beam of six draughts, as sloops have."""
+
+
+@dataclass(frozen=True)
+class RunMeans:
+    """Means over each run's window in log speed, shape (runs,).
+
+    Attributes:
+        speed_m_s: mean speed.
+        gross_kg_m: F / v^2.
+        sd_kg_m: standard deviation of the samples' F / v^2.
+        inertia_kg_m: part of it that accelerated the boat.
+        air: air resistance / v^2 for drag coefficients of 1.
+    """
+
+    speed_m_s: FloatArray
+    gross_kg_m: FloatArray
+    sd_kg_m: FloatArray
+    inertia_kg_m: FloatArray
+    air: AirParts
+
+    def where(self, chosen: BoolArray, other: "RunMeans") -> "RunMeans":
+        """These means for the chosen runs, shape (runs,), those of the other elsewhere."""
+        return RunMeans(
+            speed_m_s=np.where(chosen, self.speed_m_s, other.speed_m_s),
+            gross_kg_m=np.where(chosen, self.gross_kg_m, other.gross_kg_m),
+            sd_kg_m=np.where(chosen, self.sd_kg_m, other.sd_kg_m),
+            inertia_kg_m=np.where(chosen, self.inertia_kg_m, other.inertia_kg_m),
+            air=self.air.where(chosen, other.air),
+        )
+
+
+def run_means(batch: Batch, window: BoolArray, steps: Steps) -> RunMeans:
+    """Means of every run over its window.
+
+    Args:
+        batch: tows and runs.
+        window: blocks that count, shape (runs, seconds).
+        steps: speed source, estimator, wind model and inertia of the method.
+    """
+    if steps.speed.source != "mean":
+        return _means_of_source(batch, window, steps, steps.speed.source)
+    of_both, of_log1 = (_means_of_source(batch, window, steps, s) for s in ("mean", "log1"))
+    return of_both.where(_both_logs_good(batch, window), of_log1)
+
+
+def _both_logs_good(batch: Batch, window: BoolArray) -> BoolArray:
+    """Runs of tows in which log 2 agrees with log 1 over all runs together."""
+    log1, log2 = (batch.blocks.mean(f"{log}_v", window) for log in ("log1", "log2"))
+    seen = log1 > 0
+    ratio = batch.mean(log2, seen) / _or_one(batch.mean(log1, seen))
+    return (np.abs(ratio - 1.0) <= LOG2_AGREES_RATIO)[batch.tow]
+
+
+def _means_of_source(batch: Batch, window: BoolArray, steps: Steps, source: str) -> RunMeans:
+    """Means of every run by one speed source of `pipeline.blocks.run_blocks`."""
+    blocks = batch.blocks
+    speed, samples_cw = (blocks.mean(f"{source}_{name}", window) for name in ("v", "cw"))
+    variance = np.maximum(blocks.mean(f"{source}_cw2", window) - samples_cw**2, 0.0)
+    if steps.run_point.estimator == "mean_of_ratios":
+        gross = samples_cw
+    else:
+        gross = blocks.mean("force", window) / _or_one(speed) ** 2
+    terms = _air_terms(batch, window, steps, speed, source)
+    front = front_area_m2(batch.of_run("beam_m"), batch.of_run("bow_height_m"))
+    side = side_area_m2(batch.of_run("waterline_length_m"), batch.of_run("bow_height_m"))
+    air = air_parts(blocks, terms, steps.wind, front, side)
+    change = _end_speed_change(batch, window, source)
+    inertia = _inertia(batch, steps.run_point, change, speed)
+    return RunMeans(speed, gross, np.sqrt(variance), inertia, air)
+
+
+def _air_terms(
+    batch: Batch, window: BoolArray, steps: Steps, speed: FloatArray, source: str
+) -> dict[str, FloatArray]:
+    """Mean of each air term / v^2, per sample or from the averaged wind vector."""
+    blocks = batch.blocks
+    by_ratio = steps.run_point.estimator == "ratio_of_means"
+    smooth = averaged_terms(blocks, steps.wind.averaging_s) if steps.wind.averaging_s else None
+    count = np.maximum(blocks.count(window), 1.0)
+    found = {}
+    for name in air_sums(steps.wind):
+        if by_ratio:
+            sums = blocks[name] if smooth is None else smooth[name] * blocks.n
+            found[name] = np.where(window, sums, 0.0).sum(axis=1) / count / _or_one(speed) ** 2
+        elif smooth is None:
+            found[name] = blocks.mean(f"{source}_{name}", window)
+        else:
+            sums = smooth[name] * blocks[f"{source}_inv_v2"]
+            found[name] = np.where(window, sums, 0.0).sum(axis=1) / count
+    return found
+
+
+def _end_speed_change(batch: Batch, window: BoolArray, source: str) -> FloatArray:
+    """Rise of speed over the window / its length, from the means of its two ends, m/s2."""
+    length = window.sum(axis=1)
+    order = np.cumsum(window, axis=1)
+    first = window & (order <= END_SECONDS)
+    last = window & (order > (length - END_SECONDS)[:, None])
+    rise = batch.blocks.mean(f"{source}_v", last) - batch.blocks.mean(f"{source}_v", first)
+    return np.asarray(rise / np.maximum(length - END_SECONDS, 1), dtype=np.float64)
+
+
+def _inertia(
+    batch: Batch, rule: RunPoint, acceleration_m_s2: FloatArray, speed_m_s: FloatArray
+) -> FloatArray:
+    """Part of F / v^2 that accelerates boat, crew and water: m_eff a / v^2.
+
+    m_eff = (boat + crew) (1 + added mass); source: research, method.md 6.5. 0 where no weight is
+    known.
+    """
+    if rule.inertia == "none":
+        return np.zeros_like(speed_m_s)
+    mass = (1.0 + rule.added_mass_ratio) * np.nan_to_num(displaced_mass_kg(batch))[batch.tow]
+    return mass * acceleration_m_s2 / _or_one(speed_m_s) ** 2
+
+
+def displaced_mass_kg(batch: Batch) -> FloatArray:
+    """Boat and crew, shape (tows,), kg; NaN where a weight is not known."""
+    return batch.of_tow("weight_kg") + batch.of_tow("crew_weight_kg")
+
+
+def temperature_change_kg_m(
+    batch: Batch, rule: Temperature, speed_m_s: FloatArray
+) -> tuple[FloatArray, BoolArray]:
+    """What brings Cw to the reference temperature: friction there minus friction as towed.
+
+    Friction by the ITTC-57 line, without form factor, on the wetted surface of
+    `wetted_surface_m2` (inferred: the federation's own formula of 2018 is not public).
+
+    Args:
+        batch: tows and runs.
+        rule: the method's option.
+        speed_m_s: true speed of each run, shape (runs,).
+
+    Returns:
+        Change of Cw, shape (runs,), kg/m; and for which tows it is known, shape (tows,): 0 and
+        False where temperature or weight is missing.
+    """
+    temperature = batch.of_tow("water_temperature_c")
+    mass = displaced_mass_kg(batch)
+    known = np.isfinite(temperature) & np.isfinite(mass)
+    if rule.rule == "none":
+        return np.zeros_like(speed_m_s), known
+    celsius = np.where(known, temperature, rule.reference_c)
+    length = batch.of_run("waterline_length_m")
+    surface = wetted_surface_m2(np.where(known, mass, 0.0)[batch.tow], length)
+    speed = _or_one(speed_m_s)
+    at_reference, as_towed = (
+        friction_cw_kg_m(speed, length, surface, t) for t in (rule.reference_c, celsius[batch.tow])
+    )
+    return at_reference - as_towed, known
+
+
+def wetted_surface_m2(mass_kg: FloatArray, waterline_length_m: FloatArray) -> FloatArray:
+    """Wetted surface of a boat with its crew: c sqrt(V L), with V in fresh water, m2."""
+    volume_m3 = mass_kg / water_density_kg_m3(15.0)
+    return np.asarray(WETTED_SURFACE_RATIO * np.sqrt(volume_m3 * waterline_length_m))
+
+
+def _or_one(values: FloatArray) -> FloatArray:
+    """The values, with 1 in place of 0, for a quotient that is not used there."""
+    return np.where(values > 0, values, 1.0)

@@ -1,0 +1,308 @@
+"""The steady window of a run: which seconds count (the Dutch texts call it "knippen").
+
+Only the start and the end of a run may be cut, because speed rose or fell, the force shows an
+unexplained peak (steering) or a gust passed; what remains begins and ends at equal speed and
+force and lasts at least 30 s (Sleepproef, R. Pot 2017, "Knippen"). With blocks of a second there
+are so few windows that all of them are tried, longest first: the rule, not a hand, decides.
+"""
+
+from dataclasses import dataclass
+from itertools import compress
+from typing import Final
+
+import numpy as np
+import scipy
+
+from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
+from herijk.pipeline.blocks.run_blocks import RunBlocks
+from herijk.pipeline.method.definition import Window
+
+WORTH_DECIMALS: Final = 6
+"""Windows whose worth is equal to the microsecond are equals: the same faults in another order of
+summing cost the same."""
+
+END_SECONDS: Final = 5
+"""Length of the two ends that are compared, s (research, method.md 6.4)."""
+
+BLOCK_PRICE_S: Final = 10.0
+ENDS_PRICE_S: Final = 5.0
+WORST_ENDS: Final = 5.0
+"""What a fault inside a window costs, in seconds of its length: so much for each block and each
+limit's worth over the limit, and so much for ends that differ by more than their limits. Ends that
+differ more than `WORST_ENDS` limits (0.1 m/s, the source's reason 1) are never accepted."""
+
+LONGEST_RAMP_S: Final = 12
+RAMP_MARGIN_S: Final = 5
+"""Cut beyond the end of the straight line that is fitted to a ramp, whose tail it misses."""
+
+PEAK_MARGIN_S: Final = 1
+"""Cut on both sides of a peak or gust, for its flanks."""
+
+MAD_TO_SD: Final = 1.4826
+FORCE_SD_FLOOR: Final = 0.01
+"""Smallest spread of block means that a peak is measured by, as a share of the median force."""
+
+WIND_SD_FLOOR_M_S: Final = 0.25
+
+HAND_COLUMNS: Final = {"start_s": "hand_start_s", "end_s": "hand_end_s", "reason": "hand_reason"}
+"""Columns of `blocks.runs` with the windows given by hand, by their name in `hand_windows`; null
+where a run has none."""
+
+BY_HAND: Final = "by_hand"
+CUT_REASONS: Final = ("speed_drift", "force_peak", "gust", "ends_differ")
+
+
+@dataclass(frozen=True)
+class Windows:
+    """One window per run.
+
+    Attributes:
+        mask: blocks inside the window, shape (runs, seconds); empty where none was found.
+        start_s, end_s: the same in seconds, shape (runs,).
+        found: a window of at least the prescribed length exists, shape (runs,).
+        reasons: why the rest was cut, one text a run; empty when nothing was.
+    """
+
+    mask: BoolArray
+    start_s: IntArray
+    end_s: IntArray
+    found: BoolArray
+    reasons: tuple[str, ...]
+
+
+def choose_windows(blocks: RunBlocks, rule: Window) -> Windows:
+    """The window of every run under a rule; runs without any block have none.
+
+    `steady` searches; `by_hand` takes the window that a person gave (`HAND_COLUMNS` of
+    `blocks.runs`) and searches where none is given; `all` takes the whole run.
+    """
+    present = blocks.n > 0
+    if rule.rule == "all":
+        return _windows(present, ("",) * present.shape[0])
+    faults = _Faults.of(blocks, rule)
+    start, length = _search(present, faults, rule)
+    second = np.arange(blocks.seconds)
+    mask = (second >= start[:, None]) & (second < (start + length)[:, None])
+    searched = _windows(mask, tuple(_reasons(present, mask, faults)))
+    return _given_by_hand(blocks, rule, searched) if rule.rule == "by_hand" else searched
+
+
+def _given_by_hand(blocks: RunBlocks, rule: Window, searched: Windows) -> Windows:
+    """The windows given by hand, which must be as long as any other, else the searched ones."""
+    if not set(HAND_COLUMNS.values()) <= set(blocks.runs.columns):
+        return searched
+    hand_start, hand_end, hand_reason = (blocks.runs[c] for c in HAND_COLUMNS.values())
+    given = hand_start.is_not_null().to_numpy()
+    start, end = (bound.fill_null(0).to_numpy()[:, None] for bound in (hand_start, hand_end))
+    second = np.arange(blocks.seconds)
+    inside = (second >= start) & (second < end) & (blocks.n > 0)
+    long_enough = inside.sum(axis=1, keepdims=True) >= rule.minimum_s
+    reasons = tuple(
+        f"{BY_HAND}: {why}" if hand else found
+        for hand, why, found in zip(given, hand_reason, searched.reasons, strict=True)
+    )
+    return _windows(np.where(given[:, None], inside & long_enough, searched.mask), reasons)
+
+
+def _windows(mask: BoolArray, reasons: tuple[str, ...]) -> Windows:
+    length = mask.sum(axis=1)
+    start = np.where(length > 0, mask.argmax(axis=1), 0)
+    return Windows(mask, start, start + length, length > 0, reasons)
+
+
+@dataclass(frozen=True)
+class _Faults:
+    """What disturbs a run, per block, shape (runs, seconds).
+
+    `force_peak` and `gust` are relative to their limits: over 1 is a fault.
+    """
+
+    speed: FloatArray
+    force: FloatArray
+    force_median: FloatArray
+    ramp: BoolArray
+    force_peak: FloatArray
+    gust: FloatArray
+
+    @classmethod
+    def of(cls, blocks: RunBlocks, rule: Window) -> "_Faults":
+        present = blocks.n > 0
+        speed, force = blocks.block_means("log1_v"), blocks.block_means("force")
+        force_median, force_sd = _robust(force, present)
+        force_floor = np.maximum(FORCE_SD_FLOOR * np.abs(force_median), 1e-9)
+        force_sd = np.maximum(force_sd, force_floor)
+        return cls(
+            speed,
+            force,
+            force_median[:, 0],
+            ramp=_ramps(speed, present, rule.ramp_m_s),
+            force_peak=_widened(np.abs(force - force_median) / (rule.peak_sd * force_sd)),
+            gust=_widened(_wind_change(blocks, present) / rule.gust_sd),
+        )
+
+    def price_s(self) -> FloatArray:
+        """What each block costs a window that holds it, shape (runs, seconds)."""
+        excess = np.maximum(self.force_peak - 1.0, 0.0) + np.maximum(self.gust - 1.0, 0.0)
+        return BLOCK_PRICE_S * np.asarray(excess, dtype=np.float64)
+
+
+def _wind_change(blocks: RunBlocks, present: BoolArray) -> FloatArray:
+    """Distance of each block's wind vector from the run's median one, in robust deviations."""
+    squares = np.zeros(present.shape)
+    for component in ("wind_x", "wind_y"):
+        wind = blocks.block_means(component)
+        median, sd = _robust(wind, present)
+        squares += ((wind - median) / np.maximum(sd, WIND_SD_FLOOR_M_S)) ** 2
+    return np.sqrt(squares)
+
+
+def _robust(values: FloatArray, present: BoolArray) -> tuple[FloatArray, FloatArray]:
+    """Median and robust standard deviation of each row, shape (runs, 1); 0 for an empty row."""
+    empty = ~present.any(axis=1, keepdims=True)
+    held = np.where(present, values, np.where(empty, 0.0, np.nan))
+    median = np.nanmedian(held, axis=1, keepdims=True)
+    return median, MAD_TO_SD * np.nanmedian(np.abs(held - median), axis=1, keepdims=True)
+
+
+def _widened(values: FloatArray) -> FloatArray:
+    """The largest value among each block and its neighbours within `PEAK_MARGIN_S`."""
+    return np.asarray(
+        scipy.ndimage.maximum_filter1d(values, 2 * PEAK_MARGIN_S + 1, axis=1, mode="nearest")
+    )
+
+
+def _ramps(speed: FloatArray, present: BoolArray, least_m_s: float) -> BoolArray:
+    """Blocks at the start and the end of a run in which the speed still rises or falls."""
+    length = present.sum(axis=1)
+    second = np.arange(speed.shape[1])
+    from_end = np.clip(length[:, None] - 1 - second, 0, None)
+    backwards = np.take_along_axis(speed, from_end, axis=1)
+    at_start, at_end = (_ramp_length(v, present, least_m_s)[:, None] for v in (speed, backwards))
+    return np.asarray((second < at_start) | (second >= length[:, None] - at_end))
+
+
+def _ramp_length(speed: FloatArray, present: BoolArray, least_m_s: float) -> IntArray:
+    """Length of the ramp with which each run begins, 0 where there is none, in blocks.
+
+    Fitted by least squares: a straight line up (or down) to second p, level from there, for every
+    p up to `LONGEST_RAMP_S`; the best p, if the line spans at least `least_m_s`.
+    """
+    count = np.maximum(present.sum(axis=1), 1)
+    mean = np.where(present, speed, 0.0).sum(axis=1) / count
+    centred = np.where(present, speed - mean[:, None], 0.0)
+    second = np.arange(speed.shape[1])
+    best_gain, best_length, best_span = np.zeros((3, len(speed)))
+    for p in range(1, LONGEST_RAMP_S + 1):
+        line = np.where(present, np.clip(p - second, 0, None), 0.0)
+        line = np.where(present, line - line.sum(axis=1, keepdims=True) / count[:, None], 0.0)
+        norm, product = (line * line).sum(axis=1), (line * centred).sum(axis=1)
+        gain = product**2 / np.maximum(norm, 1e-12)
+        span = np.abs(product) / np.maximum(norm, 1e-12) * p
+        better = gain > best_gain
+        best_gain = np.where(better, gain, best_gain)
+        best_length, best_span = np.where(better, p, best_length), np.where(better, span, best_span)
+    return np.where(best_span >= least_m_s, best_length + RAMP_MARGIN_S, 0).astype(np.int64)
+
+
+def _search(present: BoolArray, faults: _Faults, rule: Window) -> tuple[IntArray, IntArray]:
+    """Start and length of the best window of every run; length 0 where none is good enough.
+
+    Best is the longest, less what the faults inside it cost; of equals, the first and longest.
+    """
+    runs, seconds = present.shape
+    start, length = np.zeros(runs, np.int64), np.zeros(runs, np.int64)
+    value = np.full(runs, -np.inf)
+    good = _running_sum((present & ~faults.ramp).astype(np.float64))
+    price = _running_sum(faults.price_s())
+    sums = _Sums.of(faults)
+    for size in range(seconds, int(np.ceil(rule.minimum_s)) - 1, -1):
+        ends = _unsteadiness(sums, size, rule)
+        accepted = (_span(good, size) == size) & (ends <= WORST_ENDS)
+        worth = size - _span(price, size) - ENDS_PRICE_S * np.maximum(ends - 1.0, 0.0)
+        worth = np.where(accepted, np.round(worth, WORTH_DECIMALS), -np.inf)
+        best = worth.argmax(axis=1)
+        found = np.take_along_axis(worth, best[:, None], 1)[:, 0]
+        better = found > value
+        start, length = np.where(better, best, start), np.where(better, size, length)
+        value = np.maximum(found, value)
+    return start, length
+
+
+@dataclass(frozen=True)
+class _Sums:
+    """Running sums of what steadiness is judged by, for windows of every size.
+
+    Attributes:
+        speed, speed_time: of the speed less its mean over the run, and of that times the second.
+        speed_ends, force_ends: mean of `END_SECONDS` from every second on.
+        force_median: of each run, shape (runs, 1).
+    """
+
+    speed: FloatArray
+    speed_time: FloatArray
+    speed_ends: FloatArray
+    force_ends: FloatArray
+    force_median: FloatArray
+
+    @classmethod
+    def of(cls, faults: _Faults) -> "_Sums":
+        centred = faults.speed - faults.speed.mean(axis=1, keepdims=True)
+        time = np.arange(centred.shape[1], dtype=np.float64)
+        speed_ends, force_ends = (
+            _span(_running_sum(v), END_SECONDS) / END_SECONDS for v in (faults.speed, faults.force)
+        )
+        return cls(
+            _running_sum(centred),
+            _running_sum(centred * time),
+            speed_ends,
+            force_ends,
+            faults.force_median[:, None],
+        )
+
+
+def _unsteadiness(sums: _Sums, size: int, rule: Window) -> FloatArray:
+    """How far the worst steadiness criterion is from its limit (1), for every window of a size.
+
+    Attributes:
+        speed, speed_time: of the speed less its mean over the run, and of that times the second.
+        speed_ends, force_ends: mean over `END_SECONDS` from each second on, in limits.
+        drift_m_s: limit of the drift.
+    """
+    drift = np.abs(_slope(sums, size)) * size / rule.speed_drift_m_s
+    speed_ends = np.abs(_ends_difference(sums.speed_ends, size)) / rule.speed_drift_m_s
+    force_limit = rule.force_ends_ratio * np.abs(sums.force_median)
+    force_ends = np.abs(_ends_difference(sums.force_ends, size)) / np.maximum(force_limit, 1e-9)
+    return np.maximum(np.maximum(drift, speed_ends), force_ends)
+
+
+def _running_sum(values: FloatArray) -> FloatArray:
+    """Sum of each row up to every place, beginning with 0: one column more than `values`."""
+    return np.pad(np.cumsum(values, axis=1), ((0, 0), (1, 0)))
+
+
+def _span(running: FloatArray, size: int) -> FloatArray:
+    """Sums over every span of `size` blocks from a running sum."""
+    return np.asarray(running[:, size:] - running[:, :-size])
+
+
+def _slope(sums: _Sums, size: int) -> FloatArray:
+    """Slope of the least-squares line through the speed of every span, per block."""
+    sum_v, sum_tv = _span(sums.speed, size), _span(sums.speed_time, size)
+    mean_time = np.arange(sum_v.shape[1]) + (size - 1) / 2
+    return np.asarray((sum_tv - mean_time * sum_v) / (size * (size**2 - 1) / 12))
+
+
+def _ends_difference(ends: FloatArray, size: int) -> FloatArray:
+    """Mean of the last minus mean of the first `END_SECONDS` of every span of `size` blocks."""
+    starts = ends.shape[1] - size + END_SECONDS
+    return np.asarray(ends[:, size - END_SECONDS :][:, :starts] - ends[:, :starts])
+
+
+def _reasons(present: BoolArray, mask: BoolArray, faults: _Faults) -> list[str]:
+    """What was wrong in the part that was cut, as codes joined by commas."""
+    cut = present & ~mask
+    seen = (faults.ramp, faults.force_peak > 1.0, faults.gust > 1.0)
+    found = [(cut & fault).any(axis=1) for fault in seen]
+    rest = cut.any(axis=1) & ~np.any(found, axis=0)
+    rows = np.stack([*found, rest], axis=1).tolist()
+    return [",".join(compress(CUT_REASONS, row)) for row in rows]

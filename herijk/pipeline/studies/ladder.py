@@ -1,0 +1,99 @@
+"""The ladder: what each step of a method changes, one at a time, in factors that multiply.
+
+From one method to another the options of one step after the other are exchanged, in a fixed order,
+and everything is recomputed: so the factor of a step is what it does on top of those before it.
+What a step does stands in its own module.
+"""
+
+from typing import Final
+
+import numpy as np
+import polars as pl
+
+from herijk.pipeline.blocks.run_blocks import RunBlocks
+from herijk.pipeline.method.definition import Method, Steps
+from herijk.pipeline.recompute.outcome import Outcome
+from herijk.pipeline.recompute.recompute import batches, evaluate, log_factors
+from herijk.pipeline.recompute.run_cache import RunCache
+
+STEP_ORDER: Final = (
+    "speed",
+    "window",
+    "runs",
+    "calibration",
+    "run_point",
+    "wind",
+    "temperature",
+    "curve",
+)
+"""The order in which steps are exchanged: that of the computation, and of the history."""
+
+START: Final = "start"
+
+
+def ladder(
+    from_method: Method,
+    to_method: Method,
+    tows: pl.DataFrame,
+    blocks: RunBlocks,
+    links: tuple[pl.DataFrame, pl.DataFrame] | None = None,
+    cache: RunCache | None = None,
+) -> pl.DataFrame:
+    """The effect of each step on every tow's Cw at the declared speed.
+
+    Where an intermediate method gives no curve, its change is counted with the next step that does;
+    a tow without a curve under either method has no ladder.
+
+    Args:
+        from_method, to_method: the ends of the ladder.
+        tows: rows of the warehouse's `tows`.
+        blocks: their runs.
+        links: log factors of both methods, where they were estimated before: their rows of the
+            table `season_links`.
+        cache: what was found before of the same tows; added to.
+
+    Returns:
+        Sorted rows `tow_id`, `position` (0 is the start), `step`, `factor` (Cw after / before the
+        step; 1 at the start) and `cw_kg_m` (after it). The factors of a tow multiply to its total.
+    """
+    pairs = batches([from_method, to_method], tows, blocks)
+    cache = RunCache() if cache is None else cache
+    old_factors, new_factors = links or (
+        log_factors([(batch, steps[end]) for batch, steps in pairs], cache) for end in (0, 1)
+    )
+    rungs: list[list[Outcome]] = []
+    mixed: list[Steps] = []
+    for count in range(len(STEP_ORDER) + 1):
+        before, mixed = mixed, [_mixed(old, new, count) for _, (old, new) in pairs]
+        if count > 1 and mixed == before:  # both methods have this step alike
+            rungs.append(rungs[-1])
+            continue
+        plans = [(batch, steps) for (batch, _), steps in zip(pairs, mixed, strict=True)]
+        rungs.append(evaluate(plans, cache, new_factors if count else old_factors))
+    found = [_rungs_of_batch(list(outcomes)) for outcomes in zip(*rungs, strict=True)]
+    return pl.concat(found).sort("tow_id", "position")
+
+
+def _mixed(old: Steps, new: Steps, count: int) -> Steps:
+    """The old steps with the first `count` of `STEP_ORDER` taken from the new."""
+    return old.model_copy(update={step: getattr(new, step) for step in STEP_ORDER[:count]})
+
+
+def _rungs_of_batch(outcomes: list[Outcome]) -> pl.DataFrame:
+    cw = np.stack([outcome.cw_at_declared for outcome in outcomes])
+    sound = np.isfinite(cw[0]) & np.isfinite(cw[-1])
+    for rung in range(1, len(cw)):
+        cw[rung] = np.where(np.isfinite(cw[rung]), cw[rung], cw[rung - 1])
+    held = cw[:, sound]
+    factor = np.vstack([np.ones(held.shape[1]), held[1:] / held[:-1]])
+    tow_ids = outcomes[0].batch.tows["tow_id"].filter(pl.Series(sound))
+    steps = (START, *STEP_ORDER)
+    return pl.DataFrame(
+        {
+            "tow_id": pl.concat([tow_ids] * len(steps)),
+            "position": np.repeat(np.arange(len(steps), dtype=np.int8), held.shape[1]),
+            "step": np.repeat(np.array(steps), held.shape[1]),
+            "factor": factor.ravel(),
+            "cw_kg_m": held.ravel(),
+        }
+    )

@@ -1,0 +1,145 @@
+"""The option study: how much do choices matter that are a matter of judgement.
+
+A full factorial over options that a careful person could choose either way, on top of a method, as
+the 2015 presentation did by hand for one boat. Options that are known to be wrong (searching wind
+coefficients run by run) are history, not a vote, and take no part.
+"""
+
+import itertools
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+import polars as pl
+
+from herijk.pipeline.arrays import FloatArray
+from herijk.pipeline.blocks.run_blocks import RunBlocks
+from herijk.pipeline.method.definition import Method, Steps
+from herijk.pipeline.recompute.recompute import batches, evaluate, log_factors
+from herijk.pipeline.recompute.run_cache import RunCache
+
+ALL_OPTIONS: Final = "all"
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One option of a step with the two values between which judgement may choose."""
+
+    step: str
+    option: str
+    values: tuple[Any, Any]
+
+    @property
+    def name(self) -> str:
+        """As written in a method file."""
+        return f"{self.step}.{self.option}"
+
+
+CHOICES: Final = (
+    Choice("window", "speed_drift_m_s", (0.02, 0.04)),
+    Choice("speed", "operation", ("multiply", "divide")),
+    Choice("run_point", "estimator", ("mean_of_ratios", "ratio_of_means")),
+    Choice("wind", "coefficients", ("fixed", "archive")),
+    Choice("wind", "averaging_s", (0, 3)),
+    Choice("curve", "b", ("capped", "free")),
+)
+
+
+def option_effects(
+    method: Method, tows: pl.DataFrame, blocks: RunBlocks, links: pl.DataFrame | None = None
+) -> pl.DataFrame:
+    """Spread of Cw and B over all combinations of `CHOICES`, and the effect of each choice.
+
+    Args:
+        method: the method whose other options hold.
+        tows: rows of the warehouse's `tows`.
+        blocks: their runs.
+        links: log factors of the method, where they were estimated before: its rows of the table
+            `season_links`.
+
+    Returns:
+        Sorted rows per tow and option: `tow_id`, `option`, `cw_effect_ratio` and `b_effect_ratio`
+        (second value / first value, mean over all combinations of the others; null where no
+        combination gives the number), `cw_sd_ratio` and `b_sd_ratio` (standard deviation over all
+        combinations, relative; only in the row `all`).
+    """
+    pairs = batches([method], tows, blocks)
+    cache = RunCache()
+    factors = links
+    if factors is None:
+        factors = log_factors([(batch, steps) for batch, (steps,) in pairs], cache)
+    cw, slope, corners = [], [], list(itertools.product((0, 1), repeat=len(CHOICES)))
+    for corner in corners:
+        outcomes = evaluate([(b, _chosen(steps, corner)) for b, (steps,) in pairs], cache, factors)
+        cw.append(np.concatenate([np.log(o.cw_at_declared) for o in outcomes]))
+        slope.append(np.concatenate([_ln_b(o.curves.b_m_s) for o in outcomes]))
+    tow_ids = pl.concat([batch.tows["tow_id"] for batch, _ in pairs])
+    ln_cw, ln_b, signs = np.stack(cw), np.stack(slope), 2 * np.array(corners) - 1
+    frames = [
+        _frame(tow_ids, choice.name, _effect(ln_cw, signs[:, i]), _effect(ln_b, signs[:, i]))
+        for i, choice in enumerate(CHOICES)
+    ]
+    spread = _frame(tow_ids, ALL_OPTIONS, None, None, _spread(ln_cw), _spread(ln_b))
+    return pl.concat([*frames, spread]).sort("tow_id", "option")
+
+
+def beside_uncertainty(effects: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
+    """Adds how sure each tow is, to hold the spread over options against.
+
+    Args:
+        effects: rows of `option_effects`.
+        curves: the method's own rows of the table `curves`.
+
+    Returns:
+        The rows with `cw_interval_ratio` and `b_interval_ratio`, half the width of the 95 %
+        intervals on the logarithm; null where there is no (upper) bound.
+    """
+    half = {
+        f"{name}_interval_ratio": (pl.col(high) / pl.col(low)).log() / 2.0
+        for name, low, high in (
+            ("cw", "cw_lo_kg_m", "cw_hi_kg_m"),
+            ("b", "b_lo_m_s", "b_hi_m_s"),
+        )
+    }
+    return effects.join(curves.select("tow_id", **half), on="tow_id", how="left")
+
+
+def _chosen(steps: Steps, corner: tuple[int, ...]) -> Steps:
+    for choice, side in zip(CHOICES, corner, strict=True):
+        step = getattr(steps, choice.step).model_copy(update={choice.option: choice.values[side]})
+        steps = steps.model_copy(update={choice.step: step})
+    return steps
+
+
+def _ln_b(b_m_s: FloatArray) -> FloatArray:
+    finite = np.isfinite(b_m_s)
+    return np.where(finite, np.log(np.where(finite, b_m_s, 1.0)), np.nan)
+
+
+def _effect(ln_values: FloatArray, sign: FloatArray) -> FloatArray:
+    """Mean difference between the two sides of a choice; NaN unless every combination counts."""
+    return np.asarray((ln_values * sign[:, None]).mean(axis=0) * 2.0)
+
+
+def _spread(ln_values: FloatArray) -> FloatArray:
+    return np.asarray(ln_values.std(axis=0))
+
+
+def _frame(
+    tow_ids: pl.Series,
+    option: str,
+    cw_effect: FloatArray | None,
+    b_effect: FloatArray | None,
+    cw_sd: FloatArray | None = None,
+    b_sd: FloatArray | None = None,
+) -> pl.DataFrame:
+    nothing = np.full(len(tow_ids), np.nan)
+    columns = {
+        "cw_effect_ratio": nothing if cw_effect is None else np.exp(cw_effect),
+        "b_effect_ratio": nothing if b_effect is None else np.exp(b_effect),
+        "cw_sd_ratio": nothing if cw_sd is None else cw_sd,
+        "b_sd_ratio": nothing if b_sd is None else b_sd,
+    }
+    return pl.DataFrame({"tow_id": tow_ids, **columns}).select(
+        "tow_id", pl.lit(option).alias("option"), pl.col(list(columns)).fill_nan(None)
+    )

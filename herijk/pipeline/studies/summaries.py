@@ -1,0 +1,144 @@
+"""What many tows have in common, one row per season, step or code: medians, means and counts.
+
+Frames of the warehouse in, frames out. What pages and commands say about a season or an archive
+stands here once, so that it is the same number everywhere. Statistics with an interval stand in
+`pipeline.consistency`.
+"""
+
+from typing import Final
+
+import polars as pl
+
+ALL_SEASONS: Final = "all"
+MIDDLE: Final = (0.05, 0.95)
+"""Quantiles that bound the middle 90 %."""
+
+
+def season_changes(curves: pl.DataFrame, first: str) -> pl.DataFrame:
+    """Cw of each method / Cw of the first method, of the same tow: median and range per season.
+
+    Args:
+        curves: rows of the table `curves` of several methods.
+        first: name of the method that the others are held against.
+
+    Returns:
+        `method, from_method, season, tows, median_ratio, lowest_ratio, highest_ratio`.
+    """
+    known = curves.drop_nulls("cw_kg_m")
+    old = known.filter(pl.col("method") == first).select("tow_id", old="cw_kg_m")
+    ratio = pl.col("cw_kg_m") / pl.col("old")
+    return (
+        known.filter(pl.col("method") != first)
+        .join(old, on="tow_id")
+        .group_by("method", "season")
+        .agg(
+            pl.lit(first).alias("from_method"),
+            pl.len().alias("tows"),
+            ratio.median().alias("median_ratio"),
+            ratio.min().alias("lowest_ratio"),
+            ratio.max().alias("highest_ratio"),
+        )
+    )
+
+
+def season_ladder(steps: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+    """Factor on Cw of each step of a ladder, per season: the geometric mean, so steps multiply.
+
+    Args:
+        steps: rows of `correction_steps`; their start (position 0) is left out.
+        tows: `tow_id, season`.
+
+    Returns:
+        `from_method, to_method, season, position, step, tows, factor`.
+    """
+    ordered = steps.filter(pl.col("position") > 0).sort("tow_id")  # sums in one order: same bytes
+    return (
+        ordered.join(tows.select("tow_id", "season"), on="tow_id", maintain_order="left")
+        .group_by("from_method", "to_method", "season", "position", "step", maintain_order=True)
+        .agg(pl.len().alias("tows"), pl.col("factor").log().mean().exp().alias("factor"))
+    )
+
+
+def option_summary(effects: pl.DataFrame) -> pl.DataFrame:
+    """How much each option of judgement moves Cw: median and the middle 90 % of tows.
+
+    Args:
+        effects: rows of `option_effects`.
+
+    Returns:
+        `method, option, tows, median_ratio, lo_ratio, hi_ratio`.
+    """
+    ratio = pl.col("cw_effect_ratio")
+    lo, hi = (ratio.quantile(q, "linear") for q in MIDDLE)
+    return (
+        effects.drop_nulls("cw_effect_ratio")
+        .group_by("method", "option")
+        .agg(
+            pl.len().alias("tows"),
+            ratio.median().alias("median_ratio"),
+            lo.alias("lo_ratio"),
+            hi.alias("hi_ratio"),
+        )
+    )
+
+
+def quality_counts(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
+    """How many curves have each status and flag, and how many runs do not count, and why.
+
+    Args:
+        curves, run_points: the tables of that name.
+
+    Returns:
+        `method, kind` (status, flag or run)`, code, scope` (a season, or all)`, number`.
+    """
+    key = ("method", "season")
+    flags = curves.select(*key, code="flags").explode("code").drop_nulls("code")
+    seasons = curves.select(*key, "tow_id")
+    unused = run_points.filter(~pl.col("used")).join(seasons, on=["method", "tow_id"])
+    kinds = {
+        "status": curves.select(*key, code="status"),
+        "flag": flags,
+        "run": unused.select(*key, code="reason"),
+    }
+    events = pl.concat(rows.with_columns(kind=pl.lit(kind)) for kind, rows in kinds.items())
+    of_season = events.with_columns(scope=pl.col("season").cast(pl.String))
+    of_all = events.with_columns(scope=pl.lit(ALL_SEASONS))
+    both = pl.concat([of_season, of_all])
+    return both.group_by("method", "kind", "code", "scope").agg(pl.len().alias("number"))
+
+
+def check_counts(assessments: pl.DataFrame) -> pl.DataFrame:
+    """On how many tows each check was made, and how often what it saw lay beyond its limit.
+
+    Args:
+        assessments: the table of that name.
+
+    Returns:
+        `method, check, severity, tows, beyond`.
+    """
+    return assessments.group_by("method", "check", "severity").agg(
+        pl.len().alias("tows"), pl.col("flagged").sum().alias("beyond")
+    )
+
+
+def second_means(blocks: pl.DataFrame) -> pl.DataFrame:
+    """Means over every second of every run: what the instruments said.
+
+    Args:
+        blocks: rows of `pipeline.blocks.run_blocks.block_sums` with `tow_id`.
+
+    Returns:
+        `tow_id, run, second, speed_m_s` (log 1)`, gps_m_s` (null without GPS)`, force_n, wind_m_s,
+        wind_angle_deg` (circular mean).
+    """
+    angle = pl.arctan2("wind_sin", "wind_cos").degrees() % 360.0
+    return blocks.select(
+        "tow_id",
+        "run",
+        "second",
+        speed_m_s=pl.col("log1_v") / pl.col("n"),
+        gps_m_s=pl.when(pl.col("gps_n") > 0).then(pl.col("gps") / pl.col("gps_n")),
+        force_n=pl.col("force") / pl.col("n"),
+        wind_m_s=pl.col("wind_v") / pl.col("n"),
+        wind_angle_deg=angle,
+    )

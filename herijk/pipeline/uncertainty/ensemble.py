@@ -1,0 +1,146 @@
+"""Many equally likely registers, so that any later question has an answer with its uncertainty.
+
+Is boat X really heavier than Y, does the winner change: whoever asks counts the members in which
+it holds. What tows share is drawn once per member and used for all of them, which intervals of
+single lines cannot show. Belongs here: the draws, and the counting. Does not: the components
+(`uncertainty`) and where members are kept (`warehouse.store.ensemble`).
+"""
+
+from typing import Final
+
+import numpy as np
+import polars as pl
+
+from herijk.pipeline.arrays import FloatArray
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.season_log import SeasonFactors
+from herijk.pipeline.uncertainty.propagation import log_key
+
+MEMBERS: Final = 200
+SEED: Final = 2009
+
+
+def register_ensemble(
+    lines: pl.DataFrame,
+    budget: pl.DataFrame,
+    found: SeasonFactors | None,
+    members: int = MEMBERS,
+    seed: int = SEED,
+) -> FloatArray:
+    """Realisations of the Cw of every line of a register.
+
+    Errors are normal on the logarithm. Every error has a random stream of its own, named by its
+    key: a line keeps its members when others come or go.
+
+    Args:
+        lines: one row a line with `tow_id` (may occur more than once) and `cw_kg_m`.
+        budget: rows of `uncertainty.budget`, at least of those tows.
+        found: the season factors, whose errors are drawn with their correlation; None where the
+            method estimates none.
+        members: number of realisations.
+        seed: of the draws; a part of the edition.
+
+    Returns:
+        Cw [kg/m], shape (members, lines).
+    """
+    budget = budget.filter(pl.col("tow_id").is_in(lines["tow_id"].unique().implode()))
+    keys, errors = _errors(budget, found, members, seed)
+    tows = budget["tow_id"].unique().sort()
+    place = pl.DataFrame({"tow_id": tows}).with_row_index("place")
+    row = budget.select("tow_id").join(place, on="tow_id", maintain_order="left")["place"]
+    ln_error = np.zeros((tows.len(), members))
+    effect = budget["effect_ratio"].to_numpy()[:, None]
+    index = budget.select("key").join(keys, on="key", maintain_order="left")["index"]
+    np.add.at(ln_error, row.to_numpy(), effect * errors[index.to_numpy()])
+    mine = lines.select("tow_id").join(place, on="tow_id", how="left", maintain_order="left")
+    cw = lines["cw_kg_m"].to_numpy()
+    return np.asarray(cw[None, :] * np.exp(ln_error[mine["place"].to_numpy()].T))
+
+
+def as_frame(lines: pl.DataFrame, cw_kg_m: FloatArray) -> pl.DataFrame:
+    """Members as rows: `member` (1 is the first), the columns of `lines`, its Cw replaced.
+
+    Args:
+        lines: as given to `register_ensemble`, with the columns that name a line.
+        cw_kg_m: shape (members, lines).
+    """
+    members = len(cw_kg_m)
+    names = pl.concat([lines.drop("cw_kg_m")] * members)
+    member = np.repeat(np.arange(1, members + 1, dtype=np.int16), lines.height)
+    return names.with_columns(
+        pl.Series("member", member), pl.Series("cw_kg_m", cw_kg_m.ravel())
+    ).select("member", pl.exclude("member"))
+
+
+def share_heavier(members: pl.DataFrame, tow_id: str, other: str) -> float:
+    """Share of the members in which one tow has the larger Cw at its declared speed.
+
+    Args:
+        members: rows of the table `ensemble` of one method.
+        tow_id, other: tows of two boats, or two of one boat.
+
+    Raises:
+        MissingKnowledgeError: one of them has no members: it has no curve under the method.
+    """
+    mine, theirs = (_members_of(members, t) for t in (tow_id, other))
+    return float((mine > theirs).mean())
+
+
+def share_first(members: pl.DataFrame, results: pl.DataFrame) -> pl.DataFrame:
+    """Share of the members in which each crew of a race has the highest power per rower.
+
+    Power is proportional to Cw, and the error of Cw at the declared speed is taken for that at the
+    speed rowed: sound within the range in which a curve is valid.
+
+    Args:
+        members: rows of the table `ensemble` of one method.
+        results: one row a crew: `tow_id` of its boat's curve, `cw_kg_m` of that curve at the
+            declared speed, and `power_w` by it.
+
+    Returns:
+        The rows of `results` with `share`, highest power first.
+
+    Raises:
+        MissingKnowledgeError: a tow has no members.
+    """
+    drawn = np.stack([_members_of(members, t) for t in results["tow_id"]])
+    per_cw = (results["power_w"] / results["cw_kg_m"]).to_numpy()
+    first = (per_cw[:, None] * drawn).argmax(axis=0)
+    share = np.bincount(first, minlength=results.height) / drawn.shape[1]
+    return results.with_columns(pl.Series("share", share)).sort("power_w", descending=True)
+
+
+def _members_of(members: pl.DataFrame, tow_id: str) -> FloatArray:
+    mine = members.filter(pl.col("tow_id") == tow_id).sort("member")
+    if mine.is_empty():
+        raise MissingKnowledgeError(
+            f"tow {tow_id} has no members in the ensemble: there is no curve for it; "
+            "look for its status in the table curves"
+        )
+    return mine["cw_kg_m"].to_numpy()
+
+
+def _errors(
+    budget: pl.DataFrame, found: SeasonFactors | None, members: int, seed: int
+) -> tuple[pl.DataFrame, FloatArray]:
+    """Standard normal errors of every key, shape (keys, members), season factors correlated."""
+    keys = budget.select("key").unique().sort("key").with_row_index("index")
+    independent = [_stream(seed, key).standard_normal(members) for key in keys["key"]]
+    errors = np.array(independent).reshape(-1, members)
+    if found is None:
+        return keys, errors
+    determined = found.factors.filter(pl.col("factor").is_not_null()).select(
+        log_key(pl.col("season"), pl.col("part"), pl.col("log")).alias("key")
+    )
+    sd = np.sqrt(np.diag(found.covariance))
+    root = np.linalg.cholesky(found.covariance / np.outer(sd, sd))
+    independent = [_stream(seed, key).standard_normal(members) for key in determined["key"]]
+    if independent:
+        joint = root @ np.stack(independent)
+        used = determined.with_row_index("row").join(keys, on="key")
+        errors[used["index"].to_numpy()] = joint[used["row"].to_numpy()]
+    return keys, errors
+
+
+def _stream(seed: int, key: str) -> np.random.Generator:
+    return np.random.default_rng([seed, *key.encode()])

@@ -1,0 +1,28 @@
+"""A mock instrument: tow tests whose truth is known, with every defect switchable by name.
+
+`simulate_world` decides boats, schedule and truth; `simulate_tow` delivers the samples of one
+tow. Arrays and frames only: writing an archive is `simulate.archive_writer`. What is assumed,
+and where it comes from, is on the page `docs/simulator.md`.
+"""
+
+from herijk.simulate.defects import Defects, gps_on_board
+from herijk.simulate.hull import AirCoefficients, nearest_hyperbola, true_cw_kg_m
+from herijk.simulate.motion import Disturbance, RunTruth
+from herijk.simulate.tow import simulate_tow
+from herijk.simulate.world import Tow, TowTruth, World, WorldSettings, simulate_world
+
+__all__ = [
+    "AirCoefficients",
+    "Defects",
+    "Disturbance",
+    "RunTruth",
+    "Tow",
+    "TowTruth",
+    "World",
+    "WorldSettings",
+    "gps_on_board",
+    "nearest_hyperbola",
+    "simulate_tow",
+    "simulate_world",
+    "true_cw_kg_m",
+]

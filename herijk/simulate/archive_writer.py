@@ -1,0 +1,457 @@
+"""Writes a simulated world as a tow archive, spelled the way real ones are, truth beside it.
+
+Every season has another of the allowed spellings, so that reading one archive exercises them
+all. What is measured is decided in `herijk.simulate`; reading archives is the rest of this
+package.
+"""
+
+import csv
+import datetime as dt
+import io
+import json
+import shutil
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final, Literal
+
+import numpy as np
+import polars as pl
+
+from herijk.pipeline.errors import HerijkError
+from herijk.simulate import RunTruth, Tow, World, simulate_tow, true_cw_kg_m
+from herijk.simulate.defects import FIRST_SEASON
+from herijk.simulate.hull import REFERENCE_TEMPERATURE_C
+from herijk.simulate.papers import RACE_KM, printed_register, race
+
+SPEED_UNITS: Final = {"m/s": 1.0, "km/h": 3.6, "kn": 3600.0 / 1852.0}
+FORCE_UNITS: Final = {"N": 1.0, "kgf": 1.0 / 9.80665}
+SAMPLE_DECIMALS: Final = 3
+CURVE_SPEED_RATIOS: Final = np.linspace(0.8, 1.2, 17)
+"""Speeds of the true curve in the truth file, relative to the declared speed."""
+REMARKS: Final = ("", "", "één roer los", "", "gesimuleerde sleep")
+
+
+@dataclass(frozen=True)
+class Spelling:
+    """How a season's files are spelled; every choice is one that archives may make.
+
+    `own_names` gives two columns names of their own and leaves out a unit, so that the archive
+    needs a profile in `archief.toml`.
+    """
+
+    extension: Literal[".csv", ".csv.gz", ".csv.zst", ".parquet"]
+    separator: str = ";"
+    decimal_comma: bool = True
+    encoding: Literal["utf-8", "utf-8-sig", "cp1252"] = "utf-8"
+    line_end: str = "\n"
+    speed_unit: str = "m/s"
+    force_unit: str = "N"
+    signed_vane: bool = False
+    iso_dates: bool = True
+    time_column: bool = False
+    own_names: bool = False
+
+    def number(self, value: float, decimals: int) -> str:
+        """A number as text."""
+        text = f"{value:.{decimals}f}"
+        return text.replace(".", ",") if self.decimal_comma else text
+
+    def date(self, day: dt.date) -> str:
+        """A date as text."""
+        return day.isoformat() if self.iso_dates else day.strftime("%d-%m-%Y")
+
+
+PLAIN: Final = Spelling(".csv", encoding="cp1252")
+"""Of the files that belong to no season."""
+SPELLINGS: Final = (
+    PLAIN,
+    Spelling(".csv.gz", force_unit="kgf", iso_dates=False, own_names=True),
+    Spelling(".csv", "\t", decimal_comma=False, encoding="utf-8-sig", line_end="\r\n"),
+    Spelling(".csv.zst", speed_unit="km/h", encoding="cp1252", iso_dates=False),
+    Spelling(".parquet", ",", decimal_comma=False, signed_vane=True),
+    Spelling(".csv.gz", ",", decimal_comma=False, force_unit="kgf", time_column=True),
+    Spelling(".csv.zst", "\t", speed_unit="kn", encoding="utf-8-sig"),
+    Spelling(".csv", signed_vane=True, line_end="\r\n", iso_dates=False),
+)
+"""In turn by season, from the first season that can be simulated."""
+
+LIST_COLUMNS: Final = (
+    "sleep_id",
+    "datum",
+    "fsn_nr",
+    "meetfile",
+    "meetfile2",
+    "roeiers",
+    "klasse",
+    "roeisnelheid [m/s]",
+    "lengte [m]",
+    "breedte [m]",
+    "hoogte [m]",
+    "gewicht [kg]",
+    "gewicht na [kg]",
+    "bemanning [kg]",
+    "watertemperatuur [C]",
+    "correctie [%]",
+    "gebruik runs",
+    "verbouwd",
+    "meetfrequentie [Hz]",
+    "opmerking",
+)
+BOAT_COLUMNS: Final = (
+    "fsn_nr",
+    "ht_nr",
+    "sloep",
+    "type",
+    "lengte [m]",
+    "breedte [m]",
+    "hoogte [m]",
+    "gewicht [kg]",
+    "roeiers",
+    "klasse",
+)
+REGISTER_COLUMNS: Final = (
+    "fsn_nr",
+    "roeiers",
+    "klasse",
+    "A",
+    "B",
+    "Cw",
+    "roeisnelheid [m/s]",
+    "sleepdatum",
+)
+RACE_COLUMNS: Final = (
+    "wedstrijd",
+    "datum",
+    "afstand [km]",
+    "fsn_nr",
+    "roeiers",
+    "klasse",
+    "roeitijd",
+    "stroom [km]",
+    "straf [W]",
+)
+RACE_NAME: Final = "Spiegelrace"
+
+
+def spelling_of(season: int) -> Spelling:
+    """The spelling of a season's files."""
+    return SPELLINGS[(season - FIRST_SEASON) % len(SPELLINGS)]
+
+
+def truth_path(directory: Path) -> Path:
+    """Where the truth of an archive lies: beside it, never in it."""
+    return directory.with_name(f"{directory.name}-truth.json")
+
+
+def write_simulated_archive(
+    directory: Path,
+    world: World,
+    on_tow: Callable[[int, int], None] | None = None,
+    workers: int = 2,
+) -> Path:
+    """Simulate all tows of a world and write them as an archive, with the truth beside it.
+
+    Everything is written under a temporary name and renamed when complete.
+
+    Args:
+        directory: the archive to be; must not exist or be empty.
+        world: what to write.
+        on_tow: called after each tow with the number done and the total.
+        workers: threads that simulate and write.
+
+    Returns:
+        The path of the truth file, `<directory>-truth.json`.
+
+    Raises:
+        HerijkError: the directory is not empty, or its truth file exists.
+    """
+    directory = directory.absolute()
+    _refuse_to_overwrite(directory)
+    directory.parent.mkdir(parents=True, exist_ok=True)
+    partial = directory.with_name(f".{directory.name}.partial")
+    shutil.rmtree(partial, ignore_errors=True)
+    try:
+        _write_papers(partial, world)
+        truth = _write_all_samples(partial, world, on_tow, workers)
+        partial_truth = partial / "truth.json"
+        partial_truth.write_text(json.dumps(truth, indent=1), encoding="utf-8")
+        partial_truth.replace(truth_path(directory))
+        # Renaming onto an empty directory is allowed, onto a filled one is not.
+        partial.replace(directory)
+    finally:
+        shutil.rmtree(partial, ignore_errors=True)
+    return truth_path(directory)
+
+
+def _refuse_to_overwrite(directory: Path) -> None:
+    if directory.exists() and (not directory.is_dir() or any(directory.iterdir())):
+        raise HerijkError(
+            f"{directory} exists and is not an empty folder; nothing was written. "
+            "Choose another folder, or remove it first"
+        )
+    if truth_path(directory).exists():
+        raise HerijkError(
+            f"{truth_path(directory)} exists; nothing was written. Remove it, or choose "
+            "another folder"
+        )
+
+
+def _write_all_samples(
+    directory: Path,
+    world: World,
+    on_tow: Callable[[int, int], None] | None,
+    workers: int,
+) -> dict[str, Any]:
+    for season in world.settings.seasons:
+        _samples_folder(directory, season).mkdir(parents=True)
+    truth: dict[str, Any] = {tow.tow_id: None for tow in world.tows}
+    with ThreadPoolExecutor(max_workers=workers) as pool:
+        futures = {pool.submit(_write_tow, directory, world, tow): tow for tow in world.tows}
+        try:
+            for done, future in enumerate(as_completed(futures), start=1):
+                tow = futures[future]
+                truth[tow.tow_id] = _truth_record(world, tow, future.result())
+                if on_tow is not None:
+                    on_tow(done, len(futures))
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+    return truth
+
+
+def _write_tow(directory: Path, world: World, tow: Tow) -> tuple[RunTruth, ...]:
+    samples, runs = simulate_tow(world, tow)
+    spelling = spelling_of(tow.season)
+    path = _samples_folder(directory, tow.season) / f"{tow.samples_name}{spelling.extension}"
+    _write_samples(path, samples, spelling, world.settings.rate_hz)
+    return runs
+
+
+def _samples_folder(directory: Path, season: int) -> Path:
+    return directory / f"meetdata_{season}"
+
+
+def _write_samples(path: Path, samples: pl.DataFrame, spelling: Spelling, rate_hz: int) -> None:
+    table = samples.select(_spelled_columns(samples, spelling, rate_hz))
+    if spelling.extension == ".parquet":
+        table.write_parquet(path)
+        return
+    compression: Literal["uncompressed", "gzip", "zstd"] = "uncompressed"
+    if spelling.extension == ".csv.gz":
+        compression = "gzip"
+    elif spelling.extension == ".csv.zst":
+        compression = "zstd"
+    table.write_csv(
+        path,
+        include_bom=spelling.encoding == "utf-8-sig",
+        compression=compression,
+        compression_level=1 if compression != "uncompressed" else None,
+        separator=spelling.separator,
+        line_terminator=spelling.line_end,
+        float_precision=SAMPLE_DECIMALS,
+        decimal_comma=spelling.decimal_comma,
+    )
+
+
+def _spelled_columns(samples: pl.DataFrame, spelling: Spelling, rate_hz: int) -> list[pl.Expr]:
+    """The samples under the federation's headers, in the units of the spelling."""
+    per_m_s = SPEED_UNITS[spelling.speed_unit]
+    force = pl.col("force_n") * FORCE_UNITS[spelling.force_unit]
+    angle = pl.col("wind_angle_deg")
+    if spelling.signed_vane:
+        angle = pl.when(angle > 180.0).then(angle - 360.0).otherwise(angle)
+    log1, kracht = "log1", f"kracht [{spelling.force_unit}]"
+    if spelling.own_names:
+        log1, kracht = OWN_NAMES["log1"], OWN_NAMES["force"]
+
+    def speed(column: str, header: str) -> pl.Expr:
+        return (pl.col(column) * per_m_s).alias(f"{header} [{spelling.speed_unit}]")
+
+    columns = [pl.col("run"), speed("log1_m_s", log1), speed("log2_m_s", "log2")]
+    if samples["gps_m_s"].null_count() < samples.height:
+        columns.append(speed("gps_m_s", "gps"))
+    columns += [force.alias(kracht), speed("wind_speed_m_s", "wind"), angle.alias("wind [gra]")]
+    if spelling.time_column:
+        within_run = pl.int_range(pl.len()).over("run")
+        columns.insert(1, (within_run / rate_hz).alias("tijd [s]"))
+    return columns
+
+
+OWN_NAMES: Final = {"log1": "snelheid A", "force": "trek"}
+"""Headers of a season that needs a profile; the example of the archive's description."""
+
+
+def _write_papers(directory: Path, world: World) -> None:
+    """Everything but samples: the profile, boats, lists, registers and a race."""
+    seasons = world.settings.seasons
+    for folder in ("sloepregister", "sleeplijsten", "wedstrijden"):
+        (directory / folder).mkdir(parents=True)
+    (directory / "archief.toml").write_text(_profile(seasons), encoding="utf-8")
+    register = directory / "sloepregister"
+    _write_table(register / "sloependata.csv", BOAT_COLUMNS, _boat_rows(world), PLAIN)
+    for season in seasons:
+        path = directory / "sleeplijsten" / f"sleeplijst_{season}.csv"
+        _write_table(path, LIST_COLUMNS, _list_rows(world, season), spelling_of(season))
+    for year in sorted({seasons[len(seasons) // 2], seasons[-1]}):
+        path = register / f"sloepregister_{year}.csv"
+        _write_table(path, REGISTER_COLUMNS, _register_rows(world, year), spelling_of(year))
+    path = directory / "wedstrijden" / f"{RACE_NAME.lower()}_{seasons[-1]}.csv"
+    _write_table(path, RACE_COLUMNS, _race_rows(world, seasons[-1]), spelling_of(seasons[-1]))
+
+
+def _write_table(
+    path: Path, columns: Sequence[str], rows: Sequence[Sequence[str]], spelling: Spelling
+) -> None:
+    text = io.StringIO()
+    writer = csv.writer(text, delimiter=spelling.separator, lineterminator=spelling.line_end)
+    writer.writerow(columns)
+    writer.writerows(rows)
+    path.write_bytes(text.getvalue().encode(spelling.encoding))
+
+
+def _profile(seasons: Sequence[int]) -> str:
+    lines = [
+        "# Made by a simulator: these are not the federation's measurements.",
+        "simulated = true",
+    ]
+    for season in seasons:
+        spelling = spelling_of(season)
+        if spelling.own_names:
+            columns = ", ".join(f'{channel} = "{name}"' for channel, name in OWN_NAMES.items())
+            lines += [
+                "",
+                "[[profile]]",
+                f'seasons = "{season}:{season}"',
+                f"columns = {{ {columns} }}",
+                f'units = {{ force = "{spelling.force_unit}" }}',
+            ]
+    return "\n".join(lines) + "\n"
+
+
+def _boat_rows(world: World) -> list[list[str]]:
+    newest = {tow.boat.index: tow for tow in world.tows}
+    return [
+        [
+            boat.fsn_no,
+            boat.ht_no,
+            boat.name,
+            boat.boat_type.name,
+            PLAIN.number(boat.waterline_length_m, 2),
+            PLAIN.number(boat.beam_m, 2),
+            PLAIN.number(boat.bow_height_m, 2),
+            PLAIN.number(newest[boat.index].weight_kg, 0),
+            str(boat.boat_type.rowers),
+            boat.crew_classes[0],
+        ]
+        for boat in world.boats
+    ]
+
+
+def _list_rows(world: World, season: int) -> list[list[str]]:
+    spelling = spelling_of(season)
+    return [
+        [
+            tow.tow_id,
+            spelling.date(tow.day),
+            tow.boat.fsn_no,
+            tow.samples_name,
+            "",
+            str(tow.boat.boat_type.rowers),
+            tow.crew_class,
+            spelling.number(tow.declared_speed_m_s, 2),
+            spelling.number(tow.boat.waterline_length_m, 2),
+            spelling.number(tow.boat.beam_m, 2),
+            spelling.number(tow.boat.bow_height_m, 2),
+            spelling.number(tow.weight_kg, 0),
+            spelling.number(tow.weight_after_kg, 0),
+            spelling.number(tow.boat.crew_kg(tow.crew_class), 0),
+            spelling.number(tow.water_temperature_c, 1),
+            "",
+            "1,2,3,4,5,6",
+            "ja" if tow.altered_reported else "nee",
+            str(world.settings.rate_hz),
+            REMARKS[tow.number % len(REMARKS)],
+        ]
+        for tow in world.tows
+        if tow.season == season
+    ]
+
+
+def _register_rows(world: World, year: int) -> list[list[str]]:
+    spelling = spelling_of(year)
+    return [
+        [
+            line.boat.fsn_no,
+            str(line.boat.boat_type.rowers),
+            line.crew_class,
+            spelling.number(line.a_kg_m, 2),
+            spelling.number(line.b_m_s, 2),
+            spelling.number(line.cw_kg_m, 2),
+            spelling.number(line.declared_speed_m_s, 2),
+            spelling.date(line.tow_day) if line.tow_day else "",
+        ]
+        for line in printed_register(world, year)
+    ]
+
+
+def _race_rows(world: World, season: int) -> list[list[str]]:
+    spelling = spelling_of(season)
+    day, lines = race(world, season)
+    return [
+        [
+            RACE_NAME,
+            spelling.date(day),
+            spelling.number(RACE_KM, 3),
+            line.tow.boat.fsn_no,
+            str(line.tow.boat.boat_type.rowers),
+            line.tow.crew_class,
+            str(dt.timedelta(seconds=line.seconds)),
+            "" if line.stream_km is None else spelling.number(line.stream_km, 3),
+            "",
+        ]
+        for line in lines
+    ]
+
+
+def _truth_record(world: World, tow: Tow, runs: tuple[RunTruth, ...]) -> dict[str, Any]:
+    """What the archive does not tell about a tow, ready for JSON."""
+    truth = tow.truth
+    speeds = tow.declared_speed_m_s * CURVE_SPEED_RATIOS
+
+    def curve(temperature_c: float) -> list[float]:
+        cw = true_cw_kg_m(tow.hull, speeds, temperature_c, world.settings.air)
+        return [round(float(value), 4) for value in cw]
+
+    return {
+        "simulated": True,
+        "cw_declared_kg_m_at_15C": round(truth.cw_at_15c_kg_m, 4),
+        "cw_declared_kg_m_at_tow_temperature": round(truth.cw_at_tow_temperature_kg_m, 4),
+        "season_log_factor": round(truth.season_log_factor, 6),
+        "log_factor": round(truth.log_factor, 6),
+        "log2_ratio": round(truth.log2_ratio, 6),
+        "askew_ratio": round(truth.askew_ratio, 4),
+        "altered": truth.altered,
+        "altered_reported": tow.altered_reported,
+        "runs": [
+            {
+                "run": run.run,
+                "target_speed_m_s": round(run.target_speed_m_s, 4),
+                "undisturbed_s": [
+                    round(run.undisturbed_start_s, 2),
+                    round(run.undisturbed_end_s, 2),
+                ],
+                "disturbances": [
+                    {"kind": d.kind, "start_s": round(d.start_s, 2), "end_s": round(d.end_s, 2)}
+                    for d in run.disturbances
+                ],
+            }
+            for run in runs
+        ],
+        "curve": {
+            "speed_m_s": [round(float(speed), 4) for speed in speeds],
+            "cw_kg_m_at_tow_temperature": curve(tow.water_temperature_c),
+            "cw_kg_m_at_15C": curve(REFERENCE_TEMPERATURE_C),
+        },
+    }

@@ -1,0 +1,181 @@
+"""What can go wrong in a simulated tow, each by name and size, and what went wrong when.
+
+`Defects` has one field a defect; zero (or one, for a factor) switches it off. `SEASONS` says as
+data which instruments and defects each season had; sources stand in `docs/simulator.md`.
+How a defect works on a channel is in `motion` and `instruments`.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Final
+
+from herijk.pipeline.errors import MissingKnowledgeError
+
+
+@dataclass(frozen=True)
+class Defects:
+    """Sizes of all defects; the default of every field is "absent".
+
+    `sd` in a comment means a standard deviation, `share` the probability for a tow or run.
+    """
+
+    # Logs. True speed = log speed x factor: a worn propeller turns too slowly, its factor is > 1.
+    log_season_factor: tuple[float, float] = (1.0, 1.0)  # range the season's factor is drawn from
+    log_tow_wander: float = 0.0  # sd of ln factor between the tows of a season
+    log_run_wander: float = 0.0  # relative sd between runs, and slowly within a run
+    log_noise_m_s: float = 0.0  # sd
+    log2_ratio: tuple[float, float] = (1.0, 1.0)  # range of log 2 / log 1, drawn each tow
+    # GPS
+    gps_wander_m_s: float = 0.0  # sd, slow
+    gps_noise_m_s: float = 0.0  # sd of each fix
+    gps_lag_s: float = 0.0
+    gps_hold_s: float = 0.0  # time between fixes
+    # Water and wind
+    stream_m_s: float = 0.0  # sd along the course
+    stream_drift_m_s: float = 0.0  # sd of the change in ten minutes
+    water_temperature_c: tuple[float, float] = (15.0, 15.0)  # range, drawn each day
+    wind_m_s: float = 0.0  # mean true wind speed
+    wind_turbulence: float = 0.0  # sd of the wind over its mean
+    vane_jitter_deg: float = 0.0  # sd
+    gust_share: float = 0.0  # of runs, with
+    gust_m_s: float = 0.0  # this much more wind for some seconds
+    # Towing
+    speed_miss: float = 0.0  # relative sd of a run's speed about its target
+    speed_wander_m_s: float = 0.0  # sd of the helmsman's slow wander
+    ramp_share: float = 0.0  # of runs, still accelerating at the start
+    ramp_m_s: float = 0.0  # largest speed missing at the start
+    steering_share: float = 0.0  # of runs, with
+    steering_force: float = 0.0  # a relative force peak
+    inertia: float = 0.0  # part of (m + added mass) dv/dt that the load cell feels: 0 or 1
+    surge_force: float = 0.0  # relative sd of the 1 Hz surge of the tow line
+    force_wander: float = 0.0  # relative sd, seconds
+    force_noise: float = 0.0  # relative sd, fast
+    askew_share: float = 0.0  # of tows pulled askew
+    askew_excess: tuple[float, float] = (0.0, 0.0)  # range of the relative excess of force
+    askew_gross_share: float = 0.0  # of the tows pulled askew, with
+    askew_gross_excess: float = 0.0  # this excess
+    fast_run_share: float = 0.0  # of tows, with 120 % runs instead of 110 %
+    # Boats
+    alteration_share: float = 0.0  # of boats, between two seasons in which they are towed
+    alteration_sd: float = 0.0  # sd of ln resistance
+    alteration_weight_sd: float = 0.0  # sd of ln weight
+    unreported_share: float = 0.0  # of alterations
+    ageing_per_year: float = 0.0  # relative growth of water resistance
+
+    @classmethod
+    def none(cls) -> "Defects":
+        """A perfect tow test in still water without wind at 15 C."""
+        return cls()
+
+    @classmethod
+    def history(cls, season: int) -> "Defects":
+        """As the instruments and habits of that season had it."""
+        return _row(season).defects
+
+    @classmethod
+    def clean(cls, season: int) -> "Defects":
+        """That season's instruments in a world where only the season's log factor needs finding.
+
+        Noise, wind, stream and disturbed runs stay; what cannot be known from one tow (wander
+        between tows, boats that change, askew pulling) is gone.
+        """
+        return replace(
+            cls.history(season),
+            log_tow_wander=0.0,
+            askew_share=0.0,
+            fast_run_share=0.0,
+            alteration_share=0.0,
+            ageing_per_year=0.0,
+        )
+
+
+@dataclass(frozen=True)
+class SeasonRow:
+    """Instruments and defects from one season on."""
+
+    first_season: int
+    gps_on_board: bool
+    defects: Defects
+
+
+_PROPELLER_LOGS = Defects(
+    log_season_factor=(1.04, 1.065),
+    log_tow_wander=0.012,
+    log_run_wander=0.004,
+    log_noise_m_s=0.04,
+    log2_ratio=(0.99, 1.01),
+    gps_hold_s=1.0,
+    gps_lag_s=1.0,
+    stream_m_s=0.04,
+    stream_drift_m_s=0.006,
+    water_temperature_c=(3.0, 12.0),
+    wind_m_s=2.5,
+    wind_turbulence=0.25,
+    vane_jitter_deg=13.0,
+    gust_share=0.12,
+    gust_m_s=2.5,
+    speed_miss=0.008,
+    speed_wander_m_s=0.02,
+    ramp_share=0.25,
+    ramp_m_s=0.25,
+    steering_share=0.20,
+    steering_force=0.35,
+    inertia=1.0,
+    surge_force=0.055,
+    force_wander=0.02,
+    force_noise=0.05,
+    askew_share=0.08,
+    askew_excess=(0.05, 0.10),
+    askew_gross_share=0.05,
+    askew_gross_excess=0.40,
+    fast_run_share=0.20,
+    alteration_share=0.15,
+    alteration_sd=0.05,
+    alteration_weight_sd=0.03,
+    unreported_share=0.5,
+    ageing_per_year=0.003,
+)
+_WITH_GPS = replace(_PROPELLER_LOGS, gps_wander_m_s=0.08, gps_noise_m_s=0.03)
+_DOPPLER_LOGS = replace(
+    _WITH_GPS,
+    log_season_factor=(0.985, 1.015),
+    log_tow_wander=0.006,
+    log_run_wander=0.002,
+    log_noise_m_s=0.03,
+)
+_WITH_DGPS = replace(
+    _DOPPLER_LOGS,
+    log_season_factor=(0.99, 1.01),
+    log_tow_wander=0.004,
+    log2_ratio=(0.94, 0.97),
+    gps_wander_m_s=0.0,
+    gps_noise_m_s=0.01,
+    gps_lag_s=2.0,
+    steering_share=0.06,
+    askew_share=0.0,
+)
+_SINCE_2015 = replace(_WITH_DGPS, log2_ratio=(0.996, 1.004), fast_run_share=0.0)
+
+SEASONS: Final = (
+    SeasonRow(2009, False, _PROPELLER_LOGS),
+    SeasonRow(2011, True, _WITH_GPS),
+    SeasonRow(2012, True, _DOPPLER_LOGS),
+    SeasonRow(2014, True, _WITH_DGPS),
+    SeasonRow(2015, True, _SINCE_2015),
+)
+"""Each row holds until the next; the last holds on."""
+
+FIRST_SEASON: Final = SEASONS[0].first_season
+
+
+def gps_on_board(season: int) -> bool:
+    """Whether the tow had a GPS receiver (plain until 2013, then differential)."""
+    return _row(season).gps_on_board
+
+
+def _row(season: int) -> SeasonRow:
+    if season < FIRST_SEASON:
+        raise MissingKnowledgeError(
+            f"season {season} cannot be simulated: the table of instruments begins in "
+            f"{FIRST_SEASON}; ask for {FIRST_SEASON} or later"
+        )
+    return next(row for row in reversed(SEASONS) if row.first_season <= season)

@@ -1,0 +1,106 @@
+"""What was printed in a simulated world: registers of the day and race results.
+
+A printed register has the faults of its day in it, as a real one has; it is there to compare
+with, not to learn from. How it is spelled in a file is `simulate.archive_writer`.
+"""
+
+import datetime as dt
+from dataclasses import dataclass
+from typing import Final
+
+from herijk.simulate.boats import Boat, speed_at_power_m_s
+from herijk.simulate.hull import nearest_hyperbola
+from herijk.simulate.random_streams import Subject, stream
+from herijk.simulate.world import Tow, World
+
+LAST_UNCALIBRATED_SEASON: Final = 2013
+"""Tows from 2014 on were computed with the log calibrated by dGPS (Pot 2017)."""
+VALID_YEARS: Final = 5
+NO_CURVE: Final = (0.99, 25.00)
+"""A and B that stand for "no valid curve": they give Cw = 1."""
+RACE_DAY: Final = (6, 4)
+RACE_KM: Final = 18.4
+RACE_STREAM_KM: Final = 0.35
+RACE_POWER_SPREAD: Final = 0.08
+
+
+@dataclass(frozen=True)
+class RegisterLine:
+    """One line of a register; `tow_day` is None where there is no valid curve."""
+
+    boat: Boat
+    crew_class: str
+    a_kg_m: float
+    b_m_s: float
+    declared_speed_m_s: float
+    tow_day: dt.date | None
+
+    @property
+    def cw_kg_m(self) -> float:
+        """`A / (1 - (v/B)^2)` at the declared speed."""
+        return self.a_kg_m / (1.0 - (self.declared_speed_m_s / self.b_m_s) ** 2)
+
+
+@dataclass(frozen=True)
+class RaceLine:
+    """One crew's result; `stream_km` is None for crews that met no stream."""
+
+    tow: Tow
+    seconds: int
+    stream_km: float | None
+
+
+def printed_register(world: World, year: int) -> list[RegisterLine]:
+    """The register of that year as the method of the day would have it, faults included."""
+    lines: list[RegisterLine] = []
+    newest = _newest_tows(world, year)
+    crews = sorted({(tow.boat.index, tow.crew_class) for tow in world.tows})
+    first = {(tow.boat.index, tow.crew_class): tow for tow in reversed(world.tows)}
+    for crew in crews:
+        tow = newest.get(crew, first[crew])
+        valid = crew in newest and tow.season + VALID_YEARS >= year
+        a_kg_m, b_m_s = _printed_curve(world, tow) if valid else NO_CURVE
+        lines.append(
+            RegisterLine(
+                tow.boat,
+                tow.crew_class,
+                round(a_kg_m, 2),
+                round(b_m_s, 2),
+                tow.declared_speed_m_s,
+                tow.day if valid else None,
+            )
+        )
+    return lines
+
+
+def race(world: World, season: int) -> tuple[dt.date, list[RaceLine]]:
+    """A race of all crews with a valid tow, each at about its own power, by its true curve."""
+    day = dt.date(season, *RACE_DAY)
+    rng = stream(world.settings.seed, Subject.RACE, season)
+    lines: list[RaceLine] = []
+    for _, tow in sorted(_newest_tows(world, season).items()):
+        effort = 1.0 + RACE_POWER_SPREAD * float(rng.uniform(-1.0, 1.0))
+        stream_km = RACE_STREAM_KM if rng.random() < 0.5 else None
+        speed_m_s = speed_at_power_m_s(
+            tow.hull,
+            effort * tow.boat.target_power_w(tow.crew_class),
+            tow.boat.boat_type.rowers,
+            tow.water_temperature_c,
+            world.settings.air,
+        )
+        metres = 1000.0 * (RACE_KM - (stream_km or 0.0))
+        lines.append(RaceLine(tow, round(metres / speed_m_s), stream_km))
+    return day, lines
+
+
+def _newest_tows(world: World, year: int) -> dict[tuple[int, str], Tow]:
+    return {(tow.boat.index, tow.crew_class): tow for tow in world.tows if tow.season <= year}
+
+
+def _printed_curve(world: World, tow: Tow) -> tuple[float, float]:
+    """A log that reads v / f turns A, B into A f^2, B / f; askew pulling multiplies A."""
+    a_kg_m, b_m_s = nearest_hyperbola(
+        tow.hull, tow.declared_speed_m_s, tow.water_temperature_c, world.settings.air
+    )
+    factor = tow.truth.log_factor if tow.season <= LAST_UNCALIBRATED_SEASON else 1.0
+    return a_kg_m * tow.truth.askew_ratio * factor**2, b_m_s / factor

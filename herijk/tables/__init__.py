@@ -1,0 +1,1 @@
+"""The tables: every name, dtype, unit, range, key and meaning, declared once."""

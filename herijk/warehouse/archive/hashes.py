@@ -1,0 +1,67 @@
+"""The hash of a file's content, remembered as long as the file looks unchanged.
+
+A cache and no more: losing it costs time, never a result.
+"""
+
+import json
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+
+from herijk.warehouse.store.files import file_sha256, written_beside
+
+RACY_SECONDS: Final = 2.0
+"""A file this fresh can change again without a change of its time stamp (coarse clocks), so its
+hash is not remembered; git calls such an index entry racy."""
+
+
+@dataclass
+class FileHashes:
+    """SHA-256 of files by path, size and modification time.
+
+    Attributes:
+        entries: absolute path -> (size in bytes, mtime in ns, sha256).
+    """
+
+    entries: dict[str, tuple[int, int, str]] = field(default_factory=dict)
+
+    @classmethod
+    def load(cls, path: Path) -> "FileHashes":
+        """Return the cache saved at `path`; an empty one when it is absent or damaged."""
+        try:
+            stored = json.loads(path.read_text(encoding="utf-8"))
+            return cls(
+                {
+                    str(name): (int(size), int(mtime_ns), str(sha256))
+                    for name, (size, mtime_ns, sha256) in stored.items()
+                }
+            )
+        except (OSError, ValueError, TypeError, AttributeError):
+            return cls()
+
+    def save(self, path: Path) -> None:
+        """Write the cache to `path` in one step: a reader sees the old one or the new one."""
+        with written_beside(path) as beside:
+            beside.write_text(json.dumps(self.entries, indent=0, sort_keys=True), encoding="utf-8")
+
+    def hash_file(self, path: Path) -> str:
+        """Return the SHA-256 of a file's content, as hexadecimal text.
+
+        Raises:
+            OSError: the file cannot be read.
+        """
+        key = str(path.absolute())
+        before = path.stat()
+        known = self.entries.get(key)
+        if known is not None and known[:2] == (before.st_size, before.st_mtime_ns):
+            return known[2]
+        sha256 = file_sha256(path)
+        after = path.stat()
+        unchanged = (before.st_size, before.st_mtime_ns) == (after.st_size, after.st_mtime_ns)
+        settled = time.time_ns() - after.st_mtime_ns >= RACY_SECONDS * 1e9
+        if unchanged and settled:
+            self.entries[key] = (after.st_size, after.st_mtime_ns, sha256)
+        else:
+            self.entries.pop(key, None)
+        return sha256

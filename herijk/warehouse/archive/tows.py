@@ -1,0 +1,190 @@
+"""The rows of the tow lists: `sleeplijst_<jaar>.csv`.
+
+One row at a time: text to values. What rows, boats and files say about each other belongs to
+`index`.
+"""
+
+import re
+from collections.abc import Mapping
+from typing import Any, Final
+
+import polars as pl
+
+from herijk.pipeline.channels import RUNS_PER_FILE, SECOND_FILE_OFFSET
+from herijk.warehouse.archive.boats import BEAM_M, BOW_HEIGHT_M, LENGTH_M, ROWERS, WEIGHT_KG
+from herijk.warehouse.archive.lists import ListRow
+from herijk.warehouse.archive.text import Column, shorten
+
+SPEED_M_S: Final = (0.5, 6.0)
+CREW_WEIGHT_KG: Final = (0.0, 6_000.0)
+TEMPERATURE_C: Final = (-2.0, 40.0)
+CORRECTION_RATIO: Final = (-0.5, 0.5)
+SAMPLE_RATE_HZ: Final = (1, 100_000)
+FREEBOARD_M: Final = (-0.5, 4.0)
+
+COLUMNS: Final = (
+    Column("tow_id", "sleep_id"),
+    Column("tow_date", "datum"),
+    Column("fsn_no", "fsn_nr"),
+    Column("file", "meetfile"),
+    Column("second_file", "meetfile2", required=False),
+    Column("rowers", "roeiers"),
+    Column("crew_class", "klasse"),
+    Column("declared_speed_m_s", "roeisnelheid", "speed", "m/s"),
+    Column("waterline_length_m", "lengte", "length", "m"),
+    Column("beam_m", "breedte", "length", "m"),
+    Column("bow_height_m", "hoogte", "length", "m"),
+    Column("weight_kg", "gewicht", "mass", "kg"),
+    Column("weight_after_kg", "gewicht na", "mass", "kg", required=False),
+    Column("crew_weight_kg", "bemanning", "mass", "kg", required=False),
+    Column("water_temperature_c", "watertemperatuur", "temperature", "C", required=False),
+    Column("speed_correction_ratio", "correctie", "ratio", "%", required=False),
+    Column("use_runs", "gebruik runs", required=False),
+    Column("altered", "verbouwd", required=False),
+    Column("sample_rate_hz", "meetfrequentie", "rate", "Hz", required=False),
+    Column("empty_thwart", "lege doft", required=False),
+    Column("freeboard_lowest_m", "vrijboord laagst", "length", "m", required=False),
+    Column("freeboard_bow_m", "vrijboord boeg", "length", "m", required=False),
+    Column("freeboard_stern_m", "vrijboord achter", "length", "m", required=False),
+    Column("remark", "opmerking", required=False),
+)
+SCHEMA: Final[dict[str, pl.DataType]] = {
+    "tow_id": pl.String(),
+    "season": pl.Int32(),
+    "tow_date": pl.Date(),
+    "fsn_no": pl.String(),
+    "rowers": pl.Int32(),
+    "crew_class": pl.String(),
+    "declared_speed_m_s": pl.Float64(),
+    "waterline_length_m": pl.Float64(),
+    "beam_m": pl.Float64(),
+    "bow_height_m": pl.Float64(),
+    "weight_kg": pl.Float64(),
+    "weight_after_kg": pl.Float64(),
+    "crew_weight_kg": pl.Float64(),
+    "water_temperature_c": pl.Float64(),
+    "speed_correction_ratio": pl.Float64(),
+    "altered": pl.Boolean(),
+    "sample_rate_hz": pl.Int32(),
+    "empty_thwart": pl.String(),
+    "freeboard_lowest_m": pl.Float64(),
+    "freeboard_bow_m": pl.Float64(),
+    "freeboard_stern_m": pl.Float64(),
+    "remark": pl.String(),
+    "log1_part": pl.Int32(),
+    "log2_part": pl.Int32(),
+    "samples_path": pl.String(),
+    "samples_sha256": pl.String(),
+    "second_path": pl.String(),
+    "second_sha256": pl.String(),
+    "list_path": pl.String(),
+    "list_line": pl.Int32(),
+}
+RUNS_SCHEMA: Final[dict[str, pl.DataType]] = {
+    "tow_id": pl.String(),
+    "run": pl.Int8(),
+    "direction": pl.Int8(),
+    "target_speed_ratio": pl.Float64(),
+    "selected": pl.Boolean(),
+}
+
+_RUN: Final = re.compile(r"(b?)([1-6])", re.IGNORECASE)
+_TOW_ID: Final = re.compile(r"[^/\\\x00-\x1f]{1,64}")
+_ALTERED: Final = {"": False, "nee": False, "ja": True}
+
+
+def read_tow(row: ListRow, season: int, default_rate_hz: int) -> dict[str, Any]:
+    """Return the values of a tow, without its files; empty dimensions are None.
+
+    Raises:
+        DefectiveInputError: `bad_list_row` with the line.
+    """
+    row.check_whole()
+    tow_id = row.text("tow_id")
+    if not _TOW_ID.fullmatch(tow_id):
+        raise row.fault(f"'{shorten(tow_id)}' cannot be a sleep_id: too long, or with a slash.")
+    return {
+        "tow_id": tow_id,
+        "season": season,
+        "tow_date": row.date("tow_date"),
+        "fsn_no": row.text("fsn_no"),
+        "rowers": row.integer("rowers", *ROWERS),
+        "crew_class": row.crew_class("crew_class"),
+        "declared_speed_m_s": row.number("declared_speed_m_s", *SPEED_M_S),
+        "waterline_length_m": row.optional_number("waterline_length_m", *LENGTH_M),
+        "beam_m": row.optional_number("beam_m", *BEAM_M),
+        "bow_height_m": row.optional_number("bow_height_m", *BOW_HEIGHT_M),
+        "weight_kg": row.optional_number("weight_kg", *WEIGHT_KG),
+        "weight_after_kg": row.optional_number("weight_after_kg", *WEIGHT_KG),
+        "crew_weight_kg": row.optional_number("crew_weight_kg", *CREW_WEIGHT_KG),
+        "water_temperature_c": row.optional_number("water_temperature_c", *TEMPERATURE_C),
+        "speed_correction_ratio": row.optional_number("speed_correction_ratio", *CORRECTION_RATIO),
+        "altered": _altered(row),
+        "sample_rate_hz": row.optional_integer("sample_rate_hz", *SAMPLE_RATE_HZ)
+        or default_rate_hz,
+        "empty_thwart": row.optional_text("empty_thwart"),
+        "freeboard_lowest_m": row.optional_number("freeboard_lowest_m", *FREEBOARD_M),
+        "freeboard_bow_m": row.optional_number("freeboard_bow_m", *FREEBOARD_M),
+        "freeboard_stern_m": row.optional_number("freeboard_stern_m", *FREEBOARD_M),
+        "remark": row.optional_text("remark"),
+    }
+
+
+def fill_dimensions(
+    tow: Mapping[str, Any], boat: Mapping[str, Any], row: ListRow
+) -> dict[str, Any]:
+    """Return the tow with the boat's dimensions where that day's were not written down.
+
+    Raises:
+        DefectiveInputError: `bad_list_row` when the boat list does not have them either.
+    """
+    filled = dict(tow)
+    for key in ("waterline_length_m", "beam_m", "bow_height_m"):
+        if filled[key] is None:
+            filled[key] = boat[key]
+        if filled[key] is None:
+            raise row.fault(
+                f"column '{row.columns[key].header}' is empty, here and in the boat list."
+            )
+    return filled
+
+
+def read_selection(row: ListRow) -> frozenset[int]:
+    """Return the runs to use; runs of the second file are 11-16, all of the first when empty.
+
+    Raises:
+        DefectiveInputError: `bad_list_row` with the line.
+    """
+    cell = row.optional_text("use_runs")
+    if cell is None:
+        return frozenset(range(1, RUNS_PER_FILE + 1))
+    parts = re.split(r"[\s,;]+", cell.strip(" ,;"))
+    runs = [run_number(part, row, "gebruik runs") for part in parts]
+    if len(set(runs)) < len(runs):
+        raise row.fault(f"'gebruik runs' is '{shorten(cell)}'; one run stands in it twice.")
+    if max(runs) > SECOND_FILE_OFFSET and row.optional_text("second_file") is None:
+        raise row.fault(f"'gebruik runs' is '{shorten(cell)}', but there is no meetfile2.")
+    return frozenset(runs)
+
+
+def run_number(part: str, row: ListRow, header: str) -> int:
+    """Return the number of a run as written in a list: 1-6, or 11-16 for b1-b6.
+
+    Raises:
+        DefectiveInputError: it is none, with the row's reason code and line.
+    """
+    match = _RUN.fullmatch(part)
+    if match is None:
+        raise row.fault(
+            f"'{header}' has '{shorten(part)}'; runs are 1 to {RUNS_PER_FILE}, or b1 to "
+            f"b{RUNS_PER_FILE} for the second file, with commas between them."
+        )
+    return int(match[2]) + (SECOND_FILE_OFFSET if match[1] else 0)
+
+
+def _altered(row: ListRow) -> bool:
+    cell = row.optional_text("altered") or ""
+    altered = _ALTERED.get(cell.casefold())
+    if altered is None:
+        raise row.fault(f"'verbouwd' is '{shorten(cell)}', not ja, nee or empty.")
+    return altered

@@ -1,0 +1,144 @@
+"""The windows given by hand: `vensters_<jaar>.csv`, one row a run of which a person chose the part.
+
+Rows are read, and held against the tows of that year, here. How long a run is, is only known when
+its samples are read; `outside_run` is asked then.
+"""
+
+from collections import Counter
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+import polars as pl
+
+from herijk.pipeline.errors import DefectiveInputError
+from herijk.warehouse.archive.faults import Fault, fault_from
+from herijk.warehouse.archive.lists import ListRow, read_rows
+from herijk.warehouse.archive.text import Column, shorten
+from herijk.warehouse.archive.tows import run_number
+
+START_S: Final = (0, 600)
+END_S: Final = (1, 600)
+COLUMNS: Final = (
+    Column("tow_id", "sleep_id"),
+    Column("run", "run"),
+    Column("start_s", "van", "time", "s"),
+    Column("end_s", "tot", "time", "s"),
+    Column("reason", "reden"),
+)
+SCHEMA: Final[dict[str, pl.DataType]] = {
+    "tow_id": pl.String(),
+    "run": pl.Int8(),
+    "start_s": pl.Int16(),
+    "end_s": pl.Int16(),
+    "reason": pl.String(),
+    "list_path": pl.String(),
+    "list_line": pl.Int64(),
+}
+
+Window = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Listed:
+    """What a year's tow list says that a window is held against.
+
+    Attributes:
+        tow_ids: every `sleep_id` in the list, also of tows that are set aside.
+        runs: the runs of each tow that is not set aside.
+    """
+
+    tow_ids: Collection[str]
+    runs: Mapping[str, Collection[int]]
+
+
+def read_windows(data: bytes, path: str, listed: Listed) -> tuple[list[Window], list[Fault]]:
+    """Return the windows of one list for tows that are not set aside, and the faulty rows.
+
+    Two windows for one run cost both, as nobody can know which is right.
+
+    Raises:
+        DefectiveInputError: the list as a whole cannot be read.
+    """
+    windows: list[Window] = []
+    faults: list[Fault] = []
+    for row in read_rows(data, COLUMNS, "bad_window_row"):
+        try:
+            window = _read_window(row) | {"list_path": path, "list_line": row.line}
+            if _is_wanted(window, row, listed):
+                windows.append(window)
+        except DefectiveInputError as error:
+            faults.append(fault_from(error, path))
+    given = Counter((w["tow_id"], w["run"]) for w in windows)
+    twice = [w for w in windows if given[w["tow_id"], w["run"]] > 1]
+    return [w for w in windows if w not in twice], faults + [_given_twice(w) for w in twice]
+
+
+def outside_run(windows: pl.DataFrame, seconds: pl.DataFrame) -> list[Fault]:
+    """Return a fault for each window that ends after its run.
+
+    Args:
+        windows: rows of `SCHEMA`.
+        seconds: `tow_id`, `run` and the run's length in whole `seconds`.
+    """
+    beyond = windows.join(seconds, on=["tow_id", "run"]).filter(pl.col("end_s") > pl.col("seconds"))
+    return [
+        _fault(
+            window,
+            "window_outside_run",
+            f"{_named(window)} ends at {window['end_s']} s, but the run lasts "
+            f"{window['seconds']} s.",
+        )
+        for window in beyond.iter_rows(named=True)
+    ]
+
+
+def _read_window(row: ListRow) -> Window:
+    row.check_whole()
+    window: Window = {
+        "tow_id": row.text("tow_id"),
+        "run": run_number(row.text("run"), row, "run"),
+        "start_s": row.integer("start_s", *START_S),
+        "end_s": row.integer("end_s", *END_S),
+        "reason": row.text("reason"),
+    }
+    if window["start_s"] >= window["end_s"]:
+        raise row.fault(
+            f"'van' is {window['start_s']} s and 'tot' {window['end_s']} s; a window ends after "
+            "it begins."
+        )
+    return window
+
+
+def _is_wanted(window: Window, row: ListRow, listed: Listed) -> bool:
+    """Whether the window's tow can be used; a tow that is set aside needs no window."""
+    tow_id = window["tow_id"]
+    if tow_id not in listed.tow_ids:
+        raise DefectiveInputError(
+            "window_unknown_tow",
+            f"Line {row.line}: sleep_id {shorten(tow_id)} is not in the tow list of that year.",
+            row.line,
+        )
+    if tow_id not in listed.runs:
+        return False
+    if window["run"] not in listed.runs[tow_id]:
+        raise DefectiveInputError(
+            "window_unknown_run",
+            f"Line {row.line}: tow {tow_id} has no run {row.text('run')}; it has no meetfile2.",
+            row.line,
+        )
+    return True
+
+
+def _given_twice(window: Window) -> Fault:
+    message = f"{_named(window)} has more than one window; none of them counts."
+    return _fault(window, "window_given_twice", message)
+
+
+def _named(window: Mapping[str, Any]) -> str:
+    return f"run {window['run']} of tow {window['tow_id']}"
+
+
+def _fault(window: Mapping[str, Any], reason_code: str, message: str) -> Fault:
+    line = window["list_line"]
+    return Fault(window["list_path"], None, line, reason_code, f"Line {line}: {message}")

@@ -1,0 +1,51 @@
+"""Whether a finished rebuild is what it promises: schemas, counts, the share set aside.
+
+Reads only. What checks are called and how bad they are is said in `assets.checks`.
+"""
+
+from collections.abc import Sequence
+
+from herijk.pipeline.method.definition import Method
+from herijk.tables.schemas import TABLES
+from herijk.warehouse.build.tables import METHOD_TABLES, WHOLE_TABLES
+from herijk.warehouse.store.database import open_database
+from herijk.warehouse.store.store import Store, count_rows
+
+
+def schema_faults(store: Store) -> list[str]:
+    """Tables of the database that are not as their schema promises, a sentence each."""
+    with open_database(store.database) as db:
+        return [
+            f"{name} is not as declared in herijk/tables/schemas.py"
+            for name in (*WHOLE_TABLES, *METHOD_TABLES)
+            if not TABLES[name].is_valid(db.sql(f'FROM "{name}"').pl())
+        ]
+
+
+def count_faults(store: Store, methods: Sequence[Method]) -> list[str]:
+    """Tables with other numbers of rows than in the lake, and methods that lost a tow."""
+    expected = {name: count_rows(store.table_path(name)) for name in WHOLE_TABLES} | {
+        name: sum(count_rows(store.table_path(name, m.name)) for m in methods)
+        for name in METHOD_TABLES
+    }
+    with open_database(store.database) as db:
+        found = {name: len(db.table(name)) for name in expected}
+        curves = dict(db.sql("SELECT method, count(*) FROM curves GROUP BY method").fetchall())
+    return [
+        *(
+            f"{name} has {found[name]} rows, and {number} in the lake"
+            for name, number in expected.items()
+            if found[name] != number
+        ),
+        *(
+            f"{m.name} has {curves.get(m.name, 0)} curves of {expected['tows']} tows"
+            for m in methods
+            if curves.get(m.name) != expected["tows"]
+        ),
+    ]
+
+
+def set_aside_tows(store: Store) -> tuple[int, int]:
+    """How many tows are set aside, and how many are listed."""
+    aside = store.read("quarantine")["tow_id"].drop_nulls().n_unique()
+    return aside, aside + store.read("tows").height

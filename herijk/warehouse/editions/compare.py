@@ -1,0 +1,329 @@
+"""Two editions side by side: every line with its causes, and what it does to races.
+
+The numbers come from `pipeline.register.changes`, `pipeline.studies.ladder` and `pipeline.register.replay`; here it is found
+out what two editions do not share: tow, files, method, code. The steps of the method are computed
+with the code and blocks of today; what they leave is one factor, named after what else differs.
+"""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+import polars as pl
+
+from herijk.pipeline.blocks.run_blocks import stack_blocks
+from herijk.pipeline.register.changes import (
+    NO_FACTOR,
+    NO_PARTS,
+    register_changes,
+    side_by_side,
+    steps_of_lines,
+)
+from herijk.pipeline.register.register import LINE
+from herijk.pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
+from herijk.pipeline.studies.ladder import ladder
+from herijk.warehouse.archive import read_races
+from herijk.warehouse.build.tables import runs_with_windows
+from herijk.warehouse.editions.folder import Edition, read_edition
+from herijk.warehouse.editions.inputs import INPUTS_HASH, same_tows, tows_of_today, unchanged_tows
+from herijk.warehouse.editions.lines import MEASURED, made_again
+from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.store.code import code_version
+from herijk.warehouse.store.store import Store
+
+PRINTED: Final = "printed"
+PRINTED_AND_TOW: Final = "printed_and_tow"
+CLOSED_FORM: Final = "closed_form"
+TOW: Final = "tow"
+INPUT: Final = "input"
+OTHER_INPUT: Final = "other_input"
+CODE: Final = "code"
+INPUT_AND_CODE: Final = "input_and_code"
+CODE_OR_OTHER_INPUT: Final = "code_or_other_input"
+METHOD: Final = "method"
+UNSEPARATED: Final = "unseparated"
+UNEXPLAINED: Final = "unexplained"
+
+NO_LADDER: Final = pl.DataFrame(
+    schema={"tow_id": pl.String, "position": pl.Int8, "step": pl.String, "factor": pl.Float64}
+)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Two editions side by side.
+
+    Attributes:
+        old, new: the editions.
+        lines: rows of `register_changes`, with the columns of `pipeline.register.changes.side_by_side`, the
+            boat's `name`, and the status in both, which says why a line has no curve any more.
+    """
+
+    old: Edition
+    new: Edition
+    lines: pl.DataFrame
+
+
+def diff(store: Store, old: str, new: str) -> Comparison:
+    """Compares two published editions.
+
+    Raises:
+        MissingKnowledgeError: there is no such edition.
+        BrokenPromiseError: a file of it is missing or damaged.
+    """
+    return compare(store, read_edition(store, old), read_edition(store, new))
+
+
+def compare(store: Store, old: Edition, new: Edition) -> Comparison:
+    """Compares two editions line by line, with causes whose factors multiply to the change."""
+    code = _code_parts(store, old, new)
+    steps = _steps(store, old, new)
+    printed = _printed_parts(old, new)
+    known = [code, printed, steps_of_lines(new.register, steps)]
+    parts = pl.concat(known, how="diagonal_relaxed")
+    separated = {*steps["tow_id"], *printed.select(LINE).rows()}
+    grounds = _grounds(old, new, separated, code_known=not code.is_empty())
+    changes = register_changes(old.register, new.register, parts, grounds)
+    names = pl.concat([new.register.select(*LINE, "name"), old.register.select(*LINE, "name")])
+    lines = (
+        changes.join(side_by_side(old.register, new.register), on=LINE)
+        .join(names.unique(LINE, keep="first"), on=LINE, how="left")
+        .join(old.register.select(*LINE, old_status="status"), on=LINE, how="left")
+        .join(new.register.select(*LINE, new_status="status"), on=LINE, how="left")
+        .sort(LINE)
+    )
+    return Comparison(old, new, lines)
+
+
+@dataclass(frozen=True)
+class RaceEffects:
+    """What two editions make of the races in the archive.
+
+    Attributes:
+        results: rows of `pipeline.register.replay.race_changes`.
+        winners: rows of `pipeline.register.replay.winner_changes`.
+    """
+
+    results: pl.DataFrame
+    winners: pl.DataFrame
+
+
+def race_effects(store: Store, old: Edition, new: Edition, rules: RaceRules) -> RaceEffects | None:
+    """Power, rank, podium and winner of every race in the archive under both editions.
+
+    Returns:
+        The effects; None where the archive is not there or has no races.
+
+    Raises:
+        MissingKnowledgeError: the rules ask for what is not known.
+    """
+    root = intake.archive_root(store)
+    results = None if root is None else read_races(root)[0]
+    if results is None or results.is_empty():
+        return None
+    before, after = (replay(edition.register, results, rules) for edition in (old, new))
+    members = new.tables.get("ensemble", pl.DataFrame())
+    return RaceEffects(
+        race_changes(before, after), winner_changes(before, after, new.register, members)
+    )
+
+
+def _code_parts(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
+    """What the code alone changed: the old edition made again by the code of the new one.
+
+    Known where the new edition was made by the code of today and the warehouse still has all
+    inputs of the old one, unchanged.
+    """
+    versions = (old.about.code_version, new.about.code_version)
+    if old.method is None or versions[0] == versions[1] or versions[1] != code_version():
+        return NO_PARTS
+    if len(unchanged_tows(store, old)) < old.tables["tows"].height:
+        return NO_PARTS
+    again = made_again(store, old).lines.with_columns(pl.lit("again").alias("edition"))
+    return register_changes(old.register, again).select(
+        *LINE,
+        pl.lit(CODE).alias("cause"),
+        pl.lit(None, pl.String).alias("step"),
+        pl.col("cw_ratio").fill_null(1.0).alias("factor"),
+    )
+
+
+def _printed_parts(old: Edition, new: Edition) -> pl.DataFrame:
+    """Where another tow counts than the printed one: what the new method makes of the printed tow.
+
+    Known where the new edition went by tows and has one of that day and line.
+    """
+    if old.method is not None or "curves" not in new.tables:
+        return NO_PARTS
+    tows = new.tables["tows"].select("tow_id", "tow_date")
+    curves = new.tables["curves"].join(tows, on="tow_id").with_columns(edition=pl.lit("printed"))
+    day = [*LINE, "tow_date"]
+    same_tow = curves.join(old.register, on=day, how="semi").unique(day, keep="none")
+    moved = same_tow.join(new.register, on="tow_id", how="anti")
+    if moved.is_empty():
+        return NO_PARTS
+    return (
+        register_changes(old.register, moved)
+        .drop_nulls("cw_ratio")
+        .select(
+            *LINE,
+            pl.lit(PRINTED).alias("cause"),
+            pl.lit(None, pl.String).alias("step"),
+            pl.col("cw_ratio").alias("factor"),
+        )
+    )
+
+
+def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
+    """The ladder from the old to the new method, on the new edition's tows that are still there."""
+    if old.method is None or new.method is None:
+        return NO_LADDER
+    if old.method.content_hash == new.method.content_hash:
+        return NO_LADDER
+    there = pl.col("tow_id").is_in(list(unchanged_tows(store, new)))
+    tows, runs = tows_of_today(store).filter(there), runs_with_windows(store).filter(there)
+    if tows.is_empty():
+        return NO_LADDER
+    blocks = stack_blocks(intake.all_blocks(store), runs)
+    return ladder(old.method, new.method, tows, blocks, _links(old, new))
+
+
+def _links(old: Edition, new: Edition) -> tuple[pl.DataFrame, pl.DataFrame] | None:
+    """The log factors with which both editions were made; None where one does not have them."""
+    found = [edition.tables.get("season_links") for edition in (old, new)]
+    return None if found[0] is None or found[1] is None else (found[0], found[1])
+
+
+def _grounds(old: Edition, new: Edition, separated: set[object], code_known: bool) -> pl.DataFrame:
+    """Per line the name of what its known parts do not explain.
+
+    Args:
+        old, new: the editions.
+        separated: tows with a ladder, and lines whose printed tow was computed.
+        code_known: what the code changed is a known part.
+    """
+    shared = [*LINE, "tow_id", "tow_date", INPUTS_HASH, "basis"]
+    pairs = old.register.select(shared).join(
+        new.register.select(shared), on=LINE, suffix="_new", nulls_equal=True
+    )
+    code = not code_known and old.about.code_version != new.about.code_version
+    same = None
+    if "tows" in old.tables and "tows" in new.tables:
+        same = same_tows(old.tables, new.tables)
+    grounds = [_ground(row, old, new, separated, code, same) for row in pairs.iter_rows(named=True)]
+    return pairs.select(LINE).with_columns(pl.Series("ground", grounds, pl.String))
+
+
+def _ground(
+    line: Mapping[str, Any],
+    old: Edition,
+    new: Edition,
+    separated: set[object],
+    code: bool,
+    same: frozenset[str] | None,
+) -> str:
+    if same is None or {line["basis"], line["basis_new"]} != {MEASURED}:
+        return _ground_of_printed(line, separated)
+    if line["tow_id"] != line["tow_id_new"]:
+        return TOW
+    own = line["tow_id"] not in same
+    others = not own and any(e.tables["tows"].height > len(same) for e in (old, new))
+    if old.about.method_hash != new.about.method_hash and line["tow_id_new"] not in separated:
+        return UNSEPARATED if own or code else METHOD
+    named = {
+        (True, False, False): INPUT,
+        (True, False, True): INPUT_AND_CODE,
+        (False, True, False): OTHER_INPUT,
+        (False, True, True): CODE_OR_OTHER_INPUT,
+        (False, False, True): CODE,
+    }
+    return named.get((own, others, code), UNEXPLAINED)
+
+
+def _ground_of_printed(line: Mapping[str, Any], separated: set[object]) -> str:
+    if line[INPUTS_HASH] == line[f"{INPUTS_HASH}_new"]:
+        return CLOSED_FORM
+    if tuple(line[name] for name in LINE) in separated:
+        return TOW
+    days = {line["tow_date"], line["tow_date_new"]}
+    return PRINTED if len(days) == 1 or None in days else PRINTED_AND_TOW
+
+
+# Summary
+
+
+LARGEST: Final = 10
+
+Report = dict[str, Any]
+
+
+def report(comparison: Comparison) -> Report:
+    """A comparison as plain data: counts, who gains and loses, causes, and every line.
+
+    A line gains when the new register gives its crew more power for the same race.
+    """
+    lines = comparison.lines
+    compared = lines.filter(pl.col("cw_ratio").is_not_null())
+    moved = compared.filter(pl.col("change") == "changed")
+    gain = moved.filter(pl.col("power_ratio") > 1).sort("power_ratio", "fsn_no", descending=True)
+    loss = moved.filter(pl.col("power_ratio") <= 1).sort("power_ratio", "fsn_no")
+    return {
+        "from_edition": comparison.old.about.edition,
+        "to_edition": comparison.new.about.edition,
+        "simulated": comparison.old.about.simulated or comparison.new.about.simulated,
+        "lines": lines.height,
+        "changes": dict(lines["change"].value_counts().sort("change").rows()),
+        "gain": _group(gain),
+        "loss": _group(loss),
+        "exceeds_interval": int(moved["exceeds_interval"].fill_null(False).sum()),
+        "interval_unknown": int(moved["exceeds_interval"].null_count()),
+        "causes": _causes(compared),
+        "largest": _rows(_by_size(moved).head(LARGEST)),
+        "rows": _rows(lines),
+    }
+
+
+def _group(lines: pl.DataFrame) -> Report:
+    return {
+        "lines": lines.height,
+        "of_class": {c: lines.filter(crew_class=c).height for c in ("H", "D")},
+        "median_power_ratio": lines["power_ratio"].median(),
+        "median_seconds": lines["gain_in_two_hours_s"].median(),
+        "most": _rows(lines.head(LARGEST)),
+    }
+
+
+def _by_size(lines: pl.DataFrame) -> pl.DataFrame:
+    return lines.sort(pl.col("cw_ratio").log().abs(), "fsn_no", descending=[True, False])
+
+
+def _causes(lines: pl.DataFrame) -> list[Report]:
+    """Per cause and step: the lines it moved, and its factors there."""
+    found = [
+        {"cause": one["cause"], "step": one.get("step"), "factor": one["factor"]}
+        for text in lines["causes"]
+        for one in _moved(text)
+    ]
+    schema = {"cause": pl.String, "step": pl.String, "factor": pl.Float64}
+    return (
+        pl.DataFrame(found, schema=schema)
+        .group_by("cause", "step")
+        .agg(
+            pl.len().alias("lines"),
+            pl.col("factor").median().alias("median_factor"),
+            pl.col("factor").min().alias("lowest_factor"),
+            pl.col("factor").max().alias("highest_factor"),
+        )
+        .sort("lines", "cause", "step", descending=[True, False, False])
+        .to_dicts()
+    )
+
+
+def _rows(lines: pl.DataFrame) -> list[Report]:
+    return [row | {"causes": _moved(row["causes"])} for row in lines.to_dicts()]
+
+
+def _moved(causes: str) -> list[Report]:
+    """The causes that changed something."""
+    return [one for one in json.loads(causes) if abs(one["factor"] - 1.0) > NO_FACTOR]

@@ -1,0 +1,310 @@
+"""The folder of an edition: what it consists of, made whole or not at all, and read again.
+
+On a disk everything is written beside, synced and renamed; in a bucket `edition.json` comes last,
+and without it there is no edition. A second edition of the same name is refused. What
+goes into the files is decided in `publish`; whether they are still what they were, in `verify`.
+"""
+
+import datetime as dt
+import fcntl
+import hashlib
+import json
+import os
+import re
+import shutil
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, Literal
+
+import polars as pl
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
+from herijk.pipeline.method.definition import Method, parse_method
+from herijk.warehouse.store.files import TEMPORARY_PREFIX
+from herijk.warehouse.store.storage import Place
+from herijk.warehouse.store.store import Store
+
+if TYPE_CHECKING:
+    from herijk.warehouse.store.bucket import BucketPath
+
+Kind = Literal["recomputed", "as_printed"]
+
+ABOUT: Final = "edition.json"
+METHOD: Final = "method.toml"
+DECISIONS: Final = "decisions.json"
+CSV: Final = "register.csv"
+XLSX: Final = "register.xlsx"
+INPUTS: Final = "inputs.csv"
+PACKAGE: Final = "datapackage.json"
+NOTES: Final = "toelichting.md"
+NOTES_EN: Final = "release_notes.md"
+NOTICE: Final = "bericht.md"
+NOTICE_EN: Final = "notice.md"
+CHANGES: Final = "register_changes"
+TABLES: Final = (
+    "register",
+    "tows",
+    "tow_runs",
+    "curves",
+    "run_points",
+    "log_factors",
+    "season_links",
+    "ensemble",
+    CHANGES,
+)
+
+_NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,59}")
+_LOCK: Final = f"{TEMPORARY_PREFIX}lock"
+
+
+class TableDigest(BaseModel):
+    """Rows and digest of a table's values."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    rows: int
+    digest: str
+
+
+class About(BaseModel):
+    """`edition.json`: what an edition is, by whose decision, and the hashes of all its files.
+
+    Attributes:
+        kind: `recomputed` from the archive, or `as_printed`: a register as the federation had it.
+        method, method_hash: None for a register as printed.
+        inputs_digest: of all tows that went in with their files, not only those of the lines.
+        carried_from: the printed edition of which lines were taken over, if any.
+        previous: the edition that the release notes compare with.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    edition: str
+    kind: Kind
+    method: str | None
+    method_hash: str | None
+    code_version: str
+    valid_from: dt.date
+    published_on: dt.date
+    decision: str
+    simulated: bool
+    inputs_digest: str
+    carried_from: str | None
+    previous: str | None
+    tables: dict[str, TableDigest] = {}
+    files: dict[str, str] = {}
+    seal: str = ""
+
+    def sealed(self) -> "About":
+        """The same with its seal: a hash of all the rest."""
+        return self.model_copy(update={"seal": self.expected_seal})
+
+    @property
+    def expected_seal(self) -> str:
+        """SHA-256 of everything but the seal."""
+        held = self.model_dump(mode="json", exclude={"seal"})
+        return hashlib.sha256(json.dumps(held, sort_keys=True).encode()).hexdigest()
+
+
+@dataclass(frozen=True)
+class Edition:
+    """An edition with its tables, read or about to be written.
+
+    Attributes:
+        about: what it is.
+        tables: by name, those of `TABLES` it has: `register` always, `register_changes` when there
+            was an edition before it, the others when it was recomputed.
+        method: the method, with every option of every season; None when as printed.
+    """
+
+    about: About
+    tables: dict[str, pl.DataFrame]
+    method: Method | None
+
+    @property
+    def register(self) -> pl.DataFrame:
+        """The lines: the columns of the table `register`, and what else an edition says of them."""
+        return self.tables["register"]
+
+
+def edition_names(store: Store) -> list[str]:
+    """The published editions, sorted; what is still being written is none."""
+    return sorted(f.name for f in store.editions.glob("[!.]*") if _is_published(f))
+
+
+def _is_published(path: Place) -> bool:
+    if isinstance(path, Path):
+        return path.is_dir()
+    return (path / ABOUT).exists()
+
+
+def edition_path(store: Store, edition: str) -> Place:
+    """The folder of a published edition.
+
+    Raises:
+        MissingKnowledgeError: there is none of that name.
+    """
+    if edition not in edition_names(store):
+        known = ", ".join(edition_names(store)) or "none yet"
+        raise MissingKnowledgeError(f"there is no edition {edition}; published: {known}")
+    return store.editions / edition
+
+
+def check_new_name(store: Store, edition: str) -> None:
+    """Refuses a name that no new edition can have.
+
+    Raises:
+        BrokenPromiseError: the name is taken.
+        MissingKnowledgeError: it cannot be the name of a folder everywhere, or is a draft's.
+    """
+    if not _NAME.fullmatch(edition) or edition.startswith("concept-"):
+        raise MissingKnowledgeError(
+            f"{edition!r} cannot name an edition: use letters, digits, '.', '_' and '-', begin "
+            "with a letter or digit, and not with 'concept-', which marks drafts"
+        )
+    if _is_published(store.editions / edition):
+        raise BrokenPromiseError(
+            f"edition {edition} was already published and is never changed; "
+            "publish under another name, for example with a higher number"
+        )
+
+
+def read_about(path: Place) -> About:
+    """What an edition says about itself.
+
+    Raises:
+        BrokenPromiseError: its `edition.json` is missing or cannot be read.
+    """
+    try:
+        return About.model_validate_json((path / ABOUT).read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, ValidationError) as error:
+        reason = str(error).splitlines()[0]
+        raise BrokenPromiseError(
+            f"edition {path.name}: {ABOUT} is missing or damaged ({reason}); put the folder back "
+            "from a copy"
+        ) from error
+
+
+def read_edition(store: Store, edition: str) -> Edition:
+    """An edition with its tables.
+
+    Raises:
+        MissingKnowledgeError: there is none of that name, or its method is not understood by the
+            code of today.
+        BrokenPromiseError: a file is missing or damaged.
+    """
+    path = edition_path(store, edition)
+    about = read_about(path)
+    tables = {name: read_table(path, name) for name in about.tables}
+    method = None
+    if about.kind == "recomputed":
+        method = parse_method((path / METHOD).read_text(encoding="utf-8"), f"{edition}/{METHOD}")
+    return Edition(about, tables, method)
+
+
+def method_of_edition(store: Store, edition: str) -> Method:
+    """The method that an edition was made with, as it was then.
+
+    Raises:
+        MissingKnowledgeError: the edition was taken over from print and has no method.
+    """
+    method = read_edition(store, edition).method
+    if method is None:
+        raise MissingKnowledgeError(
+            f"edition {edition} was taken over from print and has no method; compare it with "
+            f"another edition: herijk diff {edition} EDITION"
+        )
+    return method
+
+
+def read_table(path: Place, name: str) -> pl.DataFrame:
+    """A table of an edition.
+
+    Raises:
+        BrokenPromiseError: the file is missing or damaged.
+    """
+    try:
+        return pl.read_parquet((path / f"{name}.parquet").read_bytes())
+    except (OSError, pl.exceptions.PolarsError) as error:
+        raise BrokenPromiseError(
+            f"edition {path.name}: {name}.parquet is missing or damaged; put the folder back from "
+            "a copy"
+        ) from error
+
+
+def write_folder(store: Store, edition: str, contents: Mapping[str, bytes]) -> Place:
+    """Makes an edition of the given files, by name; `edition.json` is the last of them.
+
+    After an error, a full disk or a kill there is no edition of that name. What a killed
+    publication left is cleared away by the next one; in a bucket nobody can know that it is dead,
+    so there a person does it.
+
+    Raises:
+        BrokenPromiseError: the name is taken, or the folder could not be written.
+    """
+    target = store.editions / edition
+    try:
+        if isinstance(target, Path):
+            target.parent.mkdir(parents=True, exist_ok=True)
+            with _one_at_a_time(target.parent):
+                check_new_name(store, edition)
+                _write_beside(target, contents)
+        else:
+            check_new_name(store, edition)
+            _create_in_order(target, contents)
+    except OSError as error:
+        raise BrokenPromiseError(
+            f"edition {edition} could not be written: {error.strerror or error}. Nothing was "
+            "published; make room or mend the folder, and publish again"
+        ) from error
+    return target
+
+
+def _create_in_order(target: "BucketPath", contents: Mapping[str, bytes]) -> None:
+    """Creates every object where there is none, so of two publications one stops at the first."""
+    for name, content in contents.items():
+        try:
+            (target / name).create_bytes(content)
+        except FileExistsError as error:
+            raise BrokenPromiseError(
+                f"{error} is there already: somebody publishes under this name just now, or did "
+                f"not finish. Nothing was published; publish under another name, or remove what "
+                f"lies under {target} when nobody is publishing"
+            ) from error
+
+
+def _write_beside(path: Path, contents: Mapping[str, bytes]) -> None:
+    beside = Path(tempfile.mkdtemp(prefix=f"{TEMPORARY_PREFIX}{path.name}-", dir=path.parent))
+    try:
+        for name, content in contents.items():
+            (beside / name).write_bytes(content)
+            _sync(beside / name)
+        beside.chmod(0o755)
+        _sync(beside)
+        beside.rename(path)
+        _sync(path.parent)
+    finally:
+        shutil.rmtree(beside, ignore_errors=True)
+
+
+@contextmanager
+def _one_at_a_time(root: Path) -> Iterator[None]:
+    """Keeps other publications out, so that anything half-written is a dead one's."""
+    with (root / _LOCK).open("w", encoding="utf-8") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        for left in root.glob(f"{TEMPORARY_PREFIX}*"):
+            if left.is_dir():
+                shutil.rmtree(left)
+        yield
+
+
+def _sync(path: Path) -> None:
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)

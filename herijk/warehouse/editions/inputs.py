@@ -1,0 +1,81 @@
+"""What went into an edition: tows with their files, each tow's own hash, and one for all together.
+
+A number depends on its own tow, and under some methods on all tows at once (a coefficient found for
+the whole archive); so both hashes are kept. Which files still are what they were is `verify`'s.
+"""
+
+from collections.abc import Mapping
+from typing import Final
+
+import polars as pl
+
+from herijk.warehouse.build.tables import runs_with_windows, typed_tows
+from herijk.warehouse.editions.folder import Edition
+from herijk.warehouse.store.store import Store, fingerprint, table_digest
+
+NOT_INPUT: Final = (
+    *("samples_path", "second_path", "remark", "inputs_sha256"),
+    *("hand_reason", "list_path", "list_line"),
+)
+"""What a tow is called or said to be does not change its numbers."""
+
+INPUTS_HASH: Final = "inputs_sha256"
+SAMPLES, LIST, REGISTER = "meetdata", "lijst", "register"
+
+
+def with_input_hashes(tows: pl.DataFrame, runs: pl.DataFrame) -> pl.DataFrame:
+    """Tows with the hash of all that their numbers are made from: list row, runs and files."""
+    facts = [name for name in sorted(runs.columns) if name not in NOT_INPUT]
+    of_tow = dict(runs.sort("tow_id", "run").select(facts).partition_by("tow_id", as_dict=True))
+    measured = [name for name in sorted(tows.columns) if name not in NOT_INPUT]
+    hashes = [
+        fingerprint([row[name] for name in measured], of_tow[row["tow_id"],].rows())
+        for row in tows.iter_rows(named=True)
+    ]
+    return tows.with_columns(pl.Series(INPUTS_HASH, hashes, pl.String))
+
+
+def tows_of_today(store: Store) -> pl.DataFrame:
+    """The tows of the warehouse as it is now, with their hashes."""
+    return with_input_hashes(typed_tows(store), runs_with_windows(store))
+
+
+def inputs_digest(tows: pl.DataFrame) -> str:
+    """One hash for all tows together."""
+    return table_digest(tows.select("tow_id", INPUTS_HASH).sort("tow_id"))
+
+
+def same_tows(was: Mapping[str, pl.DataFrame], now: Mapping[str, pl.DataFrame]) -> frozenset[str]:
+    """Tows whose inputs are the same in two sets of tables `tows` and `tow_runs`.
+
+    Compared is what both tables say: a fact that was not recorded earlier is no difference.
+    """
+    shared = {
+        name: [column for column in was[name].columns if column in now[name].columns]
+        for name in ("tows", "tow_runs")
+    }
+    one, other = (
+        with_input_hashes(*(held[name].select(shared[name]) for name in shared))
+        for held in (was, now)
+    )
+    return frozenset(one.join(other, on=["tow_id", INPUTS_HASH], how="semi")["tow_id"])
+
+
+def unchanged_tows(store: Store, edition: Edition) -> frozenset[str]:
+    """Tows of an edition that the warehouse has with the same inputs."""
+    today = {"tows": typed_tows(store), "tow_runs": runs_with_windows(store)}
+    return same_tows(edition.tables, today)
+
+
+def input_files(store: Store, tows: pl.DataFrame) -> pl.DataFrame:
+    """The files behind an edition: samples of its tows, and the lists of the archive."""
+    first = tows.select(path="samples_path", sha256="samples_sha256")
+    second = tows.select(path="second_path", sha256="second_sha256").drop_nulls()
+    samples = pl.concat([first, second]).unique().with_columns(pl.lit(SAMPLES).alias("kind"))
+    is_list = pl.col("path").str.contains(r"^(sleeplijsten/|sloepregister/sloependata|archief)")
+    lists = (
+        store.read("listed_files")
+        .filter(is_list)
+        .select("path", "sha256", pl.lit(LIST).alias("kind"))
+    )
+    return pl.concat([samples, lists]).sort("path")

@@ -1,0 +1,107 @@
+"""The lines that a method gives on a day: at publication, and when an edition is made again.
+
+Which tow counts is decided in `pipeline.register.register`; here the facts of its tow are put beside it, and
+numbers are left out where no valid curve is.
+"""
+
+import datetime as dt
+from dataclasses import dataclass
+from typing import Final
+
+import polars as pl
+from pydantic import TypeAdapter
+
+from herijk.pipeline.blocks.run_blocks import stack_blocks
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.method.definition import RegisterRule
+from herijk.pipeline.recompute.recompute import recompute
+from herijk.pipeline.register.register import LINE, draft_register
+from herijk.warehouse.build import tables
+from herijk.warehouse.build.tables import runs_with_windows
+from herijk.warehouse.editions import sheets
+from herijk.warehouse.editions.folder import DECISIONS, INPUTS, Edition, edition_path, read_edition
+from herijk.warehouse.editions.inputs import INPUTS_HASH, tows_of_today
+from herijk.warehouse.editions.printed import printed_lines, with_carried
+from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.store import decisions as decided
+from herijk.warehouse.store.store import Store
+
+NUMBERS: Final = ("a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
+TOW_FACTS: Final = ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg", INPUTS_HASH)
+MEASURED: Final = "measured"
+
+
+def method_lines(
+    of_method: dict[str, pl.DataFrame],
+    crews: pl.DataFrame,
+    valid_from: dt.date,
+    rule: RegisterRule,
+    decisions: pl.DataFrame,
+) -> pl.DataFrame:
+    """The lines of a method on a day, each with the facts of its tow; numbers only where valid."""
+    draft = draft_register(
+        of_method["curves"], of_method["tows"], crews, valid_from, rule, decisions
+    )
+    valid = pl.col("status") == "valid"
+    return draft.join(
+        of_method["tows"].select("tow_id", *TOW_FACTS), on="tow_id", how="left"
+    ).with_columns(
+        *(pl.when(valid).then(pl.col(name)).alias(name) for name in NUMBERS),
+        pl.when(valid).then(pl.lit(MEASURED)).alias("basis"),
+    )
+
+
+@dataclass(frozen=True)
+class Again:
+    """A published edition as archive and code of today give it.
+
+    Attributes:
+        lines: its lines, but for boats never towed, in which nothing is computed.
+        ensemble: the members of its lines; None for a register as printed.
+    """
+
+    lines: pl.DataFrame
+    ensemble: pl.DataFrame | None
+
+
+def made_again(store: Store, edition: Edition) -> Again:
+    """Makes a published edition again, by its own method, decisions and day.
+
+    Measured lines are computed from those of its tows that the warehouse still has; lines carried
+    over are re-based again from the printed edition; a printed register is read again.
+
+    Raises:
+        MissingKnowledgeError: there is no warehouse, or the archive is not there.
+        BrokenPromiseError: the printed edition that lines were carried over from is damaged.
+    """
+    if store.made_from("tows") is None:
+        raise MissingKnowledgeError("there is no warehouse to make it from; run herijk rebuild")
+    if edition.method is None:
+        return Again(printed_lines(store, _printed_file(store, edition)), None)
+    mine = edition.tables["tows"].select("tow_id")
+    tows = tows_of_today(store).join(mine, on="tow_id", how="semi")
+    runs = runs_with_windows(store).join(mine, on="tow_id", how="semi")
+    blocks = stack_blocks(intake.all_blocks(store), runs)
+    found = recompute(edition.method, tows, blocks)
+    nobody = pl.DataFrame(schema={name: edition.register.schema[name] for name in LINE})
+    text = (edition_path(store, edition.about.edition) / DECISIONS).read_text(encoding="utf-8")
+    decisions = TypeAdapter(tuple[decided.Decision, ...]).validate_json(text)
+    about = edition.about
+    lines = method_lines(
+        {"curves": found.curves, "tows": tows},
+        nobody,
+        about.valid_from,
+        edition.method.validity,
+        decided.decision_table(decisions),
+    )
+    if about.carried_from is not None:
+        printed = read_edition(store, about.carried_from)
+        lines = with_carried(lines, printed, found.log_factors, about.valid_from, edition.method)
+    members = tables.ensemble_of(edition.method, found)
+    return Again(lines, members.join(edition.tables["ensemble"], on="tow_id", how="semi"))
+
+
+def _printed_file(store: Store, edition: Edition) -> str:
+    """The file that a register as printed was read from."""
+    listed = (edition_path(store, edition.about.edition) / INPUTS).read_bytes()
+    return str(sheets.read_csv_cells(listed)[1][0])

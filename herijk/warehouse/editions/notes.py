@@ -1,0 +1,160 @@
+"""The texts that go with an edition: a notice of one page and release notes, in Dutch and English.
+
+Filled in from the edition and its comparison with the one before; no number is computed here. What
+the texts say stands in the templates beside this module, the words in `warehouse.editions.words`.
+"""
+
+from pathlib import Path
+from typing import Any, Final
+
+import jinja2
+
+from herijk.warehouse.editions.compare import Comparison, Report, report
+from herijk.warehouse.editions.folder import NOTES, NOTES_EN, NOTICE, NOTICE_EN, Edition
+from herijk.warehouse.editions.printed import REBASED
+from herijk.warehouse.editions.words import DUTCH, ENGLISH, Language, table
+
+TEXTS: Final = {NOTICE: DUTCH, NOTES: DUTCH, NOTICE_EN: ENGLISH, NOTES_EN: ENGLISH}
+"""The texts of an edition, each with its language; a template has the name of its text."""
+
+MOST_CAUSES: Final = 5
+"""Causes that a notice names; the release notes name all."""
+
+HEADS: Final = {
+    "nl": (
+        ("oorzaak", "regels", "mediaan", "laagst", "hoogst"),
+        ("sloep", "naam", "ploeg", "Cw oud", "Cw nieuw", "vermogen", "in twee uur"),
+        "oorzaken",
+    ),
+    "en": (
+        ("cause", "lines", "median", "lowest", "highest"),
+        ("boat", "name", "crew", "Cw old", "Cw new", "power", "in two hours"),
+        "causes",
+    ),
+}
+
+
+def texts(edition: Edition, previous: Comparison | None) -> dict[str, str]:
+    """All texts of an edition as Markdown, by file name."""
+    found = None if previous is None else report(previous)
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
+        undefined=jinja2.StrictUndefined,
+        autoescape=False,  # noqa: S701 - Markdown, not HTML
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return {
+        name: environment.get_template(name).render(
+            _facts(edition, language) | _changes(found, language)
+        )
+        + "\n"
+        for name, language in TEXTS.items()
+    }
+
+
+def summary(edition: Edition) -> str:
+    """One paragraph in Dutch: what it is, from when, by whose decision."""
+    facts = _facts(edition, DUTCH)
+    simulated = "GESIMULEERD, geen metingen van de federatie. " if facts["simulated"] else ""
+    return (
+        f"{simulated}Sloepenregister {facts['edition']}, geldt vanaf {facts['valid_from']}. "
+        f"Besluit: {facts['decision']}. Rekenmethode: {facts['method']}."
+    )
+
+
+def _facts(edition: Edition, language: Language) -> dict[str, Any]:
+    about = edition.about
+    counts = edition.register["status"].value_counts().sort("count", "status", descending=True)
+    carried = edition.register.filter(basis=REBASED).height
+    ensemble = edition.tables.get("ensemble")
+    return {
+        "edition": about.edition,
+        "simulated": about.simulated,
+        "decision": about.decision.strip().rstrip("."),
+        "published_on": language.day(about.published_on),
+        "valid_from": language.day(about.valid_from),
+        "code_version": about.code_version,
+        "method": _method(edition, language),
+        "statuses": ", ".join(
+            f"{count} {language.statuses[status]}" for status, count in counts.rows()
+        ),
+        "carried": language.count(carried) if carried else None,
+        "carried_from": about.carried_from,
+        "members": None if ensemble is None else ensemble["member"].n_unique(),
+    }
+
+
+def _method(edition: Edition, language: Language) -> str:
+    if edition.method is None:
+        return {
+            "nl": "zoals destijds gedrukt; welke methode is niet vastgelegd",
+            "en": "as printed at the time; which one is not recorded",
+        }[language.code]
+    method = edition.method
+    title = {"nl": method.title, "en": method.title_en}[language.code]
+    return f"{title} ({method.name}, {method.content_hash[:12]})"
+
+
+def _changes(found: Report | None, language: Language) -> dict[str, Any]:
+    if found is None:
+        return {"changes": False}
+    cause_head, largest_head, causes = HEADS[language.code]
+    largest = [_largest(line, language) for line in found["largest"]]
+    named = [_cause(cause, language) for cause in found["causes"]]
+    whys = [
+        "; ".join(
+            f"{language.cause(c['cause'], c.get('step'))} {language.per_cent(c['factor'])}"
+            for c in line["causes"]
+        )
+        for line in found["largest"]
+    ]
+    with_causes = [(*row, why) for row, why in zip(largest, whys, strict=True)]
+    return {
+        "changes": True,
+        "previous": found["from_edition"],
+        "change_counts": ", ".join(
+            f"{language.count(n)} {language.changes[c]}" for c, n in found["changes"].items()
+        ),
+        "causes": "; ".join(
+            f"{cause[0]} ({language.count(int(cause[1]))}, {cause[2]})"
+            for cause in named[:MOST_CAUSES]
+        ),
+        "cause_table": table(cause_head, named) if named else "",
+        "gain": _group(found["gain"], language),
+        "loss": _group(found["loss"], language),
+        "exceeding": language.count(found["exceeds_interval"]),
+        "unknown": language.count(found["interval_unknown"]) if found["interval_unknown"] else "",
+        "largest": table(largest_head, largest) if largest else "",
+        "largest_count": len(largest),
+        "largest_with_causes": table((*largest_head, causes), with_causes) if largest else "",
+    }
+
+
+def _group(group: Report, language: Language) -> str:
+    if not group["lines"]:
+        return language.count(0)
+    of_class = ", ".join(f"{words} {group['of_class'][c]}" for c, words in language.crews.items())
+    median = {"nl": "mediaan", "en": "median"}[language.code]
+    return (
+        f"{language.count(group['lines'])} ({of_class}; {median} "
+        f"{language.per_cent(group['median_power_ratio'])}, "
+        f"{language.seconds(group['median_seconds'])})"
+    )
+
+
+def _cause(cause: Report, language: Language) -> tuple[str, ...]:
+    factors = (language.per_cent(cause[f"{n}_factor"]) for n in ("median", "lowest", "highest"))
+    return (language.cause(cause["cause"], cause["step"]), str(cause["lines"]), *factors)
+
+
+def _largest(line: Report, language: Language) -> tuple[str, ...]:
+    return (
+        line["fsn_no"],
+        line["name"] or "",
+        f"{line['rowers']}{line['crew_class']}",
+        language.number(line["old_cw_kg_m"]),
+        language.number(line["new_cw_kg_m"]),
+        language.per_cent(line["power_ratio"]),
+        language.seconds(line["gain_in_two_hours_s"]),
+    )

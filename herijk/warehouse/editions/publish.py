@@ -1,0 +1,272 @@
+"""Publishing: from the tables of a method, or from a printed register, to a frozen edition.
+
+Which tow counts is decided in `pipeline.register.register`, how sheets look in `sheets`, how a folder
+appears whole or not at all in `folder`. Only a person publishes: the name, the day from which it
+counts and the decision are handed in, and so is the day of publication.
+"""
+
+import datetime as dt
+import hashlib
+import io
+import json
+from dataclasses import dataclass
+from typing import Final
+
+import polars as pl
+
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.method.definition import Method
+from herijk.pipeline.method.writing import method_text
+from herijk.pipeline.register.register import LINE
+from herijk.tables.schemas import Register, conform
+from herijk.warehouse.build.tables import method_is_stale, runs_with_windows
+from herijk.warehouse.editions import notes, sheets
+from herijk.warehouse.editions.compare import compare
+from herijk.warehouse.editions.folder import (
+    ABOUT,
+    CHANGES,
+    CSV,
+    DECISIONS,
+    INPUTS,
+    METHOD,
+    PACKAGE,
+    TABLES,
+    XLSX,
+    About,
+    Edition,
+    TableDigest,
+    check_new_name,
+    edition_names,
+    read_about,
+    read_edition,
+    write_folder,
+)
+from herijk.warehouse.editions.inputs import (
+    INPUTS_HASH,
+    REGISTER,
+    input_files,
+    inputs_digest,
+    tows_of_today,
+)
+from herijk.warehouse.editions.lines import TOW_FACTS, method_lines
+from herijk.warehouse.editions.printed import printed_lines, printed_path, with_carried
+from herijk.warehouse.editions.sheets import CODE_FIELD
+from herijk.warehouse.store import decisions as decided
+from herijk.warehouse.store.code import code_version
+from herijk.warehouse.store.ensemble import read_ensemble
+from herijk.warehouse.store.storage import Place
+from herijk.warehouse.store.store import Store, table_digest
+
+BOAT_FACTS: Final = ("ht_no", "name", "boat_type")
+MADE: Final = ("curves", "run_points", "log_factors", "season_links")
+"""What a method made of the tows, and an edition keeps."""
+
+PRINTED_METHOD: Final = "as-printed"
+LINE_SCHEMA: Final = {
+    **{n: column.dtype for n, column in Register.columns().items() if n != CODE_FIELD.column},
+    **dict.fromkeys(BOAT_FACTS, pl.String()),
+    **dict.fromkeys(TOW_FACTS[:-1], pl.Float64()),
+    INPUTS_HASH: pl.String(),
+    "basis": pl.String(),
+}
+"""What an edition says of a line, but for its verification code."""
+
+
+@dataclass(frozen=True)
+class Terms:
+    """What a person decides about an edition.
+
+    Attributes:
+        edition: its name.
+        valid_from: the day from which it counts; validity of tows is judged on it.
+        decision: by whom and where it was decided.
+        published_on: the day of publication.
+    """
+
+    edition: str
+    valid_from: dt.date
+    decision: str
+    published_on: dt.date
+
+
+def publish(store: Store, method: Method, terms: Terms, carry: str | None = None) -> Place:
+    """Freezes the register of a method as an edition.
+
+    Args:
+        store: the data folder; its tables must be those of the archive and code of today.
+        method: a method that the last rebuild applied.
+        terms: what a person decided.
+        carry: a printed edition of which lines are taken over, re-based in closed form, for boats
+            and crews without a valid tow in the warehouse.
+
+    Returns:
+        The folder.
+
+    Raises:
+        BrokenPromiseError: the name is taken, or the folder could not be written.
+        MissingKnowledgeError: the tables are not up to date, a name or decision cannot be used.
+    """
+    check_new_name(store, terms.edition)
+    _check_decision(terms)
+    edition = recomputed_edition(store, method, terms, carry)
+    decisions = _decisions(store, terms)
+    texts = {
+        METHOD: method_text(method),
+        DECISIONS: json.dumps([d.model_dump(mode="json") for d in decisions], indent=1),
+    }
+    return _write(store, edition, input_files(store, edition.tables["tows"]), texts)
+
+
+def publish_printed(store: Store, season: int, terms: Terms) -> Place:
+    """Freezes a register of the archive, as printed that year, as an edition.
+
+    Raises:
+        BrokenPromiseError: the name is taken, or the folder could not be written.
+        MissingKnowledgeError: the archive holds no such register, it names a line twice, or a line
+            of it cannot be read.
+    """
+    check_new_name(store, terms.edition)
+    _check_decision(terms)
+    path = printed_path(store, season)
+    files = store.read("listed_files").filter(pl.col("path") == path)
+    files = files.select("path", "sha256", pl.lit(REGISTER).alias("kind"))
+    register = _complete(store, printed_lines(store, path), terms.edition, PRINTED_METHOD, None)
+    about = _about(store, terms, None, inputs_digest="")
+    return _write(store, Edition(about, {"register": register}, None), files, {})
+
+
+def recomputed_edition(
+    store: Store, method: Method, terms: Terms, carry: str | None = None
+) -> Edition:
+    """The edition that would be published, not yet written; see `publish`."""
+    if store.made_from("tows") is None or method_is_stale(store, method):
+        raise MissingKnowledgeError(
+            f"the tables of method {method.name} are not those of the archive and code of today; "
+            f"run: herijk rebuild --archive DIR --data {store.root} --method {method.name}"
+        )
+    tows = tows_of_today(store)
+    decisions = decided.decision_table(_decisions(store, terms))
+    _check_decided_tows(decisions, tows)
+    tables = {
+        "tows": tows,
+        "tow_runs": runs_with_windows(store),
+        **{name: store.read(name, method.name) for name in MADE},
+    }
+    crews = store.read("listed_boats")
+    lines = method_lines(tables, crews, terms.valid_from, method.validity, decisions)
+    if carry is not None:
+        printed = read_edition(store, carry)
+        factors = tables["log_factors"]
+        lines = with_carried(lines, printed, factors, terms.valid_from, method)
+    tables["ensemble"] = read_ensemble(store, method.name).join(
+        lines.drop_nulls("cw_kg_m"), on="tow_id", how="semi"
+    )
+    tables["register"] = _complete(store, lines, terms.edition, method.name, method.content_hash)
+    about = _about(store, terms, method, inputs_digest(tows), carry)
+    return Edition(about, tables, method)
+
+
+def latest_before(store: Store, valid_from: dt.date, published_on: dt.date) -> str | None:
+    """The edition that counted last before a day; None if there is none."""
+    known = [read_about(store.editions / name) for name in edition_names(store)]
+    earlier = [a for a in known if (a.valid_from, a.published_on) <= (valid_from, published_on)]
+    if not earlier:
+        return None
+    return max(earlier, key=lambda a: (a.valid_from, a.published_on, a.edition)).edition
+
+
+def _check_decision(terms: Terms) -> None:
+    if not terms.decision.strip():
+        raise MissingKnowledgeError(
+            "an edition needs a decision: say who decided it and where, with --decision"
+        )
+
+
+def _decisions(store: Store, terms: Terms) -> tuple[decided.Decision, ...]:
+    """Decisions about tows taken up to the day of publication."""
+    found = decided.read_decisions(store.root / decided.FILE_NAME)
+    return tuple(d for d in found if d.datum <= terms.published_on)
+
+
+def _check_decided_tows(decisions: pl.DataFrame, tows: pl.DataFrame) -> None:
+    unknown = decisions.join(tows, on="tow_id", how="anti")["tow_id"].to_list()
+    if unknown:
+        raise MissingKnowledgeError(
+            f"{decided.FILE_NAME} decides about {', '.join(unknown)}, which is no tow of the "
+            "warehouse; mend the sleep_id, or take the decision out"
+        )
+
+
+def _about(
+    store: Store, terms: Terms, method: Method | None, inputs_digest: str, carry: str | None = None
+) -> About:
+    return About(
+        edition=terms.edition,
+        kind="as_printed" if method is None else "recomputed",
+        method=None if method is None else method.name,
+        method_hash=None if method is None else method.content_hash,
+        code_version=code_version(),
+        valid_from=terms.valid_from,
+        published_on=terms.published_on,
+        decision=terms.decision,
+        simulated=bool(store.read("about_archive")["simulated"][0]),
+        inputs_digest=inputs_digest,
+        carried_from=carry,
+        previous=latest_before(store, terms.valid_from, terms.published_on),
+    )
+
+
+def _complete(
+    store: Store, lines: pl.DataFrame, edition: str, method: str, method_hash: str | None
+) -> pl.DataFrame:
+    """Lines with the facts of their boats and their verification codes, checked and sorted."""
+    named = lines.join(
+        store.read("boats").select("fsn_no", *BOAT_FACTS), on="fsn_no", how="left"
+    ).with_columns(pl.lit(edition).alias("edition"), pl.lit(method).alias("method"))
+    missing = [pl.lit(None).alias(name) for name in LINE_SCHEMA if name not in named.columns]
+    full = (
+        named.with_columns(missing)
+        .select(pl.col(name).cast(dtype) for name, dtype in LINE_SCHEMA.items())
+        .sort(LINE)
+    )
+    codes = sheets.verification_codes(full, method_hash)
+    coded = full.with_columns(pl.Series(CODE_FIELD.column, codes, pl.String))
+    conform("register", coded)
+    return coded
+
+
+def _write(store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str, str]) -> Place:
+    """Writes an edition's folder: tables, sheets, texts, and last what it says of itself."""
+    about = edition.about
+    tables = dict(edition.tables)
+    previous = None
+    if about.previous is not None:
+        previous = compare(store, read_edition(store, about.previous), edition)
+        tables[CHANGES] = previous.lines
+    written = texts | notes.texts(edition, previous)
+    fields = [*sheets.REGISTER_FIELDS, CODE_FIELD]
+    contents = {
+        CSV: sheets.csv_bytes(edition.register, fields),
+        XLSX: sheets.xlsx_bytes(edition.register, fields, about),
+        INPUTS: sheets.csv_bytes(files, sheets.INPUT_FIELDS),
+        **{name: text.encode("utf-8") for name, text in written.items()},
+        **{f"{name}.parquet": _parquet(tables[name]) for name in TABLES if name in tables},
+    }
+    contents[PACKAGE] = sheets.package_bytes(about, contents, notes.summary(edition))
+    sealed = about.model_copy(
+        update={
+            "tables": {
+                name: TableDigest(rows=frame.height, digest=table_digest(frame))
+                for name, frame in tables.items()
+            },
+            "files": {n: hashlib.sha256(c).hexdigest() for n, c in sorted(contents.items())},
+        }
+    ).sealed()
+    contents[ABOUT] = (sealed.model_dump_json(indent=1) + "\n").encode("utf-8")
+    return write_folder(store, about.edition, contents)
+
+
+def _parquet(frame: pl.DataFrame) -> bytes:
+    target = io.BytesIO()
+    frame.write_parquet(target, compression="zstd")
+    return target.getvalue()

@@ -1,0 +1,53 @@
+"""The published editions as rows of the warehouse's tables, beside the drafts.
+
+Editions are read as they lie; nothing is compared or computed again.
+"""
+
+import polars as pl
+
+from herijk.tables.schemas import TABLES, conform
+from herijk.warehouse.editions.folder import (
+    CHANGES,
+    Edition,
+    edition_names,
+    read_about,
+    read_edition,
+)
+from herijk.warehouse.editions.lineage import lineage_rows
+from herijk.warehouse.store.store import Store
+
+
+def published_made_from(store: Store) -> dict[str, str]:
+    """The seals of all editions: what the rows of `published_tables` are made from."""
+    return {name: read_about(store.editions / name).expected_seal for name in edition_names(store)}
+
+
+def published_tables(store: Store) -> dict[str, pl.DataFrame]:
+    """Rows of `editions`, and of `register`, `register_changes` and `lineage` of every edition.
+
+    Raises:
+        BrokenPromiseError: a file of an edition is missing or damaged.
+    """
+    rows: dict[str, list[pl.DataFrame]] = {
+        name: [] for name in ("editions", "register", CHANGES, "lineage")
+    }
+    for name in edition_names(store):
+        edition = read_edition(store, name)
+        rows["editions"].append(_edition_row(edition))
+        rows["register"].append(edition.register)
+        if CHANGES in edition.tables:
+            rows[CHANGES].append(edition.tables[CHANGES])
+        if edition.about.kind == "recomputed":
+            rows["lineage"].append(lineage_rows(edition))
+    return {
+        table: pl.concat([TABLES[table].create_empty(), *(conform(table, f) for f in frames)])
+        for table, frames in rows.items()
+    }
+
+
+def _edition_row(edition: Edition) -> pl.DataFrame:
+    """What an edition says of itself."""
+    about = edition.about.model_dump(include=set(TABLES["editions"].column_names()))
+    return pl.DataFrame([about]).cast(
+        {"previous": pl.String, "method": pl.String, "method_hash": pl.String}
+    )

@@ -1,0 +1,291 @@
+"""The register as people read it: CSV and XLSX with Dutch headers, and the data package.
+
+The cells of the CSV are the printed register: they are what the verification code of a line covers,
+together with the line's inputs and method. Nothing is computed here but text and hashes.
+"""
+
+import base64
+import csv
+import datetime as dt
+import hashlib
+import io
+import json
+import zipfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Final, Literal
+from xml.etree import ElementTree
+
+import polars as pl
+import xlsxwriter  # type: ignore[import-untyped,unused-ignore]
+
+from herijk.warehouse.editions.folder import CSV, INPUTS, About
+from herijk.warehouse.editions.words import DUTCH
+
+BOM: Final = "\ufeff"
+CODE_LENGTH: Final = 10
+CODE_HEADER: Final = "controlecode"
+FORMULA_STARTS: Final = ("=", "+", "-", "@", "\t", "\r")
+"""A text that begins so is taken for a formula by a spreadsheet."""
+
+FieldType = Literal["string", "number", "integer", "date"]
+
+BASIS_WORDS: Final = {
+    "measured": "herrekend",
+    "printed": "gedrukt",
+    "printed_rebased": "gedrukt, omgerekend",
+}
+
+
+@dataclass(frozen=True)
+class Field:
+    """A column of a sheet: its Dutch header, where its values come from, and how they look."""
+
+    header: str
+    column: str
+    type: FieldType
+    description: str
+    decimals: int = 3
+
+
+REGISTER_FIELDS: Final = (
+    Field("fsn_nr", "fsn_no", "string", "nummer van de sloep bij de federatie"),
+    Field("ht_nr", "ht_no", "string", "nummer in het HT-register"),
+    Field("sloep", "name", "string", "naam"),
+    Field("type", "boat_type", "string", "type sloep"),
+    Field("roeiers", "rowers", "integer", "aantal roeiers waarvoor de regel geldt"),
+    Field("klasse", "crew_class", "string", "H heren, D dames"),
+    Field("status", "status", "string", "geldig, of waarom er geen geldige kromme is"),
+    Field("roeisnelheid [m/s]", "declared_speed_m_s", "number", "opgegeven snelheid", 2),
+    Field("A", "a_kg_m", "number", "A in kg/m: de weerstand bij snelheid 0"),
+    Field(
+        "B", "b_m_s", "number", "B in m/s; leeg waar hij niet bepaald is: dan is Cw gelijk aan A"
+    ),
+    Field("Cw", "cw_kg_m", "number", "Cw in kg/m bij de roeisnelheid"),
+    Field("Cw laagst", "cw_lo_kg_m", "number", "ondergrens van het 95 %-interval"),
+    Field("Cw hoogst", "cw_hi_kg_m", "number", "bovengrens"),
+    Field("sleep_id", "tow_id", "string", "sleep die telt"),
+    Field("sleepdatum", "tow_date", "date", "dag van die sleep"),
+    Field("geldig tot en met", "valid_until", "date", "laatste dag waarop de regel telt"),
+    Field("lengte [m]", "waterline_length_m", "number", "lengte op de waterlijn die dag", 2),
+    Field("breedte [m]", "beam_m", "number", "breedte die dag", 2),
+    Field("hoogte [m]", "bow_height_m", "number", "boeghoogte die dag", 2),
+    Field("gewicht [kg]", "weight_kg", "number", "lege sloep met riemen die dag", 0),
+    Field("basis", "basis", "string", "waar de getallen vandaan komen"),
+    Field("editie", "edition", "string", "uitgave van het register"),
+    Field("methode", "method", "string", "rekenmethode"),
+)
+CODE_FIELD: Final = Field(
+    CODE_HEADER, "verification_code", "string", "hash van invoer, methode en getallen van de regel"
+)
+INPUT_FIELDS: Final = (
+    Field("bestand", "path", "string", "bestand, vanaf de map van het archief"),
+    Field("soort", "kind", "string", "meetdata, lijst of register"),
+    Field("sha256", "sha256", "string", "hash van de inhoud"),
+)
+
+Cells = list[list[str]]
+
+
+def printed_cells(frame: pl.DataFrame, fields: Sequence[Field]) -> Cells:
+    """The cells of a sheet as they are printed, without the header."""
+    words = _in_words(frame)
+    columns = [
+        [_printed(value, field) for value in words[field.column].to_list()] for field in fields
+    ]
+    return [list(row) for row in zip(*columns, strict=True)]
+
+
+def verification_codes(frame: pl.DataFrame, method_hash: str | None) -> list[str]:
+    """The code of every line: ten letters and digits that follow from all that made it.
+
+    Args:
+        frame: lines with the columns of `REGISTER_FIELDS` and `inputs_sha256`.
+        method_hash: content hash of the method; None for a register as printed.
+    """
+    cells = printed_cells(frame, REGISTER_FIELDS)
+    return [
+        _code([inputs, method_hash, *row])
+        for inputs, row in zip(frame["inputs_sha256"].to_list(), cells, strict=True)
+    ]
+
+
+def csv_bytes(frame: pl.DataFrame, fields: Sequence[Field]) -> bytes:
+    """A sheet as CSV for a Dutch spreadsheet: BOM, semicolons, decimal commas, no formulas."""
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, delimiter=";", lineterminator="\r\n")
+    writer.writerow([field.header for field in fields])
+    writer.writerows(printed_cells(frame, fields))
+    return (BOM + text.getvalue()).encode("utf-8")
+
+
+def read_csv_cells(content: bytes) -> Cells:
+    """The cells of such a CSV, with the header as first row."""
+    text = content.decode("utf-8-sig", errors="replace")
+    return list(csv.reader(io.StringIO(text, newline=""), delimiter=";"))
+
+
+def xlsx_bytes(frame: pl.DataFrame, fields: Sequence[Field], about: About) -> bytes:
+    """A sheet as XLSX, numbers as numbers and days as days, with what the edition is beside it."""
+    target = io.BytesIO()
+    options = {
+        "in_memory": True,
+        "strings_to_formulas": False,
+        "strings_to_urls": False,
+        "strings_to_numbers": False,
+    }
+    with xlsxwriter.Workbook(target, options) as book:
+        created = dt.datetime.combine(about.published_on, dt.time())
+        book.set_properties({"title": f"Sloepenregister {about.edition}", "created": created})
+        _write_register(book, _in_words(frame), fields)
+        _write_about(book, about)
+    return target.getvalue()
+
+
+def package_bytes(about: About, contents: dict[str, bytes], notes: str) -> bytes:
+    """The Frictionless descriptor of the CSV files of an edition."""
+    register = [*REGISTER_FIELDS, CODE_FIELD]
+    package = {
+        "profile": "tabular-data-package",
+        "name": about.edition.lower(),
+        "title": f"Sloepenregister {about.edition}",
+        "description": notes,
+        "version": about.edition,
+        "created": f"{about.published_on}T00:00:00Z",
+        "resources": [
+            _resource("register", CSV, contents[CSV], register, ["fsn_nr", "roeiers", "klasse"]),
+            _resource("inputs", INPUTS, contents[INPUTS], INPUT_FIELDS, ["bestand"]),
+        ],
+    }
+    return (json.dumps(package, indent=1, ensure_ascii=False) + "\n").encode("utf-8")
+
+
+def _resource(
+    name: str, path: str, content: bytes, fields: Sequence[Field], key: list[str]
+) -> dict[str, Any]:
+    return {
+        "profile": "tabular-data-resource",
+        "name": name,
+        "path": path,
+        "format": "csv",
+        "mediatype": "text/csv",
+        "encoding": "utf-8-sig",
+        "bytes": len(content),
+        "hash": f"sha256:{hashlib.sha256(content).hexdigest()}",
+        "dialect": {"delimiter": ";", "lineTerminator": "\r\n", "quoteChar": '"', "header": True},
+        "schema": {
+            "fields": [_field(field) for field in fields],
+            "primaryKey": key,
+            "missingValues": [""],
+        },
+    }
+
+
+def _field(field: Field) -> dict[str, Any]:
+    described = {"name": field.header, "type": field.type, "description": field.description}
+    if field.type == "number":
+        described |= {"decimalChar": ","}
+    return described
+
+
+def _in_words(frame: pl.DataFrame) -> pl.DataFrame:
+    """Codes in the words that people read."""
+    words = {"status": DUTCH.statuses, "basis": BASIS_WORDS}
+    return frame.with_columns(
+        pl.col(column).replace(words[column]) for column in words if column in frame.columns
+    )
+
+
+def _printed(value: Any, field: Field) -> str:
+    if value is None:
+        return ""
+    if field.type == "number":
+        return f"{value:.{field.decimals}f}".replace(".", ",")
+    text = str(value)
+    if field.type == "string" and text.startswith(FORMULA_STARTS):
+        return f"'{text}"
+    return text
+
+
+def _code(parts: Sequence[str | None]) -> str:
+    held = json.dumps(list(parts), ensure_ascii=False, separators=(",", ":"))
+    digest = hashlib.sha256(held.encode("utf-8")).digest()
+    return base64.b32encode(digest).decode("ascii")[:CODE_LENGTH]
+
+
+def _write_register(
+    book: xlsxwriter.Workbook, frame: pl.DataFrame, fields: Sequence[Field]
+) -> None:
+    sheet = book.add_worksheet("register")
+    head = book.add_format({"bold": True, "bottom": 1})
+    for place, field in enumerate(fields):
+        style = book.add_format({"num_format": _number_format(field)})
+        sheet.write_string(0, place, field.header, head)
+        sheet.set_column(place, place, max(10, len(field.header) + 2))
+        for row, value in enumerate(frame[field.column].to_list(), 1):
+            _write_cell(sheet, (row, place), value, field, style)
+    sheet.freeze_panes(1, 1)
+    sheet.autofilter(0, 0, frame.height, len(fields) - 1)
+
+
+def _number_format(field: Field) -> str:
+    if field.type == "number":
+        return "0." + "0" * field.decimals if field.decimals else "0"
+    return {"date": "dd-mm-yyyy", "integer": "0"}.get(field.type, "@")
+
+
+def _write_cell(sheet: Any, place: tuple[int, int], value: Any, field: Field, style: Any) -> None:
+    if value is None:
+        return
+    if field.type == "date":
+        sheet.write_datetime(*place, dt.datetime.combine(value, dt.time()), style)
+    elif field.type == "string":
+        sheet.write_string(*place, str(value), style)
+    else:
+        sheet.write_number(*place, round(value, field.decimals), style)
+
+
+def _write_about(book: xlsxwriter.Workbook, about: About) -> None:
+    sheet = book.add_worksheet("editie")
+    sheet.set_column(0, 0, 20)
+    rows = {
+        "editie": about.edition,
+        "geldt vanaf": about.valid_from.isoformat(),
+        "vastgesteld op": about.published_on.isoformat(),
+        "besluit": about.decision,
+        "methode": about.method or "zoals gedrukt",
+        "methode-hash": about.method_hash or "",
+        "programmaversie": about.code_version,
+        "gesimuleerd": "ja: geen metingen van de federatie" if about.simulated else "nee",
+    }
+    for row, (name, value) in enumerate(rows.items()):
+        sheet.write_string(row, 0, name)
+        sheet.write_string(row, 1, value)
+
+
+_SHEET: Final = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
+
+
+def read_xlsx_cells(content: bytes) -> dict[str, str | float]:
+    """The filled cells of the first sheet, by place ("B3").
+
+    Raises:
+        ValueError: this is no XLSX.
+    """
+    try:
+        with zipfile.ZipFile(io.BytesIO(content)) as book:
+            sheet, shared = (
+                ElementTree.fromstring(book.read(f"xl/{part}.xml"))  # noqa: S314 - our own file
+                for part in ("worksheets/sheet1", "sharedStrings")
+            )
+    except (zipfile.BadZipFile, KeyError, ElementTree.ParseError) as error:
+        raise ValueError(f"no XLSX: {error}") from error
+    texts = ["".join(t.text or "" for t in s.iter(f"{_SHEET}t")) for s in shared]
+    found: dict[str, str | float] = {}
+    for cell in sheet.iter(f"{_SHEET}c"):
+        value = cell.find(f"{_SHEET}v")
+        if value is not None and value.text is not None:
+            place = cell.get("r", "")
+            is_text = cell.get("t") == "s"
+            found[place] = texts[int(value.text)] if is_text else float(value.text)
+    return found

@@ -1,0 +1,225 @@
+"""The lake: samples and blocks of every tow, written once and named by content.
+
+An archive file that did not change is not read again: a tow's samples are named by the hashes of
+its files, the way to read them and the code that reads; its blocks by the samples and the code
+that adds them up. A fault found in the samples is remembered the same way. What the files look
+like is known to `warehouse.archive`; which sums there are, to `pipeline.blocks.run_blocks`.
+"""
+
+import dataclasses
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+import polars as pl
+
+from herijk.pipeline import channels
+from herijk.pipeline.blocks import run_blocks, sums
+from herijk.pipeline.errors import DefectiveInputError, UnavailableError
+from herijk.warehouse import archive
+from herijk.warehouse.archive import (
+    FileHashes,
+    SeasonProfile,
+    check_samples,
+    fault_from,
+    read_tow_samples,
+)
+from herijk.warehouse.store.code import source_hash
+from herijk.warehouse.store.store import Store, count_rows, fingerprint, read_parquet, write_parquet
+
+SEASON_INDEX_SCHEMA: Final = {
+    "tow_id": pl.String(),
+    "samples_key": pl.String(),
+    "blocks_key": pl.String(),
+    "samples": pl.Int64(),
+    "path": pl.String(),
+    "line": pl.Int64(),
+    "reason_code": pl.String(),
+    "message": pl.String(),
+}
+"""One row a listed tow: where its samples and blocks lie, or the fault that was found."""
+
+LAKE_FORM: Final = {
+    "compression": "lz4",
+    "data_page_size": 1 << 22,
+    "use_dictionary": False,
+    "write_statistics": False,
+}
+"""How samples and blocks are packed: measured in docs/decisions/0004."""
+
+Tow = Mapping[str, Any]
+Report = Callable[[str, bool], None]
+"""Called after each tow with its id and whether it was set aside."""
+
+
+def season_fingerprint(tows: pl.DataFrame, runs: pl.DataFrame, profile: SeasonProfile) -> str:
+    """What the samples and blocks of a season are made from."""
+    season_runs = runs.filter(pl.col("tow_id").is_in(tows["tow_id"].implode()))
+    rows = [tows.write_json(), season_runs.sort("tow_id", "run").write_json()]
+    return fingerprint(rows, dataclasses.asdict(profile), _reader_hash(), _blocks_hash())
+
+
+def read_season(
+    store: Store,
+    root: Path,
+    tows: pl.DataFrame,
+    runs: pl.DataFrame,
+    profile: SeasonProfile,
+    report: Report,
+) -> pl.DataFrame:
+    """Brings the samples and blocks of a season's tows into the lake.
+
+    Args:
+        store: the data folder.
+        root: the archive.
+        tows: listed tows of one season.
+        runs: their runs.
+        profile: how that season's files are written.
+        report: called after each tow.
+
+    Returns:
+        The season's index, `SEASON_INDEX_SCHEMA`, sorted by tow.
+    """
+    before = _known_faults(store, profile.season)
+    hashes = FileHashes.load(store.file_hashes)
+    runs_of = dict(runs.partition_by("tow_id", as_dict=True))
+
+    def read(tow: Tow) -> dict[str, Any]:
+        listed_runs = runs_of[tow["tow_id"],]
+        key = _samples_key(tow, listed_runs, profile)
+        row = before.get(key) or _bring_in(store, root, tow, listed_runs, profile, key, hashes)
+        report(tow["tow_id"], row["reason_code"] is not None)
+        return row | {"tow_id": tow["tow_id"]}
+
+    workers = min(2, pl.thread_pool_size())  # asked here: asking starts the threads
+    with ThreadPoolExecutor(workers) as pool:
+        rows = list(pool.map(read, tows.sort("tow_id").iter_rows(named=True)))
+    index = pl.DataFrame(rows, schema=SEASON_INDEX_SCHEMA)
+    _remove_unlisted(store, profile.season, index)
+    return index
+
+
+def season_blocks(store: Store, season: int, index: pl.DataFrame) -> pl.DataFrame:
+    """Blocks of all sound tows of a season, with `tow_id`, sorted by tow, run and second."""
+    sound = index.filter(pl.col("blocks_key").is_not_null()).sort("tow_id")
+    frames = [read_parquet(store.blocks_path(season, key)) for key in sound["blocks_key"]]
+    return blocks_of_tows(sound["tow_id"], frames)
+
+
+def blocks_of_tows(tow_id: pl.Series, frames: Sequence[pl.DataFrame]) -> pl.DataFrame:
+    """Blocks of tows one below the other, with the `tow_id` of each."""
+    if not frames:
+        return pl.DataFrame(schema={"tow_id": pl.String()})
+    tow = np.repeat(np.arange(len(frames)), [frame.height for frame in frames])
+    return pl.concat(frames).insert_column(0, tow_id.gather(tow))
+
+
+def _bring_in(
+    store: Store,
+    root: Path,
+    tow: Tow,
+    runs: pl.DataFrame,
+    profile: SeasonProfile,
+    key: str,
+    hashes: FileHashes,
+) -> dict[str, Any]:
+    """Index row of a tow after its samples and blocks are in the lake, or with its fault."""
+    row = dict.fromkeys(SEASON_INDEX_SCHEMA) | {"samples_key": key}
+    path = store.samples_path(profile.season, key)
+    blocks_key = fingerprint(key, tow["sample_rate_hz"], _blocks_hash())
+    blocks_path = store.blocks_path(profile.season, blocks_key)
+    try:
+        samples = None if path.exists() else read_tow_samples(root, tow, profile)
+        if samples is not None:
+            check_samples(samples, tow, runs)
+            _check_unchanged(root, tow, hashes)
+            write_parquet(samples, path, form=LAKE_FORM)
+        if not blocks_path.exists():
+            from herijk.pipeline.blocks.sums import block_sums  # noqa: PLC0415 - compiles on import
+
+            held = read_parquet(path, use_threads=False) if samples is None else samples
+            sums = block_sums(held, tow["sample_rate_hz"])
+            write_parquet(sums, blocks_path, form=LAKE_FORM)
+    except DefectiveInputError as error:
+        _check_unchanged(root, tow, hashes)
+        return row | dataclasses.asdict(fault_from(error, tow["samples_path"], tow["tow_id"]))
+    return row | {"blocks_key": blocks_key, "samples": count_rows(path)}
+
+
+class ArchiveChangedError(UnavailableError):
+    """A file of the archive changed between looking through the archive and reading it."""
+
+
+def _check_unchanged(root: Path, tow: Tow, hashes: FileHashes) -> None:
+    """Samples are named by the hash of their file, so they must be that file's.
+
+    A file with the size and time it had when it was hashed is not read once more.
+    """
+    for path, sha256 in (("samples_path", "samples_sha256"), ("second_path", "second_sha256")):
+        if tow[path] is not None and _sha256(root / tow[path], hashes) != tow[sha256]:
+            raise ArchiveChangedError(
+                f"{tow[path]} changed while it was read. Try again when nobody is copying files "
+                f"into {root}"
+            )
+
+
+def _sha256(path: Path, hashes: FileHashes) -> str | None:
+    """Hash of a file; None when it went away."""
+    try:
+        return hashes.hash_file(path)
+    except FileNotFoundError:
+        return None
+
+
+def forget_season(store: Store, season: int) -> None:
+    """Removes the samples and blocks of a season that the archive no longer lists."""
+    _remove_unlisted(store, season, pl.DataFrame(schema=SEASON_INDEX_SCHEMA))
+
+
+def _known_faults(store: Store, season: int) -> dict[str, dict[str, Any]]:
+    """Faults of the season's last reading, by samples key."""
+    if str(season) not in store.partitions("season_index"):
+        return {}
+    index = store.read("season_index", str(season))
+    if index.schema != pl.Schema(SEASON_INDEX_SCHEMA):
+        return {}
+    faulty = index.filter(pl.col("reason_code").is_not_null())
+    return {row["samples_key"]: row for row in faulty.iter_rows(named=True)}
+
+
+def _samples_key(tow: Tow, runs: pl.DataFrame, profile: SeasonProfile) -> str:
+    names = ("samples_sha256", "second_sha256", "sample_rate_hz", "declared_speed_m_s")
+    used = runs.sort("run").rows()
+    return fingerprint([tow[n] for n in names], used, dataclasses.asdict(profile), _reader_hash())
+
+
+def _remove_unlisted(store: Store, season: int, index: pl.DataFrame) -> None:
+    """Removes samples and blocks of tows that are no longer listed or were mended."""
+    kept = {
+        *(store.samples_path(season, k) for k in index["samples_key"].drop_nulls()),
+        *(store.blocks_path(season, k) for k in index["blocks_key"].drop_nulls()),
+    }
+    for folder in (store.samples_path(season, "").parent, store.blocks_path(season, "").parent):
+        for file in folder.glob("[!.]*.parquet"):
+            if file not in kept:
+                file.unlink()
+
+
+@cache
+def _reader_hash() -> str:
+    """The code that turns a file into samples: when it changes, files are read again."""
+    folder = Path(str(archive.__file__)).parent
+    return source_hash([*sorted(folder.glob("*.py")), _source(channels)])
+
+
+@cache
+def _blocks_hash() -> str:
+    """The code that adds samples up: when it changes, the lake's samples are added up again."""
+    return source_hash([_source(run_blocks), _source(sums)])
+
+
+def _source(module: Any) -> Path:
+    return Path(str(module.__file__))

@@ -1,0 +1,194 @@
+"""Intake: what the archive holds today, and which of it the lake still has to read.
+
+The lists of the archive are indexed on every rebuild (they are small); samples only where a
+season's fingerprint says that something changed. Reading one season's files is `warehouse.intake.lake`.
+"""
+
+import dataclasses
+import os
+from collections.abc import Collection
+from contextlib import suppress
+from pathlib import Path
+from typing import Final
+
+import polars as pl
+
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.warehouse.archive import (
+    ArchiveIndex,
+    FileHashes,
+    Profiles,
+    index_archive,
+    read_published_registers,
+    read_races,
+)
+from herijk.warehouse.archive.profile import read_profiles
+from herijk.warehouse.intake import lake
+from herijk.warehouse.store.store import Store, fingerprint
+
+LISTED: Final = ("boats", "tows", "runs", "windows")
+SEASON_TABLES: Final = ("season_tows", "season_runs", "season_index", "blocks")
+"""What is kept of a season, as the archive was when it was read."""
+FAULT_SCHEMA: Final = {
+    "path": pl.String(),
+    "tow_id": pl.String(),
+    "line": pl.Int64(),
+    "reason_code": pl.String(),
+    "message": pl.String(),
+}
+
+
+def index(store: Store, root: Path) -> ArchiveIndex:
+    """Reads the lists of the archive and keeps them as tables `listed_*`.
+
+    Raises:
+        HerijkError: the folder is missing or holds nothing that looks like an archive.
+    """
+    hashes = FileHashes.load(store.file_hashes)
+    found = index_archive(root, hashes.hash_file)
+    hashes.save(store.file_hashes)
+    for name in LISTED:
+        store.write(f"listed_{name}", getattr(found, name), made_from="")
+    races, race_faults = read_races(root)
+    _, register_faults = read_published_registers(root)
+    faults = [dataclasses.asdict(f) for f in (*found.faults, *race_faults, *register_faults)]
+    store.write("list_faults", pl.DataFrame(faults, schema=FAULT_SCHEMA), made_from="")
+    about = {"simulated": [found.profiles.simulated], "root": [str(root.resolve())]}
+    store.write("about_archive", pl.DataFrame(about), made_from="")
+    store.write("listed_files", found.files, made_from="")
+    store.write("listed_races", races, made_from="")
+    return found
+
+
+Listing = dict[str, list[int]]
+"""Size in bytes and time of change in ns of every file, by path within the archive."""
+
+
+def listing(root: Path) -> Listing:
+    """The files of an archive as they lie there now; none is opened, and no link is followed.
+
+    Raises:
+        MissingKnowledgeError: there is no such folder, or nothing in it: a disk not mounted.
+    """
+    found: Listing = {}
+    for folder, inner, files in os.walk(root):
+        inner[:] = [name for name in inner if not name.startswith(".")]
+        for name in (name for name in files if not name.startswith(".")):
+            path = Path(folder) / name
+            with suppress(FileNotFoundError):
+                stat = path.lstat()
+                found[path.relative_to(root).as_posix()] = [stat.st_size, stat.st_mtime_ns]
+    if not found:
+        raise MissingKnowledgeError(f"there is no file at {root}: is its disk there?")
+    return dict(sorted(found.items()))
+
+
+def listed_seasons(store: Store) -> list[int]:
+    """Seasons of which the archive lists tows, sorted."""
+    seasons: list[int] = store.read("listed_tows")["season"].unique().sort().to_list()
+    return seasons
+
+
+def stale_seasons(store: Store, root: Path, wanted: Collection[int] | None = None) -> list[int]:
+    """Listed seasons whose samples or blocks are not those of the archive of today."""
+    profiles = read_profiles(root)
+    return [
+        season
+        for season in listed_seasons(store)
+        if (wanted is None or season in wanted)
+        and not _is_up_to_date(store, season, _fingerprint(store, profiles, season))
+    ]
+
+
+def _is_up_to_date(store: Store, season: int, made_from: str) -> bool:
+    return all(store.made_from(t, str(season)) == made_from for t in SEASON_TABLES)
+
+
+def forget_unlisted_seasons(store: Store) -> list[int]:
+    """Removes the tables of seasons that the archive no longer lists."""
+    listed = set(listed_seasons(store))
+    gone = [int(s) for s in store.partitions("blocks") if int(s) not in listed]
+    for season in gone:
+        lake.forget_season(store, season)
+        for table in SEASON_TABLES:
+            store.remove(table, str(season))
+    return gone
+
+
+def read_season(store: Store, root: Path, season: int, report: lake.Report) -> pl.DataFrame:
+    """Brings one season's samples into the lake; keeps its index and the list it was read by.
+
+    Returns:
+        The index: where each listed tow's samples and blocks lie, or its fault.
+    """
+    tows, runs = _listed(store, season)
+    profile = read_profiles(root).for_season(season)
+    found = lake.read_season(store, root, tows, runs, profile, report)
+    made_from = lake.season_fingerprint(tows, runs, profile)
+    kept = {"season_tows": tows, "season_runs": runs, "season_index": found}
+    for name, frame in kept.items():
+        store.write(name, frame, made_from, str(season))
+    return found
+
+
+def collect_blocks(store: Store, season: int) -> pl.DataFrame:
+    """Puts the blocks of a season's sound tows together in one table."""
+    made_from = store.made_from("season_index", str(season))
+    found = lake.season_blocks(store, season, store.read("season_index", str(season)))
+    store.write("blocks", found, made_from or "", str(season))
+    return found
+
+
+def all_blocks(store: Store) -> pl.DataFrame:
+    """Blocks of all seasons; those without a sound tow have none."""
+    frames = [store.read("blocks", season) for season in store.partitions("blocks")]
+    return pl.concat([f for f in frames if f.height])
+
+
+def blocks_made_from(store: Store) -> str:
+    """Fingerprint of all blocks together."""
+    return fingerprint({s: store.made_from("blocks", s) for s in store.partitions("blocks")})
+
+
+def _listed(store: Store, season: int) -> tuple[pl.DataFrame, pl.DataFrame]:
+    tows = store.read("listed_tows").filter(pl.col("season") == season).sort("tow_id")
+    runs = store.read("listed_runs").join(tows.select("tow_id"), on="tow_id", how="semi")
+    return tows, runs.sort("tow_id", "run")
+
+
+def _fingerprint(store: Store, profiles: Profiles, season: int) -> str:
+    tows, runs = _listed(store, season)
+    return lake.season_fingerprint(tows, runs, profiles.for_season(season))
+
+
+def count_listed(store: Store, seasons: Collection[int]) -> int:
+    """Tows listed in the given seasons."""
+    return store.read("listed_tows").filter(pl.col("season").is_in(list(seasons))).height
+
+
+def archive_root(store: Store) -> Path | None:
+    """Where the archive was when the warehouse was last rebuilt; None if it is not there now.
+
+    Raises:
+        MissingKnowledgeError: nothing was ever rebuilt in this data folder.
+    """
+    if store.made_from("about_archive") is None:
+        raise MissingKnowledgeError(
+            f"{store.root} holds no warehouse; make it with: herijk rebuild --archive DIR "
+            f"--data {store.root}"
+        )
+    root = Path(store.read("about_archive")["root"][0])
+    return root if root.is_dir() else None
+
+
+def bring_in(store: Store, root: Path) -> None:
+    """Brings what changed in an archive into the lake in this process, without a scheduler.
+
+    Raises:
+        HerijkError: as `index`.
+    """
+    index(store, root)
+    forget_unlisted_seasons(store)
+    for season in stale_seasons(store, root):
+        read_season(store, root, season, lambda *_: None)
+        collect_blocks(store, season)

@@ -1,0 +1,1 @@
+"""Questions to finished tables: views, reports, audits, comparisons, what-if."""

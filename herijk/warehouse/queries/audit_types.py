@@ -1,0 +1,267 @@
+"""Everything behind one or two types of boat, as plain data: figures, and verdicts they bear.
+
+A verdict is true, false, or None where the figures do not decide. Does not belong here: finding out
+what was asked for, and a boat's own page (`warehouse.queries.audit`).
+"""
+
+from math import hypot, log
+from typing import Any, Final
+
+import duckdb
+import scipy
+
+from herijk.pipeline.consistency import ERAS
+from herijk.pipeline.consistency.homogeneity import LEVEL
+from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
+from herijk.warehouse.store.database import rows
+
+Report = dict[str, Any]
+
+ENOUGH_POWER: Final = 0.8
+"""Chance of seeing a spread of B of 10 % from which on "equal bends are possible" is said."""
+
+TYPE: Final = f"coalesce(b.boat_type, '{UNKNOWN_TYPE}')"
+"""A boat's type in a query that calls the table of boats b."""
+
+
+def types_page(db: duckdb.DuckDBPyConnection, types: list[str], methods: list[str]) -> Report:
+    """Facts and figures of the types under each method, what holds for all, and what differs."""
+    found = [
+        type_facts(db, name) | {"under": {m: _type_under(db, name, m) for m in methods}}
+        for name in types
+    ]
+    return {
+        "methods": methods,
+        "types": found,
+        "differences": {m: differences(*(one["under"][m] for one in found)) for m in methods},
+        "fleet": {method: _fleet(db, method) for method in methods},
+    }
+
+
+def type_facts(db: duckdb.DuckDBPyConnection, boat_type: str) -> Report:
+    """How many boats and tows there are of a type, and how they differ."""
+    return rows(
+        db,
+        f"""SELECT {TYPE} AS boat_type, count(DISTINCT b.fsn_no) AS n_boats,
+                   count(DISTINCT t.fsn_no) AS n_towed, count(t.tow_id) AS n_tows,
+                   min(t.season) AS first_season, max(t.season) AS last_season,
+                   min(t.weight_kg) AS lightest_kg, max(t.weight_kg) AS heaviest_kg,
+                   min(t.declared_speed_m_s) AS slowest_m_s,
+                   max(t.declared_speed_m_s) AS fastest_m_s
+            FROM boats AS b LEFT JOIN tows AS t USING (fsn_no)
+            WHERE {TYPE} = ? GROUP BY ALL""",  # noqa: S608
+        boat_type,
+    )[0]
+
+
+def _type_under(db: duckdb.DuckDBPyConnection, boat_type: str, method: str) -> Report:
+    """All statistics of a type under one method."""
+    own = (method, boat_type)
+    lines = rows(db, _LINES, *own)
+    return {
+        "lines": [line | {"follows": _away_from_zero(line)} for line in lines],
+        "closest": closest(lines),
+        "bends": _bends(_one(db, "type_homogeneity", *own)),
+        "speed_trend": _trend(_one(db, "speed_trend", *own)),
+        "shared": rows(db, _SHARED, *own),
+        "judged": rows(db, _JUDGED, *own),
+        "outside": rows(db, _OUTSIDE, *own),
+        "slow_tows": rows(db, _SLOW, *own),
+        "repeats": _repeats(rows(db, _PAIRS, *own)),
+        "eras": [_era(db, *own, era.name) for era in ERAS[:-1]],
+        "prediction": rows(db, _PREDICTION, *own)[0],
+        "disagreeing": rows(db, _DISAGREEING, *own),
+    }
+
+
+def _one(db: duckdb.DuckDBPyConnection, table: str, method: str, boat_type: str) -> Report:
+    """The one row of a method and type; there is none without a curve, or where types are asked."""
+    query = f"SELECT * FROM {table} WHERE method = ? AND boat_type = ?"  # noqa: S608
+    found = rows(db, query, method, boat_type)
+    reason = "no_type" if boat_type == UNKNOWN_TYPE else "no_curves"
+    return found[0] if found else {"n": 0, "reason": reason}
+
+
+def _away_from_zero(line: Report) -> bool | None:
+    """Whether the interval of a slope leaves out zero."""
+    if line["slope"] is None:
+        return None
+    return bool(line["slope_lo"] > 0 or line["slope_hi"] < 0)
+
+
+def closest(lines: list[Report]) -> Report:
+    """Whether Cw at one speed spreads less about the line on weight than A and than B.
+
+    `cw_closest` is None where the variances differ no more than an F test at 5 % lets them. The
+    three come from the same runs, so the test is on the safe side.
+    """
+    found = {line["quantity"]: line for line in lines if line["explaining"] == "weight_kg"}
+    three = [found.get(name) for name in ("cw_standard_kg_m", "a_kg_m", "b_m_s")]
+    for line in three:
+        if line is None or line["reason"]:
+            n = 0 if line is None else line["n"]
+            reason = "no_curves" if line is None else line["reason"]
+            return {"n": n, "cw_closest": None, "reason": reason}
+    cw, a, b = ((line["n_boats"] - 2, line["residual_sd_ratio"] ** 2) for line in three if line)
+    closer = all(_larger(other, cw) for other in (a, b))
+    further = any(_larger(cw, other) for other in (a, b))
+    n = min(line["n"] for line in three if line)
+    verdict = False if further else True if closer else None
+    return {"n": n, "cw_closest": verdict, "reason": ""}
+
+
+def _larger(one: tuple[int, float], other: tuple[int, float]) -> bool:
+    """Whether a variance, with its degrees of freedom, is larger than another at 5 %."""
+    dof = max(one[0], 1), max(other[0], 1)
+    return one[1] > float(scipy.special.fdtri(*dof, 1.0 - LEVEL)) * other[1]
+
+
+def _bends(test: Report) -> Report:
+    """The test of equal bends with its verdict: None where it could not have seen a difference."""
+    if test["reason"]:
+        return test | {"equal_possible": None}
+    different = test["p_value"] < LEVEL
+    strong = (test["power_at_10pct"] or 0.0) >= ENOUGH_POWER
+    return test | {"equal_possible": False if different else True if strong else None}
+
+
+def _trend(trend: Report) -> Report:
+    return trend | {"follows": None if trend["reason"] else _away_from_zero(trend)}
+
+
+def _repeats(pairs: list[Report]) -> Report:
+    """Repeat pairs of a type: how they spread, and how many disagree."""
+    squares = [pair["ln_ratio"] ** 2 for pair in pairs]
+    known = [abs(pair["e_n"]) for pair in pairs if pair["e_n"] is not None]
+    return {
+        "n_pairs": len(pairs),
+        "sd_ratio": (sum(squares) / len(pairs) / 2) ** 0.5 if pairs else None,
+        "n_e_n": len(known),
+        "n_disagree": sum(e_n > 1 for e_n in known),
+    }
+
+
+def _era(db: duckdb.DuckDBPyConnection, method: str, boat_type: str, era: str) -> Report:
+    """Whether an era stands apart; the table has no row where a type has no pair at all."""
+    found = rows(db, _ERA, method, boat_type, era)
+    if found:
+        return found[0]
+    return {"era": era, "n": 0, "apart": None, "reason": "few_pairs"}
+
+
+def differences(first: Report, *others: Report) -> list[str]:
+    """What differs between two types: a slope or shift by more than both intervals, or a verdict.
+
+    One that follows weight and one in which no trend is seen do not differ by that alone.
+
+    Returns:
+        `quantity explaining` of lines, `speed_trend`, the names of eras, `bends`, `closest`; of one
+        type, nothing.
+    """
+    return [name for second in others for name in _differing(first, second)]
+
+
+def _differing(first: Report, second: Report) -> list[str]:
+    intervals = [_intervals(first), _intervals(second)]
+    verdicts = [
+        {"bends": one["bends"]["equal_possible"], "closest": one["closest"]["cw_closest"]}
+        for one in (first, second)
+    ]
+    apart = [n for n in intervals[0] if n in intervals[1] and _apart(*(i[n] for i in intervals))]
+    return apart + [n for n in verdicts[0] if {v[n] for v in verdicts} == {True, False}]
+
+
+def _intervals(under: Report) -> dict[str, tuple[float, float, float]]:
+    """Every slope and shift with its interval; shifts as logarithms."""
+    slopes = {f"{line['quantity']} {line['explaining']}": line for line in under["lines"]}
+    slopes["speed_trend"] = under["speed_trend"]
+    found = {
+        name: (line["slope"], line["slope_lo"], line["slope_hi"])
+        for name, line in slopes.items()
+        if not line["reason"]
+    }
+    shifts = {era["era"]: era for era in under["eras"] if not era["reason"]}
+    return found | {
+        name: (log(era["shift_ratio"]), log(era["lo"]), log(era["hi"]))
+        for name, era in shifts.items()
+    }
+
+
+def _apart(one: tuple[float, float, float], other: tuple[float, float, float]) -> bool:
+    half = hypot(*(0.5 * (hi - lo) for _, lo, hi in (one, other)))
+    return abs(one[0] - other[0]) > half
+
+
+def _fleet(db: duckdb.DuckDBPyConnection, method: str) -> Report:
+    """What holds for all types together."""
+    error = rows(db, "SELECT * FROM prediction_error WHERE method = ?", method)
+    return {
+        "reproducibility": rows(
+            db, "SELECT * FROM reproducibility WHERE method = ? ORDER BY scope", method
+        ),
+        "components": rows(
+            db,
+            "SELECT * FROM variance_components WHERE method = ? AND scope = 'within_type' "
+            "ORDER BY component",
+            method,
+        ),
+        "eras": {row["era"]: row for row in rows(db, _ERAS_OF_ALL, method)},
+        "prediction_error": error[0] if error else None,
+    }
+
+
+_LINES = """
+SELECT * FROM type_consistency WHERE method = ? AND boat_type = ? ORDER BY quantity, explaining
+"""
+
+_SHARED = """
+SELECT p.pooling, count(*) AS n, any_value(p.standard_speed_m_s) AS standard_speed_m_s,
+       count(p.b_m_s) AS n_b, median(p.b_m_s) AS median_b_m_s,
+       stddev_samp(p.b_m_s) / avg(p.b_m_s) AS b_sd_ratio,
+       max(abs(ln(p.cw_085_kg_m / o.cw_085_kg_m))) AS most_085,
+       max(abs(ln(p.cw_kg_m / o.cw_kg_m))) AS most_100,
+       max(abs(ln(p.cw_115_kg_m / o.cw_115_kg_m))) AS most_115,
+       arg_max(p.fsn_no, abs(ln(p.cw_115_kg_m / o.cw_115_kg_m))) AS most_fsn_no
+FROM pooled_curves AS p JOIN pooled_curves AS o USING (method, tow_id)
+WHERE o.pooling = 'own' AND method = ? AND p.boat_type = ? GROUP BY p.pooling ORDER BY p.pooling
+"""
+
+_JUDGED = """
+SELECT quantity, count(*) AS n, count(DISTINCT fsn_no) AS n_boats,
+       any_value(standard_speed_m_s) AS standard_speed_m_s
+FROM type_outliers WHERE method = ? AND boat_type = ? GROUP BY quantity ORDER BY quantity
+"""
+
+_OUTSIDE = """
+SELECT o.*, b.name FROM type_outliers AS o LEFT JOIN boats AS b USING (fsn_no)
+WHERE o.method = ? AND o.boat_type = ? AND o.outside ORDER BY abs(deviation_sd) DESC, tow_id
+"""
+
+_SLOW = """
+SELECT s.*, b.name FROM slow_tows AS s LEFT JOIN boats AS b USING (fsn_no)
+WHERE s.method = ? AND s.boat_type = ? ORDER BY power_w, tow_id
+"""
+
+_PAIRS = f"""
+SELECT p.* FROM repeat_pairs AS p JOIN boats AS b USING (fsn_no)
+WHERE p.method = ? AND {TYPE} = ? ORDER BY p.tow_id
+"""  # noqa: S608
+
+_ERA = "SELECT * FROM era_shifts WHERE method = ? AND boat_type = ? AND era = ?"
+
+_ERAS_OF_ALL = """
+SELECT * FROM era_shifts WHERE method = ? AND boat_type = 'all' ORDER BY era
+"""
+
+_PREDICTION = """
+SELECT count(*) AS n, count(predicted_cw_kg_m) AS n_predicted,
+       sqrt(avg(ln_ratio * ln_ratio)) AS rmse_ratio, avg(ln_ratio) AS mean_ratio,
+       sqrt(avg(cw_sd_ratio * cw_sd_ratio)) AS tow_sd_ratio,
+       count(*) FILTER (WHERE disagrees) AS n_disagree
+FROM predicted_cw WHERE method = ? AND boat_type = ?
+"""
+
+_DISAGREEING = """
+SELECT p.*, b.name FROM predicted_cw AS p LEFT JOIN boats AS b USING (fsn_no)
+WHERE p.method = ? AND p.boat_type = ? AND p.disagrees ORDER BY abs(ln_ratio) DESC, tow_id
+"""

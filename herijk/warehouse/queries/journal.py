@@ -1,0 +1,300 @@
+"""What changed since the last report: tows, what is set aside, log factors, lines of the drafts.
+
+The database that was last reported on is kept beside the reports, so a rebuild that was killed
+before its report is reported on by the next. Where and how a report is shown is not decided here.
+"""
+
+import os
+import shutil
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import duckdb
+import polars as pl
+
+from herijk.pipeline.register.changes import NO_PARTS, register_changes, side_by_side
+from herijk.pipeline.register.register import LINE
+from herijk.pipeline.steps.window import HAND_COLUMNS
+from herijk.tables.schemas import TABLES
+from herijk.warehouse.editions.compare import (
+    CODE,
+    CODE_OR_OTHER_INPUT,
+    INPUT,
+    INPUT_AND_CODE,
+    METHOD,
+    OTHER_INPUT,
+    TOW,
+    UNEXPLAINED,
+    UNSEPARATED,
+)
+from herijk.warehouse.editions.inputs import INPUTS_HASH, same_tows, with_input_hashes
+from herijk.warehouse.store.database import open_database
+from herijk.warehouse.store.files import file_sha256, written_beside
+from herijk.warehouse.store.store import Store
+
+NEEDED: Final = (
+    *("about", "boats", "tows", "tow_runs", "hand_windows", "quarantine"),
+    *("log_factors", "methods", "register"),
+)
+FAULT: Final = ("path", "tow_id", "line", "reason_code", "message")
+FACTOR: Final = ("method", "season")
+SAME_FACTOR: Final = 5e-5
+"""A log factor that moved by less did not move: it shows as 1.0000."""
+
+Tables = dict[str, pl.DataFrame]
+
+
+@dataclass(frozen=True)
+class News:
+    """What is otherwise than at the last report.
+
+    Attributes:
+        first: there was no report before; then all tows are new and no line is compared.
+        tows: `tow_id`, `fsn_no`, `season`, `what`: new, samples (its files changed), list (its row
+            in a list changed) or gone.
+        set_aside: the faults that came (`what` is new) and went (mended).
+        factors: log factors that moved: `method`, `season`, `old_factor`, `new_factor`, `ratio`.
+        lines: lines of draft registers that changed, with the columns of `register_changes` and of
+            `pipeline.register.changes.side_by_side`, and the boat's `name`.
+    """
+
+    first: bool
+    tows: pl.DataFrame
+    set_aside: pl.DataFrame
+    factors: pl.DataFrame
+    lines: pl.DataFrame
+
+    @property
+    def nothing(self) -> bool:
+        """Whether nothing changed."""
+        frames = (self.tows, self.set_aside, self.factors, self.lines)
+        return not self.first and all(frame.is_empty() for frame in frames)
+
+
+def reported_database(store: Store) -> Path:
+    """The database that the last report was about."""
+    return store.root / "report" / "reported.duckdb"
+
+
+def news(store: Store) -> News:
+    """What changed in the database since the last report."""
+    if is_reported(store):
+        return _nothing()
+    now = _tables(store.database)
+    was = _reported(store)
+    before = was or {name: frame.clear() for name, frame in now.items()}
+    return News(
+        first=was is None,
+        tows=_tows(before, now),
+        set_aside=_faults(before["quarantine"], now["quarantine"]),
+        factors=_factors(before["log_factors"], now["log_factors"]),
+        lines=_lines(before, now),
+    )
+
+
+def _nothing() -> News:
+    """No news."""
+    keys = {name: TABLES[name].create_empty() for name in ("tows", "quarantine", "log_factors")}
+    what = pl.lit(None, pl.String).alias("what")
+    tows, faults = (keys[name].with_columns(what) for name in ("tows", "quarantine"))
+    return News(False, tows, faults, keys["log_factors"], _no_lines())
+
+
+def is_reported(store: Store) -> bool:
+    """Whether the database is the one that was reported on."""
+    reported = reported_database(store)
+    return reported.exists() and file_sha256(reported) == file_sha256(store.database)
+
+
+def remember(store: Store) -> None:
+    """Keeps the database as the one reported on; it costs no room until a new one is made."""
+    if is_reported(store):
+        return
+    with written_beside(reported_database(store)) as beside:
+        beside.unlink()
+        try:
+            os.link(store.database, beside)
+        except OSError:
+            shutil.copyfile(store.database, beside)
+
+
+def _reported(store: Store) -> Tables | None:
+    """Tables of the last report; None where there is none, or it is damaged."""
+    path = reported_database(store)
+    if not path.exists():
+        return None
+    try:
+        return _tables(path)
+    except duckdb.Error:
+        return None
+
+
+def _tables(path: Path) -> Tables:
+    with open_database(path) as db:
+        db.execute("SET threads = 1")
+        return {t: pl.DataFrame(db.sql(f'SELECT * FROM "{t}"').pl()) for t in NEEDED}  # noqa: S608
+
+
+# Tows and what is set aside
+
+
+def _tows(was: Tables, now: Tables) -> pl.DataFrame:
+    same = same_tows(_measured(was), _measured(now))
+    facts = ("tow_id", "fsn_no", "season")
+    files = ("samples_sha256", "second_sha256")
+    pairs = (
+        was["tows"]
+        .select(*facts, *files)
+        .join(now["tows"].select(*facts, *files), on="tow_id", how="full", coalesce=True)
+        .filter(~pl.col("tow_id").is_in(list(same)))
+    )
+    same_files = pl.all_horizontal(pl.col(f).eq_missing(pl.col(f"{f}_right")) for f in files)
+    what = (
+        pl.when(pl.col("season").is_null())
+        .then(pl.lit("new"))
+        .when(pl.col("season_right").is_null())
+        .then(pl.lit("gone"))
+        .when(same_files)
+        .then(pl.lit("list"))
+        .otherwise(pl.lit("samples"))
+    )
+    return pairs.select(
+        "tow_id",
+        pl.coalesce("fsn_no_right", "fsn_no").alias("fsn_no"),
+        pl.coalesce("season_right", "season").alias("season"),
+        what.alias("what"),
+    ).sort("tow_id")
+
+
+def _measured(tables: Tables) -> Tables:
+    """Tows with the type of their boat, and runs with the windows given by hand."""
+    types = tables["boats"].select("fsn_no", "boat_type")
+    windows = tables["hand_windows"].rename(HAND_COLUMNS)
+    return {
+        "tows": tables["tows"].join(types, on="fsn_no", how="left"),
+        "tow_runs": tables["tow_runs"].join(windows, on=["tow_id", "run"], how="left"),
+    }
+
+
+def _faults(was: pl.DataFrame, now: pl.DataFrame) -> pl.DataFrame:
+    came = now.select(FAULT).join(was, on=FAULT, how="anti", nulls_equal=True)
+    went = was.select(FAULT).join(now, on=FAULT, how="anti", nulls_equal=True)
+    return pl.concat(
+        [
+            came.with_columns(pl.lit("new").alias("what")),
+            went.with_columns(pl.lit("mended").alias("what")),
+        ]
+    ).sort("what", *FAULT)
+
+
+def _factors(was: pl.DataFrame, now: pl.DataFrame) -> pl.DataFrame:
+    pairs = was.select(*FACTOR, old_factor="factor").join(
+        now.select(*FACTOR, new_factor="factor"), on=FACTOR
+    )
+    ratio = pl.col("new_factor") / pl.col("old_factor")
+    return (
+        pairs.with_columns(ratio.alias("ratio"))
+        .filter((pl.col("ratio") - 1.0).abs() > SAME_FACTOR)
+        .sort(FACTOR)
+    )
+
+
+# Lines of the draft registers
+
+
+def _lines(was: Tables, now: Tables) -> pl.DataFrame:
+    drafts = [_draft_lines(was, now, method) for method in now["methods"]["method"]]
+    found = [draft for draft in drafts if draft is not None]
+    return pl.concat(found or [_no_lines()], how="diagonal_relaxed")
+
+
+def _no_lines() -> pl.DataFrame:
+    unknown = pl.lit(None, pl.Boolean).alias("exceeds_interval")
+    return TABLES["register_changes"].create_empty().with_columns(unknown)
+
+
+def _draft_lines(was: Tables, now: Tables, method: str) -> pl.DataFrame | None:
+    """Lines of a method's draft that changed; None where one of the two has no such draft."""
+    old, new = (_draft(tables["register"], method) for tables in (was, now))
+    if old.is_empty() or new.is_empty():
+        return None
+    grounds = _grounds(was, now, method, old.join(new, on=LINE, suffix="_new"))
+    names = now["boats"].select("fsn_no", "name")
+    return (
+        register_changes(old, new, NO_PARTS, grounds)
+        .filter(pl.col("change") != "same")
+        .join(side_by_side(old, new), on=LINE)
+        .join(names, on="fsn_no", how="left")
+        .sort(LINE)
+    )
+
+
+def _draft(register: pl.DataFrame, method: str) -> pl.DataFrame:
+    is_draft = pl.col("edition").str.starts_with("concept-")
+    return register.filter(is_draft & (pl.col("method") == method))
+
+
+def _grounds(was: Tables, now: Tables, method: str, pairs: pl.DataFrame) -> pl.DataFrame:
+    """Per line why it can have changed: another tow, its input, other tows, method or code."""
+    hashes = [_method_hash(tables, method) for tables in (was, now)]
+    versions = [dict(tables["about"].rows())["code_version"] for tables in (was, now)]
+    inputs = [_input_hashes(tables) for tables in (was, now)]
+    others = inputs[0] != inputs[1]
+    grounds = [
+        _ground(
+            tow=old != new,
+            own=inputs[0].get(new) != inputs[1].get(new),
+            others=others,
+            method=hashes[0] != hashes[1],
+            code=versions[0] != versions[1],
+        )
+        for old, new in pairs.select("tow_id", "tow_id_new").rows()
+    ]
+    return pairs.select(LINE).with_columns(pl.Series("ground", grounds, pl.String))
+
+
+def _method_hash(tables: Tables, method: str) -> Any:
+    return tables["methods"].filter(method=method)["content_hash"].to_list()
+
+
+def _input_hashes(tables: Tables) -> dict[str, str]:
+    measured = _measured(tables)
+    hashed = with_input_hashes(measured["tows"], measured["tow_runs"])
+    return dict(hashed.select("tow_id", INPUTS_HASH).rows())
+
+
+def _ground(tow: bool, own: bool, others: bool, method: bool, code: bool) -> str:
+    if tow:
+        return TOW
+    if method:
+        return UNSEPARATED if own or code else METHOD
+    if own:
+        return INPUT_AND_CODE if code else INPUT
+    if others:
+        return CODE_OR_OTHER_INPUT if code else OTHER_INPUT
+    return CODE if code else UNEXPLAINED
+
+
+# As plain data
+
+
+def as_plain(found: News) -> dict[str, Any]:
+    """The news as plain data, for a page, a mail or a program."""
+    return {
+        "first": found.first,
+        "nothing_changed": found.nothing,
+        "tows": _counted(found.tows, ["what"]),
+        "tow_rows": [] if found.first else found.tows.to_dicts(),
+        "set_aside": _counted(found.set_aside, ["what", "reason_code"]),
+        "set_aside_rows": found.set_aside.to_dicts(),
+        "factors": found.factors.to_dicts(),
+        "register": _counted(found.lines, ["to_edition", "change"]),
+        "beyond_interval": int(found.lines["exceeds_interval"].fill_null(False).sum()),
+        "lines": found.lines.to_dicts(),
+    }
+
+
+def _counted(frame: pl.DataFrame, by: Sequence[str]) -> list[dict[str, Any]]:
+    return frame.group_by(by).agg(pl.len().alias("number")).sort(by).to_dicts()

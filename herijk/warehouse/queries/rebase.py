@@ -1,0 +1,78 @@
+"""Re-base: all of history under a method that may not have been used before, against another.
+
+Reads the lake, writes nothing: a committee looks at the result before anyone publishes. What the
+steps compute stands in `pipeline`.
+"""
+
+from typing import Any
+
+import polars as pl
+
+from herijk.pipeline.method.definition import Method
+from herijk.pipeline.register.changes import register_changes
+from herijk.pipeline.register.register import LINE
+from herijk.pipeline.studies.ladder import START, ladder
+from herijk.warehouse.queries.history import History
+from herijk.warehouse.store.store import Store
+
+Report = dict[str, Any]
+MOST_AFFECTED = 15
+
+
+def rebase(store: Store, method: Method, against: Method) -> Report:
+    """Recomputes everything under a method and says what changes against another, and why.
+
+    Returns:
+        `by_season`: median factor on Cw of each step, per season, with `total`; `boats`: the
+        register lines most affected, with their factors; `changes`: lines by kind of change.
+
+    Raises:
+        MissingKnowledgeError: there is no sound tow, or a method does not cover a season.
+    """
+    history = History.of(store)
+    old, new = (history.under(m) for m in (against, method))
+    links = old.made.season_links, new.made.season_links
+    rungs = ladder(against, method, history.tows, history.blocks, links, history.cache)
+    rungs = rungs.filter(pl.col("step") != START)
+    changes = register_changes(old.register, new.register)
+    return {
+        "method": method.name,
+        "method_hash": method.content_hash,
+        "against": against.name,
+        "simulated": history.simulated,
+        "by_season": _by_season(rungs, history.tows).to_dicts(),
+        "changes": changes["change"].value_counts(sort=True).to_dicts(),
+        "boats": _most_affected(changes, new.register, rungs, history.boats).to_dicts(),
+    }
+
+
+def _by_season(rungs: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+    """Median factor of each step, and of all together, per season."""
+    seasoned = rungs.join(tows.select("tow_id", "season"), on="tow_id")
+    steps = rungs.sort("position")["step"].unique(maintain_order=True).to_list()
+    totals = seasoned.group_by("season", "tow_id").agg(pl.col("factor").product())
+    total = totals.group_by("season").agg(
+        pl.len().alias("tows"), pl.col("factor").median().alias("total")
+    )
+    medians = seasoned.group_by("season", "step").agg(pl.col("factor").median())
+    wide = medians.pivot("step", index="season", values="factor").select("season", *steps)
+    return wide.join(total, on="season").sort("season")
+
+
+def _most_affected(
+    changes: pl.DataFrame, register: pl.DataFrame, rungs: pl.DataFrame, boats: pl.DataFrame
+) -> pl.DataFrame:
+    """The register lines that change most, with the factor of each step on their tow."""
+    largest = (
+        changes.drop_nulls("cw_ratio")
+        .with_columns(pl.col("cw_ratio").log().abs().alias("size"))
+        .sort("size", *LINE, descending=[True, False, False, False])
+        .head(MOST_AFFECTED)
+    )
+    factors = rungs.pivot("step", index="tow_id", values="factor")
+    return (
+        largest.join(register.select(*LINE, "tow_id"), on=LINE, maintain_order="left")
+        .join(boats.select("fsn_no", "name"), on="fsn_no", how="left", maintain_order="left")
+        .join(factors, on="tow_id", how="left", maintain_order="left")
+        .drop("size", "causes", "from_edition", "to_edition")
+    )

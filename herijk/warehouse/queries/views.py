@@ -1,0 +1,201 @@
+"""What people look at, as frames: tables of the database, joined and sorted for a page or chart.
+
+Reads the database; writes and computes nothing: every number here stands in a table.
+"""
+
+from types import TracebackType
+from typing import Self
+
+import duckdb
+import polars as pl
+
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.warehouse.store.store import Store
+
+
+class Views:
+    """The open database, with the questions pages ask."""
+
+    def __init__(self, store: Store) -> None:
+        if not store.database.exists():
+            raise MissingKnowledgeError(f"{store.database} is not there; make it with rebuild")
+        self._contents: dict[str, int] = {}
+        self._db = duckdb.connect(store.database, read_only=True)
+        self._db.execute("SET threads = 1")  # rows in one order: same tables, same bytes
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        tb: TracebackType | None,
+    ) -> None:
+        self._db.close()
+
+    def frame(self, query: str) -> pl.DataFrame:
+        """Rows of a query, as a frame."""
+        return pl.DataFrame(self._db.sql(query).pl())
+
+    def has(self, table: str) -> bool:
+        """Whether the table is there and holds rows."""
+        return self.row_counts().get(table, 0) > 0
+
+    def row_counts(self) -> dict[str, int]:
+        """Rows by table, as the database says of itself."""
+        if not self._contents:
+            self._contents = dict(self.frame('SELECT "table", rows FROM contents').iter_rows())
+        return self._contents
+
+    def table(self, name: str) -> pl.DataFrame:
+        """A whole table, in the order in which it was written."""
+        return self.frame(f'SELECT * FROM "{name}"')  # noqa: S608
+
+    def comments(self) -> dict[str, str]:
+        """Meaning and unit of every column, as `table.column`."""
+        rows = self.frame(
+            "SELECT table_name || '.' || column_name AS name, comment FROM duckdb_columns() "
+            "WHERE comment IS NOT NULL ORDER BY 1"
+        )
+        return dict(rows.iter_rows())
+
+    def about(self) -> dict[str, str]:
+        """What is known about the database itself."""
+        return dict(self.frame("SELECT key, value FROM about ORDER BY key").iter_rows())
+
+    def register(self) -> pl.DataFrame:
+        """Lines of every edition with the boat's name and type."""
+        return self.frame(_REGISTER)
+
+    def changes(self) -> pl.DataFrame:
+        """Changes between editions with the boat's name; without the unchanged lines."""
+        return self.frame(_CHANGES)
+
+    def curves(self) -> pl.DataFrame:
+        """Curves with the day, name and what was on board."""
+        return self.frame(_CURVES)
+
+    def flagged(self) -> pl.DataFrame:
+        """Checks that found something beyond its limit."""
+        return self.frame(
+            'SELECT * FROM assessments WHERE flagged ORDER BY method, tow_id, "check"'
+        )
+
+    def run_points(self) -> pl.DataFrame:
+        """Run points with the boat and season they belong to."""
+        return self.frame(
+            "SELECT p.*, t.fsn_no, t.season, t.declared_speed_m_s FROM run_points AS p "
+            "JOIN tows AS t USING (tow_id) ORDER BY method, tow_id, run"
+        )
+
+    def type_boats(self) -> pl.DataFrame:
+        """The newest tow of each boat and crew of a known type, under every method."""
+        return self.frame(_TYPE_BOATS)
+
+    def shared_bends(self) -> pl.DataFrame:
+        """B of every boat as it is, shared in part, and shared wholly with its type."""
+        return self.frame(
+            "SELECT p.*, b.name, p.fsn_no || ' ' || p.rowers || p.crew_class AS crew "
+            "FROM pooled_curves AS p LEFT JOIN boats AS b USING (fsn_no) "
+            "WHERE p.boat_type != 'unknown' ORDER BY method, tow_id, pooling"
+        )
+
+    def repeat_pairs(self) -> pl.DataFrame:
+        """Repeat tows with the boat's name."""
+        return self.frame(
+            "SELECT r.*, b.name FROM repeat_pairs AS r LEFT JOIN boats AS b USING (fsn_no) "
+            "ORDER BY method, tow_id"
+        )
+
+    def predicted(self) -> pl.DataFrame:
+        """Predicted Cw next to the tow's, with the boat's name."""
+        return self.frame(
+            "SELECT p.*, b.name FROM predicted_cw AS p LEFT JOIN boats AS b USING (fsn_no) "
+            "WHERE predicted_cw_kg_m IS NOT NULL ORDER BY method, tow_id"
+        )
+
+    def outliers(self) -> pl.DataFrame:
+        """Boats that differ from their type, furthest first."""
+        return self.frame(
+            "SELECT o.*, b.name FROM type_outliers AS o LEFT JOIN boats AS b USING (fsn_no) "
+            "WHERE outside ORDER BY method, abs(deviation_sd) DESC, tow_id, quantity"
+        )
+
+    def counts(self, kind: str) -> pl.DataFrame:
+        """Counts of one kind over all seasons: `method, code, number`."""
+        return self.frame(
+            f"SELECT method, code, number FROM quality_counts WHERE kind = '{kind}' "  # noqa: S608
+            "AND scope = 'all' ORDER BY method, number DESC, code"
+        )
+
+    def status_counts(self) -> pl.DataFrame:
+        """Curves per method, season and status."""
+        return self.frame(
+            "SELECT method, CAST(scope AS INTEGER) AS season, code AS status, number "
+            "FROM quality_counts WHERE kind = 'status' AND scope != 'all' ORDER BY ALL"
+        )
+
+    def checks(self) -> pl.DataFrame:
+        """How often each check was made and found something, most often first."""
+        return self.frame('SELECT * FROM check_counts ORDER BY method, beyond DESC, "check"')
+
+    def due_list(self) -> pl.DataFrame:
+        """Every boat and crew under every method, whose tow expires first on top."""
+        return self.frame(_DUE)
+
+    def retow_choice(self) -> pl.DataFrame:
+        """Boats that would make the season factors surest, with name and next speed."""
+        return self.frame(
+            "SELECT c.*, b.name, d.valid_until, d.tow_speed_m_s FROM retow_choice AS c "
+            "LEFT JOIN boats AS b USING (fsn_no) "
+            "LEFT JOIN due_list AS d USING (method, fsn_no, rowers, crew_class) "
+            "ORDER BY c.method, c.position"
+        )
+
+    def races(self) -> pl.DataFrame:
+        """Races replayed under two editions, with the boat's name."""
+        return self.frame(
+            "SELECT r.*, b.name FROM race_changes AS r LEFT JOIN boats AS b USING (fsn_no) "
+            "ORDER BY from_edition, to_edition, race_date, race, crew_class, new_rank, fsn_no"
+        )
+
+
+_REGISTER = """
+SELECT r.edition, r.fsn_no, b.name, b.boat_type, r.rowers, r.crew_class, r.tow_date, r.valid_until,
+       r.status, r.declared_speed_m_s, r.a_kg_m, r.b_m_s, r.cw_kg_m, r.cw_lo_kg_m, r.cw_hi_kg_m,
+       r.tow_id, r.method, r.verification_code
+FROM register AS r LEFT JOIN boats AS b USING (fsn_no)
+ORDER BY edition, lower(b.name), fsn_no, rowers, crew_class
+"""
+
+_DUE = """
+SELECT d.*, b.name, b.boat_type FROM due_list AS d LEFT JOIN boats AS b USING (fsn_no)
+ORDER BY d.method, d.valid_until NULLS LAST, lower(b.name), d.fsn_no, d.rowers, d.crew_class
+"""
+
+_CHANGES = """
+SELECT c.from_edition, c.to_edition, c.fsn_no, b.name, b.boat_type, c.rowers, c.crew_class,
+       c.change, c.cw_ratio, c.power_ratio, c.time_ratio, c.causes
+FROM register_changes AS c LEFT JOIN boats AS b USING (fsn_no)
+WHERE c.change != 'same'
+ORDER BY from_edition, to_edition, lower(b.name), fsn_no, rowers, crew_class
+"""
+
+_CURVES = """
+SELECT c.*, t.tow_date, t.weight_kg, t.water_temperature_c, t.altered, t.remark, b.name, b.boat_type
+FROM curves AS c JOIN tows AS t USING (tow_id) LEFT JOIN boats AS b ON b.fsn_no = c.fsn_no
+ORDER BY c.fsn_no, t.tow_date, c.tow_id, c.method
+"""
+
+_TYPE_BOATS = """
+SELECT p.method, p.fsn_no, b.name, p.boat_type, p.rowers, p.crew_class, p.tow_id, c.season,
+       t.weight_kg, c.declared_speed_m_s, c.a_kg_m, c.b_m_s, c.b_lo_m_s, c.b_hi_m_s, c.cw_kg_m,
+       c.cw_lo_kg_m, c.cw_hi_kg_m, exp(o.value) AS cw_standard_kg_m
+FROM pooled_curves AS p JOIN curves AS c USING (method, tow_id) JOIN tows AS t USING (tow_id)
+LEFT JOIN boats AS b ON b.fsn_no = p.fsn_no
+LEFT JOIN type_outliers AS o
+       ON o.method = p.method AND o.tow_id = p.tow_id AND o.quantity = 'ln_cw_standard'
+WHERE p.pooling = 'own' AND p.boat_type != 'unknown'
+ORDER BY p.method, p.boat_type, lower(b.name), p.fsn_no, p.rowers, p.crew_class
+"""

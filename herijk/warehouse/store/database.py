@@ -1,0 +1,81 @@
+"""The database that readers use: all tables in one DuckDB file, built beside and swapped in.
+
+A reader that has the old file open keeps reading the old tables; one that opens the file later
+sees the new ones. Nobody sees half of either. What is asked of it is in `warehouse.queries.reports` and
+`warehouse.queries.audit`.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import duckdb
+import polars as pl
+
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.warehouse.store.files import written_beside
+
+
+def build_database(path: Path, tables: Mapping[str, pl.DataFrame]) -> None:
+    """Writes the tables, with the meaning of each column as a comment.
+
+    Args:
+        path: the database file; replaced at once when the new one is complete.
+        tables: frames by table name; those of `tables.schemas.TABLES` get comments.
+    """
+    with written_beside(path) as beside:
+        beside.unlink()
+        with duckdb.connect(beside) as connection:
+            connection.execute("SET threads = 1")
+            connection.execute("BEGIN")  # one commit: a hundred comments would each sync the disk
+            for name, frame in sorted(tables.items()):
+                connection.register("frame", frame.to_arrow())
+                connection.execute(f'CREATE TABLE "{name}" AS SELECT * FROM frame')  # noqa: S608
+                connection.unregister("frame")
+                _comment(connection, name)
+            connection.execute("COMMIT")
+
+
+def _comment(connection: duckdb.DuckDBPyConnection, name: str) -> None:
+    from herijk.tables.schemas import TABLES  # noqa: PLC0415 - half a second that readers need not wait
+
+    schema = TABLES.get(name)
+    if schema is None:
+        return
+    connection.execute(f'COMMENT ON TABLE "{name}" IS {_quoted(schema.__doc__)}')
+    for column, definition in schema.columns().items():
+        unit = (definition.metadata or {}).get("unit")
+        text = f"{definition.description} [{unit}]" if unit else definition.description
+        connection.execute(f'COMMENT ON COLUMN "{name}"."{column}" IS {_quoted(text)}')
+
+
+def _quoted(text: str | None) -> str:
+    return "'" + (text or "").replace("'", "''") + "'"
+
+
+def open_database(path: Path) -> duckdb.DuckDBPyConnection:
+    """The database, to read only.
+
+    Raises:
+        MissingKnowledgeError: it was not made yet.
+    """
+    if not path.exists():
+        raise MissingKnowledgeError(
+            f"{path} is not there; make it with: herijk rebuild --archive DIR --data {path.parent}"
+        )
+    return duckdb.connect(path, read_only=True)
+
+
+def rows(
+    connection: duckdb.DuckDBPyConnection, query: str, *values: object
+) -> list[dict[str, Any]]:
+    """What a query gives, a dictionary a row; `values` fill its question marks."""
+    found = connection.execute(query, list(values))
+    names = [column[0] for column in found.description or []]
+    return [dict(zip(names, row, strict=True)) for row in found.fetchall()]
+
+
+def is_simulated(connection: duckdb.DuckDBPyConnection) -> bool:
+    """Whether the archive behind it was made by the simulator."""
+    row = connection.execute("SELECT value FROM about WHERE key = 'simulated'").fetchone()
+    return row is not None and row[0] == "true"

@@ -1,0 +1,33 @@
+"""The members of a method's ensemble, read back from the lake.
+
+What they are and what can be counted in them stands in `pipeline.uncertainty.ensemble`; they are written with
+the other tables of a method (`warehouse.build.tables`).
+"""
+
+import polars as pl
+
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.warehouse.store.store import Store
+
+ENSEMBLE = "ensemble"
+
+
+def read_ensemble(store: Store, method: str) -> pl.DataFrame:
+    """The 200 equally likely values of Cw of every tow under a method.
+
+    Is tow X heavier than Y, who would have won: give the rows to `pipeline.uncertainty.ensemble.share_heavier`
+    and `share_first`. The members of a register are those of the tows its lines name.
+
+    Returns:
+        Rows of the table `ensemble`, sorted by tow and member.
+
+    Raises:
+        MissingKnowledgeError: the method was not applied to this archive.
+    """
+    path = store.table_path(ENSEMBLE, method)
+    if not path.exists():
+        raise MissingKnowledgeError(
+            f"{path} is not there; make it with: "
+            f"herijk rebuild --archive DIR --data {store.root} --method {method}"
+        )
+    return store.read(ENSEMBLE, method)

@@ -1,0 +1,115 @@
+"""What the machine can put in the way of a rebuild, each as a sentence with the way out.
+
+Libraries wrap the system's errors in their own; found are the system's error number, anywhere in
+the chain of causes, and the few words by which SQLite, DuckDB and Polars pass one on.
+"""
+
+import errno
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Final
+
+from herijk.pipeline.errors import HerijkError, UnavailableError
+
+_FULL: Final = (
+    "there is no room left to write in {root}. Free some, or move the data folder; "
+    "lake/samples in it is the largest part and is made again when needed"
+)
+_FORBIDDEN: Final = (
+    "{root} cannot be written. Give the user who runs this the right to write in all of it, or "
+    "name another folder with --data"
+)
+_HANDLES: Final = (
+    "this process may not open more files. Allow more (ulimit -n 1024; in systemd "
+    "LimitNOFILE=1024) and run it again"
+)
+_BROKEN_DISK: Final = "the disk under {root} gives errors. Look in the system's log, and replace it"
+
+_DAMAGED_RECORDS: Final = (
+    "Dagster's records in {root}/dagster are damaged. Remove that folder: it holds no table, only "
+    "the history of runs"
+)
+
+_CLOSED_RECORDS: Final = (
+    "Dagster's records in {root}/dagster cannot be opened: this process may not open more files "
+    "(allow more: ulimit -n 1024; in systemd LimitNOFILE=1024), or has no right to that folder"
+)
+
+_NO_DRAWING: Final = (
+    "a figure could not be drawn: the drawing library stopped, most often because this process may "
+    "not open more files (allow more: ulimit -n 1024; in systemd LimitNOFILE=1024)"
+)
+
+_BY_NUMBER: Final = {
+    errno.ENOSPC: _FULL,
+    errno.EDQUOT: _FULL,
+    errno.EFBIG: _FULL,
+    errno.EROFS: _FORBIDDEN,
+    errno.EACCES: _FORBIDDEN,
+    errno.EPERM: _FORBIDDEN,
+    errno.EMFILE: _HANDLES,
+    errno.ENFILE: _HANDLES,
+    errno.EIO: _BROKEN_DISK,
+}
+
+_BY_WORDS: Final = {
+    "no space left": _FULL,
+    "disk is full": _FULL,
+    "file too large": _FULL,
+    "quota exceeded": _FULL,
+    "read-only file system": _FORBIDDEN,
+    "readonly database": _FORBIDDEN,
+    "permission denied": _FORBIDDEN,
+    "too many open files": _HANDLES,
+    "unable to open database file": _CLOSED_RECORDS,
+    "receiver is gone": _NO_DRAWING,
+    "input/output error": _BROKEN_DISK,
+    "disk i/o error": _BROKEN_DISK,
+    "file is not a database": _DAMAGED_RECORDS,
+    "disk image is malformed": _DAMAGED_RECORDS,
+}
+
+REASSURANCE: Final = "What was there before is whole, and what was finished is kept."
+
+
+@contextmanager
+def obstacles_explained(root: Path) -> Iterator[None]:
+    """Turns an error of the machine into a sentence with the way out; others pass as they are.
+
+    Raises:
+        UnavailableError: the disk is full, the folder cannot be written, and the like.
+    """
+    try:
+        yield
+    except (HerijkError, KeyboardInterrupt, SystemExit):
+        raise
+    except BaseException as error:  # a panic of a library in Rust is no Exception
+        found = _obstacle(error)
+        if found is None:
+            raise
+        raise UnavailableError(f"{found.format(root=root)}. {REASSURANCE}") from error
+
+
+def is_obstacle(error: BaseException) -> bool:
+    """Whether an error is the machine's, and says nothing about the file it concerns."""
+    return _obstacle(error) is not None
+
+
+def _obstacle(error: BaseException) -> str | None:
+    for one in _causes(error):
+        if isinstance(one, OSError) and one.errno in _BY_NUMBER:
+            return _BY_NUMBER[one.errno]
+        text = str(one).casefold()
+        for words, found in _BY_WORDS.items():
+            if words in text:
+                return found
+    return None
+
+
+def _causes(error: BaseException | None) -> Iterator[BaseException]:
+    seen: set[int] = set()
+    while error is not None and id(error) not in seen:
+        seen.add(id(error))
+        yield error
+        error = error.__cause__ or error.__context__

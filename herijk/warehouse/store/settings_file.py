@@ -1,0 +1,38 @@
+"""Files of settings in the data folder: TOML, written by who runs Herijk, read into a model."""
+
+import tomllib
+from pathlib import Path
+from typing import TypeVar
+
+from pydantic import BaseModel, ValidationError
+
+from herijk.pipeline.errors import MissingKnowledgeError
+
+Model = TypeVar("Model", bound=BaseModel)
+
+
+def read_settings_file(path: Path, model: type[Model], may_hold: str) -> Model:
+    """The settings in a file; the model's own where there is no file.
+
+    No value is repeated in a message: it could be a password.
+
+    Args:
+        path: the file.
+        model: what it can say.
+        may_hold: the same in words, for who made a mistake.
+
+    Raises:
+        MissingKnowledgeError: the file cannot be understood.
+    """
+    if not path.exists():
+        return model()
+    try:
+        return model.model_validate(tomllib.loads(path.read_text(encoding="utf-8")))
+    except ValidationError as error:
+        first = error.errors(include_input=False)[0]
+        where = ".".join(str(part) for part in first["loc"])
+        raise MissingKnowledgeError(
+            f"{path}: {where}: {first['msg']}; it may hold {may_hold}"
+        ) from error
+    except (ValueError, RecursionError) as error:  # also numbers too large, tables too deep
+        raise MissingKnowledgeError(f"{path}: not valid TOML: {error}") from error

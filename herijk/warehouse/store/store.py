@@ -1,0 +1,226 @@
+"""Where everything of a data folder lies, and how tables are written there.
+
+The lake holds Parquet: the samples and the blocks of each tow, written once and named by content,
+and the tables, one file per table or per partition of it (a season, a method). Each table file
+carries the fingerprint of what it was made from, so that a rebuild does only what changed. Lake and
+editions may lie in a bucket instead of the data folder (`warehouse.store.storage`). What a table means
+stands in `tables.schemas`; the database that readers use is `warehouse.store.database`.
+"""
+
+import hashlib
+import json
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Final
+
+import polars as pl
+import pyarrow as pa  # type: ignore[import-untyped]
+import pyarrow.parquet as pq  # type: ignore[import-untyped]
+
+from herijk.pipeline.errors import BrokenPromiseError
+from herijk.warehouse.store.obstacles import is_obstacle
+from herijk.warehouse.store.storage import Locations, Place, place, read_locations, written_whole
+
+FINGERPRINT_KEY: Final = "herijk.fingerprint"
+_FOOTER_BYTES: Final = 1 << 16
+"""Enough for most footers, so that one request brings them."""
+
+TABLE_FORM: Final = {"compression": "zstd"}
+
+
+def fingerprint(*parts: Any) -> str:
+    """A hash of anything that JSON can hold, equal wherever the parts are equal."""
+    text = json.dumps(parts, sort_keys=True, default=str, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def table_digest(frame: pl.DataFrame) -> str:
+    """A hash of a table's values as they are read: 13 significant digits, in row order."""
+    lists = [c for c, dtype in frame.schema.items() if isinstance(dtype, pl.List)]
+    flat = frame.with_columns(pl.col(lists).list.join("\x1f")) if lists else frame
+    text = flat.write_csv(float_scientific=True, float_precision=12)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+@dataclass(frozen=True)
+class Store:
+    """The data folder."""
+
+    root: Path
+
+    @cached_property
+    def _locations(self) -> Locations:
+        return read_locations(self.root)
+
+    @cached_property
+    def lake(self) -> Place:
+        """Samples, blocks and tables."""
+        return place(self._locations.lake, self.root / "lake")
+
+    @cached_property
+    def editions(self) -> Place:
+        """The published editions, each under its name."""
+        return place(self._locations.editions, self.root / "editions")
+
+    @property
+    def database(self) -> Path:
+        """The DuckDB file with all tables."""
+        return self.root / "warehouse.duckdb"
+
+    @property
+    def dagster_home(self) -> Path:
+        """Dagster's runs and asset history."""
+        return self.root / "dagster"
+
+    @property
+    def file_hashes(self) -> Path:
+        """Content hashes of archive files already seen: a cache, of this machine only."""
+        return self.root / "lake" / "file_hashes.json"
+
+    def samples_path(self, season: int, key: str) -> Place:
+        """The samples of one tow."""
+        return self.lake / "samples" / f"season={season}" / f"{key}.parquet"
+
+    def blocks_path(self, season: int, key: str) -> Place:
+        """The blocks of one tow."""
+        return self.lake / "blocks" / f"season={season}" / f"{key}.parquet"
+
+    def table_path(self, table: str, partition: str | None = None) -> Place:
+        """A table, or one partition of it."""
+        folder = self.lake / "tables"
+        if partition is None:
+            return folder / f"{table}.parquet"
+        return folder / table / f"{partition}.parquet"
+
+    def partitions(self, table: str) -> list[str]:
+        """The partitions of a table that have been written, sorted."""
+        folder = self.lake / "tables" / table
+        return sorted(f.stem for f in folder.glob("[!.]*.parquet"))
+
+    def write(
+        self, table: str, frame: pl.DataFrame, made_from: str, partition: str | None = None
+    ) -> None:
+        """Writes a table or partition with the fingerprint of what it was made from."""
+        write_parquet(frame, self.table_path(table, partition), {FINGERPRINT_KEY: made_from})
+
+    def read(self, table: str, partition: str | None = None) -> pl.DataFrame:
+        """A table or partition as written."""
+        return read_parquet(self.table_path(table, partition))
+
+    def read_all(self, table: str, partitions: Iterable[str] | None = None) -> pl.DataFrame:
+        """Partitions of a table, one below the other: the given ones, or all."""
+        chosen = self.partitions(table) if partitions is None else partitions
+        return pl.concat([self.read(table, p) for p in chosen])
+
+    def made_from(self, table: str, partition: str | None = None) -> str | None:
+        """Fingerprint of what a table was made from; None if it is not there or is damaged."""
+        path = self.table_path(table, partition)
+        if not path.exists():
+            return None
+        try:
+            held = (_footer(path).metadata or {}).get(FINGERPRINT_KEY.encode())
+            return None if held is None else bytes(held).decode()
+        except _UNREADABLE as error:
+            if is_obstacle(error):
+                raise
+            return None
+
+    def remove(self, table: str, partition: str) -> None:
+        """Removes a partition whose season or method is no more."""
+        self.table_path(table, partition).unlink(missing_ok=True)
+
+
+class DamagedFileError(BrokenPromiseError):
+    """A file that Herijk wrote cannot be read any more; it can be made again."""
+
+    def __init__(self, path: Place) -> None:
+        super().__init__(
+            f"{path} is damaged. It can be made again: run herijk rebuild; when that comes back, "
+            "look at the disk"
+        )
+        self.path = path
+
+
+_UNREADABLE: Final = (
+    pa.ArrowException,
+    pl.exceptions.PolarsError,
+    pl.exceptions.PanicException,
+    OSError,
+    ValueError,
+)
+
+
+def read_parquet(path: Place, use_threads: bool = True) -> pl.DataFrame:
+    """A frame that was written with `write_parquet`, its checksums verified.
+
+    Args:
+        path: the file.
+        use_threads: decode columns side by side; not where files already are.
+
+    Raises:
+        FileNotFoundError: it is not there.
+        DamagedFileError: it was changed since, by a failing disk or by hand.
+    """
+    with _damage_named(path):
+        source = path if isinstance(path, Path) else pa.BufferReader(path.read_bytes())
+        # Not read_table: it imports Arrow's data sets, and with them pandas if that is there.
+        with pq.ParquetFile(source, page_checksum_verification=True) as file:
+            return pl.DataFrame(pl.from_arrow(file.read(use_threads=use_threads)))
+
+
+def count_rows(path: Place) -> int:
+    """Rows of a frame that was written with `write_parquet`; raises as `read_parquet`."""
+    with _damage_named(path):
+        return int(_footer(path).num_rows)
+
+
+def _footer(path: Place) -> pq.FileMetaData:
+    """What stands at the end of a Parquet file; the rest is not fetched."""
+    if isinstance(path, Path):
+        return pq.read_metadata(path)
+    end = path.read_end(_FOOTER_BYTES)
+    size = int.from_bytes(end[-8:-4], "little") + 8  # the footer, its length and the mark "PAR1"
+    if size > len(end):
+        end = path.read_end(size)
+    return pq.read_metadata(pa.BufferReader(end))
+
+
+@contextmanager
+def _damage_named(path: Place) -> Iterator[None]:
+    try:
+        yield
+    except FileNotFoundError:
+        raise
+    except _UNREADABLE as error:
+        if is_obstacle(error):
+            raise
+        raise DamagedFileError(path) from error
+
+
+def write_parquet(
+    frame: pl.DataFrame,
+    path: Place,
+    metadata: dict[str, str] | None = None,
+    form: Mapping[str, Any] = TABLE_FORM,
+) -> None:
+    """Writes a frame as Parquet, whole or not at all, with a checksum of every page.
+
+    Without checksums a changed byte can be read as another number.
+    """
+    table = frame.to_arrow()
+    with written_whole(path) as target:
+        pq.write_table(
+            pa.Table.from_arrays(table.columns, schema=_tight_schema(table, metadata)),
+            target,
+            write_page_checksum=True,
+            **form,
+        )
+
+
+def _tight_schema(table: pa.Table, metadata: dict[str, str] | None) -> pa.Schema:
+    """Columns without gaps as columns that cannot have any: these are read in half the time."""
+    columns = zip(table.schema, table.columns, strict=True)
+    return pa.schema([f.with_nullable(c.null_count > 0) for f, c in columns], metadata)
