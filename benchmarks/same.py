@@ -1,9 +1,9 @@
 """The heavy part of a rebuild in other tools: samples kept, and the sums of every second.
 
 From text each tool writes the samples of a tow as Parquet (32 bits, lz4), as Herijk does; from
-those it makes the sums of `pipeline.blocks.run_blocks`, from which every method can be computed. Nothing is
-checked. Each works the way it is best at: pandas tow after tow with NumPy, DuckDB in SQL, Polars in
-lazy expressions; the last two with `THREADS` threads.
+those it makes the sums of `pipeline.blocks.run_blocks`, from which every method can be computed.
+Nothing is checked. Each works the way it is best at: pandas tow after tow with NumPy, DuckDB in
+SQL, Polars in lazy expressions; the last two with `THREADS` threads.
 """
 
 from collections.abc import Mapping

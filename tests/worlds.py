@@ -1,4 +1,4 @@
-"""A simulated world as the frames and arrays that `pipeline.recompute.recompute` works on, without files."""
+"""A simulated world as the frames and arrays that `recompute` works on, without files."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace

@@ -1,7 +1,7 @@
 """The commands about editions, and about who has to tow before the next one.
 
-What they do stands in `warehouse.editions` and `warehouse.build.due`; how a result looks as text, in
-`cli.editions_text` and `cli.due_text`.
+What they do stands in `warehouse.editions` and `warehouse.build.due`; how a result looks as text,
+in `cli.editions_text` and `cli.due_text`.
 """
 
 import datetime as dt

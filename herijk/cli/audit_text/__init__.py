@@ -1,6 +1,7 @@
 """The pages of `herijk audit` in plain words, each statement with its figures and its n.
 
-Words only: every figure and every verdict comes from `warehouse.queries.audit`. True, false and None of a
+Words only: every figure and every verdict comes from `warehouse.queries.audit`. True, false and
+None of a
 verdict are three different things: yes, not seen, and not claimed.
 """
 

@@ -11,7 +11,8 @@ def curves_compared(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     """A tow's curve and run points under two methods, with the interval at the declared speed.
 
     Args:
-        frame: rows of `kind` line, point and declared (`warehouse.queries.trial.Trial.boat_figure`).
+        frame: rows of `kind` line, point and declared
+            (`warehouse.queries.trial.Trial.boat_figure`).
         say: gives texts.
     """
     x = number(alt.X, "speed_m_s", say("speed"))

@@ -3,8 +3,8 @@
 Here each check's number is observed, from the finished curves and run points of all tows of a
 method at once, since a tow is also compared with earlier ones and with like boats. The checks are
 those of the federation's first assessment (Sleepproef, R. Pot 2017, "Eerste beoordeling" and
-"Opmetingen en keuring"); their limits are data and stand in `pipeline.assessment.checks`. Which of them
-reject a tow, the method says.
+"Opmetingen en keuring"); their limits are data and stand in `pipeline.assessment.checks`. Which of
+them reject a tow, the method says.
 """
 
 from collections.abc import Sequence
@@ -208,8 +208,8 @@ def _with_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     """Curves that were found, with the boat of the day, sorted by date.
 
     `size` is sqrt(displacement x waterline length): wetted surface follows it (docs of
-    `pipeline.steps.resistance`), and friction, most of Cw, follows wetted surface. `s_s2_m2` is 1/B^2,
-    also of a flat or falling curve, from A and Cw at the declared speed.
+    `pipeline.steps.resistance`), and friction, most of Cw, follows wetted surface. `s_s2_m2` is
+    1/B^2, also of a flat or falling curve, from A and Cw at the declared speed.
     """
     kept = ("tow_date", "altered", "waterline_length_m", "weight_kg", "crew_weight_kg")
     types = [c for c in ("boat_type",) if c in tows.columns]

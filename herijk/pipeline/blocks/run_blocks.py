@@ -12,8 +12,8 @@ The sums of one block, over its `n` samples, with F the tow force, v a speed sou
 - `force`: F [N]
 - `<source>_v`, `<source>_inv_v2`: v, 1/v^2
 - `<source>_cw`, `<source>_cw2`: F/v^2 [kg/m] and its square
-- `<air>`: the terms of `pipeline.steps.wind` [m2/s2]: `head` and `front`, each for wind from `ahead` and
-  from `behind`, and `side`
+- `<air>`: the terms of `pipeline.steps.wind` [m2/s2]: `head` and `front`, each for wind from
+  `ahead` and from `behind`, and `side`
 - `<source>_<air>`: the same divided by v^2
 - `wind_v`: w; `wind_cos`, `wind_sin`: cos a, sin a; `wind_x`, `wind_y`: w cos a, w sin a
 - `gps`, `gps_n`: ground speed, and how many samples have one

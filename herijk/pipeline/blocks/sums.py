@@ -1,6 +1,7 @@
 """Adding up a tow's samples: one compiled loop makes the sums of every second.
 
-What the sums are stands in `pipeline.blocks.run_blocks`. The loop is compiled by Numba, and written so that
+What the sums are stands in `pipeline.blocks.run_blocks`. The loop is compiled by Numba, and written
+so that
 its result follows from the samples alone, to the last bit and on every processor: only additions,
 multiplications and divisions, in a fixed order, and no function of a mathematical library
 (docs/decisions/0015). It is written without branches, so that the compiler can work on several

@@ -1,10 +1,10 @@
 """A method is data: the named option of every step, with season ranges that override.
 
-A method file is TOML that a committee member can read (`herijk/pipeline/methods/`). `[steps.<step>]`
-gives options for every season; each `[[overrides]]` block replaces some of them for a range; a
-method may `extend` another. Here such a text becomes a frozen, validated `Method`; nothing is
-computed with a method that has an error. What a step does with its options stands in the step's
-own module.
+A method file is TOML that a committee member can read (`herijk/pipeline/methods/`).
+`[steps.<step>]` gives options for every season; each `[[overrides]]` block replaces some of them
+for a range; a method may `extend` another. Here such a text becomes a frozen, validated `Method`;
+nothing is computed with a method that has an error. What a step does with its options stands in the
+step's own module.
 """
 
 import hashlib

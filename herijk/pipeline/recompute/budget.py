@@ -1,9 +1,9 @@
 """How sure a curve is: the random part from its points, and the budget of every component.
 
-Here outcomes are given to `pipeline.uncertainty.propagation`, which has the formulas, and the interval of Cw
-at the declared speed comes back. A method with estimated season factors knows the whole archive:
-its scatter is pooled over a season. Any other method is taken at its word, tow by tow: its
-interval rests on the tow's own points and holds if its log factors are right.
+Here outcomes are given to `pipeline.uncertainty.propagation`, which has the formulas, and the
+interval of Cw at the declared speed comes back. A method with estimated season factors knows the
+whole archive: its scatter is pooled over a season. Any other method is taken at its word, tow by
+tow: its interval rests on the tow's own points and holds if its log factors are right.
 """
 
 from collections.abc import Sequence
@@ -166,7 +166,7 @@ def _random_ratio(o: Outcome, scatter: curve.Scatter, speed_ratio: float) -> Flo
 
 
 def _terms_of_tows(o: Outcome, found: SeasonFactors | None, scatter: curve.Scatter) -> pl.DataFrame:
-    """What `pipeline.uncertainty.propagation.budget` asks of tows, as far as it is the same at any speed."""
+    """What `pipeline.uncertainty.propagation.budget` asks of tows, where it is the same at any speed."""
     batch = o.batch
     estimated = np.isfinite(o.estimated.factor)
     net_air = batch.mean(o.air_kg_m - o.still_air_kg_m, o.used)

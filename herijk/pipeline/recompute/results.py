@@ -1,8 +1,8 @@
 """The results of a method as tables of the warehouse.
 
 Arrays in, frames out; a number that is not known becomes null here, never NaN. What is computed
-stands in `pipeline.recompute.recompute`; how sure it is, in `pipeline.recompute.budget`; what a person should look
-at, in `pipeline.assessment.assess`.
+stands in `pipeline.recompute.recompute`; how sure it is, in `pipeline.recompute.budget`; what a
+person should look at, in `pipeline.assessment.assess`.
 """
 
 from collections.abc import Sequence

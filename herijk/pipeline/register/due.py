@@ -2,8 +2,8 @@
 
 The rule for the speed is the federation's (Sleepproef, R. Pot 2017, "Sleepsnelheid"): on the known
 curve it takes 70-90 W a rower (men) or 40-55 W (women). Belongs here: that rule with its
-exceptions. Does not: which tow counts (`pipeline.register.register`) and which boats would tie the seasons
-together (`pipeline.season_log.ties`).
+exceptions. Does not: which tow counts (`pipeline.register.register`) and which boats would tie the
+seasons together (`pipeline.season_log.ties`).
 """
 
 import datetime as dt
@@ -50,7 +50,8 @@ def due_list(
     boats. That a boat was altered since is a reason to depart from this, which no list knows.
 
     Args:
-        register: lines of `pipeline.register.register.draft_register`; an expired curve is a known curve.
+        register: lines of `pipeline.register.register.draft_register`; an expired curve is a known
+            curve.
         boats: `fsn_no`, `boat_type`.
         results: races with `race_date`, `distance_m`, `stream_m`, `rowing_time_s` and the line.
         as_of: the day on which is looked.

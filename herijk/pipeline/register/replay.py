@@ -1,8 +1,8 @@
 """Races replayed under a register: power, rank and podium, and what another register changes.
 
-The formulas stand in `pipeline.races.race` and `pipeline.curve`; here they are put together for a whole
-race file. Which rules a race was rowed under is data: `RaceRules`. Wind, waves and depth are no
-part of the handicap (presentation R. Pot, 24 January 2015).
+The formulas stand in `pipeline.races.race` and `pipeline.curve`; here they are put together for a
+whole race file. Which rules a race was rowed under is data: `RaceRules`. Wind, waves and depth are
+no part of the handicap (presentation R. Pot, 24 January 2015).
 """
 
 from dataclasses import dataclass

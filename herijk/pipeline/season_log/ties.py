@@ -3,7 +3,8 @@
 A boat that is towed again beside dGPS tells what the logs of its earlier seasons were. By how much
 that shrinks the uncertainty of all factors together follows from the joint estimate alone, before
 anyone has towed (sequential A-optimal design: Atkinson, Donev and Tobias, Optimum Experimental
-Designs, 2007, ch. 12). Belongs here: that choice. Does not: who is due anyhow (`pipeline.register.due`).
+Designs, 2007, ch. 12). Belongs here: that choice. Does not: who is due anyhow
+(`pipeline.register.due`).
 """
 
 from typing import Final

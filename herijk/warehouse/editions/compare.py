@@ -1,6 +1,7 @@
 """Two editions side by side: every line with its causes, and what it does to races.
 
-The numbers come from `pipeline.register.changes`, `pipeline.studies.ladder` and `pipeline.register.replay`; here it is found
+The numbers come from `pipeline.register.changes`, `pipeline.studies.ladder` and
+`pipeline.register.replay`; here it is found
 out what two editions do not share: tow, files, method, code. The steps of the method are computed
 with the code and blocks of today; what they leave is one factor, named after what else differs.
 """
@@ -56,8 +57,9 @@ class Comparison:
 
     Attributes:
         old, new: the editions.
-        lines: rows of `register_changes`, with the columns of `pipeline.register.changes.side_by_side`, the
-            boat's `name`, and the status in both, which says why a line has no curve any more.
+        lines: rows of `register_changes`, with the columns of
+            `pipeline.register.changes.side_by_side`, the boat's `name`, and the status in both,
+            which says why a line has no curve any more.
     """
 
     old: Edition

@@ -1,7 +1,7 @@
 """The lines that a method gives on a day: at publication, and when an edition is made again.
 
-Which tow counts is decided in `pipeline.register.register`; here the facts of its tow are put beside it, and
-numbers are left out where no valid curve is.
+Which tow counts is decided in `pipeline.register.register`; here the facts of its tow are put
+beside it, and numbers are left out where no valid curve is.
 """
 
 import datetime as dt

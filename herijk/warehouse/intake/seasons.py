@@ -1,7 +1,8 @@
 """Intake: what the archive holds today, and which of it the lake still has to read.
 
 The lists of the archive are indexed on every rebuild (they are small); samples only where a
-season's fingerprint says that something changed. Reading one season's files is `warehouse.intake.lake`.
+season's fingerprint says that something changed. Reading one season's files is
+`warehouse.intake.lake`.
 """
 
 import dataclasses

@@ -1,7 +1,8 @@
 """Everything behind one boat, or behind one type of boat, as plain data.
 
 Reads only `warehouse.duckdb`. The statistics are made in `pipeline.consistency`; here rows are
-collected, in `warehouse.queries.audit_types` also judged. How it is said in words is `cli.audit_text`.
+collected, in `warehouse.queries.audit_types` also judged. How it is said in words is
+`cli.audit_text`.
 """
 
 from collections.abc import Sequence

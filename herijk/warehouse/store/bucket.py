@@ -1,7 +1,8 @@
 """Objects in a bucket of S3 storage, with those methods of `pathlib.Path` that the warehouse uses.
 
 An object appears whole or not at all, and replaces an older one at once: that is how S3 storage
-works, so nothing is written beside. Which places lie in a bucket is said in `warehouse.store.storage`.
+works, so nothing is written beside. Which places lie in a bucket is said in
+`warehouse.store.storage`.
 """
 
 import fnmatch

@@ -1,8 +1,8 @@
 """The database that readers use: all tables in one DuckDB file, built beside and swapped in.
 
 A reader that has the old file open keeps reading the old tables; one that opens the file later
-sees the new ones. Nobody sees half of either. What is asked of it is in `warehouse.queries.reports` and
-`warehouse.queries.audit`.
+sees the new ones. Nobody sees half of either. What is asked of it is in `warehouse.queries.reports`
+and `warehouse.queries.audit`.
 """
 
 from collections.abc import Mapping

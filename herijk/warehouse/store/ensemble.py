@@ -1,7 +1,7 @@
 """The members of a method's ensemble, read back from the lake.
 
-What they are and what can be counted in them stands in `pipeline.uncertainty.ensemble`; they are written with
-the other tables of a method (`warehouse.build.tables`).
+What they are and what can be counted in them stands in `pipeline.uncertainty.ensemble`; they are
+written with the other tables of a method (`warehouse.build.tables`).
 """
 
 import polars as pl
@@ -15,7 +15,8 @@ ENSEMBLE = "ensemble"
 def read_ensemble(store: Store, method: str) -> pl.DataFrame:
     """The 200 equally likely values of Cw of every tow under a method.
 
-    Is tow X heavier than Y, who would have won: give the rows to `pipeline.uncertainty.ensemble.share_heavier`
+    Is tow X heavier than Y, who would have won: give the rows to
+        `pipeline.uncertainty.ensemble.share_heavier`
     and `share_first`. The members of a register are those of the tows its lines name.
 
     Returns:
