@@ -166,7 +166,7 @@ def _random_ratio(o: Outcome, scatter: curve.Scatter, speed_ratio: float) -> Flo
 
 
 def _terms_of_tows(o: Outcome, found: SeasonFactors | None, scatter: curve.Scatter) -> pl.DataFrame:
-    """What `pipeline.uncertainty.propagation.budget` asks of tows, where it is the same at any speed."""
+    """What `propagation.budget` asks of tows, as far as it is the same at any speed."""
     batch = o.batch
     estimated = np.isfinite(o.estimated.factor)
     net_air = batch.mean(o.air_kg_m - o.still_air_kg_m, o.used)
