@@ -87,9 +87,9 @@ def test_verify_is_0_when_all_is_well_and_1_when_not(herijk, bench, tmp_path):
 
 
 def test_verify_under_other_code_says_that_what_was_published_stands(herijk, bench, monkeypatch):
-    original = herijk.pipeline.recompute.recompute.still_air_coefficient_kg_m
+    original = recompute.still_air_coefficient_kg_m
     monkeypatch.setattr(
-        herijk.pipeline.recompute.recompute,
+        recompute,
         "still_air_coefficient_kg_m",
         lambda area, drag: 1.5 * original(area, drag),
     )
