@@ -4,6 +4,7 @@ import json
 
 import pytest
 
+from herijk.pipeline.recompute import recompute
 from tests.warehouse.edition_bench import EditionBench
 
 DECISION = ("--decision", "ALV 12-5-2014")
