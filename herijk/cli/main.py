@@ -20,6 +20,7 @@ from typer.core import TyperGroup
 from herijk.cli import editions as commands_editions
 from herijk.cli import text
 from herijk.cli.arguments import ArchiveFolder, AsJson, DataFolder, show
+from herijk.cli.fit import fit
 from herijk.cli.overview import Overview, folders_here
 from herijk.pipeline.errors import BrokenPromiseError, HerijkError, MissingKnowledgeError
 
@@ -38,6 +39,7 @@ methods_app = typer.Typer(help="The methods that ship with Herijk.", rich_markup
 app.add_typer(methods_app, name="methods", invoke_without_command=True)
 
 commands_editions.add_to(app)
+app.command()(fit)
 
 MOST_TYPES: Final = 2
 
