@@ -19,7 +19,7 @@ from herijk.pipeline.method.definition import (
     shipped_methods,
 )
 from herijk.pipeline.recompute.recompute import recompute
-from herijk.tables.schemas import Tows
+from herijk.tables.archive import Tows
 
 REQUIRED: Final = ("declared_speed_m_s", "waterline_length_m", "beam_m", "bow_height_m")
 DEFAULTS: Final = {
