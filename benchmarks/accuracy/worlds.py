@@ -4,9 +4,9 @@
 
 An archive has ten seasons of 24 tows. It is simulated at 10 samples a second, added up to blocks
 and recomputed, without files; `--files` writes it, lets `herijk rebuild` read it and takes the
-tables from there, which is ten times slower. Results are kept as lines of JSON under the version of
-the code, so that a run that was stopped goes on. The blocks are kept too, so that another version of
-the method costs a second an archive. Everything is under `benchmarks/data`; delete it at will.
+tables from there, which is ten times slower. Results are kept as lines of JSON under the version
+of the code, so that a run that was stopped goes on. The blocks are kept too, so that another
+version of the method costs a second an archive. All is under `benchmarks/data`; delete it at will.
 """
 
 import os
