@@ -146,13 +146,15 @@ def _curves(o: Outcome, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
     b_interval = curve.b_interval(o.points, o.free, scatter_of(o, pooled))
     safe_cw = np.where(sound, cw, 1.0)
     residual = np.sqrt(o.curves.rss_kg2_m2 / np.maximum(o.curves.n_points - 2, 1)) / safe_cw
+    # A cap is the method's choice, and coefficients searched run by run leave no scatter.
+    own_b = ~o.curves.b_capped & (o.steps.wind.coefficients != "per_run")
     numbers = {
         "a_kg_m": o.curves.a_kg_m,
         "cw_kg_m": cw,
         "cw_lo_kg_m": cw * lo,
         "cw_hi_kg_m": cw * hi,
-        "b_lo_m_s": b_interval.lo,
-        "b_hi_m_s": b_interval.hi,
+        "b_lo_m_s": np.where(own_b, b_interval.lo, np.nan),
+        "b_hi_m_s": np.where(own_b, b_interval.hi, np.nan),
         "power_w": power_per_rower_w(safe_cw, declared, o.batch.of_tow("rowers")),
         "residual_sd_ratio": residual,
     }

@@ -39,7 +39,13 @@ def is_estimated(steps: Steps) -> bool:
 
 
 def without_factor(steps: Steps) -> Steps:
-    """The steps with the log as it reads where its factor is to be estimated."""
+    """The steps from which log factors are estimated: with the log as it reads, without wind.
+
+    A method that leaves the wind on a season's coefficients would compare water and wind there
+    with water alone elsewhere, and call the difference an error of the log.
+    """
+    if steps.wind.model == "none":
+        steps = steps.model_copy(update={"wind": Wind(model="oblique")})
     if not is_estimated(steps):
         return steps
     speed = steps.speed.model_copy(update={"correction": "none"})
