@@ -167,8 +167,8 @@ def _nothing_sound(
     counted = ", ".join(f"{number} x {reason}" for reason, number in causes)
     first = faults.row(0, named=True)
     return MissingKnowledgeError(
-        f"no tow can be used: {faults.height} rows or files are set aside ({counted}); all stand in "
-        f"the table quarantine. See them by cause with: herijk check ARCHIVE. "
+        f"no tow can be used: {faults.height} rows or files are set aside ({counted}). "
+        f"All stand in the table quarantine. See them by cause with: herijk check ARCHIVE. "
         f"The first: {first['path']}: {first['message']}"
     )
 

@@ -151,8 +151,7 @@ def present_runs(store: Store) -> pl.DataFrame:
     """The runs that the samples of sound tows hold: `tow_id`, `run`, and length in `seconds`."""
     seasons = (store.read("blocks", season) for season in store.partitions("blocks"))
     lengths = (
-        blocks.group_by("tow_id", "run")
-        .agg((pl.col("second").max() + 1).alias("seconds"))
+        blocks.group_by("tow_id", "run").agg((pl.col("second").max() + 1).alias("seconds"))
         for blocks in seasons
         if blocks.height
     )
