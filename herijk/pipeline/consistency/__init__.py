@@ -1,9 +1,10 @@
 """Are equal boats equal? Statistics of boats of one type and of repeated tows.
 
 Belongs here: what a table of curves says about boats of a type (`compared`, `lines`,
-`homogeneity`), about the speed of the tow (`tow_speed`), about repeats (`repeats`, `eras`, `components`) and about a boat
-that was only measured (`prediction`). Does not belong here: how a curve is made, which differences
-matter to a race (`pipeline.register.changes`), and any judgement: tables say, people decide.
+`homogeneity`), about the speed of the tow (`tow_speed`), about repeats (`repeats`, `eras`,
+`components`) and about a boat that was only measured (`prediction`). Does not belong here: how a
+curve is made, which differences matter to a race (`pipeline.register.changes`), and any judgement:
+tables say, people decide.
 
 `observed` joins the tables and carries the measuring errors; `mixed` is the one statistical model.
 """
@@ -14,7 +15,12 @@ from herijk.pipeline.consistency.compared import compared_tows, hull_speed_stati
 from herijk.pipeline.consistency.components import variance_components
 from herijk.pipeline.consistency.eras import ERAS, Era, era_shifts
 from herijk.pipeline.consistency.homogeneity import pooled_curves, type_homogeneity
-from herijk.pipeline.consistency.lines import type_consistency, type_lines, type_outliers
+from herijk.pipeline.consistency.lines import (
+    newest_lines,
+    type_consistency,
+    type_lines,
+    type_outliers,
+)
 from herijk.pipeline.consistency.observed import Observed, observe
 from herijk.pipeline.consistency.prediction import predicted_cw, prediction_error
 from herijk.pipeline.consistency.repeats import repeat_pairs, reproducibility, told_apart
@@ -73,7 +79,7 @@ def consistency_tables(
         "hull_speed": hull_speed_statistics(compared),
         "type_lines": lines,
         "type_line_points": line_points,
-        "type_consistency": type_consistency(observed),
+        "type_consistency": newest_lines(lines),
         "type_outliers": type_outliers(observed, eras),
         "type_homogeneity": type_homogeneity(observed),
         "pooled_curves": pooled_curves(observed),

@@ -205,4 +205,3 @@ def _length_slope(boats: pl.DataFrame) -> dict[str, float]:
         "length_slope_hi": float(line.slope + half),
         "length_r2": float(line.rvalue**2),
     }
-

@@ -41,9 +41,14 @@ EXPLAINING: Final = ("weight_kg", "displacement_kg", "declared_speed_m_s", "wate
 OF_THE_BOAT: Final = ("weight_kg", "waterline_length_m")
 """Explaining variables that say nothing of the crew."""
 
-SLIDE_QUANTITIES: Final = ("b_m_s", "a_kg_m", "cw_standard_kg_m")
-SLIDE_EXPLAINING: Final = ("weight_kg", "declared_speed_m_s", "waterline_length_m")
+SLIDE_PAIRS: Final = tuple(
+    (quantity, explaining)
+    for quantity in ("b_m_s", "a_kg_m", "cw_standard_kg_m")
+    for explaining in ("weight_kg", "declared_speed_m_s", "waterline_length_m")
+)
 """What the presentation of 2015 plots, here for every choice of tows."""
+
+Row = dict[str, Any]
 
 FEWEST_BOATS: Final = 3
 PLACES: Final = 7
@@ -64,9 +69,11 @@ ASKEW_EXCESS: Final = 0.03
 
 
 class Choice(NamedTuple):
-    """Which tows: a name as in tables (`newest`, `all`, a season), and what deviates besides boats.
+    """Which tows: a name as in tables (`newest`, `all`, a season), and what deviates.
 
-    Of one season, as of the newest tows, hardly any boat has two: nothing else can be told apart.
+    Of one season, as of the newest tows, hardly any boat has two: boat and tow are one. Of all
+    tows each deviates by itself as well, by its season among other things: a chart of all tows
+    shows that too.
     """
 
     tows: str
@@ -74,7 +81,8 @@ class Choice(NamedTuple):
 
 
 NEWEST: Final = Choice("newest")
-ALL_TOWS: Final = Choice("all", mixed.COMPONENTS)
+ALL_TOWS: Final = Choice("all", (mixed.BOAT, mixed.CELL))
+TOW_BY_TOW: Final = Choice("all", mixed.COMPONENTS)
 
 
 def chosen_tows(observed: Observed) -> Iterator[tuple[Choice, Observed]]:
@@ -135,42 +143,41 @@ def type_consistency(observed: Observed) -> pl.DataFrame:
     Returns:
         Rows of the table `type_consistency`; where no line is drawn, `reason` says why.
     """
-    rows = [
-        row
-        for (method, boat_type), boats in newest(observed).groups("method", "boat_type")
-        for quantity, explaining, measured in _pairs(boats)
-        for row, _ in [_line(boats, NEWEST, (quantity, explaining), measured)]
-    ]
-    return pl.DataFrame(rows, schema=_LINE_SCHEMA).drop("tows")
+    return newest_lines(_lines(newest(observed), NEWEST)[0])
+
+
+def newest_lines(lines: pl.DataFrame) -> pl.DataFrame:
+    """The rows of `type_consistency` among those of `type_lines`."""
+    return lines.filter(tows=NEWEST.tows).drop("tows")
 
 
 def type_lines(observed: Observed) -> tuple[pl.DataFrame, pl.DataFrame]:
-    """The lines that the presentation of 2015 plots, per choice of tows, method and boat type.
+    """The lines of every choice of tows, per method and boat type.
+
+    Of the newest tows all, of other choices those that the presentation of 2015 plots.
 
     Returns:
         Rows of the tables `type_lines` and `type_line_points`. Where a line compares boats within
         a crew, its points are given per class; `crew_class` is `all` elsewhere.
     """
-    rows, points = [], []
-    for choice, tows in chosen_tows(observed):
-        for _, boats in tows.groups("method", "boat_type"):
-            measured = quantities(boats)
-            for quantity in SLIDE_QUANTITIES:
-                for explaining in SLIDE_EXPLAINING:
-                    names = quantity, explaining
-                    row, drawn = _line(boats, choice, names, measured[quantity])
-                    rows.append(row)
-                    points += drawn
-    return (
-        pl.DataFrame(rows, schema=_LINE_SCHEMA),
-        pl.DataFrame(points, schema=_POINT_SCHEMA),
-    )
+    found = [_lines(tows, choice) for choice, tows in chosen_tows(observed)]
+    lines, points = zip(*found, strict=True)
+    return pl.concat(lines), pl.concat(points)
+
+
+def _lines(tows: Observed, choice: Choice) -> tuple[pl.DataFrame, pl.DataFrame]:
+    rows: list[Row] = []
+    points: list[Row] = []
+    for _, boats in tows.groups("method", "boat_type"):
+        for quantity, explaining, measured in _pairs(boats, choice):
+            row, drawn = _line(boats, choice, (quantity, explaining), measured)
+            rows.append(row)
+            points += drawn if (quantity, explaining) in SLIDE_PAIRS else []
+    return pl.DataFrame(rows, schema=_LINE_SCHEMA), pl.DataFrame(points, schema=_POINT_SCHEMA)
 
 
 _LINE_SCHEMA: Final = (
-    dict.fromkeys(
-        ("method", "tows", "boat_type", "quantity", "explaining", "reason"), pl.String()
-    )
+    dict.fromkeys(("method", "tows", "boat_type", "quantity", "explaining", "reason"), pl.String())
     | {"n": pl.Int32(), "n_boats": pl.Int32()}
     | dict.fromkeys(
         (
@@ -191,15 +198,15 @@ _POINT_SCHEMA: Final = dict.fromkeys(
 ) | dict.fromkeys(("x", "y", "lo", "hi"), pl.Float64())
 
 
-def _pairs(boats: Observed) -> Iterator[tuple[str, str, Measured]]:
+def _pairs(boats: Observed, choice: Choice) -> Iterator[tuple[str, str, Measured]]:
     for quantity, measured in quantities(boats).items():
         if quantity == LN_CW:
-            yield quantity, "ln_displacement", measured
-        elif quantity != BEND:
-            yield from ((quantity, explaining, measured) for explaining in EXPLAINING)
-
-
-Row = dict[str, Any]
+            explaining = ["ln_displacement"]
+        else:
+            explaining = [] if quantity == BEND else list(EXPLAINING)
+        for name in explaining:
+            if choice == NEWEST or (quantity, name) in SLIDE_PAIRS:
+                yield quantity, name, measured
 
 
 def _line(
@@ -253,7 +260,7 @@ def _fitted_line(
     X is scaled to one so that no power of a unit gets lost in rounding.
     """
     x, y, unit = values
-    centre = np.linalg.lstsq(crews, x)[0]
+    centre = np.asarray(np.linalg.lstsq(crews, x)[0], dtype=np.float64)
     centred = x - crews @ centre
     variance = unit * boats.column("run_sd_ratio") ** 2
     width = float(np.abs(centred).max())
@@ -345,7 +352,7 @@ def tow_outliers(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
     Returns:
         As `type_outliers`, for all tows.
     """
-    return _outliers(observed, ALL_TOWS, (LN_CW,), eras)
+    return _outliers(observed, TOW_BY_TOW, (LN_CW,), eras)
 
 
 def _outliers(
