@@ -308,9 +308,9 @@ def _points(
     if classes is not None:
         groups = {str(name): classes == name for name in np.unique(classes)}
     for name, rows in groups.items():
-        at = np.linspace(x[rows].min(), x[rows].max(), PLACES)
+        at = np.unique(np.linspace(x[rows].min(), x[rows].max(), PLACES))
         crew = crews[rows].mean(axis=0)
-        design = np.column_stack([np.tile(crew, (PLACES, 1)), (at - crew @ centre) / width])
+        design = np.column_stack([np.tile(crew, (len(at), 1)), (at - crew @ centre) / width])
         ends = fit.line_at(design)
         for place, mean, lo, hi in zip(at, *ends, strict=True):
             yield {"crew_class": name, "x": place, "y": mean, "lo": lo, "hi": hi}
