@@ -7,8 +7,18 @@ from typing import Annotated, Any
 
 import typer
 
+ArchiveFolder = Annotated[
+    Path,
+    typer.Option("--archive", envvar="HERIJK_ARCHIVE", help="The archive folder.", metavar="DIR"),
+]
 DataFolder = Annotated[
-    Path, typer.Option("--data", help="Folder with everything Herijk writes.", metavar="DIR")
+    Path,
+    typer.Option(
+        "--data",
+        envvar="HERIJK_DATA",
+        help="Folder with everything Herijk writes.",
+        metavar="DIR",
+    ),
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
 

@@ -12,13 +12,15 @@ import re
 import sys
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Final
+from typing import TYPE_CHECKING, Annotated, Any, Final, cast
 
 import typer
+from typer.core import TyperGroup
 
 from herijk.cli import editions as commands_editions
 from herijk.cli import text
-from herijk.cli.arguments import AsJson, DataFolder, show
+from herijk.cli.arguments import ArchiveFolder, AsJson, DataFolder, show
+from herijk.cli.overview import Overview, folders_here
 from herijk.pipeline.errors import BrokenPromiseError, HerijkError, MissingKnowledgeError
 
 if TYPE_CHECKING:
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
 app = typer.Typer(
     help="Recomputes the history of the Dutch rowing-sloop register from its tow tests.",
     no_args_is_help=True,
-    add_completion=False,
+    cls=Overview,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
@@ -49,6 +51,26 @@ def main() -> None:
         sys.exit(1)
 
 
+def _version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        typer.echo(f"herijk {version('herijk')}")
+        raise typer.Exit
+
+
+@app.callback()
+def begin(
+    context: typer.Context,
+    version: Annotated[  # noqa: ARG001 - its callback answers
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    """Recomputes the history of the Dutch rowing-sloop register from its tow tests."""
+    commands = cast(TyperGroup, context.command).list_commands(context)
+    context.default_map = dict.fromkeys(commands, folders_here(Path.cwd()))
+
+
 def _seasons(value: str) -> range:
     match = re.fullmatch(r"(\d{4})(?::(\d{4}))?", value)
     if match is None or int(match[2] or match[1]) < int(match[1]):
@@ -64,7 +86,7 @@ Seasons = Annotated[
 
 @app.command()
 def rebuild(
-    archive: Annotated[Path, typer.Option(help="The archive folder.", metavar="DIR")],
+    archive: ArchiveFolder,
     data: DataFolder = Path("data"),
     method: Annotated[
         list[str] | None,
@@ -102,7 +124,7 @@ def rebuild(
 
 @app.command()
 def serve(
-    archive: Annotated[Path, typer.Option(help="The archive folder.", metavar="DIR")],
+    archive: ArchiveFolder,
     data: DataFolder = Path("data"),
     host: Annotated[str, typer.Option(help="Address to listen on.")] = "127.0.0.1",
     port: Annotated[

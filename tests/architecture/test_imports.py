@@ -2,10 +2,12 @@
 
 import subprocess
 import sys
+import tomllib
 
 from tests.architecture.repository import ROOT
 
 CHECK = [sys.executable, "-c", "from importlinter.cli import lint_imports; exit(lint_imports())"]
+KEYS = ("layers", "source_modules", "forbidden_modules")
 
 
 def contracts_kept(folder):
@@ -13,12 +15,15 @@ def contracts_kept(folder):
 
 
 def small_project(folder, **sources):
-    """A project with the real contracts and almost empty rooms."""
+    """A project with the real contracts and empty modules in the places that they name."""
     text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
     (folder / "pyproject.toml").write_text(text[text.index("[tool.importlinter]") :])
-    for room in ("herijk", "pipeline", "warehouse", "assets", "dashboards"):
-        (folder / room).mkdir()
-        (folder / room / "__init__.py").write_text(sources.get(room, ""))
+    contracts = tomllib.loads(text)["tool"]["importlinter"]["contracts"]
+    named = (contract.get(key, []) for contract in contracts for key in KEYS)
+    for module in {"herijk", *(m for modules in named for m in modules if m.startswith("herijk"))}:
+        place = folder.joinpath(*module.split("."))
+        place.mkdir(parents=True, exist_ok=True)
+        (place / "__init__.py").write_text(sources.get(place.name, ""))
     return folder
 
 
@@ -33,12 +38,12 @@ def test_empty_rooms_keep_the_contracts(tmp_path):
 
 
 def test_an_import_upwards_is_found(tmp_path):
-    found = contracts_kept(small_project(tmp_path, pipeline="import warehouse"))
+    found = contracts_kept(small_project(tmp_path, pipeline="import herijk.warehouse"))
     assert found.returncode == 1
-    assert "pipeline -> warehouse" in found.stdout
+    assert "herijk.pipeline -> herijk.warehouse" in found.stdout
 
 
 def test_a_file_in_the_pipeline_is_found(tmp_path):
     found = contracts_kept(small_project(tmp_path, pipeline="import pathlib"))
     assert found.returncode == 1
-    assert "pipeline -> pathlib" in found.stdout
+    assert "herijk.pipeline -> pathlib" in found.stdout

@@ -38,6 +38,34 @@ def test_the_overview_names_every_command(herijk):
         assert re.search(rf"^  {name} +\w", out, re.MULTILINE), name
 
 
+def test_every_command_is_in_a_section(herijk):
+    assert "More:" not in herijk("--help")[1]
+
+
+def test_the_overview_cuts_no_line(herijk):
+    assert "..." not in herijk("--help")[1].split("Begin:")[1]
+
+
+def test_folders_come_from_option_environment_and_file_in_that_order(herijk, tmp_path, monkeypatch):
+    below = tmp_path / "below"
+    below.mkdir()
+    (tmp_path / "herijk.toml").write_text('data = "from file"\n', encoding="utf-8")
+    monkeypatch.chdir(below)
+    assert str(tmp_path / "from file") in herijk("due")[2]
+    monkeypatch.setenv("HERIJK_DATA", "from environment")
+    assert "from environment" in herijk("due")[2]
+    assert "from option" in herijk("due", "--data", "from option")[2]
+
+
+@pytest.mark.parametrize("text", ["data = 1", 'folder = "x"', "data ="])
+def test_a_wrong_folders_file_is_said(herijk, tmp_path, monkeypatch, text):
+    (tmp_path / "herijk.toml").write_text(text, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    status, _, err = herijk("due")
+    assert status == 1
+    assert "herijk.toml" in err
+
+
 @pytest.mark.parametrize(
     "arguments",
     [

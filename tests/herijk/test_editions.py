@@ -4,6 +4,7 @@ import json
 
 import pytest
 
+from herijk.pipeline.recompute import recompute
 from tests.warehouse.edition_bench import EditionBench
 
 DECISION = ("--decision", "ALV 12-5-2014")
@@ -87,9 +88,9 @@ def test_verify_is_0_when_all_is_well_and_1_when_not(herijk, bench, tmp_path):
 
 
 def test_verify_under_other_code_says_that_what_was_published_stands(herijk, bench, monkeypatch):
-    original = herijk.pipeline.recompute.recompute.still_air_coefficient_kg_m
+    original = recompute.still_air_coefficient_kg_m
     monkeypatch.setattr(
-        herijk.pipeline.recompute.recompute,
+        recompute,
         "still_air_coefficient_kg_m",
         lambda area, drag: 1.5 * original(area, drag),
     )

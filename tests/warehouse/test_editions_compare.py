@@ -61,8 +61,8 @@ def new_code(monkeypatch):
         "still_air_coefficient_kg_m",
         lambda area, drag: 1.5 * original(area, drag),
     )
-    for room in ("tables", "editions.publish", "editions.compare", "editions.verify"):
-        monkeypatch.setattr(f"warehouse.{room}.code_version", lambda: "0.2.0+other")
+    for room in ("build.tables", "editions.publish", "editions.compare", "editions.verify"):
+        monkeypatch.setattr(f"herijk.warehouse.{room}.code_version", lambda: "0.2.0+other")
 
 
 def test_an_edition_against_itself_is_the_same(published):

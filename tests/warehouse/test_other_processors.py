@@ -28,7 +28,7 @@ import json, shutil, sys
 from pathlib import Path
 from tests.warehouse.edition_bench import METHODS, EditionBench
 from herijk.pipeline.method.definition import shipped_method
-from warehouse import summaries, tables
+from herijk.warehouse.build import summaries, tables
 from herijk.warehouse.editions.verify import verify
 bench = EditionBench(Path(sys.argv[1]), Path(sys.argv[2]))
 methods = [shipped_method(name) for name in METHODS]

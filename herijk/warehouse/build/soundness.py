@@ -16,7 +16,7 @@ def schema_faults(store: Store) -> list[str]:
     """Tables of the database that are not as their schema promises, a sentence each."""
     with open_database(store.database) as db:
         return [
-            f"{name} is not as declared in herijk/tables/schemas.py"
+            f"{name} is not as declared in herijk/tables"
             for name in (*WHOLE_TABLES, *METHOD_TABLES)
             if not TABLES[name].is_valid(db.sql(f'FROM "{name}"').pl())
         ]

@@ -24,7 +24,8 @@ from herijk.pipeline.steps.window import HAND_COLUMNS
 from herijk.pipeline.studies.ladder import ladder
 from herijk.pipeline.studies.options import beside_uncertainty, option_effects
 from herijk.pipeline.uncertainty.ensemble import as_frame, register_ensemble
-from herijk.tables.schemas import TABLES, Quarantine, conform
+from herijk.tables.archive import Quarantine
+from herijk.tables.schemas import TABLES, conform
 from herijk.warehouse.archive import outside_run
 from herijk.warehouse.build.due import due_made_from, due_rows
 from herijk.warehouse.build.summaries import SUMMARY_TABLES

@@ -18,7 +18,8 @@ from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.method.writing import method_text
 from herijk.pipeline.register.register import LINE
-from herijk.tables.schemas import Register, conform
+from herijk.tables.register import Register
+from herijk.tables.schemas import conform
 from herijk.warehouse.build.tables import method_is_stale, runs_with_windows
 from herijk.warehouse.editions import notes, sheets
 from herijk.warehouse.editions.compare import compare

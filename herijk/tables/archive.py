@@ -1,0 +1,109 @@
+"""What the archive holds: boats, tows, their runs, windows given by hand, and what is set aside."""
+
+import dataframely as dy
+
+from herijk.tables import column
+
+
+class Boats(dy.Schema):
+    """Boats of `sloependata.csv`, one row each."""
+
+    fsn_no = column.fsn_no(primary_key=True)
+    ht_no = column.text("number in the HT register", nullable=True)
+    name = column.text("name of the boat")
+    boat_type = column.text("type, empty where not known", nullable=True)
+    waterline_length_m = column.number(
+        "m", "length on the waterline", min_exclusive=0, nullable=True
+    )
+    beam_m = column.number("m", "breadth", min_exclusive=0, nullable=True)
+    bow_height_m = column.number("m", "height of the bow", min_exclusive=0, nullable=True)
+    weight_kg = column.number("kg", "empty boat with oars", min_exclusive=0, nullable=True)
+
+
+class Seasons(dy.Schema):
+    """What a rebuild read of each season."""
+
+    season = column.season(primary_key=True)
+    listed = dy.Int32(description="tows in the tow list that could be read", min=0)
+    tows = dy.Int32(description="of which used; the others are in quarantine", min=0)
+
+
+class Tows(dy.Schema):
+    """Tows accepted into the warehouse, one row each."""
+
+    tow_id = column.tow_id(primary_key=True)
+    season = column.season()
+    tow_date = dy.Date(description="day of the tow")
+    fsn_no = column.fsn_no()
+    rowers = column.rowers()
+    crew_class = column.crew_class()
+    declared_speed_m_s = column.speed("speed v0 the crew declared")
+    waterline_length_m = column.number("m", "length on the waterline that day", min_exclusive=0)
+    beam_m = column.number("m", "breadth that day", min_exclusive=0)
+    bow_height_m = column.number("m", "height of the bow that day", min_exclusive=0)
+    weight_kg = column.number("kg", "empty boat with oars, before", nullable=True, min_exclusive=0)
+    weight_after_kg = column.number("kg", "the same, after", nullable=True, min_exclusive=0)
+    crew_weight_kg = column.number("kg", "crew and ballast on board", nullable=True, min=0)
+    water_temperature_c = column.number("C", "water temperature", nullable=True, min=-2, max=35)
+    speed_correction_ratio = column.number(
+        "1", "speed correction entered by hand, 0.06 for 6 %", nullable=True, min=-0.5, max=0.5
+    )
+    altered = dy.Bool(description="the boat was altered since its previous tow")
+    sample_rate_hz = dy.Int32(
+        description="samples a second", metadata={"unit": "Hz"}, min_exclusive=0
+    )
+    empty_thwart = column.text("thwart left free", nullable=True)
+    freeboard_lowest_m = column.number("m", "freeboard at its lowest", nullable=True)
+    freeboard_bow_m = column.number("m", "freeboard at the bow", nullable=True)
+    freeboard_stern_m = column.number("m", "freeboard at the stern", nullable=True)
+    remark = column.text("remark in the tow list", nullable=True)
+    log1_part = dy.Int32(description="times log 1 had been replaced that season", min=0)
+    log2_part = dy.Int32(description="times log 2 had been replaced that season", min=0)
+    samples_path = column.text("samples file in the archive")
+    samples_sha256 = column.sha256("its content hash")
+    second_path = column.text("second samples file, if two tows were combined", nullable=True)
+    second_sha256 = column.sha256("its content hash", nullable=True)
+
+
+class TowRuns(dy.Schema):
+    """Runs of every tow; runs 11-16 are runs 1-6 of the second samples file."""
+
+    tow_id = column.tow_id(primary_key=True)
+    run = column.run(primary_key=True)
+    direction = dy.Int8(description="1 out, -1 back", min=-1, max=1)
+    target_speed_ratio = column.number("1", "intended speed / declared speed", min_exclusive=0)
+    selected = dy.Bool(description="the tow list says to use it")
+
+
+class HandWindows(dy.Schema):
+    """Windows that a person gave, one row a run; a method may use them (`by_hand`)."""
+
+    tow_id = column.tow_id(primary_key=True)
+    run = column.run(primary_key=True)
+    start_s = dy.Int16(description="start of the window", metadata={"unit": "s"}, min=0)
+    end_s = dy.Int16(description="end of the window", metadata={"unit": "s"}, min=1)
+    reason = column.text("why, in the person's words")
+
+
+class TraceSeconds(dy.Schema):
+    """Means over every second of every run: what the instruments said."""
+
+    tow_id = column.tow_id(primary_key=True)
+    run = column.run(primary_key=True)
+    second = dy.Int16(primary_key=True, description="second of the run, from 0", min=0)
+    speed_m_s = column.speed("log 1: speed through the water as the log said")
+    gps_m_s = column.speed("speed over ground; empty without GPS", nullable=True)
+    force_n = column.number("N", "tow force")
+    wind_m_s = column.number("m/s", "apparent wind speed")
+    wind_angle_deg = column.number("deg", "circular mean of the apparent wind", min=0, max=360)
+
+
+class Quarantine(dy.Schema):
+    """Files and tows set aside, each with the reason in a plain sentence."""
+
+    path = column.text("file, relative to the archive")
+    tow_id = column.tow_id(nullable=True)
+    line = dy.Int64(description="line in the file", nullable=True, min=1)
+    reason_code = column.text("short stable code")
+    message = column.text("what is wrong and what to do, in a sentence")
+    first_seen = dy.Date(description="day on which this fault was first found")

@@ -1,0 +1,60 @@
+"""Columns that many tables share, each declared once: meaning, unit and limits."""
+
+from typing import Any
+
+import dataframely as dy
+
+
+def text(description: str, **rules: Any) -> dy.String:
+    """Text."""
+    return dy.String(description=description, **rules)
+
+
+def number(unit: str, description: str, **rules: Any) -> dy.Float64:
+    """A number with its unit; `1` for a ratio."""
+    return dy.Float64(description=description, metadata={"unit": unit}, **rules)
+
+
+def tow_id(**rules: Any) -> dy.String:
+    """Which tow."""
+    return text("tow, as named in the tow list", **rules)
+
+
+def fsn_no(**rules: Any) -> dy.String:
+    """Which boat."""
+    return text("boat: its number with the federation", **rules)
+
+
+def method(**rules: Any) -> dy.String:
+    """Which method."""
+    return text("name of the method that made the row", **rules)
+
+
+def season(**rules: Any) -> dy.Int32:
+    """Which season."""
+    return dy.Int32(description="year of the tow list", min=1990, max=2100, **rules)
+
+
+def run(**rules: Any) -> dy.Int8:
+    """Which run of a tow."""
+    return dy.Int8(description="run", min=1, max=16, **rules)
+
+
+def rowers(**rules: Any) -> dy.Int32:
+    """How many rowers."""
+    return dy.Int32(description="rowers the curve is valid for", min=1, max=24, **rules)
+
+
+def crew_class(**rules: Any) -> dy.String:
+    """Men or women."""
+    return text("H men, D women", regex="^[HD]$", **rules)
+
+
+def speed(description: str, **rules: Any) -> dy.Float64:
+    """A speed of a boat."""
+    return number("m/s", description, min=0.0, max=15.0, **rules)
+
+
+def sha256(description: str, **rules: Any) -> dy.String:
+    """A content hash."""
+    return text(description, regex="^[0-9a-f]{64}$", **rules)

@@ -1,0 +1,251 @@
+"""Are equal boats equal: statistics per boat type and of repeat tows."""
+
+import dataframely as dy
+
+from herijk.tables import column
+
+
+class TypeConsistency(dy.Schema):
+    """How a quantity follows weight or tow speed within a boat type: a straight line."""
+
+    method = column.method(primary_key=True)
+    boat_type = column.text(
+        "type of boat; unknown: boats without type, no claims", primary_key=True
+    )
+    quantity = column.text(
+        "b_m_s, a_kg_m, q, cw_kg_m, cw_standard_kg_m or ln_cw_standard", primary_key=True
+    )
+    explaining = column.text(
+        "weight_kg, displacement_kg, declared_speed_m_s or ln_displacement", primary_key=True
+    )
+    standard_speed_m_s = column.speed("common speed of q and cw_standard: median declared speed")
+    n = dy.Int32(description="tows: the newest of each boat and crew", min=0)
+    n_boats = dy.Int32(description="boats", min=0)
+    slope = column.number("quantity / explaining", "slope of the line", nullable=True)
+    slope_lo = column.number(
+        "quantity / explaining", "lower end of its 95 % interval", nullable=True
+    )
+    slope_hi = column.number("quantity / explaining", "upper end", nullable=True)
+    r2 = column.number("1", "share of the spread that is explained", nullable=True, min=0, max=1)
+    residual_sd_ratio = column.number(
+        "1", "spread about the line / mean; of ln Cw itself", nullable=True, min=0
+    )
+    between_sd_ratio = column.number("1", "true spread about the line / mean", nullable=True, min=0)
+    noise_sd_ratio = column.number("1", "spread by run noise alone / mean", nullable=True, min=0)
+    reason = column.text("why there is no line: no_type, few_boats, equal_values; else empty")
+
+
+class TypeOutliers(dy.Schema):
+    """Every boat and crew against the other boats of its type."""
+
+    method = column.method(primary_key=True)
+    tow_id = column.tow_id(primary_key=True)
+    fsn_no = column.fsn_no()
+    rowers = column.rowers()
+    crew_class = column.crew_class()
+    boat_type = column.text("type of boat")
+    season = column.season()
+    quantity = column.text("ln_cw_standard, or bend: (v/B)^2 there", primary_key=True)
+    standard_speed_m_s = column.speed("common speed: median declared speed of the type")
+    value = column.number("1", "quantity of this tow, at the standard speed")
+    expected = column.number("1", "the same as the type's other boats predict it")
+    deviation_sd = column.number("1", "difference in standard deviations of a prediction")
+    outside = dy.Bool(description="differs at 5 % over all boats of the type together")
+    candidates = dy.List(dy.String(), description="codes of what could explain a difference")
+
+
+class TypeHomogeneity(dy.Schema):
+    """Equal boats, equal B? An F test per method and type, and what noise alone gives."""
+
+    method = column.method(primary_key=True)
+    boat_type = column.text(
+        "type of boat; unknown: boats without type, no claims", primary_key=True
+    )
+    n = dy.Int32(description="tows: the newest of each boat and crew", min=0)
+    n_boats = dy.Int32(description="boats", min=0)
+    dof_between = dy.Int32(description="degrees of freedom between", nullable=True, min=1)
+    dof_within = dy.Int32(description="degrees of freedom within", nullable=True, min=1)
+    standard_speed_m_s = column.speed("common speed of shared_q", nullable=True)
+    run_sd_ratio = column.number("1", "scatter of a run about its curve", nullable=True, min=0)
+    f_value = column.number("1", "spread of the bends / what noise gives", nullable=True, min=0)
+    p_value = column.number("1", "chance of such an F with one bend", nullable=True, min=0, max=1)
+    power_at_5pct = column.number("1", "chance to see a true spread of B of 5 %", nullable=True)
+    power_at_10pct = column.number("1", "the same for 10 %", nullable=True)
+    noise_share = column.number("1", "share of the bends' spread that noise gives", nullable=True)
+    between_b_sd_ratio = column.number("1", "estimated true spread of B", nullable=True, min=0)
+    b_sd_ratio = column.number("1", "seen spread of B where determined", nullable=True, min=0)
+    b_noise_sd_ratio = column.number("1", "spread of B by noise alone", nullable=True, min=0)
+    cw_noise_sd_ratio = column.number("1", "spread of Cw by noise alone", nullable=True, min=0)
+    ab_correlation = column.number("1", "correlation of ln A and ln B", nullable=True)
+    ab_noise_correlation = column.number("1", "the same by noise alone", nullable=True)
+    shared_q = column.number("1", "q of the one bend, at the standard speed", nullable=True)
+    shared_b_m_s = column.number("m/s", "B of the one bend; empty without", nullable=True)
+    reason = column.text("why there is no test: no_type, few_boats, no_scatter; else empty")
+
+
+class PooledCurves(dy.Schema):
+    """The register if boats of a type kept their bend (own), shared it in part, or wholly."""
+
+    method = column.method(primary_key=True)
+    tow_id = column.tow_id(primary_key=True)
+    fsn_no = column.fsn_no()
+    rowers = column.rowers()
+    crew_class = column.crew_class()
+    boat_type = column.text("type of boat, or unknown")
+    pooling = column.text(
+        "own, partial or shared", primary_key=True, regex="^(own|partial|shared)$"
+    )
+    standard_speed_m_s = column.speed("common speed of q")
+    q = column.number("1", "bend at the standard speed", nullable=True)
+    a_kg_m = column.number("kg/m", "A", nullable=True)
+    b_m_s = column.number("m/s", "B; empty where it is not determined", nullable=True)
+    cw_085_kg_m = column.number("kg/m", "Cw at 85 % of the declared speed", nullable=True)
+    cw_kg_m = column.number("kg/m", "Cw at the declared speed", nullable=True)
+    cw_115_kg_m = column.number("kg/m", "Cw at 115 % of the declared speed", nullable=True)
+
+
+class SpeedTrend(dy.Schema):
+    """Does the bend follow the speed of the tow? If the hyperbola is true, it does not."""
+
+    method = column.method(primary_key=True)
+    boat_type = column.text(
+        "type of boat, or all: all types, each about its level", primary_key=True
+    )
+    n = dy.Int32(description="tows: the newest of each boat and crew", min=0)
+    n_boats = dy.Int32(description="boats", min=0)
+    slope = column.number(
+        "1", "change of q at the standard speed per ln of tow speed", nullable=True
+    )
+    slope_lo = column.number("1", "lower end of its 95 % interval", nullable=True)
+    slope_hi = column.number("1", "upper end", nullable=True)
+    reason = column.text("why there is no trend: few_boats, equal_values; else empty")
+
+
+class SlowTows(dy.Schema):
+    """Tows with too little power, and race power by their curve / with their type's bend."""
+
+    method = column.method(primary_key=True)
+    tow_id = column.tow_id(primary_key=True)
+    fsn_no = column.fsn_no()
+    rowers = column.rowers()
+    crew_class = column.crew_class()
+    boat_type = column.text("type of boat, or unknown")
+    declared_speed_m_s = column.speed("speed v0 the crew declared")
+    power_w = column.number("W", "power a rower at the declared speed")
+    power_ratio_110 = column.number("1", "power ratio at 110 % of that speed", nullable=True)
+    power_ratio_110_lo = column.number("1", "lower end of its 95 % interval", nullable=True)
+    power_ratio_110_hi = column.number("1", "upper end", nullable=True)
+    power_ratio_120 = column.number("1", "power ratio at 120 % of that speed", nullable=True)
+    power_ratio_120_lo = column.number("1", "lower end of its 95 % interval", nullable=True)
+    power_ratio_120_hi = column.number("1", "upper end", nullable=True)
+    rowed_speed_m_s = column.speed("median declared speed of like crews", nullable=True)
+    power_ratio_rowed = column.number("1", "power ratio at that speed", nullable=True)
+    power_ratio_rowed_lo = column.number("1", "lower end of its 95 % interval", nullable=True)
+    power_ratio_rowed_hi = column.number("1", "upper end", nullable=True)
+
+
+class RepeatPairs(dy.Schema):
+    """Consecutive tows of one boat and crew without an alteration between them."""
+
+    method = column.method(primary_key=True)
+    fsn_no = column.fsn_no()
+    rowers = column.rowers()
+    crew_class = column.crew_class()
+    tow_id = column.tow_id(primary_key=True)
+    tow_id_before = column.tow_id()
+    season = column.season()
+    season_before = column.season()
+    ln_ratio = column.number("1", "ln of new / old Cw, at the old declared speed")
+    e_n = column.number("1", "difference / both 95 % intervals (ISO 13528)", nullable=True)
+
+
+class EraShifts(dy.Schema):
+    """Do seasons with other instruments stand apart? Next tow of the same boat, in a later era."""
+
+    method = column.method(primary_key=True)
+    boat_type = column.text("type of boat, or all", primary_key=True)
+    era = column.text("seasons of the older tow", primary_key=True)
+    n = dy.Int32(description="pairs of tows", min=0)
+    shift_ratio = column.number("1", "new / old Cw without ageing, median", nullable=True, min=0)
+    lo = column.number("1", "lower end of its 95 % interval", nullable=True, min=0)
+    hi = column.number("1", "upper end", nullable=True, min=0)
+    apart = dy.Bool(description="the interval leaves out 1", nullable=True)
+    n_ageing = dy.Int32(description="pairs of all types within the last era", min=0)
+    ageing_per_year = column.number(
+        "1", "change of ln Cw a year taken out; empty: none", nullable=True
+    )
+    ageing_lo = column.number("1", "lower end of its 95 % interval", nullable=True)
+    ageing_hi = column.number("1", "upper end", nullable=True)
+    reason = column.text("why there is no shift: few_pairs; else empty")
+
+
+class Reproducibility(dy.Schema):
+    """How well repeat tows of unaltered boats agree."""
+
+    method = column.method(primary_key=True)
+    scope = column.text("all pairs, or an era", primary_key=True)
+    n_pairs = dy.Int32(description="pairs of consecutive tows of one boat and crew", min=0)
+    n_tows = dy.Int32(description="tows behind run_sd_ratio", min=0)
+    sd_ratio = column.number("1", "standard deviation of one tow, s_R", nullable=True, min=0)
+    lo = column.number("1", "lower end of its 95 % interval", nullable=True, min=0)
+    hi = column.number("1", "upper end", nullable=True, min=0)
+    share_within_1pct = column.number("1", "share of pairs that differ under 1 %", nullable=True)
+    share_within_2pct = column.number("1", "the same for 2 %", nullable=True)
+    share_e_n_above_1 = column.number(
+        "1", "share of pairs that disagree; 5 % expected", nullable=True
+    )
+    run_sd_ratio = column.number("1", "scatter of a run about its curve", nullable=True, min=0)
+    within_sd_ratio = column.number("1", "s_r: what that does to a tow's Cw", nullable=True, min=0)
+    distinct_categories = column.number("1", "classes told apart: 1.41 s_boat / s_R", nullable=True)
+
+
+class VarianceComponents(dy.Schema):
+    """Spread of Cw by cause, from a mixed model over all tows (REML)."""
+
+    method = column.method(primary_key=True)
+    scope = column.text("fleet, or within_type", primary_key=True)
+    component = column.text("boat, season, boat_season or run", primary_key=True)
+    n = dy.Int32(description="tows", min=0)
+    n_boats = dy.Int32(description="boats and crews between two alterations", min=0)
+    n_seasons = dy.Int32(description="seasons", min=0)
+    n_repeated = dy.Int32(description="tows beyond a boat's first", min=0)
+    sd_ratio = column.number("1", "standard deviation of Cw by this cause", nullable=True, min=0)
+    lo = column.number("1", "lower end of its 95 % interval", nullable=True, min=0)
+    hi = column.number("1", "upper end; empty: no bound", nullable=True, min=0)
+    share = column.number("1", "share of the variance of a tow's Cw", nullable=True, min=0, max=1)
+    distinct_categories = column.number("1", "boats told apart: 1.41 s_boat / s_R", nullable=True)
+    reason = column.text("why there are no numbers: too_few_repeats; else empty")
+
+
+class PredictedCw(dy.Schema):
+    """A second opinion without towing: Cw from weight, length, beam and type."""
+
+    method = column.method(primary_key=True)
+    tow_id = column.tow_id(primary_key=True)
+    fsn_no = column.fsn_no()
+    rowers = column.rowers()
+    crew_class = column.crew_class()
+    boat_type = column.text("type of boat, or unknown")
+    standard_speed_m_s = column.speed("median declared speed of type and crew class")
+    cw_kg_m = column.number("kg/m", "Cw of the tow at that speed")
+    cw_sd_ratio = column.number(
+        "1", "its standard uncertainty: of the runs, or of its interval if wider", min=0
+    )
+    predicted_cw_kg_m = column.number("kg/m", "Cw as the other boats predict it", nullable=True)
+    predicted_lo_kg_m = column.number("kg/m", "lower end of its 95 % interval", nullable=True)
+    predicted_hi_kg_m = column.number("kg/m", "upper end", nullable=True)
+    predicted_sd_ratio = column.number("1", "its standard uncertainty", nullable=True, min=0)
+    ln_ratio = column.number("1", "ln of the tow's Cw / the predicted", nullable=True)
+    disagrees = dy.Bool(description="differs by more than both uncertainties", nullable=True)
+    reason = column.text("why there is no prediction: few_boats; else empty")
+
+
+class PredictionError(dy.Schema):
+    """Cross-validated error of the prediction, boats left out one by one."""
+
+    method = column.method(primary_key=True)
+    n = dy.Int32(description="boats and crews predicted", min=0)
+    n_boats = dy.Int32(description="boats", min=0)
+    rmse_ratio = column.number("1", "root mean square of ln tow / predicted", min=0)
+    tow_sd_ratio = column.number("1", "of which uncertainty of the tow itself", min=0)
+    share_disagreeing = column.number("1", "share beyond both uncertainties", min=0, max=1)

@@ -1,0 +1,88 @@
+"""The register: its lines, when they expire, and what differs between two registers."""
+
+import dataframely as dy
+
+from herijk.tables import column
+
+
+class Register(dy.Schema):
+    """One line per edition, boat and crew."""
+
+    edition = column.text("edition; a draft is called concept-<method>", primary_key=True)
+    method = column.method()
+    fsn_no = column.fsn_no(primary_key=True)
+    rowers = column.rowers(primary_key=True)
+    crew_class = column.crew_class(primary_key=True)
+    tow_id = column.tow_id(nullable=True)
+    tow_date = dy.Date(description="day of the tow", nullable=True)
+    valid_until = dy.Date(description="last day the line counts", nullable=True)
+    declared_speed_m_s = column.speed("speed v0 the crew declared", nullable=True)
+    a_kg_m = column.number("kg/m", "A", nullable=True)
+    b_m_s = column.number("m/s", "B; empty where it is not determined", nullable=True)
+    cw_kg_m = column.number("kg/m", "Cw at the declared speed", nullable=True)
+    cw_lo_kg_m = column.number("kg/m", "lower end of its 95 % interval", nullable=True)
+    cw_hi_kg_m = column.number("kg/m", "upper end", nullable=True)
+    status = column.text("valid, or why there is no valid curve")
+    verification_code = column.text(
+        "ten letters and digits that follow from all that made the line; drafts have none",
+        nullable=True,
+    )
+
+
+class DueList(dy.Schema):
+    """Until when each boat and crew's tow counts, and the speed of its next tow."""
+
+    method = column.method(primary_key=True)
+    fsn_no = column.fsn_no(primary_key=True)
+    rowers = column.rowers(primary_key=True)
+    crew_class = column.crew_class(primary_key=True)
+    as_of = dy.Date(description="day on which it was judged: that of the last tow or race")
+    status = column.text("valid, or why there is no valid curve")
+    tow_id = column.tow_id(nullable=True)
+    tow_date = dy.Date(description="day of the tow", nullable=True)
+    valid_until = dy.Date(description="last day it counts", nullable=True)
+    declared_speed_m_s = column.speed("speed that was declared for it", nullable=True)
+    power_w = column.number("W", "power a rower at that speed", nullable=True)
+    raced_speed_m_s = column.speed(
+        "fastest race of the past year, through the water", nullable=True
+    )
+    lowest_speed_m_s = column.speed("speed at 70 W a rower (men) or 40 W (women)", nullable=True)
+    highest_speed_m_s = column.speed("speed at 90 W or 55 W", nullable=True)
+    tow_speed_m_s = column.speed("speed proposed for the next tow", nullable=True)
+    speed_reason = column.text("why that speed")
+    beyond_curve = dy.Bool(
+        description="it lies outside 85-115 % of the last declared speed", nullable=True
+    )
+
+
+class RegisterChanges(dy.Schema):
+    """What differs between two editions, per boat and crew."""
+
+    from_edition = column.text("old edition", primary_key=True)
+    to_edition = column.text("new edition", primary_key=True)
+    fsn_no = column.fsn_no(primary_key=True)
+    rowers = column.rowers(primary_key=True)
+    crew_class = column.crew_class(primary_key=True)
+    change = column.text("added, removed, changed or same", regex="^(added|removed|changed|same)$")
+    cw_ratio = column.number("1", "new / old Cw at the old declared speed", nullable=True)
+    power_ratio = column.number("1", "new / old power at that speed", nullable=True)
+    time_ratio = column.number("1", "new / old time at equal power", nullable=True)
+    causes = column.text("what made the change, with its factor on Cw, as JSON")
+
+
+class RaceChanges(dy.Schema):
+    """Races replayed under two editions: power, rank and podium of every result."""
+
+    from_edition = column.text("old edition", primary_key=True)
+    to_edition = column.text("new edition", primary_key=True)
+    race = column.text("name of the race", primary_key=True)
+    race_date = dy.Date(primary_key=True, description="day of the race")
+    fsn_no = column.fsn_no(primary_key=True)
+    rowers = column.rowers(primary_key=True)
+    crew_class = column.crew_class(primary_key=True)
+    rowing_time_s = column.number("s", "time rowed", min_exclusive=0)
+    old_power_w = column.number("W", "power a rower by the old edition", nullable=True)
+    new_power_w = column.number("W", "the same by the new one", nullable=True)
+    old_rank = dy.Int32(description="place in race and class by the old edition", nullable=True)
+    new_rank = dy.Int32(description="the same by the new one", nullable=True)
+    podium_changed = dy.Bool(description="among the first three in one of the two only")

@@ -1,0 +1,79 @@
+"""How far each season's speed log was off, and what that rests on."""
+
+import dataframely as dy
+
+from herijk.tables import column
+
+
+class LogFactors(dy.Schema):
+    """True speed = log speed x factor, per method and season."""
+
+    method = column.method(primary_key=True)
+    season = column.season(primary_key=True)
+    factor = column.number("1", "true speed / log speed", min_exclusive=0)
+    lo = column.number("1", "lower end of the 95 % interval; empty where unknown", nullable=True)
+    hi = column.number("1", "upper end", nullable=True)
+    source = column.text(
+        "none, prescribed, estimated or gps", regex="^(none|prescribed|estimated|gps)$"
+    )
+
+
+class SeasonLinks(dy.Schema):
+    """What each estimated log factor rests on, per method, season, part of it and log."""
+
+    method = column.method(primary_key=True)
+    season = column.season(primary_key=True)
+    part = dy.Int32(primary_key=True, description="part of the season, until a log was replaced")
+    log = column.text("speed source", primary_key=True)
+    source = column.text("estimated, gps, other log (by the ratio of both), or not determined")
+    n_tows = dy.Int32(description="tows of the season", min=0)
+    n_links = dy.Int32(description="boats also towed in other seasons", min=0)
+    component = dy.Int32(description="connected part of the network; 0 has the dGPS anchor", min=0)
+    critical_boats = dy.Int32(
+        description="boats without any of which the season is undetermined", nullable=True, min=0
+    )
+    factor = column.number("1", "true speed / log speed; empty: not determined", nullable=True)
+    lo = column.number("1", "lower end of its 95 % interval", nullable=True)
+    hi = column.number("1", "upper end", nullable=True)
+    ln_sd = column.number("1", "standard deviation of ln factor", nullable=True)
+    dof = column.number("1", "its degrees of freedom", nullable=True)
+    influence = column.number("1", "largest change when one boat is left out", nullable=True)
+    influence_boat = column.text("that boat", nullable=True)
+    weakest_mode = column.number("1", "share in what is known worst", nullable=True)
+    factor_no_boats = column.number("1", "the same without boat identity, a check", nullable=True)
+    lo_no_boats = column.number("1", "lower end of its 95 % interval", nullable=True)
+    hi_no_boats = column.number("1", "upper end", nullable=True)
+    agreement = column.number("1", "difference of the two in standard deviations", nullable=True)
+
+
+class SeasonSteps(dy.Schema):
+    """Whether a season's step against the boats' other tows is the log's or the load cell's."""
+
+    method = column.method(primary_key=True)
+    season = column.season(primary_key=True)
+    part = dy.Int32(primary_key=True, description="part of the season, until a log was replaced")
+    log = column.text("speed source", primary_key=True)
+    n_boats = dy.Int32(description="boats also towed in other seasons", min=0)
+    level_step = column.number("1", "step of ln Cw, by the log as it reads", nullable=True)
+    level_step_sd = column.number("1", "its standard deviation", nullable=True)
+    force_step = column.number("1", "the part of it in ln force, as the bend shows", nullable=True)
+    force_step_sd = column.number("1", "its standard deviation", nullable=True)
+    cause = column.text(
+        "log, force (a log error may have come with it), none (no step), or not told",
+        regex="^(log|force|none|not told)$",
+    )
+
+
+class RetowChoice(dy.Schema):
+    """Which few boats to tow again, with dGPS, so that the season factors are surest."""
+
+    method = column.method(primary_key=True)
+    position = dy.Int32(primary_key=True, description="1 tells most, given none of the others")
+    fsn_no = column.fsn_no()
+    rowers = column.rowers()
+    crew_class = column.crew_class()
+    seasons = column.text("seasons without dGPS in which it was towed as it is now")
+    factor_sd_before_ratio = column.number(
+        "1", "typical uncertainty of a season's factor before", min=0
+    )
+    factor_sd_after_ratio = column.number("1", "the same when this boat is towed too", min=0)

@@ -1,0 +1,90 @@
+"""What the steps and options of a method change, and counts over many tows."""
+
+import dataframely as dy
+
+from herijk.tables import column
+
+
+class CorrectionSteps(dy.Schema):
+    """The ladder: what each step from one method to another does to a tow's Cw."""
+
+    from_method = column.text("method the ladder begins with", primary_key=True)
+    to_method = column.text("method it ends with", primary_key=True)
+    tow_id = column.tow_id(primary_key=True)
+    position = dy.Int8(primary_key=True, description="place of the step; 0 is the start", min=0)
+    step = column.text("step of the method that was exchanged")
+    factor = column.number(
+        "1", "Cw after / before the step; they multiply to the total", min_exclusive=0
+    )
+    cw_kg_m = column.number("kg/m", "Cw at the declared speed after the step")
+
+
+class SeasonLadder(dy.Schema):
+    """The ladder per season: what each step does to Cw on average."""
+
+    from_method = column.text("method the ladder begins with", primary_key=True)
+    to_method = column.text("method it ends with", primary_key=True)
+    season = column.season(primary_key=True)
+    position = dy.Int8(primary_key=True, description="place of the step", min=1)
+    step = column.text("step of the method that was exchanged")
+    tows = dy.Int32(description="tows", min=1)
+    factor = column.number(
+        "1", "geometric mean of the factor on Cw; they multiply", min_exclusive=0
+    )
+
+
+class SeasonChanges(dy.Schema):
+    """Cw of each method / Cw of the first method, of the same tows, per season."""
+
+    method = column.method(primary_key=True)
+    from_method = column.text("first method, held against")
+    season = column.season(primary_key=True)
+    tows = dy.Int32(description="tows with a curve under both", min=1)
+    median_ratio = column.number("1", "median of the ratio", min_exclusive=0)
+    lowest_ratio = column.number("1", "lowest ratio of a tow", min_exclusive=0)
+    highest_ratio = column.number("1", "highest ratio of a tow", min_exclusive=0)
+
+
+class OptionEffects(dy.Schema):
+    """How much choices of judgement matter, on top of a method."""
+
+    method = column.method(primary_key=True)
+    tow_id = column.tow_id(primary_key=True)
+    option = column.text("option of a step, or all", primary_key=True)
+    cw_effect_ratio = column.number("1", "Cw with the second value / with the first", nullable=True)
+    b_effect_ratio = column.number("1", "the same for B", nullable=True)
+    cw_sd_ratio = column.number("1", "spread of Cw over all combinations", nullable=True, min=0)
+    b_sd_ratio = column.number("1", "the same for B", nullable=True, min=0)
+    cw_interval_ratio = column.number("1", "half the 95 % interval of ln Cw", nullable=True, min=0)
+    b_interval_ratio = column.number("1", "the same for B; empty: no bound", nullable=True, min=0)
+
+
+class OptionSummary(dy.Schema):
+    """How much each option of judgement moves Cw over all tows."""
+
+    method = column.method(primary_key=True)
+    option = column.text("option of a step", primary_key=True)
+    tows = dy.Int32(description="tows", min=1)
+    median_ratio = column.number("1", "median of Cw with the second value / with the first")
+    lo_ratio = column.number("1", "5 % of the tows lie below")
+    hi_ratio = column.number("1", "5 % of the tows lie above")
+
+
+class QualityCounts(dy.Schema):
+    """How many curves have each status and flag, and how many runs do not count, and why."""
+
+    method = column.method(primary_key=True)
+    kind = column.text("status, flag or run", primary_key=True, regex="^(status|flag|run)$")
+    code = column.text("the status, flag or reason", primary_key=True)
+    scope = column.text("a season, or all", primary_key=True)
+    number = dy.Int32(description="how many", min=1)
+
+
+class CheckCounts(dy.Schema):
+    """How often each check was made, and found something beyond its limit."""
+
+    method = column.method(primary_key=True)
+    check = column.text("code of the check", primary_key=True)
+    severity = column.text("flag or note", regex="^(flag|note)$")
+    tows = dy.Int32(description="tows on which it was made", min=1)
+    beyond = dy.Int32(description="of which beyond the limit", min=0)
