@@ -4,8 +4,9 @@ Only the start and the end of a run may be cut, because speed rose or fell, the 
 unexplained peak (steering) or a gust passed; what remains begins and ends at equal speed, equal
 force and about equal wind and lasts at least 30 s (Sleepproef, R. Pot 2017, "Knippen"). With blocks
 of a second there are so few windows that all of them are tried, longest first: the rule, not a
-hand, decides. A window within the three limits goes before every other; where there is none, the
-run says by how much the best one exceeds them.
+hand, decides. A window within the three limits goes before every other. Where there is none, speed
+must be within its limit all the same, or the run does not count; by how much force or wind exceeds
+its limit, the window says.
 """
 
 from dataclasses import dataclass
@@ -31,8 +32,9 @@ BLOCK_PRICE_S: Final = 10.0
 limit's worth over the limit."""
 
 NOT_WITHIN_S: Final = 1e3
-"""What ends beyond a limit cost for each limit's worth: more than any length, so that every window
-within the limits goes before, and else the one that exceeds them least."""
+"""What force or wind that differs beyond its limit costs for each limit's worth: more than any
+length, so that every window within the limits goes before, and else the one that exceeds them
+least."""
 
 LONGEST_RAMP_S: Final = 12
 RAMP_MARGIN_S: Final = 5
@@ -262,9 +264,9 @@ def _search(present: BoolArray, faults: _Faults, rule: Window) -> tuple[IntArray
     price = _running_sum(faults.price_s())
     sums = _Sums.of(faults)
     for size in range(seconds, int(np.ceil(rule.minimum_s)) - 1, -1):
-        ends = _unsteadiness(sums, size, rule)
+        speed, ends = _unsteadiness(sums, size, rule)
         worth = size - _span(price, size) - np.where(ends > 1.0, NOT_WITHIN_S * ends, 0.0)
-        accepted = _span(good, size) == size
+        accepted = (_span(good, size) == size) & (speed <= 1.0)
         worth = np.where(accepted, np.round(worth, WORTH_DECIMALS), -np.inf)
         best = worth.argmax(axis=1)
         found = np.take_along_axis(worth, best[:, None], 1)[:, 0]
@@ -309,14 +311,18 @@ class _Sums:
         )
 
 
-def _unsteadiness(sums: _Sums, size: int, rule: Window) -> FloatArray:
-    """How far the worst steadiness criterion is from its limit (1), for every window of a size."""
+def _unsteadiness(sums: _Sums, size: int, rule: Window) -> tuple[FloatArray, FloatArray]:
+    """How far speed, and the worse of force and wind, are from their limits (1).
+
+    For every window of a size. Of the speed both the rise of a straight line and the difference of
+    its ends count.
+    """
     drift = np.abs(_slope(sums, size)) * size / rule.speed_drift_m_s
-    speed_ends = np.abs(_ends_difference(sums.speed_ends, size)) / rule.speed_drift_m_s
+    speed = np.abs(_ends_difference(sums.speed_ends, size)) / rule.speed_drift_m_s
     force_limit = rule.force_ends_ratio * np.abs(sums.force_median)
-    force_ends = np.abs(_ends_difference(sums.force_ends, size)) / np.maximum(force_limit, 1e-9)
-    wind_ends = np.abs(_ends_difference(sums.wind_ends, size)) / rule.wind_ends_m_s
-    return np.maximum(np.maximum(drift, speed_ends), np.maximum(force_ends, wind_ends))
+    force = np.abs(_ends_difference(sums.force_ends, size)) / np.maximum(force_limit, 1e-9)
+    wind = np.abs(_ends_difference(sums.wind_ends, size)) / rule.wind_ends_m_s
+    return np.maximum(drift, speed), np.maximum(force, wind)
 
 
 def _running_sum(values: FloatArray) -> FloatArray:
