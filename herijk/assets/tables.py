@@ -9,16 +9,11 @@ import polars as pl
 from herijk.assets.partitions import methods
 from herijk.assets.resources import Setup
 from herijk.pipeline.method.definition import shipped_method
+from herijk.tables.lake import SEASON_TABLES
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.build.graph import STEPS
-from herijk.warehouse.build.step import (
-    DECISIONS,
-    LISTED,
-    PUBLISHED,
-    SEASON_TABLES,
-    Made,
-    Step,
-)
+from herijk.warehouse.build.inputs import BLOCKS, DECISIONS, LISTED, PUBLISHED
+from herijk.warehouse.build.step import Made, Step
 
 KINDS = {"warehouse_database": "duckdb"}
 """What an asset is stored as, where that is not Parquet."""
@@ -63,10 +58,10 @@ def _deps(name: str) -> Iterator[dg.AssetDep]:
     """The asset behind an input of a step; decisions and editions are no assets."""
     if name in LISTED:
         yield dg.AssetDep("archive_index")
-    elif name in SEASON_TABLES:
-        asset = "blocks" if name == "blocks" else "samples"
+    elif name in SEASON_TABLES or name == BLOCKS:
+        asset = BLOCKS if name == BLOCKS else "samples"
         yield dg.AssetDep(asset, partition_mapping=dg.AllPartitionMapping())
-    elif name != DECISIONS and not name.startswith(PUBLISHED):
+    elif name not in (DECISIONS, *PUBLISHED):
         yield dg.AssetDep(name)
 
 

@@ -25,7 +25,9 @@ class Curves(dy.Schema):
     cw_kg_m = column.number("kg/m", "Cw at the declared speed", nullable=True)
     cw_lo_kg_m = column.number("kg/m", "lower end of its 95 % interval", nullable=True)
     cw_hi_kg_m = column.number("kg/m", "upper end", nullable=True)
-    b_lo_m_s = column.number("m/s", "lower end of the 95 % interval of B", nullable=True)
+    b_lo_m_s = column.number(
+        "m/s", "lower end of the 95 % interval of B; empty: cannot be told", nullable=True
+    )
     b_hi_m_s = column.number("m/s", "upper end; empty: no upper bound", nullable=True)
     power_w = column.number("W", "power a rower at the declared speed", nullable=True)
     residual_sd_ratio = column.number("1", "sd of the points about the curve / Cw", nullable=True)

@@ -255,3 +255,40 @@ def test_without_gps_nothing_is_calibrated_and_the_tow_says_so(measured):
     assert set(early["reason"]) == {"not_calibrated"}
     assert set(made.curves.filter(season=2010)["status"]) == {"rejected"}
     assert made.curves.filter(season=2015)["status"].is_in(["accepted", "flagged"]).all()
+
+
+def test_a_log_factor_does_not_depend_on_whether_the_wind_is_taken_off(measured):
+    """Left in, the air that 2010's coefficients hold would pass for a log that reads low."""
+    rebased = shipped_method("rebased")
+    text = 'name = "no-wind"\ntitle = "x"\nextends = "rebased"\n[[overrides]]\nrange = "2010"\n'
+    no_wind = parse_method(text + 'why = "x"\nwind = { model = "none" }\n', "no-wind.toml")
+    with_wind, without = (
+        recompute(m, measured.tows, measured.blocks).log_factors.filter(season=2010)["factor"][0]
+        for m in (rebased, no_wind)
+    )
+    assert without == pytest.approx(with_wind, abs=0.0015)
+
+
+def test_wind_that_was_not_measured_is_said_and_in_the_budget():
+    settings = WorldSettings((2015,), 3, 20, 11)
+    world = simulate_world(settings)
+    tows, frames = tow_rows(world), []
+    for tow in world.tows:
+        no_wind = simulate_tow(world, tow)[0].with_columns(
+            pl.lit(None, pl.Float32).alias(name) for name in ("wind_speed_m_s", "wind_angle_deg")
+        )
+        sums = block_sums(no_wind, settings.rate_hz)
+        frames.append(sums.select(pl.lit(tow.tow_id).alias("tow_id"), pl.all()))
+    blocks = stack_blocks(pl.concat(frames), run_rows(tows))
+    said = tows.with_columns(wind_measured=pl.lit(False))
+    found = recompute(method(wind='{ model = "oblique" }'), said, blocks)
+    points = found.run_points.drop_nulls("cw_kg_m")
+    assert points["wind_m_s"].null_count() == points.height
+    assert (points["cw_kg_m"] / points["gross_cw_kg_m"]).to_numpy() == pytest.approx(1.0, abs=0.002)
+    wind = pl.col("component") == "wind"
+    u, unsaid = (
+        r.uncertainty_budget.filter(wind)["u_ratio"].to_numpy()
+        for r in (found, recompute(method(wind='{ model = "oblique" }'), tows, blocks))
+    )
+    assert (u > 0.01).all()
+    assert (unsaid < 0.001).all()

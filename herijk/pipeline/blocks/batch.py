@@ -54,6 +54,13 @@ class Batch:
         """A number of each run's tow, shape (runs,); NaN where it is not known."""
         return self.of_tow(column)[self.tow]
 
+    def measured(self, channel: str) -> BoolArray:
+        """Tows that have a channel, `wind` or `log2`, shape (tows,); all where nothing is said."""
+        name = f"{channel}_measured"
+        if name not in self.tows.columns:
+            return np.ones(self.size, dtype=bool)
+        return self.tows[name].fill_null(value=True).to_numpy()
+
     @property
     def direction(self) -> IntArray:
         """1 out, -1 back, shape (runs,)."""

@@ -76,7 +76,7 @@ def _both_logs_good(batch: Batch, window: BoolArray) -> BoolArray:
     log1, log2 = (batch.blocks.mean(f"{log}_v", window) for log in ("log1", "log2"))
     seen = log1 > 0
     ratio = batch.mean(log2, seen) / _or_one(batch.mean(log1, seen))
-    return (np.abs(ratio - 1.0) <= LOG2_AGREES_RATIO)[batch.tow]
+    return ((np.abs(ratio - 1.0) <= LOG2_AGREES_RATIO) & batch.measured("log2"))[batch.tow]
 
 
 def _means_of_source(batch: Batch, window: BoolArray, steps: Steps, source: str) -> RunMeans:

@@ -7,7 +7,7 @@ import polars as pl
 from herijk.pipeline import consistency
 
 if TYPE_CHECKING:
-    from herijk.warehouse.build.step import Inputs
+    from herijk.warehouse.build.inputs import Inputs
 
 
 def consistency_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:

@@ -12,7 +12,7 @@ from herijk.warehouse.store.files import file_sha256
 from herijk.warehouse.store.store import Store
 
 if TYPE_CHECKING:
-    from herijk.warehouse.build.step import Inputs
+    from herijk.warehouse.build.inputs import Inputs
 
 DATABASE_TABLE: Final = "warehouse_database"
 """What the file was made from, and its hash."""
@@ -21,15 +21,27 @@ DATABASE_TABLE: Final = "warehouse_database"
 def warehouse_database(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     """All tables in one DuckDB file, swapped in whole."""
     found = {name: conform(name, inputs[name]) for name in inputs.names if name in TABLES}
-    about = {
-        "simulated": str(inputs["about_archive"]["simulated"][0]).lower(),
-        "code_version": code_version(),
-    }
-    found["about"] = pl.DataFrame({"key": list(about), "value": list(about.values())})
+    found["about"] = _about(inputs.store)
     found["contents"] = _contents(found)
     build_database(inputs.store.database, found)
     sha256 = pl.lit(file_sha256(inputs.store.database)).alias("sha256")
     return {DATABASE_TABLE: found["contents"].select("table", "rows", sha256)}
+
+
+def database_without_tows(store: Store, found: Mapping[str, pl.DataFrame]) -> None:
+    """A first database where no tow can be used, so that readers see what was set aside."""
+    if not store.database.exists():
+        empty = {name: schema.create_empty() for name, schema in TABLES.items()}
+        known = {name: conform(name, frame) for name, frame in found.items()}
+        build_database(store.database, {**empty, **known, "about": _about(store)})
+
+
+def _about(store: Store) -> pl.DataFrame:
+    about = {
+        "simulated": str(store.read("about_archive")["simulated"][0]).lower(),
+        "code_version": code_version(),
+    }
+    return pl.DataFrame({"key": list(about), "value": list(about.values())})
 
 
 def _contents(found: Mapping[str, pl.DataFrame]) -> pl.DataFrame:

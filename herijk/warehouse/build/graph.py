@@ -7,9 +7,10 @@ from herijk.tables.schemas import TABLES
 from herijk.warehouse.build.archive_tables import archive_tables, unaccounted_tows
 from herijk.warehouse.build.consistency import consistency_tables
 from herijk.warehouse.build.database import DATABASE_TABLE, is_whole, warehouse_database
+from herijk.warehouse.build.inputs import METHOD_TABLES, PUBLISHED
 from herijk.warehouse.build.method_tables import method_tables, tows_without_curve_row
 from herijk.warehouse.build.registers import register_tables
-from herijk.warehouse.build.step import METHOD_TABLES, Check, Step
+from herijk.warehouse.build.step import Check, Step
 from herijk.warehouse.build.studies import ladders_that_do_not_multiply, study_tables
 from herijk.warehouse.build.summaries import summary_tables
 
@@ -78,7 +79,7 @@ REGISTERS: Final = Step(
     says="making registers",
     inputs=(
         *("curves", "tows", "boats", "listed_boats", "listed_races", "decisions"),
-        *(f"published_{name}" for name in ("editions", "register", "register_changes", "lineage")),
+        *PUBLISHED,
     ),
     outputs=("register", "due_list", "editions", "register_changes", "lineage", "methods"),
     compute=register_tables,

@@ -11,7 +11,7 @@ from herijk.pipeline.recompute.recompute import recompute
 from herijk.pipeline.uncertainty.ensemble import tow_ensemble
 
 if TYPE_CHECKING:
-    from herijk.warehouse.build.step import Inputs
+    from herijk.warehouse.build.inputs import Inputs
 
 
 def method_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:

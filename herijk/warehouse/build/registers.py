@@ -16,7 +16,7 @@ from herijk.tables.schemas import conform
 from herijk.warehouse.build.version import code_version
 
 if TYPE_CHECKING:
-    from herijk.warehouse.build.step import Inputs
+    from herijk.warehouse.build.inputs import Inputs
 
 
 def register_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
@@ -72,7 +72,7 @@ def _due_list(inputs: "Inputs") -> pl.DataFrame:
     Looked at on the day of the last tow or race, not today: the same archive gives the same table.
     """
     tows, results = inputs["tows"], inputs["listed_races"]
-    as_of = max(*tows["tow_date"], *results["race_date"])
+    as_of = max([*tows["tow_date"], *results["race_date"]])
     found = []
     for method in inputs.methods:
         curves = inputs["curves"].filter(pl.col("method") == method.name)

@@ -9,7 +9,7 @@ from typing import Final
 from herijk.pipeline.method.definition import Method
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.build.graph import DATABASE
-from herijk.warehouse.build.step import METHOD_TABLES
+from herijk.warehouse.build.inputs import METHOD_TABLES
 from herijk.warehouse.store.database import open_database
 from herijk.warehouse.store.store import Store, count_rows
 

@@ -7,53 +7,21 @@ that its step declares, so a declaration cannot leave one out.
 
 import datetime as dt
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
-from typing import Any, Final
+from dataclasses import dataclass
+from typing import Final
 
-import duckdb
 import polars as pl
 
-from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
-from herijk.tables import lake
 from herijk.tables.frames import dtypes
 from herijk.tables.schemas import TABLES, conform
-from herijk.warehouse.build.published import published_made_from, published_tables
-from herijk.warehouse.intake import seasons as intake
-from herijk.warehouse.store import decisions
+from herijk.warehouse.build.archive_tables import NothingSoundError
+from herijk.warehouse.build.database import database_without_tows
+from herijk.warehouse.build.inputs import METHOD_TABLES, Inputs, made_from
 from herijk.warehouse.store.code import code_hash
-from herijk.warehouse.store.database import open_database
-from herijk.warehouse.store.store import Store, fingerprint, table_digest
+from herijk.warehouse.store.store import Store, fingerprint
 
-SEASON_TABLES: Final = intake.SEASON_TABLES
-"""Tables of intake with a partition per season."""
-
-LISTED: Final = (
-    *(f"listed_{name}" for name in (*intake.LISTED, "files", "races")),
-    *("list_faults", "about_archive"),
-)
-"""Tables of intake that are made again by every rebuild, so that their content is what counts."""
-
-METHOD_TABLES: Final = (
-    "run_points",
-    "curves",
-    "log_factors",
-    "season_links",
-    "retow_choice",
-    "season_steps",
-    "uncertainty_budget",
-    "curve_points",
-    "assessments",
-    "ensemble",
-)
-"""Tables with a partition per method."""
-
-PUBLISHED: Final = "published_"
-"""What the names of tables of all published editions together begin with."""
-
-DECISIONS: Final = "decisions"
-"""The decisions of people about tows, as `decisions.decision_table` gives them."""
+QUARANTINE: Final = "quarantine"
 
 
 @dataclass(frozen=True)
@@ -68,7 +36,7 @@ class Check:
 
     name: str
     table: str
-    faults: Callable[["Inputs", Mapping[str, pl.DataFrame]], Sequence[str]]
+    faults: Callable[[Inputs, Mapping[str, pl.DataFrame]], Sequence[str]]
 
 
 @dataclass(frozen=True)
@@ -90,7 +58,7 @@ class Step:
     says: str
     inputs: tuple[str, ...]
     outputs: tuple[str, ...]
-    compute: Callable[["Inputs"], Mapping[str, pl.DataFrame]]
+    compute: Callable[[Inputs], Mapping[str, pl.DataFrame]]
     checks: tuple[Check, ...] = ()
     of_method: Callable[[Method], object] = lambda _: None
     is_whole: Callable[[Store], bool] = lambda _: True
@@ -113,7 +81,7 @@ class Step:
     def made_from(self, store: Store, methods: Sequence[Method]) -> str:
         """Fingerprint of all that the outputs follow from."""
         return fingerprint(
-            {name: _made_from(store, name, methods) for name in self.inputs},
+            {name: made_from(store, name, methods) for name in self.inputs},
             [
                 (m.name, m.content_hash, str(self.of_method(m)))
                 for m in methods
@@ -140,7 +108,12 @@ class Step:
         """
         made_from = self.made_from(store, methods)
         inputs = Inputs(store, self.inputs, methods, today or dt.date.today())
-        made = self.compute(inputs)
+        try:
+            made = self.compute(inputs)
+        except NothingSoundError as error:
+            store.write(QUARANTINE, conform(QUARANTINE, error.tables[QUARANTINE]), "")
+            database_without_tows(store, error.tables)
+            raise
         partition = self._partition(methods)
         found = {
             name: conform(name, made[name]) if name in TABLES else made[name]
@@ -166,84 +139,3 @@ class Made:
 
     tables: Mapping[str, pl.DataFrame]
     faults: Mapping[Check, Sequence[str]]
-
-
-@dataclass(frozen=True)
-class Inputs:
-    """The tables that a step declares, read when they are asked for.
-
-    Attributes:
-        store: where they lie.
-        names: the declared inputs.
-        methods: the methods to apply; the first is what others are compared with.
-        today: the day that is noted where something is seen for the first time.
-    """
-
-    store: Store
-    names: Sequence[str]
-    methods: Sequence[Method]
-    today: dt.date
-    _read: dict[str, pl.DataFrame] = field(default_factory=dict, repr=False)
-
-    def __getitem__(self, name: str) -> pl.DataFrame:
-        """A declared input; a method's table holds the rows of all methods.
-
-        Raises:
-            KeyError: it is not declared.
-        """
-        if name not in self.names:
-            raise KeyError(f"{name} is not a declared input: {', '.join(self.names)}")
-        if name not in self._read:
-            self._read[name] = self._find(name)
-        return self._read[name]
-
-    def _find(self, name: str) -> pl.DataFrame:
-        if name.startswith(PUBLISHED):
-            return self._published[name.removeprefix(PUBLISHED)]
-        if name == DECISIONS:
-            return _decisions(self.store)
-        if name == "blocks":
-            return intake.all_blocks(self.store)
-        if name in SEASON_TABLES:
-            return self.store.read_all(name) if self.store.partitions(name) else _no_season(name)
-        if name in METHOD_TABLES:
-            return self.store.read_all(name, [m.name for m in self.methods])
-        return self.store.read(name)
-
-    def earlier(self, table: str) -> pl.DataFrame:
-        """A table as it was before; from the database where the lake lost it."""
-        if self.store.made_from(table) is not None:
-            return self.store.read(table)
-        try:
-            with open_database(self.store.database) as db:
-                return pl.DataFrame(db.table(table).pl())
-        except (MissingKnowledgeError, duckdb.Error):  # not made yet, or damaged too
-            return TABLES[table].create_empty()
-
-    @cached_property
-    def _published(self) -> dict[str, pl.DataFrame]:
-        return published_tables(self.store)
-
-
-def _made_from(store: Store, name: str, methods: Sequence[Method]) -> Any:
-    """What stands for an input in a fingerprint."""
-    if name.startswith(PUBLISHED):
-        return published_made_from(store)
-    if name == DECISIONS:
-        return table_digest(_decisions(store))
-    if name in LISTED:
-        return table_digest(store.read(name))
-    if name in SEASON_TABLES:
-        return {season: store.made_from(name, season) for season in store.partitions(name)}
-    if name in METHOD_TABLES:
-        return {m.name: store.made_from(name, m.name) for m in methods}
-    return store.made_from(name)
-
-
-def _no_season(name: str) -> pl.DataFrame:
-    return lake.SEASON_TABLES[name].create_empty()
-
-
-def _decisions(store: Store) -> pl.DataFrame:
-    found = decisions.read_decisions(store.root / decisions.FILE_NAME)
-    return decisions.decision_table(found)

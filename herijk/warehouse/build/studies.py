@@ -12,7 +12,7 @@ from herijk.tables.studies import CorrectionSteps, OptionEffects
 from herijk.warehouse.build.method_tables import blocks_of
 
 if TYPE_CHECKING:
-    from herijk.warehouse.build.step import Inputs
+    from herijk.warehouse.build.inputs import Inputs
 
 STUDIED_METHOD: Final = "rebased"
 """The method whose options of judgement are studied."""

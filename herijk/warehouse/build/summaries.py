@@ -13,7 +13,7 @@ from herijk.pipeline.studies import summaries
 from herijk.tables.register import RaceChanges
 
 if TYPE_CHECKING:
-    from herijk.warehouse.build.step import Inputs
+    from herijk.warehouse.build.inputs import Inputs
 
 EDITIONS: Final = ("from_edition", "to_edition")
 

@@ -17,6 +17,7 @@ import polars as pl
 from herijk.pipeline.blocks.run_blocks import RunBlocks, stack_blocks
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.recompute.facts import with_boat_types, with_hand_windows
+from herijk.tables.archive import TraceSeconds
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import Faults
 from herijk.warehouse.archive import (
@@ -140,7 +141,8 @@ def collect_blocks(store: Store, season: int) -> pl.DataFrame:
 def all_blocks(store: Store) -> pl.DataFrame:
     """Blocks of all seasons; those without a sound tow have none."""
     frames = [store.read("blocks", season) for season in store.partitions("blocks")]
-    return pl.concat([f for f in frames if f.height])
+    nothing = TraceSeconds.create_empty().select("tow_id", "run", "second")
+    return pl.concat([f for f in frames if f.height] or [nothing])
 
 
 def typed_tows(store: Store) -> pl.DataFrame:
