@@ -12,6 +12,5 @@ if TYPE_CHECKING:
 
 def consistency_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     """Are equal boats equal: the statistics of every boat type under every method."""
-    return consistency.consistency_tables(
-        inputs["curves"], inputs["tows"], inputs["boats"], inputs["run_points"]
-    )
+    read = ("curves", "tows", "boats", "run_points", "listed_races")
+    return consistency.consistency_tables(*(inputs[name] for name in read))

@@ -57,9 +57,13 @@ STUDIES: Final = Step(
 CONSISTENCY: Final = Step(
     name="consistency",
     says="comparing boats of the same type",
-    inputs=("curves", "run_points", "tows", "boats"),
+    inputs=("curves", "run_points", "tows", "boats", "listed_races"),
     outputs=(
         "type_consistency",
+        "type_lines",
+        "type_line_points",
+        "compared_tows",
+        "hull_speed",
         "type_outliers",
         "type_homogeneity",
         "pooled_curves",
