@@ -5,6 +5,7 @@ from typing import Final
 import dataframely as dy
 
 from herijk.tables import column
+from herijk.tables.severity import SEVERITY_PATTERN
 
 STATUSES: Final = ("accepted", "flagged", "rejected")
 
@@ -52,7 +53,10 @@ class Assessments(dy.Schema):
     method = column.method(primary_key=True)
     tow_id = column.tow_id(primary_key=True)
     check = column.text("code of the check", primary_key=True)
-    severity = column.text("flag: a person should look; note: worth knowing", regex="^(flag|note)$")
+    severity = column.text(
+        "note: worth knowing; look: somebody must decide; refuse: nothing to register",
+        regex=SEVERITY_PATTERN,
+    )
     observed = column.number("as in unit", "what was observed")
     limit = column.number("as in unit", "the limit that is exceeded, or the nearest")
     unit = column.text("unit of both; 1 for a ratio, a count or yes (1) and no (0)")

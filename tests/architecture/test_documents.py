@@ -3,12 +3,14 @@
 import re
 from typing import Literal, get_args, get_origin
 
+import duckdb
 import pytest
 import typer.main
 
 from herijk.cli.main import app
 from herijk.pipeline.method.definition import Steps, shipped_methods
 from herijk.tables.schemas import TABLES
+from herijk.tables.views import VIEWS
 from herijk.warehouse.archive.faults import REASONS
 from tests.architecture.repository import ROOT, read, tracked_files
 
@@ -60,7 +62,14 @@ def test_every_reason_code_is_documented():
 
 def test_every_table_is_documented():
     found = set(re.findall(r"^\| `(\w+)` \|", read("docs/tables.md"), re.MULTILINE))
-    assert found == set(TABLES)
+    assert found == {*TABLES, *VIEWS}
+
+
+def test_every_query_about_tables_runs(built):
+    queries = re.findall(r"```sql\n(.*?)```", read("docs/tables.md"), re.DOTALL)
+    with duckdb.connect(built.store.database, read_only=True) as db:
+        for query in (q for q in queries if "parquet" not in q):
+            assert db.sql(query).columns, query
 
 
 @pytest.mark.parametrize("command", commands())
