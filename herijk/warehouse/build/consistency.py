@@ -12,5 +12,10 @@ if TYPE_CHECKING:
 
 def consistency_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     """Are equal boats equal: the statistics of every boat type under every method."""
-    read = ("curves", "tows", "boats", "run_points", "listed_races")
-    return consistency.consistency_tables(*(inputs[name] for name in read))
+    return consistency.consistency_tables(
+        inputs["curves"],
+        inputs["tows"],
+        inputs["boats"],
+        inputs["run_points"],
+        inputs["listed_races"],
+    )
