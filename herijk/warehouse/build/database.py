@@ -3,9 +3,11 @@
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
+import dataframely as dy
 import polars as pl
 
 from herijk.tables.schemas import TABLES, conform
+from herijk.tables.views import VIEWS
 from herijk.warehouse.build.version import code_version
 from herijk.warehouse.store.database import build_database
 from herijk.warehouse.store.files import file_sha256
@@ -14,8 +16,19 @@ from herijk.warehouse.store.store import Store
 if TYPE_CHECKING:
     from herijk.warehouse.build.inputs import Inputs
 
+
+def _meanings(schema: type[dy.Schema]) -> list[str]:
+    return [f"{name}: {column.description}" for name, column in schema.columns().items()]
+
+
 DATABASE_TABLE: Final = "warehouse_database"
-"""What the file was made from, and its hash."""
+"""The tables in the file, and its hash."""
+
+MEANINGS: Final = (
+    {name: [str(schema.__doc__), *_meanings(schema)] for name, schema in TABLES.items()},
+    VIEWS,
+)
+"""What the file says of its tables, and its views."""
 
 
 def warehouse_database(inputs: "Inputs") -> dict[str, pl.DataFrame]:

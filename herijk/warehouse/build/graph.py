@@ -6,7 +6,12 @@ from herijk.pipeline.method.definition import Method
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.build.archive_tables import archive_tables, unaccounted_tows
 from herijk.warehouse.build.consistency import consistency_tables
-from herijk.warehouse.build.database import DATABASE_TABLE, is_whole, warehouse_database
+from herijk.warehouse.build.database import (
+    DATABASE_TABLE,
+    MEANINGS,
+    is_whole,
+    warehouse_database,
+)
 from herijk.warehouse.build.inputs import METHOD_TABLES, PUBLISHED
 from herijk.warehouse.build.method_tables import method_tables, tows_without_curve_row
 from herijk.warehouse.build.registers import register_tables
@@ -22,7 +27,7 @@ RUNS: Final = ("boats", "tows", "tow_runs", "hand_windows", "blocks")
 
 
 def _register_rules(method: Method) -> object:
-    return method.validity, method.title, method.title_en
+    return method.validity, method.title, method.title_en, method.interval
 
 
 ARCHIVE: Final = Step(
@@ -113,6 +118,7 @@ DATABASE: Final = Step(
     inputs=(*(name for name in TABLES if name not in LAKE_ONLY), "about_archive"),
     outputs=(DATABASE_TABLE,),
     compute=warehouse_database,
+    also=MEANINGS,
     is_whole=is_whole,
 )
 

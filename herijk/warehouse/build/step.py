@@ -51,6 +51,7 @@ class Step:
         compute: makes the outputs; its docstring says what they are.
         checks: what must hold of the outputs.
         of_method: what else of a method its outputs depend on, beside options and name.
+        also: what else the outputs follow from, beside inputs, methods and code.
         is_whole: whether what it makes outside the lake is still there and undamaged.
     """
 
@@ -61,6 +62,7 @@ class Step:
     compute: Callable[[Inputs], Mapping[str, pl.DataFrame]]
     checks: tuple[Check, ...] = ()
     of_method: Callable[[Method], object] = lambda _: None
+    also: object = None
     is_whole: Callable[[Store], bool] = lambda _: True
 
     @property
@@ -88,6 +90,7 @@ class Step:
                 if self.knows_methods
             ],
             {n: str(dtypes(TABLES[n])) for n in self.outputs if n in TABLES},
+            self.also,
             self.code,
         )
 
