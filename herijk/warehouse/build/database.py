@@ -24,9 +24,8 @@ def _meanings(schema: type[dy.Schema]) -> list[str]:
 DATABASE_TABLE: Final = "warehouse_database"
 """The tables in the file, and its hash."""
 
-MEANINGS: Final = (
-    {name: [str(schema.__doc__), *_meanings(schema)] for name, schema in TABLES.items()},
-    VIEWS,
+MEANINGS: Final = str(
+    {name: [schema.__doc__, *_meanings(schema)] for name, schema in TABLES.items()} | VIEWS
 )
 """What the file says of its tables, and its views."""
 

@@ -62,7 +62,7 @@ class Step:
     compute: Callable[[Inputs], Mapping[str, pl.DataFrame]]
     checks: tuple[Check, ...] = ()
     of_method: Callable[[Method], object] = lambda _: None
-    also: object = None
+    also: str = ""
     is_whole: Callable[[Store], bool] = lambda _: True
 
     @property
