@@ -137,4 +137,9 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.never_towed": ("niet gesleept", "never towed"),
     "code.no_valid_curve": ("geen geldige kromme", "no valid curve"),
     "code.unknown": ("onbekend", "unknown"),
+    "code.complete": ("95 %-interval", "95 % interval"),
+    "code.runs_alone": (
+        "spreiding van de runs alleen: de fout van de log zit er niet in",
+        "spread of the runs alone: the log's error is not in it",
+    ),
 }
