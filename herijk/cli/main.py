@@ -12,16 +12,15 @@ import re
 import sys
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Final, cast
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
-from typer.core import TyperGroup
 
 from herijk.cli import editions as commands_editions
 from herijk.cli import methods, text
 from herijk.cli.arguments import ArchiveFolder, AsJson, DataFolder, show
 from herijk.cli.fit import fit
-from herijk.cli.overview import Overview, folders_here
+from herijk.cli.overview import Overview, defaults_of, folders_here
 from herijk.pipeline.errors import BrokenPromiseError, HerijkError
 
 if TYPE_CHECKING:
@@ -67,8 +66,7 @@ def begin(
     ] = False,
 ) -> None:
     """Recomputes the history of the Dutch rowing-sloop register from its tow tests."""
-    commands = cast(TyperGroup, context.command).list_commands(context)
-    context.default_map = dict.fromkeys(commands, folders_here(Path.cwd()))
+    context.default_map = defaults_of(context.command, folders_here(Path.cwd()))
 
 
 def _seasons(value: str) -> range:
@@ -93,7 +91,7 @@ def rebuild(
         typer.Option(
             metavar="METHOD_OR_FILE",
             help="Method to apply; repeat for more. A file is kept in the data folder. "
-            "Default: all that ship.",
+            "Default: all that ship, or those in beheer.toml.",
         ),
     ] = None,
     seasons: Annotated[
@@ -108,12 +106,11 @@ def rebuild(
     from herijk.assets.report import failed_checks, tell
     from herijk.assets.settings import read_settings
     from herijk.cli.progress import TerminalProgress
-    from herijk.pipeline.method.definition import shipped_methods
     from herijk.warehouse.queries import reports
     from herijk.warehouse.store.store import Store
 
     known = methods.known_methods(data)
-    chosen = [known.kept(name) for name in method or shipped_methods()]
+    chosen = [known.kept(name) for name in method or read_settings(data).applied]
     with TerminalProgress() as progress:
         done = run(archive, data, chosen, progress, seasons)
     report = reports.rebuild_report(Store(data)) | {"done": done.work, "since": done.report}

@@ -33,3 +33,14 @@ def test_an_error_in_a_file_is_told_with_its_line(herijk, tmp_path):
     status, _, err = herijk("methods", "check", file)
     assert status == 1
     assert "line 5" in err
+
+
+def test_a_method_of_ones_own_is_rebuilt_and_published(herijk, bench, tmp_path):
+    file = tmp_path / "ours.toml"
+    file.write_text('name = "ours"\ntitle = "Onze"\nextends = "rebased-2015"\n', encoding="utf-8")
+    folders = ("--archive", bench.archive, "--data", bench.data)
+    assert herijk("rebuild", *folders, "--method", "as-published", "--method", file)[0] == 0
+    assert set(bench.table("curves")["method"]) == {"as-published", "ours"}
+    terms = ("--method", "ours", "--valid-from", "2015-01-01", "--decision", "ALV")
+    assert herijk("publish", "2015-1", *terms, "--data", bench.data)[0] == 0
+    assert herijk("verify", "--data", bench.data)[0] == 0
