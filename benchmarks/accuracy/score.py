@@ -24,6 +24,9 @@ ESTIMATES = {
     "best estimate": ("cw_best_kg_m", "cw_best_lo_kg_m", "cw_best_hi_kg_m"),
 }
 SUMS = ("n", "intervals", "error", "squared", "covered", "half_width", "flagged", "silent")
+EQUAL_BOATS = "type_homogeneity"
+"""Table of the test whether boats of a type are equal; given where they are."""
+LEVEL = 0.05
 Record = dict[str, Any]
 
 
@@ -59,6 +62,7 @@ def score(world: str, tables: Mapping[str, pl.DataFrame], truth: pl.DataFrame) -
         *records,
         *_factors(tables["log_factors"], truth, doubted),
         _alarms(truth, faulty, seasons_said(tables, NAMED)),
+        *_equal_boats(tables),
     ]
 
 
@@ -122,6 +126,14 @@ def _alarms(truth: pl.DataFrame, faulty: set[int], alarmed: set[int]) -> Record:
     }
 
 
+def _equal_boats(tables: Mapping[str, pl.DataFrame]) -> Iterator[Record]:
+    """How often identical boats are told apart."""
+    if EQUAL_BOATS in tables:
+        p = tables[EQUAL_BOATS].drop_nulls("p_value")["p_value"]
+        counts = {"tested": p.len(), "rejected": int((p < LEVEL).sum())}
+        yield {"what": "equal boats", "group": "types"} | counts
+
+
 def mean_and_error(numerators: np.ndarray, counts: np.ndarray) -> tuple[float, float]:
     """Ratio of sums over archives, and its Monte Carlo error (delta method); NaN without any."""
     total = counts.sum()
@@ -143,11 +155,16 @@ def table(records: pl.DataFrame) -> Iterator[str]:
     yield "| --- " * 10 + "|"
     for world in records["world"].unique(maintain_order=True):
         mine = records.filter(world=world)
-        measures = mine.filter(pl.col("what") != "alarms")
+        measures = mine.filter(pl.col("n").is_not_null())
         for (what, group), rows in measures.group_by("what", "group", maintain_order=True):
             if rows["n"].sum():
                 yield _line(world, str(group), str(what), rows)
         yield _alarm_line(world, mine.filter(what="alarms"))
+        equal = mine.filter(what="equal boats")
+        if equal.height:
+            share, error = mean_and_error(equal["rejected"].to_numpy(), equal["tested"].to_numpy())
+            said = f"identical boats told apart {100 * share:.0f} ± {100 * error:.1f} %"
+            yield f"| {world} | all | equal boats | {equal.height} | {said} | | | | | |"
 
 
 def _line(world: str, group: str, what: str, rows: pl.DataFrame) -> str:
