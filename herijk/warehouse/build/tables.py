@@ -125,7 +125,7 @@ def collect_archive(store: Store, today: dt.date) -> dict[str, int]:
     beyond = _as_faults(outside_run(windows, present))
     unsound = index.filter(pl.col("reason_code").is_not_null()).select(list(intake.FAULT_SCHEMA))
     found = {
-        "boats": store.read("listed_boats"),
+        "boats": store.read("listed_boats").unique("fsn_no", keep="last", maintain_order=True),
         "seasons": _seasons(store.read_all("season_tows"), sound),
         "tows": tows,
         "tow_runs": runs,
