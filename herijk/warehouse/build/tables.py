@@ -66,6 +66,10 @@ REGISTER_TABLES: Final = (
 )
 CONSISTENCY_TABLES: Final = (
     "type_consistency",
+    "type_lines",
+    "type_line_points",
+    "compared_tows",
+    "hull_speed",
     "type_outliers",
     "type_homogeneity",
     "pooled_curves",
@@ -307,10 +311,10 @@ def make_studies(store: Store, methods: Sequence[Method], blocks: RunBlocks) -> 
 
 
 def consistency_made_from(store: Store, methods: Sequence[Method]) -> str:
-    """What the statistics of boat types are made from; not from editions or decisions."""
+    """What the statistics of boat types are made from: races too; not editions or decisions."""
     curves = {m.name: store.made_from("curves", m.name) for m in methods}
     archive = [store.made_from(t) for t in ("tows", "boats")]
-    return fingerprint(curves, archive, code_version())
+    return fingerprint(curves, archive, table_digest(store.read("listed_races")), code_version())
 
 
 def consistency_is_stale(store: Store, methods: Sequence[Method]) -> bool:
@@ -327,7 +331,8 @@ def make_consistency(store: Store, methods: Sequence[Method]) -> dict[str, int]:
     """
     names = [m.name for m in methods]
     curves, run_points = (store.read_all(t, names) for t in ("curves", "run_points"))
-    found = consistency_tables(curves, store.read("tows"), store.read("boats"), run_points)
+    tows, boats, races = (store.read(t) for t in ("tows", "boats", "listed_races"))
+    found = consistency_tables(curves, tows, boats, run_points, races)
     made_from = consistency_made_from(store, methods)
     for name in CONSISTENCY_TABLES:
         store.write(name, conform(name, found[name]), made_from)
@@ -419,6 +424,7 @@ def _methods(methods: Sequence[Method]) -> pl.DataFrame:
             "method": [m.name for m in methods],
             "title": [m.title for m in methods],
             "title_en": [m.title_en for m in methods],
+            "interval": [m.interval for m in methods],
             "content_hash": [m.content_hash for m in methods],
             "definition": [m.definition for m in methods],
         }
