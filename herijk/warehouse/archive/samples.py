@@ -499,13 +499,12 @@ def _to_si(frame: pl.DataFrame, columns: Mapping[str, FoundColumn]) -> pl.DataFr
 def _to_schema(raw: pl.DataFrame) -> pl.DataFrame:
     """Return the frame of `SAMPLE_SCHEMA` from Float64 columns in SI units."""
     _check_run_numbers(raw["run"])
+    absent = (key for key in OUTPUT_NAMES if key not in raw.columns)
+    raw = raw.with_columns(pl.lit(None, pl.Float64).alias(key) for key in absent)
     angle = pl.col("wind_angle")
     wrapped = pl.when(angle.is_between(-180, 360)).then(angle % 360).otherwise(angle)
     samples = raw.with_columns(wrapped).select(
-        pl.col(key).cast(SAMPLE_SCHEMA[name]).alias(name)
-        if key in raw.columns
-        else pl.lit(None, SAMPLE_SCHEMA[name]).alias(name)
-        for key, name in OUTPUT_NAMES.items()
+        pl.col(key).cast(SAMPLE_SCHEMA[name]).alias(name) for key, name in OUTPUT_NAMES.items()
     )
     # 359.99999999 rounds to 360 in 32 bits; the promise is [0, 360).
     turned = pl.when(pl.col("wind_angle_deg") == 360).then(0.0).otherwise(pl.col("wind_angle_deg"))
