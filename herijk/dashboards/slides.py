@@ -9,7 +9,7 @@ import io
 from collections.abc import Iterator, Sequence
 from math import log
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, Literal, NamedTuple
 
 import altair as alt
 import polars as pl
@@ -37,6 +37,8 @@ RECOMPUTED_SEASON: Final = "2014"
 """The slide "2014 opnieuw berekend"."""
 
 WIDTH_OF_TEXT: Final = 140
+LOCALES: Final[dict[str, Literal["nl-NL", "en-GB"]]] = {"nl": "nl-NL", "en": "en-GB"}
+"""How numbers on axes are written."""
 
 
 class Slide(NamedTuple):
@@ -71,7 +73,7 @@ def write_slides(
     folder.mkdir(parents=True, exist_ok=True)
     book, written = pypdf.PdfWriter(), []
     for number, slide in enumerate(made, 1):
-        svg = _svg(slide, say, simulated)
+        svg = _svg(slide, language, simulated)
         stem = file_name(f"{number:02d} {slide.name}")
         png = vl_convert.svg_to_png(svg, scale=2.0)
         written += [_put(folder / f"{stem}.svg", svg.encode()), _put(folder / f"{stem}.png", png)]
@@ -87,11 +89,14 @@ def _put(path: Path, content: bytes) -> Path:
     return path
 
 
-def _svg(slide: Slide, say: Say, simulated: bool) -> str:
+def _svg(slide: Slide, language: str, simulated: bool) -> str:
+    say = speaker(language)
     lines = [*_wrapped(slide.sentence), *([say("simulated")] if simulated else [])]
     title = alt.Title(slide.title, subtitle=lines, anchor="start", offset=12)
     chart = FIGURES[slide.figure](slide.rows, say).properties(title=title)
-    return str(vl_convert.vegalite_to_svg(chart.to_dict(), vl_version=VEGA_LITE))
+    spec = chart.to_dict()
+    locale = LOCALES[language]
+    return str(vl_convert.vegalite_to_svg(spec, vl_version=VEGA_LITE, format_locale=locale))
 
 
 def _wrapped(text: str) -> list[str]:
@@ -175,9 +180,7 @@ def _types(compared: pl.DataFrame, wanted: Sequence[str]) -> list[str]:
 class _About:
     """The slides of an archive in one language."""
 
-    def __init__(
-        self, views: Views, say: Say, compared: pl.DataFrame, lines: pl.DataFrame
-    ) -> None:
+    def __init__(self, views: Views, say: Say, compared: pl.DataFrame, lines: pl.DataFrame) -> None:
         self.views, self.say, self.compared, self.lines = views, say, compared, lines
         held = compared.select("method", "order").unique().sort("order", "method")
         self.before, self.after = held["method"][0], _last_method(held["method"].to_list())
@@ -200,7 +203,8 @@ class _About:
             title += self.say("slide.of_season").format(tows=words)
         said = [self._line(quantity, explaining, name, tows) for name in types]
         name = f"{quantity} {explaining} {tows}"
-        return Slide(name, f"slide_{quantity}_{explaining}", rows, title, " ".join(said) + self._outside(rows))
+        sentence = " ".join(said) + self._outside(rows)
+        return Slide(name, f"slide_{quantity}_{explaining}", rows, title, sentence)
 
     def _line(self, quantity: str, explaining: str, boat_type: str, tows: str) -> str:
         own = self.lines.filter(
@@ -246,14 +250,16 @@ class _About:
         key = {None: "b_unknown", True: "b_is", False: "b_is_not"}[found["b_is_hull_speed"]]
         sentence = self.say(f"slide.{key}").format(
             after=self.after,
-            ratio=_digits(found["b_ratio"]),
-            lo=_digits(found["b_ratio_lo"]),
-            hi=_digits(found["b_ratio_hi"]),
+            ratio=self._digits(found["b_ratio"]),
+            lo=self._digits(found["b_ratio_lo"]),
+            hi=self._digits(found["b_ratio_hi"]),
             boats=found["n_boats"],
             share=_share(found["b_share_within_5pct"]),
         )
         known = self.compared.filter(pl.col("boat_type") != UNKNOWN_TYPE)
-        return Slide("hull speed", "slide_hull_speed", known, self.say("slide.hull_speed"), sentence)
+        return Slide(
+            "hull speed", "slide_hull_speed", known, self.say("slide.hull_speed"), sentence
+        )
 
     def towed_at(self) -> Slide:
         """Tow speed as part of hull speed."""
@@ -320,22 +326,39 @@ class _About:
                 own.select("method", "tow_id", "standard_speed_m_s"), on=["method", "tow_id"]
             )
             title = self.say("slide.boat_years").format(name=own["name"][0])
-            yield Slide(f"years {own['name'][0]}", "slide_boat_years", rows, title, self._years(own))
+            yield Slide(
+                f"years {own['name'][0]}", "slide_boat_years", rows, title, self._years(own)
+            )
 
     def _years(self, own: pl.DataFrame) -> str:
-        known = own.drop_nulls("cw_standard_kg_m")
-        spread = {
-            method: log(_number(group["cw_standard_kg_m"].max()) / _number(group["cw_standard_kg_m"].min()))
-            for (method,), group in known.group_by("method")
-        }
-        return self.say("slide.years").format(
-            speed=_digits(own["standard_speed_m_s"][0]),
-            n=own["tow_id"].n_unique(),
-            before=self.before,
-            after=self.after,
-            before_spread=_share(spread.get(self.before)),
-            after_spread=_share(spread.get(self.after)),
+        """How far the tows of each crew lie apart at the common speed."""
+        cw = pl.col("cw_standard_kg_m")
+        crews = (
+            own.drop_nulls("cw_standard_kg_m")
+            .group_by("method", crew=pl.format("{}{}", "rowers", "crew_class"))
+            .agg(pl.len().alias("n"), (cw.max() / cw.min()).log().alias("spread"))
+            .filter(pl.col("n") > 1)
         )
+        spread = {(m, c): (n, value) for m, c, n, value in crews.sort("crew").iter_rows()}
+        said = [
+            self.say("slide.years").format(
+                speed=self._digits(own["standard_speed_m_s"][0]),
+                crew=crew,
+                n=n,
+                before=self.before,
+                after=self.after,
+                before_spread=_share(spread.get((self.before, crew), (0, None))[1]),
+                after_spread=_share(value),
+            )
+            for (method, crew), (n, value) in spread.items()
+            if method == self.after
+        ]
+        return " ".join(said)
+
+    def _digits(self, value: float | None) -> str:
+        """A number with two decimals, as this language writes it."""
+        text = "-" if value is None else f"{value:.2f}"
+        return text.replace(".", self.say("decimal_mark"))
 
 
 def _of_choice(compared: pl.DataFrame, tows: str) -> pl.DataFrame:
@@ -376,17 +399,9 @@ def _direction(line: dict[str, Any]) -> str:
     return "falls" if line["slope_hi"] < 0 else "none"
 
 
-def _number(value: object) -> float:
-    return float(str(value))
-
-
 def _share(ratio: float | None) -> str:
     return "-" if ratio is None else f"{100 * ratio:.0f} %"
 
 
 def _signed(ratio: float) -> str:
-    return f"{100 * ratio:+.1f} %"
-
-
-def _digits(value: float | None) -> str:
-    return "-" if value is None else f"{value:.2f}"
+    return f"{100 * ratio:+.0f} %"

@@ -11,7 +11,7 @@ from typing import Final
 import altair as alt
 import polars as pl
 
-from herijk.dashboards.figures.style import GREY, OKABE_ITO, colour, number, tips
+from herijk.dashboards.figures.style import GREY, OKABE_ITO, colour, named, number, tips
 from herijk.dashboards.words import Say
 from herijk.pipeline.consistency.compared import ROWED_RATIO
 
@@ -115,12 +115,18 @@ def b_and_hull_speed(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
     tow = alt.Chart().transform_filter("datum.kind == 'tow'")
     x = number(alt.X, "waterline_length_m", say("waterline_length"))
     ink = colour("boat_type", say("type"), legend=alt.Legend(orient="bottom"))
-    points = tow.transform_filter("isValid(datum.b_m_s)").mark_point(size=30).encode(
-        x,
-        number(alt.Y, "b_m_s", say("b")),
-        ink,
-        alt.Shape("boat_type:N", title=say("type")),
-        tooltip=tips(("label:N", say("tow")), ("b_m_s:Q", say("b")), ("b_hull_ratio:Q", "B / v")),
+    points = (
+        tow.transform_filter("isValid(datum.b_m_s)")
+        .mark_point(size=30)
+        .encode(
+            x,
+            number(alt.Y, "b_m_s", say("b")),
+            ink,
+            alt.Shape("boat_type:N", title=say("type")),
+            tooltip=tips(
+                ("label:N", say("tow")), ("b_m_s:Q", say("b")), ("b_hull_ratio:Q", "B / v")
+            ),
+        )
     )
     hull = tow.mark_line(color="black", strokeDash=[5, 3]).encode(
         x, number(alt.Y, "hull_speed_m_s", say("b")), order="waterline_length_m:Q"
@@ -136,9 +142,10 @@ def towed_at(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     """Tow speed as part of hull speed, of every tow; grey is the 60-70 % of the presentation."""
     low, high = ROWED_RATIO
     zone = (
-        alt.Chart(alt.InlineData([{"low": low, "high": high}]))
+        alt.Chart(frame)
+        .transform_aggregate(n="count()")
         .mark_rect(color=GREY, opacity=0.25)
-        .encode(alt.X("low:Q"), alt.X2("high:Q"))
+        .encode(x=alt.datum(low), x2=alt.datum(high))
     )
     ink, form = _crew(say)
     points = (
@@ -147,7 +154,9 @@ def towed_at(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
         .mark_point(size=40, opacity=0.7)
         .encode(
             number(alt.X, "tow_hull_ratio", say("tow_hull_ratio")),
-            alt.Y("boat_type:N", title=say("type")),
+            alt.Y(
+                "boat_type:N", title=say("type"), axis=alt.Axis(labelExpr=named(["unknown"], say))
+            ),
             ink,
             form,
             tooltip=tips(("label:N", say("tow")), ("tow_hull_ratio:Q", say("tow_hull_ratio"))),

@@ -74,7 +74,10 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     "slide.x.weight": ("gewicht", "weight"),
     "slide.x.speed": ("sleepsnelheid", "tow speed"),
     "slide.x.length": ("lengte", "length"),
-    "slide.outside": ("Buiten hun type onder {after}: {names}.", "Outside their type under {after}: {names}."),
+    "slide.outside": (
+        "Buiten hun type onder {after}: {names}.",
+        "Outside their type under {after}: {names}.",
+    ),
     "slide.b_is_not": (
         "Nee: onder {after} ligt B op {ratio} keer de rompsnelheid ({lo} tot {hi}; {boats} "
         "sloepen); {share} ligt er binnen 5 % van.",
@@ -84,7 +87,8 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     "slide.b_is": (
         "Het kan: onder {after} ligt B op {ratio} keer de rompsnelheid ({lo} tot {hi}; {boats} "
         "sloepen).",
-        "It may be: under {after} B lies at {ratio} times hull speed ({lo} to {hi}; {boats} boats).",
+        "It may be: under {after} B lies at {ratio} times hull speed ({lo} to {hi}; {boats} "
+        "boats).",
     ),
     "slide.b_unknown": (
         "Te weinig sloepen met een B om het te zeggen ({boats}).",
@@ -97,18 +101,18 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
         "presentation says.",
     ),
     "slide.raced": (
-        "{n} proeven zijn in een wedstrijd buiten hun kromme gebruikt; daarvan geeft de eigen kromme "
-        "{up} te veel en {down} te weinig vermogen (interval zonder 1). Gesleept onder 70 W (dames "
-        "40) en geroeid boven 100 W (dames 57): {both}.",
-        "{n} tows were used off their curve in a race; of these the own curve gives {up} too much "
-        "and {down} too little power (interval without 1). Towed under 70 W (women 40) and raced "
-        "above 100 W (women 57): {both}.",
+        "{n} proeven zijn met weinig vermogen gesleept of in een wedstrijd buiten hun kromme "
+        "gebruikt; de eigen kromme geeft {up} te veel en {down} te weinig vermogen (interval "
+        "zonder 1). Gesleept onder 70 W (dames 40) en geroeid boven 100 W (dames 57): {both}.",
+        "{n} tows were made with little power or used off their curve in a race; their own curve "
+        "gives {up} too much and {down} too little power (interval without 1). Towed under 70 W "
+        "(women 40) and raced above 100 W (women 57): {both}.",
     ),
     "slide.years": (
-        "Cw bij {speed} m/s loopt over {n} proeven {before_spread} uiteen onder {before}, "
+        "{crew}: Cw bij {speed} m/s loopt over {n} proeven {before_spread} uiteen onder {before}, "
         "{after_spread} onder {after} (hoogste / laagste).",
-        "Cw at {speed} m/s spreads over {n} tows by {before_spread} under {before}, {after_spread} "
-        "under {after} (highest / lowest).",
+        "{crew}: Cw at {speed} m/s spreads over {n} tows by {before_spread} under {before}, "
+        "{after_spread} under {after} (highest / lowest).",
     ),
     "slide.apart": (
         "Proeven van {era} lagen onder {before} {before_shift} hoger dan de volgende van dezelfde "
@@ -118,5 +122,5 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     ),
     "slide.is_apart": ("dat nog afwijkt", "still apart"),
     "slide.not_apart": ("geen afwijking meer gezien", "no difference seen any more"),
-    "slide.nothing": ("Het archief heeft hiervoor geen gegevens.", "The archive holds no data for this."),
+    "decimal_mark": (",", "."),
 }

@@ -197,7 +197,8 @@ class _Prepared:
 
     def still_kg_m(self, ahead: FloatArray) -> FloatArray:
         """The still-air part that is put back, shape (runs,)."""
-        return self.still_unit_kg_m * ahead
+        put_back = self.steps.wind.reading != "cw_opt_2014"
+        return self.still_unit_kg_m * ahead * put_back
 
     def cw_kg_m(self, ahead: FloatArray, behind: FloatArray, still: FloatArray) -> FloatArray:
         """Corrected coefficient of each run for given drag coefficients, shape (runs,)."""

@@ -53,6 +53,9 @@ METHOD_FILES: Final = ("ensemble",)
 of it, and few readers want them."""
 
 STUDY_TABLES: Final = ("correction_steps", "option_effects")
+FIRST_PUBLISHED: Final = "as-published-2014"
+"""Numbers of 2014 before they were recomputed: a ladder leads from them to the first method."""
+
 STUDIED_METHOD: Final = "rebased"
 """The method whose options of judgement are studied."""
 
@@ -288,10 +291,10 @@ def make_studies(store: Store, methods: Sequence[Method], blocks: RunBlocks) -> 
     tows, first = store.read("tows"), methods[0]
     links = {m.name: store.read("season_links", m.name) for m in methods}
     ladders = [
-        ladder(first, other, tows, blocks, (links[first.name], links[other.name])).with_columns(
-            pl.lit(first.name).alias("from_method"), pl.lit(other.name).alias("to_method")
+        ladder(old, new, tows, blocks, (links[old.name], links[new.name])).with_columns(
+            pl.lit(old.name).alias("from_method"), pl.lit(new.name).alias("to_method")
         )
-        for other in methods[1:]
+        for old, new in (_in_order(first, other) for other in methods[1:])
     ]
     studied = [
         beside_uncertainty(
@@ -308,6 +311,11 @@ def make_studies(store: Store, methods: Sequence[Method], blocks: RunBlocks) -> 
     for name, frame in found.items():
         store.write(name, conform(name, frame), made_from)
     return {name: frame.height for name, frame in found.items()}
+
+
+def _in_order(first: Method, other: Method) -> tuple[Method, Method]:
+    """The two ends of a ladder: what came first in history is its beginning."""
+    return (other, first) if other.name == FIRST_PUBLISHED else (first, other)
 
 
 def consistency_made_from(store: Store, methods: Sequence[Method]) -> str:
