@@ -12,6 +12,7 @@ import polars as pl
 
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.blocks.run_blocks import RunBlocks
+from herijk.pipeline.channels import SECOND_FILE_OFFSET
 
 
 @dataclass(frozen=True)
@@ -65,6 +66,11 @@ class Batch:
     def direction(self) -> IntArray:
         """1 out, -1 back, shape (runs,)."""
         return self.blocks.runs["direction"].to_numpy().astype(np.int64)
+
+    @property
+    def in_second_file(self) -> BoolArray:
+        """Runs of the second file of a combined tow, shape (runs,)."""
+        return self.blocks.runs["run"].to_numpy() > SECOND_FILE_OFFSET
 
     @property
     def target_speed_ratio(self) -> FloatArray:

@@ -105,12 +105,14 @@ def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
     tow = o.batch.tow
     on_curve = curve.cw(o.curves.a_kg_m[tow], o.curves.s_s2_m2[tow], o.speed_m_s)
     log1 = np.where(found, blocks.mean("log1_v", mask), 1.0)
+    has_limits = o.steps.window.rule != "all"
     wind, log2 = (o.batch.measured(channel)[tow] for channel in ("wind", "log2"))
-    gps_samples = blocks.total("gps_n", mask)
-    gps = blocks.total("gps", mask) / np.maximum(gps_samples, 1.0)
     numbers = {
         "window_start_s": o.windows.start_s,
         "window_end_s": o.windows.end_s,
+        "end_speed_m_s": o.windows.ends.speed_m_s,
+        "end_force_ratio": o.windows.ends.force_ratio,
+        "end_wind_m_s": o.windows.ends.wind_m_s,
         "speed_factor": o.speed_factor,
         "speed_m_s": o.speed_m_s,
         "gross_cw_kg_m": o.gross_kg_m,
@@ -129,7 +131,8 @@ def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
     }
     return blocks.runs.select("tow_id", "run", "direction", "target_speed_ratio").with_columns(
         *(_column(name, values, found) for name, values in numbers.items()),
-        _column("gps_ratio", gps / log1, found & (gps_samples > 0)),
+        _column("ends_ratio", o.windows.ends.in_limits(o.steps.window), found & has_limits),
+        _column("gps_ratio", o.means.gps_m_s / log1, found),
         _column("fitted_cw_kg_m", on_curve, found & o.curves.converged[tow]),
         pl.Series("cut_reason", o.windows.reasons, pl.String),
         pl.Series("used", o.used),

@@ -161,13 +161,10 @@ def _gps_ratio(o: Outcome) -> tuple[FloatArray, FloatArray, np.ndarray]:
     The random part is the scatter of run ratios about their direction's mean, pooled over the
     batch: one tow's six runs are too few.
     """
-    batch, mask = o.batch, o.windows.mask
-    samples = batch.blocks.total("gps_n", mask)
-    gps = batch.blocks.total("gps", mask) / np.maximum(samples, 1.0)
-    used = o.used & (samples > 0)
-    log = o.speed_m_s / o.speed_factor
+    batch, gps, log = o.batch, o.means.gps_m_s, o.means.speed_m_s
+    used = o.used & np.isfinite(gps)
     y, both = gps_factor(gps, log, batch.direction, batch.tow, used, batch.size)
-    ratio = np.where(used, gps / np.where(used, log, 1.0), 1.0)
+    ratio = np.where(used, gps, 1.0) / np.where(used, log, 1.0)
     spread, count = 0.0, 0.0
     for way in (1, -1):
         mine = used & (batch.direction == way)

@@ -80,7 +80,9 @@ def print_reproduction(
     cw = pl.when(bend < 1.0).then(pl.col("a_kg_m") / (1.0 - bend))
     return (
         curves.drop_nulls("cw_kg_m")
-        .select("method", "tow_id", "season", *LINE, "a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s")
+        .select(
+            "method", "tow_id", "season", *LINE, "a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s"
+        )
         .join(of_tow, on="tow_id")
         .with_columns(cw.alias("cw_kg_m"))
         .with_columns((pl.col("printed_cw_kg_m") / pl.col("cw_kg_m")).alias("cw_ratio"))

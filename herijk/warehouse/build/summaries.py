@@ -10,8 +10,9 @@ from typing import Final
 import polars as pl
 
 from herijk.pipeline.register.replay import RaceRules, race_changes, replay
-from herijk.pipeline.studies import summaries
+from herijk.pipeline.studies import claims, summaries
 from herijk.tables.schemas import TABLES, conform
+from herijk.warehouse.archive import read_published_registers
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.store import Store, fingerprint, table_digest
 
@@ -23,8 +24,15 @@ SUMMARY_TABLES: Final = (
     "quality_counts",
     "check_counts",
     "trace_seconds",
+    "promise",
+    "print_reproduction",
+    "print_summary",
+    "run_statistics",
 )
-SUMMED: Final = ("tows", "register", "register_changes", "correction_steps", "option_effects")
+SUMMED: Final = (
+    *("tows", "register", "register_changes", "correction_steps", "option_effects"),
+    "repeat_pairs",
+)
 SUMMED_OF_METHODS: Final = ("curves", "run_points", "assessments")
 EDITIONS: Final = ("from_edition", "to_edition")
 
@@ -35,7 +43,7 @@ def summaries_made_from(store: Store, methods: Sequence[str]) -> str:
         {table: store.made_from(table) for table in SUMMED},
         {m: [store.made_from(table, m) for table in SUMMED_OF_METHODS] for m in methods},
         intake.blocks_made_from(store),
-        table_digest(store.read("listed_races")),
+        [table_digest(store.read(table)) for table in ("listed_races", "listed_files")],
     )
 
 
@@ -52,6 +60,7 @@ def make_summaries(store: Store, methods: Sequence[str]) -> dict[str, int]:
         Rows per table.
     """
     curves, run_points, assessments = (store.read_all(t, methods) for t in SUMMED_OF_METHODS)
+    blocks, printed = intake.all_blocks(store), _printed(store, curves)
     found = {
         "race_changes": _race_changes(store),
         "season_changes": summaries.season_changes(curves, methods[0]),
@@ -61,7 +70,11 @@ def make_summaries(store: Store, methods: Sequence[str]) -> dict[str, int]:
         "option_summary": summaries.option_summary(store.read("option_effects")),
         "quality_counts": summaries.quality_counts(curves, run_points),
         "check_counts": summaries.check_counts(assessments),
-        "trace_seconds": summaries.second_means(intake.all_blocks(store)),
+        "trace_seconds": summaries.second_means(blocks),
+        "promise": claims.promise(curves, store.read("repeat_pairs")),
+        "print_reproduction": printed,
+        "print_summary": claims.print_summary(printed),
+        "run_statistics": claims.run_statistics(blocks),
     }
     made_from = summaries_made_from(store, methods)
     for name, frame in found.items():
@@ -72,6 +85,15 @@ def make_summaries(store: Store, methods: Sequence[str]) -> dict[str, int]:
 def _cast(name: str, frame: pl.DataFrame) -> pl.DataFrame:
     """With the declared dtypes: counts come wider than they are kept."""
     return frame.cast({c: column.dtype for c, column in TABLES[name].columns().items()})
+
+
+def _printed(store: Store, curves: pl.DataFrame) -> pl.DataFrame:
+    """Every printed tow under every method; no rows where the archive is not at hand."""
+    root = intake.archive_root(store)
+    if root is None:
+        return TABLES["print_reproduction"].create_empty()
+    registers, _ = read_published_registers(root)
+    return claims.print_reproduction(registers, curves, store.read("tows"))
 
 
 def _race_changes(store: Store) -> pl.DataFrame:

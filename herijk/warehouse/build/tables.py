@@ -432,6 +432,7 @@ def _methods(methods: Sequence[Method]) -> pl.DataFrame:
             "method": [m.name for m in methods],
             "title": [m.title for m in methods],
             "title_en": [m.title_en for m in methods],
+            "interval": [m.interval for m in methods],
             "content_hash": [m.content_hash for m in methods],
             "definition": [m.definition for m in methods],
         }
