@@ -211,7 +211,7 @@ def wind_of_run(run, samples=200_000):
     ("run", "ahead", "behind", "ours"), [(1, 1, 0, "40.15"), (2, 0, 1, "38.2")]
 )
 def test_nothing_put_back_comes_nearest_to_cw_opt(run, ahead, behind, ours):
-    """The issue's own figures; what is left, 0.1 kg/m, is the wind's unprinted distribution."""
+    """From the printed means and spreads of the wind; its true distribution is not printed."""
     means = run_2014(run)
     speed, angle = wind_of_run(run)
     u = speed * np.cos(angle)

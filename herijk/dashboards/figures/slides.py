@@ -212,7 +212,9 @@ def boat_years(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
         alt.Detail("tow_id:N"),
         tooltip=tips(("tow_id:N", say("tow")), ("season:O", say("season"))),
     )
-    common = base.mark_rule(color=GREY, strokeDash=[3, 3]).encode(x="mean(standard_speed_m_s):Q")
+    common = base.mark_rule(color=GREY, strokeDash=[3, 3]).encode(
+        alt.X("mean(standard_speed_m_s):Q", title=say("speed"))
+    )
     return (
         alt.layer(common, curve, data=frame)
         .properties(width=SIDE, height=SIDE)

@@ -59,7 +59,8 @@ def print_reproduction(
         tows: `tow_id, tow_date` and the line.
 
     Returns:
-        Rows of the table `print_reproduction`; a printed line without a tow in the archive has none.
+        Rows of the table `print_reproduction`; a printed line without a tow in the archive has
+        none.
     """
     of_tow = (
         printed.filter("has_valid_curve")
