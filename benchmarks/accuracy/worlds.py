@@ -31,13 +31,13 @@ import duckdb
 import numpy as np
 import polars as pl
 
-import herijk.simulate
 from benchmarks.accuracy.score import Record, score, table
 from herijk.pipeline.method.definition import shipped_method
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import WORLDS, simulate_world, world_settings
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.store.code import code_version, source_hash
+from herijk.warehouse.build.version import code_version
+from herijk.warehouse.store.code import code_hash
 from tests.worlds import Measured, measure, truth_rows
 
 FOLDER = Path(os.environ.get("BENCH_FOLDER", "benchmarks/data")) / "accuracy"
@@ -119,8 +119,7 @@ def _by_blocks(world: str, seed: int) -> tuple[dict[str, pl.DataFrame], pl.DataF
 
 def _simulated(world: str, seed: int) -> Measured:
     """Simulated once for every version of the simulator; sums are kept with seven digits."""
-    here = Path(herijk.simulate.__file__).parent
-    version = source_hash(sorted(here.glob("*.py")))
+    version = code_hash("herijk.simulate.worlds", "herijk.pipeline.blocks.sums")
     kept = FOLDER / "blocks" / version / f"{world}-{seed}.pickle"
     if kept.exists():
         return _with_sums(pickle.loads(kept.read_bytes()), np.float64)  # noqa: S301, our own file
