@@ -4,6 +4,7 @@
 PYTHON ?= python3
 BIN = .venv/bin
 READY = .venv/.ready
+DEVELOP = .venv/.ready-develop
 DEMO = demo
 DEMO_WORLD = --seasons 2009:2018 --tows-per-season 12 --rate 1000 --seed 1
 
@@ -42,6 +43,13 @@ $(READY): requirements.lock pyproject.toml
 	  --no-deps --no-build-isolation --editable .
 	@touch $(READY)
 
+# What tests, checks and benchmarks need besides.
+$(DEVELOP): $(READY) requirements-dev.lock
+	@echo "Adding what tests and checks need."
+	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile \
+	  --no-deps --require-hashes --requirement requirements-dev.lock
+	@touch $(DEVELOP)
+
 demo: $(READY) $(DEMO)/archief
 	@$(BIN)/herijk rebuild --archive $(DEMO)/archief --data $(DEMO)/data
 	@echo
@@ -56,10 +64,10 @@ $(DEMO)/archief: | $(READY)
 	@rm -f $(DEMO)/archief-truth.json
 	@$(BIN)/herijk simulate $(DEMO)/archief $(DEMO_WORLD)
 
-test: $(READY)
+test: $(DEVELOP)
 	@$(BIN)/python -m pytest -n 2 --dist worksteal
 
-lint: $(READY)
+lint: $(DEVELOP)
 	@$(BIN)/ruff check .
 	@$(BIN)/ruff format --check .
 	@$(BIN)/mypy
@@ -70,12 +78,12 @@ lint: $(READY)
 TOWS ?= 60
 REPEATS ?= 5
 
-bench: $(READY)
+bench: $(DEVELOP)
 	@PYTHONPATH=. $(BIN)/python -m benchmarks.speed --tows-per-season $(TOWS) --repeats $(REPEATS) \
 	  --write $(if $(filter 60,$(TOWS)),docs,benchmarks/data)
 	@for part in fit editions samples_format; do echo "== $$part"; PYTHONPATH=. $(BIN)/python -m benchmarks.$$part || exit 1; done
 
-scale: $(READY)
+scale: $(DEVELOP)
 	@PYTHONPATH=. $(BIN)/python -m benchmarks.scale --tows-per-season $(TOWS)
 
 # Every named world: two hours on two cores for 20 archives each. A first look: make accuracy SEEDS=2
@@ -83,20 +91,20 @@ SEEDS ?= 20
 PROCESSES ?= 2
 PARTS = factors methods consistency season finding_2015
 
-accuracy: $(READY)
+accuracy: $(DEVELOP)
 	@PYTHONPATH=. $(BIN)/python -m benchmarks.accuracy.worlds --seeds $(SEEDS) --processes $(PROCESSES)
 
-accuracy-parts: $(READY)
+accuracy-parts: $(DEVELOP)
 	@for part in $(PARTS); do echo "== $$part"; PYTHONPATH=. $(BIN)/python -m benchmarks.accuracy.$$part || exit 1; done
 
-survive: $(READY)
+survive: $(DEVELOP)
 	@OPENBLAS_NUM_THREADS=1 PYTHONPATH=. $(BIN)/python -u benchmarks/robustness/survive.py 200
 
-fuzz: $(READY)
+fuzz: $(DEVELOP)
 	@PYTHONPATH=. $(BIN)/python benchmarks/robustness/fuzz.py 20000
 	@OPENBLAS_NUM_THREADS=1 PYTHONPATH=. $(BIN)/python benchmarks/robustness/mutate.py 300
 
-full-scale: $(READY)
+full-scale: $(DEVELOP)
 	@PYTHONPATH=. $(BIN)/python benchmarks/robustness/full_scale.py
 
 clean:

@@ -10,6 +10,9 @@ from tests.architecture.repository import ROOT, read, tracked_files
 MB = 1_000_000
 LOCKED = re.compile(r"^([a-z0-9][a-z0-9._-]*)==(\S+)", re.MULTILINE)
 
+LOCKS = ("requirements.lock", "requirements-dev.lock")
+"""What a user needs, and what tests and checks need besides."""
+
 
 def test_no_large_file_is_tracked():
     large = [f.name for f in tracked_files() if f.is_file() and f.stat().st_size > MB]
@@ -21,27 +24,34 @@ def test_what_is_made_is_not_tracked():
     assert [f for f in tracked_files() if f.relative_to(ROOT).parts[0] in made] == []
 
 
-def test_lock_names_no_index():
-    text = read("requirements.lock")
+@pytest.mark.parametrize("lock", LOCKS)
+def test_a_lock_names_no_index(lock):
+    text = read(lock)
     assert "://" not in text
     assert not re.search(r"^\s*-", re.sub(r"^\s+--hash=", "", text, flags=re.MULTILINE), re.M)
 
 
-def test_every_locked_package_has_a_hash():
-    blocks = re.split(r"\n(?=[a-z0-9])", read("requirements.lock"))
+@pytest.mark.parametrize("lock", LOCKS)
+def test_every_locked_package_has_a_hash(lock):
+    blocks = re.split(r"\n(?=[a-z0-9])", read(lock))
     locked = [block for block in blocks if LOCKED.match(block)]
     assert locked
     assert [LOCKED.match(b)[1] for b in locked if "--hash=sha256:" not in b] == []
 
 
 def test_every_dependency_is_locked():
-    locked = {name for name, _ in LOCKED.findall(read("requirements.lock"))}
+    locked = {name for name, _ in LOCKED.findall(read("requirements-dev.lock"))}
     project = read("pyproject.toml")
     needed = set(
         re.findall(r'^  "([a-z0-9-]+)', project[: project.index("[project.scripts]")], re.M)
     )
     assert {"numpy", "dagster", "ruff"} <= needed
-    assert needed - locked == set()
+    assert needed - locked - {"herijk"} == set()
+
+
+def test_both_locks_agree():
+    run, develop = (dict(LOCKED.findall(read(lock))) for lock in LOCKS)
+    assert {name: develop.get(name) for name in run} == run
 
 
 @pytest.mark.parametrize("name", shipped_methods())
