@@ -19,6 +19,7 @@ from typer.core import TyperGroup
 
 from herijk.cli import editions as commands_editions
 from herijk.cli import text
+from herijk.cli.archive import check, init
 from herijk.cli.arguments import ArchiveFolder, AsJson, DataFolder, show
 from herijk.cli.fit import fit
 from herijk.cli.overview import Overview, folders_here
@@ -40,6 +41,8 @@ app.add_typer(methods_app, name="methods", invoke_without_command=True)
 
 commands_editions.add_to(app)
 app.command()(fit)
+app.command()(check)
+app.command()(init)
 
 MOST_TYPES: Final = 2
 

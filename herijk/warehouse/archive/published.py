@@ -22,7 +22,7 @@ from herijk.warehouse.archive.files import (
     path_inside,
     read_bytes,
 )
-from herijk.warehouse.archive.lists import ListRow, read_list
+from herijk.warehouse.archive.lists import ListRow, Wording, read_list
 from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.profile import read_profiles
 from herijk.warehouse.archive.text import Column, shorten
@@ -85,7 +85,9 @@ _ROWING_TIME: Final = re.compile(r"([0-9]{1,2}):([0-5][0-9]):([0-5][0-9])(?:[.,]
 _ReadRow = Callable[[ListRow, int], dict[str, Any]]
 
 
-def read_published_registers(root: Path) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
+def read_published_registers(
+    root: Path, wording: Wording | None = None
+) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
     """Read every `sloepregister/sloepregister_<jaar>.csv`.
 
     Returns:
@@ -93,11 +95,15 @@ def read_published_registers(root: Path) -> tuple[pl.DataFrame, tuple[Fault, ...
         without a valid curve (published as Cw = 1) has `has_valid_curve` false and no A, B and Cw.
     """
     files = list_files(root, "sloepregister", REGISTER_PATTERN)
-    rows, faults = _read_all(root, files, REGISTER_COLUMNS, "bad_register_row", _register_line)
+    rows, faults = _read_all(
+        root, files, REGISTER_COLUMNS, "bad_register_row", _register_line, wording
+    )
     return pl.DataFrame(rows, schema=REGISTER_SCHEMA), faults
 
 
-def read_races(root: Path) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
+def read_races(
+    root: Path, wording: Wording | None = None
+) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
     """Read every `wedstrijden/<naam>_<jaar>.csv`.
 
     Returns:
@@ -105,7 +111,7 @@ def read_races(root: Path) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
         that cannot be read.
     """
     files = list_files(root, "wedstrijden", RACES_PATTERN)
-    rows, faults = _read_all(root, files, RACE_COLUMNS, "bad_race_row", _race_result)
+    rows, faults = _read_all(root, files, RACE_COLUMNS, "bad_race_row", _race_result, wording)
     return pl.DataFrame(rows, schema=RACE_SCHEMA), faults
 
 
@@ -115,8 +121,9 @@ def _read_all(
     columns: Sequence[Column],
     reason_code: str,
     read_row: _ReadRow,
+    wording: Wording | None,
 ) -> tuple[list[dict[str, Any]], tuple[Fault, ...]]:
-    wording = read_profiles(root).wording
+    wording = wording or read_profiles(root).wording
     good: list[dict[str, Any]] = []
     faults: list[Fault] = []
     for file in files:
