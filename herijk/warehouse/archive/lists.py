@@ -257,10 +257,10 @@ class ListRow:
         return value
 
     def crew_class(self, key: str) -> str:
-        """Return `H`, `D`, or the class that `[words]` says: `M` for a mixed crew."""
+        """Return `H` or `D`."""
         cell = self.text(key)
         value = CLASSES.get(fold_word(cell))
-        if value is None and cell not in self.reading.words.values():
+        if value is None:
             message = say(
                 "column '{column}' is '{cell}'; H or D is expected.",
                 column=self.named(key),
@@ -268,7 +268,7 @@ class ListRow:
                 expected="HD",
             )
             raise self.fault(message)
-        return value or cell
+        return value
 
     def yes_or_no(self, key: str) -> bool:
         """Return whether a cell says yes; an empty one says no."""
