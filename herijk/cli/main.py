@@ -20,6 +20,7 @@ from herijk.cli import editions as commands_editions
 from herijk.cli import methods, text
 from herijk.cli.archive import check, init
 from herijk.cli.arguments import ArchiveFolder, AsJson, DataFolder, show
+from herijk.cli.doctor import doctor
 from herijk.cli.fit import fit
 from herijk.cli.overview import Overview, defaults_of, folders_here
 from herijk.pipeline.errors import BrokenPromiseError, HerijkError
@@ -40,6 +41,7 @@ commands_editions.add_to(app)
 app.command()(fit)
 app.command()(check)
 app.command()(init)
+app.command()(doctor)
 
 MOST_TYPES: Final = 2
 
