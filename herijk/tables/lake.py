@@ -33,6 +33,12 @@ class ListedTows(Tows):
     list_line = dy.Int32(description="line in it", min=2)
 
 
+class ListedRuns(TowRuns):
+    """Runs of the listed tows, by the plan of their season."""
+
+    planned_s = column.number("s", "how long a run should last", nullable=True, min=0)
+
+
 class ListedWindows(HandWindows):
     """Windows given by hand, before anybody knows how long the runs are."""
 
@@ -99,7 +105,7 @@ class SeasonIndex(dy.Schema):
 
 SEASON_TABLES: dict[str, type[dy.Schema]] = {
     "season_tows": ListedTows,
-    "season_runs": TowRuns,
+    "season_runs": ListedRuns,
     "season_index": SeasonIndex,
 }
 """Tables with a partition per season."""

@@ -14,9 +14,8 @@ import polars as pl
 
 from herijk.pipeline.channels import SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError, MissingKnowledgeError
-from herijk.tables.archive import TowRuns
 from herijk.tables.frames import frame_of
-from herijk.tables.lake import ListedFiles, ListedTows, ListedWindows
+from herijk.tables.lake import ListedFiles, ListedRuns, ListedTows, ListedWindows
 from herijk.warehouse.archive import boats as boat_list
 from herijk.warehouse.archive import tows as tow_list
 from herijk.warehouse.archive import windows as window_list
@@ -60,7 +59,7 @@ class ArchiveIndex:
     Attributes:
         boats: one row a boat (`ListedBoats`).
         tows: one row a tow that can be read (`ListedTows`).
-        runs: one row a run of those tows (`TowRuns`); runs of a second file are 21 and on.
+        runs: one row a run of those tows (`ListedRuns`); runs of a second file are 21 and on.
         windows: windows given by hand for those runs (`ListedWindows`), of which nobody knows yet
             whether they lie in their run.
         faults: what is set aside, and why.
@@ -198,7 +197,7 @@ def index_archive(root: Path, hash_file: Callable[[Path], str]) -> ArchiveIndex:
     return ArchiveIndex(
         boats=boats.frame(),
         tows=frame_of(ListedTows, [entry.tow for entry in good]),
-        runs=frame_of(TowRuns, runs),
+        runs=frame_of(ListedRuns, runs),
         windows=frame_of(ListedWindows, windows),
         faults=tuple(sorted(faults, key=_fault_order)),
         files=hashes.frame(),
