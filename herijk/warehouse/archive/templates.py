@@ -4,10 +4,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
+import dataframely as dy
+
 from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.tables.lake import ListedBoats, ListedTows
 from herijk.warehouse.archive import boats as boat_list
 from herijk.warehouse.archive import tows as tow_list
-from herijk.warehouse.archive.boats import ROWERS
 from herijk.warehouse.archive.files import PROFILE_FILE
 from herijk.warehouse.archive.text import Column
 
@@ -66,13 +68,6 @@ EXAMPLE_TOW: Final = {
     "rowers": 8, "crew_class": "H", "declared_speed_m_s": 2.45, "weight_kg": 980,
     "crew_weight_kg": 760, "water_temperature_c": 8.5, "use_runs": "1-6", "altered": "nee",
 }  # fmt: skip
-_LIMITS: Final = {
-    "waterline_length_m": boat_list.LENGTH_M, "beam_m": boat_list.BEAM_M,
-    "bow_height_m": boat_list.BOW_HEIGHT_M, "weight_kg": boat_list.WEIGHT_KG,
-    "weight_after_kg": boat_list.WEIGHT_KG, "crew_weight_kg": tow_list.CREW_WEIGHT_KG,
-    "declared_speed_m_s": tow_list.SPEED_M_S, "water_temperature_c": tow_list.TEMPERATURE_C,
-    "sample_rate_hz": tow_list.SAMPLE_RATE_HZ,
-}  # fmt: skip
 _CHOICES: Final = {"crew_class": ["H", "D"], "altered": ["ja", "nee"]}
 
 
@@ -88,11 +83,17 @@ def write_templates(root: Path) -> None:
         (root / folder).mkdir(parents=True, exist_ok=True)
     (root / "LEESMIJ.md").write_text(README, encoding="utf-8")
     (root / PROFILE_FILE).write_text(PROFILE, encoding="utf-8")
-    _write_list(root / "sloepregister/sloependata.xlsx", boat_list.COLUMNS, EXAMPLE_BOAT)
-    _write_list(root / "sleeplijsten/sleeplijst_2025.xlsx", tow_list.COLUMNS, EXAMPLE_TOW)
+    _write_list(
+        root / "sloepregister/sloependata.xlsx", boat_list.COLUMNS, ListedBoats, EXAMPLE_BOAT
+    )
+    _write_list(
+        root / "sleeplijsten/sleeplijst_2025.xlsx", tow_list.COLUMNS, ListedTows, EXAMPLE_TOW
+    )
 
 
-def _write_list(path: Path, columns: Sequence[Column], example: dict[str, Any]) -> None:
+def _write_list(
+    path: Path, columns: Sequence[Column], table: type[dy.Schema], example: dict[str, Any]
+) -> None:
     """Write a spreadsheet with a header, an example, and a check on each column with limits."""
     import xlsxwriter  # type: ignore[import-untyped]  # noqa: PLC0415 - only here
 
@@ -104,24 +105,26 @@ def _write_list(path: Path, columns: Sequence[Column], example: dict[str, Any]) 
             sheet.set_column(place, place, max(10, len(column.named) + 2))
             sheet.write(0, place, column.named, bold)
             sheet.write(1, place, example.get(column.key, ""))
-            rule = _rule(column.key)
+            rule = _rule(column, table)
             if rule is not None:
                 sheet.data_validation(1, place, MOST_ROWS, place, rule)
 
 
-def _rule(key: str) -> dict[str, Any] | None:
-    """Return what a spreadsheet holds a column against."""
-    if key in _CHOICES:
-        return {"validate": "list", "source": _CHOICES[key]}
-    limits = _LIMITS.get(key, ROWERS if key == "rowers" else None)
-    if limits is None:
+def _rule(column: Column, table: type[dy.Schema]) -> dict[str, Any] | None:
+    """Return what a spreadsheet holds a column against: the limits that its table declares."""
+    if column.key in _CHOICES:
+        return {"validate": "list", "source": _CHOICES[column.key]}
+    declared = table.columns().get(column.key)
+    if not isinstance(declared, dy.Float64 | dy.Int32) or column.dimension == "ratio":
         return None
-    kind = "integer" if key in {"rowers", "sample_rate_hz"} else "decimal"
+    lowest, highest = declared.min, declared.max
+    if lowest is None or highest is None:
+        return None
     return {
-        "validate": kind,
+        "validate": "decimal" if isinstance(declared, dy.Float64) else "integer",
         "criteria": "between",
-        "minimum": limits[0],
-        "maximum": limits[1],
+        "minimum": lowest,
+        "maximum": highest,
         "error_title": "Kan dit kloppen?",
-        "error_message": f"Verwacht wordt {limits[0]:g} tot {limits[1]:g}.",
+        "error_message": f"Verwacht wordt {lowest:g} tot {highest:g}.",
     }
