@@ -218,8 +218,8 @@ SELECT * FROM type_consistency WHERE method = ? AND boat_type = ? ORDER BY quant
 """
 
 _ALL_TOWS = """
-SELECT * FROM type_lines WHERE method = ? AND boat_type = ? AND tows = 'all' AND NOT
-    (explaining = 'waterline_length_m') ORDER BY explaining DESC, quantity
+SELECT * FROM type_lines
+WHERE method = ? AND boat_type = ? AND tows = 'all' AND explaining = 'weight_kg' ORDER BY quantity
 """
 
 _HULL_SPEED = "SELECT * FROM hull_speed WHERE method = ? AND boat_type = ? AND tows = 'all'"
