@@ -62,7 +62,7 @@ def test_where_nothing_is_claimed_the_page_says_why(bench):
         for lines in ("type_consistency", "type_lines"):
             db.execute(
                 f"""UPDATE {lines} SET slope = NULL, slope_lo = NULL, slope_hi = NULL,
-                       reason = 'few_boats', n_boats = 2"""
+                       reason = 'few_boats', n_boats = 2"""  # noqa: S608
             )
         db.execute("UPDATE type_homogeneity SET reason = 'few_boats', n_boats = 2")
         db.execute("UPDATE speed_trend SET reason = 'few_boats', n_boats = 2")
