@@ -28,7 +28,9 @@ from herijk.pipeline.recompute.budget import (
     scatter_of,
 )
 from herijk.pipeline.recompute.outcome import Outcome
+from herijk.pipeline.recompute.season_factors import tow_instruments
 from herijk.pipeline.season_log import SeasonFactors, log_or_force, other_log_factors, retow_choice
+from herijk.pipeline.season_log.diagnosis import DIAGNOSIS_SCHEMA
 from herijk.pipeline.season_log.ties import TIE_SCHEMA
 from herijk.pipeline.steps.speed import log_factor
 from herijk.pipeline.steps.wind import mean_wind_angle_deg
@@ -53,6 +55,9 @@ class Recomputed:
     season_links: pl.DataFrame
     retow_choice: pl.DataFrame
     season_steps: pl.DataFrame
+    season_diagnosis: pl.DataFrame
+    tow_instruments: pl.DataFrame
+    best_estimate_weights: pl.DataFrame
     factors: SeasonFactors | None
 
 
@@ -96,6 +101,9 @@ def as_tables(
         season_links=_season_links(found).select(name, pl.all()),
         retow_choice=_retow_choice(found).select(name, pl.all()),
         season_steps=_season_steps(found).select(name, pl.all()),
+        season_diagnosis=_diagnosis(found).select(name, pl.all()),
+        tow_instruments=_instruments(found).select(name, pl.all()),
+        best_estimate_weights=_weights(found).select(name, pl.all()),
         factors=found,
     )
 
@@ -240,6 +248,27 @@ STEP_SCHEMA = (
     | dict.fromkeys(("level_step", "level_step_sd", "force_step", "force_step_sd"), pl.Float64())
     | {"cause": pl.String()}
 )
+
+
+def _diagnosis(found: SeasonFactors | None) -> pl.DataFrame:
+    """What is wrong with the instruments of each season; no rows without an estimate."""
+    return pl.DataFrame(schema=DIAGNOSIS_SCHEMA) if found is None else found.diagnosis
+
+
+def _instruments(found: SeasonFactors | None) -> pl.DataFrame:
+    """What was found of the instruments of each tow; no rows without an estimate."""
+    return pl.DataFrame(schema=INSTRUMENT_SCHEMA) if found is None else tow_instruments(found)
+
+
+def _weights(found: SeasonFactors | None) -> pl.DataFrame:
+    """What each best estimate rests on; no rows without an estimate."""
+    return pl.DataFrame(schema=WEIGHT_SCHEMA) if found is None else found.weights
+
+
+INSTRUMENT_SCHEMA = {"tow_id": pl.String(), "log": pl.String()} | dict.fromkeys(
+    ("factor", "force_factor", "force_zero_n", "bend", "ln_sd", "dof"), pl.Float64()
+)
+WEIGHT_SCHEMA = {"tow_id": pl.String(), "rests_on": pl.String(), "weight": pl.Float64()}
 
 
 def _retow_choice(found: SeasonFactors | None) -> pl.DataFrame:

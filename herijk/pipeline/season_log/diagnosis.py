@@ -87,10 +87,10 @@ def _row(
         "hi": mean + half,
         "p_fault": chance,
         "distance_sd": distance,
-        "verdict": _verdict(problem, network, key, chance, distance),
+        "verdict": _verdict(network, key, chance, distance),
         "first_tow": _first_tow(problem, posterior, network, faults, chance),
-        "rests_on": _rests_on(network, season, name),
-        "confused_with": _confused_with(problem, posterior, season, faults),
+        "rests_on": _rests_on(network, season),
+        "confused_with": _confused_with(problem, posterior, faults),
     }
 
 
@@ -106,7 +106,6 @@ def _distance(problem: Problem, posterior: Posterior, columns: list[int]) -> flo
 
 
 def _verdict(
-    problem: Problem,
     network: Network,
     key: tuple[int, int, str],
     chance: float | None,
@@ -139,7 +138,7 @@ def _first_tow(
     return str(after.sort("day", "tow_id")["tow_id"][0])
 
 
-def _rests_on(network: Network, season: int, name: str) -> str:
+def _rests_on(network: Network, season: int) -> str:
     """What tells: repeat boats, plain GPS, dGPS."""
     mine = network.numbers("season") == season
     elsewhere = set(network.boat[~mine].tolist())
@@ -152,9 +151,7 @@ def _rests_on(network: Network, season: int, name: str) -> str:
     return ", ".join(told)
 
 
-def _confused_with(
-    problem: Problem, posterior: Posterior, season: int, faults: list[int]
-) -> str | None:
+def _confused_with(problem: Problem, posterior: Posterior, faults: list[int]) -> str | None:
     """Other faults that would explain as much, likeliest first."""
     chance: FloatArray = posterior.instead[faults].sum(axis=0) + posterior.instead[:, faults].sum(
         axis=1

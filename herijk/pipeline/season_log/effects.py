@@ -9,7 +9,7 @@ speed and its bend q = r / (1 - r) into
     ln Cw + 2 lambda - ln m,    q y^2 / m,    m = 1 - q (y^2 - 1)
 
 A load cell that reads exp(phi) times the force adds phi to ln Cw and leaves q; one whose zero is
-off by the share g of the force adds g to ln Cw and -(1 + q) g to the bend (research, method.md 8.2).
+off by the share g of the force adds g to ln Cw and -(1 + q) g to the bend (method.md 8.2).
 """
 
 from collections.abc import Iterator
@@ -219,4 +219,3 @@ def slopes(q: FloatArray, force_n: FloatArray, ln_factor: FloatArray) -> Slopes:
             "bend": by_bend,
         },
     )
-

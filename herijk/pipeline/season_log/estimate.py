@@ -120,13 +120,13 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
     mode_sd, mode = _weakest_mode(covariance)
     best, weights = best_estimates(problem, posterior, network)
     eras = len(settings.era_starts)
-    wander_sd = np.exp(0.5 * fit.ln_variance[3 : 3 + eras]).tolist()
+    wander_sd = np.exp(0.5 * fit.state.ln_variance[3 : 3 + eras]).tolist()
     numbers = _numbers(network, posterior, along, mode)
     return SeasonFactors(
         factors=_described(numbers, network, second),
         covariance=covariance,
         wander_sd=dict(zip(settings.era_starts, wander_sd, strict=True)),
-        tow_sd=float(np.exp(0.5 * fit.ln_variance[0])),
+        tow_sd=float(np.exp(0.5 * fit.state.ln_variance[0])),
         ageing_per_year=ageing_per_year,
         ageing_sd=ageing_sd,
         weakest_mode_sd=mode_sd,

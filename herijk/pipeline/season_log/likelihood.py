@@ -105,12 +105,13 @@ class Told:
         """Observed information on the unknowns, per boat (Louis 1982)."""
         off = self.pull - self.mean_pull[:, None]
         unsure = np.einsum("bp,bpi,bpj->bij", self.weight, off, off)
-        return np.swapaxes(self.slope, 1, 2) @ (self.mean_precision - unsure) @ self.slope
+        seen = self.mean_precision - unsure
+        return np.asarray(np.swapaxes(self.slope, 1, 2) @ seen @ self.slope)
 
     @property
     def complete_information(self) -> FloatArray:
         """The same as if the pattern of each boat were known."""
-        return np.swapaxes(self.slope, 1, 2) @ self.mean_precision @ self.slope
+        return np.asarray(np.swapaxes(self.slope, 1, 2) @ self.mean_precision @ self.slope)
 
     @property
     def score(self) -> FloatArray:

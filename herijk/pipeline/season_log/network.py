@@ -77,7 +77,7 @@ class Network:
 
     @cached_property
     def critical(self) -> BoolArray:
-        """Whether a determined group is tied to the anchor no more without a boat, (boats, groups)."""
+        """Whether a group is tied to the anchor no more without a boat, (boats, groups)."""
         lost = np.zeros((len(self.boat_names), len(self.has_gps)), dtype=bool)
         for cluster in range(len(self.boat_names)):
             others = self.cluster != cluster

@@ -7,10 +7,11 @@ the answer is averaged over the best model and all that differ from it by one fa
 or one for another (Bayesian model averaging in Occam's window: Madigan & Raftery 1994).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
+import scipy
 
 from herijk.pipeline.arrays import FloatArray, IntArray
 from herijk.pipeline.choice import first_largest
@@ -23,6 +24,12 @@ MAX_ITERATIONS: Final = 300
 TOLERANCE: Final = 1e-10
 UNTROUBLED: Final = 4
 """First iterations, in which no boat is taken for altered: logs may be far off yet."""
+NO_ALTERATION: Final = 1e-9
+ACCELERATED: Final = 8
+MODEST: Final = 0.1
+"""Steps are accelerated after so many, when they are no larger than this."""
+REMEMBERED: Final = 5
+"""Steps that the acceleration looks back on."""
 MOST_FAULTS: Final = 12
 ROUGH: Final = 1e-4
 """Movement at which a fit is good enough to ask which faults there are."""
@@ -131,16 +138,33 @@ def _boat_mean(values: FloatArray, boat: IntArray) -> FloatArray:
 
 
 @dataclass(frozen=True)
+class _State:
+    """What is searched: the active unknowns, ln variances, and the share of alterations."""
+
+    value: FloatArray
+    ln_variance: FloatArray
+    share: float
+
+    @property
+    def array(self) -> FloatArray:
+        return np.concatenate([self.value, self.ln_variance, [scipy.special.logit(self.share)]])
+
+    def of(self, array: FloatArray) -> "_State":
+        k = len(self.value)
+        return _State(array[:k], array[k:-1], float(scipy.special.expit(array[-1])))
+
+
+@dataclass(frozen=True)
 class Fit:
     """Unknowns and variances at their mode.
 
     Attributes:
         active: (k,) unknowns in the model.
-        value: (k,)
+        state: their values, the ln variances (between tows, of bend, of GPS, wander of each era,
+            then the factor of each season) and the share of gaps between tows with an alteration
+            that was not reported.
         covariance: (k, k) of those.
-        ln_variance: between tows, of bend, of GPS, wander of each era, then factor of each season.
-        ln_variance_covariance: of these.
-        share: of gaps between tows with an alteration that was not reported.
+        ln_variance_covariance: of the ln variances.
         told: what the boats say there.
         slopes: of the numbers of each tow.
         own: (n, 3, 3) covariance of what is a tow's own.
@@ -148,15 +172,18 @@ class Fit:
     """
 
     active: IntArray
-    value: FloatArray
+    state: _State
     covariance: FloatArray
-    ln_variance: FloatArray
     ln_variance_covariance: FloatArray
-    share: float
     told: list[Told]
     slopes: Slopes
     own: FloatArray
     parts: FloatArray
+
+    @property
+    def value(self) -> FloatArray:
+        """Values of the active unknowns, (k,)."""
+        return self.state.value
 
     def dof(self, direction: FloatArray) -> FloatArray:
         """Satterthwaite's degrees of freedom of combinations of the active unknowns.
@@ -188,47 +215,60 @@ def fit(
         start: an earlier fit to begin at.
         tolerance: movement below which nothing moves any more.
     """
+    mean = _prior(problem, active)[0]
+    if start is None:
+        prior = _variance_prior(problem)[0]
+        now = _State(mean, prior, problem.settings.changed_share)
+    else:
+        before = dict(zip(start.active.tolist(), start.state.value.tolist(), strict=True))
+        kept = [before.get(i, m) for i, m in zip(active.tolist(), mean.tolist(), strict=True)]
+        now = replace(start.state, value=np.array(kept))
+    places, steps = [now.array], []
+    for iteration in range(MAX_ITERATIONS):
+        untroubled = start is None and iteration < UNTROUBLED
+        found, step = _step(problem, active, now, untroubled)
+        steps.append(step)
+        if np.abs(step).max() < tolerance and not untroubled:
+            break
+        following = _accelerated(places[-1 - REMEMBERED :], steps[-1 - REMEMBERED :])
+        settled = iteration >= ACCELERATED and np.abs(step).max() < MODEST
+        places.append(following if settled else places[-1] + step)
+        now = now.of(places[-1])
+    return found
+
+
+def _step(
+    problem: Problem, active: IntArray, now: _State, untroubled: bool
+) -> tuple[Fit, FloatArray]:
+    """What is known at a state, and the scoring step from there."""
     mean, precision = _prior(problem, active)
     prior, prior_precision = _variance_prior(problem)
-    value, ln_variance, share = mean, prior, problem.settings.changed_share
-    if start is not None:
-        before = dict(zip(start.active.tolist(), start.value.tolist(), strict=True))
-        value = np.array([before.get(i, m) for i, m in zip(active.tolist(), mean, strict=True)])
-        ln_variance, share = start.ln_variance, start.share
-    for iteration in range(MAX_ITERATIONS):
-        held, residual = problem.slopes(value, active)
-        own, parts = _own(problem, held, ln_variance)
-        believed = share if start is not None or iteration >= UNTROUBLED else 1e-9
-        design = problem.design(held, active)
-        told = list(tell(problem.groups, residual, own, held.state, design, believed))
-        full = np.sum([t.complete_information.sum(axis=0) for t in told], axis=0)
-        seen = np.sum([t.information.sum(axis=0) for t in told], axis=0)
-        normal = _positive(seen, full, precision)
-        covariance = np.linalg.inv(normal)
-        score = np.sum([t.score for t in told], axis=0)
-        step = covariance @ (score - precision * (value - mean))
-        slope, fisher = _variance_slopes(told, covariance, parts)
-        ln_variance_covariance = np.linalg.inv(fisher + np.diag(prior_precision))
-        move = ln_variance_covariance @ (slope - prior_precision * (ln_variance - prior))
-        move = np.clip(move, -1.0, 1.0)
-        new_share = _share(told, problem.settings)
-        moved = max(np.abs(step).max(), np.abs(move).max(), abs(new_share - share))
-        if moved < tolerance:
-            break
-        value = value + step
-        ln_variance, share = ln_variance + move, new_share
-    return Fit(
-        active,
-        value,
-        covariance,
-        ln_variance,
-        ln_variance_covariance,
-        share,
-        told,
-        held,
-        own,
-        parts,
-    )
+    held, residual = problem.slopes(now.value, active)
+    own, parts = _own(problem, held, now.ln_variance)
+    design = problem.design(held, active)
+    share = NO_ALTERATION if untroubled else now.share
+    told = list(tell(problem.groups, residual, own, held.state, design, share))
+    full = np.sum([t.complete_information.sum(axis=0) for t in told], axis=0)
+    seen = np.sum([t.information.sum(axis=0) for t in told], axis=0)
+    covariance: FloatArray = np.linalg.inv(_positive(seen, full, precision)).astype(np.float64)
+    score = np.sum([t.score for t in told], axis=0)
+    step = covariance @ (score - precision * (now.value - mean))
+    slope, fisher = _variance_slopes(told, covariance, parts)
+    fisher += np.diag(prior_precision)
+    ln_variance_covariance: FloatArray = np.linalg.inv(fisher).astype(np.float64)
+    move = ln_variance_covariance @ (slope - prior_precision * (now.ln_variance - prior))
+    gain = scipy.special.logit(_share(told, problem.settings)) - scipy.special.logit(now.share)
+    found = Fit(active, now, covariance, ln_variance_covariance, told, held, own, parts)
+    return found, np.concatenate([step, np.clip(move, -1.0, 1.0), [gain]])
+
+
+def _accelerated(places: list[FloatArray], steps: list[FloatArray]) -> FloatArray:
+    """Next place by Anderson's acceleration (1965) of the last steps."""
+    moved, changed = np.diff(places, axis=0), np.diff(steps, axis=0)
+    if not len(moved):
+        return np.asarray(places[-1] + steps[-1])
+    weight = np.linalg.lstsq(changed.T, steps[-1], rcond=1e-10)[0]
+    return np.asarray(places[-1] + steps[-1] - weight @ (moved + changed))
 
 
 def _prior(problem: Problem, active: IntArray) -> tuple[FloatArray, FloatArray]:

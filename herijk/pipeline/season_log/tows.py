@@ -12,7 +12,7 @@ import polars as pl
 import scipy
 
 from herijk.pipeline.arrays import BoolArray, FloatArray
-from herijk.pipeline.season_log.effects import OF_BOATS, WAYS
+from herijk.pipeline.season_log.effects import FORCE, OF_BOATS, WAYS, ZERO, ZERO_DRIFT
 from herijk.pipeline.season_log.likelihood import LEVEL, Told
 from herijk.pipeline.season_log.network import Network
 from herijk.pipeline.season_log.posterior import Posterior, Problem
@@ -27,24 +27,44 @@ LEAST_WEIGHT: Final = 0.005
 def instrument_errors(problem: Problem, posterior: Posterior, network: Network) -> pl.DataFrame:
     """What the instruments did to each tow.
 
+    A fault of the load cell counts from where it is likelier than not; what is less likely is in
+    the uncertainty alone.
+
     Returns:
-        `tow_id`, `ln_factor` (of the log), `ln_force` (what load cell and its zero add to ln Cw),
-        `sd` and `dof` of both together in ln Cw; in the order of the network.
+        `tow_id, log`, `factor` of the log (null where the season is not determined; 1 with dGPS),
+        `force_factor` and `force_zero_n` of the load cell: read = true x factor + zero; `bend`, q
+        of the boat; `ln_sd` and `dof` of what all of them do to ln Cw, per unit of the elasticity
+        2 + 2 q. In the order of the network.
     """
     design, of_boats, speed = _design(problem, posterior)
     level = np.where(of_boats, 0.0, design[:, LEVEL])
     share = problem.share[:, posterior.places]
-    ln_factor = share[:, speed] @ posterior.mean[speed]
-    force = np.where(speed, 0.0, level) @ posterior.mean
-    variance = ((level @ posterior.covariance) * level).sum(axis=1)
-    dof = posterior.fit.dof(level[:, : len(posterior.fit.active)])
+    names = np.array([problem.unknowns[i].name for i in posterior.places])
+    found = np.isin(posterior.places, posterior.fit.active) & np.isin(
+        posterior.places, problem.faults
+    )
+    k = len(posterior.fit.active)
+    found[k:] = False
+    force, zero = found & (names == FORCE), found & np.isin(names, (ZERO, ZERO_DRIFT))
+    variance = np.maximum(((level @ posterior.covariance) * level).sum(axis=1), 0.0)
+    loose = network.group >= 0
+    determined = ~loose | network.determined[network.group]
+    known = np.sqrt(variance) / (2.0 + 2.0 * problem.q)
     return network.tows.select(
         "tow_id",
-        pl.Series("ln_factor", ln_factor),
-        pl.Series("ln_force", force),
-        pl.Series("sd", np.sqrt(np.maximum(variance, 0.0))),
-        pl.Series("dof", dof),
+        "log",
+        _where(determined, "factor", np.exp(share[:, speed] @ posterior.mean[speed])),
+        pl.Series("force_factor", np.exp(share[:, force] @ posterior.mean[force])),
+        pl.Series("force_zero_n", share[:, zero] @ posterior.mean[zero]),
+        pl.Series("bend", problem.q),
+        pl.Series("ln_sd", np.where(determined, known, problem.settings.log_sd)),
+        pl.Series("dof", posterior.fit.dof(level[:, :k])),
     )
+
+
+def _where(known: BoolArray, name: str, values: FloatArray) -> pl.Series:
+    """A column of numbers, null where not known."""
+    return pl.Series(name, np.where(known, values, np.nan)).fill_nan(None)
 
 
 def best_estimates(
@@ -63,9 +83,9 @@ def best_estimates(
     numbers = np.zeros((len(problem.q), 4))
     shares = []
     for held in posterior.fit.told:
-        found = _of_boats(held, problem, posterior, (design, true_level, away))
+        found = _of_boats(held, posterior, (design, true_level, away))
         numbers[held.patterns.tow] = found[0]
-        boats, tows = held.patterns.tow.shape
+        tows = held.patterns.tow.shape[1]
         shares.append(
             pl.DataFrame(
                 {
@@ -116,7 +136,6 @@ def _design(problem: Problem, posterior: Posterior) -> tuple[FloatArray, BoolArr
 
 def _of_boats(
     held: Told,
-    problem: Problem,
     posterior: Posterior,
     given: tuple[FloatArray, FloatArray, FloatArray],
 ) -> tuple[FloatArray, FloatArray]:

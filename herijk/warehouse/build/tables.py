@@ -44,6 +44,9 @@ METHOD_TABLES: Final = (
     "season_links",
     "retow_choice",
     "season_steps",
+    "season_diagnosis",
+    "tow_instruments",
+    "best_estimate_weights",
     "uncertainty_budget",
     "curve_points",
     "assessments",
@@ -281,7 +284,7 @@ def make_studies(store: Store, methods: Sequence[Method], blocks: RunBlocks) -> 
         Rows per table.
     """
     tows, first = store.read("tows"), methods[0]
-    links = {m.name: store.read("season_links", m.name) for m in methods}
+    links = {m.name: store.read("tow_instruments", m.name) for m in methods}
     ladders = [
         ladder(first, other, tows, blocks, (links[first.name], links[other.name])).with_columns(
             pl.lit(first.name).alias("from_method"), pl.lit(other.name).alias("to_method")
