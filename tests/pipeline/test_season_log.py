@@ -26,7 +26,7 @@ from tests.pipeline.season_worlds import ANCHORED_FROM, CLEAN, HARD, simulate
 PERFECT = replace(
     CLEAN, tow_noise=0.0, run_noise=1e-6, gps_run_error=0.0, gps_season_error=0.0, kappa_error=0.0
 )
-WORLDS = 20
+WORLDS = 6
 USUAL = Settings()
 
 

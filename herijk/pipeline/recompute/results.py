@@ -18,6 +18,7 @@ from herijk.pipeline.arrays import BoolArray
 from herijk.pipeline.assessment.assess import assess, with_status
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.races.race import power_per_rower_w
+from herijk.pipeline.recompute.best import with_best
 from herijk.pipeline.recompute.budget import (
     CURVE_SPEED_RATIOS,
     DECLARED,
@@ -36,6 +37,8 @@ from herijk.pipeline.steps.speed import log_factor
 from herijk.pipeline.steps.wind import mean_wind_angle_deg
 
 LEVEL = 0.95
+FULL, RUNS_ALONE = "full", "runs_alone"
+"""What the interval of a curve has in it."""
 
 
 @dataclass(frozen=True)
@@ -79,6 +82,7 @@ def as_tables(
     budget = budget_of(outcomes, found, CURVE_SPEED_RATIOS if with_bands else (DECLARED,))
     bounds = cw_bounds(budget)
     curves = together([_curves(o, bounds.filter(at_declared), pooled) for o in outcomes])
+    curves = with_best(curves, found, budget.filter(at_declared))
     assessments = assess(curves, run_points, tows)
     rejecting = [
         (season, check)
@@ -170,6 +174,7 @@ def _curves(o: Outcome, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
         *(_column(name, values, sound) for name, values in numbers.items()),
         _column("b_m_s", o.curves.b_m_s, sound & o.curves.b_determined),
         _column("calibration_factor", o.calibration_factor, _calibrated(o)),
+        pl.Series("interval_kind", np.where(o.calibrated | pooled, FULL, RUNS_ALONE), pl.String),
         pl.Series("b_capped", o.curves.b_capped),
         pl.Series("runs_used", o.batch.count(o.used), pl.Int8),
     )

@@ -20,10 +20,12 @@ from herijk.pipeline.season_log.effects import WAYS, Slopes, Unknown, slopes, un
 from herijk.pipeline.season_log.likelihood import GPS, Patterns, Told, patterns_of, tell
 from herijk.pipeline.season_log.network import Network
 
-MAX_ITERATIONS: Final = 300
+MAX_ITERATIONS: Final = 100
 TOLERANCE: Final = 1e-10
 UNTROUBLED: Final = 4
 """First iterations, in which no boat is taken for altered: logs may be far off yet."""
+LEAST_SD: Final = 0.001
+"""No number of a tow is ever better known: keeps the search finite where all tows agree."""
 NO_ALTERATION: Final = 1e-9
 ACCELERATED: Final = 8
 MODEST: Final = 0.1
@@ -78,6 +80,7 @@ class Problem:
         given[:, 0, 0], given[:, 1, 1] = (network.numbers(n) ** 2 for n in ("ln_cw_sd", "q_sd"))
         given[:, 0, 1] = given[:, 1, 0] = cov
         given[:, GPS, GPS] = np.where(has_gps, network.numbers("gps_sd") ** 2, 0.0)
+        given += LEAST_SD**2 * np.eye(3)
         absent = np.zeros((len(level), 3, 3))
         absent[:, GPS, GPS] = np.where(has_gps, 0.0, NOT_OBSERVED)
         unknowns = unknowns_of(network, settings)

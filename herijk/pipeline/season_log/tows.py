@@ -12,7 +12,7 @@ import polars as pl
 import scipy
 
 from herijk.pipeline.arrays import BoolArray, FloatArray
-from herijk.pipeline.season_log.effects import FORCE, OF_BOATS, WAYS, ZERO, ZERO_DRIFT
+from herijk.pipeline.season_log.effects import FORCE, OF_BOATS, WAYS, ZERO, ZERO_DRIFT, slopes
 from herijk.pipeline.season_log.likelihood import LEVEL, Told
 from herijk.pipeline.season_log.network import Network
 from herijk.pipeline.season_log.posterior import Posterior, Problem
@@ -73,7 +73,8 @@ def best_estimates(
     """What all tows of a boat, and all boats, say of ln Cw at each tow.
 
     Returns:
-        `tow_id, ln_cw, sd, lo, hi` (95 %), in the order of the network; and the shares
+        `tow_id, as_measured, ln_cw, sd, lo, hi` (95 %), in the order of the network: ln Cw by the
+        tow alone with the corrections of `instrument_errors`, then by all; and the shares
         `tow_id, rests_on, weight` that sum to 1 per tow.
     """
     design, of_boats, _ = _design(problem, posterior)
@@ -113,6 +114,7 @@ def best_estimates(
     return (
         network.tows.select(
             "tow_id",
+            pl.Series("as_measured", _as_measured(problem, posterior, network)),
             pl.Series("ln_cw", base + ln_cw),
             pl.Series("sd", sd),
             pl.Series("lo", base + lo),
@@ -124,6 +126,17 @@ def best_estimates(
             weight=weights["weight"],
         ),
     )
+
+
+def _as_measured(problem: Problem, posterior: Posterior, network: Network) -> FloatArray:
+    """Ln Cw of each tow alone, with its instruments corrected as `instrument_errors` says."""
+    found = instrument_errors(problem, posterior, network)
+    factor, scale, zero = (
+        found[name].fill_null(1.0).to_numpy() for name in ("factor", "force_factor", "force_zero_n")
+    )
+    by_log = slopes(problem.q, problem.force_n, np.log(factor)).predicted[:, LEVEL]
+    by_force = np.log(scale) - np.log1p(-zero / problem.force_n)
+    return np.asarray(network.numbers("ln_cw") - by_log - by_force)
 
 
 def _design(problem: Problem, posterior: Posterior) -> tuple[FloatArray, BoolArray, BoolArray]:
