@@ -11,8 +11,9 @@ import polars as pl
 import scipy
 
 from herijk.pipeline.arrays import FloatArray
-from herijk.pipeline.season_log.effects import CHANGE, LOG, ZERO, ZERO_DRIFT
-from herijk.pipeline.season_log.network import Network
+from herijk.pipeline.season_log.effects import CHANGE, FORCE, LOG, OF_BOATS, ZERO, ZERO_DRIFT
+from herijk.pipeline.season_log.likelihood import LEVEL as LEVEL_NUMBER
+from herijk.pipeline.season_log.network import GROUP, Network
 from herijk.pipeline.season_log.posterior import Posterior, Problem
 
 LEVEL: Final = 0.95
@@ -21,6 +22,16 @@ FOUND: Final = 0.5
 POSSIBLE: Final = 0.05
 """One of this probability cannot be told."""
 ALARM_SD: Final = 4.0
+CANNOT_BE_TOLD: Final = "cannot be told"
+NOT_DETERMINED: Final = "not determined"
+FORCES: Final = (FORCE, ZERO, ZERO_DRIFT)
+_VERDICT: Final = ("season", "part", "instrument", "verdict")
+
+STEP_SCHEMA: Final = (
+    {"season": pl.Int32(), "part": pl.Int32(), "log": pl.String(), "n_boats": pl.Int32()}
+    | dict.fromkeys(("level_step", "level_step_sd", "force_step", "force_step_sd"), pl.Float64())
+    | {"cause": pl.String()}
+)
 
 DIAGNOSIS_SCHEMA: Final = {
     "season": pl.Int32(),
@@ -59,6 +70,61 @@ def season_diagnosis(problem: Problem, posterior: Posterior, network: Network) -
         _row(problem, posterior, network, key, columns) for key, columns in sorted(keys.items())
     ]
     return pl.DataFrame(rows, schema=DIAGNOSIS_SCHEMA, orient="row")
+
+
+def season_steps(
+    problem: Problem, posterior: Posterior, network: Network, diagnosis: pl.DataFrame
+) -> pl.DataFrame:
+    """Whether the step of a season against the others comes from the log or from the load cell.
+
+    Returns:
+        Rows of `STEP_SCHEMA`: `level_step`, what log and load cell together do to ln Cw, and
+        `force_step`, the part of the load cell, with standard deviations; `cause` is `force` where
+        a fault of the load cell is likelier than not, `not told` where one cannot be told or the
+        season is not determined, `log` where the level differs by more than twice its standard
+        deviation, else `none`.
+    """
+    names = np.array([problem.unknowns[i].name for i in posterior.places])
+    level = problem.design(posterior.fit.slopes, posterior.places)[:, LEVEL_NUMBER]
+    instruments = np.where(np.isin(names, tuple(OF_BOATS)), 0.0, level)
+    forces = np.where(np.isin(names, FORCES), instruments, 0.0)
+    verdicts = {(r[0], r[1], r[2]): r[3] for r in diagnosis.select(*_VERDICT).iter_rows()}
+    rows = []
+    placed = network.tows.select(GROUP).with_row_index("row")
+    for key, part in placed.group_by(GROUP, maintain_order=True):
+        mine = part["row"].to_numpy()
+        step, step_sd = _mean_effect(posterior, instruments[mine])
+        force, force_sd = _mean_effect(posterior, forces[mine])
+        season = int(str(key[0]))
+        of_force = {verdicts.get((season, 0, name)) for name in FORCES}
+        lost = verdicts.get((season, int(str(key[1])), LOG)) == NOT_DETERMINED
+        rows.append(
+            dict(zip(GROUP, key, strict=True))
+            | {
+                "n_boats": _boats_elsewhere(network, season),
+                "level_step": step,
+                "level_step_sd": step_sd,
+                "force_step": force,
+                "force_step_sd": force_sd,
+                "cause": _cause(of_force, lost, abs(step) > 2.0 * step_sd),
+            }
+        )
+    return pl.DataFrame(rows, schema=STEP_SCHEMA).sort(GROUP)
+
+
+def _mean_effect(posterior: Posterior, effects: FloatArray) -> tuple[float, float]:
+    """Mean over tows of what unknowns do to ln Cw, and its standard deviation."""
+    along = effects.mean(axis=0)
+    variance = max(float(along @ posterior.covariance @ along), 0.0)
+    return float(along @ posterior.mean), float(np.sqrt(variance))
+
+
+def _cause(of_force: set[str | None], lost: bool, steps: bool) -> str:
+    if of_force & {"fault", "alarm"}:
+        return "force"
+    if lost or CANNOT_BE_TOLD in of_force:
+        return "not told"
+    return "log" if steps else "none"
 
 
 def _row(
@@ -114,12 +180,12 @@ def _verdict(
     season, part, name = key
     if name == LOG:
         mine = (network.groups["season"] == season) & (network.groups["part"] == part)
-        return "estimated" if network.determined[mine.to_numpy()].all() else "not determined"
+        return "estimated" if network.determined[mine.to_numpy()].all() else NOT_DETERMINED
     if chance is not None and chance >= FOUND:
         return "fault"
     if distance is not None and abs(distance) >= ALARM_SD:
         return "alarm"
-    return "cannot be told" if chance is not None and chance >= POSSIBLE else "sound"
+    return CANNOT_BE_TOLD if chance is not None and chance >= POSSIBLE else "sound"
 
 
 def _first_tow(
@@ -138,12 +204,16 @@ def _first_tow(
     return str(after.sort("day", "tow_id")["tow_id"][0])
 
 
+def _boats_elsewhere(network: Network, season: int) -> int:
+    """Boats of a season that were towed in other seasons too."""
+    mine = network.numbers("season") == season
+    return len(set(network.boat[mine].tolist()) & set(network.boat[~mine].tolist()))
+
+
 def _rests_on(network: Network, season: int) -> str:
     """What tells: repeat boats, plain GPS, dGPS."""
     mine = network.numbers("season") == season
-    elsewhere = set(network.boat[~mine].tolist())
-    boats = len({boat for boat in network.boat[mine].tolist() if boat in elsewhere})
-    told = [f"{boats} boats towed in other seasons too"]
+    told = [f"{_boats_elsewhere(network, season)} boats towed in other seasons too"]
     if np.isfinite(network.numbers("gps_ln_ratio")[mine & (network.group >= 0)]).any():
         told.append("plain GPS")
     if (network.group[mine] < 0).any():

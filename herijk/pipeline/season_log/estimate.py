@@ -11,7 +11,7 @@ from herijk.pipeline.arrays import FloatArray, IntArray
 from herijk.pipeline.choice import first_largest
 from herijk.pipeline.errors import BrokenPromiseError
 from herijk.pipeline.season_log.assumed import USUAL, Settings
-from herijk.pipeline.season_log.diagnosis import season_diagnosis
+from herijk.pipeline.season_log.diagnosis import season_diagnosis, season_steps
 from herijk.pipeline.season_log.effects import AGEING, WAYS
 from herijk.pipeline.season_log.network import GROUP, Network
 from herijk.pipeline.season_log.posterior import Posterior, Problem, solve
@@ -42,7 +42,8 @@ class SeasonFactors:
         tows: what it was estimated from.
         instruments: per tow, what its instruments did: `pipeline.season_log.tows`.
         best: per tow, what all tows together say of its Cw; `weights`: what that rests on.
-        diagnosis: per season and instrument, what is wrong: `pipeline.season_log.diagnosis`.
+        diagnosis: per season and instrument, what is wrong: `pipeline.season_log.diagnosis`;
+            `steps`: whether a season's step is the log's or the load cell's.
     """
 
     factors: pl.DataFrame
@@ -57,6 +58,7 @@ class SeasonFactors:
     best: pl.DataFrame
     weights: pl.DataFrame
     diagnosis: pl.DataFrame
+    steps: pl.DataFrame
 
     def of_season(self, season: int, log: str) -> tuple[float, float, float, str] | None:
         """Factor, bounds and source of a season; None where not determined.
@@ -121,6 +123,7 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
     best, weights = best_estimates(problem, posterior, network)
     eras = len(settings.era_starts)
     wander_sd = np.exp(0.5 * fit.state.ln_variance[3 : 3 + eras]).tolist()
+    diagnosis = season_diagnosis(problem, posterior, network)
     numbers = _numbers(network, posterior, along, mode)
     return SeasonFactors(
         factors=_described(numbers, network, second),
@@ -134,7 +137,8 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
         instruments=instrument_errors(problem, posterior, network),
         best=best,
         weights=weights,
-        diagnosis=season_diagnosis(problem, posterior, network),
+        diagnosis=diagnosis,
+        steps=season_steps(problem, posterior, network, diagnosis),
     )
 
 
@@ -193,7 +197,7 @@ def _numbers(
     lost = network.critical[:, known]
     change = _without_each_boat(network, posterior) @ along[:, :k].T
     move = np.where(lost, np.inf, np.abs(np.expm1(change)) * np.exp(ln_factor))
-    influence = move.max(axis=0, initial=0.0)
+    influence = move.max(axis=0, initial=0.0) if len(known) else np.zeros(0)
     placed = {
         "ln_factor": ln_factor,
         "ln_sd": np.sqrt(np.einsum("gf,fh,gh->g", along, posterior.covariance, along)),
