@@ -160,4 +160,3 @@ def test_repeat_tows_show_what_differs_between_tows_and_shrink_nothing_else():
     assert held.filter(shared)["u_ratio"].to_list() == other.filter(shared)["u_ratio"].to_list()
     assert u_of(other, "between_tows") == pytest.approx(0.02)
     assert u_of(other, "calibration") == u_of(other, "stream_drift") == 0.0
-

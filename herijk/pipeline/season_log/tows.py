@@ -48,7 +48,8 @@ def instrument_errors(problem: Problem, posterior: Posterior, network: Network) 
     force, zero = found & (names == FORCE), found & np.isin(names, (ZERO, ZERO_DRIFT))
     variance = np.maximum(((level @ posterior.covariance) * level).sum(axis=1), 0.0)
     loose = network.group >= 0
-    determined = ~loose | network.determined[network.group]
+    determined = ~loose
+    determined[loose] = network.determined[network.group[loose]]
     known = np.sqrt(variance) / (2.0 + 2.0 * problem.q)
     return network.tows.select(
         "tow_id",
