@@ -7,8 +7,8 @@ from herijk.assets.definitions import defs
 ASSETS = [
     "archive_index",
     "assessments",
-    "blocks",
     "best_estimate_weights",
+    "blocks",
     "boats",
     "check_counts",
     "compared_tows",
