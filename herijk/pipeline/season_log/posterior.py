@@ -33,6 +33,8 @@ MODEST: Final = 0.1
 REMEMBERED: Final = 5
 """Steps that the acceleration looks back on."""
 MOST_FAULTS: Final = 12
+WINDOW: Final = 20.0
+"""Models that are so many times less likely than the best are left out (Madigan & Raftery)."""
 ROUGH: Final = 1e-4
 """Movement at which a fit is good enough to ask which faults there are."""
 NOT_OBSERVED: Final = 1e4
@@ -459,6 +461,22 @@ def _better(problem: Problem, found: Fit) -> IntArray | None:
     return np.append(found.active, problem.faults[best]) if more[best] > 0.0 else None
 
 
+def _in_window(problem: Problem, weight: FloatArray) -> FloatArray:
+    """Weights of the models in Occam's window, 1 together.
+
+    A fault that is twenty times less likely than the best model lies in the tails that an interval
+    of 95 % leaves out. All places where one log may have changed count as one.
+    """
+    held = [problem.unknowns[i] for i in problem.faults]
+    names = [(u.name, u.season, u.group) for u in held]
+    kinds = {name: number for number, name in enumerate(dict.fromkeys(names))}
+    kind = np.array([kinds[name] for name in names], dtype=np.int64)
+    together = np.stack([np.bincount(kind, row[:-1], len(kinds))[kind] for row in weight])
+    kept = weight.copy()
+    kept[:, :-1][together * WINDOW < weight.max()] = 0.0
+    return np.asarray(kept / kept.sum())
+
+
 def _averaged(problem: Problem, found: Fit) -> Posterior:
     """Averages over the fit and all models that differ by one fault more, less, or for another."""
     candidates = _candidates(problem, found)
@@ -476,11 +494,14 @@ def _averaged(problem: Problem, found: Fit) -> Posterior:
         more.ln_odds[own] = -np.inf
         ln_weight.append(np.append(ln_base + more.ln_odds, ln_base))
         models.append(more)
-    weight = np.exp(np.array(ln_weight) - np.max(ln_weight))
-    weight /= weight.sum()
+    all_weight = np.exp(np.array(ln_weight) - np.max(ln_weight))
+    all_weight /= all_weight.sum()
+    weight = _in_window(problem, all_weight)
     mean, second = np.zeros(k + faults), np.zeros((k + faults, k + faults))
     chance, instead = np.zeros(faults), np.zeros((faults, faults))
-    for w, more, (_, place, covariance, away) in zip(weight, models, bases, strict=True):
+    for w, all_w, more, (_, place, covariance, away) in zip(
+        weight, all_weight, models, bases, strict=True
+    ):
         centre = np.append(found.value + away, np.zeros(faults))
         spread = np.zeros_like(second)
         spread[:k, :k] = covariance
@@ -492,12 +513,12 @@ def _averaged(problem: Problem, found: Fit) -> Posterior:
         cross = np.outer(centre, way @ step)
         mean += total
         second += w.sum() * (spread + np.outer(centre, centre)) + square + cross + cross.T
-        chance += w[:-1]
+        chance += all_w[:-1]
         for p, fault in zip(places.tolist(), own, strict=True):
             if p != place:
-                chance[fault] += w.sum()
+                chance[fault] += all_w.sum()
             else:
-                instead[fault] += w[:-1]
+                instead[fault] += all_w[:-1]
     return Posterior(
         found,
         np.append(found.active, problem.faults),

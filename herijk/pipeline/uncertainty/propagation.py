@@ -157,6 +157,8 @@ class Assumed:
         temperature_ratio_per_c: change of Cw with water temperature.
         temperature_formula_ratio: wetted surface and friction formula.
         straightness_ratio: tows that are pulled slightly askew.
+        force_standard_ratio: the part of `force_ratio` that all seasons share: what differs
+            between them is estimated with the log.
         mass_standard_ratio: the part of `mass_ratio` that all tows of a boat share.
         between_tows_ratio: what repeat tows show of all that differs from tow to tow.
     """
@@ -173,6 +175,7 @@ class Assumed:
     temperature_ratio_per_c: float = 0.003
     temperature_formula_ratio: float = 0.002
     straightness_ratio: float = 0.002
+    force_standard_ratio: float = 0.002
     mass_standard_ratio: float = 0.002
     between_tows_ratio: float = 0.0
 
@@ -190,6 +193,7 @@ class Assumed:
         return replace(
             self,
             between_tows_ratio=tow_sd,
+            force_ratio=self.force_standard_ratio,
             calibration_speed_ratio=0.0,
             stream_drift_speed_ratio=0.0,
             mass_ratio=self.mass_standard_ratio,
