@@ -31,7 +31,8 @@ import duckdb
 import numpy as np
 import polars as pl
 
-from benchmarks.accuracy.score import Record, score, table
+from benchmarks.accuracy.score import EQUAL_BOATS, Record, score, table
+from herijk.pipeline.consistency import observe, type_homogeneity
 from herijk.pipeline.method.definition import shipped_method
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import WORLDS, simulate_world, world_settings
@@ -49,7 +50,7 @@ FIRST_SEED = 7000
 ONLY_FROM_FILES = ("dropouts",)
 """Worlds whose fault is for the reader of files."""
 METHOD = "rebased"
-TABLES = ("curves", "log_factors", "season_steps", "season_diagnosis")
+TABLES = ("curves", "log_factors", "season_steps", "season_diagnosis", EQUAL_BOATS)
 
 Task = tuple[str, int, bool]
 
@@ -114,7 +115,12 @@ def measured(world: str, seed: int, files: bool) -> list[Record]:
 def _by_blocks(world: str, seed: int) -> tuple[dict[str, pl.DataFrame], pl.DataFrame]:
     archive = _simulated(world, seed)
     made = recompute(shipped_method(METHOD), archive.tows, archive.blocks, with_bands=False)
-    return {name: getattr(made, name) for name in TABLES if hasattr(made, name)}, archive.truth
+    tables = {name: getattr(made, name) for name in TABLES if hasattr(made, name)}
+    if WORLDS[world].options.get("spread") == 0.0:
+        boats = archive.tows.select("fsn_no", "boat_type").unique()
+        seen = observe(made.curves, archive.tows, boats, made.run_points)
+        tables[EQUAL_BOATS] = type_homogeneity(seen)
+    return tables, archive.truth
 
 
 def _simulated(world: str, seed: int) -> Measured:

@@ -8,11 +8,10 @@ import polars as pl
 
 from herijk.assets.partitions import methods
 from herijk.assets.resources import Setup
-from herijk.pipeline.method.definition import shipped_method
 from herijk.tables.lake import SEASON_TABLES
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.build.graph import STEPS
-from herijk.warehouse.build.inputs import BLOCKS, DECISIONS, LISTED, PUBLISHED
+from herijk.warehouse.build.inputs import BLOCKS, DECISIONS, LISTED, PRINTED, PUBLISHED
 from herijk.warehouse.build.step import Made, Step
 
 KINDS = {"warehouse_database": "duckdb"}
@@ -32,7 +31,7 @@ def step_asset(step: Step) -> dg.AssetsDefinition:
     def asset(context: dg.AssetExecutionContext, setup: Setup):
         chosen = setup.chosen_methods
         if step.per_method:
-            chosen = [shipped_method(context.partition_key)]
+            chosen = [setup.known_methods.get(context.partition_key)]
         made = step.make(setup.store, chosen)
         for table, frame in made.tables.items():
             yield dg.MaterializeResult(asset_key=table, metadata=_metadata(frame))
@@ -56,7 +55,7 @@ def _spec(step: Step, table: str) -> dg.AssetSpec:
 
 def _deps(name: str) -> Iterator[dg.AssetDep]:
     """The asset behind an input of a step; decisions and editions are no assets."""
-    if name in LISTED:
+    if name in (*LISTED, PRINTED):
         yield dg.AssetDep("archive_index")
     elif name in SEASON_TABLES or name == BLOCKS:
         asset = BLOCKS if name == BLOCKS else "samples"

@@ -16,7 +16,7 @@ from dagster._daemon.sensor import execute_sensor_iteration
 
 from herijk.assets.automation import archive_sensor, schedules
 from herijk.assets.definitions import build_defs, defs
-from herijk.assets.jobs import STEPS
+from herijk.assets.jobs import NAMES
 from herijk.assets.rebuild import INSTANCE_SETTINGS
 from herijk.assets.settings import Settings
 from tests.conftest import METHODS
@@ -141,7 +141,7 @@ def test_a_night_without_a_change_does_no_work_and_says_so(bench):
     """The job itself, as the schedule runs it."""
     bench.rebuild()
     before = bench.lake_files(), bench.store.database.stat().st_mtime_ns
-    location = build_defs(str(bench.archive), str(bench.data), list(METHODS), Settings())
+    location = build_defs(str(bench.archive), str(bench.data), Settings(methods=METHODS))
     with dg.DagsterInstance.ephemeral() as instance, bench.records_in_memory():
         result = location.resolve_job_def("rebuild").execute_in_process(instance=instance)
     (output,) = [e for e in result.all_events if e.event_type_value == "STEP_OUTPUT"]
@@ -166,7 +166,7 @@ def test_schedules_run_the_rebuild_at_night_and_in_the_season():
 def test_no_job_publishes():
     """The code that publishes is not even loaded where jobs run."""
     jobs = {job.name for job in defs.resolve_all_job_defs()} - {"__ASSET_JOB"}
-    assert jobs == {*STEPS, "rebuild"}
+    assert jobs == {*NAMES, "rebuild"}
     found = subprocess.run(
         [sys.executable, "-c", "import herijk.assets.definitions, sys; print(*sys.modules)"],
         cwd=ROOT, capture_output=True, text=True, check=True,

@@ -45,7 +45,7 @@ def archive_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     unsound = index.drop_nulls("reason_code").select(Faults.column_names())
     set_aside = pl.concat([inputs["list_faults"], beyond, unsound])
     found = {
-        "boats": inputs["listed_boats"],
+        "boats": inputs["listed_boats"].unique("fsn_no", keep="last", maintain_order=True),
         "seasons": _seasons(inputs["season_tows"], sound),
         "tows": inputs["season_tows"].join(sound, on="tow_id", how="semi"),
         "tow_runs": runs,

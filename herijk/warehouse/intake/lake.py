@@ -25,14 +25,9 @@ from herijk.warehouse.archive import (
     fault_from,
     read_tow_samples,
 )
-from herijk.warehouse.store.code import code_hash
+from herijk.warehouse.archive.files import PARTS, hash_of_parts
+from herijk.warehouse.store.code import ADDERS, READERS, code_hash
 from herijk.warehouse.store.store import Store, count_rows, fingerprint, read_parquet, write_parquet
-
-READERS: Final = ("herijk.warehouse.archive.samples", "herijk.warehouse.archive.plausibility")
-"""Modules that turn a file into samples: when they compute otherwise, files are read again."""
-
-ADDERS: Final = ("herijk.pipeline.blocks.sums",)
-"""Modules that add samples up: when they compute otherwise, the lake's samples are added again."""
 
 LAKE_FORM: Final = {
     "compression": "lz4",
@@ -151,19 +146,20 @@ def _check_unchanged(root: Path, tow: Tow, hashes: FileHashes) -> None:
     A file with the size and time it had when it was hashed is not read once more.
     """
     for path, sha256 in (("samples_path", "samples_sha256"), ("second_path", "second_sha256")):
-        if tow[path] is not None and _sha256(root / tow[path], hashes) != tow[sha256]:
+        if tow[path] is not None and _sha256(root, tow[path], hashes) != tow[sha256]:
             raise ArchiveChangedError(
                 f"{tow[path]} changed while it was read. Try again when nobody is copying files "
                 f"into {root}"
             )
 
 
-def _sha256(path: Path, hashes: FileHashes) -> str | None:
-    """Hash of a file; None when it went away."""
+def _sha256(root: Path, path: str, hashes: FileHashes) -> str | None:
+    """Hash of samples; None when a file of theirs went away."""
     try:
-        return hashes.hash_file(path)
+        parts = [hashes.hash_file(root / part) for part in path.split(PARTS)]
     except FileNotFoundError:
         return None
+    return parts[0] if len(parts) == 1 else hash_of_parts(parts)
 
 
 def forget_season(store: Store, season: int) -> None:
