@@ -31,6 +31,9 @@ DUTCH: Final[dict[str, str]] = {
     "column '{column}' is '{cell}', not a date such as 2014-03-01 or 01-03-2014.": (
         "kolom '{column}' is '{cell}'; dat is geen datum zoals 2014-03-01 of 01-03-2014."
     ),
+    "column '{column}' is '{cell}', which cannot be right.": (
+        "kolom '{column}' is '{cell}'; dat kan niet kloppen."
+    ),
     "column '{column}' is '{cell}'; H or D is expected.": (
         "kolom '{column}' is '{cell}'; H of D wordt verwacht."
     ),
