@@ -59,6 +59,11 @@ class Tows(dy.Schema):
     remark = column.text("remark in the tow list", nullable=True)
     log1_part = dy.Int32(description="times log 1 had been replaced that season", min=0)
     log2_part = dy.Int32(description="times log 2 had been replaced that season", min=0)
+    doubts = dy.List(
+        dy.String(),
+        description="checks by which all other tows rule this one out: it needs a look, and takes "
+        "no part in what tows share",
+    )
     samples_path = column.text("samples file in the archive")
     samples_sha256 = column.sha256("its content hash")
     second_path = column.text("second samples file, if two tows were combined", nullable=True)

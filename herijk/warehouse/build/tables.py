@@ -27,6 +27,7 @@ from herijk.pipeline.uncertainty.ensemble import as_frame, register_ensemble
 from herijk.tables.archive import Quarantine
 from herijk.tables.schemas import TABLES, conform
 from herijk.warehouse.archive import outside_run
+from herijk.warehouse.build.plausible import gross_faults, judge, with_doubts
 from herijk.warehouse.build.due import due_made_from, due_rows
 from herijk.warehouse.build.summaries import SUMMARY_TABLES
 from herijk.warehouse.editions.published import published_made_from, published_tables
@@ -119,6 +120,10 @@ def collect_archive(store: Store, today: dt.date) -> dict[str, int]:
     sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
     tows = store.read_all("season_tows").join(sound, on="tow_id", how="semi")
     runs = store.read_all("season_runs").join(sound, on="tow_id", how="semi")
+    shifts = judge(_with_types(store, tows), runs, intake.all_blocks(store))
+    implausible = gross_faults(shifts, tows)
+    tows = with_doubts(tows.join(implausible, on="tow_id", how="anti"), shifts)
+    sound, runs = (frame.join(tows, on="tow_id", how="semi") for frame in (sound, runs))
     windows = store.read("listed_windows").join(runs, on=["tow_id", "run"], how="semi")
     beyond = _outside_run(store, windows)
     found = {
@@ -129,7 +134,7 @@ def collect_archive(store: Store, today: dt.date) -> dict[str, int]:
         "hand_windows": windows.join(
             beyond, left_on=_LISTED_AT, right_on=["path", "line"], how="anti"
         ),
-        "quarantine": _quarantine(store, index, beyond, today),
+        "quarantine": _quarantine(store, index, [beyond, implausible], today),
     }
     if tows.is_empty():
         raise _nothing_sound(found["quarantine"])
@@ -177,13 +182,13 @@ def _outside_run(store: Store, windows: pl.DataFrame) -> pl.DataFrame:
 
 
 def _quarantine(
-    store: Store, index: pl.DataFrame, beyond: pl.DataFrame, today: dt.date
+    store: Store, index: pl.DataFrame, found: Sequence[pl.DataFrame], today: dt.date
 ) -> pl.DataFrame:
     """All faults; one that was there before keeps the day on which it was first seen."""
     faults = pl.concat(
         [
             store.read("list_faults"),
-            beyond,
+            *found,
             index.filter(pl.col("reason_code").is_not_null()).select(list(intake.FAULT_SCHEMA)),
         ]
     )
@@ -236,8 +241,12 @@ def run_blocks(store: Store) -> RunBlocks:
 
 def typed_tows(store: Store) -> pl.DataFrame:
     """All sound tows with the type of their boat."""
-    types = store.read("boats").select("fsn_no", "boat_type")
-    return store.read("tows").join(types, on="fsn_no", how="left")
+    return _with_types(store, store.read("tows"))
+
+
+def _with_types(store: Store, tows: pl.DataFrame) -> pl.DataFrame:
+    types = store.read("listed_boats").select("fsn_no", "boat_type")
+    return tows.join(types, on="fsn_no", how="left")
 
 
 def apply_method(store: Store, method: Method, blocks: RunBlocks) -> dict[str, pl.DataFrame]:
