@@ -202,7 +202,7 @@ def test_numbers_in_the_xlsx_are_numbers_and_days_are_days(published):
     cells = sheets.read_xlsx_cells((folder(published) / "register.xlsx").read_bytes())
     register = edition_of(published).register
     letter = dict(
-        zip((f.header for f in sheets.REGISTER_FIELDS), "ABCDEFGHIJKLMNOPQRSTUVW", strict=True)
+        zip((f.header for f in sheets.REGISTER_FIELDS), "ABCDEFGHIJKLMNOPQRSTUVWX", strict=True)
     )
     for row, line in enumerate(register.iter_rows(named=True), 2):
         assert cells[f"{letter['fsn_nr']}{row}"] == line["fsn_no"]

@@ -133,6 +133,7 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.printed": ("gedrukt", "printed"),
     "code.closed_form": ("omgerekend", "closed form"),
     "code.excluded": ("uitgesloten", "excluded"),
+    "code.doubted": ("eerst nakijken", "to be looked at first"),
     "code.never_towed": ("niet gesleept", "never towed"),
     "code.no_valid_curve": ("geen geldige kromme", "no valid curve"),
     "code.unknown": ("onbekend", "unknown"),

@@ -7,22 +7,22 @@ import numpy as np
 TOLERANCE: Final = 0.12
 """How far a logarithm may lie from that of an exchange, when it is known exactly."""
 
-FORCE: Final = {
-    "kN": 1e-3,
-    "kgf": 1 / 9.80665,
-    "daN": 1 / 10.0,
-    "lbf": 1 / 4.4482216,
-    "half the gain": 0.5,
-    "twice the gain": 2.0,
-    "mN": 1e3,
+_EXCHANGES: Final = {
+    "force": {
+        "kgf instead of N": 9.80665,
+        "daN instead of N": 10.0,
+        "lbf instead of N": 4.4482216,
+        "kN instead of N": 1e3,
+        "a gain of two": 2.0,
+    },
+    "wind": {
+        "km/h instead of m/s": 3.6,
+        "knots instead of m/s": 1.9438445,
+        "mph instead of m/s": 2.2369363,
+        "ft/s instead of m/s": 3.2808399,
+    },
 }
-"""Number in the file / newtons, for what may stand under a header of newtons. kgf and daN differ by
-2 % and are named together."""
-
-WIND: Final = {"km/h": 3.6, "mph": 2.2369363, "knots": 1.9438445, "ft/s": 3.2808399}
-"""Number in the file / metres a second."""
-
-_EXCHANGES: Final = {"force": FORCE, "wind": WIND}
+"""Size of an exchange, whichever way round. kgf and daN differ by 2 % and are named together."""
 
 
 def likely_cause(quantity: str, ln_size: float, sd: float) -> str:
@@ -34,8 +34,6 @@ def likely_cause(quantity: str, ln_size: float, sd: float) -> str:
         sd: its standard deviation.
     """
     known = _EXCHANGES.get(quantity, {})
-    far = {name: abs(ln_size - np.log(ratio)) for name, ratio in known.items()}
+    far = {name: abs(abs(ln_size) - np.log(ratio)) for name, ratio in known.items()}
     near = sorted((d, name) for name, d in far.items() if d <= TOLERANCE + 2.0 * sd)
-    if not near:
-        return ""
     return " or ".join(name for d, name in near if d <= near[0][0] + TOLERANCE)

@@ -58,7 +58,9 @@ class Candidates:
     least: FloatArray
 
 
-def find_shifts(seen: Observations, may: Candidates, limit: float) -> list[tuple[int, float, float]]:
+def find_shifts(
+    seen: Observations, may: Candidates, limit: float
+) -> list[tuple[int, float, float]]:
     """Shifts beyond so many standard deviations, the clearest first.
 
     Where tows scatter more or less than is assumed, the limit moves with them.
@@ -116,7 +118,7 @@ class _Precision:
         return product
 
     def weights(self, directions: scipy.sparse.csc_array) -> FloatArray:
-        """g'Pg of each direction, before anything is taken out."""
+        """Gives g'Pg of each direction, before anything is taken out."""
         scaled = directions.multiply(1.0 / self._seen.variance[:, None]).tocsc()
         own = np.asarray(directions.multiply(scaled).sum(axis=0)).ravel()
         shared = scipy.linalg.solve_triangular(

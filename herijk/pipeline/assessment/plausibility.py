@@ -34,6 +34,7 @@ FEWEST: Final = 3
 GROSS: Final = np.log(1.6)
 """Shift of a logarithm that no boat explains: the widest spread within a type is far less."""
 
+
 @dataclass(frozen=True)
 class Spread:
     """Standard deviations that one observed quantity has beforehand (inferred).
@@ -66,6 +67,7 @@ SPEED: Final = Spread(tow=0.008, day=0.004, season=0.01, archive=0.01)
 LEAST: Final = {"force": 0.05, "zero": 0.0, "wind": 0.2, "vane": 0.2, "speed": 0.025}
 """Sizes that matter, however clear: smaller ones change Cw by less than a tow scatters."""
 
+
 @dataclass(frozen=True)
 class Shift:
     """A shift that chance does not explain.
@@ -93,7 +95,7 @@ class Shift:
         if self.quantity == "vane":
             return self.cause != ""
         if self.quantity == "wind":
-            return self.cause != "" and np.log1p(self.size) > GROSS
+            return self.cause != "" and abs(np.log1p(self.size)) > GROSS
         return self.quantity == "force" and abs(self.size) > GROSS
 
 
@@ -113,6 +115,7 @@ def implausible(batch: Batch) -> list[Shift]:
     ]
 
 
+_RADIANS: Final = "radians instead of degrees"
 _GROUPS: Final = ("tow", "day", "season", "archive")
 
 
@@ -123,10 +126,10 @@ def _in_radians(seen: Seen) -> Iterator[Shift]:
         mine = whose == season
         found = mine & seen.in_radians
         if found.sum() >= FEWEST and found.sum() > 0.5 * mine.sum():
-            yield Shift("season", str(season), "vane", 1.0, 0.0, tuple(tows[mine]), "radians")
+            yield Shift("season", str(season), "vane", 1.0, 0.0, tuple(tows[mine]), _RADIANS)
         else:
             for tow in tows[found]:
-                yield Shift("tow", str(tow), "vane", 1.0, 0.0, (str(tow),), "radians")
+                yield Shift("tow", str(tow), "vane", 1.0, 0.0, (str(tow),), _RADIANS)
 
 
 # What may have shifted, and how much it scatters by itself
@@ -152,7 +155,7 @@ def _groups(tows: pl.DataFrame, kinds: tuple[str, ...]) -> list[Group]:
 
 
 def _places(key: pl.Series) -> Iterator[tuple[str, IntArray]]:
-    names, first, rank = np.unique(key.to_numpy(), return_index=True, return_inverse=True)
+    names, rank = np.unique(key.to_numpy(), return_inverse=True)
     order, ends = np.argsort(rank, kind="stable"), np.cumsum(np.bincount(rank))
     yield from zip(names, np.split(order, ends[:-1]), strict=True)
 
@@ -193,9 +196,7 @@ def _of_one(
     if tows.is_empty():
         return []
     effects, variance = _effects(tows, spread)
-    observed = Observations(
-        values[there], np.full(tows.height, spread.tow**2), effects, variance
-    )
+    observed = Observations(values[there], np.full(tows.height, spread.tow**2), effects, variance)
     groups = _groups(tows, kinds)
     columns = [np.where(np.isin(np.arange(tows.height), g[2]), 1.0, 0.0) for g in groups]
     return _named(tows, observed, [(quantity, g, c) for g, c in zip(groups, columns, strict=True)])

@@ -34,7 +34,7 @@ RADIANS: Final = 2.0 * np.pi
 """Angles in radians lie between -3.14 and 6.28: degrees of a vane that hardly moves."""
 
 LEAST_RESULTANT: Final = float(np.cos(np.radians(3.3)))
-"""Length of the mean direction of angles of which half are 0 and half 6.28 degrees, or less apart."""
+"""Length of the mean direction of angles of which half are 0 and half 6.28 degrees."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +66,7 @@ class Seen:
 
     @classmethod
     def of(cls, batch: Batch) -> "Seen":
+        """What the selected runs of each tow show."""
         whole = batch.blocks.n > 0
         mean = {
             name: batch.blocks.mean(name, whole)
@@ -94,14 +95,16 @@ class Seen:
 
 
 def _season_gps(batch: Batch, log_m_s: FloatArray, runs: BoolArray) -> FloatArray:
-    """Mean ln(GPS / log 1) of each tow's season, median of its tows; NaN without GPS, shape (tows,).
+    """Median ln(GPS / log 1) of the tows of each tow's season; NaN without, shape (tows,).
 
     Plain GPS says little of one tow and enough of a season.
     """
     fixes = batch.blocks["gps_n"].sum(axis=1)
     gps = batch.blocks["gps"].sum(axis=1) / np.maximum(fixes, 1.0)
     there = runs & (fixes > 0) & (gps > 0)
-    ratio = _both_ways(batch, np.log(np.where(there, gps, 1.0) / np.where(there, log_m_s, 1.0)), there)
+    ratio = _both_ways(
+        batch, np.log(np.where(there, gps, 1.0) / np.where(there, log_m_s, 1.0)), there
+    )
     tows = batch.tows.select("season", ratio=pl.Series(ratio).fill_nan(None))
     return tows.select(pl.col("ratio").median().over("season"))["ratio"].to_numpy()
 
@@ -154,13 +157,14 @@ def _both_ways(batch: Batch, values: FloatArray, runs: BoolArray) -> FloatArray:
 def _median(batch: Batch, values: FloatArray, runs: BoolArray) -> FloatArray:
     """Median of each tow's marked runs; NaN without any."""
     rows = np.where(batch.by_tow(runs) > 0, batch.by_tow(values), np.nan)
-    empty = np.isnan(rows).all(axis=1)
-    return np.where(empty, np.nan, np.nanmedian(np.where(empty[:, None], 0.0, rows), axis=1))
+    none = ~batch.any(runs)
+    rows[none] = 0.0
+    return np.where(none, np.nan, np.nanmedian(rows, axis=1))
 
 
 def _angles_in_radians(batch: Batch, windy: BoolArray) -> BoolArray:
     """Whether every second of a tow has a mean wind angle that lies where radians do."""
-    n = np.maximum(batch.blocks.n, 1.0)
+    n: FloatArray = np.maximum(batch.blocks.n, 1.0)
     cos, sin = batch.blocks["wind_cos"] / n, batch.blocks["wind_sin"] / n
     angle = np.degrees(np.arctan2(sin, cos))
     there = (angle >= -0.5 * RADIANS) & (angle <= RADIANS) & (np.hypot(sin, cos) > LEAST_RESULTANT)

@@ -25,8 +25,6 @@ _CODES: Final = {
 }
 """Reason code of a tow set aside, and check of one that is doubted."""
 
-_UNDER: Final = {"force": "[N]", "wind": "[m/s]", "vane": "[gra]"}
-
 
 def judge(tows: pl.DataFrame, runs: pl.DataFrame, blocks: pl.DataFrame) -> list[Shift]:
     """The shifts of an archive's tows.
@@ -60,8 +58,7 @@ def gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> pl.DataFrame:
 def with_doubts(tows: pl.DataFrame, shifts: Sequence[Shift]) -> pl.DataFrame:
     """The tows with `doubts`: the checks by which the rest of the archive rules them out."""
     codes = {
-        tow: sorted({_CODES[s.quantity] for s in shifts if tow in s.tows})
-        for tow in tows["tow_id"]
+        tow: sorted({_CODES[s.quantity] for s in shifts if tow in s.tows}) for tow in tows["tow_id"]
     }
     return tows.with_columns(pl.Series("doubts", list(codes.values()), pl.List(pl.String)))
 
@@ -94,4 +91,4 @@ def _seen(shift: Shift) -> str:
 def _way_out(shift: Shift) -> str:
     if not shift.cause:
         return "Look whether these are this boat's samples, and what the load cell was set to."
-    return f"It looks like {shift.cause} under a header {_UNDER[shift.quantity]}; correct the unit."
+    return f"It looks like {shift.cause}: correct the unit in the header, or the scale."

@@ -27,8 +27,8 @@ from herijk.pipeline.uncertainty.ensemble import as_frame, register_ensemble
 from herijk.tables.archive import Quarantine
 from herijk.tables.schemas import TABLES, conform
 from herijk.warehouse.archive import outside_run
-from herijk.warehouse.build.plausible import gross_faults, judge, with_doubts
 from herijk.warehouse.build.due import due_made_from, due_rows
+from herijk.warehouse.build.plausible import gross_faults, judge, with_doubts
 from herijk.warehouse.build.summaries import SUMMARY_TABLES
 from herijk.warehouse.editions.published import published_made_from, published_tables
 from herijk.warehouse.intake import seasons as intake
@@ -334,8 +334,13 @@ def make_consistency(store: Store, methods: Sequence[Method]) -> dict[str, int]:
         Rows per table.
     """
     names = [m.name for m in methods]
-    curves, run_points = (store.read_all(t, names) for t in ("curves", "run_points"))
-    found = consistency_tables(curves, store.read("tows"), store.read("boats"), run_points)
+    tows = store.read("tows")
+    trusted = tows.filter(pl.col("doubts").list.len() == 0)
+    curves, run_points = (
+        store.read_all(t, names).join(trusted, on="tow_id", how="semi")
+        for t in ("curves", "run_points")
+    )
+    found = consistency_tables(curves, tows, store.read("boats"), run_points)
     made_from = consistency_made_from(store, methods)
     for name in CONSISTENCY_TABLES:
         store.write(name, conform(name, found[name]), made_from)

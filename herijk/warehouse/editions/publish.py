@@ -10,14 +10,14 @@ import hashlib
 import io
 import json
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import polars as pl
 
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.method.writing import method_text
-from herijk.pipeline.register.register import LINE
+from herijk.pipeline.register.register import DOUBTED, LINE
 from herijk.tables.register import Register
 from herijk.tables.schemas import conform
 from herijk.warehouse.build.tables import method_is_stale, runs_with_windows
@@ -174,6 +174,13 @@ def latest_before(store: Store, valid_from: dt.date, published_on: dt.date) -> s
     if not earlier:
         return None
     return max(earlier, key=lambda a: (a.valid_from, a.published_on, a.edition)).edition
+
+
+def lines_to_look_at(edition: Edition) -> list[dict[str, Any]]:
+    """Lines with flags, and those left without numbers because their tows are doubted."""
+    to_look_at = (pl.col("flags").list.len() > 0) | (pl.col("status") == DOUBTED)
+    lines = edition.register.filter(to_look_at)
+    return lines.select(*LINE, "status", "tow_id", "flags").to_dicts()
 
 
 def _check_decision(terms: Terms) -> None:
