@@ -3,7 +3,7 @@
 import dagster as dg
 
 from herijk.assets import archive, checks, tables
-from herijk.assets.resources import Progress, Setup
+from herijk.assets.resources import Progress, Setup, fixed
 from herijk.assets.site import site
 
 STEPS = INDEX, READ, COLLECT, APPLY, STUDY, COMPARE, FINISH, CHECK = (
@@ -62,5 +62,8 @@ def job_defs(setup: Setup, progress: Progress) -> dg.Definitions:
         assets=ASSETS,
         asset_checks=checks.ALL,
         jobs=JOBS,
-        resources={"setup": setup, "progress": dg.ResourceDefinition.hardcoded_resource(progress)},
+        resources={
+            "setup": fixed(setup),
+            "progress": dg.ResourceDefinition.hardcoded_resource(progress),
+        },
     )

@@ -14,7 +14,7 @@ import polars as pl
 
 from herijk.pipeline.blocks.run_blocks import RunBlocks, stack_blocks
 from herijk.pipeline.consistency import consistency_tables
-from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.errors import MissingKnowledgeError, UnavailableError
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.pipeline.recompute.results import Recomputed
@@ -29,11 +29,12 @@ from herijk.tables.schemas import TABLES, conform
 from herijk.warehouse.archive import outside_run
 from herijk.warehouse.build.due import due_made_from, due_rows
 from herijk.warehouse.build.plausible import gross_faults, judge, with_doubts
+from herijk.warehouse.build.same_samples import same_samples
 from herijk.warehouse.build.summaries import SUMMARY_TABLES
 from herijk.warehouse.editions.published import published_made_from, published_tables
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.code import code_version
-from herijk.warehouse.store.database import build_database, open_database
+from herijk.warehouse.store.database import build_database, left_wal, open_database
 from herijk.warehouse.store.files import file_sha256
 from herijk.warehouse.store.store import Store, fingerprint, table_digest
 
@@ -120,9 +121,7 @@ def collect_archive(store: Store, today: dt.date) -> dict[str, int]:
     sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
     tows = store.read_all("season_tows").join(sound, on="tow_id", how="semi")
     runs = store.read_all("season_runs").join(sound, on="tow_id", how="semi")
-    shifts = judge(_with_types(store, tows), runs, intake.all_blocks(store))
-    implausible = gross_faults(shifts, tows)
-    tows = with_doubts(tows.join(implausible, on="tow_id", how="anti"), shifts)
+    tows, contradicted = _judged(store, tows, runs)
     sound, runs = (frame.join(tows, on="tow_id", how="semi") for frame in (sound, runs))
     windows = store.read("listed_windows").join(runs, on=["tow_id", "run"], how="semi")
     beyond = _outside_run(store, windows)
@@ -134,13 +133,28 @@ def collect_archive(store: Store, today: dt.date) -> dict[str, int]:
         "hand_windows": windows.join(
             beyond, left_on=_LISTED_AT, right_on=["path", "line"], how="anti"
         ),
-        "quarantine": _quarantine(store, index, [beyond, implausible], today),
+        "quarantine": _quarantine(store, index, [beyond, contradicted], today),
     }
     if tows.is_empty():
         raise _nothing_sound(found["quarantine"])
     for name, frame in found.items():
         store.write(name, conform(name, frame), made_from)
     return {name: frame.height for name, frame in found.items()}
+
+
+def _judged(
+    store: Store, tows: pl.DataFrame, runs: pl.DataFrame
+) -> tuple[pl.DataFrame, pl.DataFrame]:
+    """The tows with their doubts, and the faults of those that the other tows contradict."""
+    if tows.is_empty():
+        return with_doubts(tows, []), pl.DataFrame(schema=intake.FAULT_SCHEMA)
+    blocks = intake.all_blocks(store).join(tows, on="tow_id", how="semi")
+    twice = same_samples(tows, blocks)
+    once = tows.join(twice, on="tow_id", how="anti")
+    shifts = judge(_with_types(store, once), runs.join(once, on="tow_id", how="semi"), blocks)
+    gross = gross_faults(shifts, once)
+    kept = with_doubts(once.join(gross, on="tow_id", how="anti"), shifts)
+    return kept, pl.concat([twice, gross])
 
 
 def _seasons(listed: pl.DataFrame, sound: pl.DataFrame) -> pl.DataFrame:
@@ -206,7 +220,7 @@ def _seen_before(store: Store) -> pl.DataFrame:
     try:
         with open_database(store.database) as db:
             return pl.DataFrame(db.sql("FROM quarantine").pl())
-    except (MissingKnowledgeError, duckdb.Error):  # not made yet, or damaged too
+    except (MissingKnowledgeError, UnavailableError, duckdb.Error):  # not made yet, or damaged too
         return Quarantine.create_empty()
 
 
@@ -481,7 +495,7 @@ def _contents(found: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
 
 def database_is_stale(store: Store, methods: Sequence[Method]) -> bool:
     """Whether the database has to be built again, also because it was damaged since."""
-    if not store.database.exists():
+    if not store.database.exists() or left_wal(store.database).exists():
         return True
     if store.made_from("database") != database_made_from(store, methods):
         return True

@@ -7,13 +7,27 @@ and `warehouse.queries.audit`.
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import duckdb
 import polars as pl
 
-from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.errors import MissingKnowledgeError, UnavailableError
 from herijk.warehouse.store.files import written_beside
+
+_HELD: Final = (
+    "another program has it open to write in it. Close that program, or let it open the file to "
+    "read only, and try again"
+)
+_SPOILT: Final = (
+    "it is damaged, or another program wrote in it. Make it again with herijk rebuild, which knows "
+    "the archive"
+)
+
+
+def left_wal(path: Path) -> Path:
+    """What another program left beside the database; DuckDB would replay it into a new one."""
+    return path.with_name(f"{path.name}.wal")
 
 
 def build_database(path: Path, tables: Mapping[str, pl.DataFrame]) -> None:
@@ -34,6 +48,7 @@ def build_database(path: Path, tables: Mapping[str, pl.DataFrame]) -> None:
                 connection.unregister("frame")
                 _comment(connection, name)
             connection.execute("COMMIT")
+        left_wal(path).unlink(missing_ok=True)
 
 
 def _comment(connection: duckdb.DuckDBPyConnection, name: str) -> None:
@@ -58,12 +73,17 @@ def open_database(path: Path) -> duckdb.DuckDBPyConnection:
 
     Raises:
         MissingKnowledgeError: it was not made yet.
+        UnavailableError: another program has it open to write, or it cannot be read.
     """
     if not path.exists():
         raise MissingKnowledgeError(
             f"{path} is not there; make it with: herijk rebuild --archive DIR --data {path.parent}"
         )
-    return duckdb.connect(path, read_only=True)
+    try:
+        return duckdb.connect(path, read_only=True)
+    except duckdb.Error as error:
+        held = isinstance(error, duckdb.IOException) and "lock" in str(error).casefold()
+        raise UnavailableError(f"{path} cannot be opened: {_HELD if held else _SPOILT}") from error
 
 
 def rows(
