@@ -152,7 +152,7 @@ def _look(now: str, cursor: str) -> dg.SensorResult:
     if now == asked:
         return dg.SensorResult(skip_reason="no file of the archive changed", cursor=cursor)
     if now != before:
-        skip = "files of the archive changed; waiting until it is left alone"
+        skip = "files changed; waiting until the archive is left alone"
         return dg.SensorResult(skip_reason=skip, cursor=f"{asked} {now}")
     return dg.SensorResult(run_requests=[dg.RunRequest()], cursor=f"{now} {now}")
 
