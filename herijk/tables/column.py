@@ -1,8 +1,14 @@
 """Columns that many tables share, each declared once: meaning, unit and limits."""
 
-from typing import Any
+from typing import Any, Final
 
 import dataframely as dy
+
+LOWER_END: Final = (
+    "lower end of its 95 % interval; where methods.interval is runs_alone, of the spread of the "
+    "runs alone: the log's error is not in it"
+)
+"""Of an interval of Cw or B."""
 
 
 def text(description: str, **rules: Any) -> dy.String:

@@ -83,7 +83,8 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.method": ("methode", "method"),
     "code.input": ("invoer", "input"),
     "code.code": ("code", "code"),
-    "code.flag": ("nakijken", "flag"),
+    "code.look": ("nakijken", "look"),
+    "code.refuse": ("afwijzen", "refuse"),
     "code.note": ("opmerking", "note"),
     "code.force": ("kracht", "force"),
     "code.stream_drift": ("stroom", "stream"),
@@ -124,7 +125,10 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.unusual_calibration": ("ijking ongewoon", "unusual calibration"),
     "code.recomputed": ("herrekend", "recomputed"),
     "code.as_printed": ("zoals gedrukt", "as printed"),
-    "code.window.speed_drift_m_s": ("venster 0,04 m/s i.p.v. 0,02", "window 0.04 m/s, not 0.02"),
+    "code.window.force_ends_ratio": (
+        "venster: kracht op 5 %, niet 10 %",
+        "window: force within 5 %, not 10 %",
+    ),
     "code.speed.operation": ("delen i.p.v. malen", "divide, not multiply"),
     "code.run_point.estimator": ("runpunt uit gemiddelden", "run point from means"),
     "code.wind.coefficients": ("luchtcoëfficiënt uit archief", "air coefficient from archive"),
@@ -137,4 +141,9 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.never_towed": ("niet gesleept", "never towed"),
     "code.no_valid_curve": ("geen geldige kromme", "no valid curve"),
     "code.unknown": ("onbekend", "unknown"),
+    "code.complete": ("95 %-interval", "95 % interval"),
+    "code.runs_alone": (
+        "spreiding van de runs alleen: de fout van de log zit er niet in",
+        "spread of the runs alone: the log's error is not in it",
+    ),
 }

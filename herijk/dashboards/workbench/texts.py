@@ -104,9 +104,11 @@ TEXTS: Final[Words] = {
     "in_boat": ("Een sloep", "A boat"),
     "in_boat_note": (
         "De kromme en de runs voor en na. Open tekens tellen niet mee; de streep bij de "
-        "opgegeven snelheid is het 95 %-interval.",
+        "opgegeven snelheid is het interval: van 95 %, of met streepjes de spreiding van de runs "
+        "alleen: de fout van de log zit er niet in.",
         "The curve and the runs before and after. Open marks do not count; the bar at the "
-        "declared speed is the 95 % interval.",
+        "declared speed is the interval: of 95 %, or dashed the spread of the runs alone: the "
+        "log's error is not in it.",
     ),
     "choose_boat": ("Kies sloep", "Choose boat"),
     "figure_curve": ("Weerstandskrommen van deze proef", "Resistance curves of this tow"),
@@ -153,11 +155,15 @@ TEXTS: Final[Words] = {
     "calibration.rule": ("Gps-factor", "GPS factor"),
     "window.rule": ("Welk deel van een run", "Which part of a run"),
     "window.minimum_s": ("Kortste venster", "Shortest window"),
-    "window.speed_drift_m_s": ("Verloop van de snelheid", "Drift of the speed"),
+    "window.speed_drift_m_s": (
+        "Verschil van snelheid, begin en eind",
+        "Difference of speed at the ends",
+    ),
     "window.force_ends_ratio": (
         "Verschil van kracht, begin en eind",
         "Difference of force at the ends",
     ),
+    "window.wind_ends_m_s": ("Verschil van wind, begin en eind", "Difference of wind at the ends"),
     "window.ramp_m_s": ("Kleinste aanloop die eraf gaat", "Smallest ramp that is cut"),
     "window.peak_sd": ("Grens voor een krachtpiek", "Limit of a force peak"),
     "window.gust_sd": ("Grens voor een windvlaag", "Limit of a gust"),

@@ -14,6 +14,7 @@ from typing import Any, Final
 import polars as pl
 
 from herijk.pipeline.blocks.run_blocks import stack_blocks
+from herijk.pipeline.method.definition import RUNS_ALONE
 from herijk.pipeline.register.changes import (
     NO_FACTOR,
     NO_PARTS,
@@ -280,6 +281,11 @@ def report(comparison: Comparison) -> Report:
         "loss": _group(loss),
         "exceeds_interval": int(moved["exceeds_interval"].fill_null(False).sum()),
         "interval_unknown": int(moved["exceeds_interval"].null_count()),
+        "runs_alone": [
+            edition.about.edition
+            for edition in (comparison.old, comparison.new)
+            if edition.method is not None and edition.method.interval == RUNS_ALONE
+        ],
         "causes": _causes(compared),
         "largest": _rows(_by_size(moved).head(LARGEST)),
         "rows": _rows(lines),

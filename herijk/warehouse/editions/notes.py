@@ -125,6 +125,7 @@ def _changes(found: Report | None, language: Language) -> dict[str, Any]:
         "loss": _group(found["loss"], language),
         "exceeding": language.count(found["exceeds_interval"]),
         "unknown": language.count(found["interval_unknown"]) if found["interval_unknown"] else "",
+        "runs_alone": found["runs_alone"],
         "largest": table(largest_head, largest) if largest else "",
         "largest_count": len(largest),
         "largest_with_causes": table((*largest_head, causes), with_causes) if largest else "",
