@@ -132,12 +132,11 @@ def test_a_season_in_another_unit_is_set_aside_as_a_season_in_one_sentence(archi
     assert not archive.doubts()
 
 
-@pytest.mark.parametrize("ending", ["\r\n", "\n\n"], ids=["CRLF", "blank line"])
-def test_samples_of_another_boat_are_found_also_when_written_otherwise(archive, ending):
+@pytest.mark.parametrize(("ending", "last"), [("\r\n", "\r\n"), ("\n", "\n\n")])
+def test_samples_of_another_boat_are_found_also_when_written_otherwise(archive, ending, last):
     taken, other = "2016-003", "2017-005"
-    archive.file_of(other).write_bytes(
-        archive.file_of(taken).read_text("utf-8").rstrip().replace("\n", ending).encode() + b"\n"
-    )
+    text = archive.file_of(taken).read_text("utf-8").rstrip()
+    archive.file_of(other).write_bytes((text.replace("\n", ending) + last).encode())
     archive.collect()
     found = archive.quarantined()
     assert {tow: code for tow, (code, _) in found.items()} == dict.fromkeys(

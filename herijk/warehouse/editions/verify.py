@@ -258,7 +258,8 @@ def _list_rows(path: Place, root: Path, hashes: FileHashes) -> Iterator[Finding]
         return
     windows = index.windows.rename(HAND_COLUMNS)
     runs = index.runs.join(windows, on=["tow_id", "run"], how="left")
-    for tow in sorted(set(was["tows"]["tow_id"]) - set(index.tows["tow_id"])):
+    faulty = {fault.tow_id for fault in index.faults}  # listed, and told with its files
+    for tow in sorted(set(was["tows"]["tow_id"]) - set(index.tows["tow_id"]) - faulty):
         yield Finding(path.name, "missing", tow, f"tow {tow} is no longer in the tow lists")
     yield from _changed_facts(path.name, was["tows"], index.tows, ["tow_id"])
     yield from _changed_facts(path.name, was["tow_runs"], runs, ["tow_id", "run"])
@@ -387,7 +388,8 @@ class _Reasons:
 def _boats_changed(store: Store, edition: Edition) -> bool:
     """Whether the list of boats is another than when the edition was published."""
     listed = (store.editions / edition.about.edition / INPUTS).read_bytes()
-    was = {row[0]: row[2] for row in sheets.read_csv_cells(listed)[1:]}
+    rows = sheets.read_csv_cells(listed)[1:]
+    was = {row[0]: row[2] for row in rows if len(row) == len(sheets.INPUT_FIELDS)}
     now = dict(store.read("listed_files").select("path", "sha256").rows())
     return BOATS_FILE not in was or was[BOATS_FILE] != now.get(BOATS_FILE)
 
