@@ -14,6 +14,7 @@ import pyarrow as pa  # type: ignore[import-untyped]
 
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.faults import DefectiveFileError
+from herijk.warehouse.archive.limits import check_rows
 from herijk.warehouse.archive.text import fold_name
 
 BOATS_FILE: Final = "sloepregister/sloependata.csv"
@@ -22,8 +23,6 @@ WINDOWS_PATTERN: Final = r"vensters_([0-9]{4})\.csv"
 REGISTER_PATTERN: Final = r"sloepregister_([0-9]{4})\.csv"
 RACES_PATTERN: Final = r".+_([0-9]{4})\.csv"
 SAMPLE_SUFFIXES: Final = (".csv.gz", ".csv.zst", ".csv", ".parquet")
-LIST_MAX_BYTES: Final = 50_000_000
-SAMPLES_MAX_BYTES: Final = 400_000_000
 """A tow of 300,000 samples is 12 MB of text."""
 
 _CHUNK_BYTES: Final = 1 << 20
@@ -164,6 +163,7 @@ def read_bytes(path: Path, max_bytes: int) -> bytes:
         ) from error
     if len(content) > max_bytes:
         raise too_large(path, max_bytes)
+    check_rows(content)
     return content
 
 

@@ -21,7 +21,6 @@ from herijk.warehouse.archive.boats import Boats
 from herijk.warehouse.archive.faults import DefectiveFileError, Fault, fault_from
 from herijk.warehouse.archive.files import (
     BOATS_FILE,
-    LIST_MAX_BYTES,
     RACES_PATTERN,
     REGISTER_PATTERN,
     TOW_LIST_PATTERN,
@@ -35,6 +34,7 @@ from herijk.warehouse.archive.files import (
     path_inside,
     read_bytes,
 )
+from herijk.warehouse.archive.limits import LIST_MAX_BYTES
 from herijk.warehouse.archive.lists import ListRow, read_rows
 from herijk.warehouse.archive.profile import PROFILE_FILE, Profiles, read_profiles
 from herijk.warehouse.archive.text import fold_name, shorten

@@ -14,7 +14,6 @@ from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.boats import ROWERS
 from herijk.warehouse.archive.faults import Fault, fault_from
 from herijk.warehouse.archive.files import (
-    LIST_MAX_BYTES,
     RACES_PATTERN,
     REGISTER_PATTERN,
     ArchiveFile,
@@ -22,6 +21,7 @@ from herijk.warehouse.archive.files import (
     path_inside,
     read_bytes,
 )
+from herijk.warehouse.archive.limits import LIST_MAX_BYTES
 from herijk.warehouse.archive.lists import ListRow, read_rows
 from herijk.warehouse.archive.text import Column, shorten
 from herijk.warehouse.archive.tows import SPEED_M_S

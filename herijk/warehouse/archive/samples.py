@@ -6,7 +6,7 @@ a careful one that knows lines; the fast one is trusted only where it gives the 
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 from herijk.pipeline.channels import RUNS_PER_FILE, SAMPLE_SCHEMA, SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.faults import DefectiveFileError
-from herijk.warehouse.archive.files import SAMPLES_MAX_BYTES, path_inside, read_bytes, too_large
+from herijk.warehouse.archive.files import path_inside, read_bytes, too_large
+from herijk.warehouse.archive.limits import MOST_ROWS, SAMPLES_MAX_BYTES, too_many_rows
 from herijk.warehouse.archive.profile import SeasonProfile
 from herijk.warehouse.archive.text import (
     NUMBER_PATTERN,
@@ -255,7 +256,8 @@ def _read_parquet(path: Path, profile: SeasonProfile, max_bytes: int) -> pl.Data
         with pq.ParquetFile(path) as file:
             columns = find_columns(file.schema_arrow.names, profile.columns)
             _check_parquet_size(path, file, len(columns), max_bytes)
-            table = file.read(columns=[file.schema_arrow.names[f.index] for f in columns.values()])
+            names = [file.schema_arrow.names[found.index] for found in columns.values()]
+            table = pa.Table.from_batches(_batches(file, names), _schema(file, names))
         frame = pl.DataFrame(pl.from_arrow(table))
     except FileNotFoundError as error:
         raise DefectiveInputError(
@@ -269,6 +271,20 @@ def _read_parquet(path: Path, profile: SeasonProfile, max_bytes: int) -> pl.Data
         raise DefectiveInputError("unreadable_file", "There are no samples in the file.")
     named = frame.rename(dict(zip(frame.columns, columns, strict=True)))
     return _to_si(_parquet_numbers(named, columns), columns)
+
+
+def _batches(file: pq.ParquetFile, names: list[str]) -> Iterator[pa.RecordBatch]:
+    """The rows in pieces, as a footer may promise fewer than there are."""
+    rows = 0
+    for batch in file.iter_batches(columns=names):
+        rows += batch.num_rows
+        if rows > MOST_ROWS:
+            raise too_many_rows(rows)
+        yield batch
+
+
+def _schema(file: pq.ParquetFile, names: list[str]) -> pa.Schema:
+    return pa.schema([file.schema_arrow.field(name) for name in names])
 
 
 def _check_parquet_size(path: Path, file: pq.ParquetFile, width: int, max_bytes: int) -> None:

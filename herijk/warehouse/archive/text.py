@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from herijk.pipeline.errors import DefectiveInputError
+from herijk.warehouse.archive.limits import check_header
 
 DELIMITERS: Final = (";", "\t", ",")
 
@@ -96,8 +97,14 @@ def decode(data: bytes) -> str:
 
 
 def find_delimiter(header_line: str) -> str:
-    """Return the delimiter that occurs most in a header; `;` when there is none."""
-    return max(DELIMITERS, key=header_line.count)
+    """Return the delimiter that occurs most in a header; `;` when there is none.
+
+    Raises:
+        DefectiveInputError: `too_large`: it is longer than a header can be.
+    """
+    delimiter = max(DELIMITERS, key=header_line.count)
+    check_header(header_line, header_line.count(delimiter) + 1)
+    return delimiter
 
 
 def split_line(line: str, delimiter: str) -> list[str]:
