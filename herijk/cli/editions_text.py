@@ -47,6 +47,7 @@ def published(report: Report) -> str:
             f"Decision: {report['decision']}",
             compared,
             *_to_look_at(report["to_look_at"]),
+            f"Seal, to be kept in the minutes: {report['seal']}",
             f"Folder: {report['folder']}",
             "  register.xlsx, register.csv        the register",
             "  bericht.md, notice.md              one page for the members, Dutch and English",
@@ -203,6 +204,11 @@ def verify(report: Report) -> str:
             for f in report["findings"]
         ]
         parts.append(table(("edition", "", "kind", "where", "what"), rows))
+    if report["head"] is not None:
+        parts.append(
+            f"Head: {report['head']}\nThe seal of the last edition. Keep it, for example in the "
+            "minutes: whoever has it can tell later whether\nany edition was made anew."
+        )
     parts.append(_verdict(report["findings"]))
     return "\n\n".join(parts)
 
