@@ -28,8 +28,8 @@ class Seasons(dy.Schema):
     tows = dy.Int32(description="of which used; the others are in quarantine", min=0)
 
 
-class Tows(dy.Schema):
-    """Tows accepted into the warehouse, one row each."""
+class TowFacts(dy.Schema):
+    """What the lists say of a tow, one row each."""
 
     tow_id = column.tow_id(primary_key=True)
     season = column.season()
@@ -57,21 +57,28 @@ class Tows(dy.Schema):
     freeboard_bow_m = column.number("m", "freeboard at the bow", nullable=True)
     freeboard_stern_m = column.number("m", "freeboard at the stern", nullable=True)
     remark = column.text("remark in the tow list", nullable=True)
+    wind_measured = dy.Bool(description="there was an anemometer whose wind can be used")
+    log2_measured = dy.Bool(description="there was a second log that can be used")
     log1_part = dy.Int32(description="times log 1 had been replaced that season", min=0)
     log2_part = dy.Int32(description="times log 2 had been replaced that season", min=0)
-    doubts = dy.List(
-        dy.String(),
-        description="checks by which all other tows rule this one out: it needs a look, and takes "
-        "no part in what tows share",
-    )
     samples_path = column.text("samples file in the archive")
     samples_sha256 = column.sha256("its content hash")
     second_path = column.text("second samples file, if two tows were combined", nullable=True)
     second_sha256 = column.sha256("its content hash", nullable=True)
 
 
+class Tows(TowFacts):
+    """Tows accepted into the warehouse, one row each."""
+
+    doubts = dy.List(
+        dy.String(),
+        description="checks by which all other tows rule this one out: it needs a look, and takes "
+        "no part in what tows share",
+    )
+
+
 class TowRuns(dy.Schema):
-    """Runs of every tow; runs 11-16 are runs 1-6 of the second samples file."""
+    """Runs of every tow; runs 21 and on are runs 1 and on of the second file."""
 
     tow_id = column.tow_id(primary_key=True)
     run = column.run(primary_key=True)

@@ -43,7 +43,7 @@ def season(**rules: Any) -> dy.Int32:
 
 def run(**rules: Any) -> dy.Int8:
     """Which run of a tow."""
-    return dy.Int8(description="run", min=1, max=16, **rules)
+    return dy.Int8(description="run", min=1, max=40, **rules)
 
 
 def rowers(**rules: Any) -> dy.Int32:

@@ -9,7 +9,7 @@ import pytest
 
 from herijk.tables.schemas import TABLES
 from herijk.tables.views import VIEWS
-from herijk.warehouse.build.tables import METHOD_FILES
+from herijk.warehouse.build.graph import LAKE_ONLY
 from herijk.warehouse.store.database import build_database
 from tests.architecture.repository import ROOT
 from tests.conftest import Workbench
@@ -69,7 +69,7 @@ def test_every_table_and_column_says_what_it_means(built: Workbench):
             "SELECT table_name, column_name, comment FROM duckdb_columns() WHERE NOT internal"
         ).fetchall()
         tables = db.execute("SELECT table_name, comment FROM duckdb_tables()").fetchall()
-    assert {name for name, comment in tables if comment} == set(TABLES) - set(METHOD_FILES)
+    assert {name for name, comment in tables if comment} == set(TABLES) - set(LAKE_ONLY)
     silent = [(t, c) for t, c, comment in columns if not comment and t in TABLES]
     assert silent == []
     comments = {(t, c): comment for t, c, comment in columns}

@@ -15,10 +15,11 @@ import pytest
 from herijk.pipeline.method.definition import shipped_method
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.build import tables
-from herijk.warehouse.editions.folder import read_edition
+from herijk.warehouse.build.graph import ARCHIVE
+from herijk.warehouse.build.graph import METHOD as METHOD_STEP
 from herijk.warehouse.editions.publish import Terms, lines_to_look_at, publish
 from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.store.editions import read_edition
 from herijk.warehouse.store.store import Store
 
 DAY = dt.date(2026, 11, 22)
@@ -48,7 +49,7 @@ class Archive:
 
     def collect(self) -> None:
         intake.bring_in(self.store, self.root)
-        tables.collect_archive(self.store, DAY)
+        ARCHIVE.make(self.store, (), DAY)
 
     def quarantined(self) -> dict[str, tuple[str, str]]:
         faults = self.store.read("quarantine").drop_nulls("tow_id")
@@ -59,7 +60,7 @@ class Archive:
         return dict(doubted.select("tow_id", "doubts").rows())
 
     def curves(self) -> pl.DataFrame:
-        tables.apply_method(self.store, shipped_method(METHOD), tables.run_blocks(self.store))
+        METHOD_STEP.make(self.store, [shipped_method(METHOD)])
         return self.store.read("curves", METHOD)
 
 

@@ -80,6 +80,8 @@ class Seen:
         level, bend, bend_sd = _line(batch, speed, ln_cw, good)
         ln_gps = _season_gps(batch, mean["log1_v"], good)
         windy = good & (mean["wind_v"] > 0)
+        if "wind_measured" in batch.tows.columns:
+            windy &= batch.tows["wind_measured"].to_numpy()[batch.tow]
         return cls(
             batch,
             np.isfinite(ln_gps),

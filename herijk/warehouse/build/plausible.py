@@ -14,7 +14,9 @@ import polars as pl
 from herijk.pipeline.assessment.plausibility import Shift, implausible
 from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.blocks.run_blocks import stack_blocks
-from herijk.warehouse.intake.seasons import FAULT_SCHEMA
+from herijk.tables.lake import Faults
+
+_FAULTS: Final = {name: column.dtype for name, column in Faults.columns().items()}
 
 _CODES: Final = {
     "force": "force_not_plausible",
@@ -52,7 +54,7 @@ def gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> pl.DataFrame:
         for path, tow in tows.select("samples_path", "tow_id").iter_rows()
         if tow in sentences
     ]
-    return pl.DataFrame(rows, schema=FAULT_SCHEMA, orient="row")
+    return pl.DataFrame(rows, schema=_FAULTS, orient="row")
 
 
 def with_doubts(tows: pl.DataFrame, shifts: Sequence[Shift]) -> pl.DataFrame:

@@ -12,8 +12,9 @@ from typing import Final
 import polars as pl
 
 from herijk.pipeline.channels import SECOND_FILE_OFFSET
-from herijk.warehouse.intake.seasons import FAULT_SCHEMA
+from herijk.tables.lake import Faults
 
+_FAULTS: Final = {name: column.dtype for name, column in Faults.columns().items()}
 _CONTENT: Final = ("n", "force", "log1_v", "log1_cw", "wind_v")
 LINE: Final = ("fsn_no", "rowers", "crew_class")
 
@@ -26,10 +27,11 @@ def same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
         blocks: their blocks, with `tow_id`.
     """
     if tows.is_empty():
-        return pl.DataFrame(schema=FAULT_SCHEMA)
+        return Faults.create_empty()
     facts = tows.select("tow_id", "tow_date", *LINE, "samples_path")
     runs = (
-        blocks.group_by("tow_id", "run", maintain_order=True)
+        blocks.join(facts, on="tow_id", how="semi")
+        .group_by("tow_id", "run", maintain_order=True)
         .agg(pl.col(_CONTENT).sum())
         .filter(pl.struct(_CONTENT).is_duplicated())
         .join(facts, on="tow_id")
@@ -38,7 +40,7 @@ def same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
     rows = [
         row for _, same in runs.group_by(_CONTENT, maintain_order=True) for row in _faults(same)
     ]
-    found = pl.DataFrame(rows, schema=FAULT_SCHEMA, orient="row")
+    found = pl.DataFrame(rows, schema=_FAULTS, orient="row")
     return found.unique("tow_id", keep="first", maintain_order=True)
 
 

@@ -8,8 +8,8 @@ import duckdb
 
 from herijk.pipeline.errors import BrokenPromiseError, HerijkError
 from herijk.warehouse.editions.finding import Finding
-from herijk.warehouse.editions.folder import About, edition_names, read_about
 from herijk.warehouse.store.database import open_database
+from herijk.warehouse.store.editions import About, edition_names, read_about
 from herijk.warehouse.store.store import Store
 
 

@@ -10,9 +10,9 @@ from typing import Any, Final
 import jinja2
 
 from herijk.warehouse.editions.compare import Comparison, Report, report
-from herijk.warehouse.editions.folder import NOTES, NOTES_EN, NOTICE, NOTICE_EN, Edition
 from herijk.warehouse.editions.printed import REBASED
 from herijk.warehouse.editions.words import DUTCH, ENGLISH, Language, table
+from herijk.warehouse.store.editions import NOTES, NOTES_EN, NOTICE, NOTICE_EN, Edition
 
 TEXTS: Final = {NOTICE: DUTCH, NOTES: DUTCH, NOTICE_EN: ENGLISH, NOTES_EN: ENGLISH}
 """The texts of an edition, each with its language; a template has the name of its text."""

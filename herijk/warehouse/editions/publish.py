@@ -14,6 +14,7 @@ from typing import Any, Final
 
 import polars as pl
 
+from herijk.pipeline.blocks.run_blocks import stack_blocks
 from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.method.writing import method_text
@@ -21,16 +22,24 @@ from herijk.pipeline.recompute.recompute import recompute
 from herijk.pipeline.register.register import DOUBTED, LINE
 from herijk.tables.register import Register
 from herijk.tables.schemas import conform
-from herijk.warehouse.build.tables import (
-    method_is_stale,
-    run_blocks,
-    runs_with_windows,
-    typed_tows,
-)
+from herijk.warehouse.build.graph import METHOD as METHOD_STEP
+from herijk.warehouse.build.version import code_version
 from herijk.warehouse.editions import notes, sheets
 from herijk.warehouse.editions.chain import chain_head
 from herijk.warehouse.editions.compare import compare
-from herijk.warehouse.editions.folder import (
+from herijk.warehouse.editions.inputs import (
+    INPUTS_HASH,
+    REGISTER,
+    input_files,
+    inputs_digest,
+    tows_of_today,
+)
+from herijk.warehouse.editions.lines import NUMBERS, TOW_FACTS, method_lines
+from herijk.warehouse.editions.printed import printed_lines, printed_path, with_carried
+from herijk.warehouse.editions.sheets import CODE_FIELD
+from herijk.warehouse.intake.seasons import all_blocks, runs_with_windows, typed_tows
+from herijk.warehouse.store import decisions as decided
+from herijk.warehouse.store.editions import (
     ABOUT,
     CHANGES,
     CSV,
@@ -49,18 +58,6 @@ from herijk.warehouse.editions.folder import (
     read_edition,
     write_folder,
 )
-from herijk.warehouse.editions.inputs import (
-    INPUTS_HASH,
-    REGISTER,
-    input_files,
-    inputs_digest,
-    tows_of_today,
-)
-from herijk.warehouse.editions.lines import NUMBERS, TOW_FACTS, method_lines
-from herijk.warehouse.editions.printed import printed_lines, printed_path, with_carried
-from herijk.warehouse.editions.sheets import CODE_FIELD
-from herijk.warehouse.store import decisions as decided
-from herijk.warehouse.store.code import code_version
 from herijk.warehouse.store.ensemble import read_ensemble
 from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import Store, table_digest
@@ -152,7 +149,7 @@ def recomputed_edition(
     store: Store, method: Method, terms: Terms, carry: str | None = None
 ) -> Edition:
     """The edition that would be published, not yet written; see `publish`."""
-    if store.made_from("tows") is None or method_is_stale(store, method):
+    if store.made_from("tows") is None or METHOD_STEP.is_stale(store, [method]):
         raise MissingKnowledgeError(
             f"the tables of method {method.name} are not those of the archive and code of today; "
             f"run: herijk rebuild --archive DIR --data {store.root} --method {method.name}"
@@ -182,7 +179,8 @@ def recomputed_edition(
 
 def _check_made(store: Store, method: Method, curves: pl.DataFrame) -> None:
     """Refuses curves that are not those that the method makes of the blocks."""
-    made = recompute(method, typed_tows(store), run_blocks(store), with_bands=False).curves
+    blocks = stack_blocks(all_blocks(store), runs_with_windows(store))
+    made = recompute(method, typed_tows(store), blocks, with_bands=False).curves
     pairs = curves.join(made, on="tow_id", how="full", suffix="_made")
     same = [
         (pl.col(name) / pl.col(f"{name}_made") - 1.0).abs().fill_null(0.0) < SAME_NUMBER

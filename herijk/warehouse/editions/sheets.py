@@ -19,8 +19,8 @@ from xml.etree import ElementTree
 import polars as pl
 import xlsxwriter  # type: ignore[import-untyped,unused-ignore]
 
-from herijk.warehouse.editions.folder import CSV, INPUTS, About
 from herijk.warehouse.editions.words import DUTCH
+from herijk.warehouse.store.editions import CSV, INPUTS, About
 
 BOM: Final = "\ufeff"
 CODE_LENGTH: Final = 10

@@ -1,0 +1,25 @@
+"""Are equal boats equal: what `pipeline.consistency` says of every method."""
+
+from typing import TYPE_CHECKING
+
+import polars as pl
+
+from herijk.pipeline import consistency
+
+if TYPE_CHECKING:
+    from herijk.warehouse.build.inputs import Inputs
+
+
+def consistency_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
+    """Are equal boats equal: the statistics of every boat type under every method."""
+    trusted = inputs["tows"].filter(pl.col("doubts").list.len() == 0)
+    curves, run_points = (
+        inputs[name].join(trusted, on="tow_id", how="semi") for name in ("curves", "run_points")
+    )
+    return consistency.consistency_tables(
+        curves,
+        inputs["tows"],
+        inputs["boats"],
+        run_points,
+        inputs["listed_races"],
+    )
