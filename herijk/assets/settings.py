@@ -10,6 +10,7 @@ from zoneinfo import available_timezones
 from dagster._utils.schedules import is_valid_cron_schedule
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
+from herijk.pipeline.method.definition import shipped_methods
 from herijk.warehouse.store.settings_file import read_settings_file
 
 FILE_NAME: Final = "beheer.toml"
@@ -19,6 +20,8 @@ class Settings(BaseModel):
     """What `beheer.toml` can say.
 
     Attributes:
+        methods: names of the methods that a rebuild applies, the first to compare the others with;
+            those that ship where it is empty.
         nightly: when everything is looked at; a cron line.
         campaign: when the season of that year is looked at, while it is towed.
         timezone: of both.
@@ -33,6 +36,7 @@ class Settings(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
+    methods: tuple[str, ...] = ()
     nightly: str = "0 3 * * *"
     campaign: str = "0 7 * 4-9 1"
     timezone: str = "Europe/Amsterdam"
@@ -56,6 +60,11 @@ class Settings(BaseModel):
         if name not in available_timezones():
             raise ValueError(f"{name!r} is no time zone, such as 'Europe/Amsterdam'")
         return name
+
+    @property
+    def applied(self) -> tuple[str, ...]:
+        """Names of the methods that a rebuild applies when it is not told which."""
+        return self.methods or shipped_methods()
 
 
 def read_settings(data: Path) -> Settings:
