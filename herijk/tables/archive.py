@@ -59,6 +59,7 @@ class Tows(dy.Schema):
     remark = column.text("remark in the tow list", nullable=True)
     log1_part = dy.Int32(description="times log 1 had been replaced that season", min=0)
     log2_part = dy.Int32(description="times log 2 had been replaced that season", min=0)
+    runs_set_aside = dy.Int32(description="runs to be used that are in quarantine", min=0)
     samples_path = column.text("samples file in the archive")
     samples_sha256 = column.sha256("its content hash")
     second_path = column.text("second samples file, if two tows were combined", nullable=True)
@@ -73,6 +74,7 @@ class TowRuns(dy.Schema):
     direction = dy.Int8(description="1 out, -1 back", min=-1, max=1)
     target_speed_ratio = column.number("1", "intended speed / declared speed", min_exclusive=0)
     selected = dy.Bool(description="the tow list says to use it")
+    lost_s = column.number("s", "most that is left out of a channel: dropouts, spikes", min=0)
 
 
 class HandWindows(dy.Schema):
@@ -99,11 +101,17 @@ class TraceSeconds(dy.Schema):
 
 
 class Quarantine(dy.Schema):
-    """Files and tows set aside, each with the reason in a plain sentence."""
+    """What is set aside, from seconds to files, each with the reason in a plain sentence."""
 
     path = column.text("file, relative to the archive")
     tow_id = column.tow_id(nullable=True)
     line = dy.Int64(description="line in the file", nullable=True, min=1)
     reason_code = column.text("short stable code")
     message = column.text("what is wrong and what to do, in a sentence")
+    lost = column.text(
+        "what it costs: seconds, run, tow, file, or a row of a list that costs no tow",
+        regex="^(seconds|run|tow|file|row)$",
+    )
+    run = column.run(nullable=True)
+    lost_s = column.number("s", "time that is lost", nullable=True, min=0)
     first_seen = dy.Date(description="day on which this fault was first found")

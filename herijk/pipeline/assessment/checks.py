@@ -71,6 +71,13 @@ CHECKS: Final = (
         severity="note",
     ),
     Check(
+        "runs_set_aside",
+        "runs that the tow list says to use and whose samples cannot be used",
+        "1",
+        "Sleepproef 2017, 'Eerste beoordeling': faults make runs to be towed again",
+        highest=0.0,
+    ),
+    Check(
         "unbalanced_runs",
         "difference between the number of runs out and back; stream and wind then do not cancel",
         "1",

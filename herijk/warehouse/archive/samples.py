@@ -28,7 +28,6 @@ from herijk.warehouse.archive.text import (
     decode,
     find_columns,
     find_delimiter,
-    shorten,
     split_line,
 )
 
@@ -76,10 +75,10 @@ def read_samples(
         A frame with the columns of `SAMPLE_SCHEMA`, one row a sample in the order of the file;
         row `i` stands on line `i + 2`. `gps_m_s` is null throughout when the column is absent or
         empty. Wind angles are brought to [0, 360); one outside -180..360 cannot be an angle and
-        is left as it is, for `check_samples` to find.
+        is left as it is, for `judge_samples` to find.
 
     Raises:
-        DefectiveInputError: the first fault of the file, with its line.
+        DefectiveInputError: the first fault that costs the whole file, with its line.
     """
     if path.suffix.casefold() == ".parquet":
         raw = _read_parquet(path, profile, max_bytes)
@@ -192,17 +191,13 @@ def _all_finite(numbers: pl.Series) -> bool:
 
 
 def _read_carefully(body: _Body) -> pl.DataFrame:
-    """Return the same columns, or raise the first fault with its line."""
+    """Return the same columns, NaN where a cell is no number or its row has not all its fields."""
     text = body.data[body.start :].rstrip(b"\r\n").decode()
     lines = pl.Series("line", text.split("\n")).str.strip_suffix("\r")
     if body.delimiter == ",":
         lines = lines.str.replace_all(_QUOTED_DECIMAL_COMMA, '"$1.$2"')
     fields = lines.str.split(body.delimiter)
     whole = fields.list.len() == body.width
-    faults = []
-    if not whole.all():
-        row = int((~whole).arg_max() or 0)
-        faults.append((row, "broken_row", _broken_row(lines[row], fields[row], body)))
     columns: dict[str, pl.Series] = {}
     for key, found in body.columns.items():
         cells = fields.list.get(found.index, null_on_oob=True)
@@ -210,40 +205,16 @@ def _read_carefully(body: _Body) -> pl.DataFrame:
         cells = cells.str.strip_chars(_BLANKS)
         if key == "gps" and (cells == "").all():
             continue
-        columns[key], fault = _to_numbers(cells, whole, found.header)
-        if fault is not None:
-            faults.append((fault[0], "bad_number", fault[1]))
-    if faults:
-        row, reason_code, message = min(faults)
-        raise DefectiveInputError(reason_code, f"Line {row + 2}: {message}", line=row + 2)
+        columns[key] = _to_numbers(cells, whole)
     return pl.DataFrame(columns)
 
 
-def _broken_row(line: str, fields: pl.Series, body: _Body) -> str:
-    return (
-        f"the row has {len(fields)} field{'' if len(fields) == 1 else 's'} where the header has "
-        f"{body.width}: '{shorten(line)}'."
-    )
-
-
-def _to_numbers(
-    cells: pl.Series, whole: pl.Series, header: str
-) -> tuple[pl.Series, tuple[int, str] | None]:
-    """Return text as numbers, and the first row of the whole ones that holds none."""
+def _to_numbers(cells: pl.Series, whole: pl.Series) -> pl.Series:
+    """Return text as numbers, NaN where it is none or the row is not whole."""
     spelled = cells.str.contains(NUMBER_PATTERN)
     numbers = cells.str.replace(",", ".", literal=True).cast(pl.Float64(), strict=False)
-    good = (spelled & numbers.is_finite()).fill_null(value=False)
-    bad = whole & ~good
-    if not bad.any():
-        return numbers, None
-    row = int(bad.arg_max() or 0)
-    return numbers, (row, _bad_number(cells[row], header))
-
-
-def _bad_number(cell: str | None, header: str) -> str:
-    if not cell:
-        return f"column '{header}' is empty."
-    return f"column '{header}' holds '{shorten(cell)}', which is not an ordinary number."
+    good = (spelled & whole & numbers.is_finite()).fill_null(value=False)
+    return pl.select(pl.when(good).then(numbers).otherwise(float("nan"))).to_series()
 
 
 # Parquet
@@ -289,16 +260,7 @@ def _parquet_numbers(frame: pl.DataFrame, columns: Mapping[str, FoundColumn]) ->
             raise DefectiveInputError(
                 "bad_number", f"Column '{found.header}' holds {cells.dtype}, not numbers."
             )
-        numbers[key] = cells.cast(pl.Float64())
-        bad = ~numbers[key].is_finite().fill_null(value=False)
-        if bad.any():
-            row = int(bad.arg_max() or 0)
-            raise DefectiveInputError(
-                "bad_number",
-                f"Row {row + 1}: column '{found.header}' holds '{cells[row]}', "
-                "which is not an ordinary number.",
-                line=row + 2,
-            )
+        numbers[key] = cells.cast(pl.Float64()).fill_null(float("nan"))
     return pl.DataFrame(numbers)
 
 
@@ -315,7 +277,8 @@ def _to_si(frame: pl.DataFrame, columns: Mapping[str, FoundColumn]) -> pl.DataFr
 
 
 def _to_schema(raw: pl.DataFrame) -> pl.DataFrame:
-    """Return the frame of `SAMPLE_SCHEMA` from Float64 columns in SI units."""
+    """Return the frame of `SAMPLE_SCHEMA` from Float64 columns in SI units, NaN for no number."""
+    raw = raw.with_columns(_known_runs(raw["run"]))
     _check_run_numbers(raw["run"])
     angle = pl.col("wind_angle")
     wrapped = pl.when(angle.is_between(-180, 360)).then(angle % 360).otherwise(angle)
@@ -328,19 +291,21 @@ def _to_schema(raw: pl.DataFrame) -> pl.DataFrame:
     # 359.99999999 rounds to 360 in 32 bits; the promise is [0, 360).
     turned = pl.when(pl.col("wind_angle_deg") == 360).then(0.0).otherwise(pl.col("wind_angle_deg"))
     samples = samples.with_columns(turned.cast(pl.Float32()).alias("wind_angle_deg"))
-    _check_finite(samples)
-    return samples
+    # A number such as 1e39 is finite in 64 bits and not in 32.
+    floats = pl.selectors.float()
+    return samples.with_columns(
+        pl.when(floats.is_infinite()).then(float("nan")).otherwise(floats).name.keep()
+    )
 
 
-def _check_finite(samples: pl.DataFrame) -> None:
-    """A number such as 1e39 is finite in 64 bits and not in 32."""
-    for name in samples.columns[1:]:
-        infinite = np.isinf(samples[name].to_numpy())
-        if infinite.any():
-            row = int(infinite.argmax())
-            raise DefectiveInputError(
-                "bad_number", f"Line {row + 2}: the number for {name} is too large.", line=row + 2
-            )
+def _known_runs(run: pl.Series) -> pl.Series:
+    """Return the run numbers; a row whose own cannot be read belongs to the run that it is in."""
+    if not run.is_nan().any():
+        return run
+    known = run.fill_nan(None).forward_fill().backward_fill()
+    if known.null_count():
+        raise DefectiveInputError("unreadable_file", "No row says which run it belongs to.")
+    return known
 
 
 def _check_run_numbers(run: pl.Series) -> None:
@@ -390,7 +355,8 @@ def _check_time(run: pl.Series, time_s: NDArray[np.float64], rate_hz: int | None
         samples = int(end - start)
         if samples < 2:
             continue
-        observed = (samples - 1) / (time_s[end - 1] - time_s[start])
+        # The usual step: a gap costs its seconds, which `plausibility` counts.
+        observed = 1.0 / float(np.nanmedian(step[start : end - 1]))
         if abs(observed / rate_hz - 1) > TIME_TOLERANCE:
             raise DefectiveInputError(
                 "bad_time",

@@ -47,5 +47,5 @@ def count_faults(store: Store, methods: Sequence[Method]) -> list[str]:
 
 def set_aside_tows(store: Store) -> tuple[int, int]:
     """How many tows are set aside, and how many are listed."""
-    aside = store.read("quarantine")["tow_id"].drop_nulls().n_unique()
+    aside = store.read("quarantine").filter(lost="tow")["tow_id"].n_unique()
     return aside, aside + store.read("tows").height

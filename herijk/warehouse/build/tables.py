@@ -31,6 +31,7 @@ from herijk.warehouse.build.due import due_made_from, due_rows
 from herijk.warehouse.build.summaries import SUMMARY_TABLES
 from herijk.warehouse.editions.published import published_made_from, published_tables
 from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.intake.lake import FAULT_SCHEMA
 from herijk.warehouse.store.code import code_version
 from herijk.warehouse.store.database import build_database, open_database
 from herijk.warehouse.store.files import file_sha256
@@ -122,27 +123,51 @@ def collect_archive(store: Store, today: dt.date) -> dict[str, int]:
         raise _nothing_sound(store, found, made_from)
     index = store.read_all("season_index")
     sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
-    tows = store.read_all("season_tows").join(sound, on="tow_id", how="semi")
+    losses = index.select(pl.col("losses").explode()).unnest("losses").drop_nulls("path")
+    tows = _with_lost_runs(
+        store.read_all("season_tows").join(sound, on="tow_id", how="semi"), losses
+    )
     present = intake.present_runs(store)
     runs = store.read_all("season_runs").join(present, on=["tow_id", "run"], how="semi")
     windows = store.read("listed_windows").join(runs, on=["tow_id", "run"], how="semi")
     beyond = _as_faults(outside_run(windows, present))
-    unsound = index.filter(pl.col("reason_code").is_not_null()).select(list(intake.FAULT_SCHEMA))
+    unsound = index.filter(pl.col("reason_code").is_not_null()).select(
+        pl.col(name) if name in index.columns else pl.lit(None, kind).alias(name)
+        for name, kind in FAULT_SCHEMA.items()
+    )
     found = {
         "boats": store.read("listed_boats"),
         "seasons": _seasons(store.read_all("season_tows"), sound),
         "tows": tows,
-        "tow_runs": runs,
+        "tow_runs": _with_lost_seconds(runs, losses),
         "hand_windows": windows.join(
             beyond, left_on=_LISTED_AT, right_on=["path", "line"], how="anti"
         ),
-        "quarantine": _quarantine(store, [store.read("list_faults"), beyond, unsound], today),
+        "quarantine": _quarantine(
+            store, [store.read("list_faults"), beyond, unsound, losses], today
+        ),
     }
     if tows.is_empty():
         raise _nothing_sound(store, found, made_from)
     for name, frame in found.items():
         store.write(name, conform(name, frame), made_from)
     return {name: frame.height for name, frame in found.items()}
+
+
+def _with_lost_runs(tows: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
+    """Adds how many of the runs to be used are set aside."""
+    lost = losses.filter(lost="run").group_by("tow_id").agg(pl.len().alias("runs_set_aside"))
+    return tows.join(lost, on="tow_id", how="left").with_columns(
+        pl.col("runs_set_aside").fill_null(0).cast(pl.Int32)
+    )
+
+
+def _with_lost_seconds(runs: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
+    """Adds the longest time that was left out of a channel of each run."""
+    lost = losses.filter(lost="seconds").group_by("tow_id", "run").agg(pl.col("lost_s").max())
+    return runs.join(lost, on=["tow_id", "run"], how="left").with_columns(
+        pl.col("lost_s").fill_null(0.0)
+    )
 
 
 def _seasons(listed: pl.DataFrame, sound: pl.DataFrame) -> pl.DataFrame:
@@ -185,17 +210,19 @@ _LISTED_AT: Final = ["list_path", "list_line"]
 
 
 def _as_faults(faults: Sequence[Fault]) -> pl.DataFrame:
-    return pl.DataFrame([dataclasses.asdict(f) for f in faults], schema=intake.FAULT_SCHEMA)
+    return pl.DataFrame([dataclasses.asdict(f) for f in faults], schema=FAULT_SCHEMA)
 
 
 def _quarantine(store: Store, parts: Sequence[pl.DataFrame], today: dt.date) -> pl.DataFrame:
     """All faults; one that was there before keeps the day on which it was first seen."""
     key = ["path", "tow_id", "line", "reason_code"]
+    of_list = pl.when(pl.col("line").is_null()).then(pl.lit("file")).otherwise(pl.lit("row"))
+    lost = pl.when(pl.col("tow_id").is_not_null()).then(pl.lit("tow")).otherwise(of_list)
     first = _seen_before(store).group_by(key).agg(pl.col("first_seen").min())
     return (
         pl.concat(parts)
         .join(first, on=key, how="left", nulls_equal=True)
-        .with_columns(pl.col("first_seen").fill_null(today))
+        .with_columns(pl.col("lost").fill_null(lost), pl.col("first_seen").fill_null(today))
     )
 
 

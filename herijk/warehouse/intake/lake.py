@@ -23,12 +23,24 @@ from herijk.warehouse import archive
 from herijk.warehouse.archive import (
     FileHashes,
     SeasonProfile,
-    check_samples,
     fault_from,
+    judge_samples,
     read_tow_samples,
 )
 from herijk.warehouse.store.code import source_hash
 from herijk.warehouse.store.store import Store, count_rows, fingerprint, read_parquet, write_parquet
+
+FAULT_SCHEMA: Final = {
+    "path": pl.String(),
+    "tow_id": pl.String(),
+    "line": pl.Int64(),
+    "reason_code": pl.String(),
+    "message": pl.String(),
+    "lost": pl.String(),
+    "run": pl.Int8(),
+    "lost_s": pl.Float64(),
+}
+"""A row per fault: `herijk.warehouse.archive.Fault`."""
 
 SEASON_INDEX_SCHEMA: Final = {
     "tow_id": pl.String(),
@@ -39,8 +51,10 @@ SEASON_INDEX_SCHEMA: Final = {
     "line": pl.Int64(),
     "reason_code": pl.String(),
     "message": pl.String(),
+    "losses": pl.List(pl.Struct(FAULT_SCHEMA)),
 }
-"""One row a listed tow: where its samples and blocks lie, or the fault that was found."""
+"""One row per listed tow: where its samples and blocks lie, or the fault that was found, and what
+else was lost: runs and seconds."""
 
 LAKE_FORM: Final = {
     "compression": "lz4",
@@ -83,14 +97,19 @@ def read_season(
     Returns:
         The season's index, `SEASON_INDEX_SCHEMA`, sorted by tow.
     """
-    before = _known_faults(store, profile.season)
+    before = _known_tows(store, profile.season)
     hashes = FileHashes.load(store.file_hashes)
     runs_of = dict(runs.partition_by("tow_id", as_dict=True))
 
     def read(tow: Tow) -> dict[str, Any]:
         listed_runs = runs_of[tow["tow_id"],]
         key = _samples_key(tow, listed_runs, profile)
-        row = before.get(key) or _bring_in(store, root, tow, listed_runs, profile, key, hashes)
+        known = before.get(key)
+        if known is not None and known["reason_code"] is not None:
+            row = known
+        else:
+            losses = None if known is None else known["losses"]
+            row = _bring_in(store, root, tow, listed_runs, profile, key, hashes, losses)
         report(tow["tow_id"], row["reason_code"] is not None)
         return row | {"tow_id": tow["tow_id"]}
 
@@ -125,16 +144,21 @@ def _bring_in(
     profile: SeasonProfile,
     key: str,
     hashes: FileHashes,
+    losses: list[dict[str, Any]] | None,
 ) -> dict[str, Any]:
-    """Index row of a tow after its samples and blocks are in the lake, or with its fault."""
+    """Index row of a tow after its samples and blocks are in the lake, or with its fault.
+
+    Its samples are read again also where only what was lost of them (`losses`) is not known.
+    """
     row = dict.fromkeys(SEASON_INDEX_SCHEMA) | {"samples_key": key}
     path = store.samples_path(profile.season, key)
     blocks_key = fingerprint(key, tow["sample_rate_hz"], _blocks_hash())
     blocks_path = store.blocks_path(profile.season, blocks_key)
     try:
-        samples = None if path.exists() else read_tow_samples(root, tow, profile)
-        if samples is not None:
-            check_samples(samples, tow, runs)
+        samples = None
+        if losses is None or not path.exists():
+            judged = judge_samples(read_tow_samples(root, tow, profile), tow, runs)
+            samples, losses = judged.samples, [dataclasses.asdict(f) for f in judged.faults]
             _check_unchanged(root, tow, hashes)
             write_parquet(samples, path, form=LAKE_FORM)
         if not blocks_path.exists():
@@ -145,8 +169,9 @@ def _bring_in(
             write_parquet(sums, blocks_path, form=LAKE_FORM)
     except DefectiveInputError as error:
         _check_unchanged(root, tow, hashes)
-        return row | dataclasses.asdict(fault_from(error, tow["samples_path"], tow["tow_id"]))
-    return row | {"blocks_key": blocks_key, "samples": count_rows(path)}
+        fault = dataclasses.asdict(fault_from(error, tow["samples_path"], tow["tow_id"]))
+        return row | {name: fault[name] for name in row if name in fault}
+    return row | {"blocks_key": blocks_key, "samples": count_rows(path), "losses": losses}
 
 
 class ArchiveChangedError(UnavailableError):
@@ -179,15 +204,14 @@ def forget_season(store: Store, season: int) -> None:
     _remove_unlisted(store, season, pl.DataFrame(schema=SEASON_INDEX_SCHEMA))
 
 
-def _known_faults(store: Store, season: int) -> dict[str, dict[str, Any]]:
-    """Faults of the season's last reading, by samples key."""
+def _known_tows(store: Store, season: int) -> dict[str, dict[str, Any]]:
+    """What was found of the season's tows at its last reading, by samples key."""
     if str(season) not in store.partitions("season_index"):
         return {}
     index = store.read("season_index", str(season))
     if index.schema != pl.Schema(SEASON_INDEX_SCHEMA):
         return {}
-    faulty = index.filter(pl.col("reason_code").is_not_null())
-    return {row["samples_key"]: row for row in faulty.iter_rows(named=True)}
+    return {row["samples_key"]: row for row in index.iter_rows(named=True)}
 
 
 def _samples_key(tow: Tow, runs: pl.DataFrame, profile: SeasonProfile) -> str:

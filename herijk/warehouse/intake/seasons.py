@@ -31,13 +31,6 @@ LISTED: Final = ("boats", "tows", "runs", "windows")
 SEASON_TABLES: Final = ("season_tows", "season_runs", "season_index", "blocks")
 """What is kept of a season, as the archive was when it was read."""
 PRESENT_SCHEMA: Final = {"tow_id": pl.String(), "run": pl.Int8(), "seconds": pl.Int16()}
-FAULT_SCHEMA: Final = {
-    "path": pl.String(),
-    "tow_id": pl.String(),
-    "line": pl.Int64(),
-    "reason_code": pl.String(),
-    "message": pl.String(),
-}
 
 
 def index(store: Store, root: Path) -> ArchiveIndex:
@@ -54,7 +47,7 @@ def index(store: Store, root: Path) -> ArchiveIndex:
     races, race_faults = read_races(root)
     _, register_faults = read_published_registers(root)
     faults = [dataclasses.asdict(f) for f in (*found.faults, *race_faults, *register_faults)]
-    store.write("list_faults", pl.DataFrame(faults, schema=FAULT_SCHEMA), made_from="")
+    store.write("list_faults", pl.DataFrame(faults, schema=lake.FAULT_SCHEMA), made_from="")
     about = {"simulated": [found.profiles.simulated], "root": [str(root.resolve())]}
     store.write("about_archive", pl.DataFrame(about), made_from="")
     store.write("listed_files", found.files, made_from="")
