@@ -26,6 +26,8 @@ class Seasons(dy.Schema):
     season = column.season(primary_key=True)
     listed = dy.Int32(description="tows in the tow list that could be read", min=0)
     tows = dy.Int32(description="of which used; the others are in quarantine", min=0)
+    runs_set_aside = dy.Int32(description="runs of these that are set aside", min=0)
+    lost_s = column.number("s", "time left out of the other runs, all channels", min=0)
 
 
 class Tows(dy.Schema):

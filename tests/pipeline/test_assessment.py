@@ -66,6 +66,7 @@ def _tow(boat: int, season: int) -> dict[str, Any]:
         "weight_after_kg": 1008.0 + 5.0 * boat,
         "crew_weight_kg": 760.0,
         "altered": False,
+        "runs_set_aside": 0,
         "freeboard_lowest_m": 0.40,
         "freeboard_bow_m": 0.80,
         "freeboard_stern_m": 0.60,
@@ -139,6 +140,7 @@ heavier = {"a_kg_m": 1.08 * A, "cw_kg_m": 1.08 * CW}
 CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
     "no_curve": ("curves", SUBJECT, no_curve | gone, 0, 1, set()),
     "few_runs": ("curves", SUBJECT, {"runs_used": 5}, 5, 6, set()),
+    "runs_set_aside": ("tows", SUBJECT, {"runs_set_aside": 1}, 1, 0, set()),
     "unbalanced_runs": ("run_points", SUBJECT, {"used": ~run1 & (pl.col("run") != 2)}, 2, 1, set()),
     "residual_large": ("curves", SUBJECT, {"residual_sd_ratio": 0.045}, 0.045, 0.04, set()),
     "out_and_back_differ": (

@@ -131,9 +131,8 @@ def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
         "wind_angle_deg": np.where(wind, mean_wind_angle_deg(blocks, mask), np.nan),
         "log2_ratio": np.where(log2, log2_ratio, np.nan),
     }
-    return blocks.runs.select(
-        "tow_id", "run", "direction", "target_speed_ratio", "lost_s"
-    ).with_columns(
+    return blocks.runs.select("tow_id", "run", "direction", "target_speed_ratio").with_columns(
+        pl.Series("lost_s", o.batch.lost_s),
         *(_column(name, values, found) for name, values in numbers.items()),
         _column("ends_ratio", o.windows.ends.in_limits(o.steps.window), found & has_limits),
         _column("gps_ratio", o.means.gps_m_s / log1, found),

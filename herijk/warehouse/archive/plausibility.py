@@ -37,10 +37,10 @@ SPEEDS_AGREE_RATIO: Final = (0.6, 1.4)
 RESISTANCE_KG_M: Final = (2.0, 500.0)
 """Mean force over intended speed squared; sloops lie between 15 and 60."""
 FORCE_SPIKE_RATIO: Final = (-3.0, 5.0)
-"""Of the median. A tow line cannot push: what a slack one reads is noise about zero."""
+"""Of the usual force. A tow line cannot push: what a slack one reads is noise about zero."""
 FORCE_DEAD_RATIO: Final = 0.05
 FORCE_DEAD_S: Final = 0.1
-"""A force that stays at one value so near zero (relative to the median) for so long is no force."""
+"""A force that stays at one value so near zero, for so long, is no force."""
 GUST_RATIO: Final = 2.5
 GUST_M_S: Final = 4.0
 """Wind over so many times the run's median and so much more is no gust that cups can follow."""
@@ -133,8 +133,9 @@ def judge_samples(samples: pl.DataFrame, tow: Mapping[str, Any], runs: pl.DataFr
     _check_mix_ups(whole, tow)
     _check_speed_unit(whole, tow)
     kept: list[_Run] = []
+    usual_kg_m = _usual_resistance_kg_m(whole)
     for run in whole:
-        mended, of_run = _judge_run(run, tow)
+        mended, of_run = _judge_run(run, tow, usual_kg_m)
         faults += of_run
         kept += [] if mended is None else [mended]
     mended_gps, of_gps = _without_stuck_gps(kept, tow)
@@ -366,9 +367,17 @@ def _check_speed_unit(runs: list[_Run], tow: Mapping[str, Any]) -> None:
 # Samples that are left out
 
 
-def _judge_run(run: _Run, tow: Mapping[str, Any]) -> tuple[_Run | None, list[Fault]]:
+def _usual_resistance_kg_m(runs: list[_Run]) -> float:
+    """Force / speed squared of a typical run, which a fault over most of one does not move."""
+    each = [_median(run.channels["force"]) / run.intended_m_s**2 for run in runs]
+    return abs(float(np.nanmedian(each)))
+
+
+def _judge_run(
+    run: _Run, tow: Mapping[str, Any], usual_kg_m: float
+) -> tuple[_Run | None, list[Fault]]:
     """The run without the samples that cannot be, or None where too much or all of it is wrong."""
-    wrong = _wrong_samples(run)
+    wrong = _wrong_samples(run, usual_kg_m * run.intended_m_s**2)
     no_row = np.logical_and.reduce([~np.isfinite(values) for values in run.channels.values()])
     needed = np.logical_or.reduce([mask for key, mask in wrong.items() if key not in SPARE])
     lost: Lost = "run" if needed.sum() > LEFT_OUT_S * run.rate_hz else "seconds"
@@ -441,14 +450,14 @@ def _reason(run: _Run, key: str, row: int) -> str:
 _SPEEDS: Final = ("log1", "log2", "gps")
 
 
-def _wrong_samples(run: _Run) -> dict[str, BoolArray]:
+def _wrong_samples(run: _Run, usual_n: float) -> dict[str, BoolArray]:
     """Samples that are no number, have dropped out or cannot be, by channel."""
     wrong = {}
     for key, values in run.channels.items():
         if key in _SPEEDS:
             wrong[key] = _wrong_speed(values, run.rate_hz)
         elif key == "force":
-            wrong[key] = _wrong_force(values, run.rate_hz)
+            wrong[key] = _wrong_force(values, usual_n, run.rate_hz)
         elif key == "wind_speed":
             most = GUST_RATIO * abs(_median(values)) + GUST_M_S
             wrong[key] = _outside(values, WIND_SPEED_M_S[0], min(WIND_SPEED_M_S[1], most))
@@ -488,12 +497,11 @@ def _around(values: Array, rate_hz: int) -> NDArray[np.float64]:
     return np.asarray(each[second], dtype=np.float64)
 
 
-def _wrong_force(values: Array, rate_hz: int) -> BoolArray:
-    median = abs(_median(values))
-    low, high = (ratio * median for ratio in FORCE_SPIKE_RATIO)
+def _wrong_force(values: Array, usual_n: float, rate_hz: int) -> BoolArray:
+    low, high = (ratio * usual_n for ratio in FORCE_SPIKE_RATIO)
     wrong = _outside(values, low, high)
-    if (np.abs(values) <= FORCE_DEAD_RATIO * median).any():
-        wrong |= _dead(values, FORCE_DEAD_RATIO * median, max(int(FORCE_DEAD_S * rate_hz), 3))
+    if (np.abs(values) <= FORCE_DEAD_RATIO * usual_n).any():
+        wrong |= _dead(values, FORCE_DEAD_RATIO * usual_n, max(int(FORCE_DEAD_S * rate_hz), 3))
     means = _second_means(np.where(wrong, np.float32(np.nan), values), rate_hz)
     if (means < 0).any():  # single negative samples are the surge of the tow line
         second = np.minimum(np.arange(len(values)) // rate_hz, len(means) - 1)

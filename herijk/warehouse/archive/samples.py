@@ -278,7 +278,8 @@ def _to_si(frame: pl.DataFrame, columns: Mapping[str, FoundColumn]) -> pl.DataFr
 
 def _to_schema(raw: pl.DataFrame) -> pl.DataFrame:
     """Return the frame of `SAMPLE_SCHEMA` from Float64 columns in SI units, NaN for no number."""
-    raw = raw.with_columns(_known_runs(raw["run"]))
+    if raw["run"].is_nan().any():
+        raw = _with_known_runs(raw)
     _check_run_numbers(raw["run"])
     angle = pl.col("wind_angle")
     wrapped = pl.when(angle.is_between(-180, 360)).then(angle % 360).otherwise(angle)
@@ -298,14 +299,14 @@ def _to_schema(raw: pl.DataFrame) -> pl.DataFrame:
     )
 
 
-def _known_runs(run: pl.Series) -> pl.Series:
-    """Return the run numbers; a row whose own cannot be read belongs to the run that it is in."""
-    if not run.is_nan().any():
-        return run
-    known = run.fill_nan(None).forward_fill().backward_fill()
-    if known.null_count():
+def _with_known_runs(raw: pl.DataFrame) -> pl.DataFrame:
+    """Return the samples with a row whose run cannot be read in the run around it, as no numbers."""
+    unread = raw["run"].is_nan()
+    run = raw["run"].fill_nan(None).forward_fill().backward_fill()
+    if run.null_count():
         raise DefectiveInputError("unreadable_file", "No row says which run it belongs to.")
-    return known
+    others = pl.exclude("run", "time")
+    return raw.with_columns(run, pl.when(unread).then(float("nan")).otherwise(others).name.keep())
 
 
 def _check_run_numbers(run: pl.Series) -> None:

@@ -137,7 +137,7 @@ def collect_archive(store: Store, today: dt.date) -> dict[str, int]:
     )
     found = {
         "boats": store.read("listed_boats"),
-        "seasons": _seasons(store.read_all("season_tows"), sound),
+        "seasons": _seasons(store.read_all("season_tows"), sound, losses),
         "tows": tows,
         "tow_runs": _with_lost_seconds(runs, losses),
         "hand_windows": windows.join(
@@ -170,11 +170,22 @@ def _with_lost_seconds(runs: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame
     )
 
 
-def _seasons(listed: pl.DataFrame, sound: pl.DataFrame) -> pl.DataFrame:
-    """How many tows each season lists, and how many of them can be used."""
+def _seasons(listed: pl.DataFrame, sound: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
+    """How many tows each season lists, how many can be used, and what is lost of those."""
+    lost = losses.group_by("tow_id").agg(
+        (pl.col("lost") == "run").sum().alias("runs_set_aside"),
+        pl.col("lost_s").filter(pl.col("lost") == "seconds").sum(),
+    )
     is_sound = pl.col("tow_id").is_in(sound["tow_id"].implode())
-    return listed.group_by("season").agg(
-        pl.len().cast(pl.Int32).alias("listed"), is_sound.sum().cast(pl.Int32).alias("tows")
+    return (
+        listed.join(lost, on="tow_id", how="left")
+        .group_by("season")
+        .agg(
+            pl.len().cast(pl.Int32).alias("listed"),
+            is_sound.sum().cast(pl.Int32).alias("tows"),
+            pl.col("runs_set_aside").sum().cast(pl.Int32),
+            pl.col("lost_s").sum().cast(pl.Float64),
+        )
     )
 
 

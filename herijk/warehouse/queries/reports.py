@@ -12,6 +12,7 @@ from herijk.warehouse.store.store import Store
 Report = dict[str, Any]
 BIGGEST = 10
 FIRST_FAULTS = 10
+_MOST_LOST = "list_position(['file', 'tow', 'row', 'run', 'seconds'], lost)"
 
 
 def rebuild_report(store: Store) -> Report:
@@ -27,12 +28,13 @@ def rebuild_report(store: Store) -> Report:
             ),
             "set_aside": rows(
                 db,
-                "SELECT reason_code, count(*) AS number FROM quarantine "
-                "GROUP BY reason_code ORDER BY number DESC, reason_code",
+                "SELECT lost, reason_code, count(*) AS number FROM quarantine "
+                f"GROUP BY ALL ORDER BY {_MOST_LOST}, number DESC, reason_code",  # noqa: S608
             ),
             "first_faults": rows(
                 db,
-                "SELECT path, tow_id, line, message FROM quarantine ORDER BY path, line LIMIT ?",
+                "SELECT path, tow_id, line, message FROM quarantine "
+                f"ORDER BY {_MOST_LOST}, path, line LIMIT ?",  # noqa: S608
                 FIRST_FAULTS,
             ),
             "curves": rows(
