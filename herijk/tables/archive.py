@@ -1,8 +1,17 @@
 """What the archive holds: boats, tows, their runs, windows given by hand, and what is set aside."""
 
+from functools import partial
+from typing import Final
+
 import dataframely as dy
 
 from herijk.tables import column
+
+LOST: Final = partial(
+    column.text,
+    "what it costs: seconds, run, tow, file, or a row of a list that costs no tow",
+    regex="^(seconds|run|tow|file|row)$",
+)
 
 
 class Boats(dy.Schema):
@@ -30,8 +39,8 @@ class Seasons(dy.Schema):
     lost_s = column.number("s", "time left out of the other runs, all channels", min=0)
 
 
-class Tows(dy.Schema):
-    """Tows accepted into the warehouse, one row each."""
+class TowList(dy.Schema):
+    """Tows of the tow lists, one row each."""
 
     tow_id = column.tow_id(primary_key=True)
     season = column.season()
@@ -59,23 +68,35 @@ class Tows(dy.Schema):
     freeboard_bow_m = column.number("m", "freeboard at the bow", nullable=True)
     freeboard_stern_m = column.number("m", "freeboard at the stern", nullable=True)
     remark = column.text("remark in the tow list", nullable=True)
+    wind_measured = dy.Bool(description="there was an anemometer whose wind can be used")
+    log2_measured = dy.Bool(description="there was a second log that can be used")
     log1_part = dy.Int32(description="times log 1 had been replaced that season", min=0)
     log2_part = dy.Int32(description="times log 2 had been replaced that season", min=0)
-    runs_set_aside = dy.Int32(description="runs to be used that are in quarantine", min=0)
     samples_path = column.text("samples file in the archive")
     samples_sha256 = column.sha256("its content hash")
     second_path = column.text("second samples file, if two tows were combined", nullable=True)
     second_sha256 = column.sha256("its content hash", nullable=True)
 
 
-class TowRuns(dy.Schema):
-    """Runs of every tow; runs 11-16 are runs 1-6 of the second samples file."""
+class Tows(TowList):
+    """Tows accepted into the warehouse, one row each."""
+
+    runs_set_aside = dy.Int32(description="runs to be used that are in quarantine", min=0)
+
+
+class RunList(dy.Schema):
+    """Runs of every tow; runs 21 and on are runs 1 and on of the second file."""
 
     tow_id = column.tow_id(primary_key=True)
     run = column.run(primary_key=True)
     direction = dy.Int8(description="1 out, -1 back", min=-1, max=1)
     target_speed_ratio = column.number("1", "intended speed / declared speed", min_exclusive=0)
     selected = dy.Bool(description="the tow list says to use it")
+
+
+class TowRuns(RunList):
+    """Runs of every tow of which samples can be used."""
+
     lost_s = column.number("s", "most that is left out of a channel: dropouts, spikes", min=0)
 
 
@@ -110,10 +131,7 @@ class Quarantine(dy.Schema):
     line = dy.Int64(description="line in the file", nullable=True, min=1)
     reason_code = column.text("short stable code")
     message = column.text("what is wrong and what to do, in a sentence")
-    lost = column.text(
-        "what it costs: seconds, run, tow, file, or a row of a list that costs no tow",
-        regex="^(seconds|run|tow|file|row)$",
-    )
+    lost = LOST()
     run = column.run(nullable=True)
     lost_s = column.number("s", "time that is lost", nullable=True, min=0)
     first_seen = dy.Date(description="day on which this fault was first found")

@@ -10,7 +10,7 @@ import pytest
 from polars.testing import assert_frame_equal
 
 from herijk.pipeline.method.definition import shipped_method
-from herijk.warehouse.build import tables
+from herijk.warehouse.build.graph import ARCHIVE, METHOD
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.database import build_database
 from tests.conftest import METHODS, SMALL, Workbench
@@ -202,7 +202,9 @@ def test_all_other_rows_are_those_of_the_clean_archive(spoiled, built, table):
 
 def test_the_quarantine_says_what_each_fault_costs(spoiled):
     found = spoiled[0].table("quarantine")
-    of_tow = dict(found.filter(pl.col("tow_id").str.starts_with("2009")).select("tow_id", "lost").rows())
+    of_tow = dict(
+        found.filter(pl.col("tow_id").str.starts_with("2009")).select("tow_id", "lost").rows()
+    )
     assert {tow: of_tow[tow] for tow in tow_ids(*range(1, 11))} == dict(
         zip(
             tow_ids(*range(1, 11)),
@@ -213,7 +215,9 @@ def test_the_quarantine_says_what_each_fault_costs(spoiled):
     assert found.filter(reason_code="bad_race_row")["lost"].to_list() == ["row"]
     assert found.filter(reason_code="samples_not_listed")["lost"].to_list() == ["file"]
     points = spoiled[0].table("run_points").filter(tow_id=tow_ids(4)[0], method="rebased-2015")
-    assert points["lost_s"].max() == pytest.approx(found.filter(tow_id=tow_ids(4)[0])["lost_s"].item())
+    assert points["lost_s"].max() == pytest.approx(
+        found.filter(tow_id=tow_ids(4)[0])["lost_s"].item()
+    )
     tows = spoiled[0].table("tows").filter(tow_id=tow_ids(1)[0])
     assert tows["runs_set_aside"].to_list() == [1]
 
@@ -231,7 +235,7 @@ def read_again(bench: Workbench, day: dt.date) -> pl.DataFrame:
     """Brings the archive into the lake as a rebuild of that day does; gives what is set aside."""
     store = bench.store
     intake.bring_in(store, bench.archive)
-    tables.collect_archive(store, day)
+    ARCHIVE.make(store, (), day)
     return store.read("quarantine")
 
 
@@ -249,9 +253,8 @@ def test_a_vane_that_reads_minus_180_to_180_is_no_fault(bench, built):
     assert changed != lines
     file.write_text("\n".join(changed) + "\n", "utf-8")
     assert read_again(bench, DAYS[0]).height == 0
-    blocks = tables.run_blocks(bench.store)
     for name in METHODS:
-        tables.apply_method(bench.store, shipped_method(name), blocks)
+        METHOD.make(bench.store, [shipped_method(name)])
         new, old = (b.store.read("curves", name).filter(tow_id=tow) for b in (bench, built))
         assert new["cw_kg_m"].item() == pytest.approx(old["cw_kg_m"].item(), rel=1e-6)
 

@@ -46,7 +46,8 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
         tow=pl.format("{} · {}{}", "tow_id", "rowers", "crew_class")
     )
     declared = curves.drop_nulls("cw_kg_m").with_columns(speed_m_s="declared_speed_m_s")
-    lines = views.table("curve_points").join(boat_of, on="tow_id")
+    intervals = views.table("methods").select("method", "interval")
+    lines = views.table("curve_points").join(boat_of, on="tow_id").join(intervals, on="method")
     lineage = views.table("lineage").with_columns(
         pl.format("{}{}", "rowers", "crew_class").alias("crew")
     )
@@ -55,9 +56,9 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
         "register": views.register(),
         "curves": curves,
         "runs": points,
-        "line": _kind(lines, "line", "method", *NUMBERS),
+        "line": _kind(lines, "line", "method", *NUMBERS, "interval"),
         "point": _kind(points.drop_nulls("cw_kg_m"), "point", "method", *POINT),
-        "declared": _kind(declared, "declared", "method", *NUMBERS),
+        "declared": _kind(declared, "declared", "method", *NUMBERS, "interval"),
         "stages": _stages(points),
         "trace": _seconds(views.table("trace_seconds").join(boat_of, on="tow_id")),
         "window": _kind(points, "window", "method", "run", *WINDOW),
@@ -148,7 +149,16 @@ def _page(fsn_no: str, own: dict[str, pl.DataFrame], methods: Sequence[str]) -> 
 def _data(own: dict[str, pl.DataFrame]) -> dict[str, list[pl.DataFrame]]:
     """What the charts draw; rows of several kinds stand one below the other."""
     wind = ("method", "tow_id", "run", "direction", "wind_m_s", "wind_angle_deg")
-    history = ("method", "tow", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", "a_kg_m", "b_m_s")
+    history = (
+        "method",
+        "tow",
+        "cw_kg_m",
+        "cw_lo_kg_m",
+        "cw_hi_kg_m",
+        "a_kg_m",
+        "b_m_s",
+        "interval",
+    )
     parts = {"curve": ("line", "point", "declared"), "traces": ("trace", "window")}
     found = {name: [own[part].drop("fsn_no") for part in held] for name, held in parts.items()}
     return found | {

@@ -327,7 +327,8 @@ def _set_aside(views: Views) -> Section:
         return Section("set_aside", "set_aside_note", empty="nothing_set_aside")
     columns = ["path", "tow_id", "line", "lost", "run", "lost_s", "reason_code", "message"]
     columns.append("first_seen")
-    table = Table("quarantine", views.table("quarantine"), columns, "set_aside", search=True)
+    faults = views.table("quarantine").with_columns(lost="lost_" + pl.col("lost"))
+    table = Table("quarantine", faults, columns, "set_aside", search=True)
     return Section("set_aside", "set_aside_note", tables=[table])
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import polars as pl
 
 from herijk.pipeline.register.register import draft_name
-from herijk.warehouse.build.tables import STUDIED_METHOD
+from herijk.warehouse.build.studies import STUDIED_METHOD
 
 
 @dataclass(frozen=True)

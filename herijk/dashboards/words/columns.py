@@ -54,6 +54,7 @@ COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "time_ratio": ("Tijd nieuw / oud", "Time new / old"),
     "window": ("Venster [s]", "Window [s]"),
     "lowest": ("laagste", "lowest"),
+    "interval": ("Interval", "Interval"),
     "highest": ("hoogste", "highest"),
     "u_ratio": ("Standaardonzekerheid / Cw", "Standard uncertainty / Cw"),
     "old_rank": ("Plaats oud", "Place before"),
@@ -257,5 +258,6 @@ COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "column.cw_sd_ratio": ("sd / Cw van de proef", "sd / Cw of the tow"),
     "column.predicted_lo_kg_m": ("Voorspeld laag [kg/m]", "Predicted low [kg/m]"),
     "column.predicted_hi_kg_m": ("Voorspeld hoog [kg/m]", "Predicted high [kg/m]"),
+    "column.interval": ("Interval", "Interval"),
     "column.predicted_sd_ratio": ("sd / Cw voorspeld", "sd / Cw predicted"),
 }

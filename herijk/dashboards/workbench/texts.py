@@ -104,9 +104,11 @@ TEXTS: Final[Words] = {
     "in_boat": ("Een sloep", "A boat"),
     "in_boat_note": (
         "De kromme en de runs voor en na. Open tekens tellen niet mee; de streep bij de "
-        "opgegeven snelheid is het 95 %-interval.",
+        "opgegeven snelheid is het interval: van 95 %, of met streepjes de spreiding van de runs "
+        "alleen: de fout van de log zit er niet in.",
         "The curve and the runs before and after. Open marks do not count; the bar at the "
-        "declared speed is the 95 % interval.",
+        "declared speed is the interval: of 95 %, or dashed the spread of the runs alone: the "
+        "log's error is not in it.",
     ),
     "choose_boat": ("Kies sloep", "Choose boat"),
     "figure_curve": ("Weerstandskrommen van deze proef", "Resistance curves of this tow"),
@@ -207,6 +209,7 @@ TEXTS: Final[Words] = {
     "choice.archive": ("één uit alle proeven", "one from all tows"),
     "choice.as_felt": ("zoals gevoeld", "as felt"),
     "choice.cw_vac_2014": ("'Cw vac' van 2014", "'Cw vac' of 2014"),
+    "choice.cw_opt_2014": ("'Cw opt' van 2014", "'Cw opt' of 2014"),
     "choice.mean_of_ratios": ("gemiddelde van quotiënten", "mean of ratios"),
     "choice.ratio_of_means": ("quotiënt van gemiddelden", "ratio of means"),
     "choice.end_speeds": ("uit de eindsnelheden", "from the end speeds"),

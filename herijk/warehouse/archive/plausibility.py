@@ -18,11 +18,12 @@ import scipy
 from numpy.typing import NDArray
 
 from herijk.pipeline.arrays import BoolArray
-from herijk.pipeline.channels import RUN_SECONDS, SECOND_FILE_OFFSET
+from herijk.pipeline.channels import SECOND_FILE_OFFSET
 from herijk.warehouse.archive.faults import DefectiveFileError, Fault, Lost
 from herijk.warehouse.archive.samples import OUTPUT_NAMES, run_starts
 
-SHORTEST_RUN_S: Final = 0.99 * RUN_SECONDS
+SHORTEST_RUN_RATIO: Final = 0.99
+"""Of what is planned."""
 LEFT_OUT_S: Final = 2.0
 """Longest time in all of a run in which what the run point needs may be left out; as long again for
 log 2 and the GPS each."""
@@ -75,6 +76,7 @@ class _Run:
     first_line: int
     rate_hz: int
     intended_m_s: float
+    planned_s: float
     channels: Mapping[str, Array]
 
     @property
@@ -207,6 +209,7 @@ def _selected_runs(
                 int(start) - offset + 2,
                 tow["sample_rate_hz"],
                 tow["declared_speed_m_s"] * row["target_speed_ratio"],
+                row["planned_s"],
                 {key: values[start:end] for key, values in channels.items()},
             )
         )
@@ -253,9 +256,9 @@ def _cost(
 
 
 def _short(run: _Run, tow: Mapping[str, Any]) -> list[Fault]:
-    if run.seconds >= SHORTEST_RUN_S:
+    if run.seconds >= SHORTEST_RUN_RATIO * run.planned_s:
         return []
-    missing_s = RUN_SECONDS - run.seconds
+    missing_s = run.planned_s - run.seconds
     lost: Lost = "run" if missing_s > LEFT_OUT_S else "seconds"
     message = (
         f"{run.name} lasts {run.seconds:.2f} s at {run.rate_hz} samples a second, "
@@ -297,18 +300,26 @@ def _median(values: Array) -> float:
 def _implausible(channels: Mapping[str, _Typical], intended_m_s: float) -> list[str]:
     """Return the channels whose typical values cannot be what their header says."""
     log1 = channels["log1"].median
-    wind, angle = channels["wind_speed"], channels["wind_angle"]
     others = [key for key in ("log2", "gps") if key in channels]
     plausible = {
         "log1": _within(log1 / intended_m_s, SPEED_RATIO),
         **{key: _within(channels[key].median, SPEEDS_AGREE_RATIO, abs(log1)) for key in others},
         "force": _within(channels["force"].median, RESISTANCE_KG_M, intended_m_s**2),
+        **_plausible_wind(channels),
+    }
+    return [key for key, good in plausible.items() if not good]
+
+
+def _plausible_wind(channels: Mapping[str, _Typical]) -> dict[str, bool]:
+    if "wind_speed" not in channels:
+        return {}
+    wind, angle = channels["wind_speed"], channels["wind_angle"]
+    return {
         "wind_speed": wind.lowest >= WIND_SPEED_M_S[0]
         and wind.highest <= WIND_SPEED_M_S[1]
         and wind.median <= WIND_MEAN_M_S,
         "wind_angle": angle.lowest >= WIND_ANGLE_DEG[0] and angle.highest <= WIND_ANGLE_DEG[1],
     }
-    return [key for key, good in plausible.items() if not good]
 
 
 def _within(value: float, limits: tuple[float, float], unit: float = 1.0) -> bool:

@@ -12,7 +12,14 @@ from herijk.warehouse.store.store import Store
 Report = dict[str, Any]
 BIGGEST = 10
 FIRST_FAULTS = 10
-_MOST_LOST = "list_position(['file', 'tow', 'row', 'run', 'seconds'], lost)"
+_FAULTS_BY_REASON = """
+SELECT lost, reason_code, count(*) AS number FROM quarantine GROUP BY ALL
+ORDER BY list_position(['file', 'tow', 'row', 'run', 'seconds'], lost), number DESC, reason_code
+"""
+_FIRST_FAULTS = """
+SELECT path, tow_id, line, message FROM quarantine
+ORDER BY list_position(['file', 'tow', 'row', 'run', 'seconds'], lost), path, line LIMIT ?
+"""
 
 
 def rebuild_report(store: Store) -> Report:
@@ -26,17 +33,8 @@ def rebuild_report(store: Store) -> Report:
             "seasons": rows(
                 db, "SELECT season, count(*) AS tows FROM tows GROUP BY season ORDER BY season"
             ),
-            "set_aside": rows(
-                db,
-                "SELECT lost, reason_code, count(*) AS number FROM quarantine "
-                f"GROUP BY ALL ORDER BY {_MOST_LOST}, number DESC, reason_code",  # noqa: S608
-            ),
-            "first_faults": rows(
-                db,
-                "SELECT path, tow_id, line, message FROM quarantine "
-                f"ORDER BY {_MOST_LOST}, path, line LIMIT ?",  # noqa: S608
-                FIRST_FAULTS,
-            ),
+            "set_aside": rows(db, _FAULTS_BY_REASON),
+            "first_faults": rows(db, _FIRST_FAULTS, FIRST_FAULTS),
             "curves": rows(
                 db,
                 "SELECT method, status, count(*) AS number FROM curves "

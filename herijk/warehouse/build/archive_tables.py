@@ -1,0 +1,139 @@
+"""The tables about the archive: boats, tows with their runs, and everything that is set aside."""
+
+import dataclasses
+import datetime as dt
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Final
+
+import polars as pl
+
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.tables.frames import frame_of
+from herijk.tables.lake import Faults
+from herijk.warehouse.archive.windows import outside_run
+
+if TYPE_CHECKING:
+    from herijk.warehouse.build.inputs import Inputs
+
+_LISTED_AT: Final = ["list_path", "list_line"]
+
+
+class NothingSoundError(MissingKnowledgeError):
+    """No tow of the archive can be used.
+
+    Attributes:
+        tables: what is known all the same, of which the quarantine says why.
+    """
+
+    def __init__(self, message: str, tables: Mapping[str, pl.DataFrame]) -> None:
+        super().__init__(message)
+        self.tables = tables
+
+
+def archive_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
+    """Boats, sound tows with their runs and windows, and everything that was set aside.
+
+    Raises:
+        NothingSoundError: no tow is sound.
+    """
+    index = inputs["season_index"]
+    sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
+    present = _present_runs(inputs["blocks"])
+    runs = inputs["season_runs"].join(present, on=["tow_id", "run"], how="semi")
+    windows = inputs["listed_windows"].join(runs, on=["tow_id", "run"], how="semi")
+    beyond = frame_of(Faults, map(dataclasses.asdict, outside_run(windows, present)))
+    losses = index.select(pl.col("losses").explode()).unnest("losses").drop_nulls("path")
+    unsound = index.drop_nulls("reason_code").select(
+        set(Faults.column_names()) & set(index.columns)
+    )
+    set_aside = pl.concat([inputs["list_faults"], beyond, unsound, losses], how="diagonal")
+    found = {
+        "boats": inputs["listed_boats"].unique("fsn_no", keep="last", maintain_order=True),
+        "seasons": _seasons(inputs["season_tows"], sound, losses),
+        "tows": _with_lost_runs(inputs["season_tows"].join(sound, on="tow_id", how="semi"), losses),
+        "tow_runs": _with_lost_seconds(runs, losses),
+        "hand_windows": windows.join(
+            beyond, left_on=_LISTED_AT, right_on=["path", "line"], how="anti"
+        ),
+        "quarantine": _dated(set_aside, inputs.earlier("quarantine"), inputs.today),
+    }
+    if found["tows"].is_empty():
+        raise NothingSoundError(_why_nothing(found["quarantine"]), found)
+    return found
+
+
+def _present_runs(blocks: pl.DataFrame) -> pl.DataFrame:
+    """The runs that the samples of sound tows hold, with their length in whole `seconds`."""
+    return blocks.group_by("tow_id", "run").agg((pl.col("second").max() + 1).alias("seconds"))
+
+
+def _with_lost_runs(tows: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
+    """Adds how many of the runs to be used are set aside."""
+    lost = losses.filter(lost="run").group_by("tow_id").agg(pl.len().alias("runs_set_aside"))
+    return tows.join(lost, on="tow_id", how="left").with_columns(
+        pl.col("runs_set_aside").fill_null(0)
+    )
+
+
+def _with_lost_seconds(runs: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
+    """Adds the longest time that was left out of a channel of each run."""
+    lost = losses.filter(lost="seconds").group_by("tow_id", "run").agg(pl.col("lost_s").max())
+    return runs.join(lost, on=["tow_id", "run"], how="left").with_columns(
+        pl.col("lost_s").fill_null(0.0)
+    )
+
+
+def _seasons(listed: pl.DataFrame, sound: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
+    """How many tows each season lists, how many can be used, and what is lost of those."""
+    lost = losses.group_by("tow_id").agg(
+        (pl.col("lost") == "run").sum().alias("runs_set_aside"),
+        pl.col("lost_s").filter(pl.col("lost") == "seconds").sum(),
+    )
+    is_sound = pl.col("tow_id").is_in(sound["tow_id"].implode())
+    return (
+        listed.join(lost, on="tow_id", how="left")
+        .group_by("season")
+        .agg(
+            pl.len().alias("listed"),
+            is_sound.sum().alias("tows"),
+            pl.col("runs_set_aside", "lost_s").sum(),
+        )
+    )
+
+
+def _why_nothing(set_aside: pl.DataFrame) -> str:
+    """Why no tow can be used, by cause, and what to do."""
+    if set_aside.is_empty():
+        return (
+            "no tow can be used: the tow lists hold none in the seasons that were read; "
+            "fill sleeplijsten/sleeplijst_<jaar>.csv, or widen --seasons"
+        )
+    causes = set_aside["reason_code"].value_counts(sort=True).sort("count", descending=True).rows()
+    counted = ", ".join(f"{number} x {reason}" for reason, number in causes)
+    first = set_aside.row(0, named=True)
+    return (
+        f"no tow can be used: {set_aside.height} rows or files are set aside ({counted}). "
+        f"All stand in the table quarantine. See them by cause with: herijk check ARCHIVE. "
+        f"The first: {first['path']}: {first['message']}"
+    )
+
+
+def _dated(faults: pl.DataFrame, earlier: pl.DataFrame, today: dt.date) -> pl.DataFrame:
+    """Faults with what each costs and the day on which it was first seen, today for new ones.
+
+    A fault that does not say what it costs has cost a tow, a row of a list or a file.
+    """
+    key = ["path", "tow_id", "line", "reason_code"]
+    of_list = pl.when(pl.col("line").is_null()).then(pl.lit("file")).otherwise(pl.lit("row"))
+    lost = pl.when(pl.col("tow_id").is_not_null()).then(pl.lit("tow")).otherwise(of_list)
+    first = earlier.group_by(key).agg(pl.col("first_seen").min())
+    return faults.join(first, on=key, how="left", nulls_equal=True).with_columns(
+        pl.col("lost").fill_null(lost), pl.col("first_seen").fill_null(today)
+    )
+
+
+def unaccounted_tows(inputs: "Inputs", made: Mapping[str, pl.DataFrame]) -> list[str]:
+    """Listed tows of the seasons read that are neither accepted nor set aside: there are none."""
+    known = pl.concat([made[name].select("tow_id") for name in ("tows", "quarantine")])
+    lost = inputs["season_tows"].join(known, on="tow_id", how="anti")
+    return list(lost["tow_id"])
