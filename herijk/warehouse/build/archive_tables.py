@@ -43,9 +43,8 @@ def archive_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     windows = inputs["listed_windows"].join(runs, on=["tow_id", "run"], how="semi")
     beyond = frame_of(Faults, map(dataclasses.asdict, outside_run(windows, present)))
     losses = index.select(pl.col("losses").explode()).unnest("losses").drop_nulls("path")
-    unsound = index.drop_nulls("reason_code").select(
-        set(Faults.column_names()) & set(index.columns)
-    )
+    known = [name for name in Faults.column_names() if name in index.columns]
+    unsound = index.drop_nulls("reason_code").select(known)
     set_aside = pl.concat([inputs["list_faults"], beyond, unsound, losses], how="diagonal")
     found = {
         "boats": inputs["listed_boats"].unique("fsn_no", keep="last", maintain_order=True),
