@@ -199,6 +199,7 @@ def _of_sizes(tows: pl.DataFrame) -> pl.DataFrame:
     return tows.sort("tow_date", "tow_id").select(
         "tow_id",
         *lost,
+        (pl.col("crew_weight_kg") / pl.col("rowers")).alias("crew_weight"),
         (pl.col("weight_after_kg") / pl.col("weight_kg") - 1).alias("heavier_after"),
         pl.when(same).then(pl.max_horizontal(freeboards)).alias("freeboard_changed"),
         *(

@@ -190,6 +190,15 @@ CHECKS: Final = (
     ),
     # The boat of the day
     Check(
+        "crew_weight",
+        "crew and ballast / rowers: the tow is for a standard crew",
+        "kg",
+        "Sleepproef 2017, 'Bemanning': 95 kg a man, 75 kg a woman on average; inferred: 15 % less, "
+        "and 20 % more as the cox may be counted in",
+        lowest={"H": 81.0, "D": 64.0},
+        highest={"H": 114.0, "D": 90.0},
+    ),
+    Check(
         "heavier_after",
         "weight after the tow / before it, less 1: a boat that leaks",
         "1",
