@@ -172,7 +172,7 @@ CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
     ),
     "power_outside_range": ("curves", SUBJECT, {"power_w": 95.0}, 95, 90, set()),
     "slow_tow": ("curves", SUBJECT, {"power_w": 59.0}, 59, 60, {"power_outside_range"}),
-    "crew_weight": ("tows", SUBJECT, {"crew_weight_kg": 500.0}, 62.5, 81, set()),
+    "crew_weight": ("tows", SUBJECT, {"crew_weight_kg": 500.0}, 62.5, 81, {"pulled_askew"}),
     "heavier_after": ("tows", SUBJECT, {"weight_after_kg": 1030.0}, 1030 / 1005 - 1, 0.02, set()),
     "weight_changed": (
         "tows", LATER, {"weight_kg": 980.0}, 980 / 1005 - 1, -0.02, {"heavier_after"},
