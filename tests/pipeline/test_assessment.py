@@ -210,8 +210,10 @@ def checks_of(world: World, tow_id: str) -> set[str]:
     return set(world.assessed().filter(tow_id=tow_id)["check"])
 
 
-def test_women_have_their_own_power(sound: World) -> None:
+def test_women_have_their_own_power_and_weight(sound: World) -> None:
     women = sound.changed("curves", SUBJECT, crew_class="D", power_w=45.0)
+    assert women.flagged(SUBJECT) == {"crew_weight"}  # of men: 95 kg each
+    women = women.changed("tows", SUBJECT, rowers=10)
     assert women.flagged(SUBJECT) == set()
     assert women.changed("curves", SUBJECT, power_w=60.0).flagged(SUBJECT) == {
         "power_outside_range"
