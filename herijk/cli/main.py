@@ -19,6 +19,7 @@ import typer
 from herijk.cli import editions as commands_editions
 from herijk.cli import methods, text
 from herijk.cli.arguments import ArchiveFolder, AsJson, DataFolder, show
+from herijk.cli.doctor import doctor
 from herijk.cli.fit import fit
 from herijk.cli.overview import Overview, defaults_of, folders_here
 from herijk.pipeline.errors import BrokenPromiseError, HerijkError
@@ -37,6 +38,7 @@ app.add_typer(methods.app, name="methods", invoke_without_command=True)
 
 commands_editions.add_to(app)
 app.command()(fit)
+app.command()(doctor)
 
 MOST_TYPES: Final = 2
 
