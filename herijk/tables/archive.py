@@ -37,8 +37,8 @@ class Seasons(dy.Schema):
     lost_s = column.number("s", "time left out of the other runs, all channels", min=0)
 
 
-class TowList(dy.Schema):
-    """Tows of the tow lists, one row each."""
+class TowFacts(dy.Schema):
+    """What the lists say of a tow, one row each."""
 
     tow_id = column.tow_id(primary_key=True)
     season = column.season()
@@ -78,10 +78,15 @@ class TowList(dy.Schema):
     second_sha256 = column.sha256("its content hash", nullable=True)
 
 
-class Tows(TowList):
+class Tows(TowFacts):
     """Tows accepted into the warehouse, one row each."""
 
     runs_set_aside = dy.Int32(description="runs to be used that are in quarantine", min=0)
+    doubts = dy.List(
+        dy.String(),
+        description="checks by which all other tows rule this one out: it needs a look, and takes "
+        "no part in what tows share",
+    )
 
 
 class RunList(dy.Schema):

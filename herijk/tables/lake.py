@@ -6,7 +6,7 @@ These tables are not in the database and no other program relies on them.
 import dataframely as dy
 
 from herijk.tables import column
-from herijk.tables.archive import LOST, Boats, HandWindows, RunList, TowList
+from herijk.tables.archive import LOST, Boats, HandWindows, RunList, TowFacts
 
 
 class Faults(dy.Schema):
@@ -29,7 +29,7 @@ class ListedBoats(Boats):
     crew_class = column.crew_class(nullable=True)
 
 
-class ListedTows(TowList):
+class ListedTows(TowFacts):
     """Tows of the lists that could be read, whatever their samples are."""
 
     list_path = column.text("tow list, relative to the archive")

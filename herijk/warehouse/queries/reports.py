@@ -17,8 +17,10 @@ SELECT lost, reason_code, count(*) AS number FROM quarantine GROUP BY ALL
 ORDER BY list_position(['file', 'tow', 'row', 'run', 'seconds'], lost), number DESC, reason_code
 """
 _FIRST_FAULTS = """
-SELECT path, tow_id, line, message FROM quarantine
-ORDER BY list_position(['file', 'tow', 'row', 'run', 'seconds'], lost), path, line LIMIT ?
+SELECT min(path) AS path, min(tow_id) AS tow_id, min(line) AS line, message, count(*) AS number
+FROM quarantine GROUP BY lost, reason_code, message
+ORDER BY list_position(['file', 'tow', 'row', 'run', 'seconds'], lost), number DESC, path, line
+LIMIT ?
 """
 
 
