@@ -26,8 +26,8 @@ class Seasons(dy.Schema):
     tows = dy.Int32(description="of which used; the others are in quarantine", min=0)
 
 
-class Tows(dy.Schema):
-    """Tows accepted into the warehouse, one row each."""
+class TowFacts(dy.Schema):
+    """What the lists say of a tow, one row each."""
 
     tow_id = column.tow_id(primary_key=True)
     season = column.season()
@@ -65,6 +65,16 @@ class Tows(dy.Schema):
     samples_sha256 = column.sha256("its content hash")
     second_path = column.text("second samples file, if two tows were combined", nullable=True)
     second_sha256 = column.sha256("its content hash", nullable=True)
+
+
+class Tows(TowFacts):
+    """Tows accepted into the warehouse, one row each."""
+
+    doubts = dy.List(
+        dy.String(),
+        description="checks by which all other tows rule this one out: it needs a look, and takes "
+        "no part in what tows share",
+    )
 
 
 class TowRuns(dy.Schema):

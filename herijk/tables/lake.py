@@ -6,7 +6,7 @@ These tables are not in the database and no other program relies on them.
 import dataframely as dy
 
 from herijk.tables import column
-from herijk.tables.archive import Boats, HandWindows, TowRuns, Tows
+from herijk.tables.archive import Boats, HandWindows, TowFacts, TowRuns
 
 
 class Faults(dy.Schema):
@@ -26,7 +26,7 @@ class ListedBoats(Boats):
     crew_class = column.crew_class(nullable=True)
 
 
-class ListedTows(Tows):
+class ListedTows(TowFacts):
     """Tows of the lists that could be read, whatever their samples are."""
 
     list_path = column.text("tow list, relative to the archive")

@@ -12,7 +12,7 @@ import polars as pl
 import pytest
 
 from herijk.pipeline.assessment.assess import assess, with_status
-from herijk.pipeline.assessment.checks import CHECKS, CODES
+from herijk.pipeline.assessment.checks import CHECKS, CODES, DOUBTS
 from herijk.pipeline.method.definition import MethodFileError, parse_method, shipped_method
 
 METHOD = "some-method"
@@ -69,6 +69,7 @@ def _tow(boat: int, season: int) -> dict[str, Any]:
         "freeboard_lowest_m": 0.40,
         "freeboard_bow_m": 0.80,
         "freeboard_stern_m": 0.60,
+        "doubts": [],
     }
 
 
@@ -117,7 +118,7 @@ def sound() -> World:
     return World(
         curves.cast({"runs_used": pl.Int8}),
         pl.DataFrame(points, schema_overrides=integers),
-        pl.DataFrame(tows, schema_overrides=integers),
+        pl.DataFrame(tows, schema_overrides=integers | {"doubts": pl.List(pl.String)}),
     )
 
 
@@ -137,6 +138,7 @@ heavier = {"a_kg_m": 1.08 * A, "cw_kg_m": 1.08 * CW}
 
 # check: (table, tow, changes, observed, limit, what fires as well)
 CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
+    **{code: ("tows", SUBJECT, {"doubts": [code]}, 1, 0, set()) for code in DOUBTS},
     "no_curve": ("curves", SUBJECT, no_curve | gone, 0, 1, set()),
     "few_runs": ("curves", SUBJECT, {"runs_used": 5}, 5, 6, set()),
     "unbalanced_runs": ("run_points", SUBJECT, {"used": ~run1 & (pl.col("run") != 2)}, 2, 1, set()),

@@ -15,12 +15,13 @@ from herijk.dashboards.site.parts import (
     default_method,
     with_page,
 )
+from herijk.dashboards.site.slides import slides_page
 from herijk.dashboards.site.types import types_page
 from herijk.warehouse.queries.views import Views
 
 MENU = (
-    *("index", "register", "due", "types", "corrections", "reproducibility", "changes"),
-    "quality",
+    *("index", "register", "due", "types", "slides", "corrections", "reproducibility"),
+    *("changes", "quality"),
 )
 
 
@@ -31,6 +32,7 @@ def all_pages(views: Views) -> Iterator[Page]:
     yield _register(views)
     yield _due(views, methods)
     yield types_page(views, methods)
+    yield slides_page(views, methods)
     yield _corrections(views, methods)
     yield _reproducibility(views, methods)
     yield _changes(views)

@@ -12,7 +12,7 @@ from typing import Final
 
 import polars as pl
 
-from herijk.pipeline.assessment.checks import CHECKS, CODES
+from herijk.pipeline.assessment.checks import CHECKS, CODES, DOUBTS
 from herijk.pipeline.channels import TARGET_SPEED_RATIOS
 from herijk.pipeline.choice import SAME_SHARE
 
@@ -47,6 +47,7 @@ def assess(curves: pl.DataFrame, run_points: pl.DataFrame, tows: pl.DataFrame) -
     observed = [
         _of_curves(curves),
         _of_runs(curves, run_points),
+        _of_doubts(tows),
         _of_sizes(tows),
         _of_previous_curve(curves, tows),
         _of_like_boats(curves, tows),
@@ -181,6 +182,15 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
             ends_differ=pl.col("ends_ratio").max(),
             range_not_covered=shortfall,
         )
+    )
+
+
+def _of_doubts(tows: pl.DataFrame) -> pl.DataFrame:
+    """By which checks the rest of the archive rules a tow out, judged before any method."""
+    if "doubts" not in tows.columns:
+        return pl.DataFrame(schema={"tow_id": pl.String()})
+    return tows.select(
+        "tow_id", *(pl.col("doubts").list.contains(code).alias(code) for code in DOUBTS)
     )
 
 

@@ -118,6 +118,31 @@ CHECKS: Final = (
         highest=0.0,
         severity="note",
     ),
+    # The samples beside all other tows (`pipeline.assessment.plausibility`)
+    Check(
+        "force_not_plausible",
+        "whether size, boat, day, season and type rule the force out (1) or not (0): a gain, a "
+        "zero or a unit that is off, or another boat's samples",
+        "1",
+        "inferred: 4.5 standard deviations from what all other tows let expect",
+        highest=0.0,
+    ),
+    Check(
+        "wind_not_plausible",
+        "whether the wind out and back does not leave the boat's own speed (1) or does (0): a "
+        "unit, a scale or a vane that is off",
+        "1",
+        "inferred, as force_not_plausible",
+        highest=0.0,
+    ),
+    Check(
+        "speed_not_plausible",
+        "whether the runs were towed at other speeds than the declared one asks (1) or not (0): a "
+        "speed mistyped, or another boat's samples",
+        "1",
+        "inferred, as force_not_plausible",
+        highest=0.0,
+    ),
     # The runs
     Check(
         "log2_differs",
@@ -257,5 +282,8 @@ CHECKS: Final = (
     ),
 )
 """Every check, in the order in which flags are listed."""
+
+DOUBTS: Final = ("force_not_plausible", "wind_not_plausible", "speed_not_plausible")
+"""Checks by which the rest of the archive rules a tow out."""
 
 CODES: Final = tuple(check.code for check in CHECKS)

@@ -131,7 +131,7 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
     curves = curve.fit(water)
     cw, r = curves.cw_at(speed), curves.s_s2_m2 * speed**2
     errors = curve.covariance(water, curves, pooled_scatter(o), speed)
-    sound = curves.converged & np.isfinite(cw)
+    sound = curves.converged & np.isfinite(cw) & (cw > 0) & batch.trusted
     sure = sound & np.isfinite(errors.c0_variance_kg2_m2)
     safe, safe_r = np.where(sound, cw, 1.0), np.where(sound, r, 0.0)
     calibrated = steps.calibration.rule == GPS

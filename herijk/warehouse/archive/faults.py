@@ -242,6 +242,16 @@ REASONS: Final[dict[str, Reason]] = {
         "Look whether the sign or the zero of the load cell is wrong; leave out a run of which "
         "only part is negative.",
     ),
+    "force_not_plausible": Reason(
+        "The force is not that of such a boat: the size of the boat, its other tows, its day and "
+        "its season all rule it out.",
+        "Correct the unit in the header, or look whether these are this boat's samples.",
+    ),
+    "wind_not_plausible": Reason(
+        "The wind out and back together does not leave the boat's own speed, or its angles are "
+        "radians.",
+        "Correct the unit in the header.",
+    ),
     "implausible_value": Reason(
         "A value is far outside what can happen in a tow.",
         "Leave the run out in `gebruik runs`, or correct the unit or the column.",

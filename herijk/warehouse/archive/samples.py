@@ -7,7 +7,7 @@ a careful one that knows lines; the fast one is trusted only where it gives the 
 
 import re
 import unicodedata
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -23,13 +23,13 @@ from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.faults import DefectiveFileError
 from herijk.warehouse.archive.files import (
     PARTS,
-    SAMPLES_MAX_BYTES,
     as_one_run,
     kind_of,
     path_inside,
     read_bytes,
     too_large,
 )
+from herijk.warehouse.archive.limits import MOST_ROWS, SAMPLES_MAX_BYTES, too_many_rows
 from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.profile import SeasonProfile
 from herijk.warehouse.archive.recordings import is_labview, labview_as_table, read_tdms
@@ -421,7 +421,8 @@ def _read_parquet(path: Path, profile: SeasonProfile, max_bytes: int) -> pl.Data
             columns = find_columns(names, profile.columns)
             _check_nothing_misspelt(names, columns, profile)
             _check_parquet_size(path, file, len(columns), max_bytes)
-            table = file.read(columns=[names[found.index] for found in columns.values()])
+            wanted = [names[found.index] for found in columns.values()]
+            table = pa.Table.from_batches(_batches(file, wanted), _schema(file, wanted))
         return pl.DataFrame(pl.from_arrow(table))
     except FileNotFoundError as error:
         said = say("'{name}' is not there any more.", name=path.name)
@@ -429,6 +430,20 @@ def _read_parquet(path: Path, profile: SeasonProfile, max_bytes: int) -> pl.Data
     except (OSError, ValueError, pa.ArrowException, pl.exceptions.PolarsError) as error:
         said = say("'{name}' is not a whole Parquet file: {error}.", name=path.name, error=error)
         raise DefectiveInputError("unreadable_file", said) from error
+
+
+def _batches(file: pq.ParquetFile, names: list[str]) -> Iterator[pa.RecordBatch]:
+    """The rows in pieces, as a footer may promise fewer than there are."""
+    rows = 0
+    for batch in file.iter_batches(columns=names):
+        rows += batch.num_rows
+        if rows > MOST_ROWS:
+            raise too_many_rows(rows)
+        yield batch
+
+
+def _schema(file: pq.ParquetFile, names: list[str]) -> pa.Schema:
+    return pa.schema([file.schema_arrow.field(name) for name in names])
 
 
 def _check_parquet_size(path: Path, file: pq.ParquetFile, width: int, max_bytes: int) -> None:

@@ -8,9 +8,12 @@ from typing import TYPE_CHECKING, Final
 import polars as pl
 
 from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.recompute.facts import with_boat_types
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import Faults
 from herijk.warehouse.archive.windows import outside_run
+from herijk.warehouse.build.plausible import gross_faults, judge, with_doubts
+from herijk.warehouse.build.same_samples import same_samples
 
 if TYPE_CHECKING:
     from herijk.warehouse.build.inputs import Inputs
@@ -39,15 +42,20 @@ def archive_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     index = inputs["season_index"]
     sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
     present = _present_runs(inputs["blocks"])
-    runs = inputs["season_runs"].join(present, on=["tow_id", "run"], how="semi")
+    listed = inputs["season_tows"].join(sound, on="tow_id", how="semi")
+    held = inputs["season_runs"].join(present, on=["tow_id", "run"], how="semi")
+    tows, contradicted = _judged(
+        with_boat_types(listed, inputs["listed_boats"]), held, inputs["blocks"]
+    )
+    sound, runs = (frame.join(tows, on="tow_id", how="semi") for frame in (sound, held))
     windows = inputs["listed_windows"].join(runs, on=["tow_id", "run"], how="semi")
     beyond = frame_of(Faults, map(dataclasses.asdict, outside_run(windows, present)))
     unsound = index.drop_nulls("reason_code").select(Faults.column_names())
-    set_aside = pl.concat([inputs["list_faults"], beyond, unsound])
+    set_aside = pl.concat([inputs["list_faults"], beyond, unsound, contradicted])
     found = {
         "boats": inputs["listed_boats"].unique("fsn_no", keep="last", maintain_order=True),
         "seasons": _seasons(inputs["season_tows"], sound),
-        "tows": inputs["season_tows"].join(sound, on="tow_id", how="semi"),
+        "tows": tows,
         "tow_runs": runs,
         "hand_windows": windows.join(
             beyond, left_on=_LISTED_AT, right_on=["path", "line"], how="anti"
@@ -62,6 +70,18 @@ def archive_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
 def _present_runs(blocks: pl.DataFrame) -> pl.DataFrame:
     """The runs that the samples of sound tows hold, with their length in whole `seconds`."""
     return blocks.group_by("tow_id", "run").agg((pl.col("second").max() + 1).alias("seconds"))
+
+
+def _judged(
+    tows: pl.DataFrame, runs: pl.DataFrame, blocks: pl.DataFrame
+) -> tuple[pl.DataFrame, pl.DataFrame]:
+    """The tows with their doubts, and the faults of those that the other tows contradict."""
+    twice = same_samples(tows, blocks)
+    once = tows.join(twice, on="tow_id", how="anti")
+    shifts = judge(once, runs.join(once, on="tow_id", how="semi"), blocks)
+    gross = gross_faults(shifts, once)
+    kept = with_doubts(once.join(gross, on="tow_id", how="anti"), shifts)
+    return kept, pl.concat([twice, gross])
 
 
 def _seasons(listed: pl.DataFrame, sound: pl.DataFrame) -> pl.DataFrame:

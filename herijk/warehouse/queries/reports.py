@@ -32,7 +32,9 @@ def rebuild_report(store: Store) -> Report:
             ),
             "first_faults": rows(
                 db,
-                "SELECT path, tow_id, line, message FROM quarantine ORDER BY path, line LIMIT ?",
+                "SELECT min(path) AS path, min(tow_id) AS tow_id, min(line) AS line, message, "
+                "count(*) AS number FROM quarantine GROUP BY reason_code, message "
+                "ORDER BY number DESC, path, line LIMIT ?",
                 FIRST_FAULTS,
             ),
             "curves": rows(
