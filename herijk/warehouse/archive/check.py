@@ -17,7 +17,7 @@ from herijk.warehouse.archive.faults import Fault, fault_from
 from herijk.warehouse.archive.files import PARTS, kind_of, path_inside
 from herijk.warehouse.archive.index import ArchiveIndex, index_archive
 from herijk.warehouse.archive.messages import Sentence, innermost, say, spoken
-from herijk.warehouse.archive.plausibility import check_samples
+from herijk.warehouse.archive.plausibility import judge_samples
 from herijk.warehouse.archive.profile import Profiles, parse_profiles, profile_text
 from herijk.warehouse.archive.proposals import Proposal, merged, propose
 from herijk.warehouse.archive.published import read_published_registers, read_races
@@ -144,7 +144,7 @@ def _in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Iterator[Fa
         done.add(key)
         try:
             samples = read_tow_samples(root, tow, index.profiles.for_season(tow["season"]))
-            check_samples(samples, tow, index.runs)
+            yield from judge_samples(samples, tow, index.runs).faults
             yield from _not_planned(samples["run"].unique().to_list(), tow, index)
         except DefectiveInputError as error:
             yield fault_from(error, tow["samples_path"], tow["tow_id"])
