@@ -187,6 +187,7 @@ DUTCH: Final[dict[str, str]] = {
         "Runs {runs} staan in het bestand maar niet in het plan en tellen dus niet; geef hun "
         "doelsnelheden en richtingen onder [[plan]] in archief.toml."
     ),
+    "No row says which run it belongs to.": "Geen rij zegt bij welke run hij hoort.",
     "There are no samples in the file.": "Er staan geen metingen in het bestand.",
     "There are no samples below the header.": "Er staan geen metingen onder de kop.",
     "run {run:g} does not exist; runs are numbered 1 to {last}.": (
