@@ -48,9 +48,9 @@ def rebuild(report: Report) -> str:
         + ", ".join(f"{row['season']}: {row['tows']}" for row in report["seasons"])
     )
     if report["set_aside"]:
-        rows = [(r["reason_code"], r["number"]) for r in report["set_aside"]]
-        parts.append("Set aside:\n" + table(("reason", "number"), rows))
-        parts.append(_faults(report["first_faults"], sum(number for _, number in rows)))
+        rows = [(r["lost"], r["reason_code"], r["number"]) for r in report["set_aside"]]
+        parts.append("Set aside:\n" + table(("lost", "reason", "number"), rows))
+        parts.append(_faults(report["first_faults"], sum(number for *_, number in rows)))
     else:
         parts.append("Set aside: nothing.")
     rows = [(r["method"], r["status"], r["number"]) for r in report["curves"]]

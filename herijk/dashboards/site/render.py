@@ -56,7 +56,7 @@ KEPT: Final = 7
 CODES: Final = {
     *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "code"),
     *("quantity", "explaining", "candidates", "severity", "check", "shared", "kind", "scope"),
-    *("option", "speed_reason", "cause", "log", "flag", "what", "outcome"),
+    *("option", "speed_reason", "cause", "log", "flag", "what", "outcome", "lost"),
 }
 """Columns that hold codes of the warehouse, shown as words."""
 

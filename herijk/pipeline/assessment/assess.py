@@ -205,8 +205,11 @@ def _of_sizes(tows: pl.DataFrame) -> pl.DataFrame:
     """Weight after, and measurements against those of the boat's previous tow with any crew."""
     same = ~pl.col("altered")
     freeboards = [(pl.col(c) - _before(c, ["fsn_no"])).abs() for c in FREEBOARDS]
+    lost = [c for c in ("runs_set_aside",) if c in tows.columns]
     return tows.sort("tow_date", "tow_id").select(
         "tow_id",
+        *lost,
+        (pl.col("crew_weight_kg") / pl.col("rowers")).alias("crew_weight"),
         (pl.col("weight_after_kg") / pl.col("weight_kg") - 1).alias("heavier_after"),
         pl.when(same).then(pl.max_horizontal(freeboards)).alias("freeboard_changed"),
         *(

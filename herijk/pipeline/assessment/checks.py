@@ -71,6 +71,13 @@ CHECKS: Final = (
         severity="note",
     ),
     Check(
+        "runs_set_aside",
+        "runs that the tow list says to use and whose samples cannot be used",
+        "1",
+        "Sleepproef 2017, 'Eerste beoordeling': faults make runs to be towed again",
+        highest=0.0,
+    ),
+    Check(
         "unbalanced_runs",
         "difference between the number of runs out and back; stream and wind then do not cancel",
         "1",
@@ -207,6 +214,15 @@ CHECKS: Final = (
         lowest={"H": 60.0, "D": 34.0},
     ),
     # The boat of the day
+    Check(
+        "crew_weight",
+        "crew and ballast / rowers: the tow is for a standard crew",
+        "kg",
+        "Sleepproef 2017, 'Bemanning': 95 kg a man, 75 kg a woman on average; inferred: 15 % less, "
+        "and 20 % more as the cox may be counted in",
+        lowest={"H": 81.0, "D": 64.0},
+        highest={"H": 114.0, "D": 90.0},
+    ),
     Check(
         "heavier_after",
         "weight after the tow / before it, less 1: a boat that leaks",

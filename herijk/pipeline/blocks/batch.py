@@ -85,6 +85,12 @@ class Batch:
         return self.blocks.runs["target_speed_ratio"].to_numpy()
 
     @property
+    def lost_s(self) -> FloatArray:
+        """Time left out of each run, shape (runs,); 0 where nothing is said."""
+        runs = self.blocks.runs
+        return runs["lost_s"].to_numpy() if "lost_s" in runs.columns else np.zeros(len(self.tow))
+
+    @property
     def selected(self) -> BoolArray:
         """Runs that the tow list says to use, shape (runs,)."""
         return self.blocks.runs["selected"].to_numpy()

@@ -174,6 +174,7 @@ def _other_ln_ratio(o: Outcome) -> FloatArray:
     mean = {log: o.batch.blocks.mean(f"{log}_v", o.windows.mask) for log in ("log1", "log2")}
     turning = o.used & (mean["log1"] > 0) & (mean["log2"] > 0)
     turning &= o.batch.measured("log2")[o.batch.tow]
+    turning &= mean["log1"] != mean["log2"]  # a run without its log 2 has log 1 in its place
     ratio = mean[source] / np.where(turning, mean[OTHER_LOG[source]], 1.0)
     ln_ratio = np.log(np.where(turning, ratio, 1.0))
     return np.where(o.batch.any(turning), o.batch.mean(ln_ratio, turning), np.nan)
