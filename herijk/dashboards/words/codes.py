@@ -133,4 +133,9 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.never_towed": ("niet gesleept", "never towed"),
     "code.no_valid_curve": ("geen geldige kromme", "no valid curve"),
     "code.unknown": ("onbekend", "unknown"),
+    "code.rest": ("overige", "other"),
+    "method.as-published": ("zoals gepubliceerd", "as published"),
+    "method.corrected-2013": ("gecorrigeerd 2013", "corrected 2013"),
+    "method.rebased": ("herijkt", "re-based"),
+    "method.rebased-2015": ("regels van 2015", "rules of 2015"),
 }
