@@ -16,6 +16,8 @@ from herijk.dashboards.speech import Speech
 
 Row = dict[str, Any]
 
+FEW: Final = 2
+"""A place among fewer says nothing."""
 SHOWN: Final = 5e-4
 """A cause that moves Cw by less than this is 0.0 % and is summed with the others."""
 
@@ -160,7 +162,7 @@ def _certainty(line: Row, speech: Speech) -> Iterator[str]:
 
 def _place(line: Row, speech: Speech) -> Iterator[str]:
     """Its place at equal power, within its type."""
-    if line["new_type_place"] is None or line["boat_type"] is None:
+    if line["new_type_place"] is None or not line["boat_type"] or line["type_size"] < FEW:
         return
     same = line["old_type_place"] in (None, line["new_type_place"])
     key = "answer_place" if same else "answer_place_moved"

@@ -21,6 +21,7 @@ WIDTH: Final = 460
 HEIGHT: Final = 230
 LEFT: Final = 52
 BOTTOM: Final = 40
+TOP: Final = 30
 ROW: Final = 26
 LABEL: Final = 185
 VALUE: Final = 70
@@ -78,7 +79,7 @@ def curve_picture(line: pl.DataFrame, points: pl.DataFrame, speech: Speech, titl
     speeds = [*line["speed_m_s"], *points["speed_m_s"]]
     values = [*line["cw_lo_kg_m"], *line["cw_hi_kg_m"], *points["cw_kg_m"]]
     x = Axis.over(speeds, LEFT, WIDTH - 12)
-    y = Axis.over(values, HEIGHT - BOTTOM, 18)
+    y = Axis.over(values, HEIGHT - BOTTOM, TOP)
     low = _path(x, y, line["speed_m_s"], line["cw_lo_kg_m"])
     high = _path(x, y, line["speed_m_s"].reverse(), line["cw_hi_kg_m"].reverse())
     parts = [
@@ -98,7 +99,7 @@ def _axes(x: Axis, y: Axis, speech: Speech) -> list[Markup]:
     floor, left = HEIGHT - BOTTOM, LEFT
     found = [
         _LINE.format(left, floor, WIDTH - 12, floor, GREY, 1),
-        _LINE.format(left, floor, left, 18, GREY, 1),
+        _LINE.format(left, floor, left, TOP, GREY, 1),
         _TEXT.format((left + WIDTH) / 2, HEIGHT - 5, "middle", speech.say("speed")),
         _TEXT.format(4, 11, "start", speech.say("cw")),
     ]

@@ -2,7 +2,7 @@
 
 from typing import Final
 
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from herijk.dashboards.words import speaker
 
@@ -20,7 +20,7 @@ class Speech:
 
     def text(self, key: str) -> Markup:
         """A text, escaped."""
-        return Markup("{}").format(self.say(key))
+        return escape(self.say(key))
 
     def number(self, value: float, digits: int, sign: str = "") -> str:
         """A number with so many decimals; `sign` is "+" where a plus is to be shown."""

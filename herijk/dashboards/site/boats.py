@@ -177,7 +177,7 @@ def _page(fsn_no: str, own: dict[str, pl.DataFrame], methods: Sequence[str]) -> 
     return Page(
         boat_path(fsn_no),
         "boat",
-        [facts, *_sections(own)],
+        [replace(facts, folded=True), *_sections(own)],
         name=name,
         selects=selects,
         data=_data(own),

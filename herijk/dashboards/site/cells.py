@@ -42,12 +42,14 @@ EDITIONS: Final = {"edition", "from_edition", "to_edition", "previous"}
 
 Show = Callable[[Any], Markup]
 
-_EMPTY = Markup("<td>")
-_SAME_CELL = Markup("<td{}>{}")
+_EMPTY = Markup("<td class=t>")
+_SAME_CELL = Markup("<td class={}>{}")
 """A cell whose text is its value; others have the value in `data-v`. End tags are left out: HTML
-closes a cell and a row by itself, and a boat's page has thousands."""
-_CELL = Markup('<td{} data-v="{}">{}')
-_LONG = Markup(" class=w")
+closes a cell and a row by itself, and a boat's page has thousands. For the same reason a number is
+what has no class: text is `t`, and `w` where it may be wide."""
+_CELL = Markup('<td class={} data-v="{}">{}')
+_SHORT = Markup("t")
+_LONG = Markup('"t w"')
 _BOAT = Markup(' data-boat="{}"')
 _FOLLOWED = Markup(' data-f-{}="{}"')
 
@@ -90,29 +92,30 @@ class Cells:
     def _cells(self, column: pl.Series, root: str, exact: bool) -> Sequence[Markup]:
         name = column.name
         if name == "rowing_time_s":
-            return [_EMPTY if v is None else _CELL.format("", v, duration(v)) for v in column]
+            return [_EMPTY if v is None else _CELL.format(_SHORT, v, duration(v)) for v in column]
         if column.dtype.is_float():
             digits = next((d for ending, d in DIGITS if name.endswith(ending)), 4)
-            return [self._number(value, digits, exact) for value in column]
+            return [self._number(value, digits, exact) for value in column.to_list()]
         if column.dtype.is_integer() and name != "direction":
-            return [_integer(value) for value in column]
+            return [_integer(value) for value in column.to_list()]
         show = self._shower(name, root)
-        mark = _LONG if name in LONG else Markup("")
+        mark = _LONG if name in LONG else _SHORT
 
         def made(value: Any) -> Markup:
             return _EMPTY if value is None else _shown(value, show, mark)
 
         if isinstance(column.dtype, pl.List):
             return [made(value) for value in column]
-        of = {value: made(value) for value in column.unique()}
-        return [of[value] for value in column]
+        values = column.to_list()
+        of = {value: made(value) for value in set(values)}
+        return [of[value] for value in values]
 
     def _number(self, value: float | None, digits: int, exact: bool) -> Markup:
         if value is None:
-            return Markup("<td class=n>")
+            return Markup("<td>")
         shown, held = self.speech.number(value, digits), f"{value:.{KEPT}g}"
         mark = f" data-v={held}" if exact and shown != held else ""
-        return Markup(f"<td class=n{mark}>{shown}")  # noqa: S704 - a number
+        return Markup(f"<td{mark}>{shown}")  # noqa: S704 - a number
 
     def _shower(self, name: str, root: str) -> Show:
         """How values of a column are shown."""
@@ -172,7 +175,7 @@ class Cells:
 
 def _integer(value: int | None) -> Markup:
     text = "" if value is None else str(value)
-    return Markup(f"<td class=i>{text}")  # noqa: S704 - a number
+    return Markup(f"<td>{text}")  # noqa: S704 - a number
 
 
 def _shown(value: Any, show: Show, mark: Markup) -> Markup:

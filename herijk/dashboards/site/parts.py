@@ -5,6 +5,7 @@ import hashlib
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TypeAlias
 
 import polars as pl
@@ -43,6 +44,11 @@ class Table:
     linked: bool = False
     exact: bool = True
     cards: Sequence[str] = ()
+
+    @cached_property
+    def numeric(self) -> set[str]:
+        """Columns that hold numbers."""
+        return {name for name, dtype in self.frame.schema.items() if dtype.is_numeric()}
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ import shutil
 import tempfile
 from collections.abc import Callable, Iterator
 from functools import cache
-from itertools import chain
+from itertools import chain, groupby
 from pathlib import Path
 from typing import Any, Final
 
@@ -20,7 +20,7 @@ from herijk.dashboards import fonts
 from herijk.dashboards.answer import told
 from herijk.dashboards.figures import FIGURES
 from herijk.dashboards.html import as_json, environment
-from herijk.dashboards.site.cells import KEPT, Cells
+from herijk.dashboards.site.cells import Cells
 from herijk.dashboards.site.downloads import copy_sheets
 from herijk.dashboards.site.pages import MENU, all_pages
 from herijk.dashboards.site.parts import Page, boat_path, race_path, type_path
@@ -32,6 +32,8 @@ from herijk.warehouse.store.files import TEMPORARY_PREFIX, put_in_place
 from herijk.warehouse.store.store import Store
 
 HERE: Final = Path(__file__).parent
+DRAWN: Final = 5
+"""Significant digits of what charts draw."""
 OWN_FILES: Final = ("site.css", "site.js")
 FOLDERS: Final = {"nl": "", "en": "en/"}
 """Where the pages of each language lie within the site."""
@@ -112,7 +114,6 @@ class Edition:
             rows=cells.rows,
             told=lambda answer: told(answer, self.speech),
             still=lambda page: still_pictures(page, self.speech),
-            is_number=_is_number,
             comments=comments,
             menu=MENU,
             about=self.about,
@@ -216,16 +217,12 @@ def _column(column: pl.Series) -> list[Any] | dict[str, list[Any]]:
 
     `runs` then has the place of a value and for how many rows it holds, one pair after the other.
     """
+    values = column.to_list()
     if column.dtype.is_float():
-        return column.round_sig_figs(KEPT).to_list()
-    lengths, held = column.rle().struct.unnest().get_columns()
-    if column.dtype != pl.String and 2 * len(held) >= len(column):
-        return column.to_list()
-    values = held.unique(maintain_order=True)
-    places = {value: place for place, value in enumerate(values)}
-    runs = zip((places[value] for value in held), lengths, strict=True)
-    return {"values": values.to_list(), "runs": list(chain.from_iterable(runs))}
-
-
-def _is_number(frame: pl.DataFrame, column: str) -> bool:
-    return frame.schema[column].is_numeric()
+        return [None if v is None else float(f"{v:.{DRAWN}g}") for v in values]
+    held = [(value, len(list(same))) for value, same in groupby(values)]
+    if column.dtype != pl.String and 2 * len(held) >= len(values):
+        return values
+    places = {value: place for place, value in enumerate(dict.fromkeys(v for v, _ in held))}
+    runs = chain.from_iterable((places[value], number) for value, number in held)
+    return {"values": list(places), "runs": list(runs)}

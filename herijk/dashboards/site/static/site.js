@@ -169,7 +169,7 @@
     return text === "" ? "" : Number(text);
   }
 
-  const isNumeric = (cell) => cell.classList.contains("n") || cell.classList.contains("i");
+  const isNumeric = (cell) => !cell.classList.contains("t");
 
   function sort(table, header, down = header.getAttribute("aria-sort") === "ascending") {
     const place = [...header.parentElement.children].indexOf(header);
@@ -314,7 +314,7 @@
       for (const column of columns) {
         const value = row[column] ?? "";
         const cell = line.insertCell();
-        if (typeof value === "number") cell.className = "i";
+        if (typeof value !== "number") cell.className = "t";
         cell.textContent = words[`code.${column}.${value}`] ?? words[`${column}.${value}`] ?? inWords(value, words);
       }
     }
