@@ -245,7 +245,7 @@ def _reproducibility(views: Views, methods: list[str]) -> Page:
         frame = read() if views.has(name) else pl.DataFrame()
         if frame.height:
             data[name] = frame if name != "era_shifts" else frame.filter(boat_type="all")
-            table = Table(name, frame, columns.split(), title, ["method"])
+            table = Table(name, frame, columns.split(), title, ["method"], exact=False)
             headline = None
             if name == "reproducibility":
                 headline = headlines.reproducibility(frame, default_method(methods))
