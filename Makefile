@@ -12,7 +12,7 @@ unexport PYTHONDONTWRITEBYTECODE
 export DAGSTER_DISABLE_TELEMETRY = 1
 export DAGSTER_DG_UPDATE_CHECK_ENABLED = 0
 
-.PHONY: help env demo test lint bench scale accuracy survive fuzz full-scale clean
+.PHONY: help env demo test lint bench scale accuracy accuracy-parts survive fuzz full-scale clean
 
 help:
 	@echo "make demo   simulate an archive of ten seasons and rebuild its history"
@@ -20,7 +20,8 @@ help:
 	@echo "make lint   check style, types, imports and the Dagster definitions"
 	@echo "make bench  measure speed and memory"
 	@echo "make scale  measure one Dask worker against two, with an S3 server on this machine"
-	@echo "make accuracy  measure how near the truth the methods come, on simulated worlds"
+	@echo "make accuracy  how near the truth the rebased history comes in every simulated world; it can be stopped"
+	@echo "make accuracy-parts  the same for season factors, methods and the consistency analysis apart"
 	@echo "make survive  kill 200 rebuilds at random moments and compare the tables after each"
 	@echo "make fuzz   throw 20,000 damaged files at the readers, and put 300 faults in an archive"
 	@echo "make full-scale  memory and time of a rebuild of 1,000 tows; needs 20 GB and an hour"
@@ -77,8 +78,16 @@ bench: $(READY)
 scale: $(READY)
 	@PYTHONPATH=. $(BIN)/python -m benchmarks.scale --tows-per-season $(TOWS)
 
+# Every named world: two hours on two cores for 20 archives each. A first look: make accuracy SEEDS=2
+SEEDS ?= 20
+PROCESSES ?= 2
+PARTS = factors methods consistency season finding_2015
+
 accuracy: $(READY)
-	@for file in benchmarks/accuracy/*.py; do echo "== $$file"; PYTHONPATH=. $(BIN)/python "$$file" || exit 1; done
+	@PYTHONPATH=. $(BIN)/python -m benchmarks.accuracy.worlds --seeds $(SEEDS) --processes $(PROCESSES)
+
+accuracy-parts: $(READY)
+	@for part in $(PARTS); do echo "== $$part"; PYTHONPATH=. $(BIN)/python -m benchmarks.accuracy.$$part || exit 1; done
 
 survive: $(READY)
 	@OPENBLAS_NUM_THREADS=1 PYTHONPATH=. $(BIN)/python -u benchmarks/robustness/survive.py 200

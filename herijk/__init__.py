@@ -1,1 +1,51 @@
-"""Recomputes the history of the Dutch rowing-sloop register from its tow tests."""
+"""Recomputes the history of the Dutch rowing-sloop register from its tow tests.
+
+The public library; docs/library.md has an example of each. Nothing else is public.
+
+- `fit`, `Curve`, `Fit`, `Estimate`: curves from speeds and forces, power and speed.
+- `open_data`, `DataFolder`, `compare_registers`: the tables of a rebuild as Polars frames.
+- `methods`, `method`, `apply_method`, `Applied`: methods, and one tow under a method.
+- `HerijkError`: what all of them raise where something is missing or wrong.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Final
+
+if TYPE_CHECKING:
+    from herijk.library.curves import Curve, Estimate, Fit, fit
+    from herijk.library.data import DataFolder, compare_registers, open_data
+    from herijk.library.methods import Applied, apply_method, method, methods
+    from herijk.pipeline.errors import HerijkError
+
+__all__ = [
+    "Applied",
+    "Curve",
+    "DataFolder",
+    "Estimate",
+    "Fit",
+    "HerijkError",
+    "apply_method",
+    "compare_registers",
+    "fit",
+    "method",
+    "methods",
+    "open_data",
+]
+
+_HOMES: Final = {
+    "herijk.library.curves": {"Curve", "Estimate", "Fit", "fit"},
+    "herijk.library.data": {"DataFolder", "compare_registers", "open_data"},
+    "herijk.library.methods": {"Applied", "apply_method", "method", "methods"},
+    "herijk.pipeline.errors": {"HerijkError"},
+}
+
+
+def __getattr__(name: str) -> Any:  # the command would otherwise wait for SciPy and Polars
+    for home, names in _HOMES.items():
+        if name in names:
+            return getattr(import_module(home), name)
+    raise AttributeError(f"module 'herijk' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return __all__

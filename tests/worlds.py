@@ -8,7 +8,13 @@ import polars as pl
 
 from herijk.pipeline.blocks.run_blocks import SPEED_SOURCES, RunBlocks, stack_blocks
 from herijk.pipeline.blocks.sums import block_sums
-from herijk.pipeline.channels import BACK, OUT, TARGET_SPEED_RATIOS
+from herijk.pipeline.channels import (
+    BACK,
+    OUT,
+    RUNS_PER_FILE,
+    SECOND_FILE_OFFSET,
+    TARGET_SPEED_RATIOS,
+)
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.pipeline.recompute.results import Recomputed
@@ -21,6 +27,8 @@ from herijk.simulate import (
     simulate_tow,
     simulate_world,
 )
+
+FREEBOARDS = ("freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m")
 
 
 @dataclass(frozen=True)
@@ -48,7 +56,7 @@ def measure(settings: WorldSettings) -> Measured:
     """Simulates a world and adds its samples up."""
     world = simulate_world(settings)
     tows = tow_rows(world)
-    runs = run_rows(tows)
+    runs = run_rows(tows, [tow.tow_id for tow in world.tows if tow.second_name])
     blocks, run_truth = [], {}
     for tow in world.tows:
         samples, run_truth[tow.tow_id] = simulate_tow(world, tow)
@@ -96,7 +104,7 @@ def tow_rows(world: World) -> pl.DataFrame:
         [_tow_row(world, tow) for tow in world.tows], infer_schema_length=None
     ).with_columns(
         pl.col("season", "rowers", "sample_rate_hz").cast(pl.Int32),
-        pl.col("speed_correction_ratio", "^freeboard_.*$").cast(pl.Float64),
+        pl.col("speed_correction_ratio", "water_temperature_c", *FREEBOARDS).cast(pl.Float64),
     )
 
 
@@ -106,7 +114,7 @@ def _tow_row(world: World, tow: Tow) -> dict[str, object]:
         "season": tow.season,
         "tow_date": tow.day,
         "fsn_no": tow.boat.fsn_no,
-        "rowers": tow.boat.boat_type.rowers,
+        "rowers": tow.rowers,
         "crew_class": tow.crew_class,
         "declared_speed_m_s": tow.declared_speed_m_s,
         "waterline_length_m": tow.boat.waterline_length_m,
@@ -114,31 +122,38 @@ def _tow_row(world: World, tow: Tow) -> dict[str, object]:
         "bow_height_m": tow.boat.bow_height_m,
         "weight_kg": tow.weight_kg,
         "weight_after_kg": tow.weight_after_kg,
-        "crew_weight_kg": tow.boat.crew_kg(tow.crew_class),
-        "water_temperature_c": tow.water_temperature_c,
+        "crew_weight_kg": tow.crew_kg,
+        "water_temperature_c": tow.listed_temperature_c,
         "speed_correction_ratio": None,
         "altered": tow.altered_reported,
         "sample_rate_hz": world.settings.rate_hz,
-        "freeboard_lowest_m": None,
-        "freeboard_bow_m": None,
-        "freeboard_stern_m": None,
+        **dict(zip(FREEBOARDS, tow.freeboards_m or (None,) * 3, strict=True)),
         "log1_part": 0,
         "log2_part": 0,
     }
 
 
-def run_rows(tows: pl.DataFrame) -> pl.DataFrame:
-    """Six runs a tow, all selected: out at three speeds, and back at the same."""
+def run_rows(tows: pl.DataFrame, two_files: Sequence[str] = ()) -> pl.DataFrame:
+    """Six runs a tow, out at three speeds and back at the same; selected as the lists say."""
     runs = pl.DataFrame(
         {
-            "run": range(1, 7),
+            "run": range(1, RUNS_PER_FILE + 1),
             "direction": [OUT] * 3 + [BACK] * 3,
             "target_speed_ratio": TARGET_SPEED_RATIOS * 2,
-            "selected": [True] * 6,
         },
         schema_overrides={"run": pl.Int8, "direction": pl.Int8},
     )
-    return tows.select("tow_id").join(runs, how="cross").sort("tow_id", "run")
+    with_second = pl.col("tow_id").is_in(two_files)
+    first = (
+        tows.select("tow_id")
+        .join(runs, how="cross")
+        .with_columns((~with_second | (pl.col("direction") == OUT)).alias("selected"))
+    )
+    second = first.filter(with_second).with_columns(
+        pl.col("run") + pl.lit(SECOND_FILE_OFFSET, pl.Int8),
+        (pl.col("direction") == BACK).alias("selected"),
+    )
+    return pl.concat([first, second]).sort("tow_id", "run")
 
 
 def truth_rows(world: World) -> pl.DataFrame:

@@ -24,7 +24,7 @@ from herijk.pipeline.consistency import (
     variance_components,
 )
 from herijk.pipeline.consistency.repeats import ERAS
-from tests.pipeline.consistency_fleet import POWER, fleet
+from tests.pipeline.consistency_fleet import NO_RACES, POWER, fleet
 
 
 def share(values):
@@ -143,7 +143,7 @@ def speed():
     parts = [[_named(frame, k) for frame in part] for k, part in enumerate(parts)]
     tables = [pl.concat(frames) for frames in zip(*parts, strict=True)]
     start = time.perf_counter()
-    consistency_tables(*tables)
+    consistency_tables(*tables, NO_RACES)
     print(
         f"everything, {tables[1].height} tows, 4 methods, 10 types: "
         f"{time.perf_counter() - start:.1f} s"

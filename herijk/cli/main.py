@@ -20,6 +20,7 @@ from typer.core import TyperGroup
 from herijk.cli import editions as commands_editions
 from herijk.cli import text
 from herijk.cli.arguments import ArchiveFolder, AsJson, DataFolder, show
+from herijk.cli.fit import fit
 from herijk.cli.overview import Overview, folders_here
 from herijk.pipeline.errors import BrokenPromiseError, HerijkError, MissingKnowledgeError
 
@@ -38,6 +39,7 @@ methods_app = typer.Typer(help="The methods that ship with Herijk.", rich_markup
 app.add_typer(methods_app, name="methods", invoke_without_command=True)
 
 commands_editions.add_to(app)
+app.command()(fit)
 
 MOST_TYPES: Final = 2
 
@@ -289,18 +291,27 @@ def log_error(
 
 @app.command()
 def simulate(
-    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder to make.")],
+    directory: Annotated[Path | None, typer.Argument(metavar="DIR", help="Folder to make.")] = None,
     seasons: Seasons = "2009:2018",  # type: ignore[assignment]
     tows_per_season: Annotated[int, typer.Option(min=1, max=1000, help="Tows in each.")] = 24,
     rate: Annotated[int, typer.Option(min=5, max=1000, help="Samples a second.")] = 1000,
     seed: Annotated[int, typer.Option(min=0, help="Decides all that is drawn.")] = 1,
+    world: Annotated[str, typer.Option(help="What is wrong in it; see --worlds.")] = "history",
+    worlds: Annotated[bool, typer.Option("--worlds", help="List the worlds, and stop.")] = False,
 ) -> None:
     """Write a simulated archive with known truth (the truth lies beside it, not in it)."""
     from herijk.cli.progress import TerminalProgress
-    from herijk.simulate import WorldSettings, simulate_world
+    from herijk.simulate import WORLDS, simulate_world, world_settings
     from herijk.simulate.archive_writer import write_simulated_archive
 
-    settings = WorldSettings(tuple(seasons), tows_per_season, rate, seed)
+    if worlds:
+        typer.echo("\n".join(f"{name:18s}{named.about}" for name, named in WORLDS.items()))
+        return
+    if directory is None:
+        raise typer.BadParameter("name the folder to make", param_hint="DIR")
+    settings = world_settings(
+        world, seasons=tuple(seasons), tows_per_season=tows_per_season, rate_hz=rate, seed=seed
+    )
     with TerminalProgress() as progress:
         progress.expect(len(seasons) * tows_per_season)
         truth = write_simulated_archive(

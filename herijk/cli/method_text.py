@@ -79,7 +79,7 @@ def _speed(step: Speed) -> str:
 def _calibration(step: Calibration) -> str:
     return {
         "none": "none.",
-        "gps_per_tow": "one factor a tow from GPS speed / log speed, as many runs out as back.",
+        "gps_per_tow": "one factor per file from GPS speed / log speed, as many runs out as back.",
         "gps_per_season": "one factor a season, the mean of its tows' GPS speed / log speed.",
     }[step.rule]
 
@@ -89,7 +89,8 @@ def _window(step: Window) -> str:
         return "all samples of a run."
     return (
         f"the steady part of a run, at least {step.minimum_s:g} s; ends equal within "
-        f"{step.speed_drift_m_s:g} m/s and {100 * step.force_ends_ratio:g} % of force; without "
+        f"{step.speed_drift_m_s:g} m/s, {100 * step.force_ends_ratio:g} % of force and "
+        f"{step.wind_ends_m_s:g} m/s of wind where that can be; without "
         f"ramps over {step.ramp_m_s:g} m/s, force peaks over {step.peak_sd:g} and gusts over "
         f"{step.gust_sd:g} deviations."
     )

@@ -59,7 +59,7 @@ def _wrong(report: Report, say: Say) -> Iterable[str]:
     failed = [c for c in report["checks"] if not c["passed"]]
     for check in failed:
         outcome = say(f"code.{outcome_of(check)}")
-        yield f"{outcome}: {say('code.' + check['check'])} ({found_in_words(check, say)})"
+        yield f"{outcome}: {say('failed.' + check['check'])} ({found_in_words(check, say)})"
 
 
 def _moved(report: Report, say: Say) -> Iterable[str]:

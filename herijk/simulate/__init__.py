@@ -10,11 +10,14 @@ from herijk.simulate.hull import AirCoefficients, nearest_hyperbola, true_cw_kg_
 from herijk.simulate.motion import Disturbance, RunTruth
 from herijk.simulate.tow import simulate_tow
 from herijk.simulate.world import Tow, TowTruth, World, WorldSettings, simulate_world
+from herijk.simulate.worlds import WORLDS, NamedWorld, world_settings
 
 __all__ = [
+    "WORLDS",
     "AirCoefficients",
     "Defects",
     "Disturbance",
+    "NamedWorld",
     "RunTruth",
     "Tow",
     "TowTruth",
@@ -25,4 +28,5 @@ __all__ = [
     "simulate_tow",
     "simulate_world",
     "true_cw_kg_m",
+    "world_settings",
 ]

@@ -19,6 +19,7 @@ from typing import Any, Final, Literal
 import numpy as np
 import polars as pl
 
+from herijk.pipeline.channels import SECOND_FILE_OFFSET
 from herijk.pipeline.errors import HerijkError
 from herijk.simulate import RunTruth, Tow, World, simulate_tow, true_cw_kg_m
 from herijk.simulate.defects import FIRST_SEASON
@@ -99,6 +100,15 @@ LIST_COLUMNS: Final = (
     "meetfrequentie [Hz]",
     "opmerking",
 )
+OPTIONAL_LIST_COLUMNS: Final = (
+    "lege doft",
+    "vrijboord laagst [m]",
+    "vrijboord boeg [m]",
+    "vrijboord achter [m]",
+)
+"""Left out of a list in which all of them would be empty."""
+ALL_RUNS: Final = "1,2,3,4,5,6"
+OUT_AND_BACK_OF_THE_SECOND: Final = "1,2,3,b4,b5,b6"
 BOAT_COLUMNS: Final = (
     "fsn_nr",
     "ht_nr",
@@ -224,8 +234,14 @@ def _write_all_samples(
 def _write_tow(directory: Path, world: World, tow: Tow) -> tuple[RunTruth, ...]:
     samples, runs = simulate_tow(world, tow)
     spelling = spelling_of(tow.season)
-    path = _samples_folder(directory, tow.season) / f"{tow.samples_name}{spelling.extension}"
-    _write_samples(path, samples, spelling, world.settings.rate_hz)
+    second = pl.col("run") > SECOND_FILE_OFFSET
+    first_run = pl.col("run") - pl.lit(SECOND_FILE_OFFSET, pl.Int8)
+    files = {tow.samples_name: samples.filter(~second)}
+    if tow.second_name:
+        files[tow.second_name] = samples.filter(second).with_columns(first_run)
+    for name, part in files.items():
+        path = _samples_folder(directory, tow.season) / f"{name}{spelling.extension}"
+        _write_samples(path, part, spelling, world.settings.rate_hz)
     return runs
 
 
@@ -293,7 +309,8 @@ def _write_papers(directory: Path, world: World) -> None:
     _write_table(register / "sloependata.csv", BOAT_COLUMNS, _boat_rows(world), PLAIN)
     for season in seasons:
         path = directory / "sleeplijsten" / f"sleeplijst_{season}.csv"
-        _write_table(path, LIST_COLUMNS, _list_rows(world, season), spelling_of(season))
+        columns, rows = _tow_list(world, season)
+        _write_table(path, columns, rows, spelling_of(season))
     for year in sorted({seasons[len(seasons) // 2], seasons[-1]}):
         path = register / f"sloepregister_{year}.csv"
         _write_table(path, REGISTER_COLUMNS, _register_rows(world, year), spelling_of(year))
@@ -349,6 +366,28 @@ def _boat_rows(world: World) -> list[list[str]]:
     ]
 
 
+def _tow_list(world: World, season: int) -> tuple[tuple[str, ...], list[list[str]]]:
+    """Columns and rows of a season's list; optional columns where they say something."""
+    rows = _list_rows(world, season)
+    optional = _optional_rows(world, season)
+    if not any(any(row) for row in optional):
+        return LIST_COLUMNS, rows
+    joined = [row + more for row, more in zip(rows, optional, strict=True)]
+    return (*LIST_COLUMNS, *OPTIONAL_LIST_COLUMNS), joined
+
+
+def _optional_rows(world: World, season: int) -> list[list[str]]:
+    spelling = spelling_of(season)
+    return [
+        [
+            tow.free_thwart,
+            *("" if m is None else spelling.number(m, 3) for m in tow.freeboards_m or [None] * 3),
+        ]
+        for tow in world.tows
+        if tow.season == season
+    ]
+
+
 def _list_rows(world: World, season: int) -> list[list[str]]:
     spelling = spelling_of(season)
     return [
@@ -357,8 +396,8 @@ def _list_rows(world: World, season: int) -> list[list[str]]:
             spelling.date(tow.day),
             tow.boat.fsn_no,
             tow.samples_name,
-            "",
-            str(tow.boat.boat_type.rowers),
+            tow.second_name,
+            str(tow.rowers),
             tow.crew_class,
             spelling.number(tow.declared_speed_m_s, 2),
             spelling.number(tow.boat.waterline_length_m, 2),
@@ -366,10 +405,12 @@ def _list_rows(world: World, season: int) -> list[list[str]]:
             spelling.number(tow.boat.bow_height_m, 2),
             spelling.number(tow.weight_kg, 0),
             spelling.number(tow.weight_after_kg, 0),
-            spelling.number(tow.boat.crew_kg(tow.crew_class), 0),
-            spelling.number(tow.water_temperature_c, 1),
+            spelling.number(tow.crew_kg, 0),
+            ""
+            if tow.listed_temperature_c is None
+            else spelling.number(tow.listed_temperature_c, 1),
             "",
-            "1,2,3,4,5,6",
+            OUT_AND_BACK_OF_THE_SECOND if tow.second_name else ALL_RUNS,
             "ja" if tow.altered_reported else "nee",
             str(world.settings.rate_hz),
             REMARKS[tow.number % len(REMARKS)],
@@ -384,7 +425,7 @@ def _register_rows(world: World, year: int) -> list[list[str]]:
     return [
         [
             line.boat.fsn_no,
-            str(line.boat.boat_type.rowers),
+            str(line.rowers),
             line.crew_class,
             spelling.number(line.a_kg_m, 2),
             spelling.number(line.b_m_s, 2),
@@ -405,7 +446,7 @@ def _race_rows(world: World, season: int) -> list[list[str]]:
             spelling.date(day),
             spelling.number(RACE_KM, 3),
             line.tow.boat.fsn_no,
-            str(line.tow.boat.boat_type.rowers),
+            str(line.tow.rowers),
             line.tow.crew_class,
             str(dt.timedelta(seconds=line.seconds)),
             "" if line.stream_km is None else spelling.number(line.stream_km, 3),
@@ -418,6 +459,7 @@ def _race_rows(world: World, season: int) -> list[list[str]]:
 def _truth_record(world: World, tow: Tow, runs: tuple[RunTruth, ...]) -> dict[str, Any]:
     """What the archive does not tell about a tow, ready for JSON."""
     truth = tow.truth
+    defects = world.settings.defects(tow.season)
     speeds = tow.declared_speed_m_s * CURVE_SPEED_RATIOS
 
     def curve(temperature_c: float) -> list[float]:
@@ -429,9 +471,15 @@ def _truth_record(world: World, tow: Tow, runs: tuple[RunTruth, ...]) -> dict[st
         "cw_declared_kg_m_at_15C": round(truth.cw_at_15c_kg_m, 4),
         "cw_declared_kg_m_at_tow_temperature": round(truth.cw_at_tow_temperature_kg_m, 4),
         "season_log_factor": round(truth.season_log_factor, 6),
+        "log_factor_of_day": round(truth.log_factor_of_day, 6),
         "log_factor": round(truth.log_factor, 6),
+        "second_log_factor": truth.second_log_factor,
         "log2_ratio": round(truth.log2_ratio, 6),
         "askew_ratio": round(truth.askew_ratio, 4),
+        "force_scale": defects.force_scale,
+        "force_zero_n": truth.force_zero_n,
+        "anemometer_scale": defects.anemometer_scale,
+        "gps_scale": defects.gps_scale,
         "altered": truth.altered,
         "altered_reported": tow.altered_reported,
         "runs": [

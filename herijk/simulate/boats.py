@@ -4,12 +4,13 @@ Every number of a type stands in `BOAT_TYPES` with its source in `docs/simulator
 boat does in the water is in `hull`; when it is towed in `world`.
 """
 
-from dataclasses import dataclass
-from typing import Final
+from dataclasses import dataclass, replace
+from typing import Final, Literal, TypeAlias
 
 import numpy as np
 import scipy
 
+from herijk.simulate.delft import RESIDUARY
 from herijk.simulate.hull import AirCoefficients, Hull, true_cw_kg_m
 
 MEN: Final = "H"
@@ -65,6 +66,12 @@ GIVEN_NAMES: Final = ("Tréwes", "Noordvaarder", "Zeeëgel", "Vrouwe Coöperatie
 """Names with letters that a wrong encoding spoils; given to every seventh boat."""
 GIVEN_NAME_EVERY: Final = 7
 FIRST_FSN_NUMBER: Final = 100
+HUMP_AMPLITUDE: Final = 0.03
+"""Of a marked hump; a hyperbola through 90, 100 and 110 % then misses 0.8 % (median)."""
+HUMP_PHASE_RAD: Final = 0.0
+
+Shape: TypeAlias = Literal["bow wave", "hump", "delft"]
+"""Whence the shape of the resistance: see `hull`; `delft` takes a hull of the Delft series."""
 
 
 @dataclass(frozen=True)
@@ -81,6 +88,7 @@ class Boat:
     roughness: float
     crew_classes: tuple[str, ...]
     power_share: float
+    residuary: tuple[float, ...] | None = None
 
     @property
     def fsn_no(self) -> str:
@@ -92,21 +100,29 @@ class Boat:
         """Number in the other register: seven digits, text."""
         return f"{(1_308_179 * (self.index + 1)) % 9_999_991:07d}"
 
-    def crew_kg(self, crew_class: str) -> float:
-        """Weight of a full crew."""
-        return self.boat_type.rowers * ROWER_KG[crew_class]
-
     def target_power_w(self, crew_class: str) -> float:
         """Power a rower at which this boat is towed."""
         low, high = POWER_W[crew_class]
         return low + self.power_share * (high - low)
 
 
-def draw_boat(index: int, rng: np.random.Generator) -> Boat:
-    """Draw boat number `index` from the table of types."""
+def draw_boat(
+    index: int, rng: np.random.Generator, shape: Shape = "bow wave", spread: float = 1.0
+) -> Boat:
+    """Draw boat number `index` from the table of types.
+
+    Args:
+        index: number of the boat.
+        rng: decides what is drawn.
+        shape: of its resistance.
+        spread: of boats of a type, relative to the usual; 0 makes them identical.
+    """
     shares = np.array([boat_type.share for boat_type in BOAT_TYPES])
-    boat_type = BOAT_TYPES[int(rng.choice(len(BOAT_TYPES), p=shares / shares.sum()))]
-    spread = 1.0 if boat_type.name else NO_TYPE_SPREAD
+    kind = int(rng.choice(len(BOAT_TYPES), p=shares / shares.sum()))
+    boat_type = BOAT_TYPES[kind]
+    length_spread, spread = (spread, spread) if boat_type.name else (NO_TYPE_SPREAD, 1.0)
+    if shape == "hump":
+        boat_type = replace(boat_type, hump_amplitude=HUMP_AMPLITUDE, hump_phase_rad=HUMP_PHASE_RAD)
     length, beam, weight, roughness = rng.standard_normal(4)
     crew_shares = [share for _, share in CREWS]
     return Boat(
@@ -114,28 +130,39 @@ def draw_boat(index: int, rng: np.random.Generator) -> Boat:
         name=_name(index, boat_type),
         boat_type=boat_type,
         waterline_length_m=round(
-            boat_type.waterline_length_m * (1 + spread * LENGTH_SD * length), 2
+            boat_type.waterline_length_m * (1 + length_spread * LENGTH_SD * length), 2
         ),
-        beam_m=round(boat_type.beam_m * (1 + spread * BEAM_SD * beam), 2),
+        beam_m=round(boat_type.beam_m * (1 + length_spread * BEAM_SD * beam), 2),
         bow_height_m=boat_type.bow_height_m,
-        weight_kg=round(boat_type.weight_kg * float(np.exp(WEIGHT_SD * weight))),
-        roughness=float(np.exp(ROUGHNESS_SD * roughness)),
+        weight_kg=round(boat_type.weight_kg * float(np.exp(spread * WEIGHT_SD * weight))),
+        roughness=float(np.exp(spread * ROUGHNESS_SD * roughness)),
         crew_classes=CREWS[int(rng.choice(len(CREWS), p=crew_shares))][0],
         power_share=float(rng.random()),
+        residuary=_delft_hull(kind if boat_type.name else index) if shape == "delft" else None,
     )
 
 
-def loaded_hull(boat: Boat, crew_class: str, weight_kg: float, condition: float) -> Hull:
-    """The hull of a boat with a full crew.
+def _delft_hull(number: int) -> tuple[float, ...]:
+    """Boats of a type have one shape, those of no type each their own."""
+    return RESIDUARY[number % len(RESIDUARY)]
+
+
+def crew_kg(crew_class: str, rowers: int) -> float:
+    """Weight of a crew."""
+    return rowers * ROWER_KG[crew_class]
+
+
+def loaded_hull(boat: Boat, on_board_kg: float, weight_kg: float, condition: float) -> Hull:
+    """The hull of a boat with its crew.
 
     Args:
         boat: the boat.
-        crew_class: decides the weight of the crew.
+        on_board_kg: weight of the crew.
         weight_kg: the empty boat as weighed on the day.
         condition: factor on water resistance by age and alterations; roughness is added here.
     """
     boat_type = boat.boat_type
-    displacement_kg = weight_kg + boat.crew_kg(crew_class)
+    displacement_kg = weight_kg + on_board_kg
     # S = c sqrt(volume L), the usual estimate; c is high because keel and rudder are in it.
     volume_m3 = displacement_kg / 1000.0
     wetted_m2 = boat_type.wetted_surface_ratio * np.sqrt(volume_m3 * boat.waterline_length_m)
@@ -151,6 +178,7 @@ def loaded_hull(boat: Boat, crew_class: str, weight_kg: float, condition: float)
         hump_amplitude=boat_type.hump_amplitude,
         hump_phase_rad=boat_type.hump_phase_rad,
         condition=boat.roughness * condition,
+        residuary=boat.residuary,
     )
 
 

@@ -24,18 +24,28 @@ class Defects:
     log_run_wander: float = 0.0  # relative sd between runs, and slowly within a run
     log_noise_m_s: float = 0.0  # sd
     log2_ratio: tuple[float, float] = (1.0, 1.0)  # range of log 2 / log 1, drawn each tow
+    log_trend: float = 0.0  # change of ln factor from the first day of the season to the last
+    log_replaced: float = 0.0  # change of ln factor at an unreported change of log in mid-season
+    steered_by_log: float = (
+        0.0  # 1: the helmsman holds the target that log 1 reads; 0: the true one
+    )
     # GPS
     gps_wander_m_s: float = 0.0  # sd, slow
     gps_noise_m_s: float = 0.0  # sd of each fix
     gps_lag_s: float = 0.0
     gps_hold_s: float = 0.0  # time between fixes
+    gps_scale: float = 1.0  # reading over true
     # Water and wind
     stream_m_s: float = 0.0  # sd along the course
     stream_drift_m_s: float = 0.0  # sd of the change in ten minutes
+    tide_m_s: float = 0.0  # amplitude of a tidal stream that turns during the tow
     water_temperature_c: tuple[float, float] = (15.0, 15.0)  # range, drawn each day
+    temperature_missing_share: float = 0.0  # of tows whose list does not give it
     wind_m_s: float = 0.0  # mean true wind speed
     wind_turbulence: float = 0.0  # sd of the wind over its mean
     vane_jitter_deg: float = 0.0  # sd
+    vane_offset_deg: float = 0.0
+    anemometer_scale: float = 1.0  # reading over true
     gust_share: float = 0.0  # of runs, with
     gust_m_s: float = 0.0  # this much more wind for some seconds
     # Towing
@@ -49,16 +59,29 @@ class Defects:
     surge_force: float = 0.0  # relative sd of the 1 Hz surge of the tow line
     force_wander: float = 0.0  # relative sd, seconds
     force_noise: float = 0.0  # relative sd, fast
+    force_scale: float = 1.0  # reading over true
+    force_zero_n: float = 0.0  # reading without force
+    force_zero_drift_n: float = 0.0  # change of that from the first day of the season to the last
     askew_share: float = 0.0  # of tows pulled askew
     askew_excess: tuple[float, float] = (0.0, 0.0)  # range of the relative excess of force
     askew_gross_share: float = 0.0  # of the tows pulled askew, with
     askew_gross_excess: float = 0.0  # this excess
     fast_run_share: float = 0.0  # of tows, with 120 % runs instead of 110 %
+    slow_share: float = 0.0  # of tows, towed
+    slow_ratio: tuple[float, float] = (1.0, 1.0)  # at this range of the boat's usual speed
+    empty_thwart_share: float = 0.0  # of tows, for a crew of two rowers fewer
+    second_file_share: float = 0.0  # of tows, whose runs back are those of a second file
+    second_file_log: float = 0.0  # change of ln factor in that file
+    # Files
+    dropout_share: float = 0.0  # of runs in which log 1 reads 0 for up to a second
+    gap_share: float = 0.0  # of runs in which the load cell gives no number for up to a second
+    spike_share: float = 0.0  # of runs with one sample of the load cell 30 times too high
     # Boats
     alteration_share: float = 0.0  # of boats, between two seasons in which they are towed
     alteration_sd: float = 0.0  # sd of ln resistance
     alteration_weight_sd: float = 0.0  # sd of ln weight
     unreported_share: float = 0.0  # of alterations
+    fleet_resistance: float = 1.0  # factor on the water resistance of all boats
     ageing_per_year: float = 0.0  # relative growth of water resistance
 
     @classmethod

@@ -7,12 +7,15 @@ correction, so that the one can test the other. Motion and instruments belong el
 """
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Final
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from herijk.pipeline.channels import TARGET_SPEED_RATIOS
+from herijk.simulate.delft import FROUDE
 
 GRAVITY_M_S2: Final = 9.81
 AIR_DENSITY_KG_M3: Final = 1.225
@@ -44,6 +47,7 @@ class Hull:
         wave_exponent: how fast that grows: as Fn^exponent.
         hump_amplitude, hump_phase_rad: humps and hollows, 1 + a cos(1 / Fn^2 + phase).
         condition: factor on the whole water resistance: roughness, ageing, alterations.
+        residuary: a row of `delft.RESIDUARY`; takes the place of the bow wave.
     """
 
     waterline_length_m: float
@@ -57,6 +61,7 @@ class Hull:
     hump_amplitude: float
     hump_phase_rad: float
     condition: float = 1.0
+    residuary: tuple[float, ...] | None = None
 
     @property
     def front_m2(self) -> float:
@@ -93,12 +98,35 @@ def water_cw_kg_m(hull: Hull, speed_m_s: Floats, temperature_c: float) -> Floats
     density = water_density_kg_m3(temperature_c)
     cf = friction_coefficient(speed_m_s, hull.waterline_length_m, temperature_c)
     friction = density / 2 * hull.wetted_surface_m2 * (1.0 + hull.form_factor) * cf
+    if hull.residuary is None:
+        wave = _bow_wave_cw_kg_m(hull, speed_m_s)
+    else:
+        wave = _residuary_cw_kg_m(hull, speed_m_s, _ln_residuary(hull.residuary))
+    return np.asarray(hull.condition * (friction + wave))
+
+
+def _bow_wave_cw_kg_m(hull: Hull, speed_m_s: Floats) -> Floats:
     # 1 / Fn^2 sets how many bow waves stand along the hull, hence the humps and hollows.
     inverse_froude2 = GRAVITY_M_S2 * hull.waterline_length_m / speed_m_s**2
     growth = (REFERENCE_FROUDE**2 * inverse_froude2) ** (-hull.wave_exponent / 2)
     humps = 1.0 + hull.hump_amplitude * np.cos(inverse_froude2 + hull.hump_phase_rad)
     scale = hull.displacement_kg / hull.waterline_length_m
-    return np.asarray(hull.condition * (friction + scale * hull.wave_coefficient * growth * humps))
+    return np.asarray(scale * hull.wave_coefficient * growth * humps)
+
+
+def _residuary_cw_kg_m(
+    hull: Hull, speed_m_s: Floats, ln_residuary: scipy.interpolate.CubicSpline
+) -> Floats:
+    froude = speed_m_s / np.sqrt(GRAVITY_M_S2 * hull.waterline_length_m)
+    # Constant outside the tank's range.
+    per_weight = np.exp(ln_residuary(np.clip(froude, FROUDE[0], FROUDE[-1])))
+    return np.asarray(hull.displacement_kg * GRAVITY_M_S2 * per_weight / speed_m_s**2)
+
+
+@cache
+def _ln_residuary(per_1000: tuple[float, ...]) -> scipy.interpolate.CubicSpline:
+    """Logarithm of residuary resistance / weight over Froude number."""
+    return scipy.interpolate.CubicSpline(FROUDE, np.log(np.array(per_1000) / 1000.0))
 
 
 def still_air_cw_kg_m(hull: Hull, air: AirCoefficients) -> float:

@@ -19,6 +19,7 @@ from herijk.simulate.world import Tow
 ADDED_MASS: Final = 0.08
 """Water that moves along, relative to the boat's mass (method note 8.4; stated assumption)."""
 SURGE_HZ: Final = 1.0
+SPIKE_RATIO: Final = 30.0
 
 # Correlation times [s] (stated assumptions; the force spectrum gives a sample sd of about 8 %).
 VANE_S: Final = 0.4
@@ -62,7 +63,7 @@ def read_gps(time_s: Floats, run: TrueRun, defects: Defects, streams: TowStreams
     held_s = defects.gps_hold_s
     # A hair of a sample keeps a fix on its own second in spite of rounding.
     fix_s = np.floor(time_s / held_s + 1e-9) * held_s if held_s else time_s
-    reading = np.interp(fix_s - defects.gps_lag_s, run.grid_s, speed)
+    reading = defects.gps_scale * np.interp(fix_s - defects.gps_lag_s, run.grid_s, speed)
     return np.asarray(reading + defects.gps_noise_m_s * noise[fix_s.astype(int)], dtype=np.float32)
 
 
@@ -98,7 +99,8 @@ def read_load_cell(
         + at_samples(defects.force_wander * wander + run.steering_force)
         + defects.force_noise * noise
     )
-    return np.asarray(water_n * (1.0 + unrest) + air_n + inertia_n, dtype=np.float32)
+    felt_n = water_n * (1.0 + unrest) + air_n + inertia_n
+    return np.asarray(defects.force_scale * felt_n + tow.truth.force_zero_n, dtype=np.float32)
 
 
 def _surge(time_s: Floats, grid_s: Floats, rng: np.random.Generator) -> Floats:
@@ -121,8 +123,25 @@ def read_anemometer(
     abeam = np.interp(time_s, run.grid_s, run.wind_abeam_m_s)
     jitter = coloured_noise(streams[Component.VANE], run.grid_s.size, 1.0 / SLOW_HZ, VANE_S)
     swing_deg = defects.vane_jitter_deg * np.interp(time_s, run.grid_s, jitter)
-    angle = (np.degrees(np.arctan2(abeam, ahead)) + swing_deg).astype(np.float32)
+    true_deg = np.degrees(np.arctan2(abeam, ahead))
+    angle = (true_deg + defects.vane_offset_deg + swing_deg).astype(np.float32)
     angle = np.mod(angle, np.float32(360.0))
     # A hair below zero rounds to 360 in single precision.
     angle[angle == 360.0] = 0.0
-    return np.hypot(ahead, abeam).astype(np.float32), angle
+    return (defects.anemometer_scale * np.hypot(ahead, abeam)).astype(np.float32), angle
+
+
+def damage(force: Samples, log1: Samples, defects: Defects, rng: np.random.Generator) -> None:
+    """What files of real instruments have in them, put into one run: zeros, no numbers, a spike."""
+    a_second = force.size / RUN_SECONDS
+    spike_n = SPIKE_RATIO * float(force.mean())
+    for share, channel, value, longest in (
+        (defects.dropout_share, log1, 0.0, a_second),
+        (defects.gap_share, force, np.nan, a_second),
+        (defects.spike_share, force, spike_n, 1.0),
+    ):
+        chance, length, place = rng.random(3)
+        if chance < share:
+            samples = max(int(length * longest), 1)
+            first = int(place * (force.size - samples))
+            channel[first : first + samples] = value

@@ -4,6 +4,7 @@ Drawn on a grid of 20 points a second, the same at every sampling rate, so that 
 and at 1000 Hz is the same tow. What instruments make of it is in `instruments`.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
@@ -21,6 +22,9 @@ LEAD_S: Final = 5.0
 SECONDS_BETWEEN_RUNS: Final = 75.0
 SECONDS_TO_TURN: Final = 180.0
 FAST_RUN_RATIO: Final = 1.2
+TIDE_PERIOD_S: Final = 12.42 * 3600.0
+SLACK_WITHIN_S: Final = 400.0
+"""A tide that turns during a tow does so within so many seconds of its middle."""
 EDGE_S: Final = 8.0
 """Gusts and steering corrections happen in the first or the last so many seconds of a run."""
 BUMP_S: Final = (3.0, 6.0)
@@ -77,6 +81,9 @@ def true_runs(tow: Tow, defects: Defects, streams: TowStreams) -> list[TrueRun]:
     grid_s = np.arange(-LEAD_S, RUN_SECONDS + 1.0, 1.0 / SLOW_HZ)
     ratios = [*TARGET_SPEED_RATIOS[:-1], FAST_RUN_RATIO] if tow.fast_run else TARGET_SPEED_RATIOS
     stream_m_s, drift_m_s = streams[Component.STREAM].standard_normal(2)
+    # The helmsman sees log 1: where it reads low, the ship goes too fast.
+    steered = tow.truth.log_factor**defects.steered_by_log
+    tide = _tide(defects, streams[Component.TIDE])
     # Mean wind over the tow: Rayleigh, so that calm and windy days both occur.
     wind_m_s = defects.wind_m_s * np.sqrt(2 / np.pi) * streams[Component.WIND].rayleigh()
     wind_from_rad = streams[Component.WIND].uniform(0.0, 2 * np.pi)
@@ -86,10 +93,12 @@ def true_runs(tow: Tow, defects: Defects, streams: TowStreams) -> list[TrueRun]:
         direction = OUT if run <= len(ratios) else BACK
         target_m_s = tow.declared_speed_m_s * ratios[(run - 1) % len(ratios)]
         noted: list[Disturbance] = []
-        speed = _speed(target_m_s, grid_s, defects, streams, noted)
-        ten_minutes = (_started_s(run, direction) + grid_s) / 600.0
+        speed = _speed(steered * target_m_s, grid_s, defects, streams, noted)
+        from_middle_s = _started_s(run, direction) + grid_s
         water_m_s = (
-            defects.stream_m_s * stream_m_s + defects.stream_drift_m_s * drift_m_s * ten_minutes
+            defects.stream_m_s * stream_m_s
+            + defects.stream_drift_m_s * drift_m_s * (from_middle_s / 600.0)
+            + tide(from_middle_s)
         )
         ground_m_s = speed + direction * water_m_s
         gust = _bump("gust", grid_s, defects.gust_share, streams[Component.GUST], noted)
@@ -112,6 +121,13 @@ def true_runs(tow: Tow, defects: Defects, streams: TowStreams) -> list[TrueRun]:
             )
         )
     return runs
+
+
+def _tide(defects: Defects, rng: np.random.Generator) -> Callable[[Floats], Floats]:
+    """Stream of the tide by seconds from the middle of the tow; it turns there, near enough."""
+    slack_s, sign = rng.uniform(-SLACK_WITHIN_S, SLACK_WITHIN_S), rng.choice((-1.0, 1.0))
+    amplitude = defects.tide_m_s * sign
+    return lambda s: np.asarray(amplitude * np.sin(2 * np.pi * (s - slack_s) / TIDE_PERIOD_S))
 
 
 def _started_s(run: int, direction: int) -> float:

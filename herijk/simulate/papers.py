@@ -29,6 +29,7 @@ class RegisterLine:
     """One line of a register; `tow_day` is None where there is no valid curve."""
 
     boat: Boat
+    rowers: int
     crew_class: str
     a_kg_m: float
     b_m_s: float
@@ -63,6 +64,7 @@ def printed_register(world: World, year: int) -> list[RegisterLine]:
         lines.append(
             RegisterLine(
                 tow.boat,
+                tow.rowers,
                 tow.crew_class,
                 round(a_kg_m, 2),
                 round(b_m_s, 2),
@@ -84,7 +86,7 @@ def race(world: World, season: int) -> tuple[dt.date, list[RaceLine]]:
         speed_m_s = speed_at_power_m_s(
             tow.hull,
             effort * tow.boat.target_power_w(tow.crew_class),
-            tow.boat.boat_type.rowers,
+            tow.rowers,
             tow.water_temperature_c,
             world.settings.air,
         )

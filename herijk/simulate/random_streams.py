@@ -23,6 +23,8 @@ class Subject(IntEnum):
     ALTERATION = 4
     TOW = 5
     RACE = 6
+    LOG_REPLACED = 7
+    SECOND_FILE = 8
 
 
 class Component(IntEnum):
@@ -33,12 +35,17 @@ class Component(IntEnum):
     ASKEW = 3
     FAST_RUN = 4
     SCALES = 5
+    SLOW = 6
+    EMPTY_THWART = 7
+    SECOND_FILE = 8
+    TEMPERATURE = 9
     SPEED = 10
     RAMP = 11
     GUST = 12
     STEERING = 13
     STREAM = 14
     WIND = 15
+    TIDE = 16
     LOG1_SLOW = 20
     LOG1_NOISE = 21
     LOG2_SLOW = 22
@@ -48,6 +55,7 @@ class Component(IntEnum):
     FORCE_SURGE = 26
     FORCE_WANDER = 27
     FORCE_NOISE = 28
+    DAMAGE = 29
 
 
 def stream(seed: int, subject: Subject, *address: int) -> np.random.Generator:
@@ -56,15 +64,16 @@ def stream(seed: int, subject: Subject, *address: int) -> np.random.Generator:
 
 
 class TowStreams:
-    """The streams of one tow, by component; each goes on from run to run."""
+    """The streams of one file of a tow, by component; each goes on from run to run."""
 
-    def __init__(self, seed: int, season: int, number: int) -> None:
-        self._streams = {
-            component: stream(seed, Subject.TOW, season, number, component)
-            for component in Component
-        }
+    def __init__(self, seed: int, season: int, number: int, subject: Subject = Subject.TOW) -> None:
+        self._address = (subject, season, number)
+        self._seed = seed
+        self._streams: dict[Component, np.random.Generator] = {}
 
     def __getitem__(self, component: Component) -> np.random.Generator:
+        if component not in self._streams:
+            self._streams[component] = stream(self._seed, *self._address, component)
         return self._streams[component]
 
 

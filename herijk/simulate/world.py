@@ -6,7 +6,7 @@ so that a season holds the same tows whichever other seasons are asked for.
 """
 
 import datetime as dt
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from typing import Final
@@ -14,7 +14,14 @@ from typing import Final
 import numpy as np
 
 from herijk.pipeline.errors import HerijkError
-from herijk.simulate.boats import Boat, draw_boat, loaded_hull, speed_at_power_m_s
+from herijk.simulate.boats import (
+    Boat,
+    Shape,
+    crew_kg,
+    draw_boat,
+    loaded_hull,
+    speed_at_power_m_s,
+)
 from herijk.simulate.defects import FIRST_SEASON, Defects
 from herijk.simulate.hull import REFERENCE_TEMPERATURE_C, AirCoefficients, Hull, true_cw_kg_m
 from herijk.simulate.random_streams import Component, Subject, stream
@@ -22,11 +29,19 @@ from herijk.simulate.random_streams import Component, Subject, stream
 RETOW_YEARS: Final = (4, 3, 5, 4)
 """Years to the next tow, in turn: 3, 4 and 5 from every season link all seasons together."""
 FIRST_TOW_DAY: Final = (3, 10)
-TOWS_A_DAY: Final = 8
 DECLARATION_TEMPERATURE_C: Final = 8.0
 """Water in spring, at which the declared speed gives the intended power."""
 HIGHEST_WEIGHT_GAIN_KG: Final = 8.0
 """A boat weighed after the tow is a little wetter (stated assumption)."""
+REPLACED_AT: Final = (0.3, 0.7)
+"""Part of a season after which its log is replaced."""
+ROWERS_LEFT_OUT: Final = 2
+"""Of a thwart left free."""
+FREE_THWART: Final = "3"
+BLOCK_COEFFICIENT: Final = 0.65
+"""Waterplane over length times beam: a heavier boat lies deeper (stated assumption)."""
+FREEBOARDS: Final = (0.45, 1.0, 0.8)
+"""Lowest, at the bow and at the stern, over the height of the bow (stated assumption)."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +55,11 @@ class WorldSettings:
         seed: decides everything that is drawn.
         defects: sizes of the defects in a season.
         air: the air coefficients that are true in this world.
+        shape: of the boats' resistance.
+        spread: of boats of a type, relative to the usual; 0 makes them identical.
+        ties: seasons of which only so many boats are also towed in another season.
+        tows_a_day, days_apart: how a season's tows are spread.
+        freeboards_from: first season whose list gives freeboards; None for never.
     """
 
     seasons: tuple[int, ...] = tuple(range(FIRST_SEASON, 2019))
@@ -48,6 +68,12 @@ class WorldSettings:
     seed: int = 1
     defects: Callable[[int], Defects] = Defects.history
     air: AirCoefficients = field(default_factory=AirCoefficients)
+    shape: Shape = "bow wave"
+    spread: float = 1.0
+    ties: Mapping[int, int] = field(default_factory=dict)
+    tows_a_day: int = 8
+    days_apart: int = 1
+    freeboards_from: int | None = None
 
     def __post_init__(self) -> None:
         """Check what a user typed."""
@@ -63,33 +89,46 @@ class WorldSettings:
 class TowTruth:
     """What the archive does not tell about a tow.
 
-    True speed = log speed x `log_factor`. `cw` is at the declared speed and has the still-air
-    part in it. `askew_ratio` is true force over straight force; `altered` also when unreported.
+    True speed = log speed x `log_factor`, which is `log_factor_of_day`, of all tows of that day,
+    with the tow's own wander; `second_log_factor` is that of its second file, None without.
+    `season_log_factor` is without trend and replaced log. `cw` is at the declared speed and has
+    the still-air part in it. `askew_ratio` is true force over straight force; `force_zero_n` is
+    what the load cell reads without force; `altered` also when unreported.
     """
 
     cw_at_tow_temperature_kg_m: float
     cw_at_15c_kg_m: float
     season_log_factor: float
+    log_factor_of_day: float
     log_factor: float
+    second_log_factor: float | None
     log2_ratio: float
+    force_zero_n: float
     askew_ratio: float
     altered: bool
 
 
 @dataclass(frozen=True)
 class Tow:
-    """One tow: what the list says about it, its true hull and the truth."""
+    """One tow: what the list says about it, its true hull and the truth.
+
+    `freeboards_m` are the lowest, at the bow and at the stern; `listed_temperature_c` is None
+    where the list does not give it.
+    """
 
     tow_id: str
     season: int
     number: int
     day: dt.date
     boat: Boat
+    rowers: int
     crew_class: str
     declared_speed_m_s: float
     weight_kg: float
     weight_after_kg: float
     water_temperature_c: float
+    listed_temperature_c: float | None
+    freeboards_m: tuple[float, float, float] | None
     altered_reported: bool
     fast_run: bool
     hull: Hull
@@ -98,9 +137,22 @@ class Tow:
     @property
     def samples_name(self) -> str:
         """Name of the samples file without extension, e.g. `vlet 012 6h 2014`."""
-        return (
-            f"{self.boat.name} {self.boat.boat_type.rowers}{self.crew_class.lower()} {self.season}"
-        )
+        return f"{self.boat.name} {self.rowers}{self.crew_class.lower()} {self.season}"
+
+    @property
+    def second_name(self) -> str:
+        """Name of the second samples file without extension; empty where there is none."""
+        return "" if self.truth.second_log_factor is None else f"{self.samples_name} b"
+
+    @property
+    def free_thwart(self) -> str:
+        """The thwart left free; empty with a full crew."""
+        return FREE_THWART if self.rowers < self.boat.boat_type.rowers else ""
+
+    @property
+    def crew_kg(self) -> float:
+        """Weight of the crew on board."""
+        return crew_kg(self.crew_class, self.rowers)
 
 
 @dataclass(frozen=True)
@@ -144,7 +196,8 @@ def simulate_world(settings: WorldSettings) -> World:
 
     @cache
     def boat(index: int) -> Boat:
-        return draw_boat(index, stream(settings.seed, Subject.BOAT, index))
+        rng = stream(settings.seed, Subject.BOAT, index)
+        return draw_boat(index, rng, settings.shape, settings.spread)
 
     slots = _schedule(settings, boat)
     history: dict[int, list[int]] = {}
@@ -190,11 +243,14 @@ def _schedule(settings: WorldSettings, boat: Callable[[int], Boat]) -> list[_Slo
     slots: list[_Slot] = []
     for season in range(FIRST_SEASON, settings.seasons[-1] + 1):
         waiting = sorted((when, crew) for crew, when in due.items() if when <= season)
-        crews = [crew for _, crew in waiting[: settings.tows_per_season]]
+        tied = settings.ties.get(season, settings.tows_per_season)
+        crews = [crew for _, crew in waiting[: min(tied, settings.tows_per_season)]]
         while len(crews) < settings.tows_per_season:
             crews.append(next(newcomers))
         for number, crew in enumerate(crews, start=1):
-            due[crew] = season + RETOW_YEARS[(number - 1) % len(RETOW_YEARS)]
+            due.pop(crew, None)
+            if number <= tied:
+                due[crew] = season + RETOW_YEARS[(number - 1) % len(RETOW_YEARS)]
             slots.append(_Slot(season, number, *crew))
     return slots
 
@@ -221,7 +277,8 @@ def _condition(settings: WorldSettings, boat_index: int, seasons: tuple[int, ...
             if hidden >= defects.unreported_share:
                 reported.append(season)
     age_years = seasons[-1] - FIRST_SEASON
-    resistance *= (1.0 + settings.defects(seasons[-1]).ageing_per_year) ** age_years
+    now = settings.defects(seasons[-1])
+    resistance *= (1.0 + now.ageing_per_year) ** age_years * now.fleet_resistance
     return _Condition(resistance, weight, tuple(altered), tuple(reported))
 
 
@@ -240,28 +297,38 @@ def _tow(
         return stream(settings.seed, Subject.TOW, slot.season, slot.number, component)
 
     weight_kg = float(round(boat.weight_kg * condition.weight))
-    hull = loaded_hull(boat, slot.crew_class, weight_kg, condition.resistance)
-    day_number = (slot.number - 1) // TOWS_A_DAY
-    day_rng = stream(settings.seed, Subject.DAY, slot.season, day_number)
+    rowers = _rowers(boat, defects, draw(Component.EMPTY_THWART))
+    on_board_kg = crew_kg(slot.crew_class, rowers)
+    hull = loaded_hull(boat, on_board_kg, weight_kg, condition.resistance)
+    day = (slot.number - 1) // settings.tows_a_day
+    day_rng = stream(settings.seed, Subject.DAY, slot.season, day)
     temperature_c = round(float(day_rng.uniform(*defects.water_temperature_c)), 1)
-    declared = _declared_speed_m_s(settings, boat, slot.crew_class)
+    listed = draw(Component.TEMPERATURE).random() >= defects.temperature_missing_share
+    declared = _declared_speed_m_s(settings, boat, slot.crew_class, rowers)
+    declared = round(declared * _slowness(defects, draw(Component.SLOW)), 2)
 
     def cw(at_c: float) -> float:
         return float(true_cw_kg_m(hull, np.array(declared), at_c, settings.air))
 
+    of_day = season_log_factor * _log_change(settings, slot.season, day)
     wander = float(draw(Component.LOG_WANDER).standard_normal())
+    log_factor = of_day * float(np.exp(defects.log_tow_wander * wander))
+    two_files = draw(Component.SECOND_FILE).random() < defects.second_file_share
     return Tow(
         tow_id=f"{slot.season}-{slot.number:03d}",
         season=slot.season,
         number=slot.number,
-        day=dt.date(slot.season, *FIRST_TOW_DAY) + dt.timedelta(days=day_number),
+        day=dt.date(slot.season, *FIRST_TOW_DAY) + dt.timedelta(days=day * settings.days_apart),
         boat=boat,
+        rowers=rowers,
         crew_class=slot.crew_class,
         declared_speed_m_s=declared,
         weight_kg=weight_kg,
         weight_after_kg=weight_kg
         + round(float(draw(Component.SCALES).uniform(0.0, HIGHEST_WEIGHT_GAIN_KG))),
         water_temperature_c=temperature_c,
+        listed_temperature_c=temperature_c if listed else None,
+        freeboards_m=_freeboards_m(settings, slot.season, boat, weight_kg),
         altered_reported=any(s > previous_season for s in condition.reported_seasons),
         fast_run=bool(draw(Component.FAST_RUN).random() < defects.fast_run_share),
         hull=hull,
@@ -269,21 +336,64 @@ def _tow(
             cw_at_tow_temperature_kg_m=cw(temperature_c),
             cw_at_15c_kg_m=cw(REFERENCE_TEMPERATURE_C),
             season_log_factor=season_log_factor,
-            log_factor=season_log_factor * float(np.exp(defects.log_tow_wander * wander)),
+            log_factor_of_day=of_day,
+            log_factor=log_factor,
+            second_log_factor=(
+                log_factor * float(np.exp(defects.second_file_log)) if two_files else None
+            ),
             log2_ratio=float(draw(Component.LOG2_RATIO).uniform(*defects.log2_ratio)),
+            force_zero_n=defects.force_zero_n
+            + defects.force_zero_drift_n * _place_in_season(settings, day),
             askew_ratio=1.0 + _askew_excess(defects, draw(Component.ASKEW)),
             altered=any(s > previous_season for s in condition.altered_seasons),
         ),
     )
 
 
-def _declared_speed_m_s(settings: WorldSettings, boat: Boat, crew_class: str) -> float:
+def _place_in_season(settings: WorldSettings, day: int) -> float:
+    """-0.5 on the first day of tows, 0.5 on the last, 0 if there is one only."""
+    last = (settings.tows_per_season - 1) // settings.tows_a_day
+    return day / last - 0.5 if last else 0.0
+
+
+def _log_change(settings: WorldSettings, season: int, day: int) -> float:
+    """Factor of fouling and of a log replaced in mid-season, on the season's log factor."""
+    defects = settings.defects(season)
+    replaced_at = stream(settings.seed, Subject.LOG_REPLACED, season).uniform(*REPLACED_AT)
+    place = _place_in_season(settings, day)
+    replaced = place + 0.5 > replaced_at
+    return float(np.exp(defects.log_trend * place + defects.log_replaced * replaced))
+
+
+def _rowers(boat: Boat, defects: Defects, rng: np.random.Generator) -> int:
+    left_out = ROWERS_LEFT_OUT if rng.random() < defects.empty_thwart_share else 0
+    return boat.boat_type.rowers - left_out
+
+
+def _slowness(defects: Defects, rng: np.random.Generator) -> float:
+    slow, ratio = rng.random(), rng.uniform(*defects.slow_ratio)
+    return float(ratio) if slow < defects.slow_share else 1.0
+
+
+def _freeboards_m(
+    settings: WorldSettings, season: int, boat: Boat, weight_kg: float
+) -> tuple[float, float, float] | None:
+    """Freeboards of the empty boat; a heavier one lies deeper."""
+    if settings.freeboards_from is None or season < settings.freeboards_from:
+        return None
+    waterplane_m2 = BLOCK_COEFFICIENT * boat.waterline_length_m * boat.beam_m
+    deeper_m = (weight_kg - boat.boat_type.weight_kg) / (1000.0 * waterplane_m2)
+    lowest, bow, stern = (round(boat.bow_height_m * ratio - deeper_m, 3) for ratio in FREEBOARDS)
+    return lowest, bow, stern
+
+
+def _declared_speed_m_s(settings: WorldSettings, boat: Boat, crew_class: str, rowers: int) -> float:
     """The speed that asks the intended power of the boat as built; kept at later tows."""
-    as_built = loaded_hull(boat, crew_class, boat.weight_kg, condition=1.0)
+    as_built = loaded_hull(boat, crew_kg(crew_class, rowers), boat.weight_kg, condition=1.0)
     speed = speed_at_power_m_s(
         as_built,
         boat.target_power_w(crew_class),
-        boat.boat_type.rowers,
+        rowers,
         DECLARATION_TEMPERATURE_C,
         settings.air,
     )

@@ -6,7 +6,7 @@ from herijk.tables import column
 
 
 class TypeConsistency(dy.Schema):
-    """How a quantity follows weight or tow speed within a boat type: a straight line."""
+    """How a quantity follows weight, length or tow speed within a type, by the newest tows."""
 
     method = column.method(primary_key=True)
     boat_type = column.text(
@@ -16,10 +16,13 @@ class TypeConsistency(dy.Schema):
         "b_m_s, a_kg_m, q, cw_kg_m, cw_standard_kg_m or ln_cw_standard", primary_key=True
     )
     explaining = column.text(
-        "weight_kg, displacement_kg, declared_speed_m_s or ln_displacement", primary_key=True
+        "weight_kg, displacement_kg, declared_speed_m_s, waterline_length_m or ln_displacement",
+        primary_key=True,
     )
-    standard_speed_m_s = column.speed("common speed of q and cw_standard: median declared speed")
-    n = dy.Int32(description="tows: the newest of each boat and crew", min=0)
+    standard_speed_m_s = column.speed(
+        "common speed of q and cw_standard: median declared speed of the type's tows"
+    )
+    n = dy.Int32(description="tows", min=0)
     n_boats = dy.Int32(description="boats", min=0)
     slope = column.number("quantity / explaining", "slope of the line", nullable=True)
     slope_lo = column.number(
@@ -33,6 +36,105 @@ class TypeConsistency(dy.Schema):
     between_sd_ratio = column.number("1", "true spread about the line / mean", nullable=True, min=0)
     noise_sd_ratio = column.number("1", "spread by run noise alone / mean", nullable=True, min=0)
     reason = column.text("why there is no line: no_type, few_boats, equal_values; else empty")
+
+
+class TypeLines(TypeConsistency):
+    """The same lines for every choice of tows: all, the newest, those of a season."""
+
+    tows = column.text("all, newest (of each boat and crew), or a season", primary_key=True)
+
+
+class TypeLinePoints(dy.Schema):
+    """A line of `type_lines` with its 95 % interval, for drawing."""
+
+    method = column.method(primary_key=True)
+    tows = column.text("all, newest, or a season", primary_key=True)
+    boat_type = column.text("type of boat", primary_key=True)
+    quantity = column.text("b_m_s, a_kg_m or cw_standard_kg_m", primary_key=True)
+    explaining = column.text(
+        "weight_kg, declared_speed_m_s or waterline_length_m", primary_key=True
+    )
+    crew_class = column.text(
+        "H or D where boats are compared within a crew, or all", primary_key=True
+    )
+    x = column.number("as explaining", "place on the line", primary_key=True)
+    y = column.number("as quantity", "the line there")
+    lo = column.number("as quantity", "lower end of its 95 % interval")
+    hi = column.number("as quantity", "upper end")
+
+
+class ComparedTows(dy.Schema):
+    """Every tow next to the others of its type: A, B and Cw at one speed, hull speed, outliers."""
+
+    method = column.method(primary_key=True)
+    tow_id = column.tow_id(primary_key=True)
+    fsn_no = column.fsn_no()
+    rowers = column.rowers()
+    crew_class = column.crew_class()
+    boat_type = column.text("type of boat, or unknown")
+    season = column.season()
+    newest = dy.Bool(description="the newest tow of its boat and crew")
+    slow = dy.Bool(description="towed with too little power: men under 60 W, women under 34 W")
+    weight_kg = column.number("kg", "empty boat with oars", nullable=True)
+    displacement_kg = column.number("kg", "boat and crew", nullable=True)
+    waterline_length_m = column.number("m", "length on the waterline that day")
+    declared_speed_m_s = column.speed("speed v0 the crew declared")
+    power_w = column.number("W", "power a rower at that speed", nullable=True)
+    hull_speed_m_s = column.speed(
+        "1.25 sqrt(waterline length); also 'B from length' of the tool of 2014"
+    )
+    tow_hull_ratio = column.number("1", "declared speed / hull speed")
+    speed_case = column.text(
+        "low (under 0.67 of hull speed), middle or high (from 0.80)", regex="^(low|middle|high)$"
+    )
+    b_hull_ratio = column.number("1", "B / hull speed; empty without B", nullable=True)
+    a_kg_m = column.number("kg/m", "A")
+    a_lo_kg_m = column.number("kg/m", "lower end of its 95 % interval, by the runs", nullable=True)
+    a_hi_kg_m = column.number("kg/m", "upper end", nullable=True)
+    b_m_s = column.number("m/s", "B; empty where it is not determined", nullable=True)
+    b_lo_m_s = column.number("m/s", "lower end of its 95 % interval", nullable=True)
+    b_hi_m_s = column.number("m/s", "upper end; empty: no upper bound", nullable=True)
+    standard_speed_m_s = column.speed("common speed: median declared speed of the type's tows")
+    cw_standard_kg_m = column.number(
+        "kg/m", "Cw at that speed; empty from B on", nullable=True, min_exclusive=0
+    )
+    cw_standard_lo_kg_m = column.number("kg/m", "lower end of its 95 % interval", nullable=True)
+    cw_standard_hi_kg_m = column.number("kg/m", "upper end", nullable=True)
+    beyond_curve = dy.Bool(description="that speed lies outside 85-115 % of the declared speed")
+    expected_cw_kg_m = column.number(
+        "kg/m", "the same as tows of the type's other boats predict it", nullable=True
+    )
+    deviation_sd = column.number(
+        "1", "difference of ln Cw in standard deviations of a prediction", nullable=True
+    )
+    outside = dy.Bool(description="differs at 5 % over all tows of the type", nullable=True)
+    candidates = dy.List(
+        dy.String(), description="codes of what could explain a difference", nullable=True
+    )
+
+
+class HullSpeed(dy.Schema):
+    """Is B hull speed, and at what part of hull speed are boats towed? Medians over boats."""
+
+    method = column.method(primary_key=True)
+    tows = column.text("all, or newest of each boat and crew", primary_key=True)
+    boat_type = column.text("type of boat, or all", primary_key=True)
+    n = dy.Int32(description="tows", min=0)
+    n_boats = dy.Int32(description="boats", min=0)
+    n_with_b = dy.Int32(description="tows whose B is determined", min=0)
+    tow_ratio = column.number("1", "declared speed / hull speed, median of tows")
+    tow_ratio_lo = column.number("1", "5 % of the tows lie below")
+    tow_ratio_hi = column.number("1", "5 % of the tows lie above")
+    tow_share_60_70 = column.number("1", "share of tows at 60-70 % of hull speed")
+    b_ratio = column.number("1", "B / hull speed, median of boats", nullable=True)
+    b_ratio_lo = column.number("1", "lower end of its 95 % interval", nullable=True)
+    b_ratio_hi = column.number("1", "upper end", nullable=True)
+    b_share_within_5pct = column.number("1", "share of B within 5 % of hull speed", nullable=True)
+    b_is_hull_speed = dy.Bool(description="the interval of the median holds 1", nullable=True)
+    length_slope = column.number("1", "ln B per ln length; 0.5 if B is hull speed", nullable=True)
+    length_slope_lo = column.number("1", "lower end of its 95 % interval", nullable=True)
+    length_slope_hi = column.number("1", "upper end", nullable=True)
+    length_r2 = column.number("1", "share of the spread of ln B explained", nullable=True)
 
 
 class TypeOutliers(dy.Schema):
@@ -122,7 +224,10 @@ class SpeedTrend(dy.Schema):
 
 
 class SlowTows(dy.Schema):
-    """Tows with too little power, and race power by their curve / with their type's bend."""
+    """Tows made with little power or raced beyond their curve, and race power by their curve.
+
+    Each power ratio is that by the tow's own curve / by the same runs with the bend of its type.
+    """
 
     method = column.method(primary_key=True)
     tow_id = column.tow_id(primary_key=True)
@@ -131,7 +236,23 @@ class SlowTows(dy.Schema):
     crew_class = column.crew_class()
     boat_type = column.text("type of boat, or unknown")
     declared_speed_m_s = column.speed("speed v0 the crew declared")
-    power_w = column.number("W", "power a rower at the declared speed")
+    season = column.season()
+    power_w = column.number("W", "power a rower at the declared speed", nullable=True)
+    slow = dy.Bool(description="under 60 W (women 34 W); else under 70 W, or raced off its curve")
+    tow_hull_ratio = column.number("1", "declared speed / hull speed")
+    speed_case = column.text("low (under 0.67 of hull speed), middle or high (from 0.80)")
+    races = dy.Int32(description="races until its next tow; empty: none", nullable=True)
+    raced_speed_m_s = column.speed("fastest of them, through the water", nullable=True)
+    raced_power_w = column.number("W", "power a rower there by its own curve", nullable=True)
+    raced_high = dy.Bool(description="over 100 W (women 57 W)", nullable=True)
+    text_says = column.text(
+        "whom Cw-kromme (2015) expects wronged at that speed: advantaged, disadvantaged; empty "
+        "where the curve counts or the text is silent",
+        nullable=True,
+    )
+    power_ratio_raced = column.number("1", "power ratio at the raced speed", nullable=True)
+    power_ratio_raced_lo = column.number("1", "lower end of its 95 % interval", nullable=True)
+    power_ratio_raced_hi = column.number("1", "upper end", nullable=True)
     power_ratio_110 = column.number("1", "power ratio at 110 % of that speed", nullable=True)
     power_ratio_110_lo = column.number("1", "lower end of its 95 % interval", nullable=True)
     power_ratio_110_hi = column.number("1", "upper end", nullable=True)

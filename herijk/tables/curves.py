@@ -5,6 +5,7 @@ from typing import Final
 import dataframely as dy
 
 from herijk.tables import column
+from herijk.tables.severity import SEVERITY_PATTERN
 
 STATUSES: Final = ("accepted", "flagged", "rejected")
 
@@ -25,7 +26,9 @@ class Curves(dy.Schema):
     cw_kg_m = column.number("kg/m", "Cw at the declared speed", nullable=True)
     cw_lo_kg_m = column.number("kg/m", "lower end of its 95 % interval", nullable=True)
     cw_hi_kg_m = column.number("kg/m", "upper end", nullable=True)
-    b_lo_m_s = column.number("m/s", "lower end of the 95 % interval of B", nullable=True)
+    b_lo_m_s = column.number(
+        "m/s", "lower end of the 95 % interval of B; empty: cannot be told", nullable=True
+    )
     b_hi_m_s = column.number("m/s", "upper end; empty: no upper bound", nullable=True)
     power_w = column.number("W", "power a rower at the declared speed", nullable=True)
     residual_sd_ratio = column.number("1", "sd of the points about the curve / Cw", nullable=True)
@@ -52,7 +55,10 @@ class Assessments(dy.Schema):
     method = column.method(primary_key=True)
     tow_id = column.tow_id(primary_key=True)
     check = column.text("code of the check", primary_key=True)
-    severity = column.text("flag: a person should look; note: worth knowing", regex="^(flag|note)$")
+    severity = column.text(
+        "note: worth knowing; look: somebody must decide; refuse: nothing to register",
+        regex=SEVERITY_PATTERN,
+    )
     observed = column.number("as in unit", "what was observed")
     limit = column.number("as in unit", "the limit that is exceeded, or the nearest")
     unit = column.text("unit of both; 1 for a ratio, a count or yes (1) and no (0)")

@@ -18,6 +18,12 @@ class RunPoints(dy.Schema):
     cut_reason = column.text(
         "why the rest was cut: codes, comma separated, or by_hand and the reason"
     )
+    end_speed_m_s = column.number("m/s", "log speed, end of window less start", nullable=True)
+    end_force_ratio = column.number("1", "force, the same, / its mean", nullable=True)
+    end_wind_m_s = column.number("m/s", "apparent wind speed, the same", nullable=True)
+    ends_ratio = column.number(
+        "1", "largest of these three / its limit; empty where the method has none", nullable=True
+    )
     speed_factor = column.number("1", "true speed / log speed", min_exclusive=0, nullable=True)
     speed_m_s = column.speed("mean true speed", nullable=True)
     gross_cw_kg_m = column.number("kg/m", "mean F/v^2 before the wind", nullable=True)

@@ -3,6 +3,7 @@
 import dataframely as dy
 
 from herijk.tables import column
+from herijk.tables.severity import SEVERITY_PATTERN
 
 
 class CorrectionSteps(dy.Schema):
@@ -85,6 +86,6 @@ class CheckCounts(dy.Schema):
 
     method = column.method(primary_key=True)
     check = column.text("code of the check", primary_key=True)
-    severity = column.text("flag or note", regex="^(flag|note)$")
+    severity = column.text("note, look or refuse", regex=SEVERITY_PATTERN)
     tows = dy.Int32(description="tows on which it was made", min=1)
     beyond = dy.Int32(description="of which beyond the limit", min=0)

@@ -6,10 +6,12 @@ import numpy as np
 import polars as pl
 
 from herijk.pipeline import curve
+from herijk.warehouse.archive.published import RACE_SCHEMA
 
 RUN_RATIOS = np.array([0.9, 1.0, 1.1, 0.9, 1.0, 1.1])
 POWER = 0.8
 CREW_KG = 760.0
+NO_RACES = pl.DataFrame(schema=RACE_SCHEMA)
 
 
 def fleet(
@@ -102,6 +104,7 @@ def _fitted(speed, cw, v0):
     b = np.where(fitted.b_determined, fitted.b_m_s, np.nan)
     yield pl.Series("a_kg_m", fitted.a_kg_m)
     yield pl.Series("b_m_s", b).fill_nan(None)
+    yield from (pl.lit(None, pl.Float64).alias(name) for name in ("b_lo_m_s", "b_hi_m_s"))
     yield pl.Series("cw_kg_m", at)
     yield pl.Series("cw_lo_kg_m", interval.lo)
     yield pl.Series("cw_hi_kg_m", interval.hi)

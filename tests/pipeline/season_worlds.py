@@ -174,6 +174,8 @@ def register(world):
         pl.lit(1.0).alias("speed_ratio"),
         pl.lit(0.025).alias("air_ratio"),
         pl.lit(0.05).alias("air_per_coefficient"),
+        pl.lit(True).alias("wind_measured"),
+        pl.lit(0.025).alias("still_air_ratio"),
         (pl.col("season") >= 2018).alias("temperature_known"),
     )
     last = world.tows.sort("season", "tow_id").unique("fsn_no", keep="last", maintain_order=True)

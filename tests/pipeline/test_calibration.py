@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from herijk.pipeline.steps.calibration import gps_factor
+from herijk.pipeline.steps.calibration import gps_factor, gps_factor_of_files
 
 WAY = np.array([1, 1, 1, -1, -1, -1])
 TOW = np.zeros(6, dtype=np.int64)
@@ -39,3 +39,35 @@ def test_each_tow_has_its_own_factor():
     factor, known = gps_factor(gps, np.tile(LOG, 2), np.tile(WAY, 2), tow, np.tile(ALL, 2), 3)
     assert factor == pytest.approx([1.02, 0.97, 1.0], rel=1e-12)
     assert known.tolist() == [True, True, False]
+
+
+def of_two_files(used: list[int], second: float, steady: list[int] | None = None):
+    """Factors of a combined tow, each file of six runs, whose second log reads otherwise."""
+    way, log = np.tile(WAY, 2), np.concatenate([LOG, LOG * second])
+    tow, in_second = np.zeros(12, dtype=np.int64), np.repeat([False, True], 6)
+    gps = np.tile(LOG, 2) + 0.05 * way
+    chosen = np.array(used, dtype=bool)
+    there = np.ones(12, dtype=bool) if steady is None else np.array(steady, dtype=bool)
+    return gps_factor_of_files(gps, log, way, tow, in_second, chosen, there, 1)
+
+
+@given(second=st.floats(0.95, 1.05))
+def test_each_file_of_a_combined_tow_has_its_own_factor(second):
+    """Log1 bij elke sleep calibreren (2015): also where the runs out are of one file only."""
+    for used in ([1] * 12, [1, 1, 1, 0, 0, 0, 0, 0, 0, 1, 1, 1], [1, 0, 0, 1, 0, 0] * 2):
+        y, known = of_two_files(used, second)
+        assert known.all()
+        assert y[0] == pytest.approx([1.0, 1.0 / second], rel=1e-12)
+
+
+def test_files_towed_one_way_each_share_the_factor_of_the_tow():
+    one_way = [1, 1, 1, 0, 0, 0, 0, 0, 0, 1, 1, 1]
+    y, known = of_two_files(one_way, 1.02, steady=one_way)
+    assert known.all()
+    assert y[0] == pytest.approx([1 / 1.01, 1 / 1.01], rel=1e-12)
+
+
+def test_runs_that_were_not_chosen_calibrate_no_tow_of_one_file():
+    used = np.array([1, 1, 1, 0, 0, 0], dtype=bool)
+    known = gps_factor_of_files(LOG, LOG, WAY, TOW, np.zeros(6, dtype=bool), used, ALL, 1)[1]
+    assert not known.any()

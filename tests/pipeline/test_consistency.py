@@ -1,5 +1,6 @@
 """Consistency of boats: against independent implementations, known truth, and degenerate input."""
 
+import datetime as dt
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +13,9 @@ from statsmodels.stats.meta_analysis import combine_effects
 
 from herijk.pipeline.consistency import (
     ERAS,
+    compared_tows,
     consistency_tables,
+    hull_speed_statistics,
     mixed,
     observe,
     pooled_curves,
@@ -20,8 +23,10 @@ from herijk.pipeline.consistency import (
     reproducibility,
     slow_tows,
     speed_trend,
+    tow_speed,
     type_consistency,
     type_homogeneity,
+    type_lines,
     type_outliers,
     variance_components,
 )
@@ -29,7 +34,7 @@ from herijk.pipeline.consistency.lines import LN_CW, quantities
 from herijk.pipeline.consistency.observed import newest
 from herijk.pipeline.consistency.reml import Problem
 from herijk.tables.schemas import conform
-from tests.pipeline.consistency_fleet import fleet
+from tests.pipeline.consistency_fleet import NO_RACES, fleet
 
 
 def within(observed, expected, trials):
@@ -343,7 +348,7 @@ def test_slow_tows_are_singled_out_with_their_effect_on_power():
     speeds = np.full(8, 2.5)
     speeds[2] = 2.0
     tables = fleet(19, boats=8, speeds_m_s=speeds, noise=1e-4)
-    found = slow_tows(observe(*tables))
+    found = slow_tows(observe(*tables), NO_RACES).filter("slow")
     assert found["tow_id"].to_list() == ["2016-002"]
     assert found["power_w"][0] < 60
     # The same hyperbola for all: a slow tow does no harm.
@@ -358,10 +363,126 @@ def test_a_slow_tow_whose_bend_is_too_steep_asks_too_much_power_where_it_is_rowe
     curves, tows, boats, points = fleet(19, boats=8, speeds_m_s=speeds, noise=1e-4)
     steeper = pl.when(tow_id="2016-002").then((pl.col("speed_m_s") / 2.0) ** 0.5).otherwise(1.0)
     points = points.with_columns(pl.col("cw_kg_m") * steeper)
-    found = slow_tows(observe(curves, tows, boats, points)).row(0, named=True)
+    found = (
+        slow_tows(observe(curves, tows, boats, points), NO_RACES).filter("slow").row(0, named=True)
+    )
     # Cw grows by another (2.5 / 2)^0.5 = 12 %, and more as the hyperbola bends away.
     assert found["power_ratio_rowed"] > 1.12
     assert 1.0 < found["power_ratio_rowed_lo"] < found["power_ratio_rowed"]
+
+
+def raced(tables, tow_id, speed_m_s):
+    """A race of two hours by the crew of a tow."""
+    line = tables[0].filter(tow_id=tow_id).select("fsn_no", "rowers", "crew_class")
+    return line.with_columns(
+        race_date=pl.lit(dt.date(2016, 6, 4)),
+        distance_m=7200.0 * speed_m_s + 300.0,
+        stream_m=300.0,
+        rowing_time_s=7200.0,
+    )
+
+
+def test_a_slow_tow_raced_hard_says_whom_its_curve_favours():
+    speeds = np.full(8, 2.5)
+    speeds[2] = 2.0
+    curves, tows, boats, points = fleet(19, boats=8, speeds_m_s=speeds, noise=1e-4)
+    steeper = pl.when(tow_id="2016-002").then((pl.col("speed_m_s") / 2.0) ** 0.5).otherwise(1.0)
+    points = points.with_columns(pl.col("cw_kg_m") * steeper)
+    race = raced((curves,), "2016-002", 2.8)
+    found = slow_tows(observe(curves, tows, boats, points), race).filter("slow").row(0, named=True)
+    assert found["raced_speed_m_s"] == pytest.approx(2.8)
+    assert (found["speed_case"], found["text_says"]) == ("low", "advantaged")
+    assert found["raced_high"]
+    # More power is computed than was delivered: that is the advantage.
+    assert found["power_ratio_raced_lo"] > 1.1
+
+
+def test_a_race_before_the_tow_or_after_the_next_does_not_count():
+    tables = fleet(3, boats=6, seasons=(2014, 2016, 2018))
+    found = tow_speed.raced(observe(*tables), raced(tables, "2014-001", 2.4))
+    assert found["tow_id"].to_list() == ["2016-001"]
+
+
+# Every choice of tows
+
+
+@pytest.fixture(scope="module")
+def three_seasons():
+    """Boats with 1,000 kg of spread in weight, towed in three seasons, one of them 15 % high."""
+    curves, tows, boats, points = fleet(
+        5, boats=12, seasons=(2010, 2014, 2016), weights_kg=np.linspace(700, 1300, 12), noise=0.01
+    )
+    high = pl.when(pl.col("tow_id").str.starts_with("2010")).then(1.15).otherwise(1.0)
+    cw = [(pl.col(name) * high).alias(name) for name in curves.columns if "_kg_m" in name]
+    return (
+        curves.with_columns(cw),
+        tows,
+        boats,
+        points.with_columns(pl.col("cw_kg_m") * high),
+    )
+
+
+def test_every_choice_of_tows_has_its_line_with_its_own_count(three_seasons):
+    lines, points = type_lines(observe(*three_seasons))
+    of_cw = lines.filter(quantity="cw_standard_kg_m", explaining="weight_kg")
+    assert dict(of_cw.select("tows", "n").iter_rows()) == {
+        "all": 36, "newest": 12, "2010": 12, "2014": 12, "2016": 12,
+    }  # fmt: skip
+    # Of repeats only 12 boats count, and a season that reads high spoils the line of all tows.
+    assert of_cw["n_boats"].unique().to_list() == [12]
+    explained = dict(of_cw.select("tows", "r2").iter_rows())
+    assert explained["all"] < min(explained["newest"], explained["2010"])
+    drawn = points.filter(tows="2014", quantity="cw_standard_kg_m", explaining="weight_kg")
+    assert drawn["x"].min() == 700
+    assert drawn["x"].max() == 1300
+    slope = of_cw.filter(tows="2014")["slope"][0]
+    assert (drawn["y"].max() - drawn["y"].min()) / 600 == pytest.approx(slope, rel=1e-6)
+    assert (drawn["lo"] < drawn["y"]).all()
+
+
+def test_repeats_of_few_boats_do_not_make_a_line_surer():
+    tables = fleet(7, boats=6, seasons=tuple(range(2009, 2019)), noise=0.005, height_sd=0.05)
+    lines, _ = type_lines(observe(*tables))
+    width = lines.filter(quantity="cw_standard_kg_m", explaining="weight_kg").select(
+        "tows", width=pl.col("slope_hi") - pl.col("slope_lo")
+    )
+    of = dict(width.iter_rows())
+    assert of["all"] > 0.5 * of["newest"]
+
+
+def test_a_tow_far_too_slow_for_the_standard_speed_is_there_and_marked():
+    speeds = np.full(8, 2.5)
+    speeds[2] = 2.0
+    found = compared_tows(observe(*fleet(19, boats=8, speeds_m_s=speeds, noise=1e-4)), ERAS)
+    assert found.filter("beyond_curve")["tow_id"].to_list() == ["2016-002"]
+    assert found.filter("slow")["tow_id"].to_list() == ["2016-002"]
+    one = found.filter("slow").row(0, named=True)
+    assert one["standard_speed_m_s"] == 2.5
+    assert one["cw_standard_kg_m"] == pytest.approx(one["expected_cw_kg_m"], rel=0.02)
+
+
+def test_one_tow_pulled_askew_is_named_among_all_tows(three_seasons):
+    curves, tows, boats, points = three_seasons
+    askew = pl.when(tow_id="2014-004").then(1.2).otherwise(1.0)
+    cw = [(pl.col(name) * askew).alias(name) for name in curves.columns if "_kg_m" in name]
+    found = compared_tows(
+        observe(
+            curves.with_columns(cw), tows, boats, points.with_columns(pl.col("cw_kg_m") * askew)
+        ),
+        ERAS,
+    )
+    # The season that reads high does not put all its tows outside.
+    assert found.filter("outside")["tow_id"].to_list() == ["2014-004"]
+
+
+def test_b_is_told_apart_from_hull_speed():
+    found = compared_tows(observe(*fleet(19, boats=12, noise=0.002)), ERAS)
+    row = hull_speed_statistics(found).filter(tows="all", boat_type="all").row(0, named=True)
+    hull = 1.25 * 8.2**0.5
+    assert row["b_ratio_lo"] < 4.6 / hull < row["b_ratio_hi"]
+    assert row["b_is_hull_speed"] is False
+    at_hull = found.with_columns(pl.col("b_hull_ratio") * hull / 4.6)
+    assert hull_speed_statistics(at_hull)["b_is_hull_speed"].all()
 
 
 # Repeats
@@ -432,7 +553,7 @@ def test_boats_are_told_apart_at_one_speed():
 
 def test_the_classes_told_apart_are_the_boats_spread_over_that_of_their_tows():
     tables = fleet(28, boats=40, seasons=(2014, 2016), height_sd=0.05, noise=0.02)
-    found = consistency_tables(*tables)
+    found = consistency_tables(*tables, NO_RACES)
     boats = found["variance_components"].filter(scope="within_type", component="boat")
     row = found["reproducibility"].filter(scope="2014-").row(0, named=True)
     expected = 1.41 * boats["sd_ratio"].item() / row["sd_ratio"]
@@ -463,7 +584,7 @@ CASES = {
 
 @pytest.mark.parametrize("case", CASES)
 def test_degenerate_input_gives_no_nan_and_fits_the_schemas(case):
-    for name, frame in consistency_tables(*CASES[case]).items():
+    for name, frame in consistency_tables(*CASES[case], NO_RACES).items():
         checked = conform(name, frame)
         for column in checked.select(pl.col(pl.Float64)):
             assert not column.is_nan().any(), (name, column.name)
@@ -494,6 +615,6 @@ def test_where_there_is_no_line_the_reason_is_said(case, quantity, explaining, r
 def test_the_order_of_rows_does_not_matter():
     tables = fleet(40, boats=8, seasons=(2014, 2016, 2018), height_sd=0.03, season_sd=0.02)
     shuffled = [frame.sample(fraction=1.0, shuffle=True, seed=1) for frame in tables]
-    ours, theirs = consistency_tables(*tables), consistency_tables(*shuffled)
+    ours, theirs = consistency_tables(*tables, NO_RACES), consistency_tables(*shuffled, NO_RACES)
     for name, frame in ours.items():
         assert conform(name, frame).equals(conform(name, theirs[name])), name

@@ -14,6 +14,7 @@ from herijk.pipeline.method.definition import shipped_method
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import WorldSettings, simulate_world
 from tests.numbers import unequal
+from tests.pipeline.consistency_fleet import NO_RACES
 from tests.worlds import measure
 
 SETTINGS = WorldSettings((2009, 2012, 2014, 2017), 16, 10, 3)
@@ -25,7 +26,8 @@ def everything(tows, blocks, boats):
     made = [recompute(shipped_method(name), tows, blocks) for name in METHODS]
     names = [field.name for field in fields(made[0]) if field.name != "factors"]
     tables = {name: pl.concat([getattr(one, name) for one in made]) for name in names}
-    return tables | consistency_tables(tables["curves"], tows, boats, tables["run_points"])
+    curves, points = tables["curves"], tables["run_points"]
+    return tables | consistency_tables(curves, tows, boats, points, NO_RACES)
 
 
 @pytest.fixture(scope="module")

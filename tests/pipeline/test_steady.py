@@ -45,6 +45,7 @@ def blocks_of(runs: Sequence[Run], hand: Sequence[Hand] | None = None) -> RunBlo
         "force": stacked([run.force for run in runs]),
         "wind_x": stacked([run.wind_x for run in runs]),
         "wind_y": stacked([run.wind_y for run in runs]),
+        "wind_v": stacked([np.hypot(run.wind_x, run.wind_y) for run in runs]),
     }
     frame = pl.DataFrame({"tow_id": ["t"] * len(runs), "run": range(1, len(runs) + 1)})
     if hand is not None:
@@ -118,10 +119,52 @@ def test_a_disturbance_in_the_middle_cannot_be_cut_out() -> None:
 
 def test_ends_that_differ_are_cut_though_no_ramp_or_peak_is_seen() -> None:
     run = Run()
-    run.speed[-8:] += np.linspace(0.005, 0.06, 8)
+    run.wind_x += np.tile([1.0, -1.0], SECONDS // 2)
+    run.wind_x[-6:] += 2.0
     start, end, reason = window_of(run)
     assert (start, reason) == (0, "ends_differ")
     assert 42 <= end < SECONDS
+
+
+def test_a_slow_rise_of_over_a_tenth_of_a_metre_per_second_leaves_no_window() -> None:
+    run = Run()
+    run.speed += np.linspace(0, 0.5, SECONDS)
+    assert_none(choose_windows(blocks_of([run]), STEADY))
+
+
+def test_wind_that_rises_is_cut_to_equal_ends_or_said_by_how_much() -> None:
+    dropping, rising = Run(), Run()
+    dropping.wind_x[:8] += 1.6
+    rising.wind_x += np.linspace(0, 4, SECONDS)
+    found = choose_windows(blocks_of([dropping, rising]), STEADY)
+    over = found.ends.in_limits(STEADY)
+    assert over[0] <= 1.0
+    assert found.start_s[0] >= 5
+    assert found.ends.wind_m_s[1] == pytest.approx(over[1])
+    assert 1.8 < over[1] < 2.2  # of the shortest window, 30 s: 4 * 25 / 49
+
+
+def test_a_force_that_differs_more_than_the_limit_is_said() -> None:
+    run = Run()
+    run.force *= np.linspace(0.8, 1.2, SECONDS)
+    ends = choose_windows(blocks_of([run]), STEADY).ends
+    assert 0.17 < ends.force_ratio[0] < 0.22  # of the shortest window, 30 s: 0.4 * 25 / 49
+    assert ends.in_limits(STEADY)[0] == pytest.approx(ends.force_ratio[0] / 0.1)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(1, 48), st.integers(1, 4), st.integers(0, 99))
+def test_seconds_without_samples_are_left_out_and_cut_nothing(
+    at: int, gone: int, seed: int
+) -> None:
+    blocks = blocks_of([Run(seed=seed)])
+    lost = slice(at, min(at + gone, 49))
+    sums = {name: values.copy() for name, values in blocks.sums.items()}
+    n = blocks.n.copy()
+    for values in (n, *sums.values()):
+        values[:, lost] = 0.0
+    found = choose_windows(RunBlocks(blocks.runs, n, sums), STEADY)
+    assert (found.start_s[0], found.end_s[0]) == (0, SECONDS)
 
 
 def assert_none(found: Windows, run: int = 0) -> None:

@@ -22,7 +22,7 @@ def tows(**changed):
         "kappa": 2.86,
         "random_ratio": 0.0061, "random_dof": 96.0, "calibrated": True, "log_sd": 0.0,
         "log_dof": np.inf, "wander_sd": 0.0, "air_ratio": 0.025, "air_per_coefficient": 0.05,
-        "temperature_known": False,
+        "wind_measured": True, "still_air_ratio": 0.025, "temperature_known": False,
     }  # fmt: skip
     return pl.DataFrame([usual | changed])
 

@@ -220,9 +220,15 @@ def _result(curve: Report) -> str:
     if curve["cw_kg_m"] is None:
         return f"no curve, {curve['status']}{flags}"
     b = "B not determined" if curve["b_m_s"] is None else f"B {curve['b_m_s']:.2f} m/s"
-    upper = "no upper bound" if curve["b_hi_m_s"] is None else f"{curve['b_hi_m_s']:.2f}"
     return (
-        f"A {curve['a_kg_m']:.2f} kg/m, {b} (95 %: {curve['b_lo_m_s']:.2f} to {upper}), Cw "
+        f"A {curve['a_kg_m']:.2f} kg/m, {b} ({_interval_of_b(curve)}), Cw "
         f"{curve['cw_kg_m']:.2f} kg/m (95 %: {curve['cw_lo_kg_m']:.2f} to "
         f"{curve['cw_hi_kg_m']:.2f}), {curve['power_w']:.1f} W a rower, {curve['status']}{flags}"
     )
+
+
+def _interval_of_b(curve: Report) -> str:
+    if curve["b_lo_m_s"] is None:
+        return "no interval"
+    upper = "no upper bound" if curve["b_hi_m_s"] is None else f"{curve['b_hi_m_s']:.2f}"
+    return f"95 %: {curve['b_lo_m_s']:.2f} to {upper}"

@@ -67,4 +67,32 @@ REPORT: Final[dict[str, tuple[str, str]]] = {
         "stappen vermenigvuldigen tot het geheel",
         "steps multiply to the total",
     ),
+    "failed.tables_fit_their_schemas": (
+        "tabellen wijken af van hun schema",
+        "tables do not fit their schemas",
+    ),
+    "failed.counts_agree": ("aantallen kloppen niet", "counts do not agree"),
+    "failed.few_tows_set_aside": ("veel proeven terzijde gelegd", "many tows are set aside"),
+    "failed.log_factors_stayed": ("logfactoren zijn verschoven", "log factors moved"),
+    "failed.boats_stayed_within_their_intervals": (
+        "sloepen kwamen buiten hun marge",
+        "boats moved beyond their intervals",
+    ),
+    "failed.editions_can_be_made_again": (
+        "edities zijn niet na te rekenen",
+        "editions cannot be made again",
+    ),
+    "failed.every_listed_tow_accounted_for": (
+        "proeven van de lijst zijn niet terug te vinden",
+        "listed tows are not accounted for",
+    ),
+    "failed.every_tow_has_a_curve_row": (
+        "proeven ontbreken bij de krommen",
+        "tows have no row among the curves",
+    ),
+    "failed.most_tows_sound": ("de meeste proeven zijn niet goed", "most tows are not sound"),
+    "failed.steps_multiply_to_the_total": (
+        "stappen vermenigvuldigen niet tot het geheel",
+        "steps do not multiply to the total",
+    ),
 }

@@ -153,11 +153,15 @@ TEXTS: Final[Words] = {
     "calibration.rule": ("Gps-factor", "GPS factor"),
     "window.rule": ("Welk deel van een run", "Which part of a run"),
     "window.minimum_s": ("Kortste venster", "Shortest window"),
-    "window.speed_drift_m_s": ("Verloop van de snelheid", "Drift of the speed"),
+    "window.speed_drift_m_s": (
+        "Verschil van snelheid, begin en eind",
+        "Difference of speed at the ends",
+    ),
     "window.force_ends_ratio": (
         "Verschil van kracht, begin en eind",
         "Difference of force at the ends",
     ),
+    "window.wind_ends_m_s": ("Verschil van wind, begin en eind", "Difference of wind at the ends"),
     "window.ramp_m_s": ("Kleinste aanloop die eraf gaat", "Smallest ramp that is cut"),
     "window.peak_sd": ("Grens voor een krachtpiek", "Limit of a force peak"),
     "window.gust_sd": ("Grens voor een windvlaag", "Limit of a gust"),

@@ -60,7 +60,7 @@ def with_status(
 ) -> pl.DataFrame:
     """The curves with `status` and `flags`.
 
-    Rejected is a tow without a curve or with a flag that rejects; flagged one that a person should
+    Rejected is a tow without a curve or with a flag that rejects; flagged one that somebody must
     look at; the others are accepted. Notes are not listed, unless they reject.
 
     Args:
@@ -75,8 +75,8 @@ def with_status(
         assessments.filter("flagged")
         .join(curves.select("tow_id", "season"), on="tow_id")
         .join(pairs, on=["season", "check"], how="left")
-        .with_columns(pl.col("rejects").fill_null(False) | (pl.col("check") == "no_curve"))
-        .filter((pl.col("severity") == "flag") | pl.col("rejects"))
+        .with_columns(pl.col("rejects").fill_null(False) | (pl.col("severity") == "refuse"))
+        .filter((pl.col("severity") == "look") | pl.col("rejects"))
         .sort(pl.col("check").replace_strict(CODES, range(len(CODES))))
         .group_by("tow_id")
         .agg(pl.col("check").alias("flags"), pl.col("rejects").any())
@@ -166,6 +166,7 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
         (speed / declared).min() - lowest, highest - (speed / declared).max()
     )
     log1 = speed / pl.col("speed_factor")
+    on_target = speed / (pl.col("target_speed_ratio") * declared)
     return (
         run_points.filter("used")
         .join(curves.select("tow_id", "declared_speed_m_s"), on="tow_id")
@@ -176,7 +177,8 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
             - 1,
             log2_differs=((pl.col("log2_ratio") - 1) * log1).abs().max(),
             large_scatter_in_run=(pl.col("cw_sd") / cw.abs()).max(),
-            off_target_speed=(speed / (pl.col("target_speed_ratio") * declared) - 1).abs().max(),
+            off_target_speed=(on_target / on_target.median() - 1).abs().max(),
+            ends_differ=pl.col("ends_ratio").max(),
             range_not_covered=shortfall,
         )
     )

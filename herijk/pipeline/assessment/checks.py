@@ -3,15 +3,18 @@
 One table, `CHECKS`; how each number is observed stands in `pipeline.assessment.assess`. A source in
 brackets is "inferred" where the texts ask for the check but give no number.
 
-Severity says whom a check serves. A `flag` means that a person should look at the tow: its curve
-may be wrong, or rest on a boat that is not what the papers say. A `note` is worth knowing when
-someone looks, but does not by itself ask for it, because most sound tows of some season exceed it
-(log 2, the scatter at 1000 Hz) or because it is a property of how the curve may be used.
+Severity says what a check asks of people. `refuse`: the tow gives nothing to register. `look`:
+somebody must decide, as the curve may be wrong, or rest on a boat that is not what the papers say;
+of sound tows one in twenty at most gets there. `note`: worth knowing when someone looks, because
+most sound tows of some season exceed it (log 2, the scatter at 1000 Hz), because the method already
+acted on it (runs that do not count) or because it is a property of how the curve may be used.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Final, Literal, TypeAlias
+from typing import Final, TypeAlias
+
+from herijk.tables.severity import Severity
 
 Limit: TypeAlias = float | Mapping[str, float] | None
 """One number, one for each class (`H` men, `D` women), or no limit on this side."""
@@ -27,7 +30,7 @@ class Check:
         unit: of the observed number and its limits.
         source: where the limit comes from, or "inferred" and why.
         lowest, highest: a number outside them is marked.
-        severity: `flag`, a person should look; `note`, worth knowing.
+        severity: `note`, `look` or `refuse`.
         last_season: the check is made up to this season only.
     """
 
@@ -37,7 +40,7 @@ class Check:
     source: str
     lowest: Limit = None
     highest: Limit = None
-    severity: Literal["flag", "note"] = "flag"
+    severity: Severity = "look"
     last_season: int | None = None
 
     def limits(self, crew_class: str) -> tuple[float | None, float | None]:
@@ -57,36 +60,39 @@ CHECKS: Final = (
         "1",
         "without a curve there is nothing to register",
         lowest=1.0,
+        severity="refuse",
     ),
     Check(
         "few_runs",
         "runs that the curve is fitted through",
         "1",
-        "Sleepproef 2017, '6 Runs'",
+        "Sleepproef 2017, '6 Runs'; a note, as the method asks for enough of them itself",
         lowest=6.0,
+        severity="note",
     ),
     Check(
         "unbalanced_runs",
         "difference between the number of runs out and back; stream and wind then do not cancel",
         "1",
-        "Sleepproef 2017, '6 Runs': three each way",
-        highest=0.0,
+        "Sleepproef 2017, '6 Runs': three each way; inferred: one run lost leaves 3 and 2",
+        highest=1.0,
     ),
     Check(
         "residual_large",
         "scatter of the run points about the curve / Cw",
         "1",
-        "inferred: Sleepproef 2017, 'Berekening kromme' rejects a large sum of squares; 3 % is "
-        "what one simulated sound tow in thirty exceeds",
-        highest=0.03,
+        "inferred: Sleepproef 2017, 'Berekening kromme' rejects a large sum of squares; 4 % is "
+        "what fewer than one in a hundred simulated sound tows exceeds",
+        highest=0.04,
     ),
     Check(
         "out_and_back_differ",
         "Cw out / Cw back, each over the curve, less 1; after the wind correction they agree",
         "1",
-        "inferred: Sleepproef 2017, 'Wind' says about the same",
-        lowest=-0.03,
-        highest=0.03,
+        "inferred: Sleepproef 2017, 'Wind' says about the same; 4 % is what one in fifty simulated "
+        "sound tows exceeds in the worst years",
+        lowest=-0.04,
+        highest=0.04,
     ),
     Check(
         "unusual_calibration",
@@ -132,10 +138,21 @@ CHECKS: Final = (
     ),
     Check(
         "off_target_speed",
-        "largest difference of a run's speed from the intended one / that speed",
+        "largest difference of a run's speed from the intended one, on the scale of the tow's own "
+        "runs, / that speed",
         "1",
         "inferred: half the step between intended speeds; Sleepproef 2017, 'Eerste beoordeling'",
         highest=0.05,
+    ),
+    Check(
+        "ends_differ",
+        "largest difference of speed, force or wind between a window's two ends / the method's "
+        "limit for it",
+        "1",
+        "Sleepproef 2017, 'Knippen': equal speed, equal force, about equal wind; a note, as no "
+        "window within the limits could be found",
+        highest=1.0,
+        severity="note",
     ),
     Check(
         "range_not_covered",

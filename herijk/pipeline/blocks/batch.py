@@ -12,6 +12,7 @@ import polars as pl
 
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.blocks.run_blocks import RunBlocks
+from herijk.pipeline.channels import SECOND_FILE_OFFSET
 
 
 @dataclass(frozen=True)
@@ -54,10 +55,22 @@ class Batch:
         """A number of each run's tow, shape (runs,); NaN where it is not known."""
         return self.of_tow(column)[self.tow]
 
+    def measured(self, channel: str) -> BoolArray:
+        """Tows that have a channel, `wind` or `log2`, shape (tows,); all where nothing is said."""
+        name = f"{channel}_measured"
+        if name not in self.tows.columns:
+            return np.ones(self.size, dtype=bool)
+        return self.tows[name].fill_null(value=True).to_numpy()
+
     @property
     def direction(self) -> IntArray:
         """1 out, -1 back, shape (runs,)."""
         return self.blocks.runs["direction"].to_numpy().astype(np.int64)
+
+    @property
+    def in_second_file(self) -> BoolArray:
+        """Runs of the second file of a combined tow, shape (runs,)."""
+        return self.blocks.runs["run"].to_numpy() > SECOND_FILE_OFFSET
 
     @property
     def target_speed_ratio(self) -> FloatArray:

@@ -20,6 +20,7 @@ The sums of one block, over its `n` samples, with F the tow force, v a speed sou
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -61,6 +62,12 @@ class RunBlocks:
         """Length of the longest run, in blocks."""
         return int(self.n.shape[1])
 
+    @cached_property
+    def inside(self) -> BoolArray:
+        """Seconds from the start of a run to its end, also those left without samples."""
+        later = np.cumsum(self.n[:, ::-1], axis=1)[:, ::-1]
+        return np.asarray(later > 0)
+
     def take(self, rows: BoolArray) -> "RunBlocks":
         """The runs marked in `rows`, shape (runs,); neighbours are not copied."""
         places = np.flatnonzero(rows)
@@ -85,8 +92,20 @@ class RunBlocks:
         return self.total(name, window) / np.maximum(self.count(window), 1.0)
 
     def block_means(self, name: str) -> FloatArray:
-        """Mean of each block, shape (runs, seconds); 0 where there is none."""
-        return self.sums[name] / np.maximum(self.n, 1.0)
+        """Mean of each block, shape (runs, seconds); 0 after the run.
+
+        A second without samples within the run has the mean of the nearest one before it, or of
+        the first one after where there is none.
+        """
+        means = self.sums[name] / np.maximum(self.n, 1.0)
+        if np.array_equal(self.inside, self.n > 0):
+            return means
+        second = np.arange(self.seconds)
+        known = np.where(self.n > 0, second, -1)
+        before = np.maximum.accumulate(known, axis=1)
+        first = (self.n > 0).argmax(axis=1)[:, None]
+        filled = np.take_along_axis(means, np.where(before < 0, first, before), axis=1)
+        return np.where(self.inside, filled, 0.0)
 
 
 def _masked_sum(values: FloatArray, window: BoolArray) -> FloatArray:

@@ -32,6 +32,11 @@ _CHANNELS: Final = (
     "wind_speed_m_s",
     "wind_angle_deg",
 )
+_NOT_MEASURED: Final = {
+    "log2_m_s": pl.col("log1_m_s"),
+    "wind_speed_m_s": pl.col("log1_m_s"),
+    "wind_angle_deg": pl.lit(0.0),
+}
 _FORCE, _LOG1, _LOG2, _MEAN, _AIR, _WIND, _GPS, _ROWS = 0, 1, 10, 19, 28, 33, 38, 40
 """Where the sums of each kind begin in `SUM_NAMES`, and how many sums there are.
 
@@ -43,6 +48,8 @@ def block_sums(samples: pl.DataFrame, sample_rate_hz: int) -> pl.DataFrame:
 
     Args:
         samples: columns of `pipeline.channels.SAMPLE_SCHEMA`, each run contiguous, speeds positive.
+            Where no wind was measured the air is taken to be still; where there is no log 2, it
+            reads as log 1.
         sample_rate_hz: samples a second.
 
     Returns:
@@ -54,7 +61,8 @@ def block_sums(samples: pl.DataFrame, sample_rate_hz: int) -> pl.DataFrame:
     blocks = _count(run, sample_rate_hz)
     number, second = np.empty(blocks, np.int8), np.empty(blocks, np.int16)
     n, sums = np.empty(blocks, np.int32), np.empty((_ROWS, blocks))
-    channels = (samples[name].to_numpy() for name in _CHANNELS)
+    filled = _filled(samples)
+    channels = (filled[name].to_numpy() for name in _CHANNELS)
     _add_up(run, sample_rate_hz, number, second, n, sums, *channels)
     found = pl.Series(sums.ravel())
     return pl.DataFrame(
@@ -64,6 +72,15 @@ def block_sums(samples: pl.DataFrame, sample_rate_hz: int) -> pl.DataFrame:
             pl.Series("n", n),
             *(found.slice(i * blocks, blocks).alias(name) for i, name in enumerate(SUM_NAMES)),
         ]
+    )
+
+
+def _filled(samples: pl.DataFrame) -> pl.DataFrame:
+    """The samples with channels that were not measured as the sums take them."""
+    return samples.with_columns(
+        value.cast(pl.Float32).alias(name)
+        for name, value in _NOT_MEASURED.items()
+        if samples[name].null_count()
     )
 
 

@@ -1,19 +1,26 @@
 """Are equal boats equal? Statistics of boats of one type and of repeated tows.
 
-Belongs here: what a table of curves says about boats of a type (`lines`, `homogeneity`), about the
-speed of the tow (`tow_speed`), about repeats (`repeats`, `eras`, `components`) and about a boat
-that was only measured (`prediction`). Does not belong here: how a curve is made, which differences
-matter to a race (`pipeline.register.changes`), and any judgement: tables say, people decide.
+Belongs here: what a table of curves says about boats of a type (`compared`, `lines`,
+`homogeneity`), about the speed of the tow (`tow_speed`), about repeats (`repeats`, `eras`,
+`components`) and about a boat that was only measured (`prediction`). Does not belong here: how a
+curve is made, which differences matter to a race (`pipeline.register.changes`), and any judgement:
+tables say, people decide.
 
 `observed` joins the tables and carries the measuring errors; `mixed` is the one statistical model.
 """
 
 import polars as pl
 
+from herijk.pipeline.consistency.compared import compared_tows, hull_speed_statistics
 from herijk.pipeline.consistency.components import variance_components
 from herijk.pipeline.consistency.eras import ERAS, Era, era_shifts
 from herijk.pipeline.consistency.homogeneity import pooled_curves, type_homogeneity
-from herijk.pipeline.consistency.lines import type_consistency, type_outliers
+from herijk.pipeline.consistency.lines import (
+    newest_lines,
+    type_consistency,
+    type_lines,
+    type_outliers,
+)
 from herijk.pipeline.consistency.observed import Observed, observe
 from herijk.pipeline.consistency.prediction import predicted_cw, prediction_error
 from herijk.pipeline.consistency.repeats import repeat_pairs, reproducibility, told_apart
@@ -23,8 +30,10 @@ __all__ = [
     "ERAS",
     "Era",
     "Observed",
+    "compared_tows",
     "consistency_tables",
     "era_shifts",
+    "hull_speed_statistics",
     "observe",
     "pooled_curves",
     "predicted_cw",
@@ -35,6 +44,7 @@ __all__ = [
     "speed_trend",
     "type_consistency",
     "type_homogeneity",
+    "type_lines",
     "type_outliers",
     "variance_components",
 ]
@@ -45,12 +55,14 @@ def consistency_tables(
     tows: pl.DataFrame,
     boats: pl.DataFrame,
     run_points: pl.DataFrame,
+    results: pl.DataFrame,
     eras: tuple[Era, ...] = ERAS,
 ) -> dict[str, pl.DataFrame]:
     """All tables of the consistency analysis, for all methods in `curves`.
 
     Args:
         curves, tows, boats, run_points: the warehouse's tables.
+        results: races, as `tow_speed.raced` takes them.
         eras: seasons with like instruments.
 
     Returns:
@@ -60,13 +72,19 @@ def consistency_tables(
     pairs = repeat_pairs(curves, tows)
     components = variance_components(observed)
     predicted = predicted_cw(observed)
+    lines, line_points = type_lines(observed)
+    compared = compared_tows(observed, eras)
     return {
-        "type_consistency": type_consistency(observed),
+        "compared_tows": compared,
+        "hull_speed": hull_speed_statistics(compared),
+        "type_lines": lines,
+        "type_line_points": line_points,
+        "type_consistency": newest_lines(lines),
         "type_outliers": type_outliers(observed, eras),
         "type_homogeneity": type_homogeneity(observed),
         "pooled_curves": pooled_curves(observed),
         "speed_trend": speed_trend(observed),
-        "slow_tows": slow_tows(observed),
+        "slow_tows": slow_tows(observed, results),
         "repeat_pairs": pairs,
         "era_shifts": era_shifts(pairs, boats, eras),
         "reproducibility": told_apart(reproducibility(pairs, observed, eras), components),

@@ -1,19 +1,21 @@
-"""Does a quantity follow weight or tow speed within a type, and which boats lie outside?
+"""Does a quantity follow weight, length or tow speed within a type, and which tows lie outside?
 
-One row per boat and crew, its newest tow. Lines are weighted: each tow has its own measuring error,
-and boats differ truly by a standard deviation that is estimated (REML); two crews of one boat
-share that difference. Women's and men's crews differ in weight and speed, so lines against the
-boat's weight compare boats within a crew; displacement contains the crew.
+Which tows is a choice: the newest of each boat and crew, all, or those of one season. Lines are
+weighted: each tow has its own measuring error, and boats differ truly by a standard deviation that
+is estimated (REML); tows of one boat, also of two crews, share that difference. Over all tows a
+season and a single tow have a deviation of their own as well, so that repeats count as repeats.
+Women's and men's crews differ in weight and speed, so lines against weight or length compare boats
+within a crew; displacement contains the crew.
 """
 
 from collections.abc import Iterator
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 import polars as pl
 import scipy
 
-from herijk.pipeline.arrays import BoolArray, FloatArray
+from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.consistency import mixed
 from herijk.pipeline.consistency.eras import Era
 from herijk.pipeline.consistency.observed import (
@@ -22,7 +24,7 @@ from herijk.pipeline.consistency.observed import (
     UNKNOWN_TYPE,
     Observed,
     bend_at,
-    curve_at,
+    curve_anywhere,
     ln_cw_unit_variance,
     newest,
     q_at,
@@ -35,8 +37,22 @@ LN_CW, BEND = "ln_cw_standard", "bend"
 forms of the bend this one has the most even spread: where B truly spreads 10 %, 27 % of types of 24
 boats had an outlier by q, 11 % have one by this."""
 
-EXPLAINING: Final = ("weight_kg", "displacement_kg", "declared_speed_m_s")
+EXPLAINING: Final = ("weight_kg", "displacement_kg", "declared_speed_m_s", "waterline_length_m")
+OF_THE_BOAT: Final = ("weight_kg", "waterline_length_m")
+"""Explaining variables that say nothing of the crew."""
+
+SLIDE_PAIRS: Final = tuple(
+    (quantity, explaining)
+    for quantity in ("b_m_s", "a_kg_m", "cw_standard_kg_m")
+    for explaining in ("weight_kg", "declared_speed_m_s", "waterline_length_m")
+)
+"""What the presentation of 2015 plots, here for every choice of tows."""
+
+Row = dict[str, Any]
+
 FEWEST_BOATS: Final = 3
+PLACES: Final = 7
+"""Points at which a line is given for drawing."""
 
 NO_TYPE = "no_type"
 FEW_BOATS = "few_boats"
@@ -52,9 +68,35 @@ ASKEW_EXCESS: Final = 0.03
 """Pulled askew gave 5-10 % too high, once 40 % (presentation 2015); less is not worth naming."""
 
 
+class Choice(NamedTuple):
+    """Which tows: a name as in tables (`newest`, `all`, a season), and what deviates.
+
+    Of one season, as of the newest tows, hardly any boat has two: boat and tow are one. Of all
+    tows each deviates by itself as well, by its season among other things: a chart of all tows
+    shows that too.
+    """
+
+    tows: str
+    components: tuple[str, ...] = (mixed.BOAT,)
+
+
+NEWEST: Final = Choice("newest")
+ALL_TOWS: Final = Choice("all", (mixed.BOAT, mixed.CELL))
+TOW_BY_TOW: Final = Choice("all", mixed.COMPONENTS)
+
+
+def chosen_tows(observed: Observed) -> Iterator[tuple[Choice, Observed]]:
+    """Every choice of tows, with them."""
+    yield NEWEST, newest(observed)
+    yield ALL_TOWS, observed
+    for season in observed.table["season"].unique().sort():
+        rows = np.flatnonzero((observed.table["season"] == season).to_numpy())
+        yield Choice(str(season)), observed.take(rows)
+
+
 def standard_speed_m_s(observed: Observed) -> float:
-    """The common speed at which boats of a type are compared: their median declared speed."""
-    return float(np.median(observed.column("declared_speed_m_s")))
+    """The common speed at which boats of a type are compared."""
+    return float(observed.table["standard_speed_m_s"][0])
 
 
 Measured = tuple[FloatArray, FloatArray]
@@ -63,6 +105,9 @@ Measured = tuple[FloatArray, FloatArray]
 
 def quantities(observed: Observed) -> dict[str, Measured]:
     """What is compared within a type.
+
+    Cw at the standard speed is the curve's also beyond the speeds at which it counts: a tow too
+    slow for it is not left out. Its error grows with the distance.
 
     Errors of A and B are taken at the type's middle bend, not at each tow's own: else boats with a
     small B, whose error looks small, would weigh most.
@@ -74,7 +119,7 @@ def quantities(observed: Observed) -> dict[str, Measured]:
     q = max(float(np.median(observed.column("q"))), 0.05)
     var_c, var_q = observed.column("c0_unit_variance"), observed.column("q_unit_variance")
     cov = observed.column("c0_q_unit_covariance")
-    standard = curve_at(observed, speed)
+    standard = curve_anywhere(observed, speed)
     standard_unit = ln_cw_unit_variance(observed, speed)
     with np.errstate(invalid="ignore"):
         ln_standard = np.log(standard)
@@ -92,92 +137,145 @@ def quantities(observed: Observed) -> dict[str, Measured]:
 def type_consistency(observed: Observed) -> pl.DataFrame:
     """Straight line of each quantity on each explaining variable, per method and boat type.
 
-    The physics model is among them: the slope of ln Cw on ln displacement is the power with which
-    resistance grows.
+    Of the newest tow of each boat and crew. The physics model is among them: the slope of ln Cw on
+    ln displacement is the power with which resistance grows.
 
     Returns:
         Rows of the table `type_consistency`; where no line is drawn, `reason` says why.
     """
-    rows = [
-        {
-            "method": method,
-            "boat_type": boat_type,
-            "quantity": quantity,
-            "explaining": explaining,
-            "standard_speed_m_s": standard_speed_m_s(boats),
-        }
-        | _line(boats, quantity, measured, explaining)
-        for (method, boat_type), boats in newest(observed).groups("method", "boat_type")
-        for quantity, explaining, measured in _pairs(boats)
-    ]
-    text = ("method", "boat_type", "quantity", "explaining", "reason")
-    numbers = (
-        "standard_speed_m_s",
-        "slope",
-        "slope_lo",
-        "slope_hi",
-        "r2",
-        "residual_sd_ratio",
-        "between_sd_ratio",
-        "noise_sd_ratio",
-    )
-    schema = (
-        dict.fromkeys(text, pl.String())
-        | {"n": pl.Int32(), "n_boats": pl.Int32()}
-        | dict.fromkeys(numbers, pl.Float64())
-    )
-    return pl.DataFrame(rows, schema=schema)
+    return newest_lines(_lines(newest(observed), NEWEST)[0])
 
 
-def _pairs(boats: Observed) -> Iterator[tuple[str, str, Measured]]:
+def newest_lines(lines: pl.DataFrame) -> pl.DataFrame:
+    """The rows of `type_consistency` among those of `type_lines`."""
+    return lines.filter(tows=NEWEST.tows).drop("tows")
+
+
+def type_lines(observed: Observed) -> tuple[pl.DataFrame, pl.DataFrame]:
+    """The lines of every choice of tows, per method and boat type.
+
+    Of the newest tows all, of other choices those that the presentation of 2015 plots.
+
+    Returns:
+        Rows of the tables `type_lines` and `type_line_points`. Where a line compares boats within
+        a crew, its points are given per class; `crew_class` is `all` elsewhere.
+    """
+    found = [_lines(tows, choice) for choice, tows in chosen_tows(observed)]
+    lines, points = zip(*found, strict=True)
+    return pl.concat(lines), pl.concat(points)
+
+
+def _lines(tows: Observed, choice: Choice) -> tuple[pl.DataFrame, pl.DataFrame]:
+    rows: list[Row] = []
+    points: list[Row] = []
+    for _, boats in tows.groups("method", "boat_type"):
+        for quantity, explaining, measured in _pairs(boats, choice):
+            row, drawn = _line(boats, choice, (quantity, explaining), measured)
+            rows.append(row)
+            points += drawn if (quantity, explaining) in SLIDE_PAIRS else []
+    return pl.DataFrame(rows, schema=_LINE_SCHEMA), pl.DataFrame(points, schema=_POINT_SCHEMA)
+
+
+_LINE_SCHEMA: Final = (
+    dict.fromkeys(("method", "tows", "boat_type", "quantity", "explaining", "reason"), pl.String())
+    | {"n": pl.Int32(), "n_boats": pl.Int32()}
+    | dict.fromkeys(
+        (
+            "standard_speed_m_s",
+            "slope",
+            "slope_lo",
+            "slope_hi",
+            "r2",
+            "residual_sd_ratio",
+            "between_sd_ratio",
+            "noise_sd_ratio",
+        ),
+        pl.Float64(),
+    )
+)
+_POINT_SCHEMA: Final = dict.fromkeys(
+    ("method", "tows", "boat_type", "quantity", "explaining", "crew_class"), pl.String()
+) | dict.fromkeys(("x", "y", "lo", "hi"), pl.Float64())
+
+
+def _pairs(boats: Observed, choice: Choice) -> Iterator[tuple[str, str, Measured]]:
     for quantity, measured in quantities(boats).items():
         if quantity == LN_CW:
-            yield quantity, "ln_displacement", measured
-        elif quantity != BEND:
-            yield from ((quantity, explaining, measured) for explaining in EXPLAINING)
+            explaining = ["ln_displacement"]
+        else:
+            explaining = [] if quantity == BEND else list(EXPLAINING)
+        for name in explaining:
+            if choice == NEWEST or (quantity, name) in SLIDE_PAIRS:
+                yield quantity, name, measured
 
 
-def _line(boats: Observed, quantity: str, measured: Measured, explaining: str) -> dict[str, Any]:
+def _line(
+    boats: Observed, choice: Choice, names: tuple[str, str], measured: Measured
+) -> tuple[Row, list[Row]]:
+    """A line of a quantity on an explaining variable, and its points for drawing."""
+    quantity, explaining = names
+    facts = {
+        "method": boats.table["method"][0],
+        "tows": choice.tows,
+        "boat_type": boats.table["boat_type"][0],
+        "quantity": quantity,
+        "explaining": explaining,
+    }
+    speed = {"standard_speed_m_s": standard_speed_m_s(boats)}
     y, unit = measured
     x = _explaining(boats, explaining)
     known = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
     boats, x, y = boats.take(known), x[known], y[known]
-    n_boats = boats.table["fsn_no"].n_unique()
-    counts = {"n": len(y), "n_boats": n_boats}
-    if (boats.table["boat_type"] == UNKNOWN_TYPE).any():
-        return counts | {"reason": NO_TYPE}
-    crews = _crew_effects(boats) if explaining == "weight_kg" else np.ones((len(y), 1))
-    if n_boats < max(FEWEST_BOATS, crews.shape[1] + 2):
-        return counts | {"reason": FEW_BOATS}
-    centred = x - crews @ np.linalg.lstsq(crews, x)[0]
-    if np.abs(centred).max() <= 1e-9 * np.abs(x).max():
-        return counts | {"reason": EQUAL_VALUES}
+    crews = _crew_effects(boats) if explaining in OF_THE_BOAT else np.ones((len(y), 1))
+    counts = {"n": len(y), "n_boats": boats.table["fsn_no"].n_unique()}
+    reason = _no_line(boats, crews, x)
+    if reason:
+        return facts | speed | counts | {"reason": reason}, []
     level = 1.0 if quantity == LN_CW else abs(y.mean())
-    return counts | _fitted_line(boats, crews, centred, y, unit[known], level)
+    line, fit, centre, width = _fitted_line(boats, choice, crews, (x, y, unit[known]), level)
+    groups = boats.table["crew_class"].to_numpy() if explaining in OF_THE_BOAT else None
+    points = [facts | point for point in _points(fit, crews, x, (centre, width), groups)]
+    return facts | speed | counts | line, points
+
+
+def _no_line(boats: Observed, crews: FloatArray, x: FloatArray) -> str:
+    """Why no line is drawn; empty where there is one."""
+    if (boats.table["boat_type"] == UNKNOWN_TYPE).any():
+        return NO_TYPE
+    if boats.table["fsn_no"].n_unique() < max(FEWEST_BOATS, crews.shape[1] + 2):
+        return FEW_BOATS
+    centred = x - crews @ np.linalg.lstsq(crews, x)[0]
+    return EQUAL_VALUES if np.abs(centred).max() <= 1e-9 * np.abs(x).max() else ""
 
 
 def _fitted_line(
     boats: Observed,
+    choice: Choice,
     crews: FloatArray,
-    centred: FloatArray,
-    y: FloatArray,
-    unit: FloatArray,
+    values: tuple[FloatArray, FloatArray, FloatArray],
     level: float,
-) -> dict[str, Any]:
-    """The line itself, its spread as share of `level`.
+) -> tuple[Row, mixed.Fit, FloatArray, float]:
+    """The line itself, its spread as share of `level`; the crews' means of x, and its scale.
 
     X is scaled to one so that no power of a unit gets lost in rounding.
     """
+    x, y, unit = values
+    centre = np.asarray(np.linalg.lstsq(crews, x)[0], dtype=np.float64)
+    centred = x - crews @ centre
     variance = unit * boats.column("run_sd_ratio") ** 2
-    width = np.abs(centred).max()
+    width = float(np.abs(centred).max())
     problem = Problem.of(
-        y, np.column_stack([crews, centred / width]), variance, boats.table["fsn_no"].to_numpy()
+        y,
+        np.column_stack([crews, centred / width]),
+        variance,
+        boats.table["fsn_no"].to_numpy(),
+        _seasons(boats, choice),
     )
-    fit = mixed.fit(problem, (mixed.BOAT,))
+    fit = mixed.fit(problem, choice.components)
     slope, lo, hi = (float(end[-1]) / width for end in fit.coefficients())
     residual = y - problem.x @ fit.beta
     total = fit.total_misfit
-    return {
+    row = {
         "slope": slope,
         "slope_lo": lo,
         "slope_hi": hi,
@@ -188,6 +286,34 @@ def _fitted_line(
         "noise_sd_ratio": float(np.sqrt(variance.mean())) / level,
         "reason": "",
     }
+    return row, fit, centre, width
+
+
+def _seasons(boats: Observed, choice: Choice) -> IntArray | None:
+    """The season of each tow, where seasons may deviate."""
+    held = boats.table["season"].to_numpy().astype(np.int64)
+    return held if mixed.OTHER in choice.components else None
+
+
+def _points(
+    fit: mixed.Fit,
+    crews: FloatArray,
+    x: FloatArray,
+    scale: tuple[FloatArray, float],
+    classes: Any,
+) -> Iterator[Row]:
+    """The line with its interval at some places; for each class at the mean of its crews."""
+    centre, width = scale
+    groups = {"all": np.ones(len(x), bool)}
+    if classes is not None:
+        groups = {str(name): classes == name for name in np.unique(classes)}
+    for name, rows in groups.items():
+        at = np.unique(np.linspace(x[rows].min(), x[rows].max(), PLACES))
+        crew = crews[rows].mean(axis=0)
+        design = np.column_stack([np.tile(crew, (len(at), 1)), (at - crew @ centre) / width])
+        ends = fit.line_at(design)
+        for place, mean, lo, hi in zip(at, *ends, strict=True):
+            yield {"crew_class": name, "x": place, "y": mean, "lo": lo, "hi": hi}
 
 
 def _explaining(boats: Observed, name: str) -> FloatArray:
@@ -205,7 +331,7 @@ def _crew_effects(boats: Observed) -> FloatArray:
 
 
 def type_outliers(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
-    """Every boat against the others of its type, with what could explain a difference.
+    """The newest tow of every boat against its type, with what could explain a difference.
 
     Compared are ln Cw at the standard speed, after the line on ln displacement where that is known,
     and the bend. A boat's expectation comes from the other boats alone; the deviation is in
@@ -214,12 +340,29 @@ def type_outliers(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
     Returns:
         Rows of the table `type_outliers`: one per method, tow and quantity, `outside` or not.
     """
-    boats = newest(observed)
+    return _outliers(newest(observed), NEWEST, (LN_CW, BEND), eras)
+
+
+def tow_outliers(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
+    """Every tow against the tows of the other boats of its type, by Cw at the standard speed.
+
+    A season's own deviation is taken out, so that a tow stands out by itself and not because its
+    log was worn like those of all tows that year.
+
+    Returns:
+        As `type_outliers`, for all tows.
+    """
+    return _outliers(observed, TOW_BY_TOW, (LN_CW,), eras)
+
+
+def _outliers(
+    tows: Observed, choice: Choice, names: tuple[str, ...], eras: tuple[Era, ...]
+) -> pl.DataFrame:
     parts = [
-        _against_type(group, quantity, eras)
-        for (_, boat_type), group in boats.groups("method", "boat_type")
+        _against_type(group, choice, quantity, eras)
+        for (_, boat_type), group in tows.groups("method", "boat_type")
         if boat_type != UNKNOWN_TYPE
-        for quantity in (LN_CW, BEND)
+        for quantity in names
     ]
     schema = TOW_SCHEMA | {
         "season": pl.Int32(),
@@ -235,7 +378,9 @@ def type_outliers(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
     return _with_season(everything)
 
 
-def _against_type(boats: Observed, quantity: str, eras: tuple[Era, ...]) -> pl.DataFrame | None:
+def _against_type(
+    boats: Observed, choice: Choice, quantity: str, eras: tuple[Era, ...]
+) -> pl.DataFrame | None:
     y, unit = quantities(boats)[quantity]
     speed = standard_speed_m_s(boats)
     displacement = _explaining(boats, "ln_displacement")
@@ -251,8 +396,9 @@ def _against_type(boats: Observed, quantity: str, eras: tuple[Era, ...]) -> pl.D
     if n_boats < x.shape[1] + FEWEST_BOATS:
         return None
     variance = unit[known] * boats.column("run_sd_ratio") ** 2
-    problem = Problem.of(y, x, variance, boats.table["fsn_no"].to_numpy())
-    fit = mixed.fit(problem, (mixed.BOAT,))
+    fsn_no = boats.table["fsn_no"].to_numpy()
+    problem = Problem.of(y, x, variance, fsn_no, _seasons(boats, choice))
+    fit = mixed.fit(problem, choice.components)
     left_out = fit.leave_boats_out()
     deviation = _studentised(left_out.error / np.sqrt(left_out.variance * fit.scale), fit)
     limit = float(scipy.special.stdtrit(max(fit.dof - 1, 1), 1.0 - OUTSIDE_LEVEL / (2.0 * len(y))))

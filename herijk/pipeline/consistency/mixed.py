@@ -107,12 +107,20 @@ class Fit:
         The variance is scaled with the misfit per degree of freedom (Hartung & Knapp 2001): with
         equal errors the interval is that of ordinary least squares, whatever was estimated.
         """
+        return self.line_at(np.eye(self.problem.x.shape[1]))
+
+    def line_at(self, x: FloatArray) -> Coefficients:
+        """The fixed effects' mean at rows of X, with 95 % intervals as in `coefficients`.
+
+        Args:
+            x: rows of fixed effects, shape (places, p).
+        """
         rows = len(self.problem.y) - self.problem.x.shape[1]
-        spread = (np.linalg.inv(self._root) ** 2).sum(axis=1)
+        spread = (np.linalg.solve(self._root.T, x.T) ** 2).sum(axis=0)
         sd = np.sqrt(spread * self.misfit / rows)
         half = float(scipy.special.stdtrit(self.dof, 0.5 + LEVEL / 2)) * sd
-        beta = self.beta
-        return Coefficients(beta, beta - half, beta + half)
+        mean = x @ self.beta
+        return Coefficients(mean, mean - half, mean + half)
 
     def leave_boats_out(self) -> LeftOut:
         """Prediction of each row from all other boats, at the estimated variances.

@@ -12,7 +12,7 @@ import numpy as np
 import polars as pl
 
 from herijk.pipeline import curve
-from herijk.pipeline.arrays import FloatArray, IntArray
+from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 
 UNKNOWN_TYPE: Final = "unknown"
 LINE: Final = ("fsn_no", "rowers", "crew_class")
@@ -22,6 +22,7 @@ VALID_RATIO: Final = (0.85, 1.15)
 """Speeds at which a curve counts, as ratios of its declared speed (Cw-kromme, R. Pot 2015)."""
 
 FEWEST_POINTS: Final = 3
+NORMAL_95: Final = 1.959963984540054
 
 
 TOW_SCHEMA: Final = {
@@ -41,7 +42,9 @@ class Observed:
 
     Attributes:
         table: one row per method and tow: columns of `curves` and `tows`, `boat_type`, and
-            `displacement_kg`; `s_s2_m2`, `c0_kg_m`, `q` of the free fit at the declared speed;
+            `displacement_kg`; `standard_speed_m_s`, the median declared speed of all tows of the
+            type, one for all methods and seasons; `s_s2_m2`, `c0_kg_m`, `q` of the free fit at the
+            declared speed;
             `c0_unit_variance` (relative), `q_unit_variance`, `c0_q_unit_covariance`: covariance
             of (ln C0, q) for a run scatter of 1; `run_sd_ratio`: the type's pooled scatter of a
             run, null where unknown; `run_dof`: degrees of freedom of the tow itself.
@@ -93,6 +96,7 @@ def observe(
             (pl.col("weight_kg") + pl.col("crew_weight_kg")).alias("displacement_kg"),
         )
         .sort("method", "tow_date", "tow_id")
+        .pipe(_with_standard_speed)
     )
     points = _points(table, run_points)
     fitted = curve.fit(points)
@@ -117,6 +121,16 @@ def observe(
     observed = Observed(table.with_columns(**{k: pl.Series(v) for k, v in columns.items()}), points)
     kept = observed.take(rows)
     return Observed(kept.table.with_columns(_pooled_scatter()), kept.points)
+
+
+def _with_standard_speed(table: pl.DataFrame) -> pl.DataFrame:
+    """Adds the common speed at which boats of a type are compared."""
+    speeds = (
+        table.unique("tow_id")
+        .group_by("boat_type")
+        .agg(pl.col("declared_speed_m_s").median().alias("standard_speed_m_s"))
+    )
+    return table.join(speeds, on="boat_type", how="left", maintain_order="left")
 
 
 def _pooled_scatter() -> pl.Expr:
@@ -152,17 +166,26 @@ def newest(observed: Observed) -> Observed:
 
 
 def curve_at(observed: Observed, speed_m_s: FloatArray | float) -> FloatArray:
-    """Cw of the register's curves at a speed; NaN outside the speeds at which a curve counts.
+    """Cw of the register's curves at a speed; NaN outside the speeds at which a curve counts."""
+    return np.where(counts_at(observed, speed_m_s), curve_anywhere(observed, speed_m_s), np.nan)
+
+
+def curve_anywhere(observed: Observed, speed_m_s: FloatArray | float) -> FloatArray:
+    """Cw of the register's curves at a speed, also where they do not count; NaN from B on.
 
     The curve is read from Cw and A, which also holds where there is no B (a falling curve).
     """
     declared = observed.column("declared_speed_m_s")
     s = bend_of_curve(observed.column("a_kg_m"), observed.column("cw_kg_m"), declared)
     cw = curve.cw(observed.column("a_kg_m"), s, speed_m_s)
-    ratio = speed_m_s / declared
+    return np.where(np.isfinite(cw), cw, np.nan)
+
+
+def counts_at(observed: Observed, speed_m_s: FloatArray | float) -> BoolArray:
+    """Whether each curve counts at a speed, shape (rows,)."""
+    ratio = speed_m_s / observed.column("declared_speed_m_s")
     low, high = VALID_RATIO
-    valid = (ratio >= low - 1e-9) & (ratio <= high + 1e-9) & np.isfinite(cw)
-    return np.where(valid, cw, np.nan)
+    return np.asarray((ratio >= low - 1e-9) & (ratio <= high + 1e-9))
 
 
 def bend_of_curve(a_kg_m: FloatArray, cw_kg_m: FloatArray, speed_m_s: FloatArray) -> FloatArray:
@@ -179,6 +202,16 @@ def ln_cw_unit_variance(observed: Observed, speed_m_s: FloatArray | float) -> Fl
         + 2.0 * slope * observed.column("c0_q_unit_covariance")
         + slope * slope * observed.column("q_unit_variance")
     )
+
+
+def ln_cw_variance(observed: Observed, speed_m_s: FloatArray | float) -> FloatArray:
+    """Variance of ln Cw of each tow at a speed: by its runs or by its interval, the larger.
+
+    The interval of `curves` also knows of the log; it is that at the declared speed.
+    """
+    runs = ln_cw_unit_variance(observed, speed_m_s) * observed.column("run_sd_ratio") ** 2
+    half = 0.5 * np.log(observed.column("cw_hi_kg_m") / observed.column("cw_lo_kg_m"))
+    return np.fmax(runs, (half / NORMAL_95) ** 2)
 
 
 def bend_at(observed: Observed, speed_m_s: float) -> tuple[FloatArray, FloatArray]:

@@ -14,17 +14,17 @@ from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.consistency import mixed
 from herijk.pipeline.consistency.observed import (
     LINE,
+    NORMAL_95,
     TOW_SCHEMA,
     UNKNOWN_TYPE,
     Observed,
     curve_at,
-    ln_cw_unit_variance,
+    ln_cw_variance,
     newest,
 )
 from herijk.pipeline.consistency.reml import Problem
 
 LEVEL: Final = 0.95
-NORMAL_95: Final = 1.959963984540054
 FEWEST_BOATS_PER_COLUMN: Final = 3
 MEASURES: Final = ("displacement_kg", "waterline_length_m", "beam_m", "standard_speed_m_s")
 
@@ -67,7 +67,7 @@ def _predicted(fleet: Observed) -> pl.DataFrame:
     fleet = fleet.take(np.flatnonzero(np.isfinite(cw) & weighed))
     speed = fleet.column("standard_speed_m_s")
     cw = curve_at(fleet, speed)
-    variance = _tow_variance(fleet, speed)
+    variance = ln_cw_variance(fleet, speed)
     found = fleet.table.select(
         "method",
         "tow_id",
@@ -84,13 +84,6 @@ def _predicted(fleet: Observed) -> pl.DataFrame:
     return found.with_columns(
         *(pl.Series(name, values, pl.Float64).fill_nan(None) for name, values in numbers.items())
     ).with_columns(_disagrees(), pl.lit("" if enough else "few_boats").alias("reason"))
-
-
-def _tow_variance(fleet: Observed, speed_m_s: FloatArray) -> FloatArray:
-    """Variance of ln Cw of each tow: by its runs or by its interval, the larger, shape (rows,)."""
-    runs = ln_cw_unit_variance(fleet, speed_m_s) * fleet.column("run_sd_ratio") ** 2
-    half = 0.5 * np.log(fleet.column("cw_hi_kg_m") / fleet.column("cw_lo_kg_m"))
-    return np.fmax(runs, (half / NORMAL_95) ** 2)
 
 
 def _second_opinion(

@@ -3,6 +3,7 @@
 And what a slow tow does to race power: its curve is used at speeds at which it was never towed.
 """
 
+from collections.abc import Mapping
 from typing import Any, Final
 
 import numpy as np
@@ -12,22 +13,55 @@ from herijk.pipeline import curve
 from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.consistency import mixed
 from herijk.pipeline.consistency.homogeneity import height_given_bend, shared_bend
-from herijk.pipeline.consistency.observed import LINE, UNKNOWN_TYPE, Observed, newest, q_at
+from herijk.pipeline.consistency.observed import (
+    LINE,
+    TOW_SCHEMA,
+    UNKNOWN_TYPE,
+    VALID_RATIO,
+    Observed,
+    counts_at,
+    curve_anywhere,
+    newest,
+    q_at,
+)
 from herijk.pipeline.consistency.reml import Problem
+from herijk.pipeline.races.race import mean_speed_m_s, power_per_rower_w
+from herijk.pipeline.steps.hull import hull_speed_m_s
 
 SLOW_POWER_W: Final = {"H": 60.0, "D": 34.0}
 """Power a rower below which a tow is too slow. Men: "minder dan 60-70 Watt" (Cw-kromme, R. Pot
 2015). Women tow at 40-55 W instead of 70-90 W: the same share of their range (inferred)."""
 
+BORDERLINE_POWER_W: Final = {"H": 70.0, "D": 40.0}
+RACED_POWER_W: Final = {"H": 100.0, "D": 57.0}
+"""The upper end of "60-70 Watt", and "meer dan 100 Watt" in a race; women's inferred alike."""
+
+LOW, MIDDLE, HIGH = "low", "middle", "high"
+MIDDLE_RATIO: Final = (0.67, 0.80)
+"""Tow speed / hull speed: between these "the curve is relatively flat", below it the wave
+resistance rises (Cw-kromme, R. Pot 2015, "Totale weerstand")."""
+
+ADVANTAGED, DISADVANTAGED = "advantaged", "disadvantaged"
+TEXT_SAYS: Final = {
+    (HIGH, "faster"): DISADVANTAGED,
+    (HIGH, "slower"): DISADVANTAGED,
+    (MIDDLE, "faster"): DISADVANTAGED,
+    (MIDDLE, "slower"): ADVANTAGED,
+    (LOW, "faster"): ADVANTAGED,
+}
+"""Who is wronged by a race faster or slower than the curve counts (Cw-kromme, R. Pot 2015, "Effect
+van verkeerde snelheid kiezen"); of a low tow raced slower the text says nothing."""
+
 ALL_TYPES: Final = "all"
 FEWEST_BOATS: Final = 4
 FEWEST_OTHERS: Final = 2
 ENDS: Final = ("", "_lo", "_hi")
+COMPARED_AT: Final = ("110", "120", "rowed", "raced")
 
 
-def is_slow(table: pl.DataFrame) -> BoolArray:
-    """Whether a tow was made with too little power, shape (rows,)."""
-    limit = pl.col("crew_class").replace_strict(SLOW_POWER_W, return_dtype=pl.Float64)
+def is_slow(table: pl.DataFrame, limits: Mapping[str, float] = SLOW_POWER_W) -> BoolArray:
+    """Whether a tow was made with less power a rower than its class's limit, shape (rows,)."""
+    limit = pl.col("crew_class").replace_strict(limits, return_dtype=pl.Float64)
     slow = table.select((pl.col("power_w") < limit).fill_null(value=False)).to_series()
     return slow.to_numpy()
 
@@ -91,52 +125,125 @@ def _trend(parts: list[Observed]) -> dict[str, Any]:
     return counts | {"slope": slope, "slope_lo": lo, "slope_hi": hi, "reason": ""}
 
 
-def slow_tows(observed: Observed) -> pl.DataFrame:
-    """Tows made with too little power, and what their own bend does to race power.
+def raced(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
+    """The fastest race of each boat and crew between this tow and its next, per method and tow.
 
-    The tow's own curve is compared with the curve of the same runs that has the bend of the type's
-    other boats: 10 and 20 % above its declared speed, and at the speed that its crew will really
-    row, the median declared speed of the type's other crews of that class (inferred). The interval
-    is that of the tow's own bend alone.
+    Args:
+        observed: all tows.
+        results: `race_date, distance_m, stream_m, rowing_time_s` and the line.
+
+    Returns:
+        `method, tow_id, races, raced_speed_m_s` (through the water).
+    """
+    through_water = results["distance_m"] - results["stream_m"].fill_null(0.0)
+    speed = mean_speed_m_s(through_water, results["rowing_time_s"])
+    races = results.select(*LINE, "race_date", pl.Series("raced_speed_m_s", speed))
+    tows = observed.table.select("method", "tow_id", "tow_date", *LINE)
+    after = pl.col("race_date") >= pl.col("tow_date")
+    last = pl.col("tow_date") == pl.col("tow_date").max().over("method", *LINE, "race_date")
+    return (
+        tows.join(races, on=LINE)
+        .filter(after)
+        .filter(last)
+        .group_by("method", "tow_id")
+        .agg(pl.len().cast(pl.Int32).alias("races"), pl.col("raced_speed_m_s").max())
+    )
+
+
+def slow_tows(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
+    """Tows whose curve is used where it was not measured, and what that does to race power.
+
+    Towed with little power, or raced at speeds at which the curve does not count. The tow's own
+    curve is compared with the curve of the same runs that has the bend of the type's other boats:
+    10 and 20 % above its declared speed, at the speed that its crew will really row, the median
+    declared speed of the type's other crews of that class (inferred), and at the fastest speed that
+    it raced. The interval is that of the tow's own bend alone.
+
+    Args:
+        observed: all tows.
+        results: as `raced` takes them.
 
     Returns:
         Rows of the table `slow_tows`; the ratios are empty where the type has no other boats.
     """
+    table = observed.table.join(
+        raced(observed, results), on=["method", "tow_id"], how="left", maintain_order="left"
+    )
+    tows = Observed(table, observed.points)
     parts = [
         _slow_of_type(group, boat_type)
-        for (_, boat_type), group in newest(observed).groups("method", "boat_type")
+        for (_, boat_type), group in tows.groups("method", "boat_type")
     ]
-    schema = {
-        "method": pl.String(),
-        "tow_id": pl.String(),
-        "fsn_no": pl.String(),
-        "rowers": pl.Int32(),
-        "crew_class": pl.String(),
-        "boat_type": pl.String(),
+    schema = TOW_SCHEMA | {
+        "season": pl.Int32(),
         "declared_speed_m_s": pl.Float64(),
         "power_w": pl.Float64(),
+        "races": pl.Int32(),
+        "raced_speed_m_s": pl.Float64(),
+        "slow": pl.Boolean(),
+        "tow_hull_ratio": pl.Float64(),
+        "speed_case": pl.String(),
         "rowed_speed_m_s": pl.Float64(),
+        "raced_power_w": pl.Float64(),
+        "raced_high": pl.Boolean(),
+        "text_says": pl.String(),
     }
-    ratios = (f"power_ratio_{at}{end}" for at in ("110", "120", "rowed") for end in ENDS)
+    ratios = (f"power_ratio_{at}{end}" for at in COMPARED_AT for end in ENDS)
     empty = pl.DataFrame(schema=schema | dict.fromkeys(ratios, pl.Float64()))
-    return pl.concat([empty, *parts]).sort("method", "tow_id")
+    return pl.concat([empty, *(part.select(empty.columns) for part in parts)]).sort(
+        "method", "tow_id"
+    )
 
 
-def _slow_of_type(boats: Observed, boat_type: str) -> pl.DataFrame:
-    slow = is_slow(boats.table)
-    chosen, others = (boats.take(np.flatnonzero(where)) for where in (slow, ~slow))
+def _slow_of_type(tows: Observed, boat_type: str) -> pl.DataFrame:
+    slow = is_slow(tows.table)
+    raced_speed = tows.table["raced_speed_m_s"].to_numpy().astype(np.float64)
+    beyond = np.isfinite(raced_speed) & ~counts_at(tows, raced_speed)
+    chosen = tows.take(np.flatnonzero(is_slow(tows.table, BORDERLINE_POWER_W) | beyond))
+    others = newest(tows.take(np.flatnonzero(~slow)))
     known = boat_type != UNKNOWN_TYPE and others.table["fsn_no"].n_unique() >= FEWEST_OTHERS
     declared = chosen.column("declared_speed_m_s")
     rowed = _rowed_speed(chosen, others) if known else np.full(len(declared), np.nan)
-    columns = {"rowed_speed_m_s": rowed}
-    for at, speed in (("110", 1.1 * declared), ("120", 1.2 * declared), ("rowed", rowed)):
+    raced_speed = chosen.column("raced_speed_m_s")
+    columns = {"rowed_speed_m_s": rowed, "raced_power_w": _raced_power(chosen, raced_speed)}
+    speeds = (1.1 * declared, 1.2 * declared, rowed, raced_speed)
+    for at, speed in zip(COMPARED_AT, speeds, strict=True):
         ends = np.full((3, len(declared)), np.nan)
         if known and len(declared):
             ends = _power_ratio(chosen, shared_bend(others), speed)
         columns |= {f"power_ratio_{at}{end}": ends[i] for i, end in enumerate(ENDS)}
-    return chosen.table.select(
-        "method", "tow_id", *LINE, "boat_type", "declared_speed_m_s", "power_w"
-    ).with_columns(pl.Series(k, v, pl.Float64).fill_nan(None) for k, v in columns.items())
+    ratio = declared / hull_speed_m_s(chosen.column("waterline_length_m"))
+    case = speed_case(ratio)
+    high = chosen.table["crew_class"].replace_strict(RACED_POWER_W, return_dtype=pl.Float64)
+    return chosen.table.with_columns(
+        *(pl.Series(k, v, pl.Float64).fill_nan(None) for k, v in columns.items()),
+        pl.Series("slow", is_slow(chosen.table), pl.Boolean),
+        pl.Series("tow_hull_ratio", ratio, pl.Float64),
+        pl.Series("speed_case", case, pl.String),
+        pl.Series("text_says", _text_says(case, raced_speed / declared), pl.String),
+    ).with_columns((pl.col("raced_power_w") > high).alias("raced_high"))
+
+
+def speed_case(tow_hull_ratio: FloatArray) -> list[str]:
+    """Which of the three cases of Cw-kromme each tow is, by its speed / hull speed."""
+    low, high = MIDDLE_RATIO
+    return [LOW if r < low else MIDDLE if r < high else HIGH for r in tow_hull_ratio]
+
+
+def _text_says(case: list[str], raced_ratio: FloatArray) -> list[str | None]:
+    """What the text expects of a race at that part of the tow speed; null where it counts."""
+    slowest, fastest = VALID_RATIO
+    found: list[str | None] = []
+    for one, ratio in zip(case, raced_ratio, strict=True):
+        pace = "faster" if ratio > fastest else "slower" if ratio < slowest else ""
+        found.append(TEXT_SAYS.get((one, pace)))
+    return found
+
+
+def _raced_power(tows: Observed, speed_m_s: FloatArray) -> FloatArray:
+    """Power a rower by the register's curve at a speed, shape (rows,)."""
+    cw = curve_anywhere(tows, speed_m_s)
+    return np.asarray(power_per_rower_w(cw, speed_m_s, tows.column("rowers")), dtype=np.float64)
 
 
 def _rowed_speed(slow: Observed, others: Observed) -> FloatArray:

@@ -61,8 +61,9 @@ class Window(_Options):
 
     rule: Literal["all", "steady", "by_hand"]
     minimum_s: float = Field(default=30.0, ge=5.0, le=50.0)
-    speed_drift_m_s: float = Field(default=0.02, gt=0.0, le=0.2)
-    force_ends_ratio: float = Field(default=0.04, gt=0.0, le=0.2)
+    speed_drift_m_s: float = Field(default=0.1, gt=0.0, le=0.2)
+    force_ends_ratio: float = Field(default=0.1, gt=0.0, le=0.2)
+    wind_ends_m_s: float = Field(default=1.0, gt=0.0, le=5.0)
     ramp_m_s: float = Field(default=0.08, gt=0.0, le=0.2)
     peak_sd: float = Field(default=3.0, ge=1.0, le=10.0)
     gust_sd: float = Field(default=2.4, ge=1.0, le=10.0)

@@ -135,6 +135,7 @@ def _budget_of_batch(
             (2.0 / (1.0 - r)).alias("kappa"),
             (pl.col("net_air_kg_m") / cw).alias("air_ratio"),
             (pl.col("air_per_coefficient_kg_m") / cw).alias("air_per_coefficient"),
+            (pl.col("still_air_kg_m") / cw).alias("still_air_ratio"),
         )
     )
     return budget(rows, _assumed(o, found, bend, terms["net_air_kg_m"].to_numpy()))
@@ -185,6 +186,8 @@ def _terms_of_tows(o: Outcome, found: SeasonFactors | None, scatter: curve.Scatt
         pl.Series("wander_sd", np.where(o.calibrated, 0.0, _wander(o, found))),
         pl.Series("net_air_kg_m", net_air),
         pl.Series("air_per_coefficient_kg_m", per_coefficient),
+        pl.Series("wind_measured", batch.measured("wind")),
+        pl.Series("still_air_kg_m", batch.mean(o.still_air_kg_m, o.used)),
         pl.Series("temperature_known", o.temperature_known),
     )
 

@@ -1,17 +1,23 @@
-"""The outcome of a method for a batch: all that was found out, as arrays.
+"""What a method makes of a batch, as arrays: before the wind coefficients are known, and after.
 
 Filled by `pipeline.recompute.recompute`, made into tables by `pipeline.recompute.results`.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from functools import cached_property
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from herijk.pipeline import curve
 from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.blocks.batch import Batch
+from herijk.pipeline.channels import BACK, OUT
 from herijk.pipeline.method.definition import Steps
+from herijk.pipeline.steps.resistance import RunMeans
 from herijk.pipeline.steps.window import Windows
+
+Texts: TypeAlias = np.ndarray[tuple[int, ...], np.dtype[np.str_]]
 
 
 @dataclass(frozen=True)
@@ -29,43 +35,145 @@ class TowFactor:
 
 
 @dataclass(frozen=True)
-class Outcome:
-    """A batch with all that a method found out about it.
+class Prepared:
+    """A batch with everything that does not depend on the wind coefficients.
 
-    Arrays are of shape (runs,), but for `known_factor`, `calibration_factor`, `calibrated`,
-    `temperature_known`, `estimated` and the curves, which are of shape (tows,).
+    Attributes:
+        known_factor: speed factor of the log's known error, shape (tows,).
+        y: calibration factor of each run's file, shape (runs,).
+        calibrated: tows that have one, shape (tows,).
+        estimated: what was estimated of the log factor.
+        reasons: why a run does not count, empty where it does, shape (runs,).
+        still_unit_kg_m: still-air coefficient for a drag coefficient of 1, shape (runs,).
+        temperature_kg_m: change to the reference temperature, shape (runs,).
+        temperature_known: shape (tows,).
     """
 
     batch: Batch
     steps: Steps
     windows: Windows
-    reasons: np.ndarray[tuple[int, ...], np.dtype[np.str_]]
+    means: RunMeans
     known_factor: FloatArray
-    calibration_factor: FloatArray
+    y: FloatArray
     calibrated: BoolArray
     estimated: TowFactor
-    speed_m_s: FloatArray
-    speed_factor: FloatArray
-    gross_kg_m: FloatArray
-    sd_kg_m: FloatArray
-    inertia_kg_m: FloatArray
-    air_kg_m: FloatArray
-    still_air_kg_m: FloatArray
-    still_air_coefficient: FloatArray
-    air_unit_kg_m: FloatArray
+    reasons: Texts
+    still_unit_kg_m: FloatArray
     temperature_kg_m: FloatArray
     temperature_known: BoolArray
+
+    @cached_property
+    def speed_factor(self) -> FloatArray:
+        """True speed / log speed of each run, shape (runs,)."""
+        return self.known_factor[self.batch.tow] * self.y
+
+    @cached_property
+    def used(self) -> BoolArray:
+        """Runs that count, shape (runs,)."""
+        return np.asarray(self.reasons == "")
+
+    @cached_property
+    def calibration_factor(self) -> FloatArray:
+        """Mean calibration factor of the runs that count, shape (tows,); 1 where there are none."""
+        return np.where(self.batch.any(self.used), self.batch.mean(self.y, self.used), 1.0)
+
+    @cached_property
+    def in_fit(self) -> BoolArray:
+        """Runs that count, of tows that have enough of them, shape (runs,)."""
+        enough = enough_runs(self.batch, self.used, self.steps.runs.minimum)
+        return self.used & enough[self.batch.tow]
+
+    @cached_property
+    def speed_m_s(self) -> FloatArray:
+        """Mean true speed, shape (runs,)."""
+        return self.means.speed_m_s * self.speed_factor
+
+    @cached_property
+    def gross_kg_m(self) -> FloatArray:
+        """Force / true speed squared, shape (runs,)."""
+        return self.means.gross_kg_m / self.speed_factor**2
+
+    @cached_property
+    def sd_kg_m(self) -> FloatArray:
+        """Standard deviation of the samples' coefficients, shape (runs,)."""
+        return self.means.sd_kg_m / self.speed_factor**2
+
+    @cached_property
+    def inertia_kg_m(self) -> FloatArray:
+        """Part of the gross coefficient that accelerated the boat, shape (runs,)."""
+        return self.means.inertia_kg_m / self.speed_factor**2
+
+    @cached_property
+    def air_unit_kg_m(self) -> FloatArray:
+        """Air part as felt for drag coefficients of 1, shape (runs,)."""
+        return (self.means.air.ahead + self.means.air.behind) / self.speed_factor**2
+
+    def air_of(self, ahead: FloatArray, behind: FloatArray) -> FloatArray:
+        """The air part that is taken off for given drag coefficients, shape (runs,)."""
+        if self.steps.wind.reading == "cw_vac_2014":
+            return 2.0 * self.still_air_of(ahead)
+        return self.means.air.total(ahead, behind, self.steps.wind.side) / self.speed_factor**2
+
+    def still_air_of(self, coefficient: FloatArray) -> FloatArray:
+        """The still-air part that is put back for a drag coefficient, shape (runs,)."""
+        return self.still_unit_kg_m * coefficient
+
+    def cw_of(self, ahead: FloatArray, behind: FloatArray, still: FloatArray) -> FloatArray:
+        """Corrected coefficient of each run for given drag coefficients, shape (runs,)."""
+        water = self.gross_kg_m - self.inertia_kg_m
+        air = self.air_of(ahead, behind) - self.still_air_of(still)
+        return water - air + self.temperature_kg_m
+
+    def points_of(self, cw_kg_m: FloatArray) -> curve.Points:
+        """Points of all tows that have enough runs, for a batch fit."""
+        batch = self.batch
+        return curve.Points(
+            batch.by_tow(self.speed_m_s),
+            batch.by_tow(cw_kg_m),
+            batch.by_tow(self.in_fit & (cw_kg_m > 0) & (self.speed_m_s > 0)) > 0,
+        )
+
+
+def enough_runs(batch: Batch, used: BoolArray, minimum: int) -> BoolArray:
+    """Tows with enough runs, and runs both ways so that wind and stream can be judged."""
+    out = batch.count(used & (batch.direction == OUT))
+    back = batch.count(used & (batch.direction == BACK))
+    return (out + back >= minimum) & (out > 0) & (back > 0)
+
+
+@dataclass(frozen=True)
+class Outcome(Prepared):
+    """A batch with all that a method found out about it.
+
+    Attributes:
+        ahead, behind, still_air_coefficient: drag coefficients of each run, shape (runs,).
+        cw_kg_m: corrected coefficient, shape (runs,).
+        points, free, curves: the fit's input, the free hyperbola and the one that the method
+            chose, shape (tows,).
+    """
+
     ahead: FloatArray
     behind: FloatArray
+    still_air_coefficient: FloatArray
     cw_kg_m: FloatArray
     points: curve.Points
     free: curve.Curves
     curves: curve.Curves
 
-    @property
-    def used(self) -> BoolArray:
-        """Runs that count."""
-        return np.asarray(self.reasons == "")
+    @classmethod
+    def of(cls, prepared: Prepared, **found: Any) -> "Outcome":
+        """The outcome of what was prepared, with the fields that were found since."""
+        return cls(**{f.name: getattr(prepared, f.name) for f in fields(prepared)}, **found)
+
+    @cached_property
+    def air_kg_m(self) -> FloatArray:
+        """The air part that was taken off, shape (runs,)."""
+        return self.air_of(self.ahead, self.behind)
+
+    @cached_property
+    def still_air_kg_m(self) -> FloatArray:
+        """The still-air part that was put back, shape (runs,)."""
+        return self.still_air_of(self.still_air_coefficient)
 
     @property
     def cw_at_declared(self) -> FloatArray:

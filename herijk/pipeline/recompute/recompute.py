@@ -8,9 +8,6 @@ method says what holds when.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
-from typing import TypeAlias
 
 import numpy as np
 import polars as pl
@@ -19,10 +16,9 @@ from herijk.pipeline import curve
 from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.blocks.run_blocks import RunBlocks
-from herijk.pipeline.channels import BACK, OUT
 from herijk.pipeline.choice import first_largest
 from herijk.pipeline.method.definition import Method, Steps
-from herijk.pipeline.recompute.outcome import Outcome, TowFactor
+from herijk.pipeline.recompute.outcome import Outcome, Prepared, Texts, TowFactor
 from herijk.pipeline.recompute.results import Recomputed, as_tables
 from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.pipeline.recompute.season_factors import (
@@ -32,10 +28,11 @@ from herijk.pipeline.recompute.season_factors import (
     without_factor,
 )
 from herijk.pipeline.season_log import SeasonFactors
-from herijk.pipeline.steps.calibration import gps_factor
+from herijk.pipeline.steps.calibration import gps_factor_of_files
 from herijk.pipeline.steps.hull import front_area_m2, hull_speed_m_s, still_air_coefficient_kg_m
 from herijk.pipeline.steps.resistance import RunMeans, temperature_change_kg_m
 from herijk.pipeline.steps.speed import log_factor
+from herijk.pipeline.steps.target import above_target
 from herijk.pipeline.steps.wind import PER_TOW_BOUNDS, nearest_coefficients
 from herijk.pipeline.steps.window import Windows
 
@@ -49,8 +46,6 @@ PER_RUN_ITERATIONS = 4
 
 PER_TOW_GRID = np.linspace(*PER_TOW_BOUNDS, 41)
 ARCHIVE_GRID = np.linspace(0.0, 1.2, 13)
-
-Texts: TypeAlias = np.ndarray[tuple[int, ...], np.dtype[np.str_]]
 
 
 def recompute(
@@ -139,109 +134,26 @@ def evaluate(
     return [_finish(p, shared) for p in prepared]
 
 
-@dataclass(frozen=True)
-class _Prepared:
-    """A batch with everything that does not depend on the wind coefficients.
-
-    Attributes:
-        known: speed factor of the log's known error, shape (tows,).
-        y: calibration factor, shape (tows,).
-        calibrated: there is one, shape (tows,).
-        estimated: what was estimated of the log factor.
-        reasons: why a run does not count, empty where it does, shape (runs,).
-        still_unit_kg_m: still-air coefficient for a drag coefficient of 1, shape (runs,).
-        temperature_kg_m: change to the reference temperature, shape (runs,).
-        temperature_known: shape (tows,).
-    """
-
-    batch: Batch
-    steps: Steps
-    windows: Windows
-    means: RunMeans
-    known: FloatArray
-    y: FloatArray
-    calibrated: BoolArray
-    estimated: TowFactor
-    reasons: Texts
-    still_unit_kg_m: FloatArray
-    temperature_kg_m: FloatArray
-    temperature_known: BoolArray
-
-    @cached_property
-    def factor(self) -> FloatArray:
-        """True speed / log speed of each run, shape (runs,)."""
-        return (self.known * self.y)[self.batch.tow]
-
-    @cached_property
-    def used(self) -> BoolArray:
-        """Runs that count, shape (runs,)."""
-        return np.asarray(self.reasons == "")
-
-    @cached_property
-    def in_fit(self) -> BoolArray:
-        """Runs that count, of tows that have enough of them, shape (runs,)."""
-        return (
-            self.used & enough_runs(self.batch, self.used, self.steps.runs.minimum)[self.batch.tow]
-        )
-
-    @cached_property
-    def speed_m_s(self) -> FloatArray:
-        """Mean true speed, shape (runs,)."""
-        return self.means.speed_m_s * self.factor
-
-    def air_kg_m(self, ahead: FloatArray, behind: FloatArray) -> FloatArray:
-        """The air part that is taken off, shape (runs,)."""
-        if self.steps.wind.reading == "cw_vac_2014":
-            return 2.0 * self.still_kg_m(ahead)
-        return self.means.air.total(ahead, behind, self.steps.wind.side) / self.factor**2
-
-    def still_kg_m(self, ahead: FloatArray) -> FloatArray:
-        """The still-air part that is put back, shape (runs,)."""
-        return self.still_unit_kg_m * ahead
-
-    def cw_kg_m(self, ahead: FloatArray, behind: FloatArray, still: FloatArray) -> FloatArray:
-        """Corrected coefficient of each run for given drag coefficients, shape (runs,)."""
-        water = (self.means.gross_kg_m - self.means.inertia_kg_m) / self.factor**2
-        return water - self.air_kg_m(ahead, behind) + self.still_kg_m(still) + self.temperature_kg_m
-
-    def points(self, cw_kg_m: FloatArray) -> curve.Points:
-        """Points of all tows that have enough runs, for a batch fit."""
-        batch = self.batch
-        return curve.Points(
-            batch.by_tow(self.speed_m_s),
-            batch.by_tow(cw_kg_m),
-            batch.by_tow(self.in_fit & (cw_kg_m > 0) & (self.speed_m_s > 0)) > 0,
-        )
-
-
-def enough_runs(batch: Batch, used: BoolArray, minimum: int) -> BoolArray:
-    """Tows with enough runs, and runs both ways so that wind and stream can be judged."""
-    out = batch.count(used & (batch.direction == OUT))
-    back = batch.count(used & (batch.direction == BACK))
-    return (out + back >= minimum) & (out > 0) & (back > 0)
-
-
-def _prepare(batch: Batch, steps: Steps, cache: RunCache, estimated: TowFactor) -> _Prepared:
+def _prepare(batch: Batch, steps: Steps, cache: RunCache, estimated: TowFactor) -> Prepared:
     windows, means = cache.windows(batch, steps), cache.means(batch, steps)
     tow_list = batch.of_tow("speed_correction_ratio")
     known = log_factor(steps.speed, tow_list, estimated.factor)
-    reasons = _reasons(batch, steps, windows, means.speed_m_s * known[batch.tow])
-    y, determined = _calibrate(
-        batch, steps, windows, means.speed_m_s * known[batch.tow], reasons == ""
-    )
-    reasons = np.where((reasons == "") & ~determined[batch.tow], NOT_CALIBRATED, reasons)
-    speed = means.speed_m_s * (known * y)[batch.tow]
+    reasons = _reasons(batch, steps, windows, means)
+    y, determined = _calibrate(batch, steps, windows, means, known, reasons == "")
+    calibrated = batch.any(determined & (reasons == "")) & (steps.calibration.rule != "none")
+    reasons = np.where((reasons == "") & ~determined, NOT_CALIBRATED, reasons)
+    speed = means.speed_m_s * known[batch.tow] * y
     temperature, temperature_known = temperature_change_kg_m(batch, steps.temperature, speed)
     front = front_area_m2(batch.of_run("beam_m"), batch.of_run("bow_height_m"))
     has_wind = float(steps.wind.model != "none")
-    return _Prepared(
+    return Prepared(
         batch,
         steps,
         windows,
         means,
         known,
         y,
-        determined & (steps.calibration.rule != "none"),
+        calibrated,
         estimated,
         reasons,
         still_unit_kg_m=still_air_coefficient_kg_m(front, has_wind),
@@ -250,9 +162,10 @@ def _prepare(batch: Batch, steps: Steps, cache: RunCache, estimated: TowFactor) 
     )
 
 
-def _reasons(batch: Batch, steps: Steps, windows: Windows, speed_m_s: FloatArray) -> Texts:
+def _reasons(batch: Batch, steps: Steps, windows: Windows, means: RunMeans) -> Texts:
     """Why a run does not count, before calibration; empty where it does."""
-    too_fast = speed_m_s > steps.runs.highest_target_ratio * batch.of_run("declared_speed_m_s")
+    chosen = batch.selected & windows.found
+    too_fast = above_target(batch, means.speed_m_s, chosen, steps.runs.highest_target_ratio)
     return np.select(
         [~batch.selected, ~windows.found, too_fast],
         [NOT_SELECTED, NO_STEADY_WINDOW, ABOVE_TARGET],
@@ -261,58 +174,56 @@ def _reasons(batch: Batch, steps: Steps, windows: Windows, speed_m_s: FloatArray
 
 
 def _calibrate(
-    batch: Batch, steps: Steps, windows: Windows, log_m_s: FloatArray, used: BoolArray
+    batch: Batch,
+    steps: Steps,
+    windows: Windows,
+    means: RunMeans,
+    known_factor: FloatArray,
+    used: BoolArray,
 ) -> tuple[FloatArray, BoolArray]:
-    """Factor on the log speed as corrected so far, and whether it is known, shape (tows,)."""
+    """Factor on the log speed as corrected so far, and whether it is known, shape (runs,)."""
     if steps.calibration.rule == "none":
-        return np.ones(batch.size), np.ones(batch.size, dtype=bool)
-    samples = batch.blocks.total("gps_n", windows.mask)
-    gps = batch.blocks.total("gps", windows.mask) / np.maximum(samples, 1.0)
-    y, determined = gps_factor(
-        gps, log_m_s, batch.direction, batch.tow, used & (samples > 0), batch.size
+        return np.ones(len(batch.tow)), np.ones(len(batch.tow), dtype=bool)
+    log = means.speed_m_s * known_factor[batch.tow]
+    y, determined = gps_factor_of_files(
+        means.gps_m_s,
+        log,
+        batch.direction,
+        batch.tow,
+        batch.in_second_file,
+        used,
+        windows.found & (log > 0),
+        batch.size,
     )
-    if steps.calibration.rule == "gps_per_tow":
-        return y, determined
-    return _mean_of_season(batch, y, determined)
+    if steps.calibration.rule == "gps_per_season":
+        y, determined = _mean_of_season(batch, y, determined)
+    file = batch.in_second_file.astype(np.int64)
+    return y[batch.tow, file], determined[batch.tow, file]
 
 
 def _mean_of_season(
     batch: Batch, y: FloatArray, determined: BoolArray
 ) -> tuple[FloatArray, BoolArray]:
-    """The mean factor of each season's tows, for all of its tows."""
+    """The mean factor of each season's files, for all of its tows, shape (tows, 2)."""
     _, season = np.unique(batch.of_tow("season"), return_inverse=True)
-    count = np.bincount(season, determined)
-    mean = np.bincount(season, np.where(determined, y, 0.0)) / np.maximum(count, 1)
-    return np.where(count > 0, mean, 1.0)[season], (count > 0)[season]
+    second = batch.in_second_file
+    counted = determined & np.stack([batch.any(~second), batch.any(second)], axis=1)
+    count = np.bincount(season, counted.sum(axis=1))
+    mean = np.bincount(season, np.where(counted, y, 0.0).sum(axis=1)) / np.maximum(count, 1)
+    y, determined = np.where(count > 0, mean, 1.0)[season], (count > 0)[season]
+    return np.repeat(y[:, None], 2, axis=1), np.repeat(determined[:, None], 2, axis=1)
 
 
-def _finish(prepared: _Prepared, archive_coefficient: float | None) -> Outcome:
+def _finish(prepared: Prepared, archive_coefficient: float | None) -> Outcome:
     ahead, behind, still = _coefficients(prepared, archive_coefficient)
-    cw = prepared.cw_kg_m(ahead, behind, still)
-    points = prepared.points(cw)
+    cw = prepared.cw_of(ahead, behind, still)
+    points = prepared.points_of(cw)
     free = curve.fit(points)
-    return Outcome(
-        batch=prepared.batch,
-        steps=prepared.steps,
-        windows=prepared.windows,
-        reasons=prepared.reasons,
-        known_factor=prepared.known,
-        calibration_factor=prepared.y,
-        calibrated=prepared.calibrated,
-        estimated=prepared.estimated,
-        speed_m_s=prepared.speed_m_s,
-        speed_factor=prepared.factor,
-        gross_kg_m=prepared.means.gross_kg_m / prepared.factor**2,
-        sd_kg_m=prepared.means.sd_kg_m / prepared.factor**2,
-        inertia_kg_m=prepared.means.inertia_kg_m / prepared.factor**2,
-        air_kg_m=prepared.air_kg_m(ahead, behind),
-        still_air_kg_m=prepared.still_kg_m(still),
-        still_air_coefficient=still,
-        air_unit_kg_m=(prepared.means.air.ahead + prepared.means.air.behind) / prepared.factor**2,
-        temperature_kg_m=prepared.temperature_kg_m,
-        temperature_known=prepared.temperature_known,
+    return Outcome.of(
+        prepared,
         ahead=ahead,
         behind=behind,
+        still_air_coefficient=still,
         cw_kg_m=cw,
         points=points,
         free=free,
@@ -320,7 +231,7 @@ def _finish(prepared: _Prepared, archive_coefficient: float | None) -> Outcome:
     )
 
 
-def _choose_curve(prepared: _Prepared, points: curve.Points, free: curve.Curves) -> curve.Curves:
+def _choose_curve(prepared: Prepared, points: curve.Points, free: curve.Curves) -> curve.Curves:
     rule = prepared.steps.curve
     if rule.b == "free":
         return free
@@ -331,7 +242,7 @@ def _choose_curve(prepared: _Prepared, points: curve.Points, free: curve.Curves)
 
 
 def _coefficients(
-    prepared: _Prepared, archive_coefficient: float | None
+    prepared: Prepared, archive_coefficient: float | None
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Drag coefficients ahead, behind and in still air, each of shape (runs,)."""
     wind = prepared.steps.wind
@@ -349,7 +260,7 @@ def _coefficients(
 
 
 def _best_per_run(
-    prepared: _Prepared, ahead: FloatArray, behind: FloatArray
+    prepared: Prepared, ahead: FloatArray, behind: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Coefficients searched run by run so that each point comes nearest to the curve.
 
@@ -358,22 +269,22 @@ def _best_per_run(
     """
     still = ahead
     for _ in range(PER_RUN_ITERATIONS):
-        cw = prepared.cw_kg_m(ahead, behind, still)
-        curves = curve.fit(prepared.points(cw))
+        cw = prepared.cw_of(ahead, behind, still)
+        curves = curve.fit(prepared.points_of(cw))
         tow = prepared.batch.tow
         on_curve = curve.cw(curves.a_kg_m[tow], curves.s_s2_m2[tow], prepared.speed_m_s)
         fits = curves.converged[tow] & np.isfinite(on_curve)
-        excess = cw + prepared.air_kg_m(ahead, behind) - np.where(fits, on_curve, cw)
-        searched = nearest_coefficients(prepared.means.air, excess * prepared.factor**2)
+        excess = cw + prepared.air_of(ahead, behind) - np.where(fits, on_curve, cw)
+        searched = nearest_coefficients(prepared.means.air, excess * prepared.speed_factor**2)
         ahead = np.where(fits, searched[0], ahead)
         behind = np.where(fits, searched[1], behind)
     return ahead, behind
 
 
-def _misfits(prepared: _Prepared, grid: FloatArray) -> FloatArray:
+def _misfits(prepared: Prepared, grid: FloatArray) -> FloatArray:
     """Residual sum of squares / Cw^2 with each drag coefficient, shape (coefficients, tows)."""
     each = [np.full(len(prepared.batch.tow), coefficient) for coefficient in grid]
-    points = [prepared.points(prepared.cw_kg_m(one, one, one)) for one in each]
+    points = [prepared.points_of(prepared.cw_of(one, one, one)) for one in each]
     curves = curve.fit(curve.Points.stack(points))
     scale = curves.cw_at(np.tile(prepared.batch.of_tow("declared_speed_m_s"), len(grid)))
     sound = curves.converged & np.isfinite(scale)
@@ -381,13 +292,13 @@ def _misfits(prepared: _Prepared, grid: FloatArray) -> FloatArray:
     return misfit.reshape(len(grid), -1)
 
 
-def _best_per_tow(prepared: _Prepared) -> FloatArray:
+def _best_per_tow(prepared: Prepared) -> FloatArray:
     """One coefficient per tow within its bounds, by trying all of a fine grid, shape (tows,)."""
     best = first_largest(-_misfits(prepared, PER_TOW_GRID))
     return np.asarray(PER_TOW_GRID[best], dtype=np.float64)
 
 
-def _archive_coefficient(prepared: list[_Prepared]) -> float | None:
+def _archive_coefficient(prepared: list[Prepared]) -> float | None:
     """One coefficient for the whole archive: the least misfit of all tows together.
 
     Out and back feel different wind, so a wrong coefficient drives their points apart. The misfit

@@ -105,11 +105,14 @@ def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
     tow = o.batch.tow
     on_curve = curve.cw(o.curves.a_kg_m[tow], o.curves.s_s2_m2[tow], o.speed_m_s)
     log1 = np.where(found, blocks.mean("log1_v", mask), 1.0)
-    gps_samples = blocks.total("gps_n", mask)
-    gps = blocks.total("gps", mask) / np.maximum(gps_samples, 1.0)
+    has_limits = o.steps.window.rule != "all"
+    wind, log2 = (o.batch.measured(channel)[tow] for channel in ("wind", "log2"))
     numbers = {
         "window_start_s": o.windows.start_s,
         "window_end_s": o.windows.end_s,
+        "end_speed_m_s": o.windows.ends.speed_m_s,
+        "end_force_ratio": o.windows.ends.force_ratio,
+        "end_wind_m_s": o.windows.ends.wind_m_s,
         "speed_factor": o.speed_factor,
         "speed_m_s": o.speed_m_s,
         "gross_cw_kg_m": o.gross_kg_m,
@@ -122,13 +125,14 @@ def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
         "cw_kg_m": o.cw_kg_m,
         "cw_sd": o.sd_kg_m,
         "u_ratio": run_point_ratio(o) if pooled else np.full(len(tow), np.nan),
-        "wind_m_s": blocks.mean("wind_v", mask),
-        "wind_angle_deg": mean_wind_angle_deg(blocks, mask),
-        "log2_ratio": blocks.mean("log2_v", mask) / log1,
+        "wind_m_s": np.where(wind, blocks.mean("wind_v", mask), np.nan),
+        "wind_angle_deg": np.where(wind, mean_wind_angle_deg(blocks, mask), np.nan),
+        "log2_ratio": np.where(log2, blocks.mean("log2_v", mask) / log1, np.nan),
     }
     return blocks.runs.select("tow_id", "run", "direction", "target_speed_ratio").with_columns(
         *(_column(name, values, found) for name, values in numbers.items()),
-        _column("gps_ratio", gps / log1, found & (gps_samples > 0)),
+        _column("ends_ratio", o.windows.ends.in_limits(o.steps.window), found & has_limits),
+        _column("gps_ratio", o.means.gps_m_s / log1, found),
         _column("fitted_cw_kg_m", on_curve, found & o.curves.converged[tow]),
         pl.Series("cut_reason", o.windows.reasons, pl.String),
         pl.Series("used", o.used),
@@ -146,13 +150,15 @@ def _curves(o: Outcome, bounds: pl.DataFrame, pooled: bool) -> pl.DataFrame:
     b_interval = curve.b_interval(o.points, o.free, scatter_of(o, pooled))
     safe_cw = np.where(sound, cw, 1.0)
     residual = np.sqrt(o.curves.rss_kg2_m2 / np.maximum(o.curves.n_points - 2, 1)) / safe_cw
+    # A cap is the method's choice, and coefficients searched run by run leave no scatter.
+    own_b = ~o.curves.b_capped & (o.steps.wind.coefficients != "per_run")
     numbers = {
         "a_kg_m": o.curves.a_kg_m,
         "cw_kg_m": cw,
         "cw_lo_kg_m": cw * lo,
         "cw_hi_kg_m": cw * hi,
-        "b_lo_m_s": b_interval.lo,
-        "b_hi_m_s": b_interval.hi,
+        "b_lo_m_s": np.where(own_b, b_interval.lo, np.nan),
+        "b_hi_m_s": np.where(own_b, b_interval.hi, np.nan),
         "power_w": power_per_rower_w(safe_cw, declared, o.batch.of_tow("rowers")),
         "residual_sd_ratio": residual,
     }

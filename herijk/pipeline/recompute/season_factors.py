@@ -14,7 +14,7 @@ import polars as pl
 from herijk.pipeline import curve
 from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.blocks.batch import Batch
-from herijk.pipeline.method.definition import Steps
+from herijk.pipeline.method.definition import Steps, Wind
 from herijk.pipeline.recompute.budget import pooled_scatter
 from herijk.pipeline.recompute.outcome import Outcome, TowFactor
 from herijk.pipeline.season_log import GROUP, LINE, SeasonFactors, estimate_season_factors
@@ -39,7 +39,13 @@ def is_estimated(steps: Steps) -> bool:
 
 
 def without_factor(steps: Steps) -> Steps:
-    """The steps with the log as it reads where its factor is to be estimated."""
+    """The steps from which log factors are estimated: with the log as it reads, without wind.
+
+    A method that leaves the wind on a season's coefficients would compare water and wind there
+    with water alone elsewhere, and call the difference an error of the log.
+    """
+    if steps.wind.model == "none":
+        steps = steps.model_copy(update={"wind": Wind(model="oblique")})
     if not is_estimated(steps):
         return steps
     speed = steps.speed.model_copy(update={"correction": "none"})
@@ -138,6 +144,7 @@ def _other_ln_ratio(o: Outcome) -> FloatArray:
         return np.full(o.batch.size, np.nan)
     mean = {log: o.batch.blocks.mean(f"{log}_v", o.windows.mask) for log in ("log1", "log2")}
     turning = o.used & (mean["log1"] > 0) & (mean["log2"] > 0)
+    turning &= o.batch.measured("log2")[o.batch.tow]
     ratio = mean[source] / np.where(turning, mean[OTHER_LOG[source]], 1.0)
     ln_ratio = np.log(np.where(turning, ratio, 1.0))
     return np.where(o.batch.any(turning), o.batch.mean(ln_ratio, turning), np.nan)
@@ -154,13 +161,10 @@ def _gps_ratio(o: Outcome) -> tuple[FloatArray, FloatArray, np.ndarray]:
     The random part is the scatter of run ratios about their direction's mean, pooled over the
     batch: one tow's six runs are too few.
     """
-    batch, mask = o.batch, o.windows.mask
-    samples = batch.blocks.total("gps_n", mask)
-    gps = batch.blocks.total("gps", mask) / np.maximum(samples, 1.0)
-    used = o.used & (samples > 0)
-    log = o.speed_m_s / o.speed_factor
+    batch, gps, log = o.batch, o.means.gps_m_s, o.means.speed_m_s
+    used = o.used & np.isfinite(gps)
     y, both = gps_factor(gps, log, batch.direction, batch.tow, used, batch.size)
-    ratio = np.where(used, gps / np.where(used, log, 1.0), 1.0)
+    ratio = np.where(used, gps, 1.0) / np.where(used, log, 1.0)
     spread, count = 0.0, 0.0
     for way in (1, -1):
         mine = used & (batch.direction == way)

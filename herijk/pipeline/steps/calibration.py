@@ -1,4 +1,4 @@
-"""Calibration: the factor y that brings a tow's log to ground speed.
+"""Calibration: the factor y that brings the log of a tow's file to ground speed.
 
 `y = mean(v_dGPS) / mean(v_log)` over the steady parts of all runs together, as many out as back,
 so that the stream drops out (Sleepproef, R. Pot 2017, "IJking snelheid"). Every run weighs the
@@ -50,9 +50,47 @@ def gps_factor(
 ) -> tuple[FloatArray, BoolArray]:
     """The factor y of every tow, and whether it could be determined (runs both ways).
 
-    Arguments as in `mean_over_both_ways`, with the run means of ground speed and of log speed.
-    Undetermined factors are given as 1 and must not be used.
+    Arguments as in `mean_over_both_ways`, with the run means of ground speed, NaN without a fix,
+    and of log speed. Undetermined factors are given as 1 and must not be used.
     """
-    gps, both = mean_over_both_ways(gps_m_s, direction, tow, used, tows)
-    log, _ = mean_over_both_ways(log_m_s, direction, tow, used, tows)
+    with_fix = used & np.isfinite(gps_m_s)
+    fixed = np.where(with_fix, gps_m_s, 0.0)
+    gps, both = mean_over_both_ways(fixed, direction, tow, with_fix, tows)
+    log, _ = mean_over_both_ways(log_m_s, direction, tow, with_fix, tows)
     return np.where(both, gps / np.where(both, log, 1.0), 1.0), both
+
+
+def gps_factor_of_files(
+    gps_m_s: FloatArray,
+    log_m_s: FloatArray,
+    direction: IntArray,
+    tow: IntArray,
+    in_second: BoolArray,
+    used: BoolArray,
+    steady: BoolArray,
+    tows: int,
+) -> tuple[FloatArray, BoolArray]:
+    """The factor y of every file of a tow, and whether it could be determined.
+
+    "Log1 bij elke sleep calibreren aan dGPS" (presentation 2015): the files of a combined tow are
+    two tows, each with a log of its own. A file whose used runs all go one way is calibrated over
+    all its steady runs, those that were not chosen too; one that was only towed one way shares the
+    factor of the tow.
+
+    Args:
+        gps_m_s, log_m_s, direction, tow, used, tows: as in `gps_factor`.
+        in_second: runs of the tow's second file, shape (runs,).
+        steady: runs with a steady window, chosen or not, shape (runs,).
+
+    Returns:
+        Both of shape (tows, 2): by tow, of the first and of the second file.
+    """
+    file = 2 * tow + in_second
+    combined = np.bincount(tow, in_second, tows) > 0
+    y, known = gps_factor(gps_m_s, log_m_s, direction, file, used, 2 * tows)
+    of_all, known_of_all = gps_factor(gps_m_s, log_m_s, direction, file, steady, 2 * tows)
+    of_tow, known_of_tow = gps_factor(gps_m_s, log_m_s, direction, tow, used, tows)
+    known_of_all &= np.repeat(combined, 2)
+    y = np.select([known, known_of_all], [y, of_all], np.repeat(of_tow, 2))
+    known = known | known_of_all | np.repeat(known_of_tow, 2)
+    return y.reshape(tows, 2), known.reshape(tows, 2)

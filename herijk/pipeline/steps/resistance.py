@@ -17,7 +17,7 @@ from herijk.pipeline.method.definition import RunPoint, Steps, Temperature
 from herijk.pipeline.steps.friction import friction_cw_kg_m, water_density_kg_m3
 from herijk.pipeline.steps.hull import front_area_m2, side_area_m2
 from herijk.pipeline.steps.wind import AirParts, air_parts, air_sums, averaged_terms
-from herijk.pipeline.steps.window import END_SECONDS
+from herijk.pipeline.steps.window import END_SECONDS, end_masks
 
 LOG2_AGREES_RATIO: Final = 0.01
 """Log 2 takes part in a mean of both only if its speed is within 1 % of log 1 (inferred from the
@@ -38,6 +38,7 @@ class RunMeans:
         sd_kg_m: standard deviation of the samples' F / v^2.
         inertia_kg_m: part of it that accelerated the boat.
         air: air resistance / v^2 for drag coefficients of 1.
+        gps_m_s: mean ground speed, NaN without a fix.
     """
 
     speed_m_s: FloatArray
@@ -45,6 +46,7 @@ class RunMeans:
     sd_kg_m: FloatArray
     inertia_kg_m: FloatArray
     air: AirParts
+    gps_m_s: FloatArray
 
     def where(self, chosen: BoolArray, other: "RunMeans") -> "RunMeans":
         """These means for the chosen runs, shape (runs,), those of the other elsewhere."""
@@ -54,6 +56,7 @@ class RunMeans:
             sd_kg_m=np.where(chosen, self.sd_kg_m, other.sd_kg_m),
             inertia_kg_m=np.where(chosen, self.inertia_kg_m, other.inertia_kg_m),
             air=self.air.where(chosen, other.air),
+            gps_m_s=self.gps_m_s,
         )
 
 
@@ -76,7 +79,7 @@ def _both_logs_good(batch: Batch, window: BoolArray) -> BoolArray:
     log1, log2 = (batch.blocks.mean(f"{log}_v", window) for log in ("log1", "log2"))
     seen = log1 > 0
     ratio = batch.mean(log2, seen) / _or_one(batch.mean(log1, seen))
-    return (np.abs(ratio - 1.0) <= LOG2_AGREES_RATIO)[batch.tow]
+    return ((np.abs(ratio - 1.0) <= LOG2_AGREES_RATIO) & batch.measured("log2"))[batch.tow]
 
 
 def _means_of_source(batch: Batch, window: BoolArray, steps: Steps, source: str) -> RunMeans:
@@ -94,7 +97,9 @@ def _means_of_source(batch: Batch, window: BoolArray, steps: Steps, source: str)
     air = air_parts(blocks, terms, steps.wind, front, side)
     change = _end_speed_change(batch, window, source)
     inertia = _inertia(batch, steps.run_point, change, speed)
-    return RunMeans(speed, gross, np.sqrt(variance), inertia, air)
+    fixes = blocks.total("gps_n", window)
+    gps = np.where(fixes > 0, blocks.total("gps", window) / np.maximum(fixes, 1.0), np.nan)
+    return RunMeans(speed, gross, np.sqrt(variance), inertia, air, gps)
 
 
 def _air_terms(
@@ -121,9 +126,7 @@ def _air_terms(
 def _end_speed_change(batch: Batch, window: BoolArray, source: str) -> FloatArray:
     """Rise of speed over the window / its length, from the means of its two ends, m/s2."""
     length = window.sum(axis=1)
-    order = np.cumsum(window, axis=1)
-    first = window & (order <= END_SECONDS)
-    last = window & (order > (length - END_SECONDS)[:, None])
+    first, last = end_masks(window)
     rise = batch.blocks.mean(f"{source}_v", last) - batch.blocks.mean(f"{source}_v", first)
     return np.asarray(rise / np.maximum(length - END_SECONDS, 1), dtype=np.float64)
 

@@ -1,9 +1,12 @@
 """The steady window of a run: which seconds count (the Dutch texts call it "knippen").
 
 Only the start and the end of a run may be cut, because speed rose or fell, the force shows an
-unexplained peak (steering) or a gust passed; what remains begins and ends at equal speed and
-force and lasts at least 30 s (Sleepproef, R. Pot 2017, "Knippen"). With blocks of a second there
-are so few windows that all of them are tried, longest first: the rule, not a hand, decides.
+unexplained peak (steering) or a gust passed; what remains begins and ends at equal speed, equal
+force and about equal wind and lasts at least 30 s (Sleepproef, R. Pot 2017, "Knippen"). With blocks
+of a second there are so few windows that all of them are tried, longest first: the rule, not a
+hand, decides. A window within the three limits goes before every other. Where there is none, speed
+must be within its limit all the same, or the run does not count; by how much force or wind exceeds
+its limit, the window says.
 """
 
 from dataclasses import dataclass
@@ -25,11 +28,13 @@ END_SECONDS: Final = 5
 """Length of the two ends that are compared, s (research, method.md 6.4)."""
 
 BLOCK_PRICE_S: Final = 10.0
-ENDS_PRICE_S: Final = 5.0
-WORST_ENDS: Final = 5.0
-"""What a fault inside a window costs, in seconds of its length: so much for each block and each
-limit's worth over the limit, and so much for ends that differ by more than their limits. Ends that
-differ more than `WORST_ENDS` limits (0.1 m/s, the source's reason 1) are never accepted."""
+"""What a peak or gust inside a window costs, in seconds of its length, for each block and each
+limit's worth over the limit."""
+
+NOT_WITHIN_S: Final = 1e3
+"""What force or wind that differs beyond its limit costs for each limit's worth: more than any
+length, so that every window within the limits goes before, and else the one that exceeds them
+least."""
 
 LONGEST_RAMP_S: Final = 12
 RAMP_MARGIN_S: Final = 5
@@ -61,6 +66,7 @@ class Windows:
         start_s, end_s: the same in seconds, shape (runs,).
         found: a window of at least the prescribed length exists, shape (runs,).
         reasons: why the rest was cut, one text a run; empty when nothing was.
+        ends: how much the two ends differ.
     """
 
     mask: BoolArray
@@ -68,6 +74,45 @@ class Windows:
     end_s: IntArray
     found: BoolArray
     reasons: tuple[str, ...]
+    ends: "Ends"
+
+
+@dataclass(frozen=True)
+class Ends:
+    """The last `END_SECONDS` of a window less the first, shape (runs,); 0 without a window.
+
+    Attributes:
+        speed_m_s, wind_m_s: difference of the mean speed by log 1 and of the mean wind speed.
+        force_ratio: difference of the mean force / mean force of the window.
+    """
+
+    speed_m_s: FloatArray
+    force_ratio: FloatArray
+    wind_m_s: FloatArray
+
+    @classmethod
+    def of(cls, blocks: RunBlocks, mask: BoolArray) -> "Ends":
+        """The differences of windows that are given by their blocks, shape (runs, seconds)."""
+        first, last = end_masks(mask)
+
+        def rise(name: str) -> FloatArray:
+            return blocks.mean(name, last) - blocks.mean(name, first)
+
+        force = np.abs(blocks.mean("force", mask))
+        return cls(rise("log1_v"), rise("force") / np.where(force > 0, force, 1.0), rise("wind_v"))
+
+    def in_limits(self, rule: Window) -> FloatArray:
+        """The largest of the three differences in limits of the rule: over 1 exceeds one."""
+        speed = np.abs(self.speed_m_s) / rule.speed_drift_m_s
+        force = np.abs(self.force_ratio) / rule.force_ends_ratio
+        return np.maximum(np.maximum(speed, force), np.abs(self.wind_m_s) / rule.wind_ends_m_s)
+
+
+def end_masks(mask: BoolArray) -> tuple[BoolArray, BoolArray]:
+    """The first and the last `END_SECONDS` blocks of every window, shape (runs, seconds)."""
+    length = mask.sum(axis=1, keepdims=True)
+    order = np.cumsum(mask, axis=1)
+    return mask & (order <= END_SECONDS), mask & (order > length - END_SECONDS)
 
 
 def choose_windows(blocks: RunBlocks, rule: Window) -> Windows:
@@ -76,14 +121,14 @@ def choose_windows(blocks: RunBlocks, rule: Window) -> Windows:
     `steady` searches; `by_hand` takes the window that a person gave (`HAND_COLUMNS` of
     `blocks.runs`) and searches where none is given; `all` takes the whole run.
     """
-    present = blocks.n > 0
+    present = blocks.inside
     if rule.rule == "all":
-        return _windows(present, ("",) * present.shape[0])
+        return _windows(blocks, present, ("",) * present.shape[0])
     faults = _Faults.of(blocks, rule)
     start, length = _search(present, faults, rule)
     second = np.arange(blocks.seconds)
     mask = (second >= start[:, None]) & (second < (start + length)[:, None])
-    searched = _windows(mask, tuple(_reasons(present, mask, faults)))
+    searched = _windows(blocks, mask, tuple(_reasons(present, mask, faults)))
     return _given_by_hand(blocks, rule, searched) if rule.rule == "by_hand" else searched
 
 
@@ -95,19 +140,20 @@ def _given_by_hand(blocks: RunBlocks, rule: Window, searched: Windows) -> Window
     given = hand_start.is_not_null().to_numpy()
     start, end = (bound.fill_null(0).to_numpy()[:, None] for bound in (hand_start, hand_end))
     second = np.arange(blocks.seconds)
-    inside = (second >= start) & (second < end) & (blocks.n > 0)
+    inside = (second >= start) & (second < end) & blocks.inside
     long_enough = inside.sum(axis=1, keepdims=True) >= rule.minimum_s
     reasons = tuple(
         f"{BY_HAND}: {why}" if hand else found
         for hand, why, found in zip(given, hand_reason, searched.reasons, strict=True)
     )
-    return _windows(np.where(given[:, None], inside & long_enough, searched.mask), reasons)
+    mask = np.where(given[:, None], inside & long_enough, searched.mask)
+    return _windows(blocks, mask, reasons)
 
 
-def _windows(mask: BoolArray, reasons: tuple[str, ...]) -> Windows:
+def _windows(blocks: RunBlocks, mask: BoolArray, reasons: tuple[str, ...]) -> Windows:
     length = mask.sum(axis=1)
     start = np.where(length > 0, mask.argmax(axis=1), 0)
-    return Windows(mask, start, start + length, length > 0, reasons)
+    return Windows(mask, start, start + length, length > 0, reasons, Ends.of(blocks, mask))
 
 
 @dataclass(frozen=True)
@@ -120,13 +166,14 @@ class _Faults:
     speed: FloatArray
     force: FloatArray
     force_median: FloatArray
+    wind: FloatArray
     ramp: BoolArray
     force_peak: FloatArray
     gust: FloatArray
 
     @classmethod
     def of(cls, blocks: RunBlocks, rule: Window) -> "_Faults":
-        present = blocks.n > 0
+        present = blocks.inside
         speed, force = blocks.block_means("log1_v"), blocks.block_means("force")
         force_median, force_sd = _robust(force, present)
         force_floor = np.maximum(FORCE_SD_FLOOR * np.abs(force_median), 1e-9)
@@ -135,6 +182,7 @@ class _Faults:
             speed,
             force,
             force_median[:, 0],
+            blocks.block_means("wind_v"),
             ramp=_ramps(speed, present, rule.ramp_m_s),
             force_peak=_widened(np.abs(force - force_median) / (rule.peak_sd * force_sd)),
             gust=_widened(_wind_change(blocks, present) / rule.gust_sd),
@@ -216,9 +264,9 @@ def _search(present: BoolArray, faults: _Faults, rule: Window) -> tuple[IntArray
     price = _running_sum(faults.price_s())
     sums = _Sums.of(faults)
     for size in range(seconds, int(np.ceil(rule.minimum_s)) - 1, -1):
-        ends = _unsteadiness(sums, size, rule)
-        accepted = (_span(good, size) == size) & (ends <= WORST_ENDS)
-        worth = size - _span(price, size) - ENDS_PRICE_S * np.maximum(ends - 1.0, 0.0)
+        speed, ends = _unsteadiness(sums, size, rule)
+        worth = size - _span(price, size) - np.where(ends > 1.0, NOT_WITHIN_S * ends, 0.0)
+        accepted = (_span(good, size) == size) & (speed <= 1.0)
         worth = np.where(accepted, np.round(worth, WORTH_DECIMALS), -np.inf)
         best = worth.argmax(axis=1)
         found = np.take_along_axis(worth, best[:, None], 1)[:, 0]
@@ -234,7 +282,7 @@ class _Sums:
 
     Attributes:
         speed, speed_time: of the speed less its mean over the run, and of that times the second.
-        speed_ends, force_ends: mean of `END_SECONDS` from every second on.
+        speed_ends, force_ends, wind_ends: mean of `END_SECONDS` from every second on.
         force_median: of each run, shape (runs, 1).
     """
 
@@ -242,37 +290,39 @@ class _Sums:
     speed_time: FloatArray
     speed_ends: FloatArray
     force_ends: FloatArray
+    wind_ends: FloatArray
     force_median: FloatArray
 
     @classmethod
     def of(cls, faults: _Faults) -> "_Sums":
         centred = faults.speed - faults.speed.mean(axis=1, keepdims=True)
         time = np.arange(centred.shape[1], dtype=np.float64)
-        speed_ends, force_ends = (
-            _span(_running_sum(v), END_SECONDS) / END_SECONDS for v in (faults.speed, faults.force)
+        speed_ends, force_ends, wind_ends = (
+            _span(_running_sum(v), END_SECONDS) / END_SECONDS
+            for v in (faults.speed, faults.force, faults.wind)
         )
         return cls(
             _running_sum(centred),
             _running_sum(centred * time),
             speed_ends,
             force_ends,
+            wind_ends,
             faults.force_median[:, None],
         )
 
 
-def _unsteadiness(sums: _Sums, size: int, rule: Window) -> FloatArray:
-    """How far the worst steadiness criterion is from its limit (1), for every window of a size.
+def _unsteadiness(sums: _Sums, size: int, rule: Window) -> tuple[FloatArray, FloatArray]:
+    """How far speed, and the worse of force and wind, are from their limits (1).
 
-    Attributes:
-        speed, speed_time: of the speed less its mean over the run, and of that times the second.
-        speed_ends, force_ends: mean over `END_SECONDS` from each second on, in limits.
-        drift_m_s: limit of the drift.
+    For every window of a size. Of the speed both the rise of a straight line and the difference of
+    its ends count.
     """
     drift = np.abs(_slope(sums, size)) * size / rule.speed_drift_m_s
-    speed_ends = np.abs(_ends_difference(sums.speed_ends, size)) / rule.speed_drift_m_s
+    speed = np.abs(_ends_difference(sums.speed_ends, size)) / rule.speed_drift_m_s
     force_limit = rule.force_ends_ratio * np.abs(sums.force_median)
-    force_ends = np.abs(_ends_difference(sums.force_ends, size)) / np.maximum(force_limit, 1e-9)
-    return np.maximum(np.maximum(drift, speed_ends), force_ends)
+    force = np.abs(_ends_difference(sums.force_ends, size)) / np.maximum(force_limit, 1e-9)
+    wind = np.abs(_ends_difference(sums.wind_ends, size)) / rule.wind_ends_m_s
+    return np.maximum(drift, speed), np.maximum(force, wind)
 
 
 def _running_sum(values: FloatArray) -> FloatArray:

@@ -36,7 +36,7 @@ class Choice:
 
 
 CHOICES: Final = (
-    Choice("window", "speed_drift_m_s", (0.02, 0.04)),
+    Choice("window", "force_ends_ratio", (0.1, 0.05)),
     Choice("speed", "operation", ("multiply", "divide")),
     Choice("run_point", "estimator", ("mean_of_ratios", "ratio_of_means")),
     Choice("wind", "coefficients", ("fixed", "archive")),

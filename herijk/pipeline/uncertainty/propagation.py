@@ -148,6 +148,8 @@ class Assumed:
             the calibration then takes for speed.
         force_ratio: calibration of the load cell, as daily with a known weight.
         wind_coefficient: of a prescribed air drag coefficient: 0.2 either way, all equally likely.
+        unmeasured_wind: where there was no anemometer, net wind correction / still-air part: wind
+            as fast as the boat, from ahead out and from behind back, makes it 1.
         anemometer_ratio: wind speed.
         mass_ratio: crew and gear, on Cw.
         temperature_known_c, temperature_unknown_c: water temperature with and without a record.
@@ -159,6 +161,7 @@ class Assumed:
     stream_drift_speed_ratio: float = 0.003
     force_ratio: float = 0.003
     wind_coefficient: float = 0.115
+    unmeasured_wind: float = 1.0
     anemometer_ratio: float = 0.05
     mass_ratio: float = 0.006
     temperature_known_c: float = 0.3
@@ -213,7 +216,8 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
             points) with `random_dof`; `calibrated` (on dGPS); `log_sd` and `log_dof` of the
             season's ln factor (0 and any where calibrated), `wander_sd` of the log (0 where
             calibrated); `air_ratio`, net wind correction / Cw, and `air_per_coefficient`, change of
-            ln Cw per unit of drag coefficient (both signed); `temperature_known`.
+            ln Cw per unit of drag coefficient (both signed); `wind_measured`, and where it was not
+            `still_air_ratio`, still-air part / Cw; `temperature_known`.
         assumed: what the archive cannot show; give `wind_coefficient` what the archive-wide search
             came to where that was used.
 
@@ -232,12 +236,14 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
         pl.when(calibrated).then(assumed.calibration_speed_ratio).otherwise(pl.col("wander_sd"))
     )
     drift_ratio = pl.when(calibrated).then(assumed.stream_drift_speed_ratio).otherwise(0.0)
+    coefficient = pl.col("air_per_coefficient") * assumed.wind_coefficient
+    no_wind = pl.col("still_air_ratio") * assumed.unmeasured_wind
     effects = {
         "random": pl.col("random_ratio"),
         "calibration": kappa * speed_ratio,
         "stream_drift": kappa * drift_ratio,
         "force": pl.lit(assumed.force_ratio),
-        "wind": pl.col("air_per_coefficient") * assumed.wind_coefficient,
+        "wind": pl.when("wind_measured").then(coefficient).otherwise(no_wind),
         "anemometer": 2.0 * assumed.anemometer_ratio * pl.col("air_ratio"),
         "mass": pl.lit(assumed.mass_ratio),
         "temperature": assumed.temperature_ratio_per_c * temperature_c,

@@ -38,7 +38,7 @@ def due_rows(store: Store, methods: Sequence[Method], curves: pl.DataFrame) -> p
     """
     tows, boats = store.read("tows"), store.read("boats")
     results = store.read("listed_races")
-    as_of: dt.date = max(*tows["tow_date"], *results["race_date"])
+    as_of: dt.date = max([*tows["tow_date"], *results["race_date"]])
     decided = decisions.decision_table(decisions.read_decisions(store.root / decisions.FILE_NAME))
     crews = store.read("listed_boats")
     found = []

@@ -26,7 +26,7 @@ from herijk.pipeline.studies.options import beside_uncertainty, option_effects
 from herijk.pipeline.uncertainty.ensemble import as_frame, register_ensemble
 from herijk.tables.archive import Quarantine
 from herijk.tables.schemas import TABLES, conform
-from herijk.warehouse.archive import outside_run
+from herijk.warehouse.archive import Fault, outside_run
 from herijk.warehouse.build.due import due_made_from, due_rows
 from herijk.warehouse.build.summaries import SUMMARY_TABLES
 from herijk.warehouse.editions.published import published_made_from, published_tables
@@ -66,6 +66,10 @@ REGISTER_TABLES: Final = (
 )
 CONSISTENCY_TABLES: Final = (
     "type_consistency",
+    "type_lines",
+    "type_line_points",
+    "compared_tows",
+    "hull_speed",
     "type_outliers",
     "type_homogeneity",
     "pooled_curves",
@@ -114,13 +118,16 @@ def collect_archive(store: Store, today: dt.date) -> dict[str, int]:
     """
     made_from = archive_made_from(store)
     if not store.partitions("season_index"):
-        raise _nothing_sound(store.read("list_faults"))
+        found = {"quarantine": _quarantine(store, [store.read("list_faults")], today)}
+        raise _nothing_sound(store, found, made_from)
     index = store.read_all("season_index")
     sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
     tows = store.read_all("season_tows").join(sound, on="tow_id", how="semi")
-    runs = store.read_all("season_runs").join(sound, on="tow_id", how="semi")
+    present = intake.present_runs(store)
+    runs = store.read_all("season_runs").join(present, on=["tow_id", "run"], how="semi")
     windows = store.read("listed_windows").join(runs, on=["tow_id", "run"], how="semi")
-    beyond = _outside_run(store, windows)
+    beyond = _as_faults(outside_run(windows, present))
+    unsound = index.filter(pl.col("reason_code").is_not_null()).select(list(intake.FAULT_SCHEMA))
     found = {
         "boats": store.read("listed_boats"),
         "seasons": _seasons(store.read_all("season_tows"), sound),
@@ -129,10 +136,10 @@ def collect_archive(store: Store, today: dt.date) -> dict[str, int]:
         "hand_windows": windows.join(
             beyond, left_on=_LISTED_AT, right_on=["path", "line"], how="anti"
         ),
-        "quarantine": _quarantine(store, index, beyond, today),
+        "quarantine": _quarantine(store, [store.read("list_faults"), beyond, unsound], today),
     }
     if tows.is_empty():
-        raise _nothing_sound(found["quarantine"])
+        raise _nothing_sound(store, found, made_from)
     for name, frame in found.items():
         store.write(name, conform(name, frame), made_from)
     return {name: frame.height for name, frame in found.items()}
@@ -146,51 +153,49 @@ def _seasons(listed: pl.DataFrame, sound: pl.DataFrame) -> pl.DataFrame:
     )
 
 
-def _nothing_sound(faults: pl.DataFrame) -> MissingKnowledgeError:
-    """The error for an archive without any tow that can be used."""
+def _nothing_sound(
+    store: Store, found: Mapping[str, pl.DataFrame], made_from: str
+) -> MissingKnowledgeError:
+    """Keeps what is set aside, also for readers of a first database, and gives the error."""
+    faults = conform("quarantine", found["quarantine"])
+    store.write("quarantine", faults, made_from)
+    if not store.database.exists():
+        kept = {name: conform(name, frame) for name, frame in found.items()}
+        build_database(store.database, _all_empty() | kept | {"about": _about(store)})
     if faults.is_empty():
         return MissingKnowledgeError(
             "no tow can be used: the tow lists hold none in the seasons that were read; "
             "fill sleeplijsten/sleeplijst_<jaar>.csv, or widen --seasons"
         )
+    causes = faults["reason_code"].value_counts(sort=True).sort("count", descending=True).rows()
+    counted = ", ".join(f"{number} x {reason}" for reason, number in causes)
     first = faults.row(0, named=True)
     return MissingKnowledgeError(
-        f"no tow can be used: {faults.height} tows or files are set aside. Mend the first and "
-        f"try again: {first['path']}: {first['message']}"
+        f"no tow can be used: {faults.height} rows or files are set aside ({counted}). "
+        f"All stand in the table quarantine. See them by cause with: herijk check ARCHIVE. "
+        f"The first: {first['path']}: {first['message']}"
     )
+
+
+def _all_empty() -> dict[str, pl.DataFrame]:
+    return {name: schema.create_empty() for name, schema in TABLES.items()}
 
 
 _LISTED_AT: Final = ["list_path", "list_line"]
 
 
-def _outside_run(store: Store, windows: pl.DataFrame) -> pl.DataFrame:
-    """Faults of windows that end after their run."""
-    faults = []
-    if not windows.is_empty():
-        seconds = (
-            intake.all_blocks(store)
-            .group_by("tow_id", "run")
-            .agg((pl.col("second").max() + 1).alias("seconds"))
-        )
-        faults = outside_run(windows, seconds)
+def _as_faults(faults: Sequence[Fault]) -> pl.DataFrame:
     return pl.DataFrame([dataclasses.asdict(f) for f in faults], schema=intake.FAULT_SCHEMA)
 
 
-def _quarantine(
-    store: Store, index: pl.DataFrame, beyond: pl.DataFrame, today: dt.date
-) -> pl.DataFrame:
+def _quarantine(store: Store, parts: Sequence[pl.DataFrame], today: dt.date) -> pl.DataFrame:
     """All faults; one that was there before keeps the day on which it was first seen."""
-    faults = pl.concat(
-        [
-            store.read("list_faults"),
-            beyond,
-            index.filter(pl.col("reason_code").is_not_null()).select(list(intake.FAULT_SCHEMA)),
-        ]
-    )
     key = ["path", "tow_id", "line", "reason_code"]
     first = _seen_before(store).group_by(key).agg(pl.col("first_seen").min())
-    return faults.join(first, on=key, how="left", nulls_equal=True).with_columns(
-        pl.col("first_seen").fill_null(today)
+    return (
+        pl.concat(parts)
+        .join(first, on=key, how="left", nulls_equal=True)
+        .with_columns(pl.col("first_seen").fill_null(today))
     )
 
 
@@ -306,10 +311,10 @@ def make_studies(store: Store, methods: Sequence[Method], blocks: RunBlocks) -> 
 
 
 def consistency_made_from(store: Store, methods: Sequence[Method]) -> str:
-    """What the statistics of boat types are made from; not from editions or decisions."""
+    """What the statistics of boat types are made from: races too; not editions or decisions."""
     curves = {m.name: store.made_from("curves", m.name) for m in methods}
     archive = [store.made_from(t) for t in ("tows", "boats")]
-    return fingerprint(curves, archive, code_version())
+    return fingerprint(curves, archive, table_digest(store.read("listed_races")), code_version())
 
 
 def consistency_is_stale(store: Store, methods: Sequence[Method]) -> bool:
@@ -326,7 +331,8 @@ def make_consistency(store: Store, methods: Sequence[Method]) -> dict[str, int]:
     """
     names = [m.name for m in methods]
     curves, run_points = (store.read_all(t, names) for t in ("curves", "run_points"))
-    found = consistency_tables(curves, store.read("tows"), store.read("boats"), run_points)
+    tows, boats, races = (store.read(t) for t in ("tows", "boats", "listed_races"))
+    found = consistency_tables(curves, tows, boats, run_points, races)
     made_from = consistency_made_from(store, methods)
     for name in CONSISTENCY_TABLES:
         store.write(name, conform(name, found[name]), made_from)
@@ -441,16 +447,20 @@ def make_database(store: Store, methods: Sequence[Method]) -> dict[str, int]:
     found = {t: store.read(t) for t in WHOLE_TABLES}
     for table in METHOD_TABLES:
         found[table] = conform(table, store.read_all(table, [m.name for m in methods]))
-    about = {
-        "simulated": str(store.read("about_archive")["simulated"][0]).lower(),
-        "code_version": code_version(),
-    }
-    found["about"] = pl.DataFrame({"key": list(about), "value": list(about.values())})
+    found["about"] = _about(store)
     found["contents"] = _contents(found)
     build_database(store.database, found)
     made = pl.DataFrame({"sha256": [file_sha256(store.database)]})
     store.write("database", made, database_made_from(store, methods))
     return {name: frame.height for name, frame in found.items()}
+
+
+def _about(store: Store) -> pl.DataFrame:
+    about = {
+        "simulated": str(store.read("about_archive")["simulated"][0]).lower(),
+        "code_version": code_version(),
+    }
+    return pl.DataFrame({"key": list(about), "value": list(about.values())})
 
 
 def _contents(found: Mapping[str, pl.DataFrame]) -> pl.DataFrame:

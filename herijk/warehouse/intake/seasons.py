@@ -30,6 +30,7 @@ from herijk.warehouse.store.store import Store, fingerprint
 LISTED: Final = ("boats", "tows", "runs", "windows")
 SEASON_TABLES: Final = ("season_tows", "season_runs", "season_index", "blocks")
 """What is kept of a season, as the archive was when it was read."""
+PRESENT_SCHEMA: Final = {"tow_id": pl.String(), "run": pl.Int8(), "seconds": pl.Int16()}
 FAULT_SCHEMA: Final = {
     "path": pl.String(),
     "tow_id": pl.String(),
@@ -144,6 +145,17 @@ def all_blocks(store: Store) -> pl.DataFrame:
     """Blocks of all seasons; those without a sound tow have none."""
     frames = [store.read("blocks", season) for season in store.partitions("blocks")]
     return pl.concat([f for f in frames if f.height])
+
+
+def present_runs(store: Store) -> pl.DataFrame:
+    """The runs that the samples of sound tows hold: `tow_id`, `run`, and length in `seconds`."""
+    seasons = (store.read("blocks", season) for season in store.partitions("blocks"))
+    lengths = (
+        blocks.group_by("tow_id", "run").agg((pl.col("second").max() + 1).alias("seconds"))
+        for blocks in seasons
+        if blocks.height
+    )
+    return pl.concat([pl.DataFrame(schema=PRESENT_SCHEMA), *lengths])
 
 
 def blocks_made_from(store: Store) -> str:

@@ -239,7 +239,7 @@ WHERE o.method = ? AND o.boat_type = ? AND o.outside ORDER BY abs(deviation_sd) 
 
 _SLOW = """
 SELECT s.*, b.name FROM slow_tows AS s LEFT JOIN boats AS b USING (fsn_no)
-WHERE s.method = ? AND s.boat_type = ? ORDER BY power_w, tow_id
+WHERE s.method = ? AND s.boat_type = ? AND s.slow ORDER BY power_w, tow_id
 """
 
 _PAIRS = f"""

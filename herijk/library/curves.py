@@ -1,0 +1,148 @@
+"""Curves for anybody with speeds and forces: fit, interval, power and speed.
+
+The formulas are those of the register (`pipeline.curve`); here they take plain lists and arrays.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from herijk.pipeline import curve as hyperbola
+from herijk.pipeline.errors import HerijkError
+from herijk.pipeline.races.power import speed_at_power
+
+FloatArray = NDArray[np.float64]
+
+
+class Estimate(NamedTuple):
+    """A number with its interval; `None` where the data set no bound."""
+
+    value: float | None
+    lo: float | None
+    hi: float | None
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A resistance curve Cw(v) = A / (1 - (v/B)^2) [kg/m].
+
+    Attributes:
+        a_kg_m: A, the coefficient at v = 0.
+        s_s2_m2: 1/B^2; zero or negative for a flat or falling curve, which has no B.
+    """
+
+    a_kg_m: float
+    s_s2_m2: float
+
+    @classmethod
+    def of(cls, a_kg_m: float, b_m_s: float | None) -> Self:
+        """The curve of an A and a B; no B is a flat curve.
+
+        >>> Curve.of(20.0, 4.0).cw_kg_m(2.0)
+        array(26.66666667)
+        """
+        return cls(a_kg_m, 0.0 if b_m_s is None else float(hyperbola.s_of_b(b_m_s)))
+
+    @property
+    def b_m_s(self) -> float | None:
+        """B, the speed at which the hyperbola goes to infinity; None for a flat curve."""
+        return float(self.s_s2_m2**-0.5) if self.s_s2_m2 > 0 else None
+
+    def cw_kg_m(self, speed_m_s: ArrayLike) -> FloatArray:
+        """Cw at speeds of any shape; infinite from B on."""
+        return hyperbola.cw(self.a_kg_m, self.s_s2_m2, speed_m_s)
+
+    def power_w(self, speed_m_s: ArrayLike) -> FloatArray:
+        """Power through the water, P = Cw v^3, of the whole crew.
+
+        >>> Curve.of(20.0, None).power_w(3.0)
+        array(540.)
+        """
+        speed = np.asarray(speed_m_s, dtype=np.float64)
+        return np.asarray(self.cw_kg_m(speed) * speed**3, dtype=np.float64)
+
+    def speed_m_s(self, power_w: ArrayLike) -> FloatArray:
+        """The speed at which the whole crew gives a power; inverse of `power_w`.
+
+        >>> Curve.of(20.0, None).speed_m_s(540.0).round(9)
+        np.float64(3.0)
+        """
+        power = np.asarray(power_w, dtype=np.float64)
+        a, s = (np.broadcast_to(x, power.shape) for x in (self.a_kg_m, self.s_s2_m2))
+        return speed_at_power(a, s, power)
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A curve fitted to points, with what their scatter says about it.
+
+    Attributes:
+        curve: the curve of least squares in Cw.
+        points: the points, as `pipeline.curve.Points` of one curve.
+    """
+
+    curve: Curve
+    points: hyperbola.Points
+    _fitted: hyperbola.Curves
+
+    @property
+    def b(self) -> Estimate:
+        """B [m/s] with its 95 % interval; the value is None where the points bend no curve."""
+        bounds = hyperbola.b_interval(
+            self.points, self._fitted, hyperbola.own_scatter(self._fitted)
+        )
+        return Estimate(self.curve.b_m_s, _finite(bounds.lo[0]), _finite(bounds.hi[0]))
+
+    @property
+    def b_is_determined(self) -> bool:
+        """Whether the points set B a lower and an upper bound."""
+        return None not in self.b
+
+    def cw(self, speed_m_s: float) -> Estimate:
+        """Cw [kg/m] at a speed with its 95 % interval, from the scatter of the points alone."""
+        scatter = hyperbola.own_scatter(self._fitted)
+        errors = hyperbola.covariance(self.points, self._fitted, scatter, speed_m_s)
+        bounds = hyperbola.cw_interval(self._fitted, errors, scatter.dof, speed_m_s)
+        value = float(self.curve.cw_kg_m(speed_m_s))
+        return Estimate(_finite(value), _finite(bounds.lo[0]), _finite(bounds.hi[0]))
+
+
+def fit(
+    speed_m_s: ArrayLike, force_n: ArrayLike | None = None, *, cw_kg_m: ArrayLike | None = None
+) -> Fit:
+    """A curve through speeds and forces, or through speeds and coefficients.
+
+    Args:
+        speed_m_s: speeds through water, shape (n,), positive.
+        force_n: tow forces, shape (n,), positive; or
+        cw_kg_m: coefficients F/v^2, shape (n,), positive.
+
+    Raises:
+        HerijkError: a number is missing or not positive, or the points determine no curve.
+
+    >>> found = fit([2.7, 3.0, 3.3, 2.7, 3.0, 3.3], [215, 281, 364, 217, 279, 366])
+    >>> round(found.curve.a_kg_m, 2), round(found.curve.b_m_s, 2)
+    (23.88, 6.17)
+    >>> found.b_is_determined
+    True
+    """
+    speed = np.asarray(speed_m_s, dtype=np.float64)
+    given = force_n if cw_kg_m is None else cw_kg_m
+    if given is None or (force_n is not None and cw_kg_m is not None):
+        raise HerijkError("give force_n or cw_kg_m, and not both")
+    values = np.asarray(given, dtype=np.float64)
+    if speed.ndim != 1 or speed.shape != values.shape:
+        raise HerijkError(f"{speed.size} speeds and {values.size} values; give as many of each")
+    if not (np.isfinite(speed) & np.isfinite(values) & (speed > 0) & (values > 0)).all():
+        raise HerijkError("every speed and every force must be a positive number")
+    points = hyperbola.Points.of(speed, values / speed**2 if cw_kg_m is None else values)
+    fitted = hyperbola.fit(points)
+    if not fitted.converged[0]:
+        raise HerijkError("the points determine no curve; two different speeds are the least")
+    return Fit(Curve(float(fitted.a_kg_m[0]), float(fitted.s_s2_m2[0])), points, fitted)
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

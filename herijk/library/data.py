@@ -1,0 +1,76 @@
+"""A data folder as Polars frames: the tables that a rebuild made, read only."""
+
+from pathlib import Path
+
+import polars as pl
+
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.register.changes import register_changes
+from herijk.warehouse.store.database import open_database
+from herijk.warehouse.store.store import Store
+
+
+class DataFolder:
+    """The tables of a data folder. Each call opens the database anew and sees the last rebuild."""
+
+    def __init__(self, root: Path) -> None:
+        self._database = Store(root).database
+        self.tables  # noqa: B018 - says at once when there is no database
+
+    @property
+    def tables(self) -> dict[str, str]:
+        """The tables by name, each with what a row of it is."""
+        query = "SELECT table_name, comment FROM duckdb_tables() ORDER BY table_name"
+        return dict(self.sql(query).rows())
+
+    def table(self, name: str) -> pl.DataFrame:
+        """One table, whole.
+
+        Raises:
+            MissingKnowledgeError: there is no such table.
+        """
+        if name not in self.tables:
+            raise MissingKnowledgeError(
+                f"there is no table {name!r}; the tables are {', '.join(self.tables)}"
+            )
+        return self.sql(f'FROM "{name}"')
+
+    def register(self, edition: str) -> pl.DataFrame:
+        """The lines of one edition; a draft is called `concept-<method>`.
+
+        Raises:
+            MissingKnowledgeError: there is no such edition.
+        """
+        lines = self.table("register")
+        found = lines.filter(pl.col("edition") == edition)
+        if found.is_empty():
+            known = ", ".join(lines["edition"].unique().sort())
+            raise MissingKnowledgeError(f"there is no edition {edition!r}; there are {known}")
+        return found
+
+    def sql(self, query: str) -> pl.DataFrame:
+        """The result of an SQL query; nothing can be written."""
+        with open_database(self._database) as connection:
+            return pl.DataFrame(connection.sql(query).pl())
+
+
+def open_data(folder: str | Path) -> DataFolder:
+    """The tables of a data folder that `herijk rebuild` made.
+
+    Raises:
+        MissingKnowledgeError: nothing was rebuilt there.
+    """
+    return DataFolder(Path(folder))
+
+
+def compare_registers(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
+    """What changes from one register to another, per boat and crew.
+
+    Args:
+        old, new: rows of `DataFolder.register`, each of one edition.
+
+    Returns:
+        Rows of the table `register_changes`: `cw_ratio`, `power_ratio`, `time_ratio` are new over
+        old at the old declared speed.
+    """
+    return register_changes(old, new)

@@ -1,0 +1,207 @@
+"""Every tow next to the others of its type: what the charts of the 2015 presentation plot.
+
+All tows of all seasons, each marked: the newest of its boat and crew, towed too slowly, outside its
+type. Also what hull speed says: `v0 / hull speed`, `B / hull speed`, and which of the three cases
+of Cw-kromme (R. Pot 2015) a tow is. Lines and outliers themselves stand in `lines`.
+"""
+
+from typing import Final
+
+import numpy as np
+import polars as pl
+import scipy
+
+from herijk.pipeline.arrays import FloatArray
+from herijk.pipeline.consistency.eras import Era, median_interval
+from herijk.pipeline.consistency.lines import (
+    ALL_TOWS,
+    NEWEST,
+    standard_speed_m_s,
+    tow_outliers,
+)
+from herijk.pipeline.consistency.observed import (
+    NORMAL_95,
+    TOW_SCHEMA,
+    UNKNOWN_TYPE,
+    Observed,
+    counts_at,
+    curve_anywhere,
+    ln_cw_variance,
+    newest,
+)
+from herijk.pipeline.consistency.tow_speed import is_slow, speed_case
+from herijk.pipeline.steps.hull import hull_speed_m_s
+
+ROWED_RATIO: Final = (0.60, 0.70)
+"""Presentation 2015: "We roeien op ca. 60-70% van de rompsnelheid"."""
+
+ALL_TYPES: Final = "all"
+LEVEL: Final = 0.95
+FEWEST_LENGTHS: Final = 6
+
+
+def compared_tows(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
+    """All tows with what is compared: A, B and Cw at the standard speed, and hull speed.
+
+    Returns:
+        Rows of the table `compared_tows`; `cw_standard_kg_m` is empty where the standard speed is
+        not below B, and what outliers say where the type has too few boats.
+    """
+    last = newest(observed).table.select("method", "tow_id", newest=pl.lit(value=True))
+    parts = [_of_type(tows) for _, tows in observed.groups("method", "boat_type")]
+    outliers = tow_outliers(observed, eras).select(
+        "method",
+        "tow_id",
+        pl.col("expected").exp().alias("expected_cw_kg_m"),
+        "deviation_sd",
+        "outside",
+        "candidates",
+    )
+    found = pl.concat([_empty(), *parts])
+    return (
+        found.join(last, on=["method", "tow_id"], how="left")
+        .join(outliers, on=["method", "tow_id"], how="left")
+        .with_columns(pl.col("newest").fill_null(value=False))
+        .sort("method", "tow_id")
+    )
+
+
+_FROM_CURVES: Final = (
+    *("declared_speed_m_s", "weight_kg", "displacement_kg", "waterline_length_m"),
+    *("a_kg_m", "b_m_s", "b_lo_m_s", "b_hi_m_s", "power_w"),
+)
+_NUMBERS: Final = (
+    *("a_lo_kg_m", "a_hi_kg_m", "hull_speed_m_s", "tow_hull_ratio", "b_hull_ratio"),
+    *("standard_speed_m_s", "cw_standard_kg_m", "cw_standard_lo_kg_m", "cw_standard_hi_kg_m"),
+)
+
+
+def _empty() -> pl.DataFrame:
+    schema = (
+        TOW_SCHEMA
+        | {"season": pl.Int32()}
+        | dict.fromkeys((*_FROM_CURVES, *_NUMBERS), pl.Float64())
+        | {"speed_case": pl.String(), "beyond_curve": pl.Boolean(), "slow": pl.Boolean()}
+    )
+    return pl.DataFrame(schema=schema)
+
+
+def _of_type(tows: Observed) -> pl.DataFrame:
+    speed = standard_speed_m_s(tows)
+    cw = curve_anywhere(tows, speed)
+    half = NORMAL_95 * np.sqrt(ln_cw_variance(tows, speed))
+    a_lo, a_hi = _a_interval(tows)
+    hull = hull_speed_m_s(tows.column("waterline_length_m"))
+    b = tows.table["b_m_s"].to_numpy().astype(np.float64)
+    ratio = tows.column("declared_speed_m_s") / hull
+    numbers = {
+        "a_lo_kg_m": a_lo,
+        "a_hi_kg_m": a_hi,
+        "hull_speed_m_s": hull,
+        "tow_hull_ratio": ratio,
+        "b_hull_ratio": b / hull,
+        "standard_speed_m_s": np.full(len(cw), speed),
+        "cw_standard_kg_m": cw,
+        "cw_standard_lo_kg_m": cw * np.exp(-half),
+        "cw_standard_hi_kg_m": cw * np.exp(half),
+    }
+    return tows.table.select(
+        *TOW_SCHEMA,
+        "season",
+        *(pl.col(name).cast(pl.Float64) for name in _FROM_CURVES),
+    ).with_columns(
+        *(pl.Series(name, values, pl.Float64).fill_nan(None) for name, values in numbers.items()),
+        pl.Series("speed_case", speed_case(ratio), pl.String),
+        pl.Series("beyond_curve", ~counts_at(tows, speed)),
+        pl.Series("slow", is_slow(tows.table)),
+    )
+
+
+def _a_interval(tows: Observed) -> tuple[FloatArray, FloatArray]:
+    """95 % interval of A by the scatter of its runs, shape (rows,)."""
+    q = tows.column("q")
+    unit = (
+        tows.column("c0_unit_variance")
+        - 2.0 * tows.column("c0_q_unit_covariance") / (1.0 + q)
+        + tows.column("q_unit_variance") / (1.0 + q) ** 2
+    )
+    half = NORMAL_95 * np.sqrt(np.maximum(unit, 0.0)) * tows.column("run_sd_ratio")
+    return tows.column("a_kg_m") * np.exp(-half), tows.column("a_kg_m") * np.exp(half)
+
+
+def hull_speed_statistics(compared: pl.DataFrame) -> pl.DataFrame:
+    """Is B hull speed, and at what part of hull speed are boats towed?
+
+    Of a boat with several tows the median counts, so that it counts once. The interval of the
+    median rests on order statistics; the slope is that of ln B on ln waterline length, 0.5 if B
+    went with hull speed.
+
+    Args:
+        compared: rows of `compared_tows`.
+
+    Returns:
+        Rows of the table `hull_speed`, per method, choice of tows, and boat type or all.
+    """
+    rows = []
+    for choice, tows in ((ALL_TOWS, compared), (NEWEST, compared.filter("newest"))):
+        groups = [
+            *tows.filter(pl.col("boat_type") != UNKNOWN_TYPE).group_by("method", "boat_type"),
+            *(((m, ALL_TYPES), group) for (m,), group in tows.group_by("method")),
+        ]
+        rows += [
+            {"method": m, "tows": choice.tows, "boat_type": t} | _hull_row(group, t)
+            for (m, t), group in groups
+        ]
+    numbers = (
+        *("tow_ratio", "tow_ratio_lo", "tow_ratio_hi", "tow_share_60_70"),
+        *("b_ratio", "b_ratio_lo", "b_ratio_hi", "b_share_within_5pct"),
+        *("length_slope", "length_slope_lo", "length_slope_hi", "length_r2"),
+    )
+    schema = (
+        dict.fromkeys(("method", "tows", "boat_type"), pl.String())
+        | dict.fromkeys(("n", "n_boats", "n_with_b"), pl.Int32())
+        | dict.fromkeys(numbers, pl.Float64())
+        | {"b_is_hull_speed": pl.Boolean()}
+    )
+    return pl.DataFrame(rows, schema=schema).sort("method", "tows", "boat_type")
+
+
+def _hull_row(tows: pl.DataFrame, boat_type: str) -> dict[str, object]:
+    ratio = tows["tow_hull_ratio"]
+    with_b = tows.drop_nulls("b_hull_ratio")
+    row: dict[str, object] = {
+        "n": tows.height,
+        "n_boats": tows["fsn_no"].n_unique(),
+        "n_with_b": with_b.height,
+        "tow_ratio": ratio.median(),
+        "tow_ratio_lo": ratio.quantile(0.05, "linear"),
+        "tow_ratio_hi": ratio.quantile(0.95, "linear"),
+        "tow_share_60_70": ratio.is_between(*ROWED_RATIO).mean(),
+        "b_share_within_5pct": (with_b["b_hull_ratio"] - 1.0).abs().le(0.05).mean(),
+    }
+    boats = with_b.group_by("fsn_no").agg(
+        pl.col("b_hull_ratio", "b_m_s", "waterline_length_m").median()
+    )
+    ratios = np.sort(boats["b_hull_ratio"].to_numpy())
+    interval = median_interval(ratios)
+    row["b_ratio"] = float(np.median(ratios)) if len(ratios) else None
+    if interval is not None:
+        _, lo, hi = interval
+        row |= {"b_ratio_lo": lo, "b_ratio_hi": hi, "b_is_hull_speed": lo <= 1.0 <= hi}
+    return row | (_length_slope(boats) if boat_type == ALL_TYPES else {})
+
+
+def _length_slope(boats: pl.DataFrame) -> dict[str, float]:
+    """Slope of ln B on ln length over boats, with its 95 % interval."""
+    sorted_boats = boats.sort("fsn_no")
+    x, y = (np.log(sorted_boats[name].to_numpy()) for name in ("waterline_length_m", "b_m_s"))
+    if len(x) < FEWEST_LENGTHS or np.ptp(x) < 1e-9:
+        return {}
+    line = scipy.stats.linregress(x, y)
+    half = float(scipy.special.stdtrit(len(x) - 2, 0.5 + LEVEL / 2)) * line.stderr
+    return {
+        "length_slope": float(line.slope),
+        "length_slope_lo": float(line.slope - half),
+        "length_slope_hi": float(line.slope + half),
+        "length_r2": float(line.rvalue**2),
+    }

@@ -1,0 +1,201 @@
+"""Named worlds: each fault is what its name says, where it says, and nothing else."""
+
+import csv
+from collections import defaultdict
+from pathlib import Path
+
+import numpy as np
+import polars as pl
+import pytest
+
+from herijk.pipeline.errors import HerijkError
+from herijk.simulate import (
+    WORLDS,
+    nearest_hyperbola,
+    simulate_tow,
+    simulate_world,
+    true_cw_kg_m,
+    world_settings,
+)
+from herijk.simulate.archive_writer import write_simulated_archive
+from herijk.simulate.delft import FROUDE, RESIDUARY
+
+DELFT_FILE = Path(__file__).parents[2] / "data" / "uci_yacht_hydrodynamics.csv"
+SEASONS = tuple(range(2009, 2019))
+
+
+def world(name, **size):
+    return simulate_world(world_settings(name, **{"tows_per_season": 12, "rate_hz": 20} | size))
+
+
+def tow_of(name, season, number=0):
+    found = world(name, seasons=(season,))
+    return simulate_tow(found, found.tows[number])[0], found.tows[number]
+
+
+@pytest.mark.parametrize("name", WORLDS)
+def test_every_world_says_what_is_wrong_and_can_be_simulated(name):
+    assert WORLDS[name].about.endswith(".")
+    samples, _ = tow_of(name, 2016)
+    assert samples.height in (6 * 50 * 20, 12 * 50 * 20)
+
+
+def test_a_world_that_does_not_exist_is_refused_with_those_that_do():
+    with pytest.raises(HerijkError, match="fouling"):
+        world_settings("foulness")
+
+
+@pytest.mark.parametrize(
+    ("name", "season", "changed"),
+    [
+        ("force-scale-dgps", 2016, {"force_n"}),
+        ("force-zero", 2016, {"force_n"}),
+        ("anemometer", 2010, {"wind_speed_m_s"}),
+        ("vane", 2010, {"wind_angle_deg"}),
+        ("gps-scale", 2016, {"gps_m_s"}),
+        ("gps-lag", 2016, {"gps_m_s"}),
+        ("fouling", 2010, {"log1_m_s", "log2_m_s"}),
+        ("force-scale-dgps", 2015, set()),
+        ("temperatures", 2016, set()),
+    ],
+)
+def test_a_fault_touches_its_own_channel_in_its_own_seasons(name, season, changed):
+    (samples, _), (clean, _) = tow_of(name, season), tow_of("clean", season)
+    assert {c for c in samples.columns if not samples[c].equals(clean[c])} == changed
+
+
+def test_scale_and_zero_are_what_was_asked():
+    (scaled, _), (zero, _), (clean, _) = (
+        tow_of(name, 2016) for name in ("force-scale-dgps", "force-zero", "clean")
+    )
+    force = clean["force_n"].to_numpy()
+    assert scaled["force_n"].to_numpy() == pytest.approx(1.04 * force, rel=1e-6)
+    assert zero["force_n"].to_numpy() == pytest.approx(force + 10.0, rel=1e-5)
+
+
+def test_a_log_that_steers_reads_the_target_and_the_ship_goes_faster():
+    (samples, tow), (clean, _) = tow_of("log-steers", 2010), tow_of("clean", 2010)
+    factor = tow.truth.log_factor
+    assert factor > 1.03
+    ratio = samples["log1_m_s"].mean() / clean["log1_m_s"].mean()
+    assert ratio == pytest.approx(factor, rel=0.003)
+
+
+def test_fouling_and_a_replaced_log_move_the_days_of_a_season():
+    fouling = [t.truth for t in world("fouling", seasons=(2010,)).tows]
+    change = np.log([t.log_factor_of_day / t.season_log_factor for t in fouling])
+    assert (change[0], change[-1]) == pytest.approx((-0.02, 0.02))
+    assert (np.diff(change) >= 0).all()
+    replaced = [t.truth for t in world("log-replaced", seasons=(2010,)).tows]
+    steps = np.log([t.log_factor_of_day / t.season_log_factor for t in replaced])
+    assert set(steps.round(6)) == {0.0, -0.04}
+    assert (np.diff(steps) <= 0).all()
+
+
+def test_the_zero_drifts_through_the_season():
+    zero = [t.truth.force_zero_n for t in world("force-zero-drift", seasons=(2016,)).tows]
+    assert (zero[0], zero[-1]) == pytest.approx((-12.0, 12.0))
+
+
+def test_a_turning_tide_is_in_the_ground_speed_alone():
+    (samples, _), (clean, _) = tow_of("tide", 2016), tow_of("clean", 2016)
+    assert samples["log1_m_s"].equals(clean["log1_m_s"])
+    runs = samples.with_columns(moved=pl.col("gps_m_s") - clean["gps_m_s"]).group_by("run")
+    moved = runs.agg(pl.col("moved").mean()).sort("run")["moved"].to_numpy()
+    stream = moved * np.array([1, 1, 1, -1, -1, -1])
+    assert stream.min() < 0.0 < stream.max()
+    assert (np.diff(stream) > 0).all() or (np.diff(stream) < 0).all()
+
+
+def test_the_fleet_steps_at_once_and_stays():
+    stepped, clean = world("fleet-step"), world("clean")
+    for old, new in zip(clean.tows, stepped.tows, strict=True):
+        ratio = new.truth.cw_at_15c_kg_m / old.truth.cw_at_15c_kg_m
+        # The still-air part, some 3 %, does not step.
+        assert ratio == pytest.approx(0.97 if new.season >= 2014 else 1.0, abs=0.002)
+
+
+def test_the_table_of_the_delft_series_is_the_published_one():
+    published = defaultdict(list)
+    with DELFT_FILE.open(encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            resistance = float(row["residuary_resistance_per_1000_displacement_weight"])
+            published[row["hull_no"]].append((float(row["froude"]), resistance))
+    del published["5"]
+    assert [tuple(r for _, r in hull) for hull in published.values()] == list(RESIDUARY)
+    assert all(tuple(f for f, _ in hull) == FROUDE for hull in published.values())
+
+
+@pytest.mark.parametrize(("name", "low", "high"), [("delft", 0.4, 0.8), ("hump", 0.6, 1.1)])
+def test_how_far_a_hyperbola_misses_such_hulls(name, low, high):
+    found = world(name)
+    misses = []
+    for tow in found.tows:
+        speeds = tow.declared_speed_m_s * np.array([0.9, 1.0, 1.1])
+        true = true_cw_kg_m(tow.hull, speeds, 15.0, found.settings.air)
+        a, b = nearest_hyperbola(tow.hull, tow.declared_speed_m_s, 15.0, found.settings.air)
+        misses.append(100 * np.sqrt(np.mean((a / (1 - (speeds / b) ** 2) / true - 1) ** 2)))
+    assert low < np.median(misses) < high
+
+
+def test_boats_of_a_type_are_identical_where_the_world_says_so():
+    boats = defaultdict(set)
+    for boat in world("identical-delft").boats:
+        if boat.boat_type.name:
+            shape = boat.waterline_length_m, boat.beam_m, boat.weight_kg, boat.roughness
+            boats[boat.boat_type.name].add((*shape, boat.residuary))
+    assert {len(shapes) for shapes in boats.values()} == {1}
+
+
+@pytest.mark.parametrize(("name", "tied"), [("untied", 0), ("three-ties", 3)])
+def test_so_many_boats_of_2010_are_towed_again(name, tied):
+    tows = world(name).tows
+    of_2010 = {(t.boat.index, t.crew_class) for t in tows if t.season == 2010}
+    elsewhere = {(t.boat.index, t.crew_class) for t in tows if t.season != 2010}
+    assert len(of_2010 & elsewhere) == tied
+
+
+def test_missing_temperatures_are_in_the_water_but_not_in_the_list():
+    tows = world("temperatures").tows
+    assert all((t.listed_temperature_c is None) == (t.season < 2014) for t in tows)
+    means = [np.mean([t.water_temperature_c for t in tows if t.season == s]) for s in (2009, 2013)]
+    assert means == pytest.approx([4.0, 12.0], abs=0.8)
+
+
+def test_slow_tows_keep_to_their_range():
+    slow, usual = world("slow-tows").tows, world("clean").tows
+    ratio = np.array(
+        [a.declared_speed_m_s / b.declared_speed_m_s for a, b in zip(slow, usual, strict=True)]
+    )
+    assert 0.2 < (ratio < 0.99).mean() < 0.5
+    assert ratio.min() > 0.745
+
+
+def test_dropouts_gaps_and_spikes_are_in_the_samples():
+    found = world("dropouts", seasons=(2016,), tows_per_season=40)
+    samples = pl.concat([simulate_tow(found, tow)[0] for tow in found.tows])
+    assert 0 < (samples["log1_m_s"] == 0.0).sum() < 0.01 * samples.height
+    assert 0 < samples["force_n"].is_nan().sum() < 0.01 * samples.height
+    assert 0 < (samples["force_n"].fill_nan(0.0) > 4000.0).sum() < 20
+
+
+def test_second_files_thwarts_and_freeboards_are_written_as_the_archive_wants_them(tmp_path):
+    for name in ("two-files", "lists"):
+        found = world(name, seasons=(2018,), tows_per_season=16)
+        write_simulated_archive(tmp_path / name, found)
+    two, lists = (
+        pl.read_csv(
+            tmp_path / name / "sleeplijsten" / "sleeplijst_2018.csv",
+            separator=";",
+            infer_schema=False,
+        )
+        for name in ("two-files", "lists")
+    )
+    combined = two.drop_nulls("meetfile2")
+    assert 0 < combined.height < two.height
+    assert set(combined["gebruik runs"]) == {"1,2,3,b4,b5,b6"}
+    names = {file.name.split(".")[0] for file in (tmp_path / "two-files/meetdata_2018").iterdir()}
+    assert names == {*two["meetfile"], *combined["meetfile2"]}
+    assert "lege doft" not in two.columns
+    assert 0 < lists["lege doft"].drop_nulls().len() < lists.height
+    assert lists["vrijboord laagst [m]"].null_count() == 0
