@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, cast
 import typer
 from typer.core import TyperGroup
 
+from herijk.cli import documents as commands_documents
 from herijk.cli import editions as commands_editions
 from herijk.cli import text
 from herijk.cli.arguments import ArchiveFolder, AsJson, DataFolder, show
@@ -39,6 +40,7 @@ methods_app = typer.Typer(help="The methods that ship with Herijk.", rich_markup
 app.add_typer(methods_app, name="methods", invoke_without_command=True)
 
 commands_editions.add_to(app)
+commands_documents.add_to(app)
 app.command()(fit)
 
 MOST_TYPES: Final = 2

@@ -31,7 +31,5 @@ def _compiler(template: str) -> typst.Compiler:
 def pdf(template: str, content: dict[str, Any]) -> bytes:
     """A document of this content."""
     held = json.dumps(content, ensure_ascii=False, default=str)
-    made = _compiler(template).compile(
-        format="pdf", sys_inputs={"content": held}, timestamp=EPOCH
-    )
+    made = _compiler(template).compile(format="pdf", sys_inputs={"content": held}, timestamp=EPOCH)
     return bytes(made)

@@ -52,4 +52,66 @@ DOCUMENTS: Final[dict[str, tuple[str, str]]] = {
         "Deze regel is niet gepubliceerd en heeft geen controlecode.",
         "This line is not published and has no verification code.",
     ),
+    "proposal": ("Voorstel aan de leden", "Proposal to the members"),
+    "proposal_title": ("Voorstel: {method}", "Proposal: {method}"),
+    "proposal_ballot": ("Keuze uit: {method}", "Ballot: {method}"),
+    "proposal_opening": (
+        "Dit stuk laat zien wat er met het register gebeurt als alle sleepproeven met de "
+        "voorgestelde methode worden gerekend, vergeleken met: {old}.",
+        "This document shows what happens to the register if all tow tests are computed by the "
+        "proposed method, compared with: {old}.",
+    ),
+    "proposal_why": (
+        "Waarom: door de jaren is op verschillende manieren gemeten en gerekend. Alleen met één "
+        "methode voor alle seizoenen zijn sloepen eerlijk te vergelijken. Wie wint of verliest, is "
+        "geen reden voor of tegen een methode.",
+        "Why: through the years measuring and computing was done in several ways. Only with one "
+        "method for all seasons can boats be compared fairly. Who gains or loses is no reason for "
+        "or against a method.",
+    ),
+    "proposal_side_by_side": ("De methoden naast elkaar", "The methods side by side"),
+    "middle": ("Mediaan", "Median"),
+    "proposal_what": ("Wat er verandert: {method}", "What changes: {method}"),
+    "proposal_mean": ("Gemiddeld effect op Cw", "Mean effect on Cw"),
+    "proposal_types": ("Voor wie: per type", "For whom: by type"),
+    "proposal_median": ("Cw, mediaan", "Cw, median"),
+    "proposal_seconds": (
+        "In 2 uur: seconden die een ploeg bij hetzelfde vermogen langer (+) mag doen over een "
+        "wedstrijd van twee uur, of sneller (\u2212) moet zijn. Laatste kolom: hoeveel regels meer "
+        "veranderen dan de onzekerheid van beide getallen samen.",
+        "In 2 h: seconds that a crew may take longer (+) over a race of two hours at the same "
+        "power, or has to be faster (\u2212). Last column: how many lines change by more than the "
+        "uncertainty of both numbers together.",
+    ),
+    "proposal_boats": ("De grootste veranderingen", "The largest changes"),
+    "proposal_old": ("Oud", "Old"),
+    "proposal_new": ("Nieuw", "New"),
+    "proposal_change": ("Cw", "Cw"),
+    "proposal_races": ("De wedstrijden van {year}", "The races of {year}"),
+    "proposal_moved": (
+        "Van alle {results} uitslagen in het archief veranderen er {moved} van plaats. De winnaars "
+        "van het laatste jaar:",
+        "Of all {results} results in the archive {moved} change place. The winners of the last "
+        "year:",
+    ),
+    "proposal_chance": ("Kans op een ander", "Chance of another"),
+    "proposal_undecided": ("Wat open blijft", "What stays undecided"),
+    "proposal_unsure": (
+        "Van {unknown} regels is niet te zeggen of de verandering groter is dan de onzekerheid. "
+        "Bij {flagged} sloepen staat een waarschuwing waar de commissie nog naar moet kijken. Oude "
+        "getallen hebben vaak een te kleine onzekerheid: de fout van de log zit er niet in.",
+        "For {unknown} lines it cannot be told whether the change is larger than the uncertainty. "
+        "{flagged} boats carry a flag that the committee still has to look at. Old numbers often "
+        "have too small an uncertainty: the error of the log is not in it.",
+    ),
+    "proposal_check": ("Controleren en bezwaar maken", "Checking, and objecting"),
+    "proposal_checking": (
+        "Elke sloep heeft een pagina op de site met oud en nieuw getal, de oorzaken, en daaronder "
+        "de metingen. Klopt er iets niet, meld het de commissie vóór de stemming, met het "
+        "FSN-nummer en wat u meent dat het moet zijn.",
+        "Every boat has a page on the site with the old and new number, the causes, and the "
+        "measurements below. If something is wrong, tell the committee before the vote, with the "
+        "FSN number and what you think it should be.",
+    ),
+    "proposal_annex": ("Bijlage: de methode in tekst", "Annex: the text of the method"),
 }

@@ -7,9 +7,11 @@ from typing import Final
 
 import polars as pl
 
+from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.register.changes import register_changes, side_by_side, steps_of_lines
-from herijk.pipeline.register.register import LINE
-from herijk.pipeline.register.replay import RaceRules, replay, winner_changes
+from herijk.pipeline.register.register import LINE, draft_name
+from herijk.pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
+from herijk.warehouse.build.tables import STUDIED_METHOD
 from herijk.warehouse.editions.folder import read_edition
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.ensemble import read_ensemble
@@ -21,6 +23,12 @@ DRAFT: Final = "concept-"
 def newest_edition(editions: list[str], default: str) -> str:
     """The last published edition, or this draft where none is published."""
     return next((e for e in reversed(editions) if not e.startswith(DRAFT)), default)
+
+
+def current_edition(views: Views) -> str:
+    """The edition that people ask about: the newest that is published, or the best draft."""
+    editions = views.table("register")["edition"].unique().sort().to_list()
+    return newest_edition(editions, draft_name(STUDIED_METHOD))
 
 
 def line_changes(views: Views) -> pl.DataFrame:
@@ -42,11 +50,33 @@ def line_changes(views: Views) -> pl.DataFrame:
     return pl.concat(found).join(names, on="fsn_no", how="left", maintain_order="left")
 
 
+def compared(views: Views, old: str, new: str) -> pl.DataFrame:
+    """Any two editions or drafts side by side, as `line_changes` has those that are kept.
+
+    Raises:
+        MissingKnowledgeError: there is no such edition or draft.
+    """
+    register = views.table("register")
+    sides = [register.filter(edition=edition) for edition in (old, new)]
+    for edition, side in zip((old, new), sides, strict=True):
+        if side.is_empty():
+            known = ", ".join(register["edition"].unique().sort())
+            raise MissingKnowledgeError(f"there is no edition {edition}; there are {known}")
+    names = views.table("boats").select("fsn_no", "name", "boat_type")
+    steps = steps_of_lines(sides[1], _steps(views, *sides))
+    found = _side_by_side(*sides, register_changes(*sides, steps))
+    return found.join(names, on="fsn_no", how="left", maintain_order="left")
+
+
 def _pair(views: Views, register: pl.DataFrame, changes: pl.DataFrame) -> pl.DataFrame:
     """The changes between two editions with both sides."""
     old, new = (register.filter(pl.col("edition") == changes[side][0]) for side in PAIR)
     if changes["to_edition"][0].startswith(DRAFT):
         changes = register_changes(old, new, steps_of_lines(new, _steps(views, old, new)))
+    return _side_by_side(old, new, changes)
+
+
+def _side_by_side(old: pl.DataFrame, new: pl.DataFrame, changes: pl.DataFrame) -> pl.DataFrame:
     sides = side_by_side(old, new).rename({f"{s}_rank": f"{s}_speed_rank" for s in ("old", "new")})
     return changes.join(sides, on=LINE, how="left", maintain_order="left")
 
@@ -129,19 +159,29 @@ def race_chances(views: Views, old: str, new: str) -> dict[tuple[str, str], floa
     Returns:
         By race with its day, and class; None where the new register has no ensemble.
     """
-    register = views.table("register")
-    results = views.store.read("listed_races")
+    winners, _ = replayed(views, old, new)
+    return {
+        (f"{race} {day}", crew_class): chance
+        for race, day, crew_class, chance in winners.select(
+            "race", "race_date", "crew_class", "change_probability"
+        ).rows()
+    }
+
+
+def replayed(views: Views, old: str, new: str) -> tuple[pl.DataFrame, tuple[int, int]]:
+    """Who wins the archive's races under two editions, and how many results change place.
+
+    Returns:
+        Rows of `pipeline.register.replay.winner_changes`; results that change place, and all.
+    """
+    register, results = views.table("register"), views.store.read("listed_races")
     lines = register.filter(edition=new)
     before, after = (
         replay(register.filter(edition=edition), results, RaceRules()) for edition in (old, new)
     )
-    found = winner_changes(before, after, lines, _members(views, new, lines["method"][0]))
-    return {
-        (f"{race} {day}", crew_class): chance
-        for race, day, crew_class, chance in found.select(
-            "race", "race_date", "crew_class", "change_probability"
-        ).rows()
-    }
+    moved = race_changes(before, after).filter(pl.col("old_rank").ne_missing(pl.col("new_rank")))
+    members = _members(views, new, lines["method"][0])
+    return winner_changes(before, after, lines, members), (moved.height, results.height)
 
 
 def _members(views: Views, edition: str, method: str) -> pl.DataFrame:

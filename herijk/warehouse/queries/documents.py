@@ -34,7 +34,9 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[di
     if fsn_no is not None:
         wanted = wanted.filter(pl.col("fsn_no").str.to_lowercase() == fsn_no.lower())
     if wanted.is_empty():
-        raise MissingKnowledgeError(f"edition {edition} has no valid line of {fsn_no or 'any boat'}")
+        raise MissingKnowledgeError(
+            f"edition {edition} has no valid line of {fsn_no or 'any boat'}"
+        )
     about = views.table("editions").filter(edition=edition)
     terms = about.select("decision", "valid_from", "published_on").to_dicts() or [
         {"decision": None, "valid_from": None, "published_on": None}
