@@ -1,5 +1,6 @@
 """A page's first chart as a picture made with the page, to be seen before any script is there."""
 
+import re
 from typing import Final
 
 import altair as alt
@@ -8,7 +9,7 @@ import vl_convert
 from markupsafe import Markup
 
 from herijk.dashboards import fonts
-from herijk.dashboards.figures import FIGURES
+from herijk.dashboards.figures import FIGURES, drop_links
 from herijk.dashboards.site.parts import Chart, Page
 from herijk.dashboards.speech import Speech
 
@@ -35,10 +36,18 @@ def still_pictures(page: Page, speech: Speech) -> dict[str, Markup]:
 def still(figure: str, rows: pl.DataFrame, speech: Speech) -> Markup:
     """A figure as SVG."""
     spec = FIGURES[figure](rows, speech.say).to_dict(validate=False)
+    drop_links(spec)
     svg = vl_convert.vegalite_to_svg(
         spec, vl_version=VEGA_LITE, config=CONFIG, format_locale=LOCALES[speech.language]
     )
-    return Markup(svg)  # noqa: S704 - Vega escapes texts
+    return Markup(_renumbered(svg))  # noqa: S704 - Vega escapes texts
+
+
+def _renumbered(svg: str) -> str:
+    """Names of clipping areas from 0: Vega counts on from one picture to the next."""
+    names = dict.fromkeys(re.findall(r'id="(clip\d+)"', svg))
+    places = {name: f"clip{place}" for place, name in enumerate(names)}
+    return re.sub(r"\bclip\d+\b", lambda found: places[found[0]], svg)
 
 
 CONFIG: Final = {"font": fonts.FAMILY}

@@ -96,8 +96,11 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.point": ("runpunt", "run point"),
     "code.declared": ("bij opgegeven snelheid", "at the declared speed"),
     "code.trace": ("seconde", "second"),
-    "code.gross": ("zonder luchtcorrectie", "without air correction"),
-    "code.net": ("in stille lucht", "in still air"),
+    "code.gross": ("bruto: F/v²", "gross: F/v²"),
+    "code.net": (
+        "na versnelling, wind, temperatuur",
+        "after acceleration, wind, temperature",
+    ),
     "code.direction.1": ("heen", "out"),
     "code.direction.-1": ("terug", "back"),
     "code.single": ("één proef", "one tow"),

@@ -264,4 +264,5 @@ COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "column.cw_standard_kg_m": ("Cw stan­daard­snelheid [kg/m]", "Cw at stan­dard speed [kg/m]"),
     "column.old_speed_rank": ("Snel\u00adheids\u00adplaats oud", "Speed rank before"),
     "column.new_speed_rank": ("Snel\u00adheids\u00adplaats nieuw", "Speed rank after"),
+    "column.run_end_s": ("Einde run [s]", "End of run [s]"),
 }
