@@ -16,12 +16,12 @@ from benchmarks.harness import machine
 from herijk.pipeline.method.definition import shipped_method
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.build import tables
+from herijk.warehouse.build.graph import ARCHIVE, METHOD
 from herijk.warehouse.editions.compare import diff
-from herijk.warehouse.editions.folder import read_edition
 from herijk.warehouse.editions.publish import Terms, publish
 from herijk.warehouse.editions.verify import verify
 from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.store.editions import read_edition
 from herijk.warehouse.store.store import Store
 
 DAY = dt.date(2018, 6, 1)
@@ -34,10 +34,9 @@ def rebuilt(root, tows_per_season):
     write_simulated_archive(root / "archive", simulate_world(settings))
     store = Store(root / "data")
     intake.bring_in(store, root / "archive")
-    tables.collect_archive(store, DAY)
-    blocks = tables.run_blocks(store)
+    ARCHIVE.make(store, (), DAY)
     for name in METHODS:
-        tables.apply_method(store, shipped_method(name), blocks)
+        METHOD.make(store, [shipped_method(name)])
     return store
 
 

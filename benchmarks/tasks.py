@@ -20,8 +20,8 @@ from herijk.pipeline.method.definition import parse_method, shipped_method, ship
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.warehouse.archive.files import read_bytes
 from herijk.warehouse.archive.profile import read_profiles
-from herijk.warehouse.build import tables
 from herijk.warehouse.intake import lake
+from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.queries.rebase import rebase
 from herijk.warehouse.store.store import Store, write_parquet
 
@@ -221,10 +221,10 @@ def herijk_changed(tows_per_season: int, count: int, result: str | None = None) 
 
 
 def _stacked(world: World, tows: pl.DataFrame) -> Any:
-    runs = tables.runs_with_windows(world.store).join(
+    runs = intake.runs_with_windows(world.store).join(
         tows.select("tow_id"), on="tow_id", how="semi"
     )
-    return stack_blocks(tables.intake.all_blocks(world.store), runs)
+    return stack_blocks(intake.all_blocks(world.store), runs)
 
 
 def whole_rebase(tows_per_season: int) -> Work:

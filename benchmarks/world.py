@@ -12,7 +12,7 @@ import polars as pl
 
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.build import tables
+from herijk.warehouse.build.graph import ARCHIVE
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.store import Store
 
@@ -53,8 +53,8 @@ class World:
             settings = WorldSettings(SEASONS, self.tows_per_season, RATE_HZ)
             write_simulated_archive(self.archive, simulate_world(settings))
         intake.bring_in(self.store, self.archive)
-        if tables.archive_is_stale(self.store):
-            tables.collect_archive(self.store, max(self.store.read("listed_tows")["tow_date"]))
+        if ARCHIVE.is_stale(self.store, ()):
+            ARCHIVE.make(self.store, (), max(self.store.read("listed_tows")["tow_date"]))
 
     def tows(self, count: int | None = None, plain: bool = False) -> pl.DataFrame:
         """Sound tows with their place in the lake, evenly spread over the seasons.

@@ -24,6 +24,9 @@ ESTIMATES = {
     "best estimate": ("cw_best_kg_m", "cw_best_lo_kg_m", "cw_best_hi_kg_m"),
 }
 SUMS = ("n", "intervals", "error", "squared", "covered", "half_width", "flagged", "silent")
+EQUAL_BOATS = "type_homogeneity"
+"""Table of the test whether boats of a type are equal; given where they are."""
+LEVEL = 0.05
 Record = dict[str, Any]
 
 
@@ -42,9 +45,9 @@ def score(world: str, tables: Mapping[str, pl.DataFrame], truth: pl.DataFrame) -
         tables: `curves`, `log_factors`, and `season_diagnosis` or `season_steps`, of `rebased`.
         truth: `tow_id, season` and the fields of `TowTruth`.
     """
-    alarmed = alarmed_seasons(tables)
+    doubted = seasons_said(tables, DOUBTED)
     tows = tables["curves"].drop("season", strict=False).join(truth, on="tow_id")
-    tows = tows.with_columns(pl.col("season").is_in(alarmed).alias("alarmed"))
+    tows = tows.with_columns(pl.col("season").is_in(doubted).alias("doubted"))
     groups = dict(PERIODS)
     faulty = faulty_seasons(world, truth["season"].unique())
     if faulty and len(faulty) < truth["season"].n_unique():
@@ -57,8 +60,9 @@ def score(world: str, tables: Mapping[str, pl.DataFrame], truth: pl.DataFrame) -
     ]
     return [
         *records,
-        *_factors(tables["log_factors"], truth, alarmed),
-        _alarms(truth, faulty, alarmed),
+        *_factors(tables["log_factors"], truth, doubted),
+        _alarms(truth, faulty, seasons_said(tables, NAMED)),
+        *_equal_boats(tables),
     ]
 
 
@@ -66,7 +70,7 @@ def _sums(tows: pl.DataFrame, cw: str, lo: str, hi: str) -> Record:
     held = tows.drop_nulls(cw)
     error = held[cw] / held["cw_at_15c_kg_m"] - 1.0
     covered = held["cw_at_15c_kg_m"].is_between(held[lo], held[hi]).fill_null(False)
-    flagged = (held["status"] != "accepted") | held["alarmed"]
+    flagged = (held["status"] != "accepted") | held["doubted"]
     half = ((held[hi] - held[lo]) / (2.0 * held[cw])).drop_nulls()
     numbers = (
         held.height,
@@ -81,7 +85,7 @@ def _sums(tows: pl.DataFrame, cw: str, lo: str, hi: str) -> Record:
     return dict(zip(SUMS, map(float, numbers), strict=True))
 
 
-def _factors(factors: pl.DataFrame, truth: pl.DataFrame, alarmed: set[int]) -> Iterator[Record]:
+def _factors(factors: pl.DataFrame, truth: pl.DataFrame, doubted: set[int]) -> Iterator[Record]:
     """Season log factors in the seasons without dGPS, against the mean of what the days had."""
     days = truth.group_by("season").agg(
         pl.col("log_factor_of_day").log().mean().exp().alias("true")
@@ -91,17 +95,22 @@ def _factors(factors: pl.DataFrame, truth: pl.DataFrame, alarmed: set[int]) -> I
     error = held["factor"] / held["true"] - 1.0
     covered = held["true"].is_between(held["lo"], held["hi"]).fill_null(False)
     half = ((held["hi"] - held["lo"]) / (2.0 * held["factor"])).drop_nulls()
-    flagged = held["season"].is_in(alarmed)
+    flagged = held["season"].is_in(doubted)
     sums = (error.sum(), (error**2).sum(), covered.sum(), half.sum(), flagged.sum())
     silent = (~covered & ~flagged).sum()
     numbers = map(float, (held.height, half.len(), *sums, silent))
     yield {"what": "log factor", "group": "2009-13"} | dict(zip(SUMS, numbers, strict=True))
 
 
-def alarmed_seasons(tables: Mapping[str, pl.DataFrame]) -> set[int]:
-    """Seasons of which the tables say that something other than the log's scale is wrong."""
+NAMED = ("fault", "alarm")
+DOUBTED = (*NAMED, "cannot be told", "not determined")
+
+
+def seasons_said(tables: Mapping[str, pl.DataFrame], verdicts: tuple[str, ...]) -> set[int]:
+    """Seasons of which the tables say such a thing of any instrument."""
     if "season_diagnosis" in tables:
-        return set(tables["season_diagnosis"].filter("alarm")["season"])
+        said = pl.col("verdict").is_in(verdicts)
+        return set(tables["season_diagnosis"].filter(said)["season"])
     return set(tables["season_steps"].filter(pl.col("cause") == "force")["season"])
 
 
@@ -115,6 +124,14 @@ def _alarms(truth: pl.DataFrame, faulty: set[int], alarmed: set[int]) -> Record:
         "sound": len(sound),
         "false": len(sound & alarmed),
     }
+
+
+def _equal_boats(tables: Mapping[str, pl.DataFrame]) -> Iterator[Record]:
+    """How often identical boats are told apart."""
+    if EQUAL_BOATS in tables:
+        p = tables[EQUAL_BOATS].drop_nulls("p_value")["p_value"]
+        counts = {"tested": p.len(), "rejected": int((p < LEVEL).sum())}
+        yield {"what": "equal boats", "group": "types"} | counts
 
 
 def mean_and_error(numerators: np.ndarray, counts: np.ndarray) -> tuple[float, float]:
@@ -138,11 +155,16 @@ def table(records: pl.DataFrame) -> Iterator[str]:
     yield "| --- " * 10 + "|"
     for world in records["world"].unique(maintain_order=True):
         mine = records.filter(world=world)
-        measures = mine.filter(pl.col("what") != "alarms")
+        measures = mine.filter(pl.col("n").is_not_null())
         for (what, group), rows in measures.group_by("what", "group", maintain_order=True):
             if rows["n"].sum():
                 yield _line(world, str(group), str(what), rows)
         yield _alarm_line(world, mine.filter(what="alarms"))
+        equal = mine.filter(what="equal boats")
+        if equal.height:
+            share, error = mean_and_error(equal["rejected"].to_numpy(), equal["tested"].to_numpy())
+            said = f"identical boats told apart {100 * share:.0f} ± {100 * error:.1f} %"
+            yield f"| {world} | all | equal boats | {equal.height} | {said} | | | | | |"
 
 
 def _line(world: str, group: str, what: str, rows: pl.DataFrame) -> str:

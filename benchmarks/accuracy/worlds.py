@@ -31,13 +31,14 @@ import duckdb
 import numpy as np
 import polars as pl
 
-import herijk.simulate
-from benchmarks.accuracy.score import Record, score, table
+from benchmarks.accuracy.score import EQUAL_BOATS, Record, score, table
+from herijk.pipeline.consistency import observe, type_homogeneity
 from herijk.pipeline.method.definition import shipped_method
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import WORLDS, simulate_world, world_settings
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.store.code import code_version, source_hash
+from herijk.warehouse.build.version import code_version
+from herijk.warehouse.store.code import code_hash
 from tests.worlds import Measured, measure, truth_rows
 
 FOLDER = Path(os.environ.get("BENCH_FOLDER", "benchmarks/data")) / "accuracy"
@@ -49,7 +50,7 @@ FIRST_SEED = 7000
 ONLY_FROM_FILES = ("dropouts",)
 """Worlds whose fault is for the reader of files."""
 METHOD = "rebased"
-TABLES = ("curves", "log_factors", "season_steps", "season_diagnosis")
+TABLES = ("curves", "log_factors", "season_steps", "season_diagnosis", EQUAL_BOATS)
 
 Task = tuple[str, int, bool]
 
@@ -114,13 +115,17 @@ def measured(world: str, seed: int, files: bool) -> list[Record]:
 def _by_blocks(world: str, seed: int) -> tuple[dict[str, pl.DataFrame], pl.DataFrame]:
     archive = _simulated(world, seed)
     made = recompute(shipped_method(METHOD), archive.tows, archive.blocks, with_bands=False)
-    return {name: getattr(made, name) for name in TABLES if hasattr(made, name)}, archive.truth
+    tables = {name: getattr(made, name) for name in TABLES if hasattr(made, name)}
+    if WORLDS[world].options.get("spread") == 0.0:
+        boats = archive.tows.select("fsn_no", "boat_type").unique()
+        seen = observe(made.curves, archive.tows, boats, made.run_points)
+        tables[EQUAL_BOATS] = type_homogeneity(seen)
+    return tables, archive.truth
 
 
 def _simulated(world: str, seed: int) -> Measured:
     """Simulated once for every version of the simulator; sums are kept with seven digits."""
-    here = Path(herijk.simulate.__file__).parent
-    version = source_hash(sorted(here.glob("*.py")))
+    version = code_hash("herijk.simulate.worlds", "herijk.pipeline.blocks.sums")
     kept = FOLDER / "blocks" / version / f"{world}-{seed}.pickle"
     if kept.exists():
         return _with_sums(pickle.loads(kept.read_bytes()), np.float64)  # noqa: S301, our own file

@@ -36,9 +36,9 @@ from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.warehouse.archive import FileHashes, index_archive
 from herijk.warehouse.archive.profile import Profiles, read_profiles
 from herijk.warehouse.archive.samples import read_samples
-from herijk.warehouse.editions.folder import ABOUT, read_about
 from herijk.warehouse.store.decisions import FILE_NAME as DECISIONS
 from herijk.warehouse.store.decisions import read_decisions
+from herijk.warehouse.store.editions import ABOUT, read_about
 
 SLOW_S: Final = 2.0
 HANG_S: Final = 20.0

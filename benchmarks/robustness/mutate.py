@@ -24,7 +24,7 @@ from benchmarks.robustness.faults import spoil_bytes, spoil_row, spoil_samples
 from herijk.pipeline.method.definition import shipped_method
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.build import tables
+from herijk.warehouse.build.graph import ARCHIVE, METHOD
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.store import Store
 
@@ -85,11 +85,10 @@ class Ground:
         """Rows of each tow in each table, and the tows set aside."""
         store = self.store
         intake.bring_in(store, self.archive)
-        tables.collect_archive(store, SEEN)
-        blocks = tables.run_blocks(store)
+        ARCHIVE.make(store, (), SEEN)
         found = {name: store.read(name) for name in ("tows", "tow_runs")}
         for name in METHODS:
-            applied = tables.apply_method(store, shipped_method(name), blocks)
+            applied = METHOD.make(store, [shipped_method(name)]).tables
             found |= {f"{table} {name}": applied[table] for table in ("run_points", "curves")}
         aside = set(store.read("quarantine")["tow_id"].drop_nulls())
         return {name: _by_tow(frame) for name, frame in found.items()}, aside

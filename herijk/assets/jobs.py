@@ -1,57 +1,51 @@
 """The assets, their checks, and the jobs that make up a rebuild."""
 
+from typing import Final
+
 import dagster as dg
 
-from herijk.assets import archive, checks, tables
+from herijk.assets import archive, checks
 from herijk.assets.resources import Progress, Setup
 from herijk.assets.site import site
+from herijk.assets.tables import STEP_ASSETS
+from herijk.warehouse.build import graph
 
-STEPS = INDEX, READ, COLLECT, APPLY, STUDY, COMPARE, FINISH, CHECK = (
-    "index_archive",
-    "read_season",
-    "collect_archive",
-    "apply_method",
-    "study_methods",
-    "compare_boats",
-    "finish",
-    "check",
-)
-"""The jobs of a rebuild, in order: `READ` runs per season and `APPLY` per method."""
+INDEX, READ, SITE, CHECK = "index_archive", "read_season", "make_site", "check"
+
+BUILD_JOBS: Final = {
+    graph.ARCHIVE: "collect_archive",
+    graph.METHOD: "apply_method",
+    graph.STUDIES: "study_methods",
+    graph.CONSISTENCY: "compare_boats",
+    graph.REGISTERS: "make_registers",
+    graph.SUMMARIES: "sum_up",
+    graph.DATABASE: "make_database",
+}
+"""The job of every step, in order."""
+
+NAMES: Final = (INDEX, READ, *BUILD_JOBS.values(), SITE, CHECK)
+"""The jobs of a rebuild, in order: `READ` runs per season, `apply_method` per method."""
 
 ASSETS = [
     archive.archive_index,
     archive.samples,
     archive.blocks,
-    tables.archive_tables,
-    tables.method_tables,
-    tables.study_tables,
-    tables.register_tables,
-    tables.consistency_tables,
-    tables.summary_tables,
-    tables.warehouse_database,
+    *STEP_ASSETS.values(),
     site,
 ]
 
 AFTERWARDS = dg.AssetSelection.checks(*checks.ALL)
 """These checks look at the whole, so they run when all is finished."""
 
+
 JOBS = [
     dg.define_asset_job(INDEX, dg.AssetSelection.assets(archive.archive_index)),
     dg.define_asset_job(READ, dg.AssetSelection.assets(archive.samples, archive.blocks)),
-    dg.define_asset_job(COLLECT, dg.AssetSelection.assets(tables.archive_tables) - AFTERWARDS),
-    dg.define_asset_job(APPLY, dg.AssetSelection.assets(tables.method_tables) - AFTERWARDS),
-    dg.define_asset_job(STUDY, dg.AssetSelection.assets(tables.study_tables)),
-    dg.define_asset_job(COMPARE, dg.AssetSelection.assets(tables.consistency_tables) - AFTERWARDS),
-    dg.define_asset_job(
-        FINISH,
-        dg.AssetSelection.assets(
-            tables.register_tables,
-            tables.summary_tables,
-            tables.warehouse_database,
-            site,
-        )
-        - AFTERWARDS,
+    *(
+        dg.define_asset_job(job, dg.AssetSelection.assets(STEP_ASSETS[step.name]) - AFTERWARDS)
+        for step, job in BUILD_JOBS.items()
     ),
+    dg.define_asset_job(SITE, dg.AssetSelection.assets(site)),
     dg.define_asset_job(CHECK, AFTERWARDS),
 ]
 

@@ -15,25 +15,13 @@ from typing import Any, Final
 
 import dagster as dg
 
-from herijk.assets.jobs import (
-    APPLY,
-    CHECK,
-    COLLECT,
-    COMPARE,
-    FINISH,
-    INDEX,
-    READ,
-    STEPS,
-    STUDY,
-    job_defs,
-)
+from herijk.assets.jobs import BUILD_JOBS, CHECK, INDEX, NAMES, READ, SITE, job_defs
 from herijk.assets.report import write_report
 from herijk.assets.resources import QUIET_LOG, Progress, Setup
 from herijk.assets.settings import read_settings
 from herijk.assets.site import site_is_stale
 from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.warehouse.build import tables
-from herijk.warehouse.build.summaries import summaries_are_stale
+from herijk.warehouse.build.step import Step
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.intake.lake import ArchiveChangedError
 from herijk.warehouse.queries.journal import is_reported
@@ -139,8 +127,9 @@ class _Rebuild:
     def do(self, archive: Path, seasons: Collection[int] | None) -> None:
         """Everything that is stale, and the report."""
         self._read(archive, seasons)
-        self._recompute()
-        self._finish()
+        for step in BUILD_JOBS:
+            self._build(step)
+        self._make_site()
         if not is_reported(self.store):
             self.progress.step("checking the tables")
             self.jobs.run(CHECK)
@@ -158,9 +147,6 @@ class _Rebuild:
         self.progress.expect(intake.count_listed(self.store, stale))
         for season in stale:
             self.jobs.run(READ, str(season))
-        if tables.archive_is_stale(self.store):
-            self.progress.step("collecting boats, tows and what was set aside")
-            self.jobs.run(COLLECT)
 
     def _read_elsewhere(self, address: str, seasons: Sequence[int]) -> list[int]:
         """Has a Dask cluster read seasons; gives those to read here, where an error comes out."""
@@ -170,30 +156,22 @@ class _Rebuild:
             self.progress.step(f"season {season} could not be read there ({why}); reading it here")
         return list(failed)
 
-    def _recompute(self) -> None:
+    def _build(self, step: Step) -> None:
+        """Makes the tables of a step where they are stale, per method where they are made so."""
         chosen = self.setup.chosen_methods
-        for name in [m.name for m in chosen if tables.method_is_stale(self.store, m)]:
-            self.progress.step(f"applying method {name} to all tows")
-            self.jobs.run(APPLY, name)
-            if name not in self.done.methods:
-                self.done.methods.append(name)
-        if tables.studies_are_stale(self.store, chosen):
-            self.progress.step("finding what each step changes, and how much choices matter")
-            self.jobs.run(STUDY)
-        if tables.consistency_is_stale(self.store, chosen):
-            self.progress.step("comparing boats of the same type")
-            self.jobs.run(COMPARE)
+        for methods in [[m] for m in chosen] if step.per_method else [chosen]:
+            if not step.is_stale(self.store, methods):
+                continue
+            method = methods[0].name if step.per_method else None
+            self.progress.step(step.says.format(method))
+            self.jobs.run(BUILD_JOBS[step], method)
+            if method is not None and method not in self.done.methods:
+                self.done.methods.append(method)
 
-    def _finish(self) -> None:
-        chosen = self.setup.chosen_methods
-        if (
-            tables.register_is_stale(self.store, chosen)
-            or summaries_are_stale(self.store, [method.name for method in chosen])
-            or tables.database_is_stale(self.store, chosen)
-            or site_is_stale(self.store)
-        ):
-            self.progress.step("making registers, the database and the site")
-            self.jobs.run(FINISH)
+    def _make_site(self) -> None:
+        if site_is_stale(self.store):
+            self.progress.step("making the site")
+            self.jobs.run(SITE)
             self.done.database = True
 
 
@@ -241,7 +219,7 @@ class _Jobs:
 
 def _bury_the_dead(instance: dg.DagsterInstance) -> None:
     """Records runs of killed rebuilds as failed; only who holds the lock can tell."""
-    unfinished = dg.RunsFilter(tags={STEP_TAG: list(STEPS)}, statuses=[dg.DagsterRunStatus.STARTED])
+    unfinished = dg.RunsFilter(tags={STEP_TAG: list(NAMES)}, statuses=[dg.DagsterRunStatus.STARTED])
     for run in instance.get_runs(unfinished):
         instance.report_run_failed(run, "The rebuild it was part of was killed.")
 

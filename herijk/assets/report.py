@@ -15,8 +15,8 @@ import dagster as dg
 from herijk.assets.notify import Message, Notifier
 from herijk.dashboards.report import found_in_words, headlines, mail
 from herijk.dashboards.words import speaker
+from herijk.warehouse.build.version import code_version
 from herijk.warehouse.queries.journal import as_plain, news, remember
-from herijk.warehouse.store.code import code_version
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.store import Store
 

@@ -7,9 +7,10 @@ import dagster as dg
 import polars as pl
 
 from herijk.assets.resources import Setup
-from herijk.assets.tables import warehouse_database
+from herijk.warehouse.build.database import DATABASE_TABLE
 from herijk.warehouse.queries.views import Views
-from herijk.warehouse.store.code import source_hash
+from herijk.warehouse.store.code import code_hash
+from herijk.warehouse.store.files import file_sha256
 from herijk.warehouse.store.store import Store, fingerprint
 
 SITE_TABLE = "site"
@@ -19,8 +20,12 @@ SITE_TABLE = "site"
 def site_made_from(store: Store) -> str:
     """The database, and the code and files that make pages of it."""
     folder = Path(__file__).parents[1] / "dashboards"
-    sources = [f for f in sorted(folder.rglob("*.*")) if "__pycache__" not in f.parts]
-    return fingerprint(store.made_from("database"), source_hash(sources))
+    files = [f for f in folder.rglob("*.*") if f.parent.name in {"static", "templates"}]
+    return fingerprint(
+        store.made_from(DATABASE_TABLE),
+        code_hash("herijk.dashboards.site"),
+        [file_sha256(file) for file in sorted(files)],
+    )
 
 
 def site_is_stale(store: Store) -> bool:
@@ -29,7 +34,7 @@ def site_is_stale(store: Store) -> bool:
     return not there or store.made_from(SITE_TABLE) != site_made_from(store)
 
 
-@dg.asset(deps=[warehouse_database], group_name="site", kinds={"html"})
+@dg.asset(deps=[DATABASE_TABLE], group_name="site", kinds={"html"})
 def site(setup: Setup) -> dg.MaterializeResult:
     """Pages people can look at, swapped in whole."""
     from herijk.dashboards.site import build_site  # noqa: PLC0415 - Altair takes a second to import

@@ -1,6 +1,6 @@
 """The commands about editions, and about who has to tow before the next one.
 
-What they do stands in `warehouse.editions` and `warehouse.build.due`; how a result looks as text,
+What they do stands in `warehouse.editions` and `warehouse.queries.due`; how a result looks as text,
 in `cli.editions_text` and `cli.due_text`.
 """
 
@@ -71,9 +71,9 @@ def publish(
 ) -> None:
     """Freeze an edition of the register: it is never changed afterwards."""
     from herijk.pipeline.method.definition import shipped_method
-    from herijk.warehouse.editions.folder import read_edition
     from herijk.warehouse.editions.publish import Terms, publish_printed
     from herijk.warehouse.editions.publish import publish as publish_edition
+    from herijk.warehouse.store.editions import read_edition
     from herijk.warehouse.store.store import Store
 
     if (method is None) == (printed is None):
@@ -161,7 +161,7 @@ def due(
 ) -> None:
     """Whose tow expires when, at what speed to tow each next, and who would tell most."""
     from herijk.pipeline.method.definition import shipped_text
-    from herijk.warehouse.build.due import due_report
+    from herijk.warehouse.queries.due import due_report
     from herijk.warehouse.store.store import Store
 
     shipped_text(method)

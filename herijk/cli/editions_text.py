@@ -43,9 +43,13 @@ def diff(report: Report) -> str:
     parts.append(
         f"Gain (more power for the same race): {_group(report['gain'])}\n"
         f"Lose: {_group(report['loss'])}\n"
-        f"Larger than the 95 % intervals of both: {report['exceeds_interval']}; interval not known "
+        f"Larger than the intervals of both: {report['exceeds_interval']}; interval not known "
         f"for {report['interval_unknown']}."
     )
+    parts += [
+        f"The interval of {edition} is the spread of the runs alone: the log's error is not in it."
+        for edition in report["runs_alone"]
+    ]
     if report["causes"]:
         rows = [
             (

@@ -187,8 +187,8 @@ def rebase(
     as_json: AsJson = False,
 ) -> None:
     """All of history under a method: what changes and why. Nothing is published or stored."""
-    from herijk.warehouse.editions.folder import edition_names, method_of_edition
     from herijk.warehouse.queries.rebase import rebase as rebase_history
+    from herijk.warehouse.store.editions import edition_names, method_of_edition
     from herijk.warehouse.store.store import Store
 
     store = Store(data)

@@ -20,8 +20,14 @@ SAMPLE_SCHEMA: Final[dict[str, pl.DataType]] = {
 }
 
 RUNS_PER_FILE: Final = 6
-SECOND_FILE_OFFSET: Final = 10
-"""Runs 1-6 of `meetfile2` are numbered 11-16, so that run numbers stay unique within a tow."""
+"""Runs of a tow by the standard plan."""
+
+FEWEST_RUNS: Final = 3
+MOST_RUNS: Final = 20
+"""Runs that a plan may have."""
+
+SECOND_FILE_OFFSET: Final = 20
+"""Run 1 of `meetfile2` is numbered 21, so that run numbers stay unique within a tow."""
 
 OUT: Final = 1
 BACK: Final = -1

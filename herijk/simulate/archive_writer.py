@@ -24,7 +24,8 @@ from herijk.pipeline.errors import HerijkError
 from herijk.simulate import RunTruth, Tow, World, simulate_tow, true_cw_kg_m
 from herijk.simulate.defects import FIRST_SEASON
 from herijk.simulate.hull import REFERENCE_TEMPERATURE_C
-from herijk.simulate.papers import RACE_KM, printed_register, race
+from herijk.simulate.papers import RACE_KM, Curves, printed_register, race
+from herijk.simulate.practice import Practice, practices, printed_curve
 
 SPEED_UNITS: Final = {"m/s": 1.0, "km/h": 3.6, "kn": 3600.0 / 1852.0}
 FORCE_UNITS: Final = {"N": 1.0, "kgf": 1.0 / 9.80665}
@@ -184,7 +185,8 @@ def write_simulated_archive(
     shutil.rmtree(partial, ignore_errors=True)
     try:
         _write_papers(partial, world)
-        truth = _write_all_samples(partial, world, on_tow, workers)
+        truth, curves = _write_all_samples(partial, world, on_tow, workers)
+        _write_registers(partial, world, curves)
         partial_truth = partial / "truth.json"
         partial_truth.write_text(json.dumps(truth, indent=1), encoding="utf-8")
         partial_truth.replace(truth_path(directory))
@@ -213,25 +215,30 @@ def _write_all_samples(
     world: World,
     on_tow: Callable[[int, int], None] | None,
     workers: int,
-) -> dict[str, Any]:
+) -> tuple[dict[str, Any], Curves]:
+    """The truth of every tow, and what was printed of it."""
     for season in world.settings.seasons:
         _samples_folder(directory, season).mkdir(parents=True)
     truth: dict[str, Any] = {tow.tow_id: None for tow in world.tows}
+    curves = {}
     with ThreadPoolExecutor(max_workers=workers) as pool:
         futures = {pool.submit(_write_tow, directory, world, tow): tow for tow in world.tows}
         try:
             for done, future in enumerate(as_completed(futures), start=1):
                 tow = futures[future]
-                truth[tow.tow_id] = _truth_record(world, tow, future.result())
+                runs, curves[tow.tow_id] = future.result()
+                truth[tow.tow_id] = _truth_record(world, tow, runs)
                 if on_tow is not None:
                     on_tow(done, len(futures))
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
-    return truth
+    return truth, curves
 
 
-def _write_tow(directory: Path, world: World, tow: Tow) -> tuple[RunTruth, ...]:
+def _write_tow(
+    directory: Path, world: World, tow: Tow
+) -> tuple[tuple[RunTruth, ...], dict[Practice, tuple[float, float]]]:
     samples, runs = simulate_tow(world, tow)
     spelling = spelling_of(tow.season)
     second = pl.col("run") > SECOND_FILE_OFFSET
@@ -242,7 +249,9 @@ def _write_tow(directory: Path, world: World, tow: Tow) -> tuple[RunTruth, ...]:
     for name, part in files.items():
         path = _samples_folder(directory, tow.season) / f"{name}{spelling.extension}"
         _write_samples(path, part, spelling, world.settings.rate_hz)
-    return runs
+    return runs, {
+        practice: printed_curve(samples, runs, tow, practice) for practice in practices(tow.season)
+    }
 
 
 def _samples_folder(directory: Path, season: int) -> Path:
@@ -300,7 +309,7 @@ OWN_NAMES: Final = {"log1": "snelheid A", "force": "trek"}
 
 
 def _write_papers(directory: Path, world: World) -> None:
-    """Everything but samples: the profile, boats, lists, registers and a race."""
+    """What does not depend on samples: the profile, boats, lists and a race."""
     seasons = world.settings.seasons
     for folder in ("sloepregister", "sleeplijsten", "wedstrijden"):
         (directory / folder).mkdir(parents=True)
@@ -311,11 +320,17 @@ def _write_papers(directory: Path, world: World) -> None:
         path = directory / "sleeplijsten" / f"sleeplijst_{season}.csv"
         columns, rows = _tow_list(world, season)
         _write_table(path, columns, rows, spelling_of(season))
-    for year in sorted({seasons[len(seasons) // 2], seasons[-1]}):
-        path = register / f"sloepregister_{year}.csv"
-        _write_table(path, REGISTER_COLUMNS, _register_rows(world, year), spelling_of(year))
     path = directory / "wedstrijden" / f"{RACE_NAME.lower()}_{seasons[-1]}.csv"
     _write_table(path, RACE_COLUMNS, _race_rows(world, seasons[-1]), spelling_of(seasons[-1]))
+
+
+def _write_registers(directory: Path, world: World, curves: Curves) -> None:
+    """The registers of half way and of the end."""
+    seasons = world.settings.seasons
+    for year in sorted({seasons[len(seasons) // 2], seasons[-1]}):
+        path = directory / "sloepregister" / f"sloepregister_{year}.csv"
+        rows = _register_rows(world, year, curves)
+        _write_table(path, REGISTER_COLUMNS, rows, spelling_of(year))
 
 
 def _write_table(
@@ -420,7 +435,7 @@ def _list_rows(world: World, season: int) -> list[list[str]]:
     ]
 
 
-def _register_rows(world: World, year: int) -> list[list[str]]:
+def _register_rows(world: World, year: int, curves: Curves) -> list[list[str]]:
     spelling = spelling_of(year)
     return [
         [
@@ -433,7 +448,7 @@ def _register_rows(world: World, year: int) -> list[list[str]]:
             spelling.number(line.declared_speed_m_s, 2),
             spelling.date(line.tow_day) if line.tow_day else "",
         ]
-        for line in printed_register(world, year)
+        for line in printed_register(world, year, curves)
     ]
 
 

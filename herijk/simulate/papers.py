@@ -5,16 +5,15 @@ with, not to learn from. How it is spelled in a file is `simulate.archive_writer
 """
 
 import datetime as dt
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, TypeAlias
 
 from herijk.simulate.boats import Boat, speed_at_power_m_s
-from herijk.simulate.hull import nearest_hyperbola
+from herijk.simulate.practice import Practice, practice_of
 from herijk.simulate.random_streams import Subject, stream
 from herijk.simulate.world import Tow, World
 
-LAST_UNCALIBRATED_SEASON: Final = 2013
-"""Tows from 2014 on were computed with the log calibrated by dGPS (Pot 2017)."""
 VALID_YEARS: Final = 5
 NO_CURVE: Final = (0.99, 25.00)
 """A and B that stand for "no valid curve": they give Cw = 1."""
@@ -51,8 +50,12 @@ class RaceLine:
     stream_km: float | None
 
 
-def printed_register(world: World, year: int) -> list[RegisterLine]:
-    """The register of that year as the method of the day would have it, faults included."""
+Curves: TypeAlias = Mapping[str, Mapping[Practice, tuple[float, float]]]
+"""A and B of every tow, by each practice by which it can have been printed."""
+
+
+def printed_register(world: World, year: int, curves: Curves) -> list[RegisterLine]:
+    """The register of that year by the practice of the day, faults included."""
     lines: list[RegisterLine] = []
     newest = _newest_tows(world, year)
     crews = sorted({(tow.boat.index, tow.crew_class) for tow in world.tows})
@@ -60,7 +63,7 @@ def printed_register(world: World, year: int) -> list[RegisterLine]:
     for crew in crews:
         tow = newest.get(crew, first[crew])
         valid = crew in newest and tow.season + VALID_YEARS >= year
-        a_kg_m, b_m_s = _printed_curve(world, tow) if valid else NO_CURVE
+        a_kg_m, b_m_s = curves[tow.tow_id][practice_of(tow.season, year)] if valid else NO_CURVE
         lines.append(
             RegisterLine(
                 tow.boat,
@@ -97,12 +100,3 @@ def race(world: World, season: int) -> tuple[dt.date, list[RaceLine]]:
 
 def _newest_tows(world: World, year: int) -> dict[tuple[int, str], Tow]:
     return {(tow.boat.index, tow.crew_class): tow for tow in world.tows if tow.season <= year}
-
-
-def _printed_curve(world: World, tow: Tow) -> tuple[float, float]:
-    """A log that reads v / f turns A, B into A f^2, B / f; askew pulling multiplies A."""
-    a_kg_m, b_m_s = nearest_hyperbola(
-        tow.hull, tow.declared_speed_m_s, tow.water_temperature_c, world.settings.air
-    )
-    factor = tow.truth.log_factor if tow.season <= LAST_UNCALIBRATED_SEASON else 1.0
-    return a_kg_m * tow.truth.askew_ratio * factor**2, b_m_s / factor

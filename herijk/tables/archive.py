@@ -57,6 +57,8 @@ class Tows(dy.Schema):
     freeboard_bow_m = column.number("m", "freeboard at the bow", nullable=True)
     freeboard_stern_m = column.number("m", "freeboard at the stern", nullable=True)
     remark = column.text("remark in the tow list", nullable=True)
+    wind_measured = dy.Bool(description="there was an anemometer whose wind can be used")
+    log2_measured = dy.Bool(description="there was a second log that can be used")
     log1_part = dy.Int32(description="times log 1 had been replaced that season", min=0)
     log2_part = dy.Int32(description="times log 2 had been replaced that season", min=0)
     samples_path = column.text("samples file in the archive")
@@ -66,7 +68,7 @@ class Tows(dy.Schema):
 
 
 class TowRuns(dy.Schema):
-    """Runs of every tow; runs 11-16 are runs 1-6 of the second samples file."""
+    """Runs of every tow; runs 21 and on are runs 1 and on of the second file."""
 
     tow_id = column.tow_id(primary_key=True)
     run = column.run(primary_key=True)

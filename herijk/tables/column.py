@@ -1,8 +1,14 @@
 """Columns that many tables share, each declared once: meaning, unit and limits."""
 
-from typing import Any
+from typing import Any, Final
 
 import dataframely as dy
+
+LOWER_END: Final = (
+    "lower end of its 95 % interval; where methods.interval is runs_alone, of the spread of the "
+    "runs alone: the log's error is not in it"
+)
+"""Of an interval of Cw or B."""
 
 
 def text(description: str, **rules: Any) -> dy.String:
@@ -37,7 +43,7 @@ def season(**rules: Any) -> dy.Int32:
 
 def run(**rules: Any) -> dy.Int8:
     """Which run of a tow."""
-    return dy.Int8(description="run", min=1, max=16, **rules)
+    return dy.Int8(description="run", min=1, max=40, **rules)
 
 
 def rowers(**rules: Any) -> dy.Int32:

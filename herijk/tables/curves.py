@@ -24,11 +24,9 @@ class Curves(dy.Schema):
     b_m_s = column.number("m/s", "B; empty where it is not determined", nullable=True, min=0)
     b_capped = dy.Bool(description="B was brought down to its cap and A fitted again")
     cw_kg_m = column.number("kg/m", "Cw at the declared speed", nullable=True)
-    cw_lo_kg_m = column.number("kg/m", "lower end of its 95 % interval", nullable=True)
+    cw_lo_kg_m = column.number("kg/m", column.LOWER_END, nullable=True)
     cw_hi_kg_m = column.number("kg/m", "upper end", nullable=True)
-    b_lo_m_s = column.number(
-        "m/s", "lower end of the 95 % interval of B; empty: cannot be told", nullable=True
-    )
+    b_lo_m_s = column.number("m/s", f"{column.LOWER_END}; empty: cannot be told", nullable=True)
     b_hi_m_s = column.number("m/s", "upper end; empty: no upper bound", nullable=True)
     power_w = column.number("W", "power a rower at the declared speed", nullable=True)
     residual_sd_ratio = column.number("1", "sd of the points about the curve / Cw", nullable=True)
@@ -45,7 +43,7 @@ class CurvePoints(dy.Schema):
     tow_id = column.tow_id(primary_key=True)
     speed_m_s = column.speed("speed through the water", primary_key=True)
     cw_kg_m = column.number("kg/m", "Cw at this speed", min_exclusive=0)
-    cw_lo_kg_m = column.number("kg/m", "lower end of its 95 % interval", min_exclusive=0)
+    cw_lo_kg_m = column.number("kg/m", column.LOWER_END, min_exclusive=0)
     cw_hi_kg_m = column.number("kg/m", "upper end", min_exclusive=0)
 
 

@@ -26,6 +26,11 @@ class Methods(dy.Schema):
     method = column.method(primary_key=True)
     title = column.text("title for people")
     title_en = column.text("title in English; the same where the method has one title")
+    interval = column.text(
+        "complete: its intervals hold 95 %; runs_alone: they are the spread of the runs alone, the "
+        "log's error is not in it",
+        regex="^(complete|runs_alone)$",
+    )
     content_hash = column.sha256("SHA-256 of the definition")
     definition = column.text("the options of every season, as canonical JSON")
 

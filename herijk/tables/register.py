@@ -20,7 +20,7 @@ class Register(dy.Schema):
     a_kg_m = column.number("kg/m", "A", nullable=True)
     b_m_s = column.number("m/s", "B; empty where it is not determined", nullable=True)
     cw_kg_m = column.number("kg/m", "Cw at the declared speed", nullable=True)
-    cw_lo_kg_m = column.number("kg/m", "lower end of its 95 % interval", nullable=True)
+    cw_lo_kg_m = column.number("kg/m", column.LOWER_END, nullable=True)
     cw_hi_kg_m = column.number("kg/m", "upper end", nullable=True)
     status = column.text("valid, or why there is no valid curve")
     verification_code = column.text(

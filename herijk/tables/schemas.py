@@ -76,10 +76,17 @@ TABLES: Final[dict[str, type[dy.Schema]]] = {
 def conform(name: str, frame: pl.DataFrame) -> pl.DataFrame:
     """The declared columns of a table, in order, sorted by its key and checked.
 
+    Whole numbers get the declared width: counts come wider than they are kept.
+
     Raises:
         dataframely.exc.ValidationError, SchemaError: the frame is not what was declared.
     """
     schema = TABLES[name]
     key = schema.primary_key() or schema.column_names()
-    chosen = frame.select(schema.column_names()).sort(key)
-    return schema.validate(chosen)
+    chosen = frame.select(schema.column_names())
+    whole = [
+        pl.col(column).cast(declared.dtype)
+        for column, declared in schema.columns().items()
+        if declared.dtype.is_integer() and chosen.schema[column].is_integer()
+    ]
+    return schema.validate(chosen.with_columns(whole).sort(key))

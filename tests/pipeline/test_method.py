@@ -259,3 +259,8 @@ def test_a_method_has_an_english_title_or_its_one_title_serves():
     for name in shipped_methods():
         shipped = shipped_method(name)
         assert shipped.title_en != shipped.title
+
+
+@pytest.mark.parametrize("name", shipped_methods())
+def test_only_a_method_that_estimates_log_factors_has_complete_intervals(name):
+    assert shipped_method(name).interval == ("complete" if name == "rebased" else "runs_alone")

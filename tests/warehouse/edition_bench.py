@@ -10,7 +10,7 @@ import polars as pl
 from herijk.pipeline.method.definition import Method, shipped_method
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.build import tables
+from herijk.warehouse.build.graph import ARCHIVE, METHOD
 from herijk.warehouse.editions.publish import Terms, publish
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.store import Store
@@ -52,10 +52,9 @@ class EditionBench:
         """Everything that a rebuild does up to the curves."""
         store = self.store
         intake.bring_in(store, self.archive)
-        tables.collect_archive(store, DAY)
-        blocks = tables.run_blocks(store)
+        ARCHIVE.make(store, (), DAY)
         for method in methods:
-            tables.apply_method(store, method, blocks)
+            METHOD.make(store, [method])
 
     def publish(
         self,

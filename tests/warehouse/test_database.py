@@ -8,8 +8,10 @@ import polars as pl
 import pytest
 
 from herijk.tables.schemas import TABLES
-from herijk.warehouse.build.tables import METHOD_FILES
+from herijk.tables.views import VIEWS
+from herijk.warehouse.build.graph import LAKE_ONLY
 from herijk.warehouse.store.database import build_database
+from tests.architecture.repository import ROOT
 from tests.conftest import Workbench
 
 CONTRACT = {
@@ -67,7 +69,7 @@ def test_every_table_and_column_says_what_it_means(built: Workbench):
             "SELECT table_name, column_name, comment FROM duckdb_columns() WHERE NOT internal"
         ).fetchall()
         tables = db.execute("SELECT table_name, comment FROM duckdb_tables()").fetchall()
-    assert {name for name, comment in tables if comment} == set(TABLES) - set(METHOD_FILES)
+    assert {name for name, comment in tables if comment} == set(TABLES) - set(LAKE_ONLY)
     silent = [(t, c) for t, c, comment in columns if not comment and t in TABLES]
     assert silent == []
     comments = {(t, c): comment for t, c, comment in columns}
@@ -134,3 +136,36 @@ def test_a_failed_build_leaves_the_old_database_and_no_litter(tmp_path):
     assert [f.name for f in tmp_path.iterdir()] == ["warehouse.duckdb"]
     with duckdb.connect(path, read_only=True) as db:
         assert db.execute("SELECT x FROM t").fetchall() == [(1,)]
+
+
+def test_views_answer_and_programs_of_last_year_can_open_the_file(built: Workbench):
+    with duckdb.connect(built.store.database, read_only=True) as db:
+        views = dict(db.execute("SELECT view_name, comment FROM duckdb_views()").fetchall())
+        assert {name: views.get(name) for name in VIEWS} == {n: v.meaning for n, v in VIEWS.items()}
+        for name in VIEWS:
+            assert db.table(name).columns, name
+        tags = db.execute("SELECT tags FROM duckdb_databases() WHERE NOT internal").fetchone()
+    assert tags == ({"storage_version": "v1.0.0+"},)
+
+
+def test_a_curve_at_its_declared_speed_is_its_cw(built: Workbench):
+    """A curve's Cw at another speed, computed by the view, against the formula."""
+    found = built.table("curves_at_standard_speed").drop_nulls("b_m_s")
+    a, b, v = (found[c].to_numpy() for c in ("a_kg_m", "b_m_s", "standard_speed_m_s"))
+    assert found["cw_standard_kg_m"].to_numpy() == pytest.approx(a / (1 - (v / b) ** 2), rel=1e-9)
+
+
+def test_factors_of_causes_multiply_to_the_change(built: Workbench):
+    found = built.table("changes_by_cause").drop_nulls("cw_ratio")
+    line = ["from_edition", "to_edition", "fsn_no", "rowers", "crew_class", "cw_ratio"]
+    product = found.group_by(line).agg(pl.col("factor").product())
+    assert product["factor"].to_numpy() == pytest.approx(product["cw_ratio"].to_numpy(), rel=1e-9)
+
+
+def test_every_query_about_tables_runs(built: Workbench):
+    queries = re.findall(
+        r"```sql\n(.*?)```", (ROOT / "docs" / "tables.md").read_text(encoding="utf-8"), re.DOTALL
+    )
+    with duckdb.connect(built.store.database, read_only=True) as db:
+        for query in (q for q in queries if "parquet" not in q):
+            assert db.sql(query).columns, query

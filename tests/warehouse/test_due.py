@@ -7,7 +7,7 @@ import pytest
 
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.register.due import NOT_RACED, SPEED_REASONS
-from herijk.warehouse.build.due import URGENCIES, due_report
+from herijk.warehouse.queries.due import URGENCIES, due_report
 from herijk.warehouse.store.decisions import FILE_NAME
 
 METHOD = "rebased-2015"

@@ -8,7 +8,7 @@ import textwrap
 import pytest
 
 from herijk.pipeline.errors import BrokenPromiseError
-from herijk.warehouse.editions.folder import edition_names, write_folder
+from herijk.warehouse.store.editions import edition_names, write_folder
 from herijk.warehouse.store.store import Store
 
 CONTENTS = {f"file-{n}": bytes([n]) * 5000 for n in range(6)}
@@ -17,7 +17,7 @@ KILLED_ANYWHERE = """
 import os, signal, sys
 from pathlib import Path
 from tests.warehouse.test_editions_folder import CONTENTS
-from herijk.warehouse.editions.folder import edition_names, write_folder
+from herijk.warehouse.store.editions import edition_names, write_folder
 from herijk.warehouse.store.store import Store
 
 STEPS = {"open", "os.mkdir", "os.rename", "os.chmod", "os.rmdir", "os.remove", "os.listdir"}
@@ -78,7 +78,7 @@ import sys
 from pathlib import Path
 from herijk.pipeline.errors import BrokenPromiseError
 from tests.warehouse.test_editions_folder import CONTENTS
-from herijk.warehouse.editions.folder import edition_names, write_folder
+from herijk.warehouse.store.editions import edition_names, write_folder
 from herijk.warehouse.store.store import Store
 
 store = Store(Path(sys.argv[1]))

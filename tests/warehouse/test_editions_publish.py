@@ -20,18 +20,18 @@ from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import parse_method, shipped_method
 from herijk.pipeline.register.register import LINE
 from herijk.tables.schemas import conform
+from herijk.warehouse.build.published import published_made_from, published_tables
 from herijk.warehouse.editions import sheets
 from herijk.warehouse.editions.compare import diff
-from herijk.warehouse.editions.folder import (
+from herijk.warehouse.editions.publish import publish, publish_printed
+from herijk.warehouse.store.decisions import FILE_NAME
+from herijk.warehouse.store.editions import (
     CHANGES,
     TABLES,
     edition_names,
     read_about,
     read_edition,
 )
-from herijk.warehouse.editions.publish import publish, publish_printed
-from herijk.warehouse.editions.published import published_made_from, published_tables
-from herijk.warehouse.store.decisions import FILE_NAME
 from herijk.warehouse.store.store import table_digest
 from tests.warehouse.edition_bench import terms
 
@@ -396,7 +396,7 @@ def test_a_decision_is_needed(published):
 def test_tables_of_another_method_or_code_are_not_published(published, monkeypatch):
     with pytest.raises(MissingKnowledgeError, match="herijk rebuild"):
         published.publish("x", "rebased-2015")
-    monkeypatch.setattr("herijk.warehouse.build.tables.code_version", lambda: "other")
+    monkeypatch.setattr("herijk.warehouse.build.step.code_hash", lambda *_: "other")
     with pytest.raises(MissingKnowledgeError, match="not those of the archive and code of today"):
         published.publish("x", "rebased")
 

@@ -13,11 +13,12 @@ import herijk.pipeline.recompute.recompute
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import parse_method, shipped_method
 from herijk.tables.schemas import conform
-from herijk.warehouse.editions.folder import read_about, read_edition
+from herijk.warehouse.build.published import lineage_rows
 from herijk.warehouse.editions.inputs import same_tows, unchanged_tows
-from herijk.warehouse.editions.lineage import lineage, lineage_rows
+from herijk.warehouse.editions.lineage import lineage
 from herijk.warehouse.editions.publish import publish_printed
 from herijk.warehouse.editions.verify import verify
+from herijk.warehouse.store.editions import read_about, read_edition
 from tests.warehouse.edition_bench import terms
 
 

@@ -10,7 +10,7 @@ import pytest
 from polars.testing import assert_frame_equal
 
 from herijk.pipeline.method.definition import shipped_method
-from herijk.warehouse.build import tables
+from herijk.warehouse.build.graph import ARCHIVE, METHOD
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.database import build_database
 from tests.conftest import METHODS, SMALL, Workbench
@@ -206,7 +206,7 @@ def read_again(bench: Workbench, day: dt.date) -> pl.DataFrame:
     """Brings the archive into the lake as a rebuild of that day does; gives what is set aside."""
     store = bench.store
     intake.bring_in(store, bench.archive)
-    tables.collect_archive(store, day)
+    ARCHIVE.make(store, (), day)
     return store.read("quarantine")
 
 
@@ -224,9 +224,8 @@ def test_a_vane_that_reads_minus_180_to_180_is_no_fault(bench, built):
     assert changed != lines
     file.write_text("\n".join(changed) + "\n", "utf-8")
     assert read_again(bench, DAYS[0]).height == 0
-    blocks = tables.run_blocks(bench.store)
     for name in METHODS:
-        tables.apply_method(bench.store, shipped_method(name), blocks)
+        METHOD.make(bench.store, [shipped_method(name)])
         new, old = (b.store.read("curves", name).filter(tow_id=tow) for b in (bench, built))
         assert new["cw_kg_m"].item() == pytest.approx(old["cw_kg_m"].item(), rel=1e-6)
 

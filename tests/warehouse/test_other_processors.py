@@ -28,16 +28,13 @@ import json, shutil, sys
 from pathlib import Path
 from tests.warehouse.edition_bench import METHODS, EditionBench
 from herijk.pipeline.method.definition import shipped_method
-from herijk.warehouse.build import summaries, tables
+from herijk.warehouse.build.graph import STEPS
 from herijk.warehouse.editions.verify import verify
 bench = EditionBench(Path(sys.argv[1]), Path(sys.argv[2]))
 methods = [shipped_method(name) for name in METHODS]
 bench.rebuild(methods)
-tables.make_studies(bench.store, methods, tables.run_blocks(bench.store))
-tables.make_consistency(bench.store, methods)
-tables.make_registers(bench.store, methods)
-summaries.make_summaries(bench.store, METHODS)
-tables.make_database(bench.store, methods)
+for step in STEPS[2:]:
+    step.make(bench.store, methods)
 """
 PUBLISH = """
 bench.publish("2014-1", "as-published")

@@ -12,11 +12,11 @@ from polars.testing import assert_frame_equal
 from herijk.dashboards.site.downloads import copy_sheets
 from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError, UnavailableError
 from herijk.pipeline.method.definition import shipped_method
-from herijk.warehouse.editions.folder import edition_names, read_edition, write_folder
 from herijk.warehouse.editions.publish import Terms, publish
 from herijk.warehouse.editions.verify import verify
 from herijk.warehouse.store import storage
 from herijk.warehouse.store.bucket import BucketPath
+from herijk.warehouse.store.editions import edition_names, read_edition, write_folder
 from herijk.warehouse.store.store import (
     DamagedFileError,
     Store,

@@ -17,7 +17,9 @@ from herijk.cli.audit_text.words import (
     wrapped,
 )
 from herijk.cli.text import table
+from herijk.pipeline.method.definition import COMPLETE
 
+RUNS_ALONE_MEANS: Final = "runs alone: spread of the runs alone: the log's error is not in it"
 LEAST_TOLD: Final = 5e-5
 """Part of Cw below which a cause of uncertainty is nothing in two decimals of a per cent."""
 
@@ -222,8 +224,9 @@ def _result(curve: Report) -> str:
     b = "B not determined" if curve["b_m_s"] is None else f"B {curve['b_m_s']:.2f} m/s"
     return (
         f"A {curve['a_kg_m']:.2f} kg/m, {b} ({_interval_of_b(curve)}), Cw "
-        f"{curve['cw_kg_m']:.2f} kg/m (95 %: {curve['cw_lo_kg_m']:.2f} to "
+        f"{curve['cw_kg_m']:.2f} kg/m ({_named(curve)}: {curve['cw_lo_kg_m']:.2f} to "
         f"{curve['cw_hi_kg_m']:.2f}), {curve['power_w']:.1f} W a rower, {curve['status']}{flags}"
+        + ("" if curve["interval"] == COMPLETE else f"; {RUNS_ALONE_MEANS}")
     )
 
 
@@ -231,4 +234,9 @@ def _interval_of_b(curve: Report) -> str:
     if curve["b_lo_m_s"] is None:
         return "no interval"
     upper = "no upper bound" if curve["b_hi_m_s"] is None else f"{curve['b_hi_m_s']:.2f}"
-    return f"95 %: {curve['b_lo_m_s']:.2f} to {upper}"
+    return f"{_named(curve)}: {curve['b_lo_m_s']:.2f} to {upper}"
+
+
+def _named(curve: Report) -> str:
+    """What an interval is called: without the log's error in it, it is not a 95 % interval."""
+    return "95 %" if curve["interval"] == COMPLETE else "runs alone"

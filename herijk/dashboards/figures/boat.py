@@ -14,11 +14,13 @@ from herijk.dashboards.figures.style import (
     OUT,
     WIDTH,
     by_method,
+    interval_dash,
     named,
     number,
     tips,
 )
 from herijk.dashboards.words import Say
+from herijk.pipeline.method.definition import COMPLETE
 from herijk.pipeline.steps.window import CUT_REASONS
 
 COMPONENTS = (
@@ -51,11 +53,11 @@ def _direction_shape(say: Say) -> alt.Shape:
 
 
 def resistance_curve(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
-    """The curve with its run points, 95 % band, and interval at the declared speed.
+    """The curve with its run points, band, and interval at the declared speed.
 
     Args:
         frame: rows of `kind` line, point and declared, with `speed_m_s, cw_kg_m, cw_lo_kg_m,
-            cw_hi_kg_m, run, direction, used`.
+            cw_hi_kg_m, run, direction, used`, and the `interval` of the method.
         say: gives texts.
     """
     x = number(alt.X, "speed_m_s", say("speed"))
@@ -69,10 +71,14 @@ def resistance_curve(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
         ("run:O", say("run")), ("speed_m_s:Q", say("speed")), ("cw_kg_m:Q", say("cw"))
     )
     declared_tips = tips(("speed_m_s:Q", say("tow_speed")), ("cw_kg_m:Q", say("cw_declared")))
+    dash, complete = interval_dash(say), f"datum.interval == '{COMPLETE}'"
+    full, light = alt.value(0.35), alt.value(0.12)
     return alt.layer(
-        line.mark_area(color=OKABE_ITO[5], opacity=0.35).encode(x, low, high),
+        line.mark_area(color=OKABE_ITO[5], line=False, stroke=OKABE_ITO[5]).encode(
+            x, low, high, dash, fillOpacity=alt.when(complete).then(full).otherwise(light)
+        ),
         line.mark_line(color="black").encode(x, y),
-        declared.mark_rule(color="black", strokeWidth=3).encode(x, low, high),
+        declared.mark_rule(color="black", strokeWidth=3).encode(x, low, high, dash),
         declared.mark_point(shape="stroke", color="black", size=300, strokeWidth=2).encode(
             x, y, tooltip=declared_tips
         ),
@@ -92,15 +98,14 @@ def history(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     """Cw at the declared speed of every tow under every method, with intervals.
 
     Args:
-        frame: rows of `curves` with `tow_date` and `crew`.
+        frame: rows of `curves` with `tow` and the `interval` of their method.
         say: gives texts.
     """
     base = alt.Chart(frame).encode(alt.X("tow:O", title=say("tow"), axis=alt.Axis(labelAngle=-30)))
     value, ends = ("cw_kg_m", say("cw_declared")), ("cw_lo_kg_m", "cw_hi_kg_m")
     more = (("tow:N", say("tow")), ("a_kg_m:Q", say("a")), ("b_m_s:Q", say("b")))
-    return alt.layer(*by_method(base, say, value, ends, more)).properties(
-        width=WIDTH, height=HEIGHT
-    )
+    bars = by_method(base, say, value, ends, more, dash=interval_dash(say))
+    return alt.layer(*bars).properties(width=WIDTH, height=HEIGHT)
 
 
 def traces(frame: pl.DataFrame, say: Say) -> alt.VConcatChart:

@@ -5,6 +5,7 @@ import polars as pl
 
 from herijk.dashboards.figures.style import HEIGHT, OKABE_ITO, SHAPES, WIDTH, colour, number, tips
 from herijk.dashboards.words import Say
+from herijk.pipeline.method.definition import COMPLETE
 
 
 def curves_compared(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
@@ -29,9 +30,13 @@ def curves_compared(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     line = base.transform_filter("datum.kind == 'line'")
     point = base.transform_filter("datum.kind == 'point'")
     declared = base.transform_filter("datum.kind == 'declared'")
+    full, dashed = alt.value([1, 0]), alt.value([4, 3])
+    kind = alt.when(f"datum.interval == '{COMPLETE}'").then(full).otherwise(dashed)
     return alt.layer(
         line.mark_line(strokeWidth=2).encode(x, y, colour, dash),
-        declared.mark_rule(strokeWidth=3, opacity=0.6).encode(x, low, high, colour),
+        declared.mark_rule(strokeWidth=3, opacity=0.6).encode(
+            x, low, high, colour, strokeDash=kind
+        ),
         point.mark_point(size=70, strokeWidth=2).encode(
             x,
             y,

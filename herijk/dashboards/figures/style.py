@@ -7,7 +7,7 @@ from typing import Any, Final
 import altair as alt
 
 from herijk.dashboards.words import Say
-from herijk.pipeline.method.definition import shipped_methods
+from herijk.pipeline.method.definition import COMPLETE, RUNS_ALONE, shipped_methods
 
 OKABE_ITO: Final = (
     "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999",
@@ -88,6 +88,7 @@ def by_method(
     ends: tuple[str, str],
     more: Sequence[tuple[str, str]] = (),
     zero: bool = False,
+    dash: alt.StrokeDash | None = None,
 ) -> list[alt.Chart]:
     """A value with its interval for every method, side by side: a bar and a point.
 
@@ -98,6 +99,7 @@ def by_method(
         ends: columns of the lower and upper end of the bar.
         more: what the tooltip shows besides method and value.
         zero: whether the y axis begins at zero.
+        dash: how the bar is drawn; `interval_dash` where intervals differ in kind.
     """
     (field, title), (low, high) = value, ends
     beside = base.encode(xOffset="method:N")
@@ -105,6 +107,8 @@ def by_method(
     bar = beside.mark_rule(strokeWidth=2).encode(
         number(alt.Y, low, title, zero), alt.Y2(f"{high}:Q"), alt.Color("method:N")
     )
+    if dash is not None:
+        bar = bar.encode(dash)
     limits = [(f"{low}:Q", say("lowest")), (f"{high}:Q", say("highest"))]
     point = beside.mark_point(filled=True, size=65, opacity=1).encode(
         number(alt.Y, field, title, zero),
@@ -113,6 +117,18 @@ def by_method(
         tooltip=tips(("method:N", say("method")), *more, (f"{field}:Q", title), *limits),
     )
     return [bar, point]
+
+
+def interval_dash(say: Say) -> alt.StrokeDash:
+    """Full for a 95 % interval, dashed for the spread of the runs alone; `interval` says which."""
+    return alt.StrokeDash(
+        "interval:N",
+        title=say("interval"),
+        scale=alt.Scale(domain=[COMPLETE, RUNS_ALONE], range=[[1, 0], [4, 3]]),
+        legend=alt.Legend(
+            labelExpr=named([COMPLETE, RUNS_ALONE], say), labelLimit=400, orient="bottom"
+        ),
+    )
 
 
 def named(codes: Iterable[str], say: Say) -> str:

@@ -74,11 +74,16 @@ def _frames(views: Views, methods: Sequence[str]) -> dict[str, pl.DataFrame]:
         tow=pl.format("{} · {}{}", "tow_date", "rowers", "crew_class")
     )
     declared = curves.drop_nulls("cw_kg_m").with_columns(speed_m_s="declared_speed_m_s")
+<<<<<<< HEAD
     lines = views.table("curve_points").join(boat_of, on="tow_id")
     edition = newest_edition(register["edition"].unique().sort().to_list(), draft_of(methods))
     answered = answers(views, edition)
     compared = answered["from_edition"].drop_nulls()
     before = compared[0] if compared.len() else None
+=======
+    intervals = views.table("methods").select("method", "interval")
+    lines = views.table("curve_points").join(boat_of, on="tow_id").join(intervals, on="method")
+>>>>>>> main
     lineage = views.table("lineage").with_columns(
         pl.format("{}{}", "rowers", "crew_class").alias("crew")
     )
@@ -89,9 +94,9 @@ def _frames(views: Views, methods: Sequence[str]) -> dict[str, pl.DataFrame]:
         "register": _once(register),
         "curves": curves,
         "runs": points,
-        "line": _kind(lines, "line", "method", *NUMBERS),
+        "line": _kind(lines, "line", "method", *NUMBERS, "interval"),
         "point": _kind(points.drop_nulls("cw_kg_m"), "point", "method", *POINT),
-        "declared": _kind(declared, "declared", "method", *NUMBERS),
+        "declared": _kind(declared, "declared", "method", *NUMBERS, "interval"),
         "stages": _stages(points),
         "trace": _seconds(seconds.join(boat_of, on="tow_id")),
         "window": _kind(
@@ -188,7 +193,16 @@ def _page(fsn_no: str, own: dict[str, pl.DataFrame], methods: Sequence[str]) -> 
 def _data(own: dict[str, pl.DataFrame]) -> dict[str, list[pl.DataFrame]]:
     """What the charts draw; rows of several kinds stand one below the other."""
     wind = ("method", "tow_id", "run", "direction", "wind_m_s", "wind_angle_deg")
-    history = ("method", "tow", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", "a_kg_m", "b_m_s")
+    history = (
+        "method",
+        "tow",
+        "cw_kg_m",
+        "cw_lo_kg_m",
+        "cw_hi_kg_m",
+        "a_kg_m",
+        "b_m_s",
+        "interval",
+    )
     parts = {"curve": ("line", "point", "declared"), "traces": ("trace", "window")}
     found = {name: [own[part].drop("fsn_no") for part in held] for name, held in parts.items()}
     return found | {

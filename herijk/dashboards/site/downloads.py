@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Final
 
-from herijk.warehouse.editions.folder import (
+from herijk.warehouse.store.editions import (
     CSV,
     NOTES,
     NOTES_EN,

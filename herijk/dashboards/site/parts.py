@@ -13,7 +13,7 @@ import polars as pl
 from herijk.dashboards.answer import Answer
 from herijk.dashboards.speech import Speech
 from herijk.pipeline.register.register import draft_name
-from herijk.warehouse.build.tables import STUDIED_METHOD
+from herijk.warehouse.build.studies import STUDIED_METHOD
 
 Headline: TypeAlias = Callable[[Speech], str]
 """What a section shows in one sentence, in the language of a page."""

@@ -329,11 +329,13 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     # Register
     "register_note": (
         "A en B gelden van 85 tot 115 % van de opgegeven roeisnelheid; Cw is die bij deze "
-        "snelheid, met haar 95 %-interval. Een verlopen regel heeft geen A, B en Cw. Een editie "
-        "die concept heet, is niet gepubliceerd.",
+        "snelheid, met haar interval: van 95 % bij een methode die de fout van de log schat, en "
+        "anders de spreiding van de runs alleen: de fout van de log zit er niet in. Een verlopen "
+        "regel heeft geen A, B en Cw. Een editie die concept heet, is niet gepubliceerd.",
         "A and B hold from 85 to 115 % of the declared speed; Cw is that at this speed, with its "
-        "95 % interval. An expired line has no A, B and Cw. An edition called concept is a draft: "
-        "not published.",
+        "interval: of 95 % for a method that estimates the log's error, and otherwise the spread "
+        "of the runs alone: the log's error is not in it. An expired line has no A, B and "
+        "Cw. An edition called concept is a draft: not published.",
     ),
     # Due
     "due_list": ("Wie moet weer slepen", "Who has to tow again"),
@@ -359,16 +361,22 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "boat_curve": ("Weerstandskromme", "Resistance curve"),
     "boat_curve_note": (
         "De lijn is Cw = A / (1 - (v/B)^2) over het geldige bereik, 85 tot 115 % van de opgegeven "
-        "snelheid; de band is het 95 %-interval, met alles wat in de onzekerheid zit. De streep is "
-        "het interval bij de opgegeven snelheid. Open tekens tellen niet mee.",
+        "snelheid; de streep is het interval bij die snelheid. Een volle band en streep zijn het "
+        "95 %-interval, met alles wat in de onzekerheid zit; een lichte band en een streepjeslijn "
+        "de spreiding van de runs alleen: de fout van de log zit er niet in. Open tekens tellen "
+        "niet mee.",
         "The line is Cw = A / (1 - (v/B)^2) over the valid range, 85 to 115 % of the declared "
-        "speed; the band is its 95 % interval, with all that the uncertainty is made of. The bar "
-        "is the interval at the declared speed. Open marks do not count.",
+        "speed; the bar is the interval at that speed. A full band and bar are the 95 % interval, "
+        "with all that the uncertainty is made of; a light band and a dashed bar the spread of the "
+        "runs alone: the log's error is not in it. Open marks do not count.",
     ),
     "boat_history": ("Door de jaren", "Through the years"),
     "boat_history_note": (
-        "Cw bij de opgegeven snelheid van elke proef, onder elke methode, met 95 %-interval.",
-        "Cw at the declared speed of every tow, under every method, with its 95 % interval.",
+        "Cw bij de opgegeven snelheid van elke proef, onder elke methode. Een volle lijn is het "
+        "95 %-interval, een met streepjes de spreiding van de runs alleen: de fout van de log zit "
+        "er niet in.",
+        "Cw at the declared speed of every tow, under every method. A full line is its 95 % "
+        "interval, a dashed one the spread of the runs alone: the log's error is not in it.",
     ),
     "boat_traces": ("Wat de instrumenten zeiden", "What the instruments said"),
     "boat_traces_note": (

@@ -24,9 +24,9 @@ from herijk.pipeline.method.definition import (
     shipped_methods,
 )
 from herijk.pipeline.method.variant import cut_at, differences, variant, variant_text
-from herijk.warehouse.editions.folder import edition_names, method_of_edition, read_edition
 from herijk.warehouse.queries.history import History
 from herijk.warehouse.queries.trial import CURVE_COLUMNS, Trial
+from herijk.warehouse.store.editions import edition_names, method_of_edition, read_edition
 from herijk.warehouse.store.files import write_new
 from herijk.warehouse.store.store import Store
 

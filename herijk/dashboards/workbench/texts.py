@@ -104,9 +104,11 @@ TEXTS: Final[Words] = {
     "in_boat": ("Een sloep", "A boat"),
     "in_boat_note": (
         "De kromme en de runs voor en na. Open tekens tellen niet mee; de streep bij de "
-        "opgegeven snelheid is het 95 %-interval.",
+        "opgegeven snelheid is het interval: van 95 %, of met streepjes de spreiding van de runs "
+        "alleen: de fout van de log zit er niet in.",
         "The curve and the runs before and after. Open marks do not count; the bar at the "
-        "declared speed is the 95 % interval.",
+        "declared speed is the interval: of 95 %, or dashed the spread of the runs alone: the "
+        "log's error is not in it.",
     ),
     "choose_boat": ("Kies sloep", "Choose boat"),
     "figure_curve": ("Weerstandskrommen van deze proef", "Resistance curves of this tow"),

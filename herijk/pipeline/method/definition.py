@@ -158,6 +158,10 @@ class SeasonSteps(_Options):
     steps: Steps
 
 
+COMPLETE: Final = "complete"
+RUNS_ALONE: Final = "runs_alone"
+
+
 class Method(_Options):
     """A complete method: for every season of its range the option of every step.
 
@@ -187,6 +191,12 @@ class Method(_Options):
             f"it covers {self.ranges[0].first} to {_season_text(self.ranges[-1].last)}. "
             "Leave that season out with --seasons, or widen the method's `seasons`"
         )
+
+    @property
+    def interval(self) -> str:
+        """What its intervals hold: `COMPLETE`, or `RUNS_ALONE` if no log factor is estimated."""
+        estimated = any(held.steps.speed.correction == "estimated" for held in self.ranges)
+        return COMPLETE if estimated else RUNS_ALONE
 
     @property
     def definition(self) -> str:

@@ -57,6 +57,21 @@ def register_ensemble(
     return np.asarray(cw[None, :] * np.exp(ln_error[mine["place"].to_numpy()].T))
 
 
+def tow_ensemble(
+    method: str, curves: pl.DataFrame, budget: pl.DataFrame, found: SeasonFactors | None
+) -> pl.DataFrame:
+    """Rows of the table `ensemble` of a method: members of every tow with a curve.
+
+    Args:
+        method: its name.
+        curves, budget: its tables `curves` and `uncertainty_budget`.
+        found: its season factors, as `register_ensemble` takes them.
+    """
+    tows = curves.drop_nulls("cw_kg_m").select("tow_id", "cw_kg_m")
+    members = as_frame(tows, register_ensemble(tows, budget, found))
+    return members.with_columns(pl.lit(method).alias("method"))
+
+
 def as_frame(lines: pl.DataFrame, cw_kg_m: FloatArray) -> pl.DataFrame:
     """Members as rows: `member` (1 is the first), the columns of `lines`, its Cw replaced.
 

@@ -1,6 +1,6 @@
 """The boats of the archive: `sloependata.csv`."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -9,7 +9,8 @@ import polars as pl
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.faults import Fault, fault_from
 from herijk.warehouse.archive.files import BOATS_FILE
-from herijk.warehouse.archive.lists import ListRow, read_rows
+from herijk.warehouse.archive.lists import ListRow, Wording, read_list
+from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.text import Column
 
 # Generous limits of what a rowing sloop and its crew can be, in SI units.
@@ -21,15 +22,15 @@ ROWERS: Final = (1, 30)
 
 COLUMNS: Final = (
     Column("fsn_no", "fsn_nr"),
-    Column("ht_no", "ht_nr"),
+    Column("ht_no", "ht_nr", required=False),
     Column("name", "sloep"),
-    Column("boat_type", "type"),
-    Column("waterline_length_m", "lengte", "length", "m"),
-    Column("beam_m", "breedte", "length", "m"),
-    Column("bow_height_m", "hoogte", "length", "m"),
-    Column("weight_kg", "gewicht", "mass", "kg"),
-    Column("rowers", "roeiers"),
-    Column("crew_class", "klasse"),
+    Column("boat_type", "type", required=False),
+    Column("waterline_length_m", "lengte", "length", "m", required=False),
+    Column("beam_m", "breedte", "length", "m", required=False),
+    Column("bow_height_m", "hoogte", "length", "m", required=False),
+    Column("weight_kg", "gewicht", "mass", "kg", required=False),
+    Column("rowers", "roeiers", required=False),
+    Column("crew_class", "klasse", required=False),
 )
 SCHEMA: Final[dict[str, pl.DataType]] = {
     "fsn_no": pl.String(),
@@ -45,50 +46,82 @@ SCHEMA: Final[dict[str, pl.DataType]] = {
 }
 
 
+OF_THE_BOAT: Final = (
+    *("ht_no", "boat_type", "waterline_length_m", "beam_m", "bow_height_m", "weight_kg"),
+)
+"""What a boat has once; it may have had several names, and be rowed by several crews."""
+
+
 @dataclass(frozen=True)
 class Boats:
-    """The boat list: the good boats by `fsn_no`, and why others cannot be used."""
+    """The boat list.
+
+    Attributes:
+        good: the boats that can be used, by `fsn_no`; the last row of a boat gives its name.
+        crews: every row of those boats: a boat and a crew that rows it.
+        bad: why others cannot be used.
+        faults: what is wrong in the list.
+    """
 
     good: Mapping[str, Mapping[str, Any]]
+    crews: Sequence[Mapping[str, Any]]
     bad: Mapping[str, Fault]
     faults: tuple[Fault, ...]
 
     def frame(self) -> pl.DataFrame:
-        """Return the good boats, in the order of the list."""
-        return pl.DataFrame(list(self.good.values()), schema=SCHEMA)
+        """Return the good boats, a row for each crew that rows them, in the order of the list."""
+        rows = [{**boat, **self.good[boat["fsn_no"]], **_crew_of(boat)} for boat in self.crews]
+        return pl.DataFrame(rows, schema=SCHEMA).unique(maintain_order=True)
+
+    def find(self, fsn_no: str) -> Mapping[str, Any] | None:
+        """Return a boat by its number; leading zeros do not matter where that leaves one boat."""
+        if fsn_no in self.good:
+            return self.good[fsn_no]
+        alike = [b for number, b in self.good.items() if _bare(number) == _bare(fsn_no)]
+        return alike[0] if len(alike) == 1 else None
 
 
-def read_boats(data: bytes) -> Boats:
+def _bare(fsn_no: str) -> str:
+    return fsn_no.removeprefix("FSN").lstrip("0")
+
+
+def _crew_of(boat: Mapping[str, Any]) -> dict[str, Any]:
+    return {"rowers": boat["rowers"], "crew_class": boat["crew_class"]}
+
+
+def read_boats(data: bytes, path: str = BOATS_FILE, wording: Wording | None = None) -> Boats:
     """Read the boat list; a defective row or an ambiguous boat becomes a fault.
 
-    Identical rows are harmless. Dimensions, weight and crew may be empty.
+    A boat may have a row for each of its names and crews. Dimensions, weight and crew may be empty.
 
     Raises:
         DefectiveInputError: the list as a whole cannot be read.
     """
     good: dict[str, Mapping[str, Any]] = {}
+    crews: list[Mapping[str, Any]] = []
     bad: dict[str, Fault] = {}
     faults: list[Fault] = []
-    for row in read_rows(data, COLUMNS, "bad_boat_row"):
-        fsn_no = row.optional_text("fsn_no")
+    for row in read_list(data, COLUMNS, "bad_boat_row", path, wording or Wording()):
         try:
             boat = _boat(row)
-            _check_once(row, boat, good)
+            merged = _merged(row, boat, good.get(boat["fsn_no"]))
         except DefectiveInputError as error:
-            fault = fault_from(error, BOATS_FILE)
+            fault = fault_from(error, path)
             faults.append(fault)
-            if fsn_no is not None:
-                bad[fsn_no] = fault
+            if row.optional_text("fsn_no") is not None:
+                bad[row.boat("fsn_no")] = fault
             continue
-        good[boat["fsn_no"]] = boat
+        good[boat["fsn_no"]] = merged
+        crews.append(boat)
     usable = {fsn_no: boat for fsn_no, boat in good.items() if fsn_no not in bad}
-    return Boats(usable, bad, tuple(faults))
+    rowed = [boat for boat in crews if boat["fsn_no"] in usable]
+    return Boats(usable, rowed, bad, tuple(faults))
 
 
 def _boat(row: ListRow) -> dict[str, Any]:
     row.check_whole()
     return {
-        "fsn_no": row.text("fsn_no"),
+        "fsn_no": row.boat("fsn_no"),
         "ht_no": row.optional_text("ht_no"),
         "name": row.text("name"),
         "boat_type": row.optional_text("boat_type"),
@@ -101,15 +134,21 @@ def _boat(row: ListRow) -> dict[str, Any]:
     }
 
 
-def _check_once(
-    row: ListRow, boat: Mapping[str, Any], good: Mapping[str, Mapping[str, Any]]
-) -> None:
-    before = good.get(boat["fsn_no"])
-    if before is not None and before != boat:
-        different = next(key for key in boat if boat[key] != before[key])
-        raise DefectiveInputError(
-            "duplicate_boat",
-            f"Line {row.line}: boat {boat['fsn_no']} stands in the list twice and the rows differ "
-            f"in {different} ({before[different]} and {boat[different]}).",
-            row.line,
-        )
+def _merged(
+    row: ListRow, boat: Mapping[str, Any], before: Mapping[str, Any] | None
+) -> Mapping[str, Any]:
+    """Return a boat with what its rows so far say; two sizes or types cannot both be right."""
+    if before is None:
+        return boat
+    for key in OF_THE_BOAT:
+        if None not in (boat[key], before[key]) and boat[key] != before[key]:
+            message = say(
+                "boat {boat} stands in the list twice and the rows differ in {key} ({one} and "
+                "{other}).",
+                boat=boat["fsn_no"],
+                key=row.named(key),
+                one=before[key],
+                other=boat[key],
+            )
+            raise row.fault(message, "duplicate_boat")
+    return {key: value if value is not None else before[key] for key, value in boat.items()}

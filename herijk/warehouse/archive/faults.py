@@ -80,6 +80,11 @@ REASONS: Final[dict[str, Reason]] = {
         "A column that is needed is not in the header.",
         "Correct the header, or name the column in `archief.toml`.",
     ),
+    "unknown_column": Reason(
+        "A list has a column that nobody knows. It can be a misspelt one, so the list is not read: "
+        "left out in silence it would change numbers.",
+        "Correct the header, or name it in `archief.toml` under `[headers]` or `ignore`.",
+    ),
     "duplicate_column": Reason(
         "A column stands in the header twice.",
         "Remove or rename one of the two.",
@@ -100,6 +105,14 @@ REASONS: Final[dict[str, Reason]] = {
     "bad_list_row": Reason(
         "A row of a tow list lacks a value that is needed, or holds one that cannot be right.",
         "Mend the value in the row.",
+    ),
+    "ambiguous_date": Reason(
+        "Day and month of a date can be exchanged: 1/3/2015.",
+        "Say under `[dates]` in `archief.toml` how this list means it, `dmy` or `mdy`.",
+    ),
+    "ambiguous_number": Reason(
+        "A number can be read in two ways: 1.140 where other decimals of the list have a comma.",
+        "Write 1140 or 1,140.",
     ),
     "date_outside_season": Reason(
         "The date of a tow is not in the year of its list.",

@@ -3,6 +3,7 @@
 Knows folder names, safe paths and compression; not what stands in a file.
 """
 
+import hashlib
 import os
 import re
 from collections.abc import Iterator
@@ -14,14 +15,30 @@ import pyarrow as pa  # type: ignore[import-untyped]
 
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.faults import DefectiveFileError
+from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.text import fold_name
 
 BOATS_FILE: Final = "sloepregister/sloependata.csv"
-TOW_LIST_PATTERN: Final = r"sleeplijst_([0-9]{4})\.csv"
-WINDOWS_PATTERN: Final = r"vensters_([0-9]{4})\.csv"
-REGISTER_PATTERN: Final = r"sloepregister_([0-9]{4})\.csv"
-RACES_PATTERN: Final = r".+_([0-9]{4})\.csv"
-SAMPLE_SUFFIXES: Final = (".csv.gz", ".csv.zst", ".csv", ".parquet")
+_LIST: Final = r"\.(?:csv|txt|tsv|xlsx|xlsm|xls|ods)"
+BOATS_PATTERN: Final = r"sloependata" + _LIST
+TOW_LIST_PATTERN: Final = r"sleeplijst[ _-]*([0-9]{4})" + _LIST
+WINDOWS_PATTERN: Final = r"vensters[ _-]*([0-9]{4})" + _LIST
+REGISTER_PATTERN: Final = r"sloepregister[ _-]*([0-9]{4})" + _LIST
+RACES_PATTERN: Final = r".+?[ _-]*([0-9]{4})" + _LIST
+TEXT_SUFFIXES: Final = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm")
+SAMPLE_SUFFIXES: Final = (
+    *(text + packed for packed in (".gz", ".zst") for text in TEXT_SUFFIXES),
+    *(*TEXT_SUFFIXES, ".parquet", ".tdms"),
+)
+PARTS: Final = " | "
+"""Between the paths of files that are a run each; no file's name can hold it in Windows."""
+_NOT_OURS: Final = re.compile(
+    r"~\$.*|thumbs\.db|desktop\.ini|readme.*|lees[ _]?mij.*|.*\.tdms_index", re.IGNORECASE
+)
+_ONE_RUN: Final = re.compile(
+    r"(.*?[^0-9])[ _.-]*(?:run|vaart|lauf|r)?[ _.-]*([0-9]{1,2})", re.IGNORECASE
+)
+PROFILE_FILE: Final = "archief.toml"
 LIST_MAX_BYTES: Final = 50_000_000
 SAMPLES_MAX_BYTES: Final = 400_000_000
 """A tow of 300,000 samples is 12 MB of text."""
@@ -53,7 +70,7 @@ def list_files(root: Path, folder: str, name_pattern: str) -> list[ArchiveFile]:
     Hidden files are left out. The order is that of the names.
     """
     pattern = re.compile(name_pattern, re.IGNORECASE)
-    matches = ((entry, pattern.fullmatch(entry.name)) for entry in _entries(root / folder))
+    matches = ((entry, pattern.fullmatch(entry.name)) for entry in _entries_of(root, folder))
     return [
         _archive_file(root, entry, int(match[1]))
         for entry, match in matches
@@ -62,30 +79,76 @@ def list_files(root: Path, folder: str, name_pattern: str) -> list[ArchiveFile]:
 
 
 def list_sample_files(root: Path) -> list[ArchiveFile]:
-    """Return all samples files: `meetdata_<jaar>/<meetfile>` with a suffix of samples."""
+    """Return all samples files: `meetdata_<jaar>/<meetfile>` with a suffix of samples.
+
+    Those in a folder of their own, `meetdata_<jaar>/<meetfile>/`, come too.
+    """
     return [
         _archive_file(root, entry, season)
         for season, folder in _sample_folders(root)
-        for entry in _entries(folder)
-        if sample_suffix(entry.name) and (entry.is_file() or entry.is_symlink())
+        for entry in _files_of_tows(folder)
+        if sample_suffix(entry.name)
     ]
 
 
-def list_strangers(root: Path, folder: str, known_pattern: str) -> list[str]:
-    """Return the CSV files of a folder whose name does not match, relative to the archive."""
-    pattern = re.compile(known_pattern, re.IGNORECASE)
-    return [
+def list_strangers(root: Path) -> list[str]:
+    """Return the files of an archive that nobody reads, relative to it."""
+    lists = {
+        "sleeplijsten": f"{TOW_LIST_PATTERN}|{WINDOWS_PATTERN}",
+        "sloepregister": f"{BOATS_PATTERN}|{REGISTER_PATTERN}",
+        "wedstrijden": RACES_PATTERN,
+    }
+    found = [
+        entry
+        for folder, known in lists.items()
+        for entry in _entries_of(root, folder)
+        if not re.fullmatch(known, entry.name, re.IGNORECASE)
+    ]
+    for _, folder in _sample_folders(root):
+        found += [entry for entry in _files_of_tows(folder) if not sample_suffix(entry.name)]
+    known_folders = {*(_find_folder(root, name) for name in lists)}
+    known_folders |= {folder for _, folder in _sample_folders(root)}
+    found += [
+        entry
+        for entry in _entries(root)
+        if entry not in known_folders and entry.name.casefold() != PROFILE_FILE
+    ]
+    return [e.relative_to(root).as_posix() for e in found if not _NOT_OURS.fullmatch(e.name)]
+
+
+def find_boats_file(root: Path) -> str | None:
+    """Return the path of the boat list, whatever kind of file it is; None when there is none."""
+    found = [
         entry.relative_to(root).as_posix()
-        for entry in _entries(root / folder)
-        if entry.name.casefold().endswith(".csv") and not pattern.fullmatch(entry.name)
+        for entry in _entries_of(root, "sloepregister")
+        if re.fullmatch(BOATS_PATTERN, entry.name, re.IGNORECASE)
     ]
+    return found[0] if found else None
 
 
 def _sample_folders(root: Path) -> Iterator[tuple[int, Path]]:
     for entry in _entries(root):
-        match = re.fullmatch(r"meetdata_([0-9]{4})", entry.name, re.IGNORECASE)
+        match = re.fullmatch(r"meetdata[ _-]*([0-9]{4})", entry.name, re.IGNORECASE)
         if match and entry.is_dir():
             yield int(match[1]), entry
+
+
+def _files_of_tows(folder: Path) -> Iterator[Path]:
+    for entry in _entries(folder):
+        if entry.is_dir() and not entry.is_symlink():
+            yield from _entries(entry)
+        else:
+            yield entry
+
+
+def _entries_of(root: Path, folder: str) -> list[Path]:
+    return _entries(_find_folder(root, folder))
+
+
+def _find_folder(root: Path, name: str) -> Path:
+    """Return a folder, however its name is capitalised."""
+    alike = [entry for entry in _entries(root) if entry.name.casefold() == name]
+    return alike[0] if alike else root / name
 
 
 def _entries(folder: Path) -> list[Path]:
@@ -111,6 +174,20 @@ def match_key(name: str) -> str:
     return folded.removesuffix(sample_suffix(folded)).strip()
 
 
+def as_one_run(name: str) -> tuple[str, int] | None:
+    """Return the tow and the run that the name of a samples file says, None where it says none.
+
+    `snol 8h 2014 run 3.csv`, `snol 8h 2014_3.lvm` and `snol 8h 2014 r03.txt` are run 3 of
+    `snol 8h 2014`.
+    """
+    key = match_key(name)
+    match = _ONE_RUN.fullmatch(key)
+    if match:
+        return match[1].strip(" _.-"), int(match[2])
+    number = re.fullmatch(r"(?:run|vaart|lauf|r)?[ _.-]*([0-9]{1,2})", key)
+    return ("", int(number[1])) if number else None
+
+
 def path_inside(root: Path, relative: str) -> Path:
     """Return the full path of a file of the archive.
 
@@ -132,7 +209,7 @@ def outside_archive(relative: str) -> DefectiveFileError:
     """Return the error for a path that leaves the archive."""
     return DefectiveFileError(
         "path_outside_archive",
-        f"'{relative}' leads outside the archive, where nothing is read.",
+        say("'{path}' leads outside the archive, where nothing is read.", path=relative),
         None,
         relative,
     )
@@ -155,16 +232,27 @@ def read_bytes(path: Path, max_bytes: int) -> bytes:
             else:
                 content = _unpack(raw, compression, max_bytes)
     except FileNotFoundError as error:
-        raise DefectiveInputError(
-            "samples_missing", f"'{path.name}' is not there any more."
-        ) from error
+        said = say("'{name}' is not there any more.", name=path.name)
+        raise DefectiveInputError("samples_missing", said) from error
     except (OSError, pa.ArrowException) as error:
-        raise DefectiveInputError(
-            "unreadable_file", f"'{path.name}' cannot be read or unpacked: {error}."
-        ) from error
+        said = say("'{name}' cannot be read or unpacked: {error}.", name=path.name, error=error)
+        raise DefectiveInputError("unreadable_file", said) from error
     if len(content) > max_bytes:
         raise too_large(path, max_bytes)
     return content
+
+
+def hash_of_parts(hashes: list[str]) -> str:
+    """Return one hash of several files from theirs, in their order."""
+    return hashlib.sha256("\n".join(hashes).encode()).hexdigest()
+
+
+def kind_of(path: Path) -> str:
+    """Return the suffix of a file as it is unpacked, in lower case: `.csv` of `x.csv.gz`."""
+    name = path.name.casefold()
+    for packed in _COMPRESSION:
+        name = name.removesuffix(packed)
+    return name[name.rfind(".") :]
 
 
 def _unpack(raw: IO[bytes], compression: str, max_bytes: int) -> bytes:
@@ -181,6 +269,9 @@ def too_large(path: Path, max_bytes: int) -> DefectiveInputError:
     """Return the error for a file that holds more than `max_bytes`."""
     return DefectiveInputError(
         "too_large",
-        f"'{path.name}' holds more than {max_bytes / 1e6:.0f} MB, unpacked; "
-        "a samples file is about 12 MB.",
+        say(
+            "'{name}' holds more than {limit:.0f} MB, unpacked; a samples file is about 12 MB.",
+            name=path.name,
+            limit=max_bytes / 1e6,
+        ),
     )

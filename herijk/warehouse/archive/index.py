@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import polars as pl
 
-from herijk.pipeline.channels import RUNS_PER_FILE, SECOND_FILE_OFFSET, TARGET_SPEED_RATIOS
+from herijk.pipeline.channels import SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError, MissingKnowledgeError
 from herijk.warehouse.archive import boats as boat_list
 from herijk.warehouse.archive import tows as tow_list
@@ -22,11 +22,16 @@ from herijk.warehouse.archive.faults import DefectiveFileError, Fault, fault_fro
 from herijk.warehouse.archive.files import (
     BOATS_FILE,
     LIST_MAX_BYTES,
+    PARTS,
+    PROFILE_FILE,
     RACES_PATTERN,
     REGISTER_PATTERN,
     TOW_LIST_PATTERN,
     WINDOWS_PATTERN,
     ArchiveFile,
+    as_one_run,
+    find_boats_file,
+    hash_of_parts,
     list_files,
     list_sample_files,
     list_strangers,
@@ -35,8 +40,9 @@ from herijk.warehouse.archive.files import (
     path_inside,
     read_bytes,
 )
-from herijk.warehouse.archive.lists import ListRow, read_rows
-from herijk.warehouse.archive.profile import PROFILE_FILE, Profiles, read_profiles
+from herijk.warehouse.archive.lists import ListRow, read_list
+from herijk.warehouse.archive.messages import say
+from herijk.warehouse.archive.profile import Plan, Profiles, read_profiles
 from herijk.warehouse.archive.text import fold_name, shorten
 
 FILES_SCHEMA: Final[dict[str, pl.DataType]] = {
@@ -45,7 +51,7 @@ FILES_SCHEMA: Final[dict[str, pl.DataType]] = {
     "size_bytes": pl.Int64(),
 }
 
-_FilesByName = dict[tuple[int, str], list[ArchiveFile]]
+_FilesByName = dict[tuple[int, str], list["SamplesFile"]]
 """Samples files by season and the name they answer to."""
 
 
@@ -56,7 +62,7 @@ class ArchiveIndex:
     Attributes:
         boats: one row a boat (`boats.SCHEMA`).
         tows: one row a tow that can be read (`tows.SCHEMA`).
-        runs: one row a run of those tows (`tows.RUNS_SCHEMA`); runs of a second file are 11-16.
+        runs: one row a run of those tows (`tows.RUNS_SCHEMA`); runs of a second file are 21 and on.
         windows: windows given by hand for those runs (`windows.SCHEMA`), of which nobody knows yet
             whether they lie in their run.
         faults: what is set aside, and why.
@@ -73,6 +79,22 @@ class ArchiveIndex:
     profiles: Profiles
 
 
+@dataclass(frozen=True)
+class SamplesFile:
+    """The samples that a name in a list stands for: a file, or one for every run.
+
+    Attributes:
+        parts: the files, in the order of their runs.
+    """
+
+    parts: tuple[ArchiveFile, ...]
+
+    @property
+    def path(self) -> str:
+        """Path relative to the archive; of several files with `PARTS` between them."""
+        return PARTS.join(part.path for part in self.parts)
+
+
 @dataclass
 class _Entry:
     """A row of a tow list on its way to becoming a tow."""
@@ -80,7 +102,8 @@ class _Entry:
     row: ListRow
     list_path: str
     season: int
-    files: list[ArchiveFile] = field(default_factory=list)
+    profiles: Profiles
+    files: list[SamplesFile] = field(default_factory=list)
     tow: dict[str, Any] = field(default_factory=dict)
     selection: frozenset[int] = frozenset()
 
@@ -89,11 +112,15 @@ class _Entry:
         return self.row.optional_text("tow_id")
 
     @property
+    def plan(self) -> Plan:
+        return self.profiles.plan_of(self.tow_id or "", self.season)
+
+    @property
     def where(self) -> str:
-        return f"line {self.row.line} of {self.list_path}"
+        return say("line {line} of {path}", line=self.row.line, path=self.list_path)
 
     def fault(self, reason_code: str, message: str) -> DefectiveInputError:
-        return DefectiveInputError(reason_code, f"Line {self.row.line}: {message}", self.row.line)
+        return self.row.fault(message, reason_code)
 
 
 class _Hashes:
@@ -114,9 +141,22 @@ class _Hashes:
                 self.rows[path] = (self._hash_file(full_path), full_path.stat().st_size)
             except OSError as error:
                 raise DefectiveFileError(
-                    "unreadable_file", f"'{path}' cannot be read: {error.strerror}.", None, path
+                    "unreadable_file",
+                    say("'{path}' cannot be read: {error}.", path=path, error=error.strerror),
+                    None,
+                    path,
                 ) from error
         return self.rows[path][0]
+
+    def add_samples(self, file: SamplesFile) -> str:
+        """Return the hash of samples, of several files one of their hashes."""
+        hashes = [self.add(part.path, part.full_path) for part in file.parts]
+        if len(hashes) == 1:
+            return hashes[0]
+        size = sum(self.rows[part.path][1] for part in file.parts)
+        sha256 = hash_of_parts(hashes)
+        self.rows[file.path] = (sha256, size)
+        return sha256
 
     def frame(self) -> pl.DataFrame:
         rows = [(path, *self.rows[path]) for path in sorted(self.rows)]
@@ -141,20 +181,21 @@ def index_archive(root: Path, hash_file: Callable[[Path], str]) -> ArchiveIndex:
     hashes = _Hashes(hash_file)
     faults: list[Fault] = []
     _hash_others(root, hashes, faults)
-    boats = _read_boats(root, hashes, faults)
-    entries, unread_seasons = _read_tow_lists(root, hashes, faults)
+    faults += [_stranger(path) for path in list_strangers(root)]
+    boats = _read_boats(root, profiles, hashes, faults)
+    entries, unread_seasons = _read_tow_lists(root, profiles, hashes, faults)
     sample_files = list_sample_files(root)
     _hash_files(sample_files, hashes, faults)
-    faults += _not_listed(entries, sample_files, unread_seasons)
-    by_name = _by_name(sample_files)
+    by_name = _by_name(sample_files, entries)
+    faults += _not_listed(entries, sample_files, unread_seasons, by_name)
     good = _keep(_unique_ids(entries), entries, faults)
     good = _keep(lambda entry: _read_values(entry, profiles), good, faults)
     good = _keep(lambda entry: _find_files(entry, by_name, hashes), good, faults)
     good = _keep(_unique_samples(good), good, faults)
     good = _keep(lambda entry: _join_boat(entry, boats), good, faults)
     good = _keep(lambda entry: _place_day(entry, profiles), good, faults)
-    runs = [run for entry in good for run in _runs(entry, profiles)]
-    windows = _read_windows(root, hashes, entries, runs, faults)
+    runs = [run for entry in good for run in _runs(entry)]
+    windows = _read_windows(root, profiles, hashes, entries, runs, faults)
     return ArchiveIndex(
         boats=boats.frame(),
         tows=pl.DataFrame([entry.tow for entry in good], schema=tow_list.SCHEMA),
@@ -176,7 +217,7 @@ def _check_present(root: Path) -> None:
             f"There is no archive at {root}: expected a folder with {BOATS_FILE}, "
             "sleeplijsten/ and meetdata_<jaar>/."
         )
-    if not (root / BOATS_FILE).is_file():
+    if find_boats_file(root) is None:
         raise MissingKnowledgeError(
             f"The archive at {root} has no {BOATS_FILE}: expected the list of boats there."
         )
@@ -196,37 +237,42 @@ def _read_list(root: Path, path: str, hashes: _Hashes) -> bytes:
     return read_bytes(full_path, LIST_MAX_BYTES)
 
 
-def _read_boats(root: Path, hashes: _Hashes, faults: list[Fault]) -> Boats:
+def _read_boats(root: Path, profiles: Profiles, hashes: _Hashes, faults: list[Fault]) -> Boats:
+    path = find_boats_file(root) or BOATS_FILE
     try:
-        boats = boat_list.read_boats(_read_list(root, BOATS_FILE, hashes))
+        boats = boat_list.read_boats(_read_list(root, path, hashes), path, profiles.wording)
     except DefectiveInputError as error:
-        boats = Boats({}, {}, (fault_from(error, BOATS_FILE),))
+        boats = Boats({}, (), {}, (fault_from(error, path),))
     faults += boats.faults
     return boats
 
 
+def _stranger(path: str) -> Fault:
+    message = say("'{path}' is not read, as nobody knows what it is.", path=path)
+    return Fault(path, None, None, "unrecognised_file", message)
+
+
 def _read_tow_lists(
-    root: Path, hashes: _Hashes, faults: list[Fault]
+    root: Path, profiles: Profiles, hashes: _Hashes, faults: list[Fault]
 ) -> tuple[list[_Entry], set[int]]:
     """Return the rows of all tow lists, and the seasons of lists that cannot be read."""
     entries: list[_Entry] = []
     unread_seasons: set[int] = set()
-    for path in list_strangers(root, "sleeplijsten", f"{TOW_LIST_PATTERN}|{WINDOWS_PATTERN}"):
-        message = f"'{path}' is not read, as it is not named like sleeplijst_2014.csv."
-        faults.append(Fault(path, None, None, "unrecognised_file", message))
     for file in list_files(root, "sleeplijsten", TOW_LIST_PATTERN):
         try:
-            rows = read_rows(_read_list(root, file.path, hashes), tow_list.COLUMNS, "bad_list_row")
+            data = _read_list(root, file.path, hashes)
+            rows = read_list(data, tow_list.COLUMNS, "bad_list_row", file.path, profiles.wording)
         except DefectiveInputError as error:
             faults.append(fault_from(error, file.path))
             unread_seasons.add(file.season)
             continue
-        entries += [_Entry(row, file.path, file.season) for row in rows]
+        entries += [_Entry(row, file.path, file.season, profiles) for row in rows]
     return entries, unread_seasons
 
 
 def _read_windows(
     root: Path,
+    profiles: Profiles,
     hashes: _Hashes,
     entries: list[_Entry],
     runs: list[Mapping[str, Any]],
@@ -242,7 +288,7 @@ def _read_windows(
         listed = window_list.Listed(tow_ids, runs_of)
         try:
             data = _read_list(root, file.path, hashes)
-            found, faulty = window_list.read_windows(data, file.path, listed)
+            found, faulty = window_list.read_windows(data, file.path, listed, profiles.wording)
         except DefectiveInputError as error:
             faults.append(fault_from(error, file.path))
             continue
@@ -278,36 +324,60 @@ def _names(row: ListRow) -> list[str]:
     return [cell for cell in cells if cell is not None]
 
 
-def _by_name(sample_files: Iterable[ArchiveFile]) -> _FilesByName:
+def _by_name(sample_files: Iterable[ArchiveFile], entries: Iterable[_Entry]) -> _FilesByName:
+    """Return the samples by season and the name they answer to.
+
+    Files that are a run each answer together to what their names have in common, unless a row
+    names one of them by itself.
+    """
+    named = {(entry.season, match_key(name)) for entry in entries for name in _names(entry.row)}
     by_name: _FilesByName = defaultdict(list)
+    by_run: dict[tuple[int, str], dict[int, list[ArchiveFile]]] = defaultdict(dict)
     for file in sample_files:
-        by_name[file.season, match_key(file.full_path.name)].append(file)
+        key = (file.season, match_key(file.full_path.name))
+        by_name[key].append(SamplesFile((file,)))
+        run = as_one_run(file.full_path.name)
+        if run is not None and key not in named:
+            tow = run[0] or fold_name(file.full_path.parent.name)
+            by_run[file.season, tow].setdefault(run[1], []).append(file)
+    for key, runs in by_run.items():
+        if key not in by_name and all(len(files) == 1 for files in runs.values()):
+            by_name[key].append(SamplesFile(tuple(runs[run][0] for run in sorted(runs))))
     return by_name
 
 
-def _candidates(name: str, season: int, by_name: _FilesByName) -> list[ArchiveFile]:
+def _candidates(name: str, season: int, by_name: _FilesByName) -> list[SamplesFile]:
     """Return the files a name in a list can mean; a name with its extension is more precise."""
     alike = by_name.get((season, match_key(name)), [])
-    exact = [file for file in alike if fold_name(file.full_path.name) == fold_name(name)]
+    exact = [file for file in alike if fold_name(file.parts[0].full_path.name) == fold_name(name)]
     return exact if len(exact) == 1 else alike
 
 
 def _not_listed(
-    entries: Iterable[_Entry], sample_files: list[ArchiveFile], unread_seasons: set[int]
+    entries: Iterable[_Entry],
+    sample_files: list[ArchiveFile],
+    unread_seasons: set[int],
+    by_name: _FilesByName,
 ) -> list[Fault]:
     """Return a fault for each samples file no row names, in seasons whose list could be read.
 
     Rows that are set aside for another reason name their files all the same.
     """
-    named = {(entry.season, match_key(name)) for entry in entries for name in _names(entry.row)}
+    named = {
+        part.path
+        for entry in entries
+        for name in _names(entry.row)
+        for file in by_name.get((entry.season, match_key(name)), [])
+        for part in file.parts
+    }
     faults = []
     for file in sample_files:
-        if (file.season, match_key(file.full_path.name)) in named:
+        if file.path in named:
             continue
         if not file.inside:
             faults.append(fault_from(outside_archive(file.path), file.path))
         elif file.season not in unread_seasons:
-            message = f"No row of the tow list of {file.season} names this file."
+            message = say("No row of the tow list of {season} names this file.", season=file.season)
             faults.append(Fault(file.path, None, None, "samples_not_listed", message))
     return faults
 
@@ -346,14 +416,17 @@ def _unique_ids(entries: Iterable[_Entry]) -> Callable[[_Entry], None]:
             return
         other = next(other for other in same if other is not entry)
         ending = (
-            "the rows are equal and the first counts."
+            say("the rows are equal and the first counts.")
             if identical
-            else "the rows differ, so neither counts."
+            else say("the rows differ, so neither counts.")
         )
-        raise entry.fault(
-            "duplicate_tow_id",
-            f"sleep_id {shorten(entry.tow_id or '')} stands also on {other.where}; {ending}",
+        message = say(
+            "sleep_id {tow} stands also on {where}; {ending}",
+            tow=shorten(entry.tow_id or ""),
+            where=other.where,
+            ending=ending,
         )
+        raise entry.fault("duplicate_tow_id", message)
 
     return question
 
@@ -361,14 +434,12 @@ def _unique_ids(entries: Iterable[_Entry]) -> Callable[[_Entry], None]:
 def _read_values(entry: _Entry, profiles: Profiles) -> None:
     rate_hz = profiles.for_season(entry.season).sample_rate_hz
     entry.tow = tow_list.read_tow(entry.row, entry.season, rate_hz)
-    entry.selection = tow_list.read_selection(entry.row)
+    entry.selection = tow_list.read_selection(entry.row, entry.plan.runs)
     entry.row.text("file")
     day = entry.tow["tow_date"]
     if day.year != entry.season:
-        raise entry.fault(
-            "date_outside_season",
-            f"the date {day} is not in {entry.season}, the year of the list.",
-        )
+        message = "the date {day} is not in {season}, the year of the list."
+        raise entry.fault("date_outside_season", say(message, day=day, season=entry.season))
 
 
 def _find_files(entry: _Entry, by_name: _FilesByName, hashes: _Hashes) -> None:
@@ -376,31 +447,30 @@ def _find_files(entry: _Entry, by_name: _FilesByName, hashes: _Hashes) -> None:
     first, second = entry.files[0], entry.files[1] if len(entry.files) > 1 else None
     entry.tow |= {
         "samples_path": first.path,
-        "samples_sha256": hashes.add(first.path, first.full_path),
+        "samples_sha256": hashes.add_samples(first),
         "second_path": second.path if second else None,
-        "second_sha256": hashes.add(second.path, second.full_path) if second else None,
+        "second_sha256": hashes.add_samples(second) if second else None,
         "list_path": entry.list_path,
         "list_line": entry.row.line,
     }
 
 
-def _find_file(entry: _Entry, name: str, by_name: _FilesByName) -> ArchiveFile:
+def _find_file(entry: _Entry, name: str, by_name: _FilesByName) -> SamplesFile:
+    values = {"name": shorten(name), "folder": f"meetdata_{entry.season}/"}
     if "/" in name or "\\" in name or name.startswith(".."):
-        raise entry.fault(
-            "path_outside_archive",
-            f"'{shorten(name)}' is a path; only the name of a file in "
-            f"meetdata_{entry.season}/ can stand here.",
-        )
+        message = "'{name}' is a path; only the name of a file in {folder} can stand here."
+        raise entry.fault("path_outside_archive", say(message, **values))
     candidates = _candidates(name, entry.season, by_name)
     if not candidates:
-        raise entry.fault(
-            "samples_missing", f"there is no file '{shorten(name)}' in meetdata_{entry.season}/."
-        )
+        message = say("there is no file '{name}' in {folder}.", **values)
+        raise entry.fault("samples_missing", message)
     if len(candidates) > 1:
-        found = ", ".join(f"'{file.full_path.name}'" for file in candidates)
-        raise entry.fault("ambiguous_file", f"'{shorten(name)}' can be any of {found}.")
-    if not candidates[0].inside:
-        raise outside_archive(candidates[0].path)
+        found = ", ".join(f"'{file.parts[0].full_path.name}'" for file in candidates)
+        message = say("'{name}' can be any of {found}.", name=shorten(name), found=found)
+        raise entry.fault("ambiguous_file", message)
+    outside = [part for part in candidates[0].parts if not part.inside]
+    if outside:
+        raise outside_archive(outside[0].path)
     return candidates[0]
 
 
@@ -420,9 +490,8 @@ def _unique_samples(entries: Iterable[_Entry]) -> Callable[[_Entry], None]:
     def question(entry: _Entry) -> None:
         sha256 = entry.tow["samples_sha256"]
         if sha256 == entry.tow["second_sha256"]:
-            raise entry.fault(
-                "samples_listed_twice", "meetfile and meetfile2 hold the same samples."
-            )
+            message = say("meetfile and meetfile2 hold the same samples.")
+            raise entry.fault("samples_listed_twice", message)
         boat, crew = entry.tow["fsn_no"], _crew(entry)
         strangers = [
             other
@@ -434,11 +503,13 @@ def _unique_samples(entries: Iterable[_Entry]) -> Callable[[_Entry], None]:
             raise _listed_twice(entry, strangers[0])
         earliest = first[sha256][0]
         if entry is not earliest:
-            raise entry.fault(
-                "duplicate_tow",
-                f"'{entry.tow['samples_path']}' holds the samples that {earliest.where} uses "
-                f"already for {boat}.",
+            message = say(
+                "'{path}' holds the samples that {where} uses already for {boat}.",
+                path=entry.tow["samples_path"],
+                where=earliest.where,
+                boat=boat,
             )
+            raise entry.fault("duplicate_tow", message)
 
     return question
 
@@ -454,25 +525,31 @@ def _crew(entry: _Entry) -> tuple[int, str]:
 
 def _listed_twice(entry: _Entry, other: _Entry) -> DefectiveInputError:
     boat, crew = other.tow["fsn_no"], f"{other.tow['rowers']}{other.tow['crew_class']}"
-    return entry.fault(
-        "samples_listed_twice",
-        f"the samples are also used for {boat} {crew} on {other.where}; nobody can know whose "
-        "they are.",
+    message = say(
+        "the samples are also used for {boat} {crew} on {where}; nobody can know whose they are.",
+        boat=boat,
+        crew=crew,
+        where=other.where,
     )
+    return entry.fault("samples_listed_twice", message)
 
 
 def _join_boat(entry: _Entry, boats: Boats) -> None:
     fsn_no = entry.tow["fsn_no"]
     why = boats.bad.get(fsn_no)
     if why is not None:
-        raise entry.fault(
-            why.reason_code,
-            f"boat {fsn_no} cannot be used, see {why.path}: {why.message}",
+        message = say(
+            "boat {boat} cannot be used, see {path}: {why}",
+            boat=fsn_no,
+            path=why.path,
+            why=why.message,
         )
-    boat = boats.good.get(fsn_no)
+        raise entry.fault(why.reason_code, message)
+    boat = boats.find(fsn_no)
     if boat is None:
-        raise entry.fault("unknown_boat", f"boat {shorten(fsn_no)} is not in {BOATS_FILE}.")
-    entry.tow = tow_list.fill_dimensions(entry.tow, boat, entry.row)
+        message = say("boat {boat} is not in the boat list.", boat=shorten(fsn_no))
+        raise entry.fault("unknown_boat", message)
+    entry.tow = tow_list.fill_dimensions(entry.tow, boat, entry.row) | {"fsn_no": boat["fsn_no"]}
 
 
 def _place_day(entry: _Entry, profiles: Profiles) -> None:
@@ -480,23 +557,26 @@ def _place_day(entry: _Entry, profiles: Profiles) -> None:
     day = entry.tow["tow_date"]
     reason = profiles.reason_set_aside(day)
     if reason is not None:
-        raise entry.fault("day_set_aside", f"{day} is set aside in {PROFILE_FILE}: {reason}.")
+        message = say("{day} is set aside in archief.toml: {reason}.", day=day, reason=reason)
+        raise entry.fault("day_set_aside", message)
+    absent = profiles.for_season(entry.season).absent
+    entry.tow |= {f"{channel}_measured": channel not in absent for channel in ("wind", "log2")}
     for log in ("log1", "log2"):
         entry.tow[f"{log}_part"] = profiles.part_of_log(log, day)
 
 
-def _runs(entry: _Entry, profiles: Profiles) -> list[Mapping[str, Any]]:
-    directions = profiles.for_season(entry.season).directions
-    targets = TARGET_SPEED_RATIOS * (RUNS_PER_FILE // len(TARGET_SPEED_RATIOS))
+def _runs(entry: _Entry) -> list[Mapping[str, Any]]:
+    plan = entry.plan
     offsets = (0, SECOND_FILE_OFFSET)[: len(entry.files)]
     return [
         {
             "tow_id": entry.tow["tow_id"],
             "run": offset + number,
-            "direction": directions[number - 1],
-            "target_speed_ratio": targets[number - 1],
+            "direction": plan.directions[number - 1],
+            "target_speed_ratio": plan.targets[number - 1],
             "selected": offset + number in entry.selection,
+            "planned_s": plan.seconds,
         }
         for offset in offsets
-        for number in range(1, RUNS_PER_FILE + 1)
+        for number in plan.runs
     ]

@@ -6,25 +6,93 @@ modules that read those.
 
 import datetime as dt
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+import unicodedata
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 from herijk.pipeline.errors import DefectiveInputError
+from herijk.warehouse.archive.messages import say
+from herijk.warehouse.archive.sheets import Sheet, read_sheet
 from herijk.warehouse.archive.text import (
     Column,
     FoundColumn,
-    decode,
     find_columns,
-    find_delimiter,
+    fold,
+    nearest_column,
     parse_number,
     shorten,
-    split_line,
+    unknown_headers,
 )
+from herijk.warehouse.archive.units import UNITS, Scale, find_scale
+from herijk.warehouse.archive.words import CLASSES, HEADERS, NO, NOTHING, YES
 
-_ISO_DATE: Final = re.compile(r"([0-9]{4})-([0-9]{2})-([0-9]{2})")
-_DUTCH_DATE: Final = re.compile(r"([0-9]{1,2})-([0-9]{1,2})-([0-9]{4})")
-_CLASSES: Final = {"h": "H", "d": "D"}
+_ISO_DATE: Final = re.compile(r"([0-9]{4})[-/.]([0-9]{1,2})[-/.]([0-9]{1,2})")
+_DAY_FIRST: Final = re.compile(r"([0-9]{1,2})([-./ ])([0-9]{1,2})\2([0-9]{4}|[0-9]{2})")
+_MONTH_NAMED: Final = re.compile(r"([0-9]{1,2})[. -]+([a-zäé]{3,9})[. -]+([0-9]{4})")
+_TIME_OF_DAY: Final = re.compile(r"[ T]+[0-9]{1,2}:[0-9]{2}(:[0-9]{2}([.,][0-9]+)?)?$")
+_MONTHS: Final = {
+    name: number
+    for number, names in enumerate(
+        ("jan", "feb", "mrt mar maa mär", "apr", "mei may mai", "jun", "jul", "aug", "sep",
+         "okt oct", "nov", "dec dez"), start=1
+    )
+    for name in names.split()
+}  # fmt: skip
+_WITH_UNIT: Final = re.compile(r"([+-]?[0-9.,]+(?:[eE][+-]?[0-9]+)?)\s*([^0-9\s.,+-].*)")
+_THOUSAND: Final = re.compile(r"[+-]?[0-9]{1,3}([.,])[0-9]{3}")
+_DECIMAL: Final = re.compile(r"[+-]?[0-9]*([.,])([0-9]{1,2}|[0-9]{4,})")
+_BOAT: Final = re.compile(r"(?:fsn)?[\s._-]*([0-9]{1,6}[a-z]?)", re.IGNORECASE)
+
+
+def fold_word(text: str) -> str:
+    """Return a value for comparing: without case, outer blanks and ways to write an accent."""
+    return " ".join(unicodedata.normalize("NFC", text).casefold().split())
+
+
+@dataclass(frozen=True)
+class Wording:
+    """How the lists of an archive are worded, beside what `words` knows: from `archief.toml`.
+
+    Attributes:
+        words: the value that a folded word stands for; empty text for nothing.
+        headers: the project's name of a column by a folded other one.
+        ignore: folded names of columns that are known and not used.
+        dates: `dmy` or `mdy` by the path of a list, or `*` for all: how 1/3/2015 is meant.
+    """
+
+    words: Mapping[str, str] = field(default_factory=dict)
+    headers: Mapping[str, str] = field(default_factory=dict)
+    ignore: tuple[str, ...] = ()
+    dates: Mapping[str, str] = field(default_factory=dict)
+
+    def with_names(self, columns: Iterable[Column]) -> tuple[Column, ...]:
+        """Return the columns with the other names that they answer to."""
+        return tuple(replace(c, also=(*c.also, *self._names(c))) for c in columns)
+
+    def _names(self, column: Column) -> tuple[str, ...]:
+        named = {fold(column.header), column.key}
+        own = (n for n, meant in self.headers.items() if fold(meant) in named or meant in named)
+        return (*HEADERS.get(column.key, ()), *own)
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What the rows of one list share.
+
+    Attributes:
+        columns: the columns found in the header.
+        reason_code: what a bad value in this list is called.
+        words: the value that a folded word stands for.
+        date_order: `dmy` or `mdy` where dates with slashes are settled, else empty.
+        decimal: the decimal marks that this list surely uses, comma, point, or both.
+    """
+
+    columns: Mapping[str, FoundColumn]
+    reason_code: str
+    words: Mapping[str, str]
+    date_order: str
+    decimal: str
 
 
 @dataclass(frozen=True)
@@ -36,21 +104,25 @@ class ListRow:
 
     Attributes:
         line: line in the file on which the row begins.
-        cells: text by column key, trimmed.
-        columns: the columns found in the header.
-        reason_code: what a bad value in this list is called.
+        cells: text by column key, trimmed, words replaced by what they stand for.
+        reading: what the rows of the list share.
         row_problem: what is wrong with the row as a whole, e.g. too few fields.
     """
 
     line: int
     cells: dict[str, str]
-    columns: dict[str, FoundColumn]
-    reason_code: str
+    reading: Reading
     row_problem: str | None
 
-    def fault(self, message: str) -> DefectiveInputError:
+    @property
+    def columns(self) -> Mapping[str, FoundColumn]:
+        """The columns found in the header."""
+        return self.reading.columns
+
+    def fault(self, message: str, reason_code: str | None = None) -> DefectiveInputError:
         """Return the error for this row."""
-        return DefectiveInputError(self.reason_code, f"Line {self.line}: {message}", self.line)
+        said = say("Line {line}: {what}", line=self.line, what=message)
+        return DefectiveInputError(reason_code or self.reading.reason_code, said, self.line)
 
     def check_whole(self) -> None:
         """Raise when something is wrong with the row as a whole."""
@@ -65,7 +137,7 @@ class ListRow:
         """Return the text of a cell that must not be empty."""
         value = self.optional_text(key)
         if value is None:
-            raise self.fault(f"{self._named(key)} is empty.")
+            raise self.fault(say("column '{column}' is empty.", column=self.named(key)))
         return value
 
     def optional_number(self, key: str, lowest: float, highest: float) -> float | None:
@@ -73,17 +145,56 @@ class ListRow:
         cell = self.optional_text(key)
         if cell is None:
             return None
-        try:
-            number = parse_number(cell)
-        except ValueError as error:
-            raise self.fault(f"{self._named(key)}: {error}.") from error
-        numerator, denominator = self.columns[key].scale
+        self._check_one_meaning(key, cell)
+        number, (numerator, denominator) = self._number_and_scale(key, cell)
         value = number * numerator / denominator
         if not lowest <= value <= highest:
             limits = (limit * denominator / numerator for limit in (lowest, highest))
             low, high = (f"{limit:g}" for limit in limits)
-            raise self.fault(f"{self._named(key)} is {cell}; {low} to {high} can be right.")
+            raise self.fault(
+                say(
+                    "column '{column}' is {cell}; {low} to {high} can be right.",
+                    column=self.named(key),
+                    cell=shorten(cell),
+                    low=low,
+                    high=high,
+                )
+            )
         return value
+
+    def _number_and_scale(self, key: str, cell: str) -> tuple[float, Scale]:
+        """Return the number in a cell and its scale: its own unit goes before the header's."""
+        column = self.columns[key]
+        own = _WITH_UNIT.fullmatch(cell)
+        scale = find_scale(column.dimension, own[2]) if own and UNITS[column.dimension] else None
+        try:
+            return parse_number(own[1] if own and scale else cell), scale or column.scale
+        except ValueError as error:
+            raise self.fault(
+                say(
+                    "column '{column}' is '{cell}', which is not an ordinary number.",
+                    column=self.named(key),
+                    cell=shorten(cell),
+                )
+            ) from error
+
+    def _check_one_meaning(self, key: str, cell: str) -> None:
+        """Raise where 1.140 can be a thousand: this list writes decimals with the other mark."""
+        mark = _THOUSAND.fullmatch(cell)
+        if mark and self.reading.decimal not in {"", mark[1]}:
+            other = self.reading.decimal.replace(mark[1], "")
+            raise self.fault(
+                say(
+                    "column '{column}' is {cell}, while other numbers of this list have their "
+                    "decimals behind a '{mark}'; write {whole} or {decimal}.",
+                    column=self.named(key),
+                    cell=cell,
+                    mark=other,
+                    whole=cell.replace(mark[1], ""),
+                    decimal=cell.replace(mark[1], other),
+                ),
+                "ambiguous_number",
+            )
 
     def number(self, key: str, lowest: float, highest: float) -> float:
         """Return a number that must be there."""
@@ -98,7 +209,13 @@ class ListRow:
         if value is None:
             return None
         if value != int(value):
-            raise self.fault(f"{self._named(key)} is {self.cells[key]}; it must be whole.")
+            raise self.fault(
+                say(
+                    "column '{column}' is {cell}; it must be a whole number.",
+                    column=self.named(key),
+                    cell=shorten(self.cells[key]),
+                )
+            )
         return int(value)
 
     def integer(self, key: str, lowest: int, highest: int) -> int:
@@ -109,14 +226,27 @@ class ListRow:
         return value
 
     def optional_date(self, key: str) -> dt.date | None:
-        """Return a date (`2014-03-01` or `01-03-2014`), None when the cell is empty."""
+        """Return a date, None when the cell is empty."""
         cell = self.optional_text(key)
         if cell is None:
             return None
         try:
-            return parse_date(cell)
+            return parse_date(cell, self.reading.date_order)
+        except AmbiguousDateError as error:
+            message = say(
+                "column '{column}' is '{cell}': is the first number the day or the month?",
+                column=self.named(key),
+                cell=shorten(cell),
+            )
+            raise self.fault(message, "ambiguous_date") from error
         except ValueError as error:
-            raise self.fault(f"{self._named(key)}: {error}.") from error
+            raise self.fault(
+                say(
+                    "column '{column}' is '{cell}', not a date such as 2014-03-01 or 01-03-2014.",
+                    column=self.named(key),
+                    cell=shorten(cell),
+                )
+            ) from error
 
     def date(self, key: str) -> dt.date:
         """Return a date that must be there."""
@@ -126,87 +256,169 @@ class ListRow:
         return value
 
     def crew_class(self, key: str) -> str:
-        """Return `H` or `D`."""
-        value = _CLASSES.get(self.text(key).casefold())
-        if value is None:
-            raise self.fault(f"{self._named(key)} is '{shorten(self.cells[key])}', not H or D.")
-        return value
+        """Return `H`, `D`, or the class that `[words]` says: `M` for a mixed crew."""
+        cell = self.text(key)
+        value = CLASSES.get(fold_word(cell))
+        if value is None and cell not in self.reading.words.values():
+            message = say(
+                "column '{column}' is '{cell}'; H or D is expected.",
+                column=self.named(key),
+                cell=shorten(cell),
+            )
+            raise self.fault(message)
+        return value or cell
 
-    def _named(self, key: str) -> str:
+    def yes_or_no(self, key: str) -> bool:
+        """Return whether a cell says yes; an empty one says no."""
+        cell = fold_word(self.optional_text(key) or "nee")
+        if cell in YES or cell in NO:
+            return cell in YES
+        message = say(
+            "column '{column}' is '{cell}', not ja, nee or empty.",
+            column=self.named(key),
+            cell=shorten(cell),
+        )
+        raise self.fault(message)
+
+    def boat(self, key: str) -> str:
+        """Return the number of a boat: `FSN 101`, `fsn101` and `101` are FSN101."""
+        cell = self.text(key)
+        number = _BOAT.fullmatch(cell.strip())
+        return f"FSN{number[1].upper()}" if number else cell
+
+    def named(self, key: str) -> str:
+        """Return what the file calls a column."""
         found = self.columns.get(key)
-        return f"column '{found.header if found else key}'"
+        return found.header if found else key
 
 
-def parse_date(text: str) -> dt.date:
-    """Return the date written as `2014-03-01` or `01-03-2014`.
+class AmbiguousDateError(ValueError):
+    """Day and month can be exchanged."""
+
+
+def parse_date(text: str, order: str = "") -> dt.date:
+    """Return the date in a text, the year first or the day first; a time of day is left out.
+
+    Args:
+        text: `2014-03-01`, `1-3-2014`, `01.03.14`, `1/3/2014`, `1 maart 2014`.
+        order: `dmy` or `mdy` for dates with slashes; without, only one meaning may be possible.
 
     Raises:
-        ValueError: it is no such date.
+        AmbiguousDateError: day and month can be exchanged.
+        ValueError: it is no date.
     """
-    iso = _ISO_DATE.fullmatch(text)
-    dutch = _DUTCH_DATE.fullmatch(text)
-    try:
-        if iso:
-            return dt.date(int(iso[1]), int(iso[2]), int(iso[3]))
-        if dutch:
-            return dt.date(int(dutch[3]), int(dutch[2]), int(dutch[1]))
-    except ValueError:
-        pass
-    raise ValueError(f"'{shorten(text)}' is not a date such as 2014-03-01 or 01-03-2014")
+    text = _TIME_OF_DAY.sub("", text.strip().casefold())
+    iso, day_first = _ISO_DATE.fullmatch(text), _DAY_FIRST.fullmatch(text)
+    named = _MONTH_NAMED.fullmatch(text)
+    if iso:
+        return dt.date(int(iso[1]), int(iso[2]), int(iso[3]))
+    if named and named[2][:3] in _MONTHS:
+        return dt.date(int(named[3]), _MONTHS[named[2][:3]], int(named[1]))
+    if not day_first:
+        raise ValueError(text)
+    first, second = int(day_first[1]), int(day_first[3])
+    year = int(day_first[4]) + (2000 if len(day_first[4]) == 2 else 0)
+    if day_first[2] == "/" and not order and first != second and max(first, second) <= 12:
+        raise AmbiguousDateError(text)
+    month_first = day_first[2] == "/" and (order == "mdy" or (not order and second > 12))
+    day, month = (second, first) if month_first else (first, second)
+    return dt.date(year, month, day)
 
 
-def read_rows(data: bytes, columns: Sequence[Column], reason_code: str) -> list[ListRow]:
-    """Return the rows of a list; empty ones are left out.
+def date_order(cells: Iterable[str]) -> str:
+    """Return `dmy` or `mdy` where dates with slashes in a list can only be meant so, else empty."""
+    found = (_DAY_FIRST.fullmatch(_TIME_OF_DAY.sub("", cell.strip())) for cell in cells)
+    pairs = [(int(m[1]), int(m[3])) for m in found if m and m[2] == "/"]
+    orders = {"dmy" for first, _ in pairs if first > 12}
+    orders |= {"mdy" for _, second in pairs if second > 12}
+    return orders.pop() if len(orders) == 1 else ""
+
+
+def read_rows(
+    data: bytes,
+    columns: Sequence[Column],
+    reason_code: str,
+    suffix: str = ".csv",
+) -> list[ListRow]:
+    """Return the rows of a table that anybody made; columns nobody asked for are ignored.
+
+    Args:
+        data: content of the file.
+        columns: the columns to look for.
+        reason_code: what a bad value in this table is called.
+        suffix: kind of file.
+
+    Raises:
+        DefectiveInputError: the table as a whole cannot be read.
+    """
+    sheet = read_sheet(data, columns, suffix)
+    found = find_columns(sheet.header, columns, sheet.line)
+    return _rows(sheet, Reading(found, reason_code, {}, "", ""))
+
+
+def read_list(
+    data: bytes, columns: Sequence[Column], reason_code: str, path: str, wording: Wording
+) -> list[ListRow]:
+    """Return the rows of a list of the archive; empty ones are left out.
 
     Args:
         data: content of the file.
         columns: the columns to look for.
         reason_code: what a bad value in this list is called.
+        path: the list, relative to the archive.
+        wording: how the lists of this archive are worded.
 
     Raises:
-        DefectiveInputError: the list as a whole cannot be read.
+        DefectiveInputError: the list as a whole cannot be read, or has a column that nobody knows:
+            it can be a misspelt one, and left out in silence would change numbers.
     """
-    header_line, *lines = decode(data).split("\n")
-    delimiter = find_delimiter(header_line)
-    header = split_line(header_line.rstrip("\r"), delimiter)
-    found = find_columns(header, columns)
-    rows = (
-        _read_row(number, line.rstrip("\r"), delimiter, len(header))
-        for number, line in enumerate(lines, start=2)
+    wanted = wording.with_names(columns)
+    sheet = read_sheet(data, wanted, path[path.rfind(".") :].casefold())
+    found = find_columns(sheet.header, wanted, sheet.line)
+    strange = [h for h in unknown_headers(sheet.header, found) if fold(h) not in wording.ignore]
+    if strange:
+        raise DefectiveInputError("unknown_column", _strange(strange, wanted), sheet.line)
+    cells = [cell.strip() for row in sheet.rows for cell in row.fields]
+    order = wording.dates.get(path, wording.dates.get("*", "")) or date_order(cells)
+    reading = Reading(found, reason_code, wording.words, order, _decimal_mark(cells))
+    return _rows(sheet, reading)
+
+
+def _strange(headers: Sequence[str], columns: Sequence[Column]) -> str:
+    """Return the sentence about columns that nobody knows, with the nearest known ones."""
+    meant = {header: nearest_column(header, columns) for header in headers}
+    return say(
+        "Nobody knows column {names}. Correct it, name it under [headers] in archief.toml, or put "
+        "it there under ignore.",
+        names=", ".join(
+            f"'{shorten(header)}'" + (f" ({column.named}?)" if column else "")
+            for header, column in meant.items()
+        ),
     )
+
+
+def _decimal_mark(cells: Iterable[str]) -> str:
+    """Return the marks that stand before decimals, of numbers that can only be read so."""
+    return "".join(sorted({m[1] for cell in cells if (m := _DECIMAL.fullmatch(cell))}))
+
+
+def _rows(sheet: Sheet, reading: Reading) -> list[ListRow]:
     return [
-        _row(number, fields, problem, found, reason_code)
-        for number, fields, problem in rows
-        if any(field.strip() for field in fields)
+        ListRow(row.line, _cells(row.fields, reading), reading, row.problem) for row in sheet.rows
     ]
 
 
-def _read_row(
-    number: int, line: str, delimiter: str, width: int
-) -> tuple[int, list[str], str | None]:
-    """Return line number, fields and what is wrong with the row as a whole.
-
-    Line by line, as a quotation mark that is not closed would otherwise swallow the rows below.
-    """
-    try:
-        fields = split_line(line, delimiter)
-    except DefectiveInputError:
-        return number, line.split(delimiter), "a quotation mark is not closed, or in mid-field."
-    if len(fields) < width or any(field.strip() for field in fields[width:]):
-        return number, fields, f"the row has {len(fields)} fields where the header has {width}."
-    return number, fields, None
-
-
-def _row(
-    line: int,
-    fields: list[str],
-    problem: str | None,
-    found: dict[str, FoundColumn],
-    reason_code: str,
-) -> ListRow:
-    cells = {
-        key: fields[column.index].strip()
-        for key, column in found.items()
+def _cells(fields: Sequence[str], reading: Reading) -> dict[str, str]:
+    return {
+        key: _meant(fields[column.index].strip(), reading.words)
+        for key, column in reading.columns.items()
         if column.index < len(fields)
     }
-    return ListRow(line, cells, found, reason_code, problem)
+
+
+def _meant(cell: str, words: Mapping[str, str]) -> str:
+    """Return what a cell stands for: the archive's own words first, then nothing for `n.v.t.`."""
+    folded = fold_word(cell)
+    if folded in words:
+        return words[folded]
+    return "" if folded in NOTHING else unicodedata.normalize("NFC", cell)

@@ -13,11 +13,12 @@ import numpy as np
 import polars as pl
 from numpy.typing import NDArray
 
-from herijk.pipeline.channels import RUN_SECONDS, SECOND_FILE_OFFSET
+from herijk.pipeline.channels import SECOND_FILE_OFFSET
 from herijk.warehouse.archive.faults import DefectiveFileError
 from herijk.warehouse.archive.samples import OUTPUT_NAMES, run_starts
 
-SHORTEST_RUN_S: Final = 0.99 * RUN_SECONDS
+SHORTEST_RUN_RATIO: Final = 0.99
+"""Of what is planned."""
 DROPOUT_M_S: Final = 0.1
 SPEED_RATIO: Final = (0.5, 1.6)
 KM_H_RATIO: Final = (3.0, 4.2)
@@ -58,6 +59,7 @@ class _Run:
     first_line: int
     rate_hz: int
     intended_m_s: float
+    planned_s: float
     channels: Mapping[str, Array]
 
     @property
@@ -134,6 +136,7 @@ def _selected_runs(
             int(start) - offset + 2,
             tow["sample_rate_hz"],
             tow["declared_speed_m_s"] * row["target_speed_ratio"],
+            row["planned_s"],
             {key: values[start:end] for key, values in channels.items()},
         )
 
@@ -163,11 +166,12 @@ def _fault(
 def _check_length(runs: list[_Run], tow: Mapping[str, Any]) -> None:
     for run in runs:
         seconds = len(run.channels["log1"]) / run.rate_hz
-        if seconds < SHORTEST_RUN_S:
+        shortest = SHORTEST_RUN_RATIO * run.planned_s
+        if seconds < shortest:
             raise _fault(
                 "short_run",
                 f"{run.name} lasts {seconds:.2f} s at {run.rate_hz} samples a second; "
-                f"at least {SHORTEST_RUN_S:g} s is needed.",
+                f"at least {shortest:g} s is needed.",
                 run,
                 tow,
                 0,
@@ -201,18 +205,26 @@ def _median(values: Array) -> float:
 def _implausible(channels: Mapping[str, _Typical], intended_m_s: float) -> list[str]:
     """Return the channels whose typical values cannot be what their header says."""
     log1 = channels["log1"].median
-    wind, angle = channels["wind_speed"], channels["wind_angle"]
     others = [key for key in ("log2", "gps") if key in channels]
     plausible = {
         "log1": _within(log1 / intended_m_s, SPEED_RATIO),
         **{key: _within(channels[key].median, SPEEDS_AGREE_RATIO, abs(log1)) for key in others},
         "force": _within(channels["force"].median, RESISTANCE_KG_M, intended_m_s**2),
+        **_plausible_wind(channels),
+    }
+    return [key for key, good in plausible.items() if not good]
+
+
+def _plausible_wind(channels: Mapping[str, _Typical]) -> dict[str, bool]:
+    if "wind_speed" not in channels:
+        return {}
+    wind, angle = channels["wind_speed"], channels["wind_angle"]
+    return {
         "wind_speed": wind.lowest >= WIND_SPEED_M_S[0]
         and wind.highest <= WIND_SPEED_M_S[1]
         and wind.median <= WIND_MEAN_M_S,
         "wind_angle": angle.lowest >= WIND_ANGLE_DEG[0] and angle.highest <= WIND_ANGLE_DEG[1],
     }
-    return [key for key, good in plausible.items() if not good]
 
 
 def _within(value: float, limits: tuple[float, float], unit: float = 1.0) -> bool:
@@ -309,7 +321,7 @@ def _may_hold(values: Array, samples: int) -> bool:
 
 def _check_stuck(runs: list[_Run], tow: Mapping[str, Any]) -> None:
     for run in runs:
-        wind = run.channels["wind_speed"]
+        wind = run.channels.get("wind_speed", np.zeros(1, np.float32))
         for key, limit_s, counts in (
             ("log1", STUCK_S, None),
             ("log2", STUCK_S, None),
@@ -317,6 +329,8 @@ def _check_stuck(runs: list[_Run], tow: Mapping[str, Any]) -> None:
             ("wind_speed", STUCK_WIND_SPEED_S, wind != 0),  # cups may stand still
             ("wind_angle", STUCK_VANE_S, wind > VANE_TURNS_M_S),  # a vane needs wind
         ):
+            if key not in run.channels:
+                continue
             if not _may_hold(run.channels[key], int(limit_s * run.rate_hz)):
                 continue
             row, length = _longest_hold(run.channels[key], counts)
@@ -456,8 +470,12 @@ def _check_ranges(runs: list[_Run], tow: Mapping[str, Any]) -> None:
                     tow,
                     0,
                 )
-        _check_within(run, tow, "wind_speed", WIND_SPEED_M_S, "m/s")
-        _check_within(run, tow, "wind_angle", WIND_ANGLE_DEG, "degrees")
+        for key, limits, unit in (
+            ("wind_speed", WIND_SPEED_M_S, "m/s"),
+            ("wind_angle", WIND_ANGLE_DEG, "degrees"),
+        ):
+            if key in run.channels:
+                _check_within(run, tow, key, limits, unit)
 
 
 def _means(run: _Run) -> Callable[[str], float]:

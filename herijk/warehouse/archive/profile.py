@@ -1,27 +1,35 @@
 """What differs from season to season in this archive: `archief.toml`.
 
-Column names and units of the samples, sampling rate, direction of the runs, days to set aside.
+Words and columns of its lists, names and units of the samples, what was not measured, the plan of
+the runs, days to set aside.
 Reading the samples with it belongs to `samples`.
 """
 
 import datetime as dt
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
-from herijk.pipeline.channels import BACK, OUT, RUNS_PER_FILE
+from herijk.pipeline.channels import (
+    BACK,
+    FEWEST_RUNS,
+    MOST_RUNS,
+    OUT,
+    RUN_SECONDS,
+    TARGET_SPEED_RATIOS,
+)
 from herijk.pipeline.errors import DefectiveInputError, MissingKnowledgeError
-from herijk.warehouse.archive.files import path_inside
-from herijk.warehouse.archive.text import UNITS, Column, fold
-
-PROFILE_FILE: Final = "archief.toml"
+from herijk.warehouse.archive.files import PROFILE_FILE, path_inside
+from herijk.warehouse.archive.lists import Wording, fold_word
+from herijk.warehouse.archive.text import Column, fold
+from herijk.warehouse.archive.units import UNITS, find_scale
 
 SAMPLE_COLUMNS: Final = (
-    Column("run", "run"),
+    Column("run", "run", required=False),
     Column("log1", "log1", "speed", "m/s"),
     Column("log2", "log2", "speed", "m/s"),
     Column("gps", "gps", "speed", "m/s", required=False),
@@ -30,9 +38,19 @@ SAMPLE_COLUMNS: Final = (
     Column("wind_angle", "wind", "angle", "gra"),
     Column("time", "tijd", "time", "s", required=False),
 )
-"""The columns of a samples file unless a profile names them differently."""
+"""The columns of a samples file unless a profile names them differently.
+
+Where there is no `run` every file, sheet or segment is a run.
+"""
+MAY_BE_ABSENT: Final = {
+    "log2": ("log2",),
+    "gps": ("gps",),
+    "wind": ("wind_speed", "wind_angle"),
+}
+"""What a season can declare absent, with the channels that go with it."""
 
 Channel = Literal["run", "log1", "log2", "gps", "force", "wind_speed", "wind_angle", "time"]
+Absent = Literal["log2", "gps", "wind"]
 _DIMENSIONS: Final = {column.key: column.dimension for column in SAMPLE_COLUMNS}
 
 
@@ -68,6 +86,42 @@ class LogReplaced(_Strict):
     reason: Annotated[str, Field(min_length=1)]
 
 
+_Directions = Annotated[
+    list[Literal["out", "back"]], Field(min_length=FEWEST_RUNS, max_length=MOST_RUNS)
+]
+_Targets = Annotated[
+    list[Annotated[float, Field(ge=0.3, le=2.0)]],
+    Field(min_length=FEWEST_RUNS, max_length=MOST_RUNS),
+]
+
+
+def _ways(directions: list[Literal["out", "back"]]) -> tuple[int, ...]:
+    return tuple(OUT if way == "out" else BACK for way in directions)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The runs that a tow is meant to have.
+
+    Attributes:
+        targets: intended speed / declared speed of each run.
+        directions: `OUT` or `BACK`, of each run.
+        seconds: how long a run is meant to last.
+    """
+
+    targets: tuple[float, ...] = TARGET_SPEED_RATIOS * 2
+    directions: tuple[int, ...] = (OUT, OUT, OUT, BACK, BACK, BACK)
+    seconds: float = RUN_SECONDS
+
+    @property
+    def runs(self) -> range:
+        """Numbers of the runs."""
+        return range(1, len(self.targets) + 1)
+
+
+STANDARD: Final = Plan()
+
+
 class _ProfileTable(_Strict):
     """One `[[profile]]` of `archief.toml`."""
 
@@ -75,10 +129,10 @@ class _ProfileTable(_Strict):
     columns: dict[Channel, Annotated[str, Field(min_length=1)]] = {}
     units: dict[Channel, str] = {}
     sample_rate_hz: Annotated[int, Field(gt=0, le=100_000)] = 1000
-    directions: Annotated[
-        list[Literal["out", "back"]],
-        Field(min_length=RUNS_PER_FILE, max_length=RUNS_PER_FILE),
-    ] = ["out", "out", "out", "back", "back", "back"]
+    absent: list[Absent] = []
+    header: Annotated[str, Field(min_length=1)] | None = None
+    ignore: list[str] = []
+    directions: _Directions | None = None
 
     @model_validator(mode="after")
     def _names_and_units_are_known(self) -> "_ProfileTable":
@@ -86,15 +140,43 @@ class _ProfileTable(_Strict):
             if "[" in name:
                 raise ValueError(f"columns.{channel}: '{name}' has a unit; put it under units")
         for channel, unit in self.units.items():
-            known = UNITS[_DIMENSIONS[channel]]
-            if fold(unit) not in known:
-                raise ValueError(f"units.{channel}: [{unit}] is not one of {sorted(known)}")
+            dimension = _DIMENSIONS[channel]
+            if find_scale(dimension, unit) is None:
+                known = sorted(UNITS[dimension])
+                raise ValueError(f"units.{channel}: [{unit}] is not one of {known}")
         return self
+
+
+class _PlanTable(_Strict):
+    """One `[[plan]]`: the runs of a season's tows, or of some tows."""
+
+    seasons: Annotated[tuple[int, int], BeforeValidator(_season_range)] | None = None
+    tows: list[str] = []
+    targets: _Targets = list(STANDARD.targets)
+    directions: _Directions = ["out", "out", "out", "back", "back", "back"]
+    seconds: Annotated[float, Field(ge=5, le=600)] = RUN_SECONDS
+
+    @model_validator(mode="after")
+    def _is_whole(self) -> "_PlanTable":
+        if (self.seasons is None) == (not self.tows):
+            raise ValueError("a plan is for seasons or for tows: give one of the two")
+        if len(self.targets) != len(self.directions):
+            raise ValueError("targets and directions must have one entry a run, so as many of both")
+        return self
+
+    @property
+    def plan(self) -> "Plan":
+        return Plan(tuple(self.targets), _ways(self.directions), self.seconds)
 
 
 class _File(_Strict):
     simulated: bool = False
     profile: list[_ProfileTable] = []
+    plan: list[_PlanTable] = []
+    words: dict[str, str] = {}
+    headers: dict[str, str] = {}
+    ignore: list[str] = []
+    dates: dict[str, Literal["dmy", "mdy"]] = {}
     set_aside: list[SetAside] = []
     log_replaced: list[LogReplaced] = []
 
@@ -115,13 +197,17 @@ class SeasonProfile:
         season: the year.
         columns: the columns to look for, with name and default unit of that season.
         sample_rate_hz: samples a second where the tow list does not say.
-        directions: direction of runs 1-6, `OUT` or `BACK`.
+        absent: what was not on board, or is not to be used: `wind`, `log2`, `gps`.
+        header: the names of the columns of files that have none.
+        ignore: names of columns that are known and not used.
     """
 
     season: int
     columns: tuple[Column, ...] = SAMPLE_COLUMNS
     sample_rate_hz: int = 1000
-    directions: tuple[int, ...] = (OUT, OUT, OUT, BACK, BACK, BACK)
+    absent: tuple[str, ...] = ()
+    header: str | None = None
+    ignore: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -133,24 +219,63 @@ class Profiles:
         tables: the season ranges that differ.
         set_aside: days whose tows are not used.
         log_replaced: days from which another log was on board.
+        plans: the runs of seasons and tows that differ from the standard.
+        wording: how the lists of this archive are worded.
     """
 
     simulated: bool = False
     tables: tuple[_ProfileTable, ...] = ()
+    plans: tuple[_PlanTable, ...] = ()
+    wording: Wording = field(default_factory=Wording)
     set_aside: tuple[SetAside, ...] = ()
     log_replaced: tuple[LogReplaced, ...] = ()
 
     def for_season(self, season: int) -> SeasonProfile:
         """Return the profile of a season; the project's default where none is given."""
-        for table in self.tables:
-            if table.seasons[0] <= season <= table.seasons[1]:
-                return SeasonProfile(
-                    season=season,
-                    columns=_renamed(table),
-                    sample_rate_hz=table.sample_rate_hz,
-                    directions=tuple(OUT if way == "out" else BACK for way in table.directions),
-                )
-        return SeasonProfile(season=season)
+        table = self._table(season)
+        if table is None:
+            return SeasonProfile(season=season, columns=self._columns(None))
+        return SeasonProfile(
+            season=season,
+            columns=self._columns(table),
+            sample_rate_hz=table.sample_rate_hz,
+            absent=tuple(sorted(table.absent)),
+            header=table.header,
+            ignore=(*self.wording.ignore, *(fold(name) for name in table.ignore)),
+        )
+
+    def plan_of(self, tow_id: str, season: int) -> Plan:
+        """Return the plan of a tow: its own, that of its season, or the standard."""
+        for table in self.plans:
+            if tow_id in table.tows:
+                return table.plan
+        for table in self.plans:
+            if table.seasons and table.seasons[0] <= season <= table.seasons[1]:
+                return table.plan
+        profile = self._table(season)
+        if profile is None or profile.directions is None:
+            return STANDARD
+        ways = _ways(profile.directions)
+        return Plan(tuple(TARGET_SPEED_RATIOS[i % 3] for i in range(len(ways))), ways)
+
+    def _table(self, season: int) -> _ProfileTable | None:
+        return next((t for t in self.tables if t.seasons[0] <= season <= t.seasons[1]), None)
+
+    def _columns(self, table: _ProfileTable | None) -> tuple[Column, ...]:
+        known = self.wording.with_names(SAMPLE_COLUMNS)
+        if table is None:
+            return known
+        absent = {channel for name in table.absent for channel in MAY_BE_ABSENT[name]}
+        return tuple(
+            replace(
+                column,
+                header=table.columns.get(column.key, column.header),  # type: ignore[call-overload]
+                also=() if column.key in table.columns else column.also,
+                unit=table.units.get(column.key, column.unit),  # type: ignore[call-overload]
+            )
+            for column in known
+            if column.key not in absent
+        )
 
     def reason_set_aside(self, day: dt.date) -> str | None:
         """Return why a day is set aside, None when it is not."""
@@ -163,21 +288,6 @@ class Profiles:
         return sum(since <= date <= day for date in replaced)
 
 
-def _renamed(table: _ProfileTable) -> tuple[Column, ...]:
-    names: dict[str, str] = {str(key): name for key, name in table.columns.items()}
-    units: dict[str, str] = {str(key): unit for key, unit in table.units.items()}
-    return tuple(
-        Column(
-            column.key,
-            names.get(column.key, column.header),
-            column.dimension,
-            units.get(column.key, column.unit),
-            column.required,
-        )
-        for column in SAMPLE_COLUMNS
-    )
-
-
 def read_profiles(root: Path) -> Profiles:
     """Read `archief.toml` of an archive; defaults when it is absent.
 
@@ -185,8 +295,8 @@ def read_profiles(root: Path) -> Profiles:
         MissingKnowledgeError: the file cannot be understood; it names the file and the key.
     """
     try:
-        path = path_inside(root, PROFILE_FILE)
-        if not path.is_file():
+        path = _profile_path(root)
+        if path is None:
             return Profiles()
         content: dict[str, Any] = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
         parsed = _File.model_validate(content)
@@ -201,7 +311,27 @@ def read_profiles(root: Path) -> Profiles:
         tables=tuple(parsed.profile),
         set_aside=tuple(parsed.set_aside),
         log_replaced=tuple(parsed.log_replaced),
+        plans=tuple(parsed.plan),
+        wording=Wording(
+            words={fold_word(word): value for word, value in parsed.words.items()},
+            headers={fold(name): key for name, key in parsed.headers.items()},
+            ignore=tuple(fold(name) for name in parsed.ignore),
+            dates=dict(parsed.dates),
+        ),
     )
+
+
+def _profile_path(root: Path) -> Path | None:
+    """Return the profile, however its name is capitalised; None when there is none.
+
+    Raises:
+        MissingKnowledgeError: there are two.
+    """
+    found = sorted(p.name for p in root.iterdir() if p.name.casefold() == PROFILE_FILE)
+    if len(found) > 1:
+        raise MissingKnowledgeError(f"{' and '.join(found)} both stand in {root}; keep one")
+    path = path_inside(root, found[0]) if found else None
+    return path if path is not None and path.is_file() else None
 
 
 def _explain(error: ValidationError) -> str:

@@ -22,7 +22,9 @@ from herijk.warehouse.archive.files import (
     path_inside,
     read_bytes,
 )
-from herijk.warehouse.archive.lists import ListRow, read_rows
+from herijk.warehouse.archive.lists import ListRow, read_list
+from herijk.warehouse.archive.messages import say
+from herijk.warehouse.archive.profile import read_profiles
 from herijk.warehouse.archive.text import Column, shorten
 from herijk.warehouse.archive.tows import SPEED_M_S
 
@@ -78,7 +80,7 @@ RACE_SCHEMA: Final[dict[str, pl.DataType]] = {
     "path": pl.String(),
     "line": pl.Int32(),
 }
-_ROWING_TIME: Final = re.compile(r"([0-9]{1,2}):([0-5][0-9]):([0-5][0-9])")
+_ROWING_TIME: Final = re.compile(r"([0-9]{1,2}):([0-5][0-9]):([0-5][0-9])(?:[.,]0*)?")
 
 _ReadRow = Callable[[ListRow, int], dict[str, Any]]
 
@@ -114,12 +116,13 @@ def _read_all(
     reason_code: str,
     read_row: _ReadRow,
 ) -> tuple[list[dict[str, Any]], tuple[Fault, ...]]:
+    wording = read_profiles(root).wording
     good: list[dict[str, Any]] = []
     faults: list[Fault] = []
     for file in files:
         try:
             data = read_bytes(path_inside(root, file.path), LIST_MAX_BYTES)
-            rows = read_rows(data, columns, reason_code)
+            rows = read_list(data, columns, reason_code, file.path, wording)
         except DefectiveInputError as error:
             faults.append(fault_from(error, file.path))
             continue
@@ -139,7 +142,7 @@ def _register_line(row: ListRow, season: int) -> dict[str, Any]:
     valid = not NEVER_TOWED_CW[0] <= cw <= NEVER_TOWED_CW[1]
     return {
         "season": season,
-        "fsn_no": row.text("fsn_no"),
+        "fsn_no": row.boat("fsn_no"),
         "rowers": row.integer("rowers", *ROWERS),
         "crew_class": row.crew_class("crew_class"),
         "has_valid_curve": valid,
@@ -154,13 +157,14 @@ def _register_line(row: ListRow, season: int) -> dict[str, Any]:
 def _race_result(row: ListRow, season: int) -> dict[str, Any]:
     day = row.date("race_date")
     if day.year != season:
-        raise row.fault(f"the date {day} is not in {season}, the year of the file.")
+        message = "the date {day} is not in {season}, the year of the file."
+        raise row.fault(say(message, day=day, season=season))
     return {
         "season": season,
         "race": row.text("race"),
         "race_date": day,
         "distance_m": row.number("distance_m", 100, 500_000),
-        "fsn_no": row.text("fsn_no"),
+        "fsn_no": row.boat("fsn_no"),
         "rowers": row.integer("rowers", *ROWERS),
         "crew_class": row.crew_class("crew_class"),
         "rowing_time_s": _rowing_time(row),
@@ -173,8 +177,9 @@ def _rowing_time(row: ListRow) -> float:
     cell = row.text("rowing_time_s")
     match = _ROWING_TIME.fullmatch(cell)
     if match is None:
-        raise row.fault(f"'roeitijd' is '{shorten(cell)}', not a time such as 2:10:25.")
+        message = "'roeitijd' is '{cell}', not a time such as 2:10:25."
+        raise row.fault(say(message, cell=shorten(cell)))
     seconds = int(match[1]) * 3600 + int(match[2]) * 60 + int(match[3])
     if seconds == 0:
-        raise row.fault("'roeitijd' is 0.")
+        raise row.fault(say("'roeitijd' is 0."))
     return float(seconds)

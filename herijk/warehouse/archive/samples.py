@@ -6,7 +6,8 @@ a careful one that knows lines; the fast one is trusted only where it gives the 
 """
 
 import re
-from collections.abc import Mapping
+import unicodedata
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -17,20 +18,37 @@ import pyarrow as pa  # type: ignore[import-untyped]
 import pyarrow.parquet as pq  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
-from herijk.pipeline.channels import RUNS_PER_FILE, SAMPLE_SCHEMA, SECOND_FILE_OFFSET
+from herijk.pipeline.channels import MOST_RUNS, SAMPLE_SCHEMA, SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.faults import DefectiveFileError
-from herijk.warehouse.archive.files import SAMPLES_MAX_BYTES, path_inside, read_bytes, too_large
+from herijk.warehouse.archive.files import (
+    PARTS,
+    SAMPLES_MAX_BYTES,
+    as_one_run,
+    kind_of,
+    path_inside,
+    read_bytes,
+    too_large,
+)
+from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.profile import SeasonProfile
+from herijk.warehouse.archive.recordings import is_labview, labview_as_table, read_tdms
+from herijk.warehouse.archive.sheets import find_header
 from herijk.warehouse.archive.text import (
     NUMBER_PATTERN,
     FoundColumn,
     decode,
     find_columns,
     find_delimiter,
+    fold,
+    nearest_column,
+    score_of,
     shorten,
+    split_header,
     split_line,
+    unknown_headers,
 )
+from herijk.warehouse.archive.units import find_scale
 
 OUTPUT_NAMES: Final = {
     "run": "run",
@@ -44,18 +62,39 @@ OUTPUT_NAMES: Final = {
 TIME_TOLERANCE: Final = 0.01
 _BLANKS: Final = " \t"
 _ROW: Final = re.compile(rb"[^\r\n]")
+_BLANKS_WITHIN: Final = re.compile(
+    rb"(?<=[^ \t\r\n])[ \t]+(?=[^ \t\r\n])|^[ \t]+|[ \t]+(?=\r?$)", re.MULTILINE
+)
+_CLOCK: Final = r"^(?:.*[ T])?(?<h>[0-9]{1,2}):(?<m>[0-9]{2})(?::(?<s>[0-9]{2}(?:[.,][0-9]+)?))$"
+_HEAD_BYTES: Final = 65_536
+"""The header is looked for in so much of a file."""
 _QUOTED_DECIMAL_COMMA: Final = r'"([ \t]*[+-]?[0-9]*),([0-9][0-9eE+ \t-]*)"'
 
 
 @dataclass(frozen=True)
 class _Body:
-    """The text below the header, which ends at `start`; not copied, as it may be large."""
+    """The text below the header, which ends at `start`; not copied, as it may be large.
+
+    Attributes:
+        above: lines of the data above it.
+        first_line: line in the file of the first row.
+        places: lines of the rows where they do not follow each other, else empty.
+        clock: the time is written as a time of day.
+    """
 
     data: bytes
     start: int
     delimiter: str
     width: int
     columns: Mapping[str, FoundColumn]
+    above: int
+    first_line: int
+    places: Sequence[int] = ()
+    clock: bool = False
+
+    def line(self, row: int) -> int:
+        """Line in the file of a row."""
+        return self.places[row] if row < len(self.places) else self.first_line + row
 
 
 def read_samples(
@@ -63,29 +102,34 @@ def read_samples(
     profile: SeasonProfile,
     max_bytes: int = SAMPLES_MAX_BYTES,
     sample_rate_hz: int | None = None,
+    run: int | None = None,
 ) -> pl.DataFrame:
     """Read one samples file.
 
     Args:
-        path: a `.csv`, `.csv.gz`, `.csv.zst` or `.parquet` file.
+        path: text, also LabVIEW's, packed or not; `.parquet`; `.tdms`.
         profile: names and units of the columns in that season.
         max_bytes: limit of the file, unpacked.
         sample_rate_hz: rate the time column must agree with; not checked when None.
+        run: the run that the file is, where it is one of several.
 
     Returns:
-        A frame with the columns of `SAMPLE_SCHEMA`, one row a sample in the order of the file;
-        row `i` stands on line `i + 2`. `gps_m_s` is null throughout when the column is absent or
-        empty. Wind angles are brought to [0, 360); one outside -180..360 cannot be an angle and
-        is left as it is, for `check_samples` to find.
+        A frame with the columns of `SAMPLE_SCHEMA`, one row a sample in the order of the file.
+        What was not measured is null throughout: a GPS that is absent or empty, and what the
+        profile declares absent. Wind angles are brought to [0, 360); one outside -180..360 cannot
+        be an angle and is left as it is, for `check_samples` to find.
 
     Raises:
         DefectiveInputError: the first fault of the file, with its line.
     """
-    if path.suffix.casefold() == ".parquet":
-        raw = _read_parquet(path, profile, max_bytes)
+    kind = kind_of(path)
+    if kind == ".parquet":
+        raw = _from_table(_read_parquet(path, profile, max_bytes), profile)
+    elif kind == ".tdms":
+        raw = _from_table(read_tdms(path, max_bytes), profile)
     else:
         raw = _read_text(read_bytes(path, max_bytes), profile)
-    samples = _to_schema(raw)
+    samples = _to_schema(_with_runs(raw, run))
     _check_runs(samples["run"])
     if "time" in raw.columns:
         _check_time(samples["run"], raw["time"].to_numpy(), sample_rate_hz)
@@ -101,25 +145,59 @@ def read_tow_samples(root: Path, tow: Mapping[str, Any], profile: SeasonProfile)
         profile: the profile of its season.
 
     Returns:
-        As `read_samples`; runs of the second file are numbered 11-16 and come last.
+        As `read_samples`; runs of the second file are numbered 21 and on and come last.
 
     Raises:
         DefectiveFileError: the first fault, with the file it is in.
     """
-    parts = [_read_part(root, tow, tow["samples_path"], profile)]
+    parts = _read_parts(root, tow, tow["samples_path"], profile)
     if tow["second_path"] is not None:
-        second = _read_part(root, tow, tow["second_path"], profile)
-        parts.append(second.with_columns(pl.col("run") + pl.lit(SECOND_FILE_OFFSET, pl.Int8)))
+        offset = pl.col("run") + pl.lit(SECOND_FILE_OFFSET, pl.Int8)
+        second = _read_parts(root, tow, tow["second_path"], profile)
+        parts += [part.with_columns(offset) for part in second]
     return pl.concat(parts)
 
 
+def _read_parts(
+    root: Path, tow: Mapping[str, Any], paths: str, profile: SeasonProfile
+) -> list[pl.DataFrame]:
+    """Read a file, or the files that are a run each."""
+    several = paths.split(PARTS)
+    if len(several) == 1:
+        return [_read_part(root, tow, paths, profile, None)]
+    return [_read_part(root, tow, path, profile, as_one_run(Path(path).name)) for path in several]
+
+
 def _read_part(
-    root: Path, tow: Mapping[str, Any], path: str, profile: SeasonProfile
+    root: Path,
+    tow: Mapping[str, Any],
+    path: str,
+    profile: SeasonProfile,
+    named: tuple[str, int] | None,
 ) -> pl.DataFrame:
+    run = None if named is None else named[1]
     try:
-        return read_samples(path_inside(root, path), profile, sample_rate_hz=tow["sample_rate_hz"])
+        full = path_inside(root, path)
+        return read_samples(full, profile, sample_rate_hz=tow["sample_rate_hz"], run=run)
     except DefectiveInputError as error:
         raise DefectiveFileError(error.reason_code, error.message, error.line, path) from error
+
+
+def _with_runs(raw: pl.DataFrame, run: int | None) -> pl.DataFrame:
+    """Return the samples with a run: that of the file, or a new one where the time restarts."""
+    if run is not None:
+        return raw.with_columns(pl.lit(float(run)).alias("run"))
+    if "run" in raw.columns:
+        return raw
+    restarts = (raw["time"].diff() < 0).sum() if "time" in raw.columns else 0
+    if not restarts:
+        said = say(
+            "Nothing says which run a row is of: there is no column 'run', the time does not start "
+            "again, and the file is not one of several that end in a number."
+        )
+        raise DefectiveInputError("missing_column", said, line=1)
+    begun = (pl.col("time").diff() < 0).fill_null(value=False).cum_sum()
+    return raw.with_columns((begun + 1).cast(pl.Float64).alias("run"))
 
 
 # Text
@@ -134,16 +212,77 @@ def _read_text(data: bytes, profile: SeasonProfile) -> pl.DataFrame:
 
 
 def _split_header(data: bytes, profile: SeasonProfile) -> _Body:
+    """Find the header, below titles if there are any, and what it says of the columns."""
     if not data.isascii() or b"\x00" in data or not data[:100].strip():
-        data = decode(data).encode()
-    start = data.find(b"\n") + 1 or len(data)
-    header_line = decode(data[:start]).rstrip("\r\n")
-    delimiter = find_delimiter(header_line)
-    header = split_line(header_line, delimiter)
-    columns = find_columns(header, profile.columns)
+        data = unicodedata.normalize("NFC", decode(data)).encode()
+    places: list[int] = []
+    if is_labview(data[:200].decode(errors="replace")):
+        table, places = labview_as_table(data.decode())
+        data = table.encode()
+    lines = data[:_HEAD_BYTES].decode(errors="ignore").split("\n")
+    place = find_header(lines, profile.columns)
+    header_line, below = lines[place].rstrip("\r"), place + 1
+    if profile.header is not None and not score_of(
+        split_line(header_line, find_delimiter(header_line)), profile.columns
+    ):
+        header_line, below = profile.header, place
+    delimiter = find_delimiter(lines[place])
+    header = split_line(header_line, find_delimiter(header_line))
+    columns = find_columns(header, profile.columns, places[0] if places else place + 1)
+    _check_nothing_misspelt(header, columns, profile)
+    above, start = below, _start_of_line(data, below)
     if not _ROW.search(data, start):
-        raise DefectiveInputError("unreadable_file", "There are no samples below the header.")
-    return _Body(data, start, delimiter, len(header), columns)
+        said = say("There are no samples below the header.")
+        raise DefectiveInputError("unreadable_file", said)
+    if delimiter == " ":
+        data, delimiter = _BLANKS_WITHIN.sub(b"\t", data[start:]), "\t"
+        above = start = 0
+    return _Body(
+        data,
+        start,
+        delimiter,
+        len(header),
+        columns,
+        above,
+        below + 1,
+        places[1:],
+        _is_clock(data, start, delimiter, columns.get("time")),
+    )
+
+
+def _start_of_line(data: bytes, number: int) -> int:
+    """Place of the first byte of a line, counted from 0."""
+    start = 0
+    for _ in range(number):
+        start = data.find(b"\n", start) + 1 or len(data)
+    return start
+
+
+def _is_clock(data: bytes, start: int, delimiter: str, time: FoundColumn | None) -> bool:
+    if time is None:
+        return False
+    end = data.find(b"\n", start)
+    cells = data[start : end if end >= 0 else len(data)].split(delimiter.encode())
+    return time.index < len(cells) and b":" in cells[time.index]
+
+
+def _check_nothing_misspelt(
+    header: Sequence[str], found: Mapping[str, FoundColumn], profile: SeasonProfile
+) -> None:
+    """Raise where there is no GPS, but a column that can be one: left out, it changes numbers."""
+    gps = [column for column in profile.columns if column.key == "gps"]
+    if "gps" in found or not gps:
+        return
+    for cell in unknown_headers(header, found):
+        name, unit = split_header(cell)
+        is_speed = unit is not None and find_scale("speed", unit) is not None
+        if name not in map(fold, profile.ignore) and (is_speed or nearest_column(cell, gps)):
+            said = say(
+                "Nobody knows column '{name}', and there is no 'gps'. Name it under columns of the "
+                "season's profile in archief.toml, or put it there under ignore.",
+                name=shorten(cell),
+            )
+            raise DefectiveInputError("unknown_column", said, line=1)
 
 
 def _read_fast(body: _Body) -> pl.DataFrame | None:
@@ -157,24 +296,39 @@ def _read_fast(body: _Body) -> pl.DataFrame | None:
     wanted = {found.index: key for key, found in body.columns.items()}
     number = pl.String() if quoted else pl.Float64()
     schema = {
-        wanted.get(index, f"ignored {index}"): number if index in wanted else pl.String()
+        wanted.get(index, f"ignored {index}"): number
+        if index in wanted and not (body.clock and wanted[index] == "time")
+        else pl.String()
         for index in range(body.width)
     }
     try:
         frame = pl.read_csv(
             body.data,
             has_header=False,
-            skip_lines=1,
+            skip_lines=body.above,
             separator=body.delimiter,
             quote_char='"' if quoted else None,
             decimal_comma=body.delimiter != ",",
             schema=schema,
         ).select(wanted.values())
+        if body.clock:
+            frame = frame.with_columns(_seconds_of_clock(frame["time"]))
         if quoted:
-            frame = frame.select(pl.all().str.replace(",", ".", literal=True).cast(pl.Float64()))
+            text = pl.selectors.string()
+            frame = frame.with_columns(text.str.replace(",", ".", literal=True).cast(pl.Float64()))
     except pl.exceptions.PolarsError:
         return None
     return frame if all(map(_all_finite, frame.iter_columns())) else None
+
+
+def _seconds_of_clock(cells: pl.Series) -> pl.Series:
+    """Return times of day, with or without a date before them, as seconds."""
+    parts = cells.str.strip_chars().str.extract_groups(_CLOCK).struct
+    hours, minutes, seconds = (
+        parts.field(name).str.replace(",", ".", literal=True).cast(pl.Float64())
+        for name in ("h", "m", "s")
+    )
+    return (hours * 3600 + minutes * 60 + seconds).alias("time")
 
 
 def _has_stray_return(data: bytes) -> bool:
@@ -210,19 +364,25 @@ def _read_carefully(body: _Body) -> pl.DataFrame:
         cells = cells.str.strip_chars(_BLANKS)
         if key == "gps" and (cells == "").all():
             continue
+        if key == "time" and body.clock:
+            cells = _seconds_of_clock(cells).cast(pl.String()).fill_null(cells)
         columns[key], fault = _to_numbers(cells, whole, found.header)
         if fault is not None:
             faults.append((fault[0], "bad_number", fault[1]))
     if faults:
         row, reason_code, message = min(faults)
-        raise DefectiveInputError(reason_code, f"Line {row + 2}: {message}", line=row + 2)
+        line = body.line(row)
+        said = say("Line {line}: {what}", line=line, what=message)
+        raise DefectiveInputError(reason_code, said, line=line)
     return pl.DataFrame(columns)
 
 
 def _broken_row(line: str, fields: pl.Series, body: _Body) -> str:
-    return (
-        f"the row has {len(fields)} field{'' if len(fields) == 1 else 's'} where the header has "
-        f"{body.width}: '{shorten(line)}'."
+    return say(
+        "the row has {fields} fields where the header has {width}: '{line}'.",
+        fields=len(fields),
+        width=body.width,
+        line=shorten(line),
     )
 
 
@@ -242,33 +402,33 @@ def _to_numbers(
 
 def _bad_number(cell: str | None, header: str) -> str:
     if not cell:
-        return f"column '{header}' is empty."
-    return f"column '{header}' holds '{shorten(cell)}', which is not an ordinary number."
+        return say("column '{column}' is empty.", column=header)
+    return say(
+        "column '{column}' is '{cell}', which is not an ordinary number.",
+        column=header,
+        cell=shorten(cell),
+    )
 
 
-# Parquet
+# Tables of other programs
 
 
 def _read_parquet(path: Path, profile: SeasonProfile, max_bytes: int) -> pl.DataFrame:
-    """Return the wanted columns of a Parquet file, as `_read_text` does."""
+    """Return the columns of a Parquet file that the profile names."""
     try:
         with pq.ParquetFile(path) as file:
-            columns = find_columns(file.schema_arrow.names, profile.columns)
+            names = file.schema_arrow.names
+            columns = find_columns(names, profile.columns)
+            _check_nothing_misspelt(names, columns, profile)
             _check_parquet_size(path, file, len(columns), max_bytes)
-            table = file.read(columns=[file.schema_arrow.names[f.index] for f in columns.values()])
-        frame = pl.DataFrame(pl.from_arrow(table))
+            table = file.read(columns=[names[found.index] for found in columns.values()])
+        return pl.DataFrame(pl.from_arrow(table))
     except FileNotFoundError as error:
-        raise DefectiveInputError(
-            "samples_missing", f"'{path.name}' is not there any more."
-        ) from error
+        said = say("'{name}' is not there any more.", name=path.name)
+        raise DefectiveInputError("samples_missing", said) from error
     except (OSError, ValueError, pa.ArrowException, pl.exceptions.PolarsError) as error:
-        raise DefectiveInputError(
-            "unreadable_file", f"'{path.name}' is not a whole Parquet file: {error}."
-        ) from error
-    if frame.is_empty():
-        raise DefectiveInputError("unreadable_file", "There are no samples in the file.")
-    named = frame.rename(dict(zip(frame.columns, columns, strict=True)))
-    return _to_si(_parquet_numbers(named, columns), columns)
+        said = say("'{name}' is not a whole Parquet file: {error}.", name=path.name, error=error)
+        raise DefectiveInputError("unreadable_file", said) from error
 
 
 def _check_parquet_size(path: Path, file: pq.ParquetFile, width: int, max_bytes: int) -> None:
@@ -279,27 +439,49 @@ def _check_parquet_size(path: Path, file: pq.ParquetFile, width: int, max_bytes:
         raise too_large(path, max_bytes)
 
 
-def _parquet_numbers(frame: pl.DataFrame, columns: Mapping[str, FoundColumn]) -> pl.DataFrame:
+def _from_table(frame: pl.DataFrame, profile: SeasonProfile) -> pl.DataFrame:
+    """Return the wanted columns of a table as Float64, as `_read_text` does."""
+    if frame.is_empty():
+        raise DefectiveInputError("unreadable_file", say("There are no samples in the file."))
+    columns = find_columns(frame.columns, profile.columns)
+    _check_nothing_misspelt(frame.columns, columns, profile)
     numbers: dict[str, pl.Series] = {}
     for key, found in columns.items():
-        cells = frame[key]
+        cells = frame.to_series(found.index)
         if key == "gps" and cells.null_count() == len(cells):
             continue
-        if not cells.dtype.is_numeric():
-            raise DefectiveInputError(
-                "bad_number", f"Column '{found.header}' holds {cells.dtype}, not numbers."
-            )
-        numbers[key] = cells.cast(pl.Float64())
-        bad = ~numbers[key].is_finite().fill_null(value=False)
-        if bad.any():
-            row = int(bad.arg_max() or 0)
-            raise DefectiveInputError(
-                "bad_number",
-                f"Row {row + 1}: column '{found.header}' holds '{cells[row]}', "
-                "which is not an ordinary number.",
-                line=row + 2,
-            )
-    return pl.DataFrame(numbers)
+        if key == "time" and not cells.dtype.is_numeric():
+            cells = _as_seconds(cells)
+        numbers[key] = _only_numbers(cells, found)
+    return _to_si(pl.DataFrame(numbers), columns)
+
+
+def _as_seconds(cells: pl.Series) -> pl.Series:
+    """Return points in time, or times of day as text, as seconds."""
+    if cells.dtype.is_temporal():
+        first = cells[0]
+        return pl.select((pl.lit(cells) - first).dt.total_microseconds() / 1e6).to_series()
+    return _seconds_of_clock(cells) if cells.dtype == pl.String() else cells
+
+
+def _only_numbers(cells: pl.Series, found: FoundColumn) -> pl.Series:
+    if not cells.dtype.is_numeric():
+        said = say(
+            "Column '{column}' holds {kind}, not numbers.", column=found.header, kind=cells.dtype
+        )
+        raise DefectiveInputError("bad_number", said)
+    numbers = cells.cast(pl.Float64())
+    bad = ~numbers.is_finite().fill_null(value=False)
+    if bad.any():
+        row = int(bad.arg_max() or 0)
+        what = say(
+            "column '{column}' is '{cell}', which is not an ordinary number.",
+            column=found.header,
+            cell=cells[row],
+        )
+        said = say("Row {row}: {what}", row=row + 1, what=what)
+        raise DefectiveInputError("bad_number", said, line=row + 2)
+    return numbers
 
 
 # To the schema
@@ -317,13 +499,12 @@ def _to_si(frame: pl.DataFrame, columns: Mapping[str, FoundColumn]) -> pl.DataFr
 def _to_schema(raw: pl.DataFrame) -> pl.DataFrame:
     """Return the frame of `SAMPLE_SCHEMA` from Float64 columns in SI units."""
     _check_run_numbers(raw["run"])
+    absent = (key for key in OUTPUT_NAMES if key not in raw.columns)
+    raw = raw.with_columns(pl.lit(None, pl.Float64).alias(key) for key in absent)
     angle = pl.col("wind_angle")
     wrapped = pl.when(angle.is_between(-180, 360)).then(angle % 360).otherwise(angle)
     samples = raw.with_columns(wrapped).select(
-        pl.col(key).cast(SAMPLE_SCHEMA[name]).alias(name)
-        if key in raw.columns
-        else pl.lit(None, SAMPLE_SCHEMA[name]).alias(name)
-        for key, name in OUTPUT_NAMES.items()
+        pl.col(key).cast(SAMPLE_SCHEMA[name]).alias(name) for key, name in OUTPUT_NAMES.items()
     )
     # 359.99999999 rounds to 360 in 32 bits; the promise is [0, 360).
     turned = pl.when(pl.col("wind_angle_deg") == 360).then(0.0).otherwise(pl.col("wind_angle_deg"))
@@ -337,22 +518,23 @@ def _check_finite(samples: pl.DataFrame) -> None:
     for name in samples.columns[1:]:
         infinite = np.isinf(samples[name].to_numpy())
         if infinite.any():
-            row = int(infinite.argmax())
-            raise DefectiveInputError(
-                "bad_number", f"Line {row + 2}: the number for {name} is too large.", line=row + 2
-            )
+            line = int(infinite.argmax()) + 2
+            what = say("the number for {name} is too large.", name=name)
+            said = say("Line {line}: {what}", line=line, what=what)
+            raise DefectiveInputError("bad_number", said, line=line)
 
 
 def _check_run_numbers(run: pl.Series) -> None:
-    known = run.is_in([float(number) for number in range(1, RUNS_PER_FILE + 1)])
+    known = run.is_in([float(number) for number in range(1, MOST_RUNS + 1)])
     if not known.all():
         row = int((~known).arg_max() or 0)
-        raise DefectiveInputError(
-            "unknown_run",
-            f"Line {row + 2}: run {run[row]:g} does not exist; runs are numbered 1 to "
-            f"{RUNS_PER_FILE}.",
-            line=row + 2,
+        what = say(
+            "run {run:g} does not exist; runs are numbered 1 to {last}.",
+            run=run[row],
+            last=MOST_RUNS,
         )
+        said = say("Line {line}: {what}", line=row + 2, what=what)
+        raise DefectiveInputError("unknown_run", said, line=row + 2)
 
 
 def _check_runs(run: pl.Series) -> None:
@@ -362,11 +544,9 @@ def _check_runs(run: pl.Series) -> None:
     for position, number in enumerate(numbers):
         if number in numbers[:position]:
             line = int(starts[position]) + 2
-            raise DefectiveInputError(
-                "split_run",
-                f"Line {line}: run {number} begins again; its rows must stand together.",
-                line=line,
-            )
+            what = say("run {run} begins again; its rows must stand together.", run=int(number))
+            said = say("Line {line}: {what}", line=line, what=what)
+            raise DefectiveInputError("split_run", said, line=line)
 
 
 def run_starts(run: NDArray[np.int8]) -> NDArray[np.intp]:
@@ -381,9 +561,9 @@ def _check_time(run: pl.Series, time_s: NDArray[np.float64], rate_hz: int | None
     step[starts[1:] - 1] = np.inf
     if (step <= 0).any():
         line = int(np.argmax(step <= 0)) + 3
-        raise DefectiveInputError(
-            "bad_time", f"Line {line}: the time does not increase within the run.", line=line
-        )
+        what = say("the time does not increase within the run.")
+        said = say("Line {line}: {what}", line=line, what=what)
+        raise DefectiveInputError("bad_time", said, line=line)
     if rate_hz is None:
         return
     for start, end in zip(starts, ends, strict=True):
@@ -392,10 +572,12 @@ def _check_time(run: pl.Series, time_s: NDArray[np.float64], rate_hz: int | None
             continue
         observed = (samples - 1) / (time_s[end - 1] - time_s[start])
         if abs(observed / rate_hz - 1) > TIME_TOLERANCE:
-            raise DefectiveInputError(
-                "bad_time",
-                f"Run {run[int(start)]}: by its times it has {observed:.4g} samples a second, by "
-                f"the list or the profile {rate_hz}; they may differ by "
-                f"{TIME_TOLERANCE:.0%}.",
-                line=int(start) + 2,
+            said = say(
+                "Run {run}: by its times it has {observed:.4g} samples a second, by the list or "
+                "the profile {rate}; they may differ by {most:.0%}.",
+                run=run[int(start)],
+                observed=observed,
+                rate=rate_hz,
+                most=TIME_TOLERANCE,
             )
+            raise DefectiveInputError("bad_time", said, line=int(start) + 2)

@@ -4,40 +4,32 @@ Nothing here knows which file or column it is about, and nothing is guessed from
 number: a unit stands in the header or is the declared default.
 """
 
+import codecs
 import csv
+import difflib
 import io
 import math
 import re
 import unicodedata
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Final
 
 from herijk.pipeline.errors import DefectiveInputError
+from herijk.warehouse.archive.messages import say
+from herijk.warehouse.archive.units import UNITS, Scale, find_scale, is_unit
 
-DELIMITERS: Final = (";", "\t", ",")
-
-UNITS: Final[dict[str, dict[str, tuple[float, float]]]] = {
-    "none": {},
-    "speed": {"m/s": (1, 1), "km/h": (1, 3.6), "kn": (1852, 3600)},
-    "force": {"n": (1, 1), "kgf": (9.80665, 1)},
-    "angle": {"gra": (1, 1), "deg": (1, 1), "rad": (180, math.pi)},
-    "length": {"m": (1, 1), "cm": (1, 100), "km": (1000, 1)},
-    "mass": {"kg": (1, 1)},
-    "temperature": {"c": (1, 1)},
-    "ratio": {"%": (1, 100)},
-    "rate": {"hz": (1, 1)},
-    "power": {"w": (1, 1)},
-    "time": {"s": (1, 1)},
-}
-"""Per dimension and unit the (numerator, denominator) that brings a number to the SI unit
-(degrees for angles). Two numbers, as 871 / 100 is exactly 8.71 and 871 * 0.01 need not be."""
+DELIMITERS: Final = (";", "\t", ",", "|")
+HEADER_WITHIN: Final = 60
+"""Lines among which the header is looked for: above it may stand titles."""
 
 NUMBER_PATTERN: Final = r"^[+-]?([0-9]+([.,][0-9]*)?|[.,][0-9]+)([eE][+-]?[0-9]+)?$"
 """An ordinary number with a decimal comma or point. No digit groups, no other scripts' digits."""
 
 _NUMBER: Final = re.compile(NUMBER_PATTERN)
-_HEADER: Final = re.compile(r"^([^\[\]]*)(?:\[([^\[\]]*)\])?$")
+_BRACKETS: Final = re.compile(r"\[([^\[\]]*)\]|\(([^()]*)\)")
+_UNIT_BEHIND: Final = re.compile(r"^(.*\S)(?:\s*,|\s+in)\s+(\S+)$")
 
 
 @dataclass(frozen=True)
@@ -47,9 +39,10 @@ class Column:
     Attributes:
         key: its name inside the project.
         header: its name in the file, without the unit.
-        dimension: key of `UNITS`.
-        unit: unit of a header without square brackets; empty for dimension `none`.
+        dimension: key of `units.UNITS`.
+        unit: unit of a header that names none; empty for dimension `none`.
         required: whether a file without it is defective.
+        also: other names for it.
     """
 
     key: str
@@ -57,6 +50,16 @@ class Column:
     dimension: str = "none"
     unit: str = ""
     required: bool = True
+    also: tuple[str, ...] = ()
+
+    @property
+    def named(self) -> str:
+        """Name and unit as they stand in a header."""
+        return f"{self.header} [{self.unit}]" if self.unit else self.header
+
+    def answers_to(self, name: str) -> bool:
+        """Whether a folded name is this column's."""
+        return name == fold(self.header) or name in _folded(self.also)
 
 
 @dataclass(frozen=True)
@@ -65,39 +68,54 @@ class FoundColumn:
 
     index: int
     header: str
-    scale: tuple[float, float]
+    scale: Scale
+    dimension: str = "none"
 
 
 def decode(data: bytes) -> str:
-    """Return the text of a UTF-8 (with or without BOM) or Windows-1252 file.
+    """Return the text of a file in UTF-8 or UTF-16 (with or without BOM) or Windows-1252.
 
     Raises:
         DefectiveInputError: `unreadable_file` for anything else, and for an empty file.
     """
     if not data.strip():
-        raise DefectiveInputError("unreadable_file", "The file is empty.")
-    if b"\x00" in data:
-        raise DefectiveInputError(
-            "unreadable_file",
-            "The file holds zero bytes, so it is not a text file in UTF-8 or Windows-1252 "
-            "(a spreadsheet, UTF-16 or a damaged copy?).",
-        )
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        pass
-    try:
-        return data.decode("cp1252")
-    except UnicodeDecodeError as error:
-        raise DefectiveInputError(
-            "unreadable_file",
-            f"Byte {error.start} of the file is neither UTF-8 nor Windows-1252.",
-        ) from error
+        raise DefectiveInputError("unreadable_file", say("The file is empty."))
+    encodings = _encodings(data)
+    for encoding in encodings:
+        try:
+            return data.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+    raise DefectiveInputError(
+        "unreadable_file",
+        say("The file is not text in UTF-8, UTF-16 or Windows-1252: it can be damaged."),
+    )
+
+
+def _encodings(data: bytes) -> tuple[str, ...]:
+    """Return what the bytes can be: text of Latin letters in UTF-16 has a zero in every other."""
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return ("utf-16",)
+    start = data[:2000]
+    zeros = [start[place::2].count(0) for place in (0, 1)]
+    if not any(zeros):
+        return ("utf-8-sig", "cp1252") if 0 not in data else ()
+    if len(start) < 20 or max(zeros) < len(start) // 4 or min(zeros) > 0:
+        return ()
+    return ("utf-16-be",) if zeros[0] else ("utf-16-le",)
+
+
+def is_separator_line(line: str) -> bool:
+    """Whether a line only tells Excel the separator: `sep=;`."""
+    return line.strip().strip('"').casefold().startswith("sep=") and len(line.strip()) <= 7
 
 
 def find_delimiter(header_line: str) -> str:
-    """Return the delimiter that occurs most in a header; `;` when there is none."""
-    return max(DELIMITERS, key=header_line.count)
+    """Return the delimiter that occurs most in a header; a blank, then `;`, when there is none."""
+    most = max(DELIMITERS, key=header_line.count)
+    if most not in header_line and len(header_line.split()) > 1:
+        return " "
+    return most
 
 
 def split_line(line: str, delimiter: str) -> list[str]:
@@ -106,17 +124,24 @@ def split_line(line: str, delimiter: str) -> list[str]:
     Raises:
         DefectiveInputError: `unreadable_file`, e.g. when a quotation mark is not closed.
     """
+    if delimiter == " ":
+        return line.split()
     try:
         return next(csv.reader(io.StringIO(line), delimiter=delimiter, strict=True), [])
     except csv.Error as error:
-        raise DefectiveInputError(
-            "unreadable_file", f"The header is no row of a table: {error}.", line=1
-        ) from error
+        said = say("The header is no row of a table: {error}.", error=error)
+        raise DefectiveInputError("unreadable_file", said, line=1) from error
 
 
 def fold(text: str) -> str:
-    """Return a header or unit for comparing: without case, blanks and ways to write an accent."""
-    return "".join(unicodedata.normalize("NFC", text).casefold().split())
+    """Return a header for comparing: its letters and digits, without case and accents."""
+    plain = unicodedata.normalize("NFKD", text).casefold()
+    return "".join(letter for letter in plain if letter.isalnum())
+
+
+@cache
+def _folded(names: tuple[str, ...]) -> frozenset[str]:
+    return frozenset(fold(name) for name in names)
 
 
 def fold_name(text: str) -> str:
@@ -124,84 +149,115 @@ def fold_name(text: str) -> str:
     return " ".join(unicodedata.normalize("NFC", text).casefold().split())
 
 
-def scale_of(dimension: str, unit: str) -> tuple[float, float]:
-    """Return (numerator, denominator) of a unit; a dimension without units has scale 1."""
-    return UNITS[dimension][fold(unit)] if unit else (1, 1)
+def split_header(cell: str) -> tuple[str, str | None]:
+    """Return the folded name in a header cell, and its unit as written where it has one.
+
+    A unit stands in brackets, or behind a comma or `in`; other brackets belong to the name.
+    """
+    cell = cell.strip()
+    groups = list(_BRACKETS.finditer(cell))
+    units = [group for group in groups if is_unit(group[1] or group[2] or "")]
+    square = [group for group in groups if group[1] is not None]
+    for group in units or square[-1:]:
+        name = cell[: group.start()] + cell[group.end() :]
+        return fold(name), (group[1] or group[2] or "").strip()
+    behind = _UNIT_BEHIND.match(cell)
+    if behind and is_unit(behind[2]):
+        return fold(behind[1]), behind[2]
+    return fold(cell), None
 
 
-def find_columns(header: Sequence[str], columns: Iterable[Column]) -> dict[str, FoundColumn]:
-    """Find columns by name and unit, in any order; columns nobody asked for are ignored.
+def find_columns(
+    header: Sequence[str], columns: Iterable[Column], line: int = 1
+) -> dict[str, FoundColumn]:
+    """Find columns by name and unit, in any order.
 
     Two columns may share a name when their dimensions differ (`wind [m/s]`, `wind [gra]`).
     A header without a unit is the one column of that name that no header with a unit took.
+
+    Args:
+        header: the cells of the header.
+        columns: the columns to look for.
+        line: the header's line in the file.
 
     Raises:
         DefectiveInputError: `missing_column`, `duplicate_column` or `unknown_unit`.
     """
     wanted = tuple(columns)
     found: dict[str, FoundColumn] = {}
-    cells = [_parse_header(cell) for cell in header]
+    cells = [split_header(cell) for cell in header]
     with_unit_first = sorted(range(len(cells)), key=lambda index: cells[index][1] is None)
     for index in with_unit_first:
         name, unit = cells[index]
-        namesakes = [column for column in wanted if fold(column.header) == name]
+        namesakes = [column for column in wanted if name and column.answers_to(name)]
         if not namesakes:
             continue
-        column = _choose(namesakes, unit, header[index], found)
-        found[column.key] = FoundColumn(
-            index, header[index].strip(), scale_of(column.dimension, unit or column.unit)
-        )
+        column = _choose(namesakes, unit, header[index], found, line)
+        scale = find_scale(column.dimension, unit or column.unit) or (1, 1)
+        found[column.key] = FoundColumn(index, header[index].strip(), scale, column.dimension)
     missing = [column for column in wanted if column.required and column.key not in found]
     if missing:
-        raise DefectiveInputError("missing_column", _missing_message(missing, header), line=1)
+        raise DefectiveInputError("missing_column", _missing_message(missing, header), line)
     return found
 
 
-def _parse_header(cell: str) -> tuple[str, str | None]:
-    match = _HEADER.match(cell.strip())
-    if match is None:
-        return fold(cell), None
-    return fold(match[1]), None if match[2] is None else fold(match[2])
+def unknown_headers(header: Sequence[str], found: Mapping[str, FoundColumn]) -> list[str]:
+    """Return the headers of no column that was found; empty ones do not count."""
+    taken = {column.index for column in found.values()}
+    return [cell.strip() for i, cell in enumerate(header) if i not in taken and fold(cell)]
+
+
+def nearest_column(cell: str, columns: Iterable[Column]) -> Column | None:
+    """Return the column whose name is most like a header; None when none is like it."""
+    names = {fold(name): column for column in columns for name in (column.header, *column.also)}
+    like = difflib.get_close_matches(split_header(cell)[0], names, n=1, cutoff=0.6)
+    return names[like[0]] if like else None
+
+
+def score_of(header: Sequence[str], columns: Iterable[Column]) -> int:
+    """Return how many cells of a line are names of columns: the header has most."""
+    names = {fold(name) for column in columns for name in (column.header, *column.also)}
+    return sum(split_header(cell)[0] in names for cell in header)
 
 
 def _choose(
-    namesakes: list[Column], unit: str | None, cell: str, found: dict[str, FoundColumn]
+    namesakes: list[Column], unit: str | None, cell: str, found: dict[str, FoundColumn], line: int
 ) -> Column:
     """Return the one column a header cell stands for."""
-    fitting = [column for column in namesakes if unit is None or unit in UNITS[column.dimension]]
+    fitting = [c for c in namesakes if unit is None or find_scale(c.dimension, unit) is not None]
     if not fitting:
         known = sorted({name for column in namesakes for name in UNITS[column.dimension]})
-        raise DefectiveInputError(
-            "unknown_unit",
-            f"Column '{cell.strip()}' has unit [{unit}]; "
-            + (f"known here: {_in_brackets(known)}." if known else "it should have none."),
-            line=1,
+        said = say(
+            "Column '{header}' has unit [{unit}]; known here: {known}.",
+            header=cell.strip(),
+            unit=unit,
+            known=_in_brackets(known) or "-",
         )
+        raise DefectiveInputError("unknown_unit", said, line)
     free = [column for column in fitting if column.key not in found]
     if not free:
-        first = found[fitting[0].key].header
-        raise DefectiveInputError(
-            "duplicate_column",
-            f"Columns '{first}' and '{cell.strip()}' are the same; one of them has to go.",
-            line=1,
+        said = say(
+            "Columns '{first}' and '{second}' are the same; one of them has to go.",
+            first=found[fitting[0].key].header,
+            second=cell.strip(),
         )
+        raise DefectiveInputError("duplicate_column", said, line)
     if len(free) > 1:
-        known = [column.unit for column in free]
-        raise DefectiveInputError(
-            "unknown_unit",
-            f"Column '{cell.strip()}' can be more than one thing; write its unit behind it: "
-            f"{_in_brackets(known)}.",
-            line=1,
+        said = say(
+            "Column '{header}' can be more than one thing; write its unit behind it: {known}.",
+            header=cell.strip(),
+            known=_in_brackets(column.unit for column in free),
         )
+        raise DefectiveInputError("unknown_unit", said, line)
     return free[0]
 
 
 def _missing_message(missing: list[Column], header: Sequence[str]) -> str:
-    names = ", ".join(
-        f"'{column.header}{f' [{column.unit}]' if column.unit else ''}'" for column in missing
+    return say(
+        "Not found in the header: {names}. Found: {found}.",
+        names=", ".join(f"'{column.named}'" for column in missing),
+        found=", ".join(f"'{shorten(cell.strip())}'" for cell in header[:30]),
     )
-    seen = ", ".join(f"'{shorten(cell.strip())}'" for cell in header[:30])
-    return f"Not found in the header: {names}. Found: {seen}."
 
 
 def _in_brackets(units: Iterable[str]) -> str:

@@ -5,15 +5,17 @@ One row at a time: text to values. What rows, boats and files say about each oth
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any, Final
 
 import polars as pl
 
-from herijk.pipeline.channels import RUNS_PER_FILE, SECOND_FILE_OFFSET
+from herijk.pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
 from herijk.warehouse.archive.boats import BEAM_M, BOW_HEIGHT_M, LENGTH_M, ROWERS, WEIGHT_KG
-from herijk.warehouse.archive.lists import ListRow
+from herijk.warehouse.archive.lists import ListRow, fold_word
+from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.text import Column, shorten
+from herijk.warehouse.archive.words import ALL_RUNS
 
 SPEED_M_S: Final = (0.5, 6.0)
 CREW_WEIGHT_KG: Final = (0.0, 6_000.0)
@@ -31,10 +33,10 @@ COLUMNS: Final = (
     Column("rowers", "roeiers"),
     Column("crew_class", "klasse"),
     Column("declared_speed_m_s", "roeisnelheid", "speed", "m/s"),
-    Column("waterline_length_m", "lengte", "length", "m"),
-    Column("beam_m", "breedte", "length", "m"),
-    Column("bow_height_m", "hoogte", "length", "m"),
-    Column("weight_kg", "gewicht", "mass", "kg"),
+    Column("waterline_length_m", "lengte", "length", "m", required=False),
+    Column("beam_m", "breedte", "length", "m", required=False),
+    Column("bow_height_m", "hoogte", "length", "m", required=False),
+    Column("weight_kg", "gewicht", "mass", "kg", required=False),
     Column("weight_after_kg", "gewicht na", "mass", "kg", required=False),
     Column("crew_weight_kg", "bemanning", "mass", "kg", required=False),
     Column("water_temperature_c", "watertemperatuur", "temperature", "C", required=False),
@@ -71,6 +73,8 @@ SCHEMA: Final[dict[str, pl.DataType]] = {
     "freeboard_bow_m": pl.Float64(),
     "freeboard_stern_m": pl.Float64(),
     "remark": pl.String(),
+    "wind_measured": pl.Boolean(),
+    "log2_measured": pl.Boolean(),
     "log1_part": pl.Int32(),
     "log2_part": pl.Int32(),
     "samples_path": pl.String(),
@@ -86,11 +90,12 @@ RUNS_SCHEMA: Final[dict[str, pl.DataType]] = {
     "direction": pl.Int8(),
     "target_speed_ratio": pl.Float64(),
     "selected": pl.Boolean(),
+    "planned_s": pl.Float64(),
 }
 
-_RUN: Final = re.compile(r"(b?)([1-6])", re.IGNORECASE)
+_RUN: Final = re.compile(r"(b?)([1-9][0-9]?)", re.IGNORECASE)
+_RANGE: Final = re.compile(r"(b?[0-9]+)\s*(?:-|\.\.|:|t/m|tm|tot en met|to|bis)\s*(b?[0-9]+)")
 _TOW_ID: Final = re.compile(r"[^/\\\x00-\x1f]{1,64}")
-_ALTERED: Final = {"": False, "nee": False, "ja": True}
 
 
 def read_tow(row: ListRow, season: int, default_rate_hz: int) -> dict[str, Any]:
@@ -102,12 +107,13 @@ def read_tow(row: ListRow, season: int, default_rate_hz: int) -> dict[str, Any]:
     row.check_whole()
     tow_id = row.text("tow_id")
     if not _TOW_ID.fullmatch(tow_id):
-        raise row.fault(f"'{shorten(tow_id)}' cannot be a sleep_id: too long, or with a slash.")
+        message = "'{tow}' cannot be a sleep_id: it is too long, or has a slash."
+        raise row.fault(say(message, tow=shorten(tow_id)))
     return {
         "tow_id": tow_id,
         "season": season,
         "tow_date": row.date("tow_date"),
-        "fsn_no": row.text("fsn_no"),
+        "fsn_no": row.boat("fsn_no"),
         "rowers": row.integer("rowers", *ROWERS),
         "crew_class": row.crew_class("crew_class"),
         "declared_speed_m_s": row.number("declared_speed_m_s", *SPEED_M_S),
@@ -119,7 +125,7 @@ def read_tow(row: ListRow, season: int, default_rate_hz: int) -> dict[str, Any]:
         "crew_weight_kg": row.optional_number("crew_weight_kg", *CREW_WEIGHT_KG),
         "water_temperature_c": row.optional_number("water_temperature_c", *TEMPERATURE_C),
         "speed_correction_ratio": row.optional_number("speed_correction_ratio", *CORRECTION_RATIO),
-        "altered": _altered(row),
+        "altered": row.yes_or_no("altered"),
         "sample_rate_hz": row.optional_integer("sample_rate_hz", *SAMPLE_RATE_HZ)
         or default_rate_hz,
         "empty_thwart": row.optional_text("empty_thwart"),
@@ -143,48 +149,60 @@ def fill_dimensions(
         if filled[key] is None:
             filled[key] = boat[key]
         if filled[key] is None:
-            raise row.fault(
-                f"column '{row.columns[key].header}' is empty, here and in the boat list."
-            )
+            message = "column '{column}' is empty, here and in the boat list."
+            raise row.fault(say(message, column=row.named(key)))
     return filled
 
 
-def read_selection(row: ListRow) -> frozenset[int]:
-    """Return the runs to use; runs of the second file are 11-16, all of the first when empty.
+def read_selection(row: ListRow, planned: Collection[int]) -> frozenset[int]:
+    """Return the runs to use; runs of the second file are 21 and on.
+
+    Args:
+        row: row of a tow list.
+        planned: the runs of one file by its plan: all of the first file when the cell is empty.
 
     Raises:
         DefectiveInputError: `bad_list_row` with the line.
     """
     cell = row.optional_text("use_runs")
-    if cell is None:
-        return frozenset(range(1, RUNS_PER_FILE + 1))
-    parts = re.split(r"[\s,;]+", cell.strip(" ,;"))
-    runs = [run_number(part, row, "gebruik runs") for part in parts]
+    if cell is None or fold_word(cell) in ALL_RUNS:
+        return frozenset(planned)
+    parts = re.split(r"[\s,;+&]+", _spelled_out(fold_word(cell)).strip(" ,;"))
+    runs = [run_number(part, row, row.named("use_runs"), planned) for part in parts]
+    values = {"column": row.named("use_runs"), "cell": shorten(cell)}
     if len(set(runs)) < len(runs):
-        raise row.fault(f"'gebruik runs' is '{shorten(cell)}'; one run stands in it twice.")
+        raise row.fault(say("column '{column}' is '{cell}'; one run stands in it twice.", **values))
     if max(runs) > SECOND_FILE_OFFSET and row.optional_text("second_file") is None:
-        raise row.fault(f"'gebruik runs' is '{shorten(cell)}', but there is no meetfile2.")
+        raise row.fault(say("column '{column}' is '{cell}', but there is no meetfile2.", **values))
     return frozenset(runs)
 
 
-def run_number(part: str, row: ListRow, header: str) -> int:
-    """Return the number of a run as written in a list: 1-6, or 11-16 for b1-b6.
+def _spelled_out(cell: str) -> str:
+    """Return the cell with ranges such as 1-6 as single numbers, and commas for `en`."""
+
+    def numbers(match: re.Match[str]) -> str:
+        letter = "b" if match[1].startswith("b") else ""
+        first, last = (int(end.lstrip("b")) for end in match.groups())
+        return ",".join(f"{letter}{run}" for run in range(first, min(last, first + MOST_RUNS) + 1))
+
+    return _RANGE.sub(numbers, cell).replace(" en ", ",").replace(" and ", ",")
+
+
+def run_number(part: str, row: ListRow, header: str, planned: Collection[int]) -> int:
+    """Return the number of a run as written in a list: 1 and on, or 21 and on for b1 and on.
 
     Raises:
         DefectiveInputError: it is none, with the row's reason code and line.
     """
     match = _RUN.fullmatch(part)
-    if match is None:
+    if match is None or int(match[2]) not in planned:
         raise row.fault(
-            f"'{header}' has '{shorten(part)}'; runs are 1 to {RUNS_PER_FILE}, or b1 to "
-            f"b{RUNS_PER_FILE} for the second file, with commas between them."
+            say(
+                "column '{column}' has '{part}'; runs are 1 to {last}, or b1 to b{last} for the "
+                "second file, with commas between them.",
+                column=header,
+                part=shorten(part),
+                last=max(planned),
+            )
         )
     return int(match[2]) + (SECOND_FILE_OFFSET if match[1] else 0)
-
-
-def _altered(row: ListRow) -> bool:
-    cell = row.optional_text("altered") or ""
-    altered = _ALTERED.get(cell.casefold())
-    if altered is None:
-        raise row.fault(f"'verbouwd' is '{shorten(cell)}', not ja, nee or empty.")
-    return altered

@@ -11,9 +11,11 @@ from typing import Any, Final
 
 import polars as pl
 
+from herijk.pipeline.channels import MOST_RUNS
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.faults import Fault, fault_from
-from herijk.warehouse.archive.lists import ListRow, read_rows
+from herijk.warehouse.archive.lists import ListRow, Wording, read_list
+from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.text import Column, shorten
 from herijk.warehouse.archive.tows import run_number
 
@@ -52,7 +54,9 @@ class Listed:
     runs: Mapping[str, Collection[int]]
 
 
-def read_windows(data: bytes, path: str, listed: Listed) -> tuple[list[Window], list[Fault]]:
+def read_windows(
+    data: bytes, path: str, listed: Listed, wording: Wording
+) -> tuple[list[Window], list[Fault]]:
     """Return the windows of one list for tows that are not set aside, and the faulty rows.
 
     Two windows for one run cost both, as nobody can know which is right.
@@ -62,7 +66,7 @@ def read_windows(data: bytes, path: str, listed: Listed) -> tuple[list[Window], 
     """
     windows: list[Window] = []
     faults: list[Fault] = []
-    for row in read_rows(data, COLUMNS, "bad_window_row"):
+    for row in read_list(data, COLUMNS, "bad_window_row", path, wording):
         try:
             window = _read_window(row) | {"list_path": path, "list_line": row.line}
             if _is_wanted(window, row, listed):
@@ -86,8 +90,13 @@ def outside_run(windows: pl.DataFrame, seconds: pl.DataFrame) -> list[Fault]:
         _fault(
             window,
             "window_outside_run",
-            f"{_named(window)} ends at {window['end_s']} s, but the run lasts "
-            f"{window['seconds']} s.",
+            say(
+                "the window of run {run} of tow {tow} ends at {end} s, but the run lasts "
+                "{seconds} s.",
+                **_values(window),
+                end=window["end_s"],
+                seconds=window["seconds"],
+            ),
         )
         for window in beyond.iter_rows(named=True)
     ]
@@ -97,15 +106,18 @@ def _read_window(row: ListRow) -> Window:
     row.check_whole()
     window: Window = {
         "tow_id": row.text("tow_id"),
-        "run": run_number(row.text("run"), row, "run"),
+        "run": run_number(row.text("run"), row, "run", range(1, MOST_RUNS + 1)),
         "start_s": row.integer("start_s", *START_S),
         "end_s": row.integer("end_s", *END_S),
         "reason": row.text("reason"),
     }
     if window["start_s"] >= window["end_s"]:
         raise row.fault(
-            f"'van' is {window['start_s']} s and 'tot' {window['end_s']} s; a window ends after "
-            "it begins."
+            say(
+                "'van' is {start} s and 'tot' {end} s; a window ends after it begins.",
+                start=window["start_s"],
+                end=window["end_s"],
+            )
         )
     return window
 
@@ -114,31 +126,26 @@ def _is_wanted(window: Window, row: ListRow, listed: Listed) -> bool:
     """Whether the window's tow can be used; a tow that is set aside needs no window."""
     tow_id = window["tow_id"]
     if tow_id not in listed.tow_ids:
-        raise DefectiveInputError(
-            "window_unknown_tow",
-            f"Line {row.line}: sleep_id {shorten(tow_id)} is not in the tow list of that year.",
-            row.line,
-        )
+        message = say("sleep_id {tow} is not in the tow list of that year.", tow=shorten(tow_id))
+        raise row.fault(message, "window_unknown_tow")
     if tow_id not in listed.runs:
         return False
     if window["run"] not in listed.runs[tow_id]:
-        raise DefectiveInputError(
-            "window_unknown_run",
-            f"Line {row.line}: tow {tow_id} has no run {row.text('run')}; it has no meetfile2.",
-            row.line,
-        )
+        message = say("tow {tow} has no run {run}.", tow=tow_id, run=row.text("run"))
+        raise row.fault(message, "window_unknown_run")
     return True
 
 
 def _given_twice(window: Window) -> Fault:
-    message = f"{_named(window)} has more than one window; none of them counts."
-    return _fault(window, "window_given_twice", message)
+    message = "run {run} of tow {tow} has more than one window; none of them counts."
+    return _fault(window, "window_given_twice", say(message, **_values(window)))
 
 
-def _named(window: Mapping[str, Any]) -> str:
-    return f"run {window['run']} of tow {window['tow_id']}"
+def _values(window: Mapping[str, Any]) -> dict[str, Any]:
+    return {"run": window["run"], "tow": window["tow_id"]}
 
 
 def _fault(window: Mapping[str, Any], reason_code: str, message: str) -> Fault:
     line = window["list_line"]
-    return Fault(window["list_path"], None, line, reason_code, f"Line {line}: {message}")
+    said = say("Line {line}: {what}", line=line, what=message)
+    return Fault(window["list_path"], None, line, reason_code, said)

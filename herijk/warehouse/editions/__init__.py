@@ -2,7 +2,6 @@
 
 | module | holds |
 | --- | --- |
-| `folder` | what an edition consists of; making a folder whole or not at all; reading it |
 | `publish` | from the tables of a method, or a printed register, to an edition |
 | `inputs` | the tows and files that go in, and their hashes |
 | `lines` | the lines that a method gives on a day, at publication or made again |
@@ -11,7 +10,6 @@
 | `notes` | the release notes of an edition, in Dutch |
 | `verify` | whether editions and archive are what they were, and editions can be made again |
 | `lineage` | from a printed line to files, runs and seconds |
-| `published` | rows of all editions for the tables of the warehouse |
 
 Nothing here looks at a clock: the day of publication is handed in.
 """

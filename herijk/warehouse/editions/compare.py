@@ -14,6 +14,7 @@ from typing import Any, Final
 import polars as pl
 
 from herijk.pipeline.blocks.run_blocks import stack_blocks
+from herijk.pipeline.method.definition import RUNS_ALONE
 from herijk.pipeline.register.changes import (
     NO_FACTOR,
     NO_PARTS,
@@ -25,12 +26,11 @@ from herijk.pipeline.register.register import LINE
 from herijk.pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
 from herijk.pipeline.studies.ladder import ladder
 from herijk.warehouse.archive import read_races
-from herijk.warehouse.build.tables import runs_with_windows
-from herijk.warehouse.editions.folder import Edition, read_edition
+from herijk.warehouse.build.version import code_version
 from herijk.warehouse.editions.inputs import INPUTS_HASH, same_tows, tows_of_today, unchanged_tows
 from herijk.warehouse.editions.lines import MEASURED, made_again
 from herijk.warehouse.intake import seasons as intake
-from herijk.warehouse.store.code import code_version
+from herijk.warehouse.store.editions import Edition, read_edition
 from herijk.warehouse.store.store import Store
 
 PRINTED: Final = "printed"
@@ -184,7 +184,7 @@ def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     if old.method.content_hash == new.method.content_hash:
         return NO_LADDER
     there = pl.col("tow_id").is_in(list(unchanged_tows(store, new)))
-    tows, runs = tows_of_today(store).filter(there), runs_with_windows(store).filter(there)
+    tows, runs = tows_of_today(store).filter(there), intake.runs_with_windows(store).filter(there)
     if tows.is_empty():
         return NO_LADDER
     blocks = stack_blocks(intake.all_blocks(store), runs)
@@ -280,6 +280,11 @@ def report(comparison: Comparison) -> Report:
         "loss": _group(loss),
         "exceeds_interval": int(moved["exceeds_interval"].fill_null(False).sum()),
         "interval_unknown": int(moved["exceeds_interval"].null_count()),
+        "runs_alone": [
+            edition.about.edition
+            for edition in (comparison.old, comparison.new)
+            if edition.method is not None and edition.method.interval == RUNS_ALONE
+        ],
         "causes": _causes(compared),
         "largest": _rows(_by_size(moved).head(LARGEST)),
         "rows": _rows(lines),

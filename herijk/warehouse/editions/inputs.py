@@ -9,8 +9,9 @@ from typing import Final
 
 import polars as pl
 
-from herijk.warehouse.build.tables import runs_with_windows, typed_tows
-from herijk.warehouse.editions.folder import Edition
+from herijk.pipeline.recompute.facts import samples_files
+from herijk.warehouse.intake.seasons import runs_with_windows, typed_tows
+from herijk.warehouse.store.editions import Edition
 from herijk.warehouse.store.store import Store, fingerprint, table_digest
 
 NOT_INPUT: Final = (
@@ -69,9 +70,8 @@ def unchanged_tows(store: Store, edition: Edition) -> frozenset[str]:
 
 def input_files(store: Store, tows: pl.DataFrame) -> pl.DataFrame:
     """The files behind an edition: samples of its tows, and the lists of the archive."""
-    first = tows.select(path="samples_path", sha256="samples_sha256")
-    second = tows.select(path="second_path", sha256="second_sha256").drop_nulls()
-    samples = pl.concat([first, second]).unique().with_columns(pl.lit(SAMPLES).alias("kind"))
+    files = samples_files(tows).select("path", "sha256").unique()
+    samples = files.with_columns(pl.lit(SAMPLES).alias("kind"))
     is_list = pl.col("path").str.contains(r"^(sleeplijsten/|sloepregister/sloependata|archief)")
     lists = (
         store.read("listed_files")

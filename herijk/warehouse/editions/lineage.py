@@ -9,8 +9,8 @@ import polars as pl
 
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.register.register import LINE
-from herijk.warehouse.editions.folder import Edition, edition_path, read_edition
 from herijk.warehouse.editions.sheets import CODE_FIELD, REGISTER_FIELDS, printed_cells
+from herijk.warehouse.store.editions import Edition, edition_path, read_edition
 from herijk.warehouse.store.store import Store
 
 Report = dict[str, Any]
@@ -33,20 +33,6 @@ def lineage(store: Store, edition: str, fsn_no: str) -> Report:
         "folder": str(edition_path(store, edition)),
         "lines": [_line(held, row) for row in lines.sort(LINE).iter_rows(named=True)],
     }
-
-
-def lineage_rows(edition: Edition) -> pl.DataFrame:
-    """Rows of the warehouse's table `lineage` of an edition: one per line and samples file."""
-    if edition.about.kind == "as_printed":
-        raise MissingKnowledgeError("a register as printed has no lineage")
-    tows = edition.tables["tows"]
-    first = tows.select("tow_id", path="samples_path", sha256="samples_sha256")
-    second = tows.select("tow_id", path="second_path", sha256="second_sha256").drop_nulls()
-    lines = edition.register.drop_nulls("tow_id").select("edition", *LINE, "tow_id", "method")
-    return lines.join(pl.concat([first, second]), on="tow_id").with_columns(
-        pl.lit(edition.about.method_hash).alias("method_hash"),
-        pl.lit(edition.about.code_version).alias("code_version"),
-    )
 
 
 def _line(edition: Edition, row: dict[str, Any]) -> Report:

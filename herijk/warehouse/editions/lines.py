@@ -16,14 +16,13 @@ from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import RegisterRule
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.pipeline.register.register import LINE, draft_register
-from herijk.warehouse.build import tables
-from herijk.warehouse.build.tables import runs_with_windows
+from herijk.pipeline.uncertainty.ensemble import tow_ensemble
 from herijk.warehouse.editions import sheets
-from herijk.warehouse.editions.folder import DECISIONS, INPUTS, Edition, edition_path, read_edition
 from herijk.warehouse.editions.inputs import INPUTS_HASH, tows_of_today
 from herijk.warehouse.editions.printed import printed_lines, with_carried
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store import decisions as decided
+from herijk.warehouse.store.editions import DECISIONS, INPUTS, Edition, edition_path, read_edition
 from herijk.warehouse.store.store import Store
 
 NUMBERS: Final = ("a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
@@ -80,7 +79,7 @@ def made_again(store: Store, edition: Edition) -> Again:
         return Again(printed_lines(store, _printed_file(store, edition)), None)
     mine = edition.tables["tows"].select("tow_id")
     tows = tows_of_today(store).join(mine, on="tow_id", how="semi")
-    runs = runs_with_windows(store).join(mine, on="tow_id", how="semi")
+    runs = intake.runs_with_windows(store).join(mine, on="tow_id", how="semi")
     blocks = stack_blocks(intake.all_blocks(store), runs)
     found = recompute(edition.method, tows, blocks)
     nobody = pl.DataFrame(schema={name: edition.register.schema[name] for name in LINE})
@@ -97,7 +96,9 @@ def made_again(store: Store, edition: Edition) -> Again:
     if about.carried_from is not None:
         printed = read_edition(store, about.carried_from)
         lines = with_carried(lines, printed, found.log_factors, about.valid_from, edition.method)
-    members = tables.ensemble_of(edition.method, found)
+    members = tow_ensemble(
+        edition.method.name, found.curves, found.uncertainty_budget, found.factors
+    )
     return Again(lines, members.join(edition.tables["ensemble"], on="tow_id", how="semi"))
 
 

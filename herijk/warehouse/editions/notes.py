@@ -10,9 +10,9 @@ from typing import Any, Final
 import jinja2
 
 from herijk.warehouse.editions.compare import Comparison, Report, report
-from herijk.warehouse.editions.folder import NOTES, NOTES_EN, NOTICE, NOTICE_EN, Edition
 from herijk.warehouse.editions.printed import REBASED
 from herijk.warehouse.editions.words import DUTCH, ENGLISH, Language, table
+from herijk.warehouse.store.editions import NOTES, NOTES_EN, NOTICE, NOTICE_EN, Edition
 
 TEXTS: Final = {NOTICE: DUTCH, NOTES: DUTCH, NOTICE_EN: ENGLISH, NOTES_EN: ENGLISH}
 """The texts of an edition, each with its language; a template has the name of its text."""
@@ -125,6 +125,7 @@ def _changes(found: Report | None, language: Language) -> dict[str, Any]:
         "loss": _group(found["loss"], language),
         "exceeding": language.count(found["exceeds_interval"]),
         "unknown": language.count(found["interval_unknown"]) if found["interval_unknown"] else "",
+        "runs_alone": found["runs_alone"],
         "largest": table(largest_head, largest) if largest else "",
         "largest_count": len(largest),
         "largest_with_causes": table((*largest_head, causes), with_causes) if largest else "",

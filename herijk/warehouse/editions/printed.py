@@ -16,9 +16,9 @@ from herijk.pipeline.method.definition import Method
 from herijk.pipeline.register.register import LINE, valid_until
 from herijk.pipeline.steps.speed import log_factor
 from herijk.warehouse.archive import Fault, read_published_registers
-from herijk.warehouse.editions.folder import Edition
 from herijk.warehouse.editions.inputs import INPUTS_HASH
 from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.store.editions import Edition
 from herijk.warehouse.store.store import Store, fingerprint
 
 AS_PRINTED, REBASED = "printed", "printed_rebased"

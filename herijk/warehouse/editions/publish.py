@@ -20,10 +20,23 @@ from herijk.pipeline.method.writing import method_text
 from herijk.pipeline.register.register import LINE
 from herijk.tables.register import Register
 from herijk.tables.schemas import conform
-from herijk.warehouse.build.tables import method_is_stale, runs_with_windows
+from herijk.warehouse.build.graph import METHOD as METHOD_STEP
+from herijk.warehouse.build.version import code_version
 from herijk.warehouse.editions import notes, sheets
 from herijk.warehouse.editions.compare import compare
-from herijk.warehouse.editions.folder import (
+from herijk.warehouse.editions.inputs import (
+    INPUTS_HASH,
+    REGISTER,
+    input_files,
+    inputs_digest,
+    tows_of_today,
+)
+from herijk.warehouse.editions.lines import TOW_FACTS, method_lines
+from herijk.warehouse.editions.printed import printed_lines, printed_path, with_carried
+from herijk.warehouse.editions.sheets import CODE_FIELD
+from herijk.warehouse.intake.seasons import runs_with_windows
+from herijk.warehouse.store import decisions as decided
+from herijk.warehouse.store.editions import (
     ABOUT,
     CHANGES,
     CSV,
@@ -42,18 +55,6 @@ from herijk.warehouse.editions.folder import (
     read_edition,
     write_folder,
 )
-from herijk.warehouse.editions.inputs import (
-    INPUTS_HASH,
-    REGISTER,
-    input_files,
-    inputs_digest,
-    tows_of_today,
-)
-from herijk.warehouse.editions.lines import TOW_FACTS, method_lines
-from herijk.warehouse.editions.printed import printed_lines, printed_path, with_carried
-from herijk.warehouse.editions.sheets import CODE_FIELD
-from herijk.warehouse.store import decisions as decided
-from herijk.warehouse.store.code import code_version
 from herijk.warehouse.store.ensemble import read_ensemble
 from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import Store, table_digest
@@ -140,7 +141,7 @@ def recomputed_edition(
     store: Store, method: Method, terms: Terms, carry: str | None = None
 ) -> Edition:
     """The edition that would be published, not yet written; see `publish`."""
-    if store.made_from("tows") is None or method_is_stale(store, method):
+    if store.made_from("tows") is None or METHOD_STEP.is_stale(store, [method]):
         raise MissingKnowledgeError(
             f"the tables of method {method.name} are not those of the archive and code of today; "
             f"run: herijk rebuild --archive DIR --data {store.root} --method {method.name}"

@@ -20,8 +20,8 @@ from xml.etree import ElementTree
 import polars as pl
 import xlsxwriter  # type: ignore[import-untyped,unused-ignore]
 
-from herijk.warehouse.editions.folder import CSV, INPUTS, About
 from herijk.warehouse.editions.words import DUTCH
+from herijk.warehouse.store.editions import CSV, INPUTS, About
 
 A4: Final = 9
 """The paper's number in a spreadsheet."""
@@ -51,6 +51,10 @@ class Field:
     decimals: int = 3
 
 
+LOWER_END: Final = (
+    "ondergrens van het 95 %-interval; bij een methode die de fout van de log niet schat: van de "
+    "spreiding van de runs alleen, de fout van de log zit er niet in"
+)
 REGISTER_FIELDS: Final = (
     Field("fsn_nr", "fsn_no", "string", "nummer van de sloep bij de federatie"),
     Field("ht_nr", "ht_no", "string", "nummer in het HT-register"),
@@ -65,7 +69,7 @@ REGISTER_FIELDS: Final = (
         "B", "b_m_s", "number", "B in m/s; leeg waar hij niet bepaald is: dan is Cw gelijk aan A"
     ),
     Field("Cw", "cw_kg_m", "number", "Cw in kg/m bij de roeisnelheid"),
-    Field("Cw laagst", "cw_lo_kg_m", "number", "ondergrens van het 95 %-interval"),
+    Field("Cw laagst", "cw_lo_kg_m", "number", LOWER_END),
     Field("Cw hoogst", "cw_hi_kg_m", "number", "bovengrens"),
     Field("sleep_id", "tow_id", "string", "sleep die telt"),
     Field("sleepdatum", "tow_date", "date", "dag van die sleep"),

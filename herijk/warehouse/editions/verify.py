@@ -15,11 +15,16 @@ import polars as pl
 from pydantic import ValidationError
 
 from herijk.pipeline.errors import BrokenPromiseError, HerijkError
+from herijk.pipeline.recompute.facts import with_hand_windows
 from herijk.pipeline.register.register import LINE
-from herijk.pipeline.steps.window import HAND_COLUMNS
 from herijk.warehouse.archive import FileHashes, index_archive
+from herijk.warehouse.build.version import code_version
 from herijk.warehouse.editions import sheets
-from herijk.warehouse.editions.folder import (
+from herijk.warehouse.editions.inputs import LIST, NOT_INPUT, unchanged_tows
+from herijk.warehouse.editions.lines import NUMBERS, Again, made_again
+from herijk.warehouse.editions.printed import AS_PRINTED
+from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.store.editions import (
     ABOUT,
     CSV,
     INPUTS,
@@ -31,11 +36,6 @@ from herijk.warehouse.editions.folder import (
     read_edition,
     read_table,
 )
-from herijk.warehouse.editions.inputs import LIST, NOT_INPUT, unchanged_tows
-from herijk.warehouse.editions.lines import NUMBERS, Again, made_again
-from herijk.warehouse.editions.printed import AS_PRINTED
-from herijk.warehouse.intake import seasons as intake
-from herijk.warehouse.store.code import code_version
 from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import Store, table_digest
 
@@ -266,8 +266,7 @@ def _list_rows(path: Place, root: Path, hashes: FileHashes) -> Iterator[Finding]
     except HerijkError as error:
         yield Finding(path.name, "unchecked", "sleeplijsten", str(error))
         return
-    windows = index.windows.rename(HAND_COLUMNS)
-    runs = index.runs.join(windows, on=["tow_id", "run"], how="left")
+    runs = with_hand_windows(index.runs, index.windows)
     for tow in sorted(set(was["tows"]["tow_id"]) - set(index.tows["tow_id"])):
         yield Finding(path.name, "missing", tow, f"tow {tow} is no longer in the tow lists")
     yield from _changed_facts(path.name, was["tows"], index.tows, ["tow_id"])

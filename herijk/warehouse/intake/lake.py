@@ -9,17 +9,15 @@ like is known to `warehouse.archive`; which sums there are, to `pipeline.blocks.
 import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 import polars as pl
 
-from herijk.pipeline import channels
-from herijk.pipeline.blocks import run_blocks, sums
 from herijk.pipeline.errors import DefectiveInputError, UnavailableError
-from herijk.warehouse import archive
+from herijk.tables.frames import dtypes, frame_of
+from herijk.tables.lake import SeasonIndex
 from herijk.warehouse.archive import (
     FileHashes,
     SeasonProfile,
@@ -27,20 +25,15 @@ from herijk.warehouse.archive import (
     fault_from,
     read_tow_samples,
 )
-from herijk.warehouse.store.code import source_hash
+from herijk.warehouse.archive.files import PARTS, hash_of_parts
+from herijk.warehouse.store.code import code_hash
 from herijk.warehouse.store.store import Store, count_rows, fingerprint, read_parquet, write_parquet
 
-SEASON_INDEX_SCHEMA: Final = {
-    "tow_id": pl.String(),
-    "samples_key": pl.String(),
-    "blocks_key": pl.String(),
-    "samples": pl.Int64(),
-    "path": pl.String(),
-    "line": pl.Int64(),
-    "reason_code": pl.String(),
-    "message": pl.String(),
-}
-"""One row a listed tow: where its samples and blocks lie, or the fault that was found."""
+READERS: Final = ("herijk.warehouse.archive.samples", "herijk.warehouse.archive.plausibility")
+"""Modules that turn a file into samples: when they compute otherwise, files are read again."""
+
+ADDERS: Final = ("herijk.pipeline.blocks.sums",)
+"""Modules that add samples up: when they compute otherwise, the lake's samples are added again."""
 
 LAKE_FORM: Final = {
     "compression": "lz4",
@@ -59,7 +52,7 @@ def season_fingerprint(tows: pl.DataFrame, runs: pl.DataFrame, profile: SeasonPr
     """What the samples and blocks of a season are made from."""
     season_runs = runs.filter(pl.col("tow_id").is_in(tows["tow_id"].implode()))
     rows = [tows.write_json(), season_runs.sort("tow_id", "run").write_json()]
-    return fingerprint(rows, dataclasses.asdict(profile), _reader_hash(), _blocks_hash())
+    return fingerprint(rows, dataclasses.asdict(profile), code_hash(*READERS), code_hash(*ADDERS))
 
 
 def read_season(
@@ -81,7 +74,7 @@ def read_season(
         report: called after each tow.
 
     Returns:
-        The season's index, `SEASON_INDEX_SCHEMA`, sorted by tow.
+        The season's index, `SeasonIndex`, sorted by tow.
     """
     before = _known_faults(store, profile.season)
     hashes = FileHashes.load(store.file_hashes)
@@ -97,7 +90,7 @@ def read_season(
     workers = min(2, pl.thread_pool_size())  # asked here: asking starts the threads
     with ThreadPoolExecutor(workers) as pool:
         rows = list(pool.map(read, tows.sort("tow_id").iter_rows(named=True)))
-    index = pl.DataFrame(rows, schema=SEASON_INDEX_SCHEMA)
+    index = frame_of(SeasonIndex, rows)
     _remove_unlisted(store, profile.season, index)
     return index
 
@@ -127,9 +120,9 @@ def _bring_in(
     hashes: FileHashes,
 ) -> dict[str, Any]:
     """Index row of a tow after its samples and blocks are in the lake, or with its fault."""
-    row = dict.fromkeys(SEASON_INDEX_SCHEMA) | {"samples_key": key}
+    row = dict.fromkeys(SeasonIndex.column_names()) | {"samples_key": key}
     path = store.samples_path(profile.season, key)
-    blocks_key = fingerprint(key, tow["sample_rate_hz"], _blocks_hash())
+    blocks_key = fingerprint(key, tow["sample_rate_hz"], code_hash(*ADDERS))
     blocks_path = store.blocks_path(profile.season, blocks_key)
     try:
         samples = None if path.exists() else read_tow_samples(root, tow, profile)
@@ -159,24 +152,25 @@ def _check_unchanged(root: Path, tow: Tow, hashes: FileHashes) -> None:
     A file with the size and time it had when it was hashed is not read once more.
     """
     for path, sha256 in (("samples_path", "samples_sha256"), ("second_path", "second_sha256")):
-        if tow[path] is not None and _sha256(root / tow[path], hashes) != tow[sha256]:
+        if tow[path] is not None and _sha256(root, tow[path], hashes) != tow[sha256]:
             raise ArchiveChangedError(
                 f"{tow[path]} changed while it was read. Try again when nobody is copying files "
                 f"into {root}"
             )
 
 
-def _sha256(path: Path, hashes: FileHashes) -> str | None:
-    """Hash of a file; None when it went away."""
+def _sha256(root: Path, path: str, hashes: FileHashes) -> str | None:
+    """Hash of samples; None when a file of theirs went away."""
     try:
-        return hashes.hash_file(path)
+        parts = [hashes.hash_file(root / part) for part in path.split(PARTS)]
     except FileNotFoundError:
         return None
+    return parts[0] if len(parts) == 1 else hash_of_parts(parts)
 
 
 def forget_season(store: Store, season: int) -> None:
     """Removes the samples and blocks of a season that the archive no longer lists."""
-    _remove_unlisted(store, season, pl.DataFrame(schema=SEASON_INDEX_SCHEMA))
+    _remove_unlisted(store, season, SeasonIndex.create_empty())
 
 
 def _known_faults(store: Store, season: int) -> dict[str, dict[str, Any]]:
@@ -184,7 +178,7 @@ def _known_faults(store: Store, season: int) -> dict[str, dict[str, Any]]:
     if str(season) not in store.partitions("season_index"):
         return {}
     index = store.read("season_index", str(season))
-    if index.schema != pl.Schema(SEASON_INDEX_SCHEMA):
+    if index.schema != dtypes(SeasonIndex):
         return {}
     faulty = index.filter(pl.col("reason_code").is_not_null())
     return {row["samples_key"]: row for row in faulty.iter_rows(named=True)}
@@ -192,8 +186,8 @@ def _known_faults(store: Store, season: int) -> dict[str, dict[str, Any]]:
 
 def _samples_key(tow: Tow, runs: pl.DataFrame, profile: SeasonProfile) -> str:
     names = ("samples_sha256", "second_sha256", "sample_rate_hz", "declared_speed_m_s")
-    used = runs.sort("run").rows()
-    return fingerprint([tow[n] for n in names], used, dataclasses.asdict(profile), _reader_hash())
+    facts = [tow[n] for n in names], runs.sort("run").rows()
+    return fingerprint(*facts, dataclasses.asdict(profile), code_hash(*READERS))
 
 
 def _remove_unlisted(store: Store, season: int, index: pl.DataFrame) -> None:
@@ -206,20 +200,3 @@ def _remove_unlisted(store: Store, season: int, index: pl.DataFrame) -> None:
         for file in folder.glob("[!.]*.parquet"):
             if file not in kept:
                 file.unlink()
-
-
-@cache
-def _reader_hash() -> str:
-    """The code that turns a file into samples: when it changes, files are read again."""
-    folder = Path(str(archive.__file__)).parent
-    return source_hash([*sorted(folder.glob("*.py")), _source(channels)])
-
-
-@cache
-def _blocks_hash() -> str:
-    """The code that adds samples up: when it changes, the lake's samples are added up again."""
-    return source_hash([_source(run_blocks), _source(sums)])
-
-
-def _source(module: Any) -> Path:
-    return Path(str(module.__file__))

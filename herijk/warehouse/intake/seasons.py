@@ -14,7 +14,12 @@ from typing import Final
 
 import polars as pl
 
+from herijk.pipeline.blocks.run_blocks import RunBlocks, stack_blocks
 from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.recompute.facts import with_boat_types, with_hand_windows
+from herijk.tables.archive import TraceSeconds
+from herijk.tables.frames import frame_of
+from herijk.tables.lake import Faults
 from herijk.warehouse.archive import (
     ArchiveIndex,
     FileHashes,
@@ -25,19 +30,11 @@ from herijk.warehouse.archive import (
 )
 from herijk.warehouse.archive.profile import read_profiles
 from herijk.warehouse.intake import lake
-from herijk.warehouse.store.store import Store, fingerprint
+from herijk.warehouse.store.store import Store
 
 LISTED: Final = ("boats", "tows", "runs", "windows")
 SEASON_TABLES: Final = ("season_tows", "season_runs", "season_index", "blocks")
 """What is kept of a season, as the archive was when it was read."""
-PRESENT_SCHEMA: Final = {"tow_id": pl.String(), "run": pl.Int8(), "seconds": pl.Int16()}
-FAULT_SCHEMA: Final = {
-    "path": pl.String(),
-    "tow_id": pl.String(),
-    "line": pl.Int64(),
-    "reason_code": pl.String(),
-    "message": pl.String(),
-}
 
 
 def index(store: Store, root: Path) -> ArchiveIndex:
@@ -54,7 +51,7 @@ def index(store: Store, root: Path) -> ArchiveIndex:
     races, race_faults = read_races(root)
     _, register_faults = read_published_registers(root)
     faults = [dataclasses.asdict(f) for f in (*found.faults, *race_faults, *register_faults)]
-    store.write("list_faults", pl.DataFrame(faults, schema=FAULT_SCHEMA), made_from="")
+    store.write("list_faults", frame_of(Faults, faults), made_from="")
     about = {"simulated": [found.profiles.simulated], "root": [str(root.resolve())]}
     store.write("about_archive", pl.DataFrame(about), made_from="")
     store.write("listed_files", found.files, made_from="")
@@ -144,23 +141,23 @@ def collect_blocks(store: Store, season: int) -> pl.DataFrame:
 def all_blocks(store: Store) -> pl.DataFrame:
     """Blocks of all seasons; those without a sound tow have none."""
     frames = [store.read("blocks", season) for season in store.partitions("blocks")]
-    return pl.concat([f for f in frames if f.height])
+    nothing = TraceSeconds.create_empty().select("tow_id", "run", "second")
+    return pl.concat([f for f in frames if f.height] or [nothing])
 
 
-def present_runs(store: Store) -> pl.DataFrame:
-    """The runs that the samples of sound tows hold: `tow_id`, `run`, and length in `seconds`."""
-    seasons = (store.read("blocks", season) for season in store.partitions("blocks"))
-    lengths = (
-        blocks.group_by("tow_id", "run").agg((pl.col("second").max() + 1).alias("seconds"))
-        for blocks in seasons
-        if blocks.height
-    )
-    return pl.concat([pl.DataFrame(schema=PRESENT_SCHEMA), *lengths])
+def typed_tows(store: Store) -> pl.DataFrame:
+    """All sound tows with the type of their boat."""
+    return with_boat_types(store.read("tows"), store.read("boats"))
 
 
-def blocks_made_from(store: Store) -> str:
-    """Fingerprint of all blocks together."""
-    return fingerprint({s: store.made_from("blocks", s) for s in store.partitions("blocks")})
+def runs_with_windows(store: Store) -> pl.DataFrame:
+    """The runs of all sound tows, with the windows that were given by hand."""
+    return with_hand_windows(store.read("tow_runs"), store.read("hand_windows"))
+
+
+def run_blocks(store: Store) -> RunBlocks:
+    """The runs of all sound tows as arrays, with the windows that were given by hand."""
+    return stack_blocks(all_blocks(store), runs_with_windows(store))
 
 
 def _listed(store: Store, season: int) -> tuple[pl.DataFrame, pl.DataFrame]:

@@ -131,7 +131,10 @@ def _tow(db: duckdb.DuckDBPyConnection, tow: Report, methods: list[str]) -> Repo
 
 _TOWS = "SELECT * FROM tows WHERE fsn_no = ? ORDER BY tow_date, tow_id"
 
-_CURVES = "SELECT * FROM curves WHERE tow_id = ? AND list_contains(?, method) ORDER BY method"
+_CURVES = """
+SELECT c.*, m.interval FROM curves AS c JOIN methods AS m USING (method)
+WHERE tow_id = ? AND list_contains(?, method) ORDER BY method
+"""
 
 _RUN_POINTS = "SELECT * FROM run_points WHERE tow_id = ? AND method = ? ORDER BY run"
 

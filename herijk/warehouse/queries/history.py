@@ -25,7 +25,7 @@ from herijk.pipeline.recompute.recompute import recompute
 from herijk.pipeline.recompute.results import Recomputed
 from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.pipeline.register.register import draft_name, draft_register
-from herijk.warehouse.build.tables import run_blocks, typed_tows
+from herijk.warehouse.intake.seasons import run_blocks, typed_tows
 from herijk.warehouse.store.store import Store
 
 MOST_CACHED: Final = 200

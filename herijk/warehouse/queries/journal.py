@@ -14,9 +14,9 @@ from typing import Any, Final
 import duckdb
 import polars as pl
 
+from herijk.pipeline.recompute.facts import with_boat_types, with_hand_windows
 from herijk.pipeline.register.changes import NO_PARTS, register_changes, side_by_side
 from herijk.pipeline.register.register import LINE
-from herijk.pipeline.steps.window import HAND_COLUMNS
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.editions.compare import (
     CODE,
@@ -170,11 +170,9 @@ def _tows(was: Tables, now: Tables) -> pl.DataFrame:
 
 def _measured(tables: Tables) -> Tables:
     """Tows with the type of their boat, and runs with the windows given by hand."""
-    types = tables["boats"].select("fsn_no", "boat_type")
-    windows = tables["hand_windows"].rename(HAND_COLUMNS)
     return {
-        "tows": tables["tows"].join(types, on="fsn_no", how="left"),
-        "tow_runs": tables["tow_runs"].join(windows, on=["tow_id", "run"], how="left"),
+        "tows": with_boat_types(tables["tows"], tables["boats"]),
+        "tow_runs": with_hand_windows(tables["tow_runs"], tables["hand_windows"]),
     }
 
 

@@ -126,7 +126,7 @@ class Trial:
         Returns:
             Rows of `kind` line (13 speeds over the valid range), point (a run) and declared (Cw
             with its interval), with `method, tow_id, speed_m_s, cw_kg_m, cw_lo_kg_m, cw_hi_kg_m,
-            run, direction, used`.
+            run, direction, used, interval`.
         """
         curves = self._curves_of(fsn_no).drop_nulls("cw_kg_m")
         own = curves.select("method", "tow_id")
@@ -135,8 +135,13 @@ class Trial:
             for draft in (self.before, self.after)
         )
         shared = ("method", "tow_id", "speed_m_s", "cw_kg_m")
+        intervals = {d.method.name: d.method.interval for d in (self.before, self.after)}
         declared = curves.with_columns(speed_m_s="declared_speed_m_s").select(
-            *shared, "cw_lo_kg_m", "cw_hi_kg_m", kind=pl.lit("declared")
+            *shared,
+            "cw_lo_kg_m",
+            "cw_hi_kg_m",
+            kind=pl.lit("declared"),
+            interval=pl.col("method").replace_strict(intervals, return_dtype=pl.String),
         )
         drawn = points.drop_nulls("cw_kg_m").select(
             *shared, "run", "direction", "used", kind=pl.lit("point")

@@ -1,38 +1,161 @@
-"""Which code made a table: the version number and a hash of what computes."""
+"""Which code made a table: a hash of the modules that compute it.
 
+A module counts with all modules of this package that it imports, directly or through others. Of
+each the syntax tree counts, without docstrings and comments, so that only a change of what is
+computed makes another hash. Left out are the declared tables: what a step writes is part of its
+fingerprint (`warehouse.build.step`).
+"""
+
+import ast
 import hashlib
-from collections.abc import Iterable
-from functools import cache
-from importlib import metadata
+import importlib.util
+import json
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass, field
+from functools import cache, cached_property
 from pathlib import Path
+from typing import Final, Self
 
-import herijk.pipeline
-import herijk.tables
-import herijk.warehouse
+from herijk.warehouse.store.files import written_beside
 
-HASH_LENGTH = 12
-ROOMS = (herijk.tables, herijk.pipeline, herijk.warehouse)
+PACKAGE: Final = "herijk"
+LEFT_OUT: Final = (f"{PACKAGE}.tables",)
+HASH_LENGTH: Final = 12
+
+Facts = tuple[str, list[str]]
+"""Of a module: the hash of its tree, and the names that it imports from the package."""
+
+
+@dataclass
+class Sources:
+    """The modules of the package as they lie in a folder, and what is known of them.
+
+    Attributes:
+        folder: holds the package.
+        known: facts of each module, by the content hash of its file.
+    """
+
+    folder: Path
+    known: dict[str, Facts] = field(default_factory=dict)
+
+    @classmethod
+    def installed(cls) -> Self:
+        """The package that is running, with what earlier processes found out about it."""
+        found = cls(Path(__file__).parents[3])
+        with suppress(OSError, ValueError):
+            found.known = json.loads(_cache_file().read_text(encoding="utf-8"))
+        return found
+
+    def hash_of(self, *modules: str) -> str:
+        """Hash of the given modules and all that they import from the package."""
+        before = len(self.known)
+        lines = [f"{name}:{self._facts(name)[0]}\n" for name in sorted(self.closure(modules))]
+        if len(self.known) > before:
+            self._keep()
+        return hashlib.sha256("".join(lines).encode()).hexdigest()[:HASH_LENGTH]
+
+    def closure(self, modules: Iterable[str]) -> set[str]:
+        """The given modules and all that they import from the package."""
+        found: set[str] = set()
+        to_do = list(modules)
+        while to_do:
+            name = to_do.pop()
+            if name not in found and not name.startswith(LEFT_OUT):
+                found.add(name)
+                to_do += filter(None, map(self._module, self._facts(name)[1]))
+        return found
+
+    def _module(self, imported: str) -> str | None:
+        """The module that an imported name is, or is in; None for other packages."""
+        if imported in self._modules:
+            return imported
+        parent = imported.rpartition(".")[0]
+        return parent if parent in self._modules else None
+
+    @cached_property
+    def _modules(self) -> dict[str, Path]:
+        return {
+            ".".join(file.relative_to(self.folder).with_suffix("").parts).removesuffix(
+                ".__init__"
+            ): file
+            for file in (self.folder / PACKAGE).rglob("*.py")
+        }
+
+    @cached_property
+    def _facts(self) -> Callable[[str], Facts]:
+        return cache(self._find_facts)
+
+    def _find_facts(self, module: str) -> Facts:
+        source = self._modules[module].read_bytes()
+        key = hashlib.sha256(source).hexdigest()
+        if key not in self.known:
+            tree = ast.parse(source)
+            self.known[key] = (_tree_hash(tree), sorted(_imports(tree)))
+        return self.known[key]
+
+    def _keep(self) -> None:
+        """Remembers the hashes where Python keeps its compiled files, if it may."""
+        with suppress(OSError), written_beside(_cache_file()) as beside:
+            beside.write_text(json.dumps(self.known), encoding="utf-8")
+
+
+def _cache_file() -> Path:
+    return Path(importlib.util.cache_from_source(__file__)).with_suffix(".json")
+
+
+def _tree_hash(tree: ast.Module) -> str:
+    return hashlib.sha256("\x1f".join(_canonical(tree)).encode()).hexdigest()
+
+
+def _canonical(node: object) -> Iterator[str]:
+    """A syntax tree as text, without docstrings, positions and fields that are empty.
+
+    Not `ast.dump`, whose text depends on the version of Python.
+    """
+    if isinstance(node, ast.AST):
+        yield type(node).__name__
+        for name, value in ast.iter_fields(node):
+            if value is not None and value != []:
+                yield name
+                yield from _canonical(value)
+    elif isinstance(node, list):
+        yield "["
+        for item in node:
+            if not _is_text(item):
+                yield from _canonical(item)
+        yield "]"
+    else:
+        yield repr(node)
+
+
+def _is_text(node: object) -> bool:
+    """Whether a statement is only text: a docstring of a module, class, function or constant."""
+    return (
+        isinstance(node, ast.Expr)
+        and isinstance(node.value, ast.Constant)
+        and isinstance(node.value.value, str)
+    )
+
+
+def _imports(node: ast.AST) -> Iterator[str]:
+    """Names that a tree imports from the package, but for those that only type checkers read."""
+    if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+        return
+    if isinstance(node, ast.Import):
+        yield from (name.name for name in node.names if name.name.startswith(PACKAGE))
+    elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith(PACKAGE):
+        yield from (f"{node.module}.{name.name}" for name in node.names)
+    for child in ast.iter_child_nodes(node):
+        yield from _imports(child)
 
 
 @cache
-def code_version() -> str:
-    """Version of the package and a hash of the source of `tables`, `pipeline` and `warehouse`.
-
-    The hash needs no git and is equal wherever the same source is installed. Two tables with
-    equal inputs, method and code version are equal.
-    """
-    rooms = (Path(str(room.__file__)).parent for room in ROOMS)
-    files = sorted(f for room in rooms for f in room.rglob("*") if _is_source(f))
-    return f"{metadata.version('herijk')}+{source_hash(files)}"
+def code_hash(*modules: str) -> str:
+    """Hash of the code with which the given modules of the running package compute."""
+    return _installed().hash_of(*modules)
 
 
-def source_hash(files: Iterable[Path]) -> str:
-    """Hash of the given source files, in the order given."""
-    total = hashlib.sha256()
-    for file in files:
-        total.update(hashlib.sha256(file.read_bytes()).digest())
-    return total.hexdigest()[:HASH_LENGTH]
-
-
-def _is_source(file: Path) -> bool:
-    return file.suffix in {".py", ".toml"} and "__pycache__" not in file.parts
+@cache
+def _installed() -> Sources:
+    return Sources.installed()

@@ -7,17 +7,24 @@ and `warehouse.queries.audit`.
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Final
 
 import duckdb
 import polars as pl
 
 from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.tables.views import VIEWS
 from herijk.warehouse.store.files import written_beside
+
+if TYPE_CHECKING:
+    import dataframely as dy
+
+STORAGE: Final = "v1.0.0"
+"""Any DuckDB since 1.0 opens the file; the newest form would shut out programs of last year."""
 
 
 def build_database(path: Path, tables: Mapping[str, pl.DataFrame]) -> None:
-    """Writes the tables, with the meaning of each column as a comment.
+    """Writes the tables and the views, with key and meaning of each as a comment.
 
     Args:
         path: the database file; replaced at once when the new one is complete.
@@ -25,28 +32,47 @@ def build_database(path: Path, tables: Mapping[str, pl.DataFrame]) -> None:
     """
     with written_beside(path) as beside:
         beside.unlink()
-        with duckdb.connect(beside) as connection:
+        with duckdb.connect() as connection:
             connection.execute("SET threads = 1")
+            connection.execute(f"ATTACH {_quoted(str(beside))} AS w (STORAGE_VERSION '{STORAGE}')")
+            connection.execute("USE w")
             connection.execute("BEGIN")  # one commit: a hundred comments would each sync the disk
             for name, frame in sorted(tables.items()):
                 connection.register("frame", frame.to_arrow())
                 connection.execute(f'CREATE TABLE "{name}" AS SELECT * FROM frame')  # noqa: S608
                 connection.unregister("frame")
-                _comment(connection, name)
+                _describe(connection, name)
+            _add_views(connection, tables)
             connection.execute("COMMIT")
 
 
-def _comment(connection: duckdb.DuckDBPyConnection, name: str) -> None:
+def _describe(connection: duckdb.DuckDBPyConnection, name: str) -> None:
+    """What a table and its columns mean."""
     from herijk.tables.schemas import TABLES  # noqa: PLC0415 - half a second that readers need not wait
 
     schema = TABLES.get(name)
     if schema is None:
         return
-    connection.execute(f'COMMENT ON TABLE "{name}" IS {_quoted(schema.__doc__)}')
+    connection.execute(f'COMMENT ON TABLE "{name}" IS {_quoted(_meaning(schema))}')
     for column, definition in schema.columns().items():
         unit = (definition.metadata or {}).get("unit")
         text = f"{definition.description} [{unit}]" if unit else definition.description
         connection.execute(f'COMMENT ON COLUMN "{name}"."{column}" IS {_quoted(text)}')
+
+
+def _meaning(schema: "type[dy.Schema]") -> str:
+    """What a table is, with its key: a declared one would keep DuckDB 1.0 from opening the file."""
+    key = ", ".join(schema.primary_key())
+    return f"{schema.__doc__} Key: {key}." if key else str(schema.__doc__)
+
+
+def _add_views(connection: duckdb.DuckDBPyConnection, tables: Mapping[str, pl.DataFrame]) -> None:
+    """The views, where the tables are those of a rebuild."""
+    if "register" not in tables:
+        return
+    for name, view in VIEWS.items():
+        connection.execute(f'CREATE VIEW "{name}" AS {view.query}')
+        connection.execute(f'COMMENT ON VIEW "{name}" IS {_quoted(view.meaning)}')
 
 
 def _quoted(text: str | None) -> str:

@@ -1,7 +1,7 @@
 """The members of a method's ensemble, read back from the lake.
 
 What they are and what can be counted in them stands in `pipeline.uncertainty.ensemble`; they are
-written with the other tables of a method (`warehouse.build.tables`).
+written with the other tables of a method (`warehouse.build.method_tables`).
 """
 
 import polars as pl

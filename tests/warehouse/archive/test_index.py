@@ -57,8 +57,8 @@ def test_second_file_is_combined_and_may_be_another_tow_of_the_boat(
     scan = archive.scan()
     assert scan.faults == []
     runs = scan.index.runs.filter(tow_id="2014-009")
-    assert runs["run"].to_list() == [1, 2, 3, 4, 5, 6, 11, 12, 13, 14, 15, 16]
-    assert runs.filter("selected")["run"].to_list() == [1, 2, 3, 14, 15, 16]
+    assert runs["run"].to_list() == [1, 2, 3, 4, 5, 6, 21, 22, 23, 24, 25, 26]
+    assert runs.filter("selected")["run"].to_list() == [1, 2, 3, 24, 25, 26]
     assert runs["direction"].to_list() == [1, 1, 1, -1, -1, -1] * 2
     assert runs["target_speed_ratio"].to_list() == [0.9, 1.0, 1.1] * 4
     second = scan.good["2014-009"].filter(pl.col("run") > 10)
@@ -116,7 +116,7 @@ def test_a_replaced_log_begins_a_new_part_of_its_season(archive: Archive) -> Non
         ("simulatd = true", "simulatd"),
         ('[[profile]]\nseasons = "2014"\nrate = 3', "rate"),
         ('[[profile]]\nseasons = "2014"\ncolumns = { log3 = "x" }', "log3"),
-        ('[[profile]]\nseasons = "2014"\nunits = { force = "lbf" }', "lbf"),
+        ('[[profile]]\nseasons = "2014"\nunits = { force = "stoon" }', "stoon"),
         ('[[profile]]\nseasons = "2014:2012"', "2014:2012"),
         ('[[profile]]\nseasons = "2012:2014"\n[[profile]]\nseasons = "2014"', "2014"),
         ('[[profile]]\nseasons = "2014"\ncolumns = { force = "trek [N]" }', "trek [N]"),

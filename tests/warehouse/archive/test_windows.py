@@ -7,7 +7,7 @@ import polars as pl
 import pytest
 
 from herijk.pipeline.method.definition import Method, parse_method
-from herijk.warehouse.build import tables
+from herijk.warehouse.build.graph import ARCHIVE, METHOD, REGISTERS
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.store import Store
 from tests.warehouse.archive.conftest import TOWS, Archive
@@ -39,8 +39,8 @@ def give(archive: Archive, rows: str, path: str = WINDOWS) -> None:
 def bring_in(archive: Archive, store: Store) -> None:
     """A rebuild as far as the tables about the archive, only where something changed."""
     intake.bring_in(store, archive.root)
-    if tables.archive_is_stale(store):
-        tables.collect_archive(store, TODAY)
+    if ARCHIVE.is_stale(store, ()):
+        ARCHIVE.make(store, (), TODAY)
 
 
 def test_windows_are_read_as_written(archive: Archive) -> None:
@@ -63,7 +63,7 @@ def test_a_run_of_the_second_file(archive: Archive) -> None:
     (archive.root / "meetdata_2014/tweede.csv").write_text(text.replace(";2", ";2,", 1))
     archive.replace(TOWS, "eerste boot 8h 2014;;", "eerste boot 8h 2014;tweede;")
     give(archive, "2014-001;b2;5;45;zwaan\n")
-    assert archive.scan().index.windows["run"].to_list() == [12]
+    assert archive.scan().index.windows["run"].to_list() == [22]
 
 
 @pytest.mark.parametrize(
@@ -75,7 +75,7 @@ def test_a_run_of_the_second_file(archive: Archive) -> None:
         ("2014-001;2;-1;45;zwaan", "bad_window_row", "0 to 600"),
         ("2014-001;2;5;;zwaan", "bad_window_row", "'tot [s]' is empty"),
         ("2014-001;2;5;45;", "bad_window_row", "'reden' is empty"),
-        ("2014-001;7;5;45;zwaan", "bad_window_row", "runs are 1 to 6"),
+        ("2014-001;27;5;45;zwaan", "bad_window_row", "runs are 1 to 20"),
         ("2014-001;2;5;45", "bad_window_row", "4 fields"),
         ("2014-009;2;5;45;zwaan", "window_unknown_tow", "2014-009"),
         ("2014-001;b2;5;45;zwaan", "window_unknown_run", "no run b2"),
@@ -131,12 +131,11 @@ def test_a_window_beyond_its_run_is_set_aside_when_the_run_is_read(
     (fault,) = store.read("quarantine").to_dicts()
     assert (fault["reason_code"], fault["line"]) == ("window_outside_run", 3)
     assert "lasts 50 s" in fault["message"]
-    assert tables.unaccounted_tows(store) == []
     assert store.read("tows").height == 3
 
 
 def run_2(store: Store, method: Method) -> dict[str, object]:
-    found = tables.apply_method(store, method, tables.run_blocks(store))["run_points"]
+    found = METHOD.make(store, [method]).tables["run_points"]
     return found.row(
         by_predicate=(pl.col("tow_id") == "2014-001") & (pl.col("run") == 2), named=True
     )
@@ -148,11 +147,11 @@ def test_a_window_reaches_the_run_point_and_a_changed_one_does_so_again(
     store = Store(tmp_path / "data")
     bring_in(archive, store)
     searched = run_2(store, method)
-    assert not tables.method_is_stale(store, method)
+    assert not METHOD.is_stale(store, [method])
 
     give(archive, GOOD)
     bring_in(archive, store)
-    assert tables.method_is_stale(store, method)
+    assert METHOD.is_stale(store, [method])
     given = run_2(store, method)
     assert (given["window_start_s"], given["window_end_s"]) == (5.0, 45.0)
     assert given["cut_reason"] == "by_hand: zwaan voor de boeg"
@@ -160,10 +159,10 @@ def test_a_window_reaches_the_run_point_and_a_changed_one_does_so_again(
     assert given["cw_kg_m"] != searched["cw_kg_m"]
 
     bring_in(archive, store)
-    assert not tables.method_is_stale(store, method)
+    assert not METHOD.is_stale(store, [method])
     (archive.root / WINDOWS).unlink()
     bring_in(archive, store)
-    assert tables.method_is_stale(store, method)
+    assert METHOD.is_stale(store, [method])
     assert run_2(store, method) == searched
 
 
@@ -173,13 +172,13 @@ def test_a_tow_that_a_flag_rejects_keeps_its_numbers_and_leaves_the_register(
     store = Store(tmp_path / "data")
     give(archive, "2014-001;2;5;34;te kort, dus telt de run niet\n")
     bring_in(archive, store)
-    found = tables.apply_method(store, method, tables.run_blocks(store))
+    found = METHOD.make(store, [method]).tables
     curve = found["curves"].row(by_predicate=pl.col("tow_id") == "2014-001", named=True)
     assert curve["status"] == "rejected"
     assert "few_runs" in curve["flags"]
     assert curve["cw_kg_m"] == pytest.approx(40.0, rel=0.05)
     few = found["assessments"].filter(tow_id="2014-001", check="few_runs").to_dicts()[0]
     assert (few["observed"], few["limit"], few["flagged"]) == (5.0, 6.0, True)
-    tables.make_registers(store, [method])
+    REGISTERS.make(store, [method])
     status = dict(store.read("register").select("fsn_no", "status").rows())
     assert status == {"FSN1": "rejected", "FSN2": "valid", "FSN3": "valid"}

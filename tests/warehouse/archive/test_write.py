@@ -19,6 +19,7 @@ from herijk.simulate.archive_writer import (
     write_simulated_archive,
 )
 from herijk.simulate.papers import printed_register
+from herijk.simulate.practice import practices, printed_curve
 
 SETTINGS = WorldSettings(tows_per_season=2, rate_hz=20)
 
@@ -176,7 +177,12 @@ def test_printed_register_spells_the_curves_of_that_year(archive, world):
     spelling = spelling_of(2014)
     text = (archive / "sloepregister/sloepregister_2014.csv").read_text(spelling.encoding)
     rows = list(csv.DictReader(io.StringIO(text), delimiter=spelling.separator))
-    lines = printed_register(world, 2014)
+    curves = {}
+    for tow in world.tows:
+        samples, runs = simulate_tow(world, tow)
+        by = practices(tow.season)
+        curves[tow.tow_id] = {p: printed_curve(samples, runs, tow, p) for p in by}
+    lines = printed_register(world, 2014, curves)
     assert [row["fsn_nr"] for row in rows] == [line.boat.fsn_no for line in lines]
     assert [row["A"] for row in rows] == [spelling.number(line.a_kg_m, 2) for line in lines]
     assert [row["Cw"] for row in rows] == [spelling.number(line.cw_kg_m, 2) for line in lines]

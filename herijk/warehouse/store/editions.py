@@ -1,8 +1,8 @@
 """The folder of an edition: what it consists of, made whole or not at all, and read again.
 
 On a disk everything is written beside, synced and renamed; in a bucket `edition.json` comes last,
-and without it there is no edition. A second edition of the same name is refused. What
-goes into the files is decided in `publish`; whether they are still what they were, in `verify`.
+and without it there is no edition. A second edition of the same name is refused. What goes into the
+files, and whether they are still what they were, is `warehouse.editions`'s.
 """
 
 import datetime as dt

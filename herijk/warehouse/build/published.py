@@ -5,15 +5,17 @@ Editions are read as they lie; nothing is compared or computed again.
 
 import polars as pl
 
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.recompute.facts import samples_files
+from herijk.pipeline.register.register import LINE
 from herijk.tables.schemas import TABLES, conform
-from herijk.warehouse.editions.folder import (
+from herijk.warehouse.store.editions import (
     CHANGES,
     Edition,
     edition_names,
     read_about,
     read_edition,
 )
-from herijk.warehouse.editions.lineage import lineage_rows
 from herijk.warehouse.store.store import Store
 
 
@@ -50,4 +52,15 @@ def _edition_row(edition: Edition) -> pl.DataFrame:
     about = edition.about.model_dump(include=set(TABLES["editions"].column_names()))
     return pl.DataFrame([about]).cast(
         {"previous": pl.String, "method": pl.String, "method_hash": pl.String}
+    )
+
+
+def lineage_rows(edition: Edition) -> pl.DataFrame:
+    """Rows of the table `lineage` of an edition: one per line and samples file."""
+    if edition.about.kind == "as_printed":
+        raise MissingKnowledgeError("a register as printed has no lineage")
+    lines = edition.register.drop_nulls("tow_id").select("edition", *LINE, "tow_id", "method")
+    return lines.join(samples_files(edition.tables["tows"]), on="tow_id").with_columns(
+        pl.lit(edition.about.method_hash).alias("method_hash"),
+        pl.lit(edition.about.code_version).alias("code_version"),
     )

@@ -1,0 +1,22 @@
+"""The facts of tows and runs as `recompute` takes them, joined from the tables of the archive."""
+
+import polars as pl
+
+from herijk.pipeline.steps.window import HAND_COLUMNS
+
+
+def with_boat_types(tows: pl.DataFrame, boats: pl.DataFrame) -> pl.DataFrame:
+    """Rows of `tows` with the type of their boat."""
+    return tows.join(boats.select("fsn_no", "boat_type"), on="fsn_no", how="left")
+
+
+def with_hand_windows(runs: pl.DataFrame, windows: pl.DataFrame) -> pl.DataFrame:
+    """Rows of `tow_runs` with the windows that were given by hand (`hand_windows`)."""
+    return runs.join(windows.rename(HAND_COLUMNS), on=["tow_id", "run"], how="left")
+
+
+def samples_files(tows: pl.DataFrame) -> pl.DataFrame:
+    """The samples files of tows: `tow_id`, `path` and `sha256`, one or two rows per tow."""
+    first = tows.select("tow_id", path="samples_path", sha256="samples_sha256")
+    second = tows.select("tow_id", path="second_path", sha256="second_sha256").drop_nulls()
+    return pl.concat([first, second])

@@ -1,0 +1,22 @@
+"""Frames made with the dtypes that a table declares."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, TypeVar
+
+import dataframely as dy
+import polars as pl
+
+S = TypeVar("S", bound=dy.Schema)
+
+
+def dtypes(schema: type[dy.Schema]) -> pl.Schema:
+    """The declared dtypes, by column."""
+    return pl.Schema({name: column.dtype for name, column in schema.columns().items()})
+
+
+def frame_of(
+    schema: type[S], rows: Iterable[Mapping[str, Any]] | Iterable[Sequence[Any]]
+) -> dy.DataFrame[S]:
+    """A frame of rows with the declared columns and dtypes; limits are not checked."""
+    frame = pl.DataFrame(list(rows), schema=dtypes(schema), orient="row", strict=True)
+    return schema.cast(frame)

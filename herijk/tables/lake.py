@@ -1,0 +1,105 @@
+"""What intake keeps in the lake: the lists of the archive, and where each tow's samples lie.
+
+These tables are not in the database and no other program relies on them.
+"""
+
+import dataframely as dy
+
+from herijk.tables import column
+from herijk.tables.archive import Boats, HandWindows, TowRuns, Tows
+
+
+class Faults(dy.Schema):
+    """What cannot be used, and why."""
+
+    path = column.text("file, relative to the archive")
+    tow_id = column.tow_id(nullable=True)
+    line = dy.Int64(description="line in the file", nullable=True, min=1)
+    reason_code = column.text("short stable code")
+    message = column.text("what is wrong and what to do, in a sentence")
+
+
+class ListedBoats(Boats):
+    """Boats with the crew they are listed with."""
+
+    rowers = column.rowers(nullable=True)
+    crew_class = column.crew_class(nullable=True)
+
+
+class ListedTows(Tows):
+    """Tows of the lists that could be read, whatever their samples are."""
+
+    list_path = column.text("tow list, relative to the archive")
+    list_line = dy.Int32(description="line in it", min=2)
+
+
+class ListedWindows(HandWindows):
+    """Windows given by hand, before anybody knows how long the runs are."""
+
+    list_path = column.text("list of windows, relative to the archive")
+    list_line = dy.Int64(description="line in it", min=2)
+
+
+class ListedFiles(dy.Schema):
+    """Every file that was looked at."""
+
+    path = column.text("file, relative to the archive", primary_key=True)
+    sha256 = column.sha256("its content hash")
+    size_bytes = dy.Int64(description="its size", min=0)
+
+
+class ListedRaces(dy.Schema):
+    """Race results."""
+
+    season = column.season()
+    race = column.text("name of the race")
+    race_date = dy.Date(description="day of the race")
+    distance_m = column.number("m", "distance along the course", min=100, max=500_000)
+    fsn_no = column.fsn_no()
+    rowers = column.rowers()
+    crew_class = column.crew_class()
+    rowing_time_s = column.number("s", "time rowed", min_exclusive=0)
+    stream_m = column.number(
+        "m", "distance that the stream carried the boat", nullable=True, min=-500_000, max=500_000
+    )
+    penalty_w = column.number("W", "penalty", nullable=True, min=-1000, max=1000)
+    path = column.text("file, relative to the archive")
+    line = dy.Int32(description="line in it", min=2)
+
+
+class PrintedLines(dy.Schema):
+    """Lines of registers as they were published."""
+
+    season = column.season()
+    fsn_no = column.fsn_no()
+    rowers = column.rowers()
+    crew_class = column.crew_class()
+    has_valid_curve = dy.Bool(description="A, B and Cw are of a measured curve")
+    a_kg_m = column.number("kg/m", "A", nullable=True, min=0, max=1000)
+    b_m_s = column.number("m/s", "B", nullable=True, min=0.1, max=1000)
+    cw_kg_m = column.number("kg/m", "Cw", nullable=True, min=0.9, max=1000)
+    declared_speed_m_s = column.speed("speed v0 the crew declared", nullable=True)
+    tow_date = dy.Date(description="day of the tow", nullable=True)
+    path = column.text("file, relative to the archive")
+    line = dy.Int32(description="line in it", min=2)
+
+
+class SeasonIndex(dy.Schema):
+    """Where each listed tow's samples and blocks lie, or the fault that was found."""
+
+    tow_id = column.tow_id()
+    samples_key = column.text("name of its samples in the lake", nullable=True)
+    blocks_key = column.text("name of its blocks in the lake", nullable=True)
+    samples = dy.Int64(description="number of samples", nullable=True, min=0)
+    path = column.text("faulty file, relative to the archive", nullable=True)
+    line = dy.Int64(description="line in it", nullable=True, min=1)
+    reason_code = column.text("short stable code of the fault", nullable=True)
+    message = column.text("what is wrong, in a sentence", nullable=True)
+
+
+SEASON_TABLES: dict[str, type[dy.Schema]] = {
+    "season_tows": ListedTows,
+    "season_runs": TowRuns,
+    "season_index": SeasonIndex,
+}
+"""Tables with a partition per season."""

@@ -1,0 +1,60 @@
+"""Views of the database: the questions that people ask most, each under the name they look for.
+
+SQL that any DuckDB since 1.0 understands. A view computes nothing that a table does not already
+hold, but for Cw of a curve at another speed.
+"""
+
+from typing import Final, NamedTuple
+
+
+class View(NamedTuple):
+    """What a row of a view is, and its query."""
+
+    meaning: str
+    query: str
+
+
+VIEWS: Final = {
+    "register_now": View(
+        "The published register that counts today: one line per boat and crew.",
+        """
+SELECT b.name, b.boat_type, r.*
+FROM register AS r JOIN boats AS b USING (fsn_no)
+WHERE r.edition = (
+    SELECT edition FROM editions WHERE valid_from <= current_date
+    ORDER BY valid_from DESC, published_on DESC, edition DESC LIMIT 1
+)""",
+    ),
+    "curves_at_standard_speed": View(
+        "Every curve at the common speed of its type and class, where boats can be compared.",
+        """
+WITH typed AS (
+    SELECT c.*, b.name, b.boat_type, median(c.declared_speed_m_s)
+        OVER (PARTITION BY c.method, b.boat_type, c.crew_class) AS standard_speed_m_s,
+        (1 - c.a_kg_m / c.cw_kg_m) / c.declared_speed_m_s ^ 2 AS bend_s2_m2
+    FROM curves AS c JOIN boats AS b USING (fsn_no)
+    WHERE c.cw_kg_m IS NOT NULL
+)
+SELECT method, boat_type, crew_class, rowers, fsn_no, name, tow_id, season, status,
+    standard_speed_m_s, declared_speed_m_s, a_kg_m, b_m_s,
+    CASE WHEN bend_s2_m2 * standard_speed_m_s ^ 2 < 1
+        THEN a_kg_m / (1 - bend_s2_m2 * standard_speed_m_s ^ 2) END AS cw_standard_kg_m
+FROM typed""",
+    ),
+    "boats_by_type": View(
+        "Per method, type and class: boats, tows, and the middle of A, B and Cw.",
+        """
+SELECT method, boat_type, crew_class, count(DISTINCT fsn_no) AS boats, count(*) AS tows,
+    median(a_kg_m) AS a_kg_m, median(b_m_s) AS b_m_s, median(cw_standard_kg_m) AS cw_standard_kg_m
+FROM curves_at_standard_speed
+GROUP BY method, boat_type, crew_class""",
+    ),
+    "changes_by_cause": View(
+        "One row per changed line and cause; the factors of a line multiply to its cw_ratio.",
+        """
+SELECT from_edition, to_edition, fsn_no, rowers, crew_class, change, cw_ratio,
+    part ->> '$.cause' AS cause, part ->> '$.step' AS step,
+    CAST(part ->> '$.factor' AS DOUBLE) AS factor
+FROM (SELECT *, unnest(CAST(causes AS JSON[])) AS part FROM register_changes)""",
+    ),
+}

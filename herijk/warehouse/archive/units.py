@@ -1,0 +1,108 @@
+"""Units as people write them, and the scale that brings a number to its SI unit.
+
+The usual units are exact fractions with their usual spellings; any other of the right dimension is
+looked up in Pint, here at the border only. A unit is never guessed from how large a number is.
+"""
+
+import math
+import tokenize
+import unicodedata
+from functools import cache
+from typing import Any, Final
+
+Scale = tuple[float, float]
+"""Numerator and denominator: 871 / 100 is exactly 8.71, and 871 * 0.01 need not be."""
+
+UNITS: Final[dict[str, dict[str, Scale]]] = {
+    "none": {},
+    "speed": {"m/s": (1, 1), "km/h": (1, 3.6), "kn": (1852, 3600)},
+    "force": {"n": (1, 1), "kn": (1000, 1), "kgf": (9.80665, 1)},
+    "angle": {"gra": (1, 1), "deg": (1, 1), "rad": (180, math.pi)},
+    "length": {"m": (1, 1), "cm": (1, 100), "mm": (1, 1000), "km": (1000, 1)},
+    "mass": {"kg": (1, 1), "g": (1, 1000)},
+    "temperature": {"c": (1, 1)},
+    "ratio": {"%": (1, 100)},
+    "rate": {"hz": (1, 1), "khz": (1000, 1)},
+    "power": {"w": (1, 1)},
+    "time": {"s": (1, 1), "ms": (1, 1000), "min": (60, 1)},
+}
+"""Per dimension the usual units, folded; the SI unit (degrees for angles) comes first."""
+
+SPELLINGS: Final[dict[str, dict[str, str]]] = {
+    "speed": {
+        "mps": "m/s", "m/sec": "m/s", "ms-1": "m/s", "ms^-1": "m/s", "m·s-1": "m/s", "m.s-1": "m/s",
+        "km/u": "km/h", "kmh": "km/h", "kmu": "km/h", "kph": "km/h", "km/uur": "km/h",
+        "km/std": "km/h", "kt": "kn", "kts": "kn", "knoop": "kn", "knopen": "kn", "knots": "kn",
+        "knot": "kn", "knoten": "kn",
+    },
+    "force": {"newton": "n", "kilonewton": "kn", "kg-f": "kgf", "kgkracht": "kgf", "kp": "kgf"},
+    "angle": {
+        "°": "gra", "º": "gra", "graden": "gra", "graad": "gra", "grad": "gra", "degree": "gra",
+        "degrees": "gra", "radialen": "rad", "radians": "rad",
+    },
+    "length": {"meter": "m", "mtr": "m", "centimeter": "cm", "millimeter": "mm", "kilometer": "km"},
+    "mass": {"kilo": "kg", "kilogram": "kg", "kgs": "kg", "gram": "g"},
+    "temperature": {"°c": "c", "ºc": "c", "gradenc": "c", "celsius": "c", "degc": "c"},
+    "ratio": {"procent": "%", "percent": "%", "pct": "%", "prozent": "%"},
+    "rate": {"hertz": "hz", "1/s": "hz", "s/s": "hz", "samples/s": "hz"},
+    "power": {"watt": "w"},
+    "time": {"sec": "s", "seconde": "s", "seconden": "s", "second": "s", "seconds": "s",
+             "sek": "s", "msec": "ms"},
+}  # fmt: skip
+
+_NO_UNIT: Final = (
+    *(ArithmeticError, AssertionError, AttributeError, RecursionError, SyntaxError, TypeError),
+    *(ValueError, tokenize.TokenError),
+)
+"""What Pint raises for text that is no unit: it reads it with Python's tokenizer."""
+
+_PINT: Final = {
+    "speed": "m/s",
+    "force": "N",
+    "length": "m",
+    "mass": "kg",
+    "power": "W",
+    "time": "s",
+}
+"""Dimensions of which other units are looked up, with their SI unit."""
+
+
+def fold_unit(text: str) -> str:
+    """Return a unit for comparing: without case, blanks and ways to write an accent."""
+    return "".join(unicodedata.normalize("NFC", text).casefold().split())
+
+
+def find_scale(dimension: str, unit: str) -> Scale | None:
+    """Return the scale of a unit as written; None when it is none of this dimension."""
+    folded = fold_unit(unit)
+    usual = UNITS[dimension]
+    known = usual.get(SPELLINGS.get(dimension, {}).get(folded, folded))
+    return known or _looked_up(dimension, unit.strip())
+
+
+def is_unit(text: str) -> bool:
+    """Whether a text is a usual unit of any dimension."""
+    return any(
+        fold_unit(text) in UNITS[dimension] or fold_unit(text) in SPELLINGS.get(dimension, {})
+        for dimension in UNITS
+    )
+
+
+@cache
+def _looked_up(dimension: str, unit: str) -> Scale | None:
+    if dimension not in _PINT or not unit or len(unit) > 20:
+        return None
+    import pint  # noqa: PLC0415 - takes a second, and is seldom needed
+
+    try:
+        quantity: Any = _registry().Quantity(1.0, unit).to(_PINT[dimension])
+    except (pint.PintError, *_NO_UNIT):
+        return None
+    return float(quantity.magnitude), 1.0
+
+
+@cache
+def _registry() -> Any:
+    import pint  # noqa: PLC0415
+
+    return pint.UnitRegistry()

@@ -1,0 +1,21 @@
+"""Are equal boats equal: what `pipeline.consistency` says of every method."""
+
+from typing import TYPE_CHECKING
+
+import polars as pl
+
+from herijk.pipeline import consistency
+
+if TYPE_CHECKING:
+    from herijk.warehouse.build.inputs import Inputs
+
+
+def consistency_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
+    """Are equal boats equal: the statistics of every boat type under every method."""
+    return consistency.consistency_tables(
+        inputs["curves"],
+        inputs["tows"],
+        inputs["boats"],
+        inputs["run_points"],
+        inputs["listed_races"],
+    )

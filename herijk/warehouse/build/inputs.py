@@ -1,0 +1,167 @@
+"""What a step may read: the tables of the lake, published editions and decisions of people.
+
+Of each kind of input two things are said: how it is read, and what of it stands in the fingerprint
+of what is made from it.
+"""
+
+import datetime as dt
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Final
+
+import duckdb
+import polars as pl
+
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.method.definition import Method
+from herijk.tables.lake import SEASON_TABLES
+from herijk.tables.schemas import TABLES
+from herijk.warehouse.build.published import published_made_from, published_tables
+from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.store import decisions
+from herijk.warehouse.store.database import open_database
+from herijk.warehouse.store.store import Store, table_digest
+
+BLOCKS: Final = "blocks"
+DECISIONS: Final = "decisions"
+"""The decisions of people about tows, as `decisions.decision_table` gives them."""
+
+LISTED: Final = (
+    *(f"listed_{name}" for name in (*intake.LISTED, "files", "races")),
+    *("list_faults", "about_archive"),
+)
+"""Tables of intake that every rebuild makes again, so that their content is what counts."""
+
+PUBLISHED: Final = tuple(
+    f"published_{name}" for name in ("editions", "register", "register_changes", "lineage")
+)
+"""Tables of all published editions together."""
+
+METHOD_TABLES: Final = (
+    "run_points",
+    "curves",
+    "log_factors",
+    "season_links",
+    "retow_choice",
+    "season_steps",
+    "uncertainty_budget",
+    "curve_points",
+    "assessments",
+    "ensemble",
+)
+"""Tables with a partition per method."""
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """The inputs that a step declares, read when they are asked for.
+
+    Attributes:
+        store: the data folder.
+        names: the declared inputs.
+        methods: the methods to apply; the first is what others are compared with.
+        today: the day that is noted where something is seen for the first time.
+    """
+
+    store: Store
+    names: Sequence[str]
+    methods: Sequence[Method]
+    today: dt.date
+    _read: dict[str, pl.DataFrame] = field(default_factory=dict, repr=False)
+
+    def __getitem__(self, name: str) -> pl.DataFrame:
+        """A declared input; a method's table holds the rows of all methods.
+
+        Raises:
+            KeyError: it is not declared.
+        """
+        if name not in self.names:
+            raise KeyError(f"{name} is not a declared input: {', '.join(self.names)}")
+        if name not in self._read:
+            self._read[name] = _kind(name).read(self, name)
+        return self._read[name]
+
+    def earlier(self, table: str) -> pl.DataFrame:
+        """A table as it was before; from the database where the lake lost it."""
+        if self.store.made_from(table) is not None:
+            return self.store.read(table)
+        try:
+            with open_database(self.store.database) as db:
+                return pl.DataFrame(db.table(table).pl())
+        except (MissingKnowledgeError, duckdb.Error):  # not made yet, or damaged too
+            return TABLES[table].create_empty()
+
+    @cached_property
+    def published(self) -> Mapping[str, pl.DataFrame]:
+        """Rows of all published editions, by table."""
+        return published_tables(self.store)
+
+
+def made_from(store: Store, name: str, methods: Sequence[Method]) -> Any:
+    """What of an input stands in a fingerprint."""
+    return _kind(name).made_from(store, name, methods)
+
+
+@dataclass(frozen=True)
+class _Kind:
+    read: Callable[[Inputs, str], pl.DataFrame]
+    made_from: Callable[[Store, str, Sequence[Method]], Any]
+
+
+def _listed(store: Store, name: str) -> pl.DataFrame:
+    """Without the place of the archive: where it lies changes no table."""
+    return store.read(name).drop("root", strict=False)
+
+
+def _decisions(store: Store) -> pl.DataFrame:
+    found = decisions.read_decisions(store.root / decisions.FILE_NAME)
+    return decisions.decision_table(found)
+
+
+def _of_seasons(inputs: Inputs, name: str) -> pl.DataFrame:
+    if not inputs.store.partitions(name):
+        return SEASON_TABLES[name].create_empty()
+    return inputs.store.read_all(name)
+
+
+def _seasons_made_from(store: Store, name: str, _: Sequence[Method]) -> dict[str, str | None]:
+    return {season: store.made_from(name, season) for season in store.partitions(name)}
+
+
+_WHOLE: Final = _Kind(
+    lambda inputs, name: inputs.store.read(name), lambda store, name, _: store.made_from(name)
+)
+_KINDS: Final[dict[str, _Kind]] = {
+    BLOCKS: _Kind(lambda inputs, _: intake.all_blocks(inputs.store), _seasons_made_from),
+    DECISIONS: _Kind(
+        lambda inputs, _: _decisions(inputs.store),
+        lambda store, *_: table_digest(_decisions(store)),
+    ),
+    **dict.fromkeys(SEASON_TABLES, _Kind(_of_seasons, _seasons_made_from)),
+    **dict.fromkeys(
+        LISTED,
+        _Kind(
+            lambda inputs, name: _listed(inputs.store, name),
+            lambda store, name, _: table_digest(_listed(store, name)),
+        ),
+    ),
+    **dict.fromkeys(
+        PUBLISHED,
+        _Kind(
+            lambda inputs, name: inputs.published[name.removeprefix("published_")],
+            lambda store, *_: published_made_from(store),
+        ),
+    ),
+    **dict.fromkeys(
+        METHOD_TABLES,
+        _Kind(
+            lambda inputs, name: inputs.store.read_all(name, [m.name for m in inputs.methods]),
+            lambda store, name, methods: {m.name: store.made_from(name, m.name) for m in methods},
+        ),
+    ),
+}
+
+
+def _kind(name: str) -> _Kind:
+    return _KINDS.get(name, _WHOLE)

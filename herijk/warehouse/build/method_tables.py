@@ -1,0 +1,35 @@
+"""The tables of one method: all tows recomputed."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import polars as pl
+
+from herijk.pipeline.blocks.run_blocks import RunBlocks, stack_blocks
+from herijk.pipeline.recompute.facts import with_boat_types, with_hand_windows
+from herijk.pipeline.recompute.recompute import recompute
+from herijk.pipeline.uncertainty.ensemble import tow_ensemble
+
+if TYPE_CHECKING:
+    from herijk.warehouse.build.inputs import Inputs
+
+
+def method_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
+    """Run points, curves, log factors, assessments and members of all tows under one method."""
+    (method,) = inputs.methods
+    tows = with_boat_types(inputs["tows"], inputs["boats"])
+    made = recompute(method, tows, blocks_of(inputs))
+    members = tow_ensemble(method.name, made.curves, made.uncertainty_budget, made.factors)
+    return {**vars(made), "ensemble": members}
+
+
+def blocks_of(inputs: "Inputs") -> RunBlocks:
+    """The runs of all sound tows as arrays, with the windows given by hand."""
+    runs = with_hand_windows(inputs["tow_runs"], inputs["hand_windows"])
+    return stack_blocks(inputs["blocks"], runs)
+
+
+def tows_without_curve_row(inputs: "Inputs", made: Mapping[str, pl.DataFrame]) -> list[str]:
+    """Tows that have no row in `curves`: there are none."""
+    lost = inputs["tows"].join(made["curves"], on="tow_id", how="anti")
+    return list(lost["tow_id"])

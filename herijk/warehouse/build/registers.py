@@ -1,0 +1,96 @@
+"""Registers: a draft per method, what changes between them, and the published editions."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import polars as pl
+
+from herijk.pipeline.method.definition import Method
+from herijk.pipeline.recompute.facts import samples_files
+from herijk.pipeline.register.changes import register_changes
+from herijk.pipeline.register.due import due_list
+from herijk.pipeline.register.register import LINE, draft_name, draft_register
+from herijk.tables.editions import Editions
+from herijk.tables.register import RegisterChanges
+from herijk.tables.schemas import conform
+from herijk.warehouse.build.version import code_version
+
+if TYPE_CHECKING:
+    from herijk.warehouse.build.inputs import Inputs
+
+
+def register_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
+    """Draft registers, who is due, what changes between registers, and lineage.
+
+    Validity is judged on the day of the archive's last tow, not today: so the same archive gives
+    the same tables. Drafts are compared with the first method's. The published editions stand
+    beside the drafts.
+    """
+    methods = inputs.methods
+    drafts = [_draft(method, inputs) for method in methods]
+    register = pl.concat(drafts)
+    changes = [register_changes(drafts[0], draft) for draft in drafts[1:]]
+    made = {
+        "register": register,
+        "register_changes": pl.concat(changes) if changes else RegisterChanges.create_empty(),
+        "lineage": _lineage(register, inputs["tows"], methods),
+        "editions": Editions.create_empty(),
+    }
+    with_editions = {
+        name: pl.concat([conform(name, frame), inputs[f"published_{name}"]])
+        for name, frame in made.items()
+    }
+    return with_editions | {"due_list": _due_list(inputs), "methods": _methods(methods)}
+
+
+def _draft(method: Method, inputs: "Inputs") -> pl.DataFrame:
+    tows = inputs["tows"]
+    on_date = max(tows["tow_date"])
+    curves = inputs["curves"].filter(pl.col("method") == method.name)
+    lines = draft_register(curves, tows, inputs["listed_boats"], on_date, method.validity)
+    edition, name = pl.lit(draft_name(method.name)), pl.lit(method.name)
+    code = pl.lit(None, pl.String).alias("verification_code")
+    return lines.select(edition.alias("edition"), name.alias("method"), pl.all(), code)
+
+
+def _lineage(register: pl.DataFrame, tows: pl.DataFrame, methods: Sequence[Method]) -> pl.DataFrame:
+    """The files behind every line that has a tow."""
+    hashes = pl.DataFrame(
+        {"method": [m.name for m in methods], "method_hash": [m.content_hash for m in methods]}
+    )
+    lines = register.drop_nulls("tow_id").select("edition", *LINE, "tow_id", "method")
+    return (
+        lines.join(samples_files(tows), on="tow_id")
+        .join(hashes, on="method")
+        .with_columns(pl.lit(code_version()).alias("code_version"))
+    )
+
+
+def _due_list(inputs: "Inputs") -> pl.DataFrame:
+    """Rows of the table `due_list` of every method.
+
+    Looked at on the day of the last tow or race, not today: the same archive gives the same table.
+    """
+    tows, results = inputs["tows"], inputs["listed_races"]
+    as_of = max([*tows["tow_date"], *results["race_date"]])
+    found = []
+    for method in inputs.methods:
+        curves = inputs["curves"].filter(pl.col("method") == method.name)
+        crews, decided = inputs["listed_boats"], inputs["decisions"]
+        register = draft_register(curves, tows, crews, as_of, method.validity, decided)
+        due = due_list(register, inputs["boats"], results, as_of)
+        found.append(due.select(pl.lit(method.name).alias("method"), pl.all()))
+    return pl.concat(found)
+
+
+def _methods(methods: Sequence[Method]) -> pl.DataFrame:
+    return pl.DataFrame(
+        {
+            "method": [m.name for m in methods],
+            "title": [m.title for m in methods],
+            "title_en": [m.title_en for m in methods],
+            "interval": [m.interval for m in methods],
+            "content_hash": [m.content_hash for m in methods],
+            "definition": [m.definition for m in methods],
+        }
+    )

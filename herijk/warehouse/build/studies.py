@@ -1,0 +1,64 @@
+"""What the steps of a method change, one after the other, and how much choices of it matter."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Final
+
+import polars as pl
+
+from herijk.pipeline.method.definition import Method
+from herijk.pipeline.studies.ladder import ladder
+from herijk.pipeline.studies.options import beside_uncertainty, option_effects
+from herijk.tables.studies import CorrectionSteps, OptionEffects
+from herijk.warehouse.build.method_tables import blocks_of
+
+if TYPE_CHECKING:
+    from herijk.warehouse.build.inputs import Inputs
+
+STUDIED_METHOD: Final = "rebased"
+"""The method whose options of judgement are studied."""
+
+MOST_APART: Final = 1e-10
+"""Rounding may make the factors of a ladder and its total so different."""
+
+
+def study_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
+    """The ladder from the first method to each other, and the study of judgement options."""
+    blocks, tows, (first, *others) = blocks_of(inputs), inputs["tows"], inputs.methods
+    links = {m.name: _of(m, inputs["season_links"]) for m in inputs.methods}
+    ladders = [
+        ladder(first, other, tows, blocks, (links[first.name], links[other.name])).with_columns(
+            pl.lit(first.name).alias("from_method"), pl.lit(other.name).alias("to_method")
+        )
+        for other in others
+    ]
+    studied = [
+        beside_uncertainty(
+            option_effects(method, tows, blocks, links[method.name]),
+            _of(method, inputs["curves"]),
+        ).with_columns(pl.lit(method.name).alias("method"))
+        for method in inputs.methods
+        if method.name == STUDIED_METHOD
+    ]
+    return {
+        "correction_steps": pl.concat(ladders) if ladders else CorrectionSteps.create_empty(),
+        "option_effects": pl.concat(studied) if studied else OptionEffects.create_empty(),
+    }
+
+
+def _of(method: Method, frame: pl.DataFrame) -> pl.DataFrame:
+    return frame.filter(pl.col("method") == method.name)
+
+
+def ladders_that_do_not_multiply(_: "Inputs", made: Mapping[str, pl.DataFrame]) -> list[str]:
+    """Tows of which the factors of a ladder do not multiply to its total, within 1e-10."""
+    ends = (
+        made["correction_steps"]
+        .sort("position")
+        .group_by("from_method", "to_method", "tow_id")
+        .agg(
+            pl.col("factor").product(),
+            (pl.col("cw_kg_m").last() / pl.col("cw_kg_m").first()).alias("total"),
+        )
+    )
+    apart = (pl.col("factor") / pl.col("total") - 1.0).abs() > MOST_APART
+    return list(ends.filter(apart)["tow_id"].unique().sort())

@@ -1,0 +1,25 @@
+"""The version of the code that made a register line, from the files of the archive on."""
+
+from functools import cache
+from importlib import metadata
+from typing import Final
+
+from herijk.warehouse.intake import lake
+from herijk.warehouse.store.code import code_hash
+
+MODULES: Final = (
+    *("herijk.warehouse.archive.index", *lake.READERS, *lake.ADDERS),
+    *(f"herijk.warehouse.build.{step}" for step in ("archive_tables", "method_tables")),
+    "herijk.pipeline.register.register",
+)
+"""All that a line is computed with."""
+
+
+@cache
+def code_version() -> str:
+    """Version of the package and a hash of what computes a register line.
+
+    The hash needs no git and is equal wherever the same source is installed. Two lines with equal
+    inputs, method and code version are equal.
+    """
+    return f"{metadata.version('herijk')}+{code_hash(*MODULES)}"

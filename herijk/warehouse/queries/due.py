@@ -1,0 +1,60 @@
+"""The due list as the command prints it, with the boats to tow again.
+
+The rule for the speed is `pipeline.register.due`'s.
+"""
+
+from typing import Any, Final
+
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.warehouse.store.database import is_simulated, open_database, rows
+from herijk.warehouse.store.store import Store
+
+Report = dict[str, Any]
+
+EXPIRED, THIS_YEAR, LATER, NEVER = "expired", "this_year", "later", "without_curve"
+URGENCIES: Final = (EXPIRED, THIS_YEAR, NEVER, LATER)
+
+
+def due_report(store: Store, method: str) -> Report:
+    """Who is due under a method, at what speed, and which boats would tie the seasons together.
+
+    Raises:
+        MissingKnowledgeError: the method was not applied by the last rebuild.
+    """
+    with open_database(store.database) as db:
+        lines = rows(db, _LINES, method)
+        choice = rows(db, _CHOICE, method)
+        simulated = is_simulated(db)
+    if not lines:
+        raise MissingKnowledgeError(
+            f"there is no due list of method {method}; make it with: herijk rebuild --archive DIR "
+            f"--data {store.root} --method {method}"
+        )
+    return {
+        "method": method,
+        "simulated": simulated,
+        "as_of": lines[0]["as_of"],
+        "lines": [line | {"urgency": _urgency(line)} for line in lines],
+        "retow_choice": choice,
+    }
+
+
+def _urgency(line: Report) -> str:
+    if line["valid_until"] is None:
+        return NEVER
+    if line["status"] == "expired":
+        return EXPIRED
+    return THIS_YEAR if line["valid_until"].year == line["as_of"].year else LATER
+
+
+_LINES = """
+SELECT d.*, b.name, b.boat_type FROM due_list AS d LEFT JOIN boats AS b USING (fsn_no)
+WHERE d.method = ? ORDER BY d.valid_until NULLS LAST, d.fsn_no, d.rowers, d.crew_class
+"""
+
+_CHOICE = """
+SELECT c.*, b.name, d.valid_until, d.tow_speed_m_s
+FROM retow_choice AS c LEFT JOIN boats AS b USING (fsn_no)
+LEFT JOIN due_list AS d USING (method, fsn_no, rowers, crew_class)
+WHERE c.method = ? ORDER BY c.position
+"""
