@@ -74,16 +74,12 @@ def _frames(views: Views, methods: Sequence[str]) -> dict[str, pl.DataFrame]:
         tow=pl.format("{} · {}{}", "tow_date", "rowers", "crew_class")
     )
     declared = curves.drop_nulls("cw_kg_m").with_columns(speed_m_s="declared_speed_m_s")
-<<<<<<< HEAD
-    lines = views.table("curve_points").join(boat_of, on="tow_id")
     edition = newest_edition(register["edition"].unique().sort().to_list(), draft_of(methods))
     answered = answers(views, edition)
     compared = answered["from_edition"].drop_nulls()
     before = compared[0] if compared.len() else None
-=======
     intervals = views.table("methods").select("method", "interval")
     lines = views.table("curve_points").join(boat_of, on="tow_id").join(intervals, on="method")
->>>>>>> main
     lineage = views.table("lineage").with_columns(
         pl.format("{}{}", "rowers", "crew_class").alias("crew")
     )

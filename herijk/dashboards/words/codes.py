@@ -140,18 +140,15 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.never_towed": ("niet gesleept", "never towed"),
     "code.no_valid_curve": ("geen geldige kromme", "no valid curve"),
     "code.unknown": ("onbekend", "unknown"),
-<<<<<<< HEAD
     "code.rest": ("overige", "other"),
     "method.as-published": ("zoals gepubliceerd", "as published"),
     "method.corrected-2013": ("gecorrigeerd 2013", "corrected 2013"),
     "method.rebased": ("herijkt", "re-based"),
     "method.rebased-2015": ("regels van 2015", "rules of 2015"),
-=======
     "code.complete": ("95 %-interval", "95 % interval"),
     "code.runs_alone": (
         "spreiding van de runs alleen: de fout van de log zit er niet in",
         "spread of the runs alone: the log's error is not in it",
     ),
->>>>>>> main
     "code.waterline_length_m": ("waterlijn", "waterline"),
 }

@@ -11,9 +11,9 @@ from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.register.changes import register_changes, side_by_side, steps_of_lines
 from herijk.pipeline.register.register import LINE, draft_name
 from herijk.pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
-from herijk.warehouse.build.tables import STUDIED_METHOD
-from herijk.warehouse.editions.folder import read_edition
+from herijk.warehouse.build.studies import STUDIED_METHOD
 from herijk.warehouse.queries.views import Views
+from herijk.warehouse.store.editions import read_edition
 from herijk.warehouse.store.ensemble import read_ensemble
 
 PAIR: Final = ("from_edition", "to_edition")
@@ -57,14 +57,14 @@ def compared(views: Views, old: str, new: str) -> pl.DataFrame:
         MissingKnowledgeError: there is no such edition or draft.
     """
     register = views.table("register")
-    sides = [register.filter(edition=edition) for edition in (old, new)]
-    for edition, side in zip((old, new), sides, strict=True):
+    before, after = (register.filter(edition=edition) for edition in (old, new))
+    for edition, side in ((old, before), (new, after)):
         if side.is_empty():
             known = ", ".join(register["edition"].unique().sort())
             raise MissingKnowledgeError(f"there is no edition {edition}; there are {known}")
     names = views.table("boats").select("fsn_no", "name", "boat_type")
-    steps = steps_of_lines(sides[1], _steps(views, *sides))
-    found = _side_by_side(*sides, register_changes(*sides, steps))
+    steps = steps_of_lines(after, _steps(views, before, after))
+    found = _side_by_side(before, after, register_changes(before, after, steps))
     return found.join(names, on="fsn_no", how="left", maintain_order="left")
 
 
@@ -101,32 +101,23 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
     changes = line_changes(views).filter(to_edition=edition)
     lines = views.register().filter(edition=edition)
     compared = changes.drop("name", "boat_type", "to_edition", strict=False)
-    known = views.table("log_factors").select(
-        "method", "season", log_known=pl.col("lo").is_not_null()
-    )
+    known = views.table("methods").select("method", log_known=pl.col("interval") == "complete")
     tows = views.table("tows")
     methods = dict(views.table("register").select("edition", "method").unique().rows())
     due = views.table("due_list").select(
         "method", *LINE, "tow_speed_m_s", "speed_reason", "as_of",
         next_before="valid_until",
     )  # fmt: skip
-    sizes = ("season", "waterline_length_m", "beam_m", "bow_height_m", "weight_kg", "empty_thwart")
+    sizes = ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg", "empty_thwart")
     found = (
         lines.join(compared, on=LINE, how="left", maintain_order="left")
         .with_columns(old_method=pl.col("from_edition").replace(methods))
         .join(tows.select("tow_id", *sizes), on="tow_id", how="left", maintain_order="left")
-        .join(
-            tows.select(old_tow_id="tow_id", old_season="season"),
-            on="old_tow_id",
-            how="left",
-            maintain_order="left",
-        )
         .join(due, on=["method", *LINE], how="left", maintain_order="left")
     )
     for side, method in (("old", "old_method"), ("new", "method")):
-        season = "old_season" if side == "old" else "season"
-        mine = known.rename({"method": method, "season": season, "log_known": f"{side}_log_known"})
-        found = found.join(mine, on=[method, season], how="left", maintain_order="left")
+        mine = known.rename({"method": method, "log_known": f"{side}_log_known"})
+        found = found.join(mine, on=method, how="left", maintain_order="left")
     return _with_places(found)
 
 
