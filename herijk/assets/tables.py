@@ -12,7 +12,7 @@ from herijk.pipeline.method.definition import shipped_method
 from herijk.tables.lake import SEASON_TABLES
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.build.graph import STEPS
-from herijk.warehouse.build.inputs import BLOCKS, DECISIONS, LISTED, PUBLISHED
+from herijk.warehouse.build.inputs import BLOCKS, DECISIONS, LISTED, PRINTED, PUBLISHED
 from herijk.warehouse.build.step import Made, Step
 
 KINDS = {"warehouse_database": "duckdb"}
@@ -56,7 +56,7 @@ def _spec(step: Step, table: str) -> dg.AssetSpec:
 
 def _deps(name: str) -> Iterator[dg.AssetDep]:
     """The asset behind an input of a step; decisions and editions are no assets."""
-    if name in LISTED:
+    if name in (*LISTED, PRINTED):
         yield dg.AssetDep("archive_index")
     elif name in SEASON_TABLES or name == BLOCKS:
         asset = BLOCKS if name == BLOCKS else "samples"

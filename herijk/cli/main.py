@@ -244,6 +244,35 @@ def audit(
     show(report | {"plots": [str(path) for path in drawn]}, audit_text.audit, as_json)
 
 
+@app.command()
+def slides(
+    data: DataFolder = Path("data"),
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for them. Default: slides in --data.", metavar="DIR")
+    ] = None,
+    boat_type: Annotated[
+        list[str] | None,
+        typer.Option("--type", help="Type of boat; repeat for two together."),
+    ] = None,
+    tows: Annotated[
+        str, typer.Option(metavar="all|newest|SEASON", help="Which tows are drawn.")
+    ] = "all",
+    language: Annotated[str, typer.Option(help="nl or en.", metavar="nl|en")] = "nl",
+) -> None:
+    """Every chart of the 2015 presentation over this archive, as SVG and PNG and in one PDF."""
+    from herijk.dashboards.slides import write_slides
+    from herijk.dashboards.words import LANGUAGES
+    from herijk.warehouse.store.store import Store
+
+    if language not in LANGUAGES:
+        raise typer.BadParameter(f"--language is one of {', '.join(LANGUAGES)}")
+    if len(boat_type or ()) > MOST_TYPES:
+        raise typer.BadParameter("give one or two types")
+    store = Store(data)
+    written = write_slides(store, out or store.root / "slides", language, boat_type or (), tows)
+    typer.echo("\n".join(str(path) for path in written))
+
+
 def _plots(store: "Store", report: dict[str, Any], folder: Path) -> list[Path]:
     """The plots of an audit; none, and said so, where they cannot be written: the page stands."""
     from herijk.dashboards.audit_plots import write_audit_plots

@@ -110,7 +110,11 @@ def _wind(step: Wind) -> str:
         "archive": "one coefficient found for the whole archive",
     }[step.coefficients]
     taken = f"wind averaged over {step.averaging_s} s" if step.averaging_s else "sample by sample"
-    reading = "" if step.reading == "as_felt" else "; 'Cw vac' read as on the screens of 2014"
+    reading = {
+        "as_felt": "",
+        "cw_vac_2014": "; 'Cw vac' read as on the screens of 2014",
+        "cw_opt_2014": "; 'Cw opt' read as on the screens of 2014: no still air put back",
+    }[step.reading]
     return f"{model}, {coefficients}, {taken}{reading}."
 
 

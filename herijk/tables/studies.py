@@ -89,3 +89,68 @@ class CheckCounts(dy.Schema):
     severity = column.text("note, look or refuse", regex=SEVERITY_PATTERN)
     tows = dy.Int32(description="tows on which it was made", min=1)
     beyond = dy.Int32(description="of which beyond the limit", min=0)
+
+
+class Promise(dy.Schema):
+    """Within 2 % for most tows and 1 % for all? Per method and season, as stated and as seen."""
+
+    method = column.method(primary_key=True)
+    season = dy.Int32(primary_key=True, description="year of the tow list")
+    tows = dy.Int32(description="tows with a curve", min=1)
+    half_interval_ratio = column.number(
+        "1", "half the 95 % interval of ln Cw, median", nullable=True
+    )
+    share_stated_1pct = column.number("1", "share of tows that state less than 1 %", nullable=True)
+    share_stated_2pct = column.number("1", "the same for 2 %", nullable=True)
+    n_pairs = dy.Int32(description="of which a repeat of an unaltered boat", min=0)
+    share_seen_1pct = column.number(
+        "1", "share of those off by less than 1 % (difference / root 2)", nullable=True
+    )
+    share_seen_2pct = column.number("1", "the same for 2 %", nullable=True)
+    outside_2pct = dy.List(dy.String(), description="tows beyond 2 %, stated or seen")
+
+
+class PrintReproduction(dy.Schema):
+    """Does a method reproduce print? A, B and Cw of a tow as printed, next to each method's."""
+
+    method = column.method(primary_key=True)
+    tow_id = column.tow_id(primary_key=True)
+    season = column.season()
+    fsn_no = column.fsn_no()
+    rowers = column.rowers()
+    crew_class = column.crew_class()
+    printed_in = dy.Int32(description="year of the first register that printed it")
+    speed_m_s = column.speed("declared speed as printed")
+    printed_a_kg_m = column.number("kg/m", "A as printed", nullable=True)
+    a_kg_m = column.number("kg/m", "A by the method", nullable=True)
+    printed_b_m_s = column.number("m/s", "B as printed", nullable=True)
+    b_m_s = column.number("m/s", "B by the method", nullable=True)
+    printed_cw_kg_m = column.number("kg/m", "Cw as printed", nullable=True)
+    cw_kg_m = column.number("kg/m", "Cw by the method at the printed speed", nullable=True)
+    cw_ratio = column.number("1", "printed / recomputed Cw", nullable=True)
+
+
+class PrintSummary(dy.Schema):
+    """How near each method comes to print, per season; look here before re-basing."""
+
+    method = column.method(primary_key=True)
+    season = dy.Int32(primary_key=True, description="year of the tow list")
+    tows = dy.Int32(description="tows that were printed", min=1)
+    median_ratio = column.number("1", "printed / recomputed Cw, median")
+    lowest_ratio = column.number("1", "lowest of a tow")
+    highest_ratio = column.number("1", "highest of a tow")
+    share_within_1pct = column.number("1", "share of tows within 1 % of print")
+
+
+class RunStatistics(dy.Schema):
+    """What the tool of 2014 showed of a run, per channel, over means of a second."""
+
+    tow_id = column.tow_id(primary_key=True)
+    run = dy.Int8(primary_key=True, description="run", min=1, max=16)
+    channel = column.text("log1, log2, gps, force, wind or cw", primary_key=True)
+    mean = column.number("as channel", "mean")
+    sd = column.number("as channel", "standard deviation of the means of a second", min=0)
+    median = column.number("as channel", "their median")
+    sd_ratio = column.number("1", "sd / mean", nullable=True)
+    median_ratio = column.number("1", "median / mean", nullable=True)
+    log1_ratio = column.number("1", "speed / that of log 1; speeds only", nullable=True)

@@ -2,7 +2,7 @@
 
 import dagster as dg
 
-from herijk.assets.jobs import APPLY, COLLECT, COMPARE, FINISH, INDEX, READ, STUDY, job_defs
+from herijk.assets.jobs import BUILD_JOBS, INDEX, READ, SITE, job_defs
 from herijk.assets.rebuild import prepare_home
 from herijk.assets.resources import Quiet, Setup
 from tests.assets.test_rebuild import assert_same_tables
@@ -37,11 +37,12 @@ def test_the_multiprocess_executor_gives_identical_tables(built, tmp_path, monke
     steps = [
         (INDEX, None),
         *((READ, str(season)) for season in SMALL.seasons),
-        (COLLECT, None),
-        *((APPLY, method) for method in METHODS),
-        (STUDY, None),
-        (COMPARE, None),
-        (FINISH, None),
+        *(
+            (job, partition)
+            for step, job in BUILD_JOBS.items()
+            for partition in (METHODS if step.per_method else (None,))
+        ),
+        (SITE, None),
     ]
     with dg.DagsterInstance.from_config(str(home)) as instance:
         instance.add_dynamic_partitions("season", [str(season) for season in SMALL.seasons])

@@ -8,7 +8,7 @@ import polars as pl
 import pytest
 import vl_convert
 
-from herijk.dashboards.figures import FIGURES, png
+from herijk.dashboards.figures import FIGURES, png, slides
 from herijk.dashboards.words import LANGUAGES, WORDS, both, speaker
 
 FRAME = pl.DataFrame({"kind": ["line"], "method": ["rebased"], "cw_kg_m": [30.0]})
@@ -45,6 +45,14 @@ AXES = {
     "predicted": {"cw_kg_m", "predicted_cw_kg_m"},
     "changes": {"cw_ratio", "time_ratio"},
     "statuses": {"season", "number"},
+    "slide_hull_speed": {"waterline_length_m", "b_m_s", "hull_speed_m_s"},
+    "slide_towed_at": {"tow_hull_ratio", "boat_type"},
+    "slide_raced_beyond": {"power_ratio_raced", "power_ratio_raced_lo", "label"},
+    "slide_boat_years": {"speed_m_s", "cw_kg_m", "standard_speed_m_s"},
+} | {
+    f"slide_{y}_{x}": {"x", "y", "lo", *slides.QUANTITIES[y][:2], slides.EXPLAINING[x]}
+    for y in slides.QUANTITIES
+    for x in slides.EXPLAINING
 }
 
 

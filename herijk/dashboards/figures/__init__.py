@@ -13,7 +13,15 @@ import altair as alt
 import polars as pl
 import vl_convert
 
-from herijk.dashboards.figures import boat, compared, corrections, quality, reproducibility, types
+from herijk.dashboards.figures import (
+    boat,
+    compared,
+    corrections,
+    quality,
+    reproducibility,
+    slides,
+    types,
+)
 from herijk.dashboards.words import Say
 
 Figure = Callable[[pl.DataFrame, Say], alt.TopLevelMixin]
@@ -53,6 +61,15 @@ FIGURES: Final[dict[str, Figure]] = {
     "changes": reproducibility.register_changes,
     "race_ranks": reproducibility.race_ranks,
     "statuses": quality.statuses,
+    "slide_hull_speed": slides.b_and_hull_speed,
+    "slide_towed_at": slides.towed_at,
+    "slide_raced_beyond": slides.raced_beyond,
+    "slide_boat_years": slides.boat_years,
+    **{
+        f"slide_{quantity}_{explaining}": slides.against(quantity, explaining)
+        for quantity in slides.QUANTITIES
+        for explaining in slides.EXPLAINING
+    },
 }
 """Every figure by name."""
 

@@ -14,6 +14,7 @@ from herijk.dashboards.words.columns import COLUMNS
 from herijk.dashboards.words.documents import DOCUMENTS
 from herijk.dashboards.words.pages import PAGES
 from herijk.dashboards.words.report import REPORT
+from herijk.dashboards.words.slides import SLIDES
 
 LANGUAGES: Final = ("nl", "en")
 
@@ -23,7 +24,7 @@ Say = Callable[[str], str]
 Words: TypeAlias = Mapping[str, tuple[str, str]]
 """Texts in Dutch and English by key."""
 
-WORDS: Final[Words] = PAGES | ANSWERS | DOCUMENTS | REPORT | COLUMNS | CODES
+WORDS: Final[Words] = PAGES | ANSWERS | DOCUMENTS | SLIDES | REPORT | COLUMNS | CODES
 
 
 def both(key: str, words: Words = WORDS) -> tuple[str, str]:

@@ -209,6 +209,7 @@ TEXTS: Final[Words] = {
     "choice.archive": ("één uit alle proeven", "one from all tows"),
     "choice.as_felt": ("zoals gevoeld", "as felt"),
     "choice.cw_vac_2014": ("'Cw vac' van 2014", "'Cw vac' of 2014"),
+    "choice.cw_opt_2014": ("'Cw opt' van 2014", "'Cw opt' of 2014"),
     "choice.mean_of_ratios": ("gemiddelde van quotiënten", "mean of ratios"),
     "choice.ratio_of_means": ("quotiënt van gemiddelden", "ratio of means"),
     "choice.end_speeds": ("uit de eindsnelheden", "from the end speeds"),

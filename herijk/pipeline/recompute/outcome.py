@@ -116,7 +116,8 @@ class Prepared:
 
     def still_air_of(self, coefficient: FloatArray) -> FloatArray:
         """The still-air part that is put back for a drag coefficient, shape (runs,)."""
-        return self.still_unit_kg_m * coefficient
+        put_back = self.steps.wind.reading != "cw_opt_2014"
+        return self.still_unit_kg_m * coefficient * put_back
 
     def cw_of(self, ahead: FloatArray, behind: FloatArray, still: FloatArray) -> FloatArray:
         """Corrected coefficient of each run for given drag coefficients, shape (runs,)."""

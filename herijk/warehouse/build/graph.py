@@ -100,6 +100,7 @@ SUMMARIES: Final = Step(
     inputs=(
         *("tows", "blocks", "curves", "run_points", "assessments", "listed_races"),
         *("register", "register_changes", "correction_steps", "option_effects"),
+        *("repeat_pairs", "printed_registers"),
     ),
     outputs=(
         "race_changes",
@@ -109,6 +110,10 @@ SUMMARIES: Final = Step(
         "quality_counts",
         "check_counts",
         "trace_seconds",
+        "promise",
+        "print_reproduction",
+        "print_summary",
+        "run_statistics",
     ),
     compute=summary_tables,
 )

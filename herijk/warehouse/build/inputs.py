@@ -17,6 +17,7 @@ from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
 from herijk.tables.lake import SEASON_TABLES
 from herijk.tables.schemas import TABLES
+from herijk.warehouse.archive.published import REGISTER_SCHEMA, read_published_registers
 from herijk.warehouse.build.published import published_made_from, published_tables
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store import decisions
@@ -24,6 +25,9 @@ from herijk.warehouse.store.database import open_database
 from herijk.warehouse.store.store import Store, table_digest
 
 BLOCKS: Final = "blocks"
+PRINTED: Final = "printed_registers"
+"""The registers that the archive holds as they were printed."""
+
 DECISIONS: Final = "decisions"
 """The decisions of people about tows, as `decisions.decision_table` gives them."""
 
@@ -119,6 +123,14 @@ def _decisions(store: Store) -> pl.DataFrame:
     return decisions.decision_table(found)
 
 
+def _printed(store: Store) -> pl.DataFrame:
+    """Lines of printed registers; none where the archive is not where it was."""
+    root = intake.archive_root(store)
+    if root is None:
+        return pl.DataFrame(schema=REGISTER_SCHEMA)
+    return read_published_registers(root)[0]
+
+
 def _of_seasons(inputs: Inputs, name: str) -> pl.DataFrame:
     if not inputs.store.partitions(name):
         return SEASON_TABLES[name].create_empty()
@@ -134,6 +146,10 @@ _WHOLE: Final = _Kind(
 )
 _KINDS: Final[dict[str, _Kind]] = {
     BLOCKS: _Kind(lambda inputs, _: intake.all_blocks(inputs.store), _seasons_made_from),
+    PRINTED: _Kind(
+        lambda inputs, _: _printed(inputs.store),
+        lambda store, *_: table_digest(_printed(store)),
+    ),
     DECISIONS: _Kind(
         lambda inputs, _: _decisions(inputs.store),
         lambda store, *_: table_digest(_decisions(store)),

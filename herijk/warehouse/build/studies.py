@@ -14,6 +14,9 @@ from herijk.warehouse.build.method_tables import blocks_of
 if TYPE_CHECKING:
     from herijk.warehouse.build.inputs import Inputs
 
+FIRST_PUBLISHED: Final = "as-published-2014"
+"""Numbers of 2014 before they were recomputed: a ladder leads from them to the first method."""
+
 STUDIED_METHOD: Final = "rebased"
 """The method whose options of judgement are studied."""
 
@@ -26,10 +29,10 @@ def study_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     blocks, tows, (first, *others) = blocks_of(inputs), inputs["tows"], inputs.methods
     links = {m.name: _of(m, inputs["season_links"]) for m in inputs.methods}
     ladders = [
-        ladder(first, other, tows, blocks, (links[first.name], links[other.name])).with_columns(
-            pl.lit(first.name).alias("from_method"), pl.lit(other.name).alias("to_method")
+        ladder(old, new, tows, blocks, (links[old.name], links[new.name])).with_columns(
+            pl.lit(old.name).alias("from_method"), pl.lit(new.name).alias("to_method")
         )
-        for other in others
+        for old, new in (_in_order(first, other) for other in others)
     ]
     studied = [
         beside_uncertainty(
@@ -43,6 +46,11 @@ def study_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
         "correction_steps": pl.concat(ladders) if ladders else CorrectionSteps.create_empty(),
         "option_effects": pl.concat(studied) if studied else OptionEffects.create_empty(),
     }
+
+
+def _in_order(first: Method, other: Method) -> tuple[Method, Method]:
+    """The two ends of a ladder: what came first in history is its beginning."""
+    return (other, first) if other.name == FIRST_PUBLISHED else (first, other)
 
 
 def _of(method: Method, frame: pl.DataFrame) -> pl.DataFrame:

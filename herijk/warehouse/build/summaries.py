@@ -1,7 +1,7 @@
 """Tables that sum up other tables: per season, per code, per second, and races replayed.
 
 What a page or command says of many tows together stands in a table too. The sums are
-`pipeline.studies.summaries` and `pipeline.register.replay`.
+`pipeline.studies.summaries`, `pipeline.studies.claims` and `pipeline.register.replay`.
 """
 
 from typing import TYPE_CHECKING, Final
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import polars as pl
 
 from herijk.pipeline.register.replay import RaceRules, race_changes, replay
-from herijk.pipeline.studies import summaries
+from herijk.pipeline.studies import claims, summaries
 from herijk.tables.register import RaceChanges
 
 if TYPE_CHECKING:
@@ -24,6 +24,7 @@ def summary_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     The first method is the one that others are compared with.
     """
     curves = inputs["curves"]
+    printed = claims.print_reproduction(inputs["printed_registers"], curves, inputs["tows"])
     return {
         "race_changes": _race_changes(inputs),
         "season_changes": summaries.season_changes(curves, inputs.methods[0].name),
@@ -32,6 +33,10 @@ def summary_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
         "quality_counts": summaries.quality_counts(curves, inputs["run_points"]),
         "check_counts": summaries.check_counts(inputs["assessments"]),
         "trace_seconds": summaries.second_means(inputs["blocks"]),
+        "promise": claims.promise(curves, inputs["repeat_pairs"]),
+        "print_reproduction": printed,
+        "print_summary": claims.print_summary(printed),
+        "run_statistics": claims.run_statistics(inputs["blocks"]),
     }
 
 

@@ -4,11 +4,10 @@ from functools import cache
 from importlib import metadata
 from typing import Final
 
-from herijk.warehouse.intake import lake
-from herijk.warehouse.store.code import code_hash
+from herijk.warehouse.store.code import ADDERS, READERS, code_hash
 
 MODULES: Final = (
-    *("herijk.warehouse.archive.index", *lake.READERS, *lake.ADDERS),
+    *("herijk.warehouse.archive.index", *READERS, *ADDERS),
     *(f"herijk.warehouse.build.{step}" for step in ("archive_tables", "method_tables")),
     "herijk.pipeline.register.register",
 )

@@ -26,14 +26,8 @@ from herijk.warehouse.archive import (
     read_tow_samples,
 )
 from herijk.warehouse.archive.files import PARTS, hash_of_parts
-from herijk.warehouse.store.code import code_hash
+from herijk.warehouse.store.code import ADDERS, READERS, code_hash
 from herijk.warehouse.store.store import Store, count_rows, fingerprint, read_parquet, write_parquet
-
-READERS: Final = ("herijk.warehouse.archive.samples", "herijk.warehouse.archive.plausibility")
-"""Modules that turn a file into samples: when they compute otherwise, files are read again."""
-
-ADDERS: Final = ("herijk.pipeline.blocks.sums",)
-"""Modules that add samples up: when they compute otherwise, the lake's samples are added again."""
 
 LAKE_FORM: Final = {
     "compression": "lz4",

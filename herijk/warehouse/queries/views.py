@@ -95,6 +95,32 @@ class Views:
         """The newest tow of each boat and crew of a known type, under every method."""
         return self.frame(_TYPE_BOATS)
 
+    def compared_tows(self) -> pl.DataFrame:
+        """Every tow next to its type under every method, with the boat's name."""
+        return self.frame(
+            "SELECT c.*, coalesce(b.name, c.fsn_no) AS name FROM compared_tows AS c "
+            "LEFT JOIN boats AS b USING (fsn_no) ORDER BY method, tow_id"
+        )
+
+    def slow_tows(self) -> pl.DataFrame:
+        """Tows made with little power or raced off their curve, with the boat's name."""
+        return self.frame(
+            "SELECT s.*, coalesce(b.name, s.fsn_no) AS name FROM slow_tows AS s "
+            "LEFT JOIN boats AS b USING (fsn_no) ORDER BY method, tow_id"
+        )
+
+    def curve_points_of(self, fsn_no: str) -> pl.DataFrame:
+        """The curves of all tows of a boat under every method, with season and crew."""
+        return pl.DataFrame(
+            self._db.sql(
+                "SELECT p.*, t.season, t.rowers || t.crew_class AS crew, "
+                "coalesce(b.name, t.fsn_no) AS name FROM curve_points AS p "
+                "JOIN tows AS t USING (tow_id) LEFT JOIN boats AS b USING (fsn_no) "
+                "WHERE t.fsn_no = ? ORDER BY method, tow_id, speed_m_s",
+                params=[fsn_no],
+            ).pl()
+        )
+
     def shared_bends(self) -> pl.DataFrame:
         """B of every boat as it is, shared in part, and shared wholly with its type."""
         return self.frame(

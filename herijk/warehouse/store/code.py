@@ -23,6 +23,12 @@ PACKAGE: Final = "herijk"
 LEFT_OUT: Final = (f"{PACKAGE}.tables",)
 HASH_LENGTH: Final = 12
 
+READERS: Final = ("herijk.warehouse.archive.samples", "herijk.warehouse.archive.plausibility")
+"""Modules that turn a file into samples: when they compute otherwise, files are read again."""
+
+ADDERS: Final = ("herijk.pipeline.blocks.sums",)
+"""Modules that add samples up: when they compute otherwise, the lake's samples are added again."""
+
 Facts = tuple[str, list[str]]
 """Of a module: the hash of its tree, and the names that it imports from the package."""
 

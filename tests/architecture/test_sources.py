@@ -1,0 +1,56 @@
+"""The ledger of the sources names only what exists."""
+
+import re
+
+import pytest
+import typer.main
+
+from herijk.cli.main import app
+from herijk.dashboards.figures import FIGURES
+from herijk.pipeline.assessment.checks import CODES
+from herijk.pipeline.method.definition import Steps, shipped_methods
+from herijk.tables.schemas import TABLES
+from tests.architecture.repository import ROOT, read
+
+LEDGER = read("docs/sources.md")
+NAMED = re.compile(r"\b(table|command|figure|test|check|method|option)s? `([^`]+)`")
+COLUMNS = re.compile(r"columns? ((?:`\w+`(?:, | and )?)+) of table `(\w+)`")
+ROWS = [line for line in LEDGER.splitlines() if re.match(r"\| [PCS]\d+ \|", line)]
+
+OPTIONS = {
+    f"{step}.{option}"
+    for step, options in Steps.model_fields.items()
+    for option in options.annotation.model_fields
+}
+KNOWN = {
+    "table": set(TABLES),
+    "figure": set(FIGURES),
+    "check": set(CODES),
+    "method": set(shipped_methods()),
+    "option": OPTIONS,
+    "command": {f"herijk {name}" for name in typer.main.get_command(app).commands},
+}
+
+
+def test_the_ledger_goes_through_all_three_texts():
+    numbers = [re.match(r"\| ([PCS])(\d+) \|", row).groups() for row in ROWS]
+    for text in "PCS":
+        assert [int(n) for t, n in numbers if t == text] == [
+            place + 1 for place in range(sum(t == text for t, _ in numbers))
+        ]
+    assert len(ROWS) >= 75
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.split("|")[1].strip())
+def test_a_row_names_what_exists_or_says_why_not(row):
+    answer = row.split("|")[3]
+    named = NAMED.findall(answer)
+    assert named or "not answered" in answer or "`" in answer
+    for kind, name in named:
+        if kind == "test":
+            assert (ROOT / name).is_file(), name
+        else:
+            assert name in KNOWN[kind], (kind, name)
+    for columns, table in COLUMNS.findall(answer):
+        for column in re.findall(r"`(\w+)`", columns):
+            assert column in TABLES[table].column_names(), (table, column)

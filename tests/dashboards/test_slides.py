@@ -1,0 +1,61 @@
+"""The slide book: what each slide holds and says, and the files."""
+
+import itertools
+
+import pypdf
+import pytest
+
+from herijk.dashboards import slides as book
+from herijk.dashboards.words import LANGUAGES, speaker
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.warehouse.queries.views import Views
+
+
+@pytest.fixture(scope="module")
+def made(built):
+    with Views(built.store) as views:
+        return {language: list(book.slides(views, speaker(language))) for language in LANGUAGES}
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_every_slide_has_rows_a_title_and_a_whole_sentence(made, language):
+    for slide in made[language]:
+        assert slide.rows.height
+        assert slide.title
+        assert slide.sentence.endswith(".")
+        assert "{" not in slide.title + slide.sentence
+    names = [slide.name for slide in made[language]]
+    assert len(set(names)) == len(names) >= 14
+
+
+def test_a_b_and_cw_stand_against_weight_speed_and_length(made):
+    named = {slide.figure for slide in made["nl"]}
+    pairs = itertools.product(("a", "b", "cw"), ("weight", "speed", "length"))
+    assert {f"slide_{y}_{x}" for y, x in pairs} <= named
+
+
+def test_the_tows_of_all_seasons_are_drawn_under_every_method(made, built):
+    rows = next(s.rows for s in made["nl"] if s.figure == "slide_cw_weight")
+    tows = rows.filter(kind="tow")
+    assert tows["season"].unique().sort().to_list() == [2009, 2014]
+    assert sorted(tows["method"].unique()) == sorted(built.table("methods")["method"])
+    of_2014 = next(s.rows for s in made["nl"] if s.name == "cw weight 2014")
+    assert of_2014.filter(kind="tow")["season"].unique().to_list() == [2014]
+
+
+def test_a_type_or_choice_of_tows_that_is_not_there_is_told(built):
+    with Views(built.store) as views:
+        for types, tows in ((["Galjas"], "all"), ([], "1999")):
+            with pytest.raises(MissingKnowledgeError, match=r"Galjas|1999"):
+                list(book.slides(views, speaker("en"), types, tows))
+
+
+def test_slides_are_written_as_pictures_and_as_one_document(built, made, tmp_path, monkeypatch):
+    few = made["en"][6:8]
+    monkeypatch.setattr(book, "slides", lambda *_: iter(few))
+    written = book.write_slides(built.store, tmp_path / "book", "en")
+    assert [path.suffix for path in written] == [".svg", ".png", ".svg", ".png", ".pdf"]
+    assert len(pypdf.PdfReader(written[-1]).pages) == 2
+    svg = written[0].read_text(encoding="utf-8")
+    assert few[0].title in svg
+    assert "SIMULATED" in svg
