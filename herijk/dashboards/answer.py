@@ -77,7 +77,7 @@ def told(answer: Answer, speech: Speech) -> Told:
 def crew_name(line: Row, speech: Speech) -> str:
     """How many rowers of which class: 8 rowers, women."""
     people = speech.say(f"crew.{line['crew_class']}")
-    return speech.say("crew").format(rowers=line["rowers"], people=people)
+    return speech.say("crew_of").format(rowers=line["rowers"], people=people)
 
 
 def _headline(line: Row, speech: Speech) -> str:

@@ -3,7 +3,7 @@
 from typing import Final
 
 ANSWERS: Final[dict[str, tuple[str, str]]] = {
-    "crew": ("{rowers} roeiers, {people}", "{rowers} rowers, {people}"),
+    "crew_of": ("{rowers} roeiers, {people}", "{rowers} rowers, {people}"),
     "crew.H": ("heren", "men"),
     "crew.D": ("dames", "women"),
     "draft": ("concept", "draft"),
