@@ -1,7 +1,6 @@
 """The Dagster code location: everything that `dg` and `herijk serve` load."""
 
 import os
-from collections.abc import Sequence
 from pathlib import Path
 
 import dagster as dg
@@ -11,17 +10,14 @@ from herijk.assets.jobs import job_defs
 from herijk.assets.notify import notifier_of
 from herijk.assets.resources import Quiet, Setup
 from herijk.assets.settings import Settings, read_settings
-from herijk.pipeline.method.definition import shipped_methods
 
 
-def build_defs(
-    archive: str, data: str, methods: Sequence[str], settings: Settings
-) -> dg.Definitions:
+def build_defs(archive: str, data: str, settings: Settings) -> dg.Definitions:
     """The jobs of a rebuild, and what starts them when nobody asks."""
     setup = Setup(
         archive=archive,
         data=data,
-        methods=list(methods),
+        methods=list(settings.applied),
         set_aside_share=settings.set_aside_share,
         factor_jump=settings.factor_jump,
     )
@@ -39,6 +35,5 @@ def build_defs(
 defs = build_defs(
     os.environ.get("HERIJK_ARCHIVE", "archive"),
     os.environ.get("HERIJK_DATA", "data"),
-    shipped_methods(),
     read_settings(Path(os.environ.get("HERIJK_DATA", "data"))),
 )

@@ -1,10 +1,9 @@
-"""Partitions: the seasons the archive has, and the methods that ship."""
+"""Partitions: the seasons of the archive, and the methods that were applied."""
 
 import dagster as dg
-
-from herijk.pipeline.method.definition import shipped_methods
 
 seasons = dg.DynamicPartitionsDefinition(name="season")
 """Seasons are found in the archive, so a new campaign needs no change of code."""
 
-methods = dg.StaticPartitionsDefinition(list(shipped_methods()))
+methods = dg.DynamicPartitionsDefinition(name="method")
+"""A federation may add a method of its own to those that ship."""

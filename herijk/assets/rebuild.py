@@ -15,6 +15,7 @@ from typing import Any, Final
 
 import dagster as dg
 
+from herijk.assets import partitions
 from herijk.assets.jobs import BUILD_JOBS, CHECK, INDEX, NAMES, READ, SITE, job_defs
 from herijk.assets.report import write_report
 from herijk.assets.resources import QUIET_LOG, Progress, Setup
@@ -189,8 +190,9 @@ class _Jobs:
 
     def run(self, job: str, partition: str | None = None) -> None:
         """Runs a job, for a season or method where it has partitions."""
-        if job == READ and partition is not None:
-            self.instance.add_dynamic_partitions("season", [partition])
+        if partition is not None:
+            kind = partitions.seasons if job == READ else partitions.methods
+            self.instance.add_dynamic_partitions(str(kind.name), [partition])
         result = self.defs.resolve_job_def(job).execute_in_process(
             instance=self.instance,
             partition_key=partition,

@@ -12,8 +12,9 @@ import dagster as dg
 from pydantic import Field
 
 from herijk.assets.settings import Settings
-from herijk.pipeline.method.definition import Method, shipped_method, shipped_methods
+from herijk.pipeline.method.definition import Method, shipped_methods
 from herijk.warehouse.store.lock import only_writer
+from herijk.warehouse.store.methods import KnownMethods
 from herijk.warehouse.store.store import Store
 
 QUIET_LOG = {"loggers": {"console": {"config": {"log_level": "CRITICAL"}}}}
@@ -51,7 +52,12 @@ class Setup(dg.ConfigurableResource):
     @property
     def chosen_methods(self) -> list[Method]:
         """The methods to apply; the first is what the others are compared with."""
-        return [shipped_method(name) for name in self.methods]
+        return [self.known_methods.get(name) for name in self.methods]
+
+    @property
+    def known_methods(self) -> KnownMethods:
+        """The methods that ship, and the data folder's own."""
+        return KnownMethods.of(self.store)
 
 
 class Progress(Protocol):

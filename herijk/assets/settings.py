@@ -8,6 +8,7 @@ from typing import Final
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from herijk.pipeline.method.definition import shipped_methods
 from herijk.warehouse.store.settings_file import read_settings_file
 
 FILE_NAME: Final = "beheer.toml"
@@ -17,6 +18,8 @@ class Settings(BaseModel):
     """What `beheer.toml` can say.
 
     Attributes:
+        methods: names of the methods that a rebuild applies, the first to compare the others with;
+            those that ship where it is empty.
         nightly: when everything is looked at; a cron line.
         campaign: when the season of that year is looked at, while it is towed.
         timezone: of both.
@@ -30,6 +33,7 @@ class Settings(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
+    methods: tuple[str, ...] = ()
     nightly: str = "0 3 * * *"
     campaign: str = "0 7 * 4-9 1"
     timezone: str = "Europe/Amsterdam"
@@ -39,6 +43,11 @@ class Settings(BaseModel):
     set_aside_share: float = Field(default=0.1, ge=0, le=1)
     factor_jump: float = Field(default=0.01, gt=0)
     dask: str | None = Field(default=None, pattern=r"^(tcp|tls)://")
+
+    @property
+    def applied(self) -> tuple[str, ...]:
+        """Names of the methods that a rebuild applies when it is not told which."""
+        return self.methods or shipped_methods()
 
 
 def read_settings(data: Path) -> Settings:

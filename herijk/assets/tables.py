@@ -8,7 +8,6 @@ import polars as pl
 
 from herijk.assets.partitions import methods
 from herijk.assets.resources import Setup
-from herijk.pipeline.method.definition import shipped_method
 from herijk.tables.lake import SEASON_TABLES
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.build.graph import STEPS
@@ -32,7 +31,7 @@ def step_asset(step: Step) -> dg.AssetsDefinition:
     def asset(context: dg.AssetExecutionContext, setup: Setup):
         chosen = setup.chosen_methods
         if step.per_method:
-            chosen = [shipped_method(context.partition_key)]
+            chosen = [setup.known_methods.get(context.partition_key)]
         made = step.make(setup.store, chosen)
         for table, frame in made.tables.items():
             yield dg.MaterializeResult(asset_key=table, metadata=_metadata(frame))

@@ -13,6 +13,7 @@ import typer
 from herijk.cli import due_text
 from herijk.cli import editions_text as text
 from herijk.cli.arguments import AsJson, DataFolder, show
+from herijk.cli.methods import known_methods
 
 
 def add_to(app: typer.Typer) -> None:
@@ -70,7 +71,6 @@ def publish(
     as_json: AsJson = False,
 ) -> None:
     """Freeze an edition of the register: it is never changed afterwards."""
-    from herijk.pipeline.method.definition import shipped_method
     from herijk.warehouse.editions.publish import Terms, publish_printed
     from herijk.warehouse.editions.publish import publish as publish_edition
     from herijk.warehouse.store.editions import read_edition
@@ -85,7 +85,7 @@ def publish(
     if printed is not None:
         folder = publish_printed(store, printed, terms)
     else:
-        folder = publish_edition(store, shipped_method(str(method)), terms, carry)
+        folder = publish_edition(store, known_methods(data).get(str(method)), terms, carry)
     made = read_edition(store, folder.name)
     counts = made.register["status"].value_counts().sort("count", "status", descending=True)
     found = made.about.model_dump(mode="json") | {
@@ -160,9 +160,8 @@ def due(
     as_json: AsJson = False,
 ) -> None:
     """Whose tow expires when, at what speed to tow each next, and who would tell most."""
-    from herijk.pipeline.method.definition import shipped_text
     from herijk.warehouse.queries.due import due_report
     from herijk.warehouse.store.store import Store
 
-    shipped_text(method)
+    known_methods(data).text(method)
     show(due_report(Store(data), method), due_text.due, as_json)

@@ -12,21 +12,20 @@ import re
 import sys
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Final, cast
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
-from typer.core import TyperGroup
 
 from herijk.cli import documents as commands_documents
 from herijk.cli import editions as commands_editions
-from herijk.cli import text
+from herijk.cli import methods, text
 from herijk.cli.arguments import ArchiveFolder, AsJson, DataFolder, show
+from herijk.cli.doctor import doctor
 from herijk.cli.fit import fit
-from herijk.cli.overview import Overview, folders_here
-from herijk.pipeline.errors import BrokenPromiseError, HerijkError, MissingKnowledgeError
+from herijk.cli.overview import Overview, defaults_of, folders_here
+from herijk.pipeline.errors import BrokenPromiseError, HerijkError
 
 if TYPE_CHECKING:
-    from herijk.pipeline.method.definition import Method
     from herijk.warehouse.store.store import Store
 
 app = typer.Typer(
@@ -36,12 +35,12 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-methods_app = typer.Typer(help="The methods that ship with Herijk.", rich_markup_mode=None)
-app.add_typer(methods_app, name="methods", invoke_without_command=True)
+app.add_typer(methods.app, name="methods", invoke_without_command=True)
 
 commands_editions.add_to(app)
 commands_documents.add_to(app)
 app.command()(fit)
+app.command()(doctor)
 
 MOST_TYPES: Final = 2
 
@@ -71,8 +70,7 @@ def begin(
     ] = False,
 ) -> None:
     """Recomputes the history of the Dutch rowing-sloop register from its tow tests."""
-    commands = cast(TyperGroup, context.command).list_commands(context)
-    context.default_map = dict.fromkeys(commands, folders_here(Path.cwd()))
+    context.default_map = defaults_of(context.command, folders_here(Path.cwd()))
 
 
 def _seasons(value: str) -> range:
@@ -94,7 +92,11 @@ def rebuild(
     data: DataFolder = Path("data"),
     method: Annotated[
         list[str] | None,
-        typer.Option(help="Method to apply; repeat for more. Default: all that ship."),
+        typer.Option(
+            metavar="METHOD_OR_FILE",
+            help="Method to apply; repeat for more. A file is kept in the data folder. "
+            "Default: all that ship, or those in beheer.toml.",
+        ),
     ] = None,
     seasons: Annotated[
         range | None,
@@ -108,13 +110,11 @@ def rebuild(
     from herijk.assets.report import failed_checks, tell
     from herijk.assets.settings import read_settings
     from herijk.cli.progress import TerminalProgress
-    from herijk.pipeline.method.definition import shipped_methods, shipped_text
     from herijk.warehouse.queries import reports
     from herijk.warehouse.store.store import Store
 
-    chosen = method or list(shipped_methods())
-    for name in chosen:
-        shipped_text(name)
+    known = methods.known_methods(data)
+    chosen = [known.kept(name) for name in method or read_settings(data).applied]
     with TerminalProgress() as progress:
         done = run(archive, data, chosen, progress, seasons)
     report = reports.rebuild_report(Store(data)) | {"done": done.work, "since": done.report}
@@ -150,30 +150,6 @@ def serve(
         )
 
 
-@methods_app.callback()
-def methods(context: typer.Context, as_json: AsJson = False) -> None:
-    """List the methods."""
-    from herijk.pipeline.method.definition import shipped_method, shipped_methods
-
-    if context.invoked_subcommand is None:
-        known = [shipped_method(name) for name in shipped_methods()]
-        rows = [
-            {"method": m.name, "title": m.title_en, "content_hash": m.content_hash} for m in known
-        ]
-        show({"methods": rows}, text.methods, as_json)
-
-
-@methods_app.command("show")
-def show_method(name: Annotated[str, typer.Argument(help="Name of a method.")]) -> None:
-    """One method in words, with what differs from the one it extends."""
-    from herijk.cli.method_text import method_in_words
-    from herijk.pipeline.method.definition import shipped_method
-
-    shown = _method(name)
-    parent = None if shown.extends is None else shipped_method(shown.extends)
-    typer.echo(method_in_words(shown, parent))
-
-
 @app.command()
 def rebase(
     method: Annotated[
@@ -187,27 +163,18 @@ def rebase(
     as_json: AsJson = False,
 ) -> None:
     """All of history under a method: what changes and why. Nothing is published or stored."""
+    from herijk.pipeline.register.register import draft_name
     from herijk.warehouse.queries.rebase import rebase as rebase_history
     from herijk.warehouse.store.editions import edition_names, method_of_edition
     from herijk.warehouse.store.store import Store
 
-    store = Store(data)
-    old = method_of_edition(store, against) if against in edition_names(store) else _method(against)
-    report = rebase_history(store, _method(method), old)
+    store, known = Store(data), methods.known_methods(data)
+    if against in edition_names(store):
+        old = method_of_edition(store, against)
+    else:
+        old = known.named(against.removeprefix(draft_name("")))
+    report = rebase_history(store, known.named(method.removeprefix(draft_name(""))), old)
     show(report, text.rebase, as_json)
-
-
-def _method(name_or_file: str) -> "Method":
-    """A method that ships, or one from a file; a draft's name stands for its method."""
-    from herijk.pipeline.method.definition import parse_method, shipped_method
-    from herijk.pipeline.register.register import draft_name
-
-    file = Path(name_or_file)
-    if file.suffix == ".toml":
-        if not file.is_file():
-            raise MissingKnowledgeError(f"there is no method file {file}")
-        return parse_method(file.read_text(encoding="utf-8"), str(file))
-    return shipped_method(name_or_file.removeprefix(draft_name("")))
 
 
 @app.command()
@@ -229,14 +196,13 @@ def audit(
     """Where a boat's numbers come from, step by step; or whether boats of a type are equal."""
     from herijk.cli import audit_text
     from herijk.dashboards.audit_plots import file_name
-    from herijk.pipeline.method.definition import shipped_text
     from herijk.warehouse.queries.audit import audit as audit_report
     from herijk.warehouse.store.store import Store
 
     if len(names) > MOST_TYPES:
         raise typer.BadParameter("give a boat, or one or two types; quote a name with blanks")
     if method is not None:
-        shipped_text(method)
+        methods.known_methods(data).text(method)
     store = Store(data)
     report = audit_report(store, names, method)
     folder = plots or store.root / "audit" / file_name(" ".join(names))
@@ -312,11 +278,10 @@ def log_error(
     as_json: AsJson = False,
 ) -> None:
     """How wrong the speed log was in each season, how sure that is, and what it rests on."""
-    from herijk.pipeline.method.definition import shipped_text
     from herijk.warehouse.queries import reports
     from herijk.warehouse.store.store import Store
 
-    shipped_text(method)
+    methods.known_methods(data).text(method)
     show(reports.log_error_report(Store(data), method), text.log_error, as_json)
 
 

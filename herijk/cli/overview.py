@@ -5,6 +5,7 @@ Where the folders are, in this order: the option, `HERIJK_ARCHIVE` and `HERIJK_D
 """
 
 import tomllib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -13,7 +14,7 @@ from typer.core import TyperGroup
 from herijk.pipeline.errors import MissingKnowledgeError
 
 if TYPE_CHECKING:
-    from typer._click import Context, HelpFormatter
+    from typer._click import Command, Context, HelpFormatter
 
 FOLDERS_FILE: Final = "herijk.toml"
 FOLDERS: Final = ("archive", "data")
@@ -41,6 +42,12 @@ class Overview(TyperGroup):
             if rows:
                 with formatter.section(title):
                     formatter.write_dl(rows)
+
+
+def defaults_of(command: "Command", folders: Mapping[str, str]) -> dict[str, Any]:
+    """The folders as defaults of a command and of all that are below it."""
+    below = command.commands.items() if isinstance(command, TyperGroup) else ()
+    return {**folders, **{name: defaults_of(inner, folders) for name, inner in below}}
 
 
 def folders_here(start: Path) -> dict[str, str]:

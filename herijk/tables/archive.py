@@ -12,12 +12,10 @@ class Boats(dy.Schema):
     ht_no = column.text("number in the HT register", nullable=True)
     name = column.text("name of the boat")
     boat_type = column.text("type, empty where not known", nullable=True)
-    waterline_length_m = column.number(
-        "m", "length on the waterline", min_exclusive=0, nullable=True
-    )
-    beam_m = column.number("m", "breadth", min_exclusive=0, nullable=True)
-    bow_height_m = column.number("m", "height of the bow", min_exclusive=0, nullable=True)
-    weight_kg = column.number("kg", "empty boat with oars", min_exclusive=0, nullable=True)
+    waterline_length_m = column.waterline_length("length on the waterline", nullable=True)
+    beam_m = column.beam("breadth", nullable=True)
+    bow_height_m = column.bow_height("height of the bow", nullable=True)
+    weight_kg = column.boat_weight("empty boat with oars", nullable=True)
 
 
 class Seasons(dy.Schema):
@@ -37,25 +35,27 @@ class Tows(dy.Schema):
     fsn_no = column.fsn_no()
     rowers = column.rowers()
     crew_class = column.crew_class()
-    declared_speed_m_s = column.speed("speed v0 the crew declared")
-    waterline_length_m = column.number("m", "length on the waterline that day", min_exclusive=0)
-    beam_m = column.number("m", "breadth that day", min_exclusive=0)
-    bow_height_m = column.number("m", "height of the bow that day", min_exclusive=0)
-    weight_kg = column.number("kg", "empty boat with oars, before", nullable=True, min_exclusive=0)
-    weight_after_kg = column.number("kg", "the same, after", nullable=True, min_exclusive=0)
-    crew_weight_kg = column.number("kg", "crew and ballast on board", nullable=True, min=0)
+    declared_speed_m_s = column.declared_speed()
+    waterline_length_m = column.waterline_length("length on the waterline that day")
+    beam_m = column.beam("breadth that day")
+    bow_height_m = column.bow_height("height of the bow that day")
+    weight_kg = column.boat_weight("empty boat with oars, before", nullable=True)
+    weight_after_kg = column.boat_weight("the same, after", nullable=True)
+    crew_weight_kg = column.number(
+        "kg", "crew and ballast on board", nullable=True, min=0, max=6_000
+    )
     water_temperature_c = column.number("C", "water temperature", nullable=True, min=-2, max=35)
     speed_correction_ratio = column.number(
         "1", "speed correction entered by hand, 0.06 for 6 %", nullable=True, min=-0.5, max=0.5
     )
     altered = dy.Bool(description="the boat was altered since its previous tow")
     sample_rate_hz = dy.Int32(
-        description="samples a second", metadata={"unit": "Hz"}, min_exclusive=0
+        description="samples per second", metadata={"unit": "Hz"}, min=1, max=100_000
     )
     empty_thwart = column.text("thwart left free", nullable=True)
-    freeboard_lowest_m = column.number("m", "freeboard at its lowest", nullable=True)
-    freeboard_bow_m = column.number("m", "freeboard at the bow", nullable=True)
-    freeboard_stern_m = column.number("m", "freeboard at the stern", nullable=True)
+    freeboard_lowest_m = column.freeboard("freeboard at its lowest")
+    freeboard_bow_m = column.freeboard("freeboard at the bow")
+    freeboard_stern_m = column.freeboard("freeboard at the stern")
     remark = column.text("remark in the tow list", nullable=True)
     wind_measured = dy.Bool(description="there was an anemometer whose wind can be used")
     log2_measured = dy.Bool(description="there was a second log that can be used")
@@ -82,8 +82,8 @@ class HandWindows(dy.Schema):
 
     tow_id = column.tow_id(primary_key=True)
     run = column.run(primary_key=True)
-    start_s = dy.Int16(description="start of the window", metadata={"unit": "s"}, min=0)
-    end_s = dy.Int16(description="end of the window", metadata={"unit": "s"}, min=1)
+    start_s = dy.Int16(description="start of the window", metadata={"unit": "s"}, min=0, max=600)
+    end_s = dy.Int16(description="end of the window", metadata={"unit": "s"}, min=1, max=600)
     reason = column.text("why, in the person's words")
 
 

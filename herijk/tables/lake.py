@@ -33,6 +33,12 @@ class ListedTows(Tows):
     list_line = dy.Int32(description="line in it", min=2)
 
 
+class ListedRuns(TowRuns):
+    """Runs of the listed tows, by the plan of their season."""
+
+    planned_s = column.number("s", "how long a run should last", nullable=True, min=0)
+
+
 class ListedWindows(HandWindows):
     """Windows given by hand, before anybody knows how long the runs are."""
 
@@ -78,7 +84,7 @@ class PrintedLines(dy.Schema):
     a_kg_m = column.number("kg/m", "A", nullable=True, min=0, max=1000)
     b_m_s = column.number("m/s", "B", nullable=True, min=0.1, max=1000)
     cw_kg_m = column.number("kg/m", "Cw", nullable=True, min=0.9, max=1000)
-    declared_speed_m_s = column.speed("speed v0 the crew declared", nullable=True)
+    declared_speed_m_s = column.declared_speed(nullable=True)
     tow_date = dy.Date(description="day of the tow", nullable=True)
     path = column.text("file, relative to the archive")
     line = dy.Int32(description="line in it", min=2)
@@ -99,7 +105,7 @@ class SeasonIndex(dy.Schema):
 
 SEASON_TABLES: dict[str, type[dy.Schema]] = {
     "season_tows": ListedTows,
-    "season_runs": TowRuns,
+    "season_runs": ListedRuns,
     "season_index": SeasonIndex,
 }
 """Tables with a partition per season."""

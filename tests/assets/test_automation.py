@@ -141,7 +141,7 @@ def test_a_night_without_a_change_does_no_work_and_says_so(bench):
     """The job itself, as the schedule runs it."""
     bench.rebuild()
     before = bench.lake_files(), bench.store.database.stat().st_mtime_ns
-    location = build_defs(str(bench.archive), str(bench.data), list(METHODS), Settings())
+    location = build_defs(str(bench.archive), str(bench.data), Settings(methods=METHODS))
     with dg.DagsterInstance.ephemeral() as instance, bench.records_in_memory():
         result = location.resolve_job_def("rebuild").execute_in_process(instance=instance)
     (output,) = [e for e in result.all_events if e.event_type_value == "STEP_OUTPUT"]

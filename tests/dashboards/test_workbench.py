@@ -216,7 +216,7 @@ def test_no_file_is_written_over(bench):
     with pytest.raises(HerijkError, match="choose another name"):
         bench.save(named(bench, wind={"side": 1.0}))
     assert path.read_bytes() == before
-    assert [f.name for f in bench.methods_folder.iterdir()] == ["own.toml"]
+    assert [f.name for f in bench.known.folder.iterdir()] == ["own.toml"]
 
 
 @pytest.mark.parametrize("name", ["rebased", TRIAL])
@@ -282,9 +282,9 @@ def test_a_page_that_comes_under_another_name_is_refused(url, path, host):
 def test_only_its_own_page_may_ask_and_save(url, bench, headers):
     body = named(bench).model_dump(mode="json")
     assert ask(url, "save", body, **headers)[0] in (403, 415)
-    assert not bench.methods_folder.exists()
+    assert not bench.known.folder.exists()
     assert ask(url, "save", body)[0] == 200
-    assert bench.methods_folder.is_dir()
+    assert bench.known.folder.is_dir()
 
 
 def test_questions_are_not_asked_by_address(url):

@@ -226,7 +226,7 @@ def test_a_method_is_saved_once_and_downloaded(page, bench):
     page.locator("#reason").fill("Een proef.")
     page.locator("#save").click()
     page.locator("#saved code").wait_for()
-    path = bench.methods_folder / "lagere-grens.toml"
+    path = bench.known.folder / "lagere-grens.toml"
     assert str(path) in page.locator("#saved").inner_text()
     method = parse_method(path.read_text(encoding="utf-8"), str(path))
     assert method.for_season(2014).curve.cap_hull_speeds == 1.5

@@ -7,7 +7,7 @@ from typing import Any, Final
 import altair as alt
 
 from herijk.dashboards.words import Say
-from herijk.pipeline.method.definition import COMPLETE, RUNS_ALONE, shipped_methods
+from herijk.pipeline.method.definition import COMPLETE, RUNS_ALONE, shipped_method, shipped_methods
 
 OKABE_ITO: Final = (
     "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999",
@@ -117,6 +117,13 @@ def by_method(
         tooltip=tips(("method:N", say("method")), *more, (f"{field}:Q", title), *limits),
     )
     return [bar, point]
+
+
+def interval_kind() -> dict[str, Any]:
+    """Full or dashed as `interval_dash`, for rows that have their `method` alone."""
+    held = json.dumps([n for n in shipped_methods() if shipped_method(n).interval == RUNS_ALONE])
+    runs_alone = alt.when(f"indexof({held}, datum.method) >= 0")
+    return runs_alone.then(alt.value([3, 2])).otherwise(alt.value([1, 0]))
 
 
 def interval_dash(say: Say) -> alt.StrokeDash:

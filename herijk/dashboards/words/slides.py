@@ -13,11 +13,13 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
         "Een open teken is een proef die te langzaam of te snel was voor de standaardsnelheid. De "
         "lijn is de best passende rechte met haar 95 %-interval; bij gewicht en lengte een per "
         "ploegklasse. Een proef die buiten haar type valt, is genoemd. Een streep is het "
-        "95 %-interval van een proef.",
+        "95 %-interval van een proef; een streepjeslijn de spreiding van de runs alleen: de fout "
+        "van de log zit er niet in.",
         "The methods stand side by side on equal axes. Circles are men, triangles women. An open "
         "mark is a tow too slow or too fast for the standard speed. The line is the straight line "
         "that fits best, with its 95 % interval; against weight and length one per crew class. A "
-        "tow outside its type is named. A bar is the 95 % interval of a tow.",
+        "tow outside its type is named. A bar is the 95 % interval of a tow; a dashed "
+        "one the spread of the runs alone: the log's error is not in it.",
     ),
     # Charts
     "men": ("heren", "men"),

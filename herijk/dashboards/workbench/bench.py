@@ -20,7 +20,6 @@ from herijk.pipeline.method.definition import (
     SeasonSteps,
     Steps,
     parse_method,
-    shipped_method,
     shipped_methods,
 )
 from herijk.pipeline.method.variant import cut_at, differences, variant, variant_text
@@ -28,6 +27,7 @@ from herijk.warehouse.queries.history import History
 from herijk.warehouse.queries.trial import CURVE_COLUMNS, Trial
 from herijk.warehouse.store.editions import edition_names, method_of_edition, read_edition
 from herijk.warehouse.store.files import write_new
+from herijk.warehouse.store.methods import KnownMethods
 from herijk.warehouse.store.store import Store
 
 Answer = dict[str, Any]
@@ -110,13 +110,9 @@ class Bench:
     def __init__(self, store: Store, history: History) -> None:
         self.history = history
         self._store = store
+        self.known = KnownMethods.of(store)
         self._seasons = history.tows["season"].unique().sort().to_list()
         self._draft = lru_cache(DRAFTS_KEPT)(history.under)
-
-    @property
-    def methods_folder(self) -> Path:
-        """Where method files are saved: the only place that is written to."""
-        return self._store.root / "methods"
 
     def start(self) -> Answer:
         """What the page needs before the first question."""
@@ -126,7 +122,7 @@ class Bench:
             "tows": self.history.tows.height,
             "controls": controls(),
             "methods": list(shipped_methods()),
-            "saved": self._saved(),
+            "saved": list(self.known.own),
             "editions": self._editions(),
             "boats": _rows(boats.select("fsn_no", "name").sort("name", "fsn_no")),
             "types": boats["boat_type"].drop_nulls().unique().sort().to_list(),
@@ -201,7 +197,7 @@ class Bench:
             HerijkError: the name is taken.
         """
         text = self.method_file(wish)
-        path = self.methods_folder / f"{wish.name}.toml"
+        path = self.known.folder / f"{wish.name}.toml"
         try:
             write_new(path, text)
         except FileExistsError as error:
@@ -221,16 +217,8 @@ class Bench:
 
     def _method(self, wanted: Base) -> Method:
         if wanted.text is not None:
-            return parse_method(wanted.text, wanted.name)
-        if wanted.name in self._saved():
-            path = self.methods_folder / f"{wanted.name}.toml"
-            return parse_method(path.read_text(encoding="utf-8"), str(path))
-        return shipped_method(wanted.name)
-
-    def _saved(self) -> list[str]:
-        """Names of the method files in the data folder, but for those that have a shipped name."""
-        names = (f.stem for f in self.methods_folder.glob("[!.]*.toml"))
-        return sorted(set(names) - set(shipped_methods()))
+            return parse_method(wanted.text, wanted.name, self.known.text)
+        return self.known.get(wanted.name)
 
     def _editions(self) -> list[str]:
         """Published editions that were made with a method."""
@@ -240,7 +228,7 @@ class Bench:
     def _against(self, name: str) -> Method:
         if name in edition_names(self._store):
             return method_of_edition(self._store, name)
-        return shipped_method(name)
+        return self.known.get(name)
 
 
 def _rows(frame: pl.DataFrame) -> list[Answer]:

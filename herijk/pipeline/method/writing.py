@@ -35,6 +35,44 @@ def method_text(method: Method) -> str:
     return "\n".join(lines) + "\n"
 
 
+def beginning_text(name: str, base: Method) -> str:
+    """A new method file that extends another, with every option of the other as a comment."""
+    seasons = range_text(base.ranges[0].first, base.ranges[-1].last)
+    listed = [
+        f"# {line}".rstrip()
+        for held in base.ranges
+        for line in (
+            f"Seasons {range_text(held.first, held.last)}",
+            *step_lines(held.steps.model_dump(mode="json", exclude_none=True)),
+            "",
+        )
+    ]
+    return (
+        "\n".join(
+            [
+                f"name = {toml_value(name)}",
+                f"title = {toml_value(name)}",
+                'description = ""',
+                f"extends = {toml_value(base.name)}",
+                f"seasons = {toml_value(seasons)}",
+                "",
+                "# For all seasons: a line such as",
+                "#   [steps.wind]",
+                "#   side = 0.3",
+                "# For some of them:",
+                "#   [[overrides]]",
+                '#   range = "2009:2011"',
+                "#   wind = { side = 0.3 }",
+                "",
+                f"# What {base.name} says:",
+                "#",
+                *listed,
+            ]
+        ).rstrip("#\n ")
+        + "\n"
+    )
+
+
 def override_lines(range_of: str, steps: Mapping[str, Mapping[str, Any]]) -> list[str]:
     """The lines of an `[[overrides]]` block."""
     return ["[[overrides]]", f"range = {toml_value(range_of)}", *step_lines(steps)]

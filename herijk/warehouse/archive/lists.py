@@ -7,11 +7,15 @@ modules that read those.
 import datetime as dt
 import re
 import unicodedata
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Final
 
+import dataframely as dy
+
 from herijk.pipeline.errors import DefectiveInputError
+from herijk.tables.frames import limits
 from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.sheets import Sheet, read_sheet
 from herijk.warehouse.archive.text import (
@@ -76,6 +80,9 @@ class Wording:
         return (*HEADERS.get(column.key, ()), *own)
 
 
+Limits = Callable[[str], tuple[float, float]]
+
+
 @dataclass(frozen=True)
 class Reading:
     """What the rows of one list share.
@@ -86,6 +93,7 @@ class Reading:
         words: the value that a folded word stands for.
         date_order: `dmy` or `mdy` where dates with slashes are settled, else empty.
         decimal: the decimal marks that this list surely uses, comma, point, or both.
+        limits: the lowest and highest value of a column that can be right.
     """
 
     columns: Mapping[str, FoundColumn]
@@ -93,6 +101,7 @@ class Reading:
     words: Mapping[str, str]
     date_order: str
     decimal: str
+    limits: Limits
 
 
 @dataclass(frozen=True)
@@ -140,7 +149,7 @@ class ListRow:
             raise self.fault(say("column '{column}' is empty.", column=self.named(key)))
         return value
 
-    def optional_number(self, key: str, lowest: float, highest: float) -> float | None:
+    def optional_number(self, key: str) -> float | None:
         """Return a number in SI units within the limits, None when the cell is empty."""
         cell = self.optional_text(key)
         if cell is None:
@@ -148,6 +157,7 @@ class ListRow:
         self._check_one_meaning(key, cell)
         number, (numerator, denominator) = self._number_and_scale(key, cell)
         value = number * numerator / denominator
+        lowest, highest = self.reading.limits(key)
         if not lowest <= value <= highest:
             limits = (limit * denominator / numerator for limit in (lowest, highest))
             low, high = (f"{limit:g}" for limit in limits)
@@ -196,16 +206,16 @@ class ListRow:
                 "ambiguous_number",
             )
 
-    def number(self, key: str, lowest: float, highest: float) -> float:
+    def number(self, key: str) -> float:
         """Return a number that must be there."""
         self.text(key)
-        value = self.optional_number(key, lowest, highest)
+        value = self.optional_number(key)
         assert value is not None  # noqa: S101 - the cell is not empty
         return value
 
-    def optional_integer(self, key: str, lowest: int, highest: int) -> int | None:
+    def optional_integer(self, key: str) -> int | None:
         """Return a whole number, None when the cell is empty."""
-        value = self.optional_number(key, lowest, highest)
+        value = self.optional_number(key)
         if value is None:
             return None
         if value != int(value):
@@ -218,10 +228,10 @@ class ListRow:
             )
         return int(value)
 
-    def integer(self, key: str, lowest: int, highest: int) -> int:
+    def integer(self, key: str) -> int:
         """Return a whole number that must be there."""
         self.text(key)
-        value = self.optional_integer(key, lowest, highest)
+        value = self.optional_integer(key)
         assert value is not None  # noqa: S101 - the cell is not empty
         return value
 
@@ -338,6 +348,7 @@ def read_rows(
     data: bytes,
     columns: Sequence[Column],
     reason_code: str,
+    limits: Limits,
     suffix: str = ".csv",
 ) -> list[ListRow]:
     """Return the rows of a table that anybody made; columns nobody asked for are ignored.
@@ -346,6 +357,7 @@ def read_rows(
         data: content of the file.
         columns: the columns to look for.
         reason_code: what a bad value in this table is called.
+        limits: the lowest and highest value of a column that can be right.
         suffix: kind of file.
 
     Raises:
@@ -353,11 +365,16 @@ def read_rows(
     """
     sheet = read_sheet(data, columns, suffix)
     found = find_columns(sheet.header, columns, sheet.line)
-    return _rows(sheet, Reading(found, reason_code, {}, "", ""))
+    return _rows(sheet, Reading(found, reason_code, {}, "", "", limits))
 
 
 def read_list(
-    data: bytes, columns: Sequence[Column], reason_code: str, path: str, wording: Wording
+    data: bytes,
+    columns: Sequence[Column],
+    reason_code: str,
+    path: str,
+    wording: Wording,
+    table: type[dy.Schema],
 ) -> list[ListRow]:
     """Return the rows of a list of the archive; empty ones are left out.
 
@@ -367,6 +384,7 @@ def read_list(
         reason_code: what a bad value in this list is called.
         path: the list, relative to the archive.
         wording: how the lists of this archive are worded.
+        table: declares the limits of each column.
 
     Raises:
         DefectiveInputError: the list as a whole cannot be read, or has a column that nobody knows:
@@ -380,7 +398,14 @@ def read_list(
         raise DefectiveInputError("unknown_column", _strange(strange, wanted), sheet.line)
     cells = [cell.strip() for row in sheet.rows for cell in row.fields]
     order = wording.dates.get(path, wording.dates.get("*", "")) or date_order(cells)
-    reading = Reading(found, reason_code, wording.words, order, _decimal_mark(cells))
+    reading = Reading(
+        found,
+        reason_code,
+        wording.words,
+        order,
+        _decimal_mark(cells),
+        partial(limits, table),
+    )
     return _rows(sheet, reading)
 
 

@@ -15,9 +15,9 @@ import polars as pl
 
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
-from herijk.tables.lake import SEASON_TABLES
+from herijk.tables.lake import SEASON_TABLES, PrintedLines
 from herijk.tables.schemas import TABLES
-from herijk.warehouse.archive.published import REGISTER_SCHEMA, read_published_registers
+from herijk.warehouse.archive.published import read_published_registers
 from herijk.warehouse.build.published import published_made_from, published_tables
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store import decisions
@@ -127,7 +127,7 @@ def _printed(store: Store) -> pl.DataFrame:
     """Lines of printed registers; none where the archive is not where it was."""
     root = intake.archive_root(store)
     if root is None:
-        return pl.DataFrame(schema=REGISTER_SCHEMA)
+        return PrintedLines.create_empty()
     return read_published_registers(root)[0]
 
 

@@ -1,0 +1,107 @@
+"""`herijk doctor`: whether this machine and this data folder can do their work."""
+
+import shutil
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Final, NamedTuple
+
+import typer
+
+from herijk.cli.arguments import AsJson, DataFolder, show
+from herijk.pipeline.errors import HerijkError
+
+if TYPE_CHECKING:
+    from herijk.warehouse.store.methods import KnownMethods
+
+LEAST_FREE: Final = 2 * 2**30
+"""Bytes: a rebuild writes some 4 MB per tow, and everything beside the old before it is swapped."""
+
+
+class Finding(NamedTuple):
+    """What was looked at, whether it is in order, and what was found or what to do."""
+
+    what: str
+    sound: bool
+    found: str
+
+
+def doctor(
+    data: DataFolder = Path("data"),
+    archive: Annotated[
+        Path | None,
+        typer.Option(envvar="HERIJK_ARCHIVE", help="The archive folder, if any.", metavar="DIR"),
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Look whether machine, settings, data folder and archive are in order."""
+    findings = list(_findings(data, archive))
+    show({"findings": [finding._asdict() for finding in findings]}, _text, as_json)
+    if not all(finding.sound for finding in findings):
+        raise typer.Exit(1)
+
+
+def _findings(data: Path, archive: Path | None) -> Iterator[Finding]:
+    from importlib.metadata import version
+
+    from herijk.assets.settings import read_settings
+    from herijk.cli.methods import known_methods
+    from herijk.warehouse.queries.reports import rebuild_report
+    from herijk.warehouse.store.lock import only_writer
+    from herijk.warehouse.store.store import Store
+
+    yield Finding("Herijk", sound=True, found=version("herijk"))
+    yield Finding("Python", sys.version_info >= (3, 11), sys.version.split()[0])
+    yield _space(data)
+    yield _tried("settings", lambda: f"applies {', '.join(read_settings(data).applied)}")
+    known = known_methods(data)
+    for name in known.own:
+        yield _tried(f"method {name}", partial(_title, known, name))
+    if data.is_dir():
+        yield _tried("lock", lambda: _taken(only_writer(data)))
+        yield _tried("tables", lambda: _tows(rebuild_report(Store(data))))
+    else:
+        yield Finding(
+            "data folder", sound=True, found=f"{data} is not there yet; a rebuild makes it"
+        )
+    if archive is not None:
+        there = archive.is_dir()
+        yield Finding("archive", there, str(archive) if there else f"{archive} is no folder")
+
+
+def _space(data: Path) -> Finding:
+    nearest = next(
+        folder for folder in (data.resolve(), *data.resolve().parents) if folder.exists()
+    )
+    free = shutil.disk_usage(nearest).free
+    return Finding("disk", free >= LEAST_FREE, f"{free / 2**30:.1f} GB free at {nearest}")
+
+
+def _tried(what: str, look: Callable[[], str]) -> Finding:
+    try:
+        return Finding(what, sound=True, found=look())
+    except (HerijkError, OSError) as error:
+        return Finding(what, sound=False, found=str(error))
+
+
+def _title(known: "KnownMethods", name: str) -> str:
+    return known.get(name).title
+
+
+def _taken(lock: AbstractContextManager[None]) -> str:
+    with lock:
+        return "free"
+
+
+def _tows(report: dict[str, Any]) -> str:
+    tows = sum(season["tows"] for season in report["seasons"])
+    return f"{tows} tows in {len(report['seasons'])} seasons"
+
+
+def _text(report: dict[str, Any]) -> str:
+    return "\n".join(
+        f"{'ok' if f['sound'] else 'WRONG':5}  {f['what']}: {f['found']}"
+        for f in report["findings"]
+    )

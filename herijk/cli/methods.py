@@ -1,0 +1,149 @@
+"""`herijk methods`: list, show, begin, check and compare methods."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from herijk.cli.arguments import AsJson, DataFolder, show
+from herijk.pipeline.errors import HerijkError
+
+if TYPE_CHECKING:
+    from herijk.pipeline.method.definition import Method
+    from herijk.warehouse.store.methods import KnownMethods
+
+app = typer.Typer(
+    help="The methods: those that ship, and your own.",
+    rich_markup_mode=None,
+)
+Named = Annotated[
+    str, typer.Argument(metavar="METHOD_OR_FILE", help="A method's name, or a TOML file.")
+]
+
+
+def known_methods(data: Path) -> "KnownMethods":
+    """The methods of a data folder."""
+    from herijk.warehouse.store.methods import KnownMethods
+    from herijk.warehouse.store.store import Store
+
+    return KnownMethods.of(Store(data))
+
+
+@app.callback(invoke_without_command=True)
+def methods(
+    context: typer.Context, data: DataFolder = Path("data"), as_json: AsJson = False
+) -> None:
+    """List the methods: those that ship, and those in the folder `methods` of --data."""
+    from herijk.cli import text
+
+    if context.invoked_subcommand is None:
+        known = known_methods(data)
+        rows = [
+            {
+                "method": method.name,
+                "title": method.title_en,
+                "content_hash": method.content_hash,
+                "ships": name not in known.own,
+            }
+            for name in known.names
+            for method in [known.get(name)]
+        ]
+        show({"methods": rows}, text.methods, as_json)
+
+
+@app.command("show")
+def show_method(name: Named, data: DataFolder = Path("data")) -> None:
+    """One method in words, with what differs from the one it extends."""
+    known = known_methods(data)
+    typer.echo(_in_words(known.named(name), known))
+
+
+@app.command()
+def check(file: Named, data: DataFolder = Path("data")) -> None:
+    """Read a method file and say in words what it does; an error is told with its line."""
+    known = known_methods(data)
+    method = known.named(file)
+    typer.echo(f"{_in_words(method, known)}\n\nThe file is sound. Try it: herijk rebase {file}")
+
+
+@app.command()
+def new(
+    name: Annotated[str, typer.Argument(help="Name of the new method, for example ours-2027.")],
+    base: Annotated[
+        str, typer.Option("--from", metavar="METHOD", help="Method that it begins from.")
+    ] = "rebased",
+    data: DataFolder = Path("data"),
+) -> None:
+    """Begin a method file NAME.toml here, which extends another; every option is listed in it."""
+    from herijk.pipeline.method.writing import beginning_text
+    from herijk.warehouse.store.files import write_new
+
+    known = known_methods(data)
+    file = Path(f"{name}.toml")
+    if name in known.names:
+        raise HerijkError(f"{name} is the name of another method; choose another")
+    text = beginning_text(name, known.get(base))
+    try:
+        write_new(file, text)
+    except FileExistsError as error:
+        raise HerijkError(f"{file} is there already; choose another name") from error
+    typer.echo(f"{file} extends {base}. Change it, then: herijk methods check {file}")
+
+
+@app.command()
+def diff(
+    old: Named,
+    new: Annotated[
+        str, typer.Argument(metavar="METHOD_OR_FILE", help="The method it is compared with.")
+    ],
+    data: DataFolder = Path("data"),
+    as_json: AsJson = False,
+) -> None:
+    """Which options differ between two methods, and what that does to Cw where --data has tows."""
+    from herijk.pipeline.method.variant import differences
+    from herijk.warehouse.store.store import Store
+
+    known = known_methods(data)
+    first, second = known.named(old), known.named(new)
+    options = [vars(one) for one in differences(second, first)]
+    report: dict[str, Any] = {"from": first.name, "to": second.name, "options": options}
+    store = Store(data)
+    if store.database.exists():
+        from herijk.warehouse.queries.rebase import rebase
+
+        report["effect"] = rebase(store, second, first)
+    show(report, _diff_text, as_json)
+
+
+def _in_words(method: "Method", known: "KnownMethods") -> str:
+    from herijk.cli.method_text import method_in_words
+
+    parent = None if method.extends is None else known.get(method.extends)
+    return method_in_words(method, parent)
+
+
+def _diff_text(report: dict[str, Any]) -> str:
+    """Options that differ, one per line, and the effect per season."""
+    from herijk.cli import text
+
+    if not report["options"]:
+        return f"{report['from']} and {report['to']} say the same of every season."
+    rows = [
+        (
+            f"{option['step']}.{option['option']}",
+            _seasons(option),
+            ", ".join(map(str, option["before"])),
+            str(option["after"]),
+        )
+        for option in report["options"]
+    ]
+    parts = [text.table(("option", "seasons", report["from"], report["to"]), rows)]
+    if "effect" in report:
+        parts.append(text.rebase(report["effect"]))
+    return "\n\n".join(parts)
+
+
+def _seasons(option: dict[str, Any]) -> str:
+    from herijk.pipeline.method.writing import range_text
+
+    return range_text(option["first"], option["last"])

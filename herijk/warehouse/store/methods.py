@@ -1,0 +1,124 @@
+"""The methods that a data folder knows: those that ship, and its own files in `methods/`.
+
+A federation's own method is a file like those that ship. Its name is that of the file, and no
+method that ships can be replaced.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, Self
+
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.method.definition import (
+    Method,
+    MethodFileError,
+    parse_method,
+    shipped_method,
+    shipped_methods,
+    shipped_text,
+)
+from herijk.warehouse.store.files import written_beside
+from herijk.warehouse.store.store import Store
+
+SUFFIX: Final = ".toml"
+
+
+@dataclass(frozen=True)
+class KnownMethods:
+    """Methods by name.
+
+    Attributes:
+        folder: holds the files of those that do not ship; need not exist.
+    """
+
+    folder: Path
+
+    @classmethod
+    def of(cls, store: Store) -> Self:
+        """Those of a data folder."""
+        return cls(store.root / "methods")
+
+    @property
+    def own(self) -> tuple[str, ...]:
+        """Names of the folder's own methods, in alphabetical order."""
+        files = {file.stem for file in self.folder.glob(f"[!.]*{SUFFIX}")}
+        return tuple(sorted(files - set(shipped_methods())))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all methods: those that ship, then the folder's own."""
+        return (*shipped_methods(), *self.own)
+
+    def get(self, name: str) -> Method:
+        """A method by name.
+
+        Raises:
+            MissingKnowledgeError: there is no such method.
+            MethodFileError: its file has an error, or the method in it has another name.
+        """
+        if name in shipped_methods():
+            return shipped_method(name)
+        file = self.folder / f"{name}{SUFFIX}"
+        method = parse_method(self.text(name), str(file), self.text)
+        if method.name != name:
+            raise MethodFileError(f"{file}: name: {method.name!r}, and the file is called {name!r}")
+        return method
+
+    def text(self, name: str) -> str:
+        """The TOML text of a method.
+
+        Raises:
+            MissingKnowledgeError: there is no such method.
+        """
+        if name in shipped_methods():
+            return shipped_text(name)
+        if name not in self.own:
+            raise MissingKnowledgeError(
+                f"there is no method {name!r}; the methods are {', '.join(self.names)}"
+            )
+        return text_of_file(self.folder / f"{name}{SUFFIX}")
+
+    def named(self, name_or_file: str) -> Method:
+        """A method by its name, or from a file anywhere.
+
+        Raises:
+            HerijkError: there is no such method or file, or it has an error.
+        """
+        file = Path(name_or_file)
+        if file.suffix != SUFFIX:
+            return self.get(name_or_file)
+        return parse_method(text_of_file(file), str(file), self.text)
+
+    def kept(self, name_or_file: str) -> str:
+        """The name under which a method is known; a file is first copied into the folder.
+
+        Raises:
+            HerijkError: it has an error, or the name of a method that ships.
+        """
+        method = self.named(name_or_file)
+        if method.name == name_or_file:
+            return method.name
+        if method.name in shipped_methods():
+            raise MethodFileError(
+                f"{name_or_file}: name: {method.name!r} is a method that ships; choose another name"
+            )
+        with written_beside(self.folder / f"{method.name}{SUFFIX}") as beside:
+            beside.write_text(text_of_file(Path(name_or_file)), encoding="utf-8")
+        return method.name
+
+
+def text_of_file(file: Path) -> str:
+    """The text of a method file.
+
+    Raises:
+        MissingKnowledgeError: it is not there.
+        MethodFileError: it is not UTF-8.
+    """
+    if not file.is_file():
+        raise MissingKnowledgeError(f"there is no method file {file}")
+    try:
+        return file.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise MethodFileError(
+            f"{file}: byte {error.start} is not UTF-8; save the file as UTF-8"
+        ) from error

@@ -1,0 +1,46 @@
+"""`herijk methods`: a federation begins, checks and compares a method of its own."""
+
+import json
+
+
+def test_a_method_is_begun_checked_and_compared(herijk, built, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    data = ("--data", built.data)
+    assert herijk("methods", "new", "ours", "--from", "rebased-2015", *data)[0] == 0
+    assert "sound" in herijk("methods", "check", "ours.toml", *data)[1]
+    same = herijk("methods", "diff", "rebased-2015", "ours.toml", "--data", tmp_path / "none")[1]
+    assert "say the same" in same
+    file = tmp_path / "ours.toml"
+    file.write_text(file.read_text(encoding="utf-8") + "[steps.wind]\nside = 0.3\n", "utf-8")
+    report = json.loads(herijk("methods", "diff", "rebased-2015", "ours.toml", "--json", *data)[1])
+    assert [(o["step"], o["option"], o["after"]) for o in report["options"]] == [
+        ("wind", "side", 0.3)
+    ]
+    assert report["effect"]["by_season"]
+    assert "wind.side" in herijk("methods", "diff", "rebased-2015", "ours.toml", *data)[1]
+
+
+def test_a_name_that_is_taken_is_refused(herijk, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert "another" in herijk("methods", "new", "rebased")[2]
+    (tmp_path / "ours.toml").touch()
+    assert "is there already" in herijk("methods", "new", "ours")[2]
+
+
+def test_an_error_in_a_file_is_told_with_its_line(herijk, tmp_path):
+    file = tmp_path / "ours.toml"
+    file.write_text('name = "ours"\ntitle = "x"\nextends = "rebased"\n[steps.wind]\nzij = 1\n')
+    status, _, err = herijk("methods", "check", file)
+    assert status == 1
+    assert "line 5" in err
+
+
+def test_a_method_of_ones_own_is_rebuilt_and_published(herijk, bench, tmp_path):
+    file = tmp_path / "ours.toml"
+    file.write_text('name = "ours"\ntitle = "Onze"\nextends = "rebased-2015"\n', encoding="utf-8")
+    folders = ("--archive", bench.archive, "--data", bench.data)
+    assert herijk("rebuild", *folders, "--method", "as-published", "--method", file)[0] == 0
+    assert set(bench.table("curves")["method"]) == {"as-published", "ours"}
+    terms = ("--method", "ours", "--valid-from", "2015-01-01", "--decision", "ALV")
+    assert herijk("publish", "2015-1", *terms, "--data", bench.data)[0] == 0
+    assert herijk("verify", "--data", bench.data)[0] == 0
