@@ -183,6 +183,7 @@ def log_error(report: Report) -> str:
         parts.append(f"No sound tow in {lacking}: nothing is known of the log there.")
     if report["parts"]:
         parts += ["Each log, and each part of a season in which one was replaced:", _parts(report)]
+    parts += ["What may be wrong with the instruments of a season:", _diagnosis(report)]
     return "\n\n".join(parts)
 
 
@@ -190,6 +191,29 @@ def _seasons_between(seasons: list[int]) -> str:
     """Seasons that are missing between the first and the last."""
     every = range(min(seasons, default=0), max(seasons, default=0))
     return ", ".join(str(season) for season in every if season not in seasons)
+
+
+def _diagnosis(report: Report) -> str:
+    """Faults that were found, or that cannot be told."""
+    if not report["diagnosis"]:
+        return "  nothing was found, and nothing is in doubt"
+    head = ("season", "what", "verdict", "size", "from", "to", "chance", "or else")
+    rows = [
+        (
+            r["season"],
+            r["instrument"] if r["first_tow"] is None else f"{r['instrument']}, {r['first_tow']}",
+            r["verdict"],
+            *(_size(r[name], r["unit"]) for name in ("estimate", "lo", "hi")),
+            "-" if r["p_fault"] is None else f"{r['p_fault']:.0%}",
+            r["confused_with"] or "-",
+        )
+        for r in report["diagnosis"]
+    ]
+    return table(head, rows)
+
+
+def _size(value: float, unit: str) -> str:
+    return f"{value:+.1f} N" if unit == "N" else f"{value:+.1%}"
 
 
 def _parts(report: Report) -> str:

@@ -25,6 +25,7 @@ from herijk.pipeline.steps.window import CUT_REASONS
 
 COMPONENTS = (
     *("anemometer", "calibration", "force", "mass", "random", "season_log", "straightness"),
+    "between_tows",
     *("stream_drift", "temperature", "wind"),
 )
 DIRECTION = "datum.value == 1 ? '{out}' : '{back}'"

@@ -105,7 +105,7 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], alt
         )
         name = (
             tow.transform_filter("datum.outside")
-            .mark_text(align="left", dx=5, dy=-4, fontSize=9)
+            .mark_text(align="left", dx=5, dy=-4, fontSize=9, limit=110)
             .encode(at, value, text="label:N")
         )
         bars = bar.encode(

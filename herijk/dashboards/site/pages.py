@@ -20,6 +20,7 @@ from herijk.dashboards.site.parts import (
     with_page,
 )
 from herijk.dashboards.site.races import race_pages
+from herijk.dashboards.site.slides import slides_page
 from herijk.dashboards.site.start import methods_table, start_page, words_page
 from herijk.dashboards.site.types import type_pages, types_page
 from herijk.warehouse.queries.answers import line_changes, newest_edition
@@ -27,7 +28,7 @@ from herijk.warehouse.queries.views import Views
 
 MENU = (
     *("index", "register", "due", "types", "compare", "races", "corrections", "reproducibility"),
-    *("changes", "quality", "words"),
+    *("changes", "quality", "slides", "words"),
 )
 
 
@@ -42,6 +43,7 @@ def all_pages(views: Views) -> Iterator[Page]:
     yield from type_pages(views, methods)
     yield _compare(views, methods)
     yield from race_pages(views, methods)
+    yield slides_page(views, methods)
     yield _corrections(views, methods)
     yield _reproducibility(views, methods)
     yield _changes(methods, changes)

@@ -19,7 +19,7 @@ from herijk.warehouse.queries.answers import newest_edition
 from herijk.warehouse.queries.views import Views
 
 CARDS = ("register", "due", "types", "compare", "races", "corrections", "reproducibility",
-         "changes", "quality", "words")  # fmt: skip
+         "changes", "quality", "slides", "words")  # fmt: skip
 TERMS = ("tow", "cw", "a", "b", "declared", "interval", "as_measured", "log_factor", "method",
          "edition", "flag", "set_aside", "e_n", "power", "type", "verification_code")  # fmt: skip
 

@@ -84,6 +84,7 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.refuse": ("afwijzen", "refuse"),
     "code.note": ("opmerking", "note"),
     "code.force": ("kracht", "force"),
+    "code.between_tows": ("van proef tot proef", "from tow to tow"),
     "code.stream_drift": ("stroom", "stream"),
     "code.anemometer": ("windmeter", "anemometer"),
     "code.mass": ("massa", "mass"),

@@ -144,8 +144,9 @@ class Steps(_Options):
 
 
 class RegisterRule(_Options):
-    """How long a tow counts. It changes no curve, only which lines of a register are valid."""
+    """How long a tow counts, and which of its estimates. It changes no curve."""
 
+    estimate: Literal["as_measured", "best_estimate"] = "as_measured"
     valid_years: int = Field(default=5, ge=1, le=20)
     six_years_from: int | None = Field(default=None, ge=1990, le=2100)
 

@@ -60,7 +60,7 @@ from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import Store, table_digest
 
 BOAT_FACTS: Final = ("ht_no", "name", "boat_type")
-MADE: Final = ("curves", "run_points", "log_factors", "season_links")
+MADE: Final = ("curves", "run_points", "log_factors", "season_links", "tow_instruments")
 """What a method made of the tows, and an edition keeps."""
 
 PRINTED_METHOD: Final = "as-printed"

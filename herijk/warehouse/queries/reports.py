@@ -53,6 +53,7 @@ def log_error_report(store: Store, method: str) -> Report:
             "method": method,
             "factors": rows(db, _LOG_FACTORS, method),
             "parts": rows(db, _LOG_PARTS, method),
+            "diagnosis": rows(db, _DIAGNOSIS, method),
         }
 
 
@@ -82,6 +83,14 @@ SELECT season, part, log, source, n_tows, n_links, factor, lo, hi FROM season_li
 WHERE method = ? AND (source = 'other log' OR season IN (
     SELECT season FROM season_links WHERE part > 0 AND source != 'other log'))
 ORDER BY season, log, part
+"""
+
+_DIAGNOSIS = """
+SELECT season, part, instrument, unit, estimate, lo, hi, p_fault, distance_sd, verdict, first_tow,
+       rests_on, confused_with
+FROM season_diagnosis
+WHERE method = ? AND verdict IN ('fault', 'cannot be told', 'alarm', 'not determined')
+ORDER BY season, part, instrument
 """
 
 _BY_SEASON = """

@@ -53,6 +53,7 @@ TABLES: Final = (
     "run_points",
     "log_factors",
     "season_links",
+    "tow_instruments",
     "ensemble",
     CHANGES,
 )
