@@ -23,7 +23,7 @@ from herijk.cli.arguments import ArchiveFolder, AsJson, DataFolder, show
 from herijk.cli.doctor import doctor
 from herijk.cli.fit import fit
 from herijk.cli.overview import Overview, defaults_of, folders_here
-from herijk.pipeline.errors import BrokenPromiseError, HerijkError
+from herijk.pipeline.errors import BrokenPromiseError, HerijkError, unexpected
 
 if TYPE_CHECKING:
     from herijk.warehouse.store.store import Store
@@ -52,6 +52,26 @@ def main() -> None:
     except HerijkError as error:
         typer.echo(f"herijk: {error}", err=True)
         sys.exit(1)
+    except (KeyboardInterrupt, SystemExit):
+        raise
+    except BaseException as error:  # a panic of a library in Rust is no Exception
+        typer.echo(f"herijk: {_written_down(error)}", err=True)
+        sys.exit(1)
+
+
+def _written_down(error: BaseException) -> str:
+    """A sentence about an error that nobody foresaw, and where the rest of it stands."""
+    import tempfile
+    import traceback
+
+    with tempfile.NamedTemporaryFile(
+        "w", prefix="herijk-error-", suffix=".txt", encoding="utf-8", delete=False
+    ) as file:
+        file.write("".join(traceback.format_exception(error)))
+    return (
+        f"{unexpected(error)}. Nothing was published. Details stand in {file.name}; please send it "
+        "to who keeps Herijk"
+    )
 
 
 def _version(wanted: bool) -> None:
@@ -115,8 +135,12 @@ def rebuild(
 
     known = methods.known_methods(data)
     chosen = [known.kept(name) for name in method or read_settings(data).applied]
-    with TerminalProgress() as progress:
-        done = run(archive, data, chosen, progress, seasons)
+    try:
+        with TerminalProgress() as progress:
+            done = run(archive, data, chosen, progress, seasons)
+    except Exception as error:
+        _tell_failure(data, error)
+        raise
     report = reports.rebuild_report(Store(data)) | {"done": done.work, "since": done.report}
     show(report, text.rebuild, as_json)
     notifier = notifier_of(str(data), read_settings(data))
@@ -124,6 +148,18 @@ def rebuild(
         typer.echo(f"herijk: {problem}", err=True)
     if failed := failed_checks(done.report):
         raise BrokenPromiseError(f"a check failed: {'; '.join(failed)}")
+
+
+def _tell_failure(data: Path, error: Exception) -> None:
+    """Tells who wants to be told that a rebuild failed, as under `serve`."""
+    from herijk.assets.notify import notifier_of
+    from herijk.assets.report import tell_failure
+    from herijk.assets.settings import read_settings
+
+    what = str(error) if isinstance(error, HerijkError) else unexpected(error)
+    with suppress(HerijkError):  # settings that cannot be read are what failed
+        for problem in tell_failure(notifier_of(str(data), read_settings(data)), what):
+            typer.echo(f"herijk: {problem}", err=True)
 
 
 @app.command()
@@ -134,20 +170,30 @@ def serve(
     port: Annotated[
         int, typer.Option(min=1, max=65534, help="Port of Dagster's page; the site has the next.")
     ] = 3000,
+    may_start: Annotated[
+        bool,
+        typer.Option(help="Let Dagster's page start rebuilds and switch schedules."),
+    ] = False,
 ) -> None:
     """Rebuild by itself: schedules and sensor, with Dagster's page and the site, until stopped."""
-    from herijk.assets.rebuild import prepare_home
+    from herijk.assets.rebuild import check_apart, prepare_home, taking_over
     from herijk.assets.settings import read_settings
     from herijk.cli.serving import Served, serve_until_stopped
+    from herijk.warehouse.store.lock import only_server
     from herijk.warehouse.store.obstacles import obstacles_explained
     from herijk.warehouse.store.store import Store
 
+    def tell(line: str) -> None:
+        typer.echo(line, err=True)
+
+    check_apart(archive, data)
     read_settings(data)
-    with obstacles_explained(data):
-        home = prepare_home(Store(data))
-        serve_until_stopped(
-            Served(archive, data, host, port), home, lambda line: typer.echo(line, err=True)
-        )
+    store = Store(data)
+    with obstacles_explained(data), only_server(data):
+        for line in taking_over(store):
+            tell(line)
+        served = Served(archive, data, host, port, may_start)
+        serve_until_stopped(served, prepare_home(store), tell)
 
 
 @app.command()

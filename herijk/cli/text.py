@@ -48,9 +48,9 @@ def rebuild(report: Report) -> str:
         + ", ".join(f"{row['season']}: {row['tows']}" for row in report["seasons"])
     )
     if report["set_aside"]:
-        rows = [(r["reason_code"], r["number"]) for r in report["set_aside"]]
-        parts.append("Set aside:\n" + table(("reason", "number"), rows))
-        parts.append(_faults(report["first_faults"], sum(number for _, number in rows)))
+        rows = [(r["lost"], r["reason_code"], r["number"]) for r in report["set_aside"]]
+        parts.append("Set aside:\n" + table(("lost", "reason", "number"), rows))
+        parts.append(_faults(report["first_faults"], sum(number for *_, number in rows)))
     else:
         parts.append("Set aside: nothing.")
     rows = [(r["method"], r["status"], r["number"]) for r in report["curves"]]
@@ -78,15 +78,17 @@ def _indented(lines: Iterable[str]) -> str:
 
 def _faults(first: list[Report], number: int) -> str:
     lines = [f"  {_place(fault)}: {fault['message']}" for fault in first]
-    if number > len(first):
-        lines.append(f"  and {number - len(first)} more: see the table quarantine")
+    told = sum(fault["number"] for fault in first)
+    if number > told:
+        lines.append(f"  and {number - told} more: see the table quarantine")
     return "\n".join(lines)
 
 
 def _place(fault: Report) -> str:
     line = "" if fault["line"] is None else f", line {fault['line']}"
     tow = "" if fault["tow_id"] is None else f" (tow {fault['tow_id']})"
-    return f"{fault['path']}{line}{tow}"
+    more = f" and {fault['number'] - 1} more" if fault["number"] > 1 else ""
+    return f"{fault['path']}{line}{tow}{more}"
 
 
 def _by_season(rows: list[Report]) -> str:

@@ -1,8 +1,17 @@
 """What the archive holds: boats, tows, their runs, windows given by hand, and what is set aside."""
 
+from functools import partial
+from typing import Final
+
 import dataframely as dy
 
 from herijk.tables import column
+
+LOST: Final = partial(
+    column.text,
+    "what it costs: seconds, run, tow, file, or a row of a list that costs no tow",
+    regex="^(seconds|run|tow|file|row)$",
+)
 
 
 class Boats(dy.Schema):
@@ -24,10 +33,12 @@ class Seasons(dy.Schema):
     season = column.season(primary_key=True)
     listed = dy.Int32(description="tows in the tow list that could be read", min=0)
     tows = dy.Int32(description="of which used; the others are in quarantine", min=0)
+    runs_set_aside = dy.Int32(description="runs of these that are set aside", min=0)
+    lost_s = column.number("s", "time left out of the other runs, all channels", min=0)
 
 
-class Tows(dy.Schema):
-    """Tows accepted into the warehouse, one row each."""
+class TowFacts(dy.Schema):
+    """What the lists say of a tow, one row each."""
 
     tow_id = column.tow_id(primary_key=True)
     season = column.season()
@@ -67,7 +78,18 @@ class Tows(dy.Schema):
     second_sha256 = column.sha256("its content hash", nullable=True)
 
 
-class TowRuns(dy.Schema):
+class Tows(TowFacts):
+    """Tows accepted into the warehouse, one row each."""
+
+    runs_set_aside = dy.Int32(description="runs to be used that are in quarantine", min=0)
+    doubts = dy.List(
+        dy.String(),
+        description="checks by which all other tows rule this one out: it needs a look, and takes "
+        "no part in what tows share",
+    )
+
+
+class RunList(dy.Schema):
     """Runs of every tow; runs 21 and on are runs 1 and on of the second file."""
 
     tow_id = column.tow_id(primary_key=True)
@@ -75,6 +97,12 @@ class TowRuns(dy.Schema):
     direction = dy.Int8(description="1 out, -1 back", min=-1, max=1)
     target_speed_ratio = column.number("1", "intended speed / declared speed", min_exclusive=0)
     selected = dy.Bool(description="the tow list says to use it")
+
+
+class TowRuns(RunList):
+    """Runs of every tow of which samples can be used."""
+
+    lost_s = column.number("s", "most that is left out of a channel: dropouts, spikes", min=0)
 
 
 class HandWindows(dy.Schema):
@@ -101,11 +129,14 @@ class TraceSeconds(dy.Schema):
 
 
 class Quarantine(dy.Schema):
-    """Files and tows set aside, each with the reason in a plain sentence."""
+    """What is set aside, from seconds to files, each with the reason in a plain sentence."""
 
     path = column.text("file, relative to the archive")
     tow_id = column.tow_id(nullable=True)
     line = dy.Int64(description="line in the file", nullable=True, min=1)
     reason_code = column.text("short stable code")
     message = column.text("what is wrong and what to do, in a sentence")
+    lost = LOST()
+    run = column.run(nullable=True)
+    lost_s = column.number("s", "time that is lost", nullable=True, min=0)
     first_seen = dy.Date(description="day on which this fault was first found")

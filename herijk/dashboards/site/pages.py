@@ -379,8 +379,10 @@ def _flagged_boats(views: Views) -> Table:
 def _set_aside(views: Views) -> Section:
     if not views.has("quarantine"):
         return Section("set_aside", "set_aside_note", empty="nothing_set_aside")
-    columns = ["path", "tow_id", "line", "reason_code", "message", "first_seen"]
-    table = Table("quarantine", views.table("quarantine"), columns, "set_aside", search=True)
+    columns = ["path", "tow_id", "line", "lost", "run", "lost_s", "reason_code", "message"]
+    columns.append("first_seen")
+    faults = views.table("quarantine").with_columns(lost="lost_" + pl.col("lost"))
+    table = Table("quarantine", faults, columns, "set_aside", search=True)
     return Section("set_aside", "set_aside_note", tables=[table])
 
 
@@ -391,7 +393,7 @@ def _rebuilt(views: Views) -> Section:
         "rebuilt",
         "rebuilt_note",
         tables=[
-            Table("seasons", seasons, ("season", "listed", "tows"), "seasons"),
+            Table("seasons", seasons, seasons.columns, "seasons"),
             methods_table(views),
             Table("contents", tables, ("table", "rows", "meaning"), "tables"),
         ],

@@ -2,7 +2,8 @@
 
 All tows together know a boat at one speed; what they change there, as a ratio, is taken for the
 declared speed. What all tows share, and repeats can therefore not show, is added to the interval
-(ISO 5725-1: precision is not trueness).
+(ISO 5725-1: precision is not trueness). A tow of a season that is not determined stays as measured:
+the bend of its curves alone would say what its log was, and no hull is an exact hyperbola.
 """
 
 from typing import Final
@@ -37,7 +38,9 @@ def with_best(
         .group_by("tow_id")
         .agg((pl.col("u_ratio") ** 2).sum().alias("shared"))
     )
-    held = curves.join(found.best, on="tow_id", how="left", maintain_order="left").join(
+    determined = found.instruments.drop_nulls("factor").select("tow_id")
+    known = found.best.join(determined, on="tow_id", how="semi")
+    held = curves.join(known, on="tow_id", how="left", maintain_order="left").join(
         shared, on="tow_id", how="left", maintain_order="left"
     )
     best = pl.col("cw_kg_m") * (pl.col("ln_cw") - pl.col("as_measured")).exp()
@@ -46,8 +49,12 @@ def with_best(
         own = pl.col(end) - pl.col("ln_cw")
         return (own**2 + QUANTILE**2 * pl.col("shared")).sqrt()
 
-    columns = (best, best * (-half("lo")).exp(), best * half("hi").exp())
+    by_all = (best, best * (-half("lo")).exp(), best * half("hi").exp())
+    measured = ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
     return held.select(
         *curves.columns,
-        *(values.alias(name) for name, values in zip(BEST, columns, strict=True)),
+        *(
+            pl.coalesce(values, alone).alias(name)
+            for name, values, alone in zip(BEST, by_all, measured, strict=True)
+        ),
     )

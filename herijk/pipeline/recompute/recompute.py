@@ -83,7 +83,7 @@ def season_factors(plans: Sequence[tuple[Batch, Steps]], cache: RunCache) -> Sea
     None if not a single tow has a curve from which to estimate.
     """
     before = evaluate([(batch, without_factor(steps)) for batch, steps in plans], cache)
-    if not any(np.isfinite(outcome.cw_at_declared).any() for outcome in before):
+    if not any((np.isfinite(o.cw_at_declared) & o.batch.trusted).any() for o in before):
         return None
     return find_season_factors(before)
 
@@ -307,7 +307,10 @@ def _archive_coefficient(prepared: list[Prepared]) -> float | None:
     """
     if not prepared:
         return None
-    total = np.sum([_misfits(p, ARCHIVE_GRID).sum(axis=1) for p in prepared], axis=0)
+    total = np.sum(
+        [np.where(p.batch.trusted, _misfits(p, ARCHIVE_GRID), 0.0).sum(axis=1) for p in prepared],
+        axis=0,
+    )
     best = int(np.clip(total.argmin(), 1, len(ARCHIVE_GRID) - 2))
     below, here, above = total[best - 1 : best + 2]
     bend = below - 2.0 * here + above

@@ -117,6 +117,8 @@ def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
     log1 = np.where(found, blocks.mean("log1_v", mask), 1.0)
     has_limits = o.steps.window.rule != "all"
     wind, log2 = (o.batch.measured(channel)[tow] for channel in ("wind", "log2"))
+    log2_ratio = blocks.mean("log2_v", mask) / log1
+    log2 &= log2_ratio != 1.0  # a run without its log 2 has log 1 in its place
     numbers = {
         "window_start_s": o.windows.start_s,
         "window_end_s": o.windows.end_s,
@@ -137,9 +139,10 @@ def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
         "u_ratio": run_point_ratio(o) if pooled else np.full(len(tow), np.nan),
         "wind_m_s": np.where(wind, blocks.mean("wind_v", mask), np.nan),
         "wind_angle_deg": np.where(wind, mean_wind_angle_deg(blocks, mask), np.nan),
-        "log2_ratio": np.where(log2, blocks.mean("log2_v", mask) / log1, np.nan),
+        "log2_ratio": np.where(log2, log2_ratio, np.nan),
     }
     return blocks.runs.select("tow_id", "run", "direction", "target_speed_ratio").with_columns(
+        pl.Series("lost_s", o.batch.lost_s),
         *(_column(name, values, found) for name, values in numbers.items()),
         _column("ends_ratio", o.windows.ends.in_limits(o.steps.window), found & has_limits),
         _column("gps_ratio", o.means.gps_m_s / log1, found),

@@ -131,7 +131,7 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
     curves = curve.fit(water)
     cw, r = curves.cw_at(speed), curves.s_s2_m2 * speed**2
     errors = curve.covariance(water, curves, pooled_scatter(o), speed)
-    sound = curves.converged & np.isfinite(cw)
+    sound = curves.converged & np.isfinite(cw) & (cw > 0) & batch.trusted
     sure = sound & np.isfinite(errors.c0_variance_kg2_m2)
     safe, safe_r = np.where(sound, cw, 1.0), np.where(sound, r, 0.0)
     calibrated = steps.calibration.rule == GPS
@@ -174,6 +174,7 @@ def _other_ln_ratio(o: Outcome) -> FloatArray:
     mean = {log: o.batch.blocks.mean(f"{log}_v", o.windows.mask) for log in ("log1", "log2")}
     turning = o.used & (mean["log1"] > 0) & (mean["log2"] > 0)
     turning &= o.batch.measured("log2")[o.batch.tow]
+    turning &= mean["log1"] != mean["log2"]  # a run without its log 2 has log 1 in its place
     ratio = mean[source] / np.where(turning, mean[OTHER_LOG[source]], 1.0)
     ln_ratio = np.log(np.where(turning, ratio, 1.0))
     return np.where(o.batch.any(turning), o.batch.mean(ln_ratio, turning), np.nan)

@@ -23,10 +23,14 @@ CURVE_COLUMNS: Final = (
     "cw_kg_m",
     "cw_lo_kg_m",
     "cw_hi_kg_m",
+    "flags",
 )
 CW_COLUMNS: Final = ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
 FIVE_YEARS: Final = RegisterRule()
 """A tow counts until the end of the fifth calendar year after it (FSN notice, January 2013)."""
+
+DOUBTED: Final = "doubted"
+"""Status of a line whose tows the rest of the archive rules out."""
 
 EXCLUDE, PREFER = "exclude", "prefer"
 DECISION_SCHEMA: Final = {"tow_id": pl.String(), "verdict": pl.String()}
@@ -67,12 +71,14 @@ def draft_register(
 
     Returns:
         Rows of the table `register`, with status `valid`, `expired`, `rejected` (towed, but no tow
-        gives a curve), `excluded` (by decision, and there is no other tow) or `never_towed`.
+        gives a curve), `doubted` (the rest of the archive rules its tows out; a person may look and
+        prefer one), `excluded` (by decision, and there is no other tow) or `never_towed`.
     """
     towed = _as_ruled(curves, rule).join(
         tows.filter(pl.col("tow_date") <= on_date).select("tow_id", "tow_date"), on="tow_id"
     )
-    sound = towed.filter(pl.col("status") != "rejected")
+    curved = towed.filter(pl.col("status") != "rejected")
+    sound = curved.join(_doubted(tows, decisions), on="tow_id", how="anti")
     allowed = sound.join(_with_verdict(decisions, EXCLUDE), on="tow_id", how="anti")
     preferred = pl.col("tow_id").is_in(_with_verdict(decisions, PREFER)["tow_id"].implode())
     chosen = (
@@ -91,7 +97,8 @@ def draft_register(
     crews = boats.drop_nulls(["rowers", "crew_class"]).select(LINE)
     without = [
         (sound.join(chosen, on=LINE, how="anti"), "excluded"),
-        (towed.join(sound, on=LINE, how="anti"), "rejected"),
+        (curved.join(sound, on=LINE, how="anti"), DOUBTED),
+        (towed.join(curved, on=LINE, how="anti"), "rejected"),
         (crews.join(towed, on="fsn_no", how="anti"), "never_towed"),
     ]
     lines = [
@@ -99,6 +106,14 @@ def draft_register(
         for frame, status in without
     ]
     return pl.concat([chosen, *lines], how="diagonal").sort(LINE)
+
+
+def _doubted(tows: pl.DataFrame, decisions: pl.DataFrame) -> pl.DataFrame:
+    """Tows that the rest of the archive rules out and nobody preferred after looking."""
+    if "doubts" not in tows.columns:
+        return tows.clear()
+    doubted = tows.filter(pl.col("doubts").list.len() > 0)
+    return doubted.join(_with_verdict(decisions, PREFER), on="tow_id", how="anti")
 
 
 def _as_ruled(curves: pl.DataFrame, rule: RegisterRule) -> pl.DataFrame:

@@ -102,8 +102,18 @@ def best_estimates(
     )
     ln_cw, sd, lo, hi = numbers.T
     names = network.tows["tow_id"]
+    loose = network.group >= 0
+    lost = np.zeros(len(loose), dtype=bool)
+    lost[loose] = ~network.determined[network.group[loose]]
+    lost_tows = np.flatnonzero(lost)
     weights = (
         pl.concat(shares)
+        .with_columns(
+            pl.when(pl.col("tow").is_in(lost_tows.tolist()))
+            .then((pl.col("tow") == pl.col("other")).cast(pl.Float64))
+            .otherwise("weight")
+            .alias("weight")
+        )
         .filter(pl.col("weight").abs() >= LEAST_WEIGHT)
         .sort("tow", "other")
         .select(

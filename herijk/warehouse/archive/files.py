@@ -15,6 +15,7 @@ import pyarrow as pa  # type: ignore[import-untyped]
 
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.faults import DefectiveFileError
+from herijk.warehouse.archive.limits import check_rows
 from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.text import fold_name
 
@@ -39,9 +40,6 @@ _ONE_RUN: Final = re.compile(
     r"(.*?[^0-9])[ _.-]*(?:run|vaart|lauf|r)?[ _.-]*([0-9]{1,2})", re.IGNORECASE
 )
 PROFILE_FILE: Final = "archief.toml"
-LIST_MAX_BYTES: Final = 50_000_000
-SAMPLES_MAX_BYTES: Final = 400_000_000
-"""A tow of 300,000 samples is 12 MB of text."""
 
 _CHUNK_BYTES: Final = 1 << 20
 _COMPRESSION: Final = {".gz": "gzip", ".zst": "zstd"}
@@ -239,6 +237,7 @@ def read_bytes(path: Path, max_bytes: int) -> bytes:
         raise DefectiveInputError("unreadable_file", said) from error
     if len(content) > max_bytes:
         raise too_large(path, max_bytes)
+    check_rows(content)
     return content
 
 

@@ -23,7 +23,6 @@ from herijk.warehouse.archive.boats import Boats
 from herijk.warehouse.archive.faults import DefectiveFileError, Fault, fault_from
 from herijk.warehouse.archive.files import (
     BOATS_FILE,
-    LIST_MAX_BYTES,
     PARTS,
     PROFILE_FILE,
     RACES_PATTERN,
@@ -42,6 +41,7 @@ from herijk.warehouse.archive.files import (
     path_inside,
     read_bytes,
 )
+from herijk.warehouse.archive.limits import LIST_MAX_BYTES
 from herijk.warehouse.archive.lists import ListRow, read_list
 from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.misfits import misfits

@@ -16,7 +16,6 @@ from herijk.tables.frames import frame_of
 from herijk.tables.lake import ListedRaces, PrintedLines
 from herijk.warehouse.archive.faults import Fault, fault_from
 from herijk.warehouse.archive.files import (
-    LIST_MAX_BYTES,
     RACES_PATTERN,
     REGISTER_PATTERN,
     ArchiveFile,
@@ -24,6 +23,7 @@ from herijk.warehouse.archive.files import (
     path_inside,
     read_bytes,
 )
+from herijk.warehouse.archive.limits import LIST_MAX_BYTES
 from herijk.warehouse.archive.lists import ListRow, read_list
 from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.misfits import misfits

@@ -17,6 +17,7 @@ from functools import cache
 from typing import Final
 
 from herijk.pipeline.errors import DefectiveInputError
+from herijk.warehouse.archive.limits import check_header
 from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.units import UNITS, Scale, find_scale, is_unit
 
@@ -111,8 +112,13 @@ def is_separator_line(line: str) -> bool:
 
 
 def find_delimiter(header_line: str) -> str:
-    """Return the delimiter that occurs most in a header; a blank, then `;`, when there is none."""
+    """Return the delimiter that occurs most in a header; a blank, then `;`, when there is none.
+
+    Raises:
+        DefectiveInputError: `too_large`: it is longer than a header can be.
+    """
     most = max(DELIMITERS, key=header_line.count)
+    check_header(header_line, header_line.count(most) + 1)
     if most not in header_line and len(header_line.split()) > 1:
         return " "
     return most

@@ -13,7 +13,7 @@ from typing import Any, Final
 import duckdb
 import polars as pl
 
-from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.errors import HerijkError
 from herijk.pipeline.method.definition import Method
 from herijk.tables.lake import SEASON_TABLES, PrintedLines
 from herijk.tables.schemas import TABLES
@@ -96,7 +96,7 @@ class Inputs:
         try:
             with open_database(self.store.database) as db:
                 return pl.DataFrame(db.table(table).pl())
-        except (MissingKnowledgeError, duckdb.Error):  # not made yet, or damaged too
+        except (HerijkError, duckdb.Error):  # not made yet, or damaged too
             return TABLES[table].create_empty()
 
     @cached_property

@@ -63,6 +63,7 @@ REGISTER_FIELDS: Final = (
     Field("roeiers", "rowers", "integer", "aantal roeiers waarvoor de regel geldt"),
     Field("klasse", "crew_class", "string", "H heren, D dames"),
     Field("status", "status", "string", "geldig, of waarom er geen geldige kromme is"),
+    Field("nakijken", "flags", "string", "ja: de commissie moet nog naar deze sleep kijken"),
     Field("roeisnelheid [m/s]", "declared_speed_m_s", "number", "opgegeven snelheid", 2),
     Field("A", "a_kg_m", "number", "A in kg/m: de weerstand bij snelheid 0"),
     Field(
@@ -198,6 +199,9 @@ def _field(field: Field) -> dict[str, Any]:
 def _in_words(frame: pl.DataFrame) -> pl.DataFrame:
     """Codes in the words that people read."""
     words = {"status": DUTCH.statuses, "basis": BASIS_WORDS}
+    if "flags" in frame.columns:
+        to_look_at = pl.col("flags").list.len() > 0
+        frame = frame.with_columns(pl.when(to_look_at).then(pl.lit("ja")).alias("flags"))
     return frame.with_columns(
         pl.col(column).replace(words[column]) for column in words if column in frame.columns
     )

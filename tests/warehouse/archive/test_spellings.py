@@ -244,8 +244,8 @@ def test_spoiled_bytes_are_read_or_set_aside_and_nothing_else(
     else:
         code = None
         assert frame.schema == pl.Schema(SAMPLE_SCHEMA)
-        numbers = frame.drop("gps_m_s").select(pl.all().cast(pl.Float64()).is_finite().all())
-        assert all(numbers.row(0))
+        infinite = frame.select(pl.all().cast(pl.Float64()).is_infinite().any())
+        assert not any(infinite.row(0))
     assert code is None or code in REASONS
 
 
