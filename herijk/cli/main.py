@@ -19,6 +19,7 @@ import typer
 from herijk.cli import documents as commands_documents
 from herijk.cli import editions as commands_editions
 from herijk.cli import methods, text
+from herijk.cli.archive import check, init
 from herijk.cli.arguments import ArchiveFolder, AsJson, DataFolder, show
 from herijk.cli.doctor import doctor
 from herijk.cli.fit import fit
@@ -40,6 +41,8 @@ app.add_typer(methods.app, name="methods", invoke_without_command=True)
 commands_editions.add_to(app)
 commands_documents.add_to(app)
 app.command()(fit)
+app.command()(check)
+app.command()(init)
 app.command()(doctor)
 
 MOST_TYPES: Final = 2

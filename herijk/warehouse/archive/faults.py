@@ -206,6 +206,10 @@ REASONS: Final[dict[str, Reason]] = {
         "A run has a number other than 1 to 6.",
         "Correct the `run` column.",
     ),
+    "run_not_planned": Reason(
+        "A samples file has a run that the plan of its season does not know; it is not used.",
+        "Give the targets and directions of all runs under `[[plan]]` in `archief.toml`.",
+    ),
     "split_run": Reason(
         "The rows of a run do not stand together.",
         "Put the rows of each run together, in the order measured.",

@@ -241,6 +241,27 @@ def read_bytes(path: Path, max_bytes: int) -> bytes:
     return content
 
 
+def read_start(path: Path, most: int) -> bytes:
+    """Return the first bytes of a file, unpacked, up to a whole line where there is one.
+
+    Raises:
+        DefectiveInputError: `unreadable_file`.
+    """
+    compression = _COMPRESSION.get(path.suffix.casefold())
+    try:
+        with path.open("rb") as raw:
+            if compression is None:
+                content = raw.read(most)
+            else:
+                with pa.CompressedInputStream(pa.PythonFile(raw, mode="r"), compression) as stream:
+                    content = stream.read(most)
+    except (OSError, pa.ArrowException) as error:
+        said = say("'{name}' cannot be read or unpacked: {error}.", name=path.name, error=error)
+        raise DefectiveInputError("unreadable_file", said) from error
+    is_utf16 = b"\x00" in content[:100]
+    return bytes(content if is_utf16 else content[: content.rfind(b"\n") + 1] or content)
+
+
 def hash_of_parts(hashes: list[str]) -> str:
     """Return one hash of several files from theirs, in their order."""
     return hashlib.sha256("\n".join(hashes).encode()).hexdigest()

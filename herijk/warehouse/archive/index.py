@@ -160,12 +160,15 @@ class _Hashes:
         return frame_of(ListedFiles, rows)
 
 
-def index_archive(root: Path, hash_file: Callable[[Path], str]) -> ArchiveIndex:
+def index_archive(
+    root: Path, hash_file: Callable[[Path], str], profiles: Profiles | None = None
+) -> ArchiveIndex:
     """Read the lists of an archive and find the files of every tow.
 
     Args:
         root: folder of the archive.
         hash_file: gives the SHA-256 of a file; `FileHashes.hash_file` remembers them.
+        profiles: `archief.toml`, where it is not the one in the archive.
 
     Returns:
         The index. The samples have not been opened, only hashed.
@@ -174,7 +177,7 @@ def index_archive(root: Path, hash_file: Callable[[Path], str]) -> ArchiveIndex:
         MissingKnowledgeError: there is no archive, or `archief.toml` cannot be understood.
     """
     _check_present(root)
-    profiles = read_profiles(root)
+    profiles = profiles or read_profiles(root)
     hashes = _Hashes(hash_file)
     faults: list[Fault] = []
     _hash_others(root, hashes, faults)

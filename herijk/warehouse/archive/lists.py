@@ -154,10 +154,11 @@ class ListRow:
         cell = self.optional_text(key)
         if cell is None:
             return None
-        self._check_one_meaning(key, cell)
         number, (numerator, denominator) = self._number_and_scale(key, cell)
         value = number * numerator / denominator
         lowest, highest = self.reading.limits(key)
+        if not lowest <= value <= highest or lowest <= 1000 * value <= highest:
+            self._check_one_meaning(key, cell)
         if not lowest <= value <= highest:
             limits = (limit * denominator / numerator for limit in (lowest, highest))
             low, high = (f"{limit:g}" for limit in limits)
@@ -266,17 +267,18 @@ class ListRow:
         return value
 
     def crew_class(self, key: str) -> str:
-        """Return `H`, `D`, or the class that `[words]` says: `M` for a mixed crew."""
+        """Return `H` or `D`."""
         cell = self.text(key)
         value = CLASSES.get(fold_word(cell))
-        if value is None and cell not in self.reading.words.values():
+        if value is None:
             message = say(
                 "column '{column}' is '{cell}'; H or D is expected.",
                 column=self.named(key),
                 cell=shorten(cell),
+                expected="HD",
             )
             raise self.fault(message)
-        return value or cell
+        return value
 
     def yes_or_no(self, key: str) -> bool:
         """Return whether a cell says yes; an empty one says no."""
@@ -392,10 +394,13 @@ def read_list(
     """
     wanted = wording.with_names(columns)
     sheet = read_sheet(data, wanted, path[path.rfind(".") :].casefold())
-    found = find_columns(sheet.header, wanted, sheet.line)
+    optional = [replace(column, required=False) for column in wanted]
+    found = find_columns(sheet.header, optional, sheet.line)
     strange = [h for h in unknown_headers(sheet.header, found) if fold(h) not in wording.ignore]
+    free = [column for column in wanted if column.key not in found]
     if strange:
-        raise DefectiveInputError("unknown_column", _strange(strange, wanted), sheet.line)
+        raise DefectiveInputError("unknown_column", _strange(strange, free), sheet.line)
+    find_columns(sheet.header, wanted, sheet.line)
     cells = [cell.strip() for row in sheet.rows for cell in row.fields]
     order = wording.dates.get(path, wording.dates.get("*", "")) or date_order(cells)
     reading = Reading(
@@ -419,6 +424,7 @@ def _strange(headers: Sequence[str], columns: Sequence[Column]) -> str:
             f"'{shorten(header)}'" + (f" ({column.named}?)" if column else "")
             for header, column in meant.items()
         ),
+        meant=tuple((h, column.header if column else "") for h, column in meant.items()),
     )
 
 

@@ -24,7 +24,7 @@ from herijk.warehouse.archive.files import (
     read_bytes,
 )
 from herijk.warehouse.archive.limits import LIST_MAX_BYTES
-from herijk.warehouse.archive.lists import ListRow, read_list
+from herijk.warehouse.archive.lists import ListRow, Wording, read_list
 from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.misfits import misfits
 from herijk.warehouse.archive.profile import read_profiles
@@ -59,7 +59,9 @@ _ROWING_TIME: Final = re.compile(r"([0-9]{1,2}):([0-5][0-9]):([0-5][0-9])(?:[.,]
 _ReadRow = Callable[[ListRow, int], dict[str, Any]]
 
 
-def read_published_registers(root: Path) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
+def read_published_registers(
+    root: Path, wording: Wording | None = None
+) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
     """Read every `sloepregister/sloepregister_<jaar>.csv`.
 
     Returns:
@@ -68,11 +70,13 @@ def read_published_registers(root: Path) -> tuple[pl.DataFrame, tuple[Fault, ...
     """
     files = list_files(root, "sloepregister", REGISTER_PATTERN)
     return _read_all(
-        root, files, REGISTER_COLUMNS, "bad_register_row", PrintedLines, _register_line
+        root, files, REGISTER_COLUMNS, "bad_register_row", PrintedLines, _register_line, wording
     )
 
 
-def read_races(root: Path) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
+def read_races(
+    root: Path, wording: Wording | None = None
+) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
     """Read every `wedstrijden/<naam>_<jaar>.csv`.
 
     Returns:
@@ -80,7 +84,7 @@ def read_races(root: Path) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
         that cannot be read.
     """
     files = list_files(root, "wedstrijden", RACES_PATTERN)
-    return _read_all(root, files, RACE_COLUMNS, "bad_race_row", ListedRaces, _race_result)
+    return _read_all(root, files, RACE_COLUMNS, "bad_race_row", ListedRaces, _race_result, wording)
 
 
 def _read_all(
@@ -90,8 +94,9 @@ def _read_all(
     reason_code: str,
     table: type[dy.Schema],
     read_row: _ReadRow,
+    wording: Wording | None,
 ) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
-    wording = read_profiles(root).wording
+    wording = wording or read_profiles(root).wording
     good: list[dict[str, Any]] = []
     faults: list[Fault] = []
     for file in files:

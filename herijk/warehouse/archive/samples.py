@@ -27,6 +27,7 @@ from herijk.warehouse.archive.files import (
     kind_of,
     path_inside,
     read_bytes,
+    read_start,
     too_large,
 )
 from herijk.warehouse.archive.limits import MOST_ROWS, SAMPLES_MAX_BYTES, too_many_rows
@@ -134,6 +135,24 @@ def read_samples(
     if "time" in raw.columns:
         _check_time(samples["run"], raw["time"].to_numpy(), sample_rate_hz)
     return samples
+
+
+def check_header(path: Path, profile: SeasonProfile) -> None:
+    """Read the columns of a samples file, not its samples.
+
+    Raises:
+        DefectiveInputError: as `read_samples`, for a fault of the header.
+    """
+    kind = kind_of(path)
+    if kind == ".parquet":
+        try:
+            with pq.ParquetFile(path) as file:
+                names = file.schema_arrow.names
+        except (OSError, pa.ArrowException) as error:
+            raise _not_parquet(path, error) from error
+        _check_nothing_misspelt(names, find_columns(names, profile.columns), profile)
+    elif kind != ".tdms":
+        _split_header(read_start(path, _HEAD_BYTES), profile)
 
 
 def read_tow_samples(root: Path, tow: Mapping[str, Any], profile: SeasonProfile) -> pl.DataFrame:
@@ -392,8 +411,12 @@ def _read_parquet(path: Path, profile: SeasonProfile, max_bytes: int) -> pl.Data
         said = say("'{name}' is not there any more.", name=path.name)
         raise DefectiveInputError("samples_missing", said) from error
     except (OSError, ValueError, pa.ArrowException, pl.exceptions.PolarsError) as error:
-        said = say("'{name}' is not a whole Parquet file: {error}.", name=path.name, error=error)
-        raise DefectiveInputError("unreadable_file", said) from error
+        raise _not_parquet(path, error) from error
+
+
+def _not_parquet(path: Path, error: Exception) -> DefectiveInputError:
+    said = say("'{name}' is not a whole Parquet file: {error}.", name=path.name, error=error)
+    return DefectiveInputError("unreadable_file", said)
 
 
 def _batches(file: pq.ParquetFile, names: list[str]) -> Iterator[pa.RecordBatch]:
