@@ -56,22 +56,22 @@ def in_radians(samples: Samples) -> Samples:
 
 
 KINDS: dict[str, list[tuple[str, Change]]] = {
-    "kracht in kgf": [("", times((FORCE,), 1 / 9.80665))],
-    "kracht in daN": [("", times((FORCE,), 0.1))],
-    "kracht in lbf": [("", times((FORCE,), 1 / 4.4482216))],
-    "kracht in kN": [("", times((FORCE,), 1e-3))],
-    "kracht, schaal": [
+    "force in kgf": [("", times((FORCE,), 1 / 9.80665))],
+    "force in daN": [("", times((FORCE,), 0.1))],
+    "force in lbf": [("", times((FORCE,), 1 / 4.4482216))],
+    "force in kN": [("", times((FORCE,), 1e-3))],
+    "force, scale": [
         (f"{100 * (k - 1):+.0f} %", times((FORCE,), k)) for k in (0.5, 0.7, 0.85, 1.15, 1.3, 2.0)
     ],
-    "kracht, nulpunt": [
+    "force, zero": [
         (f"{n:+.0f} N", partial(plus, FORCE)(float(n))) for n in (-100, -50, 50, 100, 150)
     ],
     "wind in km/h": [("", times((WIND,), 3.6))],
-    "wind in knopen": [("", times((WIND,), 1.943844))],
-    "wind, schaal": [(f"{100 * (k - 1):+.0f} %", times((WIND,), k)) for k in (0.5, 0.7, 1.3, 1.6)],
-    "windhoek in radialen": [("", in_radians)],
-    "windvaan verdraaid": [(f"{a} graden", turned(a)) for a in (10, 20, 45, 90, 180)],
-    "alle snelheden, schaal": [
+    "wind in knots": [("", times((WIND,), 1.943844))],
+    "wind, scale": [(f"{100 * (k - 1):+.0f} %", times((WIND,), k)) for k in (0.5, 0.7, 1.3, 1.6)],
+    "wind angle in radians": [("", in_radians)],
+    "vane turned by": [(f"{a} degrees", turned(a)) for a in (10, 20, 45, 90, 180)],
+    "all speeds, scale": [
         (f"{100 * (k - 1):+.0f} %", times(SPEEDS, k)) for k in (0.94, 0.97, 1.03, 1.06)
     ],
 }

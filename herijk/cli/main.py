@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
+from herijk.cli import documents as commands_documents
 from herijk.cli import editions as commands_editions
 from herijk.cli import methods, text
 from herijk.cli.archive import check, init
@@ -38,6 +39,7 @@ app = typer.Typer(
 app.add_typer(methods.app, name="methods", invoke_without_command=True)
 
 commands_editions.add_to(app)
+commands_documents.add_to(app)
 app.command()(fit)
 app.command()(check)
 app.command()(init)

@@ -31,18 +31,18 @@ def colour(field: str, title: str, **more: Any) -> alt.Color:
 def method_colour(say: Say) -> alt.Color:
     """A method by colour: every method that ships has the same in every figure."""
     scale = _of_methods(OKABE_ITO)
-    return alt.Color("method:N", title=say("method"), scale=scale, sort=None, legend=_drawn())
+    return alt.Color("method:N", title=say("method"), scale=scale, sort=None, legend=_drawn(say))
 
 
 def method_shape(say: Say) -> alt.Shape:
     """The same method by shape."""
     scale = _of_methods(SHAPES)
-    return alt.Shape("method:N", title=say("method"), scale=scale, sort=None, legend=_drawn())
+    return alt.Shape("method:N", title=say("method"), scale=scale, sort=None, legend=_drawn(say))
 
 
-def _drawn() -> alt.Legend:
+def _drawn(say: Say) -> alt.Legend:
     """Only methods that are drawn: those that stand side by side, of all that have a look."""
-    return alt.Legend(values=alt.ExprRef("domain('xOffset')"))
+    return alt.Legend(values=alt.ExprRef("domain('xOffset')"), labelExpr=methods_named(say))
 
 
 def _of_methods(looks: Sequence[str]) -> alt.Scale:
@@ -60,6 +60,12 @@ def number(channel: Any, field: str, title: str, zero: bool = False, **more: Any
     """A quantity on an axis that need not begin at zero; labels below it keep apart."""
     across = {"axis": alt.Axis(tickCount=8)} if channel is alt.X else {}
     return channel(f"{field}:Q", title=title, scale=alt.Scale(zero=zero), **across | more)
+
+
+def methods_named(say: Say) -> str:
+    """A Vega expression that gives a method that ships its name in words."""
+    texts = {name: say(f"method.{name}") for name in shipped_methods()}
+    return f"({json.dumps(texts)})[datum.value] || datum.value"
 
 
 def type_legend(say: Say, **more: Any) -> alt.Legend:
