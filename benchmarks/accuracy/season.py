@@ -75,8 +75,7 @@ def named(setup, season, worlds):
     for seed in range(worlds):
         world = simulate(setup, seed)
         found = season_log.estimate_season_factors(world.tows)
-        told = season_log.log_or_force(world.tows, found)
-        causes.append(told.filter(pl.col("season") == season)["cause"][0])
+        causes.append(found.steps.filter(pl.col("season") == season)["cause"][0])
     names, counts = np.unique(causes, return_counts=True)
     return dict(zip(names.tolist(), (counts / worlds).round(3).tolist(), strict=True))
 

@@ -1,10 +1,11 @@
-"""Puts hundreds of faults in an archive: each tow is set aside or keeps its numbers, all of them.
+"""Puts hundreds of faults in an archive: each is said in the quarantine, or moves no number.
 
     python benchmarks/robustness/mutate.py [faults] [seed]
 
 In each round most tows of a season get a fault (`faults`), and the archive is read again and the
-methods applied. A faulty tow must be set aside, or have exactly the rows it had before in every
-table; a tow without a fault must have exactly those, and not be set aside.
+methods applied. Of a faulty tow something must be set aside (seconds, a run or all of it), or it
+has exactly the rows it had before in every table; a tow without a fault must have exactly those,
+and nothing of it set aside.
 """
 
 import datetime as dt
@@ -82,7 +83,7 @@ class Ground:
         self.files = dict(listed.select("tow_id", "samples_path").iter_rows())
 
     def read(self) -> tuple[Rows, set[str]]:
-        """Rows of each tow in each table, and the tows set aside."""
+        """Rows of each tow in each table, and the tows of which something is set aside."""
         store = self.store
         intake.bring_in(store, self.archive)
         ARCHIVE.make(store, (), SEEN)

@@ -3,8 +3,7 @@
 The job runs the same rebuild as the command. It makes drafts; publishing is not among the jobs.
 """
 
-import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -16,11 +15,20 @@ from herijk.assets.rebuild import rebuild
 from herijk.assets.report import failed_checks, tell, tell_failure
 from herijk.assets.resources import Setup
 from herijk.assets.settings import Settings
-from herijk.pipeline.errors import HerijkError, MissingKnowledgeError, UnavailableError
+from herijk.pipeline.errors import (
+    HerijkError,
+    MissingKnowledgeError,
+    UnavailableError,
+    unexpected,
+)
 from herijk.warehouse.intake.seasons import Listing, listing
+from herijk.warehouse.store.store import fingerprint
 
 ONE_AT_A_TIME = {"herijk/rebuild": "data folder"}
 """The tag of which one run at a time is started (see `INSTANCE_SETTINGS`)."""
+
+LONGEST_S = 12 * 3600
+"""A run that takes longer hangs, and is ended so that the next can begin."""
 
 TRY_AGAIN_S = 300
 TRIES = 3
@@ -54,7 +62,10 @@ class Which(dg.Config):
 
 @dg.op
 def rebuild_archive(
-    context: dg.OpExecutionContext, config: Which, setup: Setup, notifier: Notifier
+    context: dg.OpExecutionContext,
+    config: Which,
+    setup: Setup,
+    notifier: dg.ResourceParam[Notifier],
 ) -> None:
     """The whole rebuild, as `herijk rebuild` does it."""
     progress = LogProgress(context)
@@ -65,7 +76,7 @@ def rebuild_archive(
         if context.retry_number < TRIES:
             raise dg.RetryRequested(TRIES, TRY_AGAIN_S) from error
         raise _failure(notifier, error) from error
-    except HerijkError as error:
+    except Exception as error:  # whatever it is, it is told
         raise _failure(notifier, error) from error
     for line in [*report["headlines"], *tell(notifier, report)]:
         context.log.info(line)
@@ -80,12 +91,13 @@ def rebuild_archive(
         raise dg.Failure("; ".join(failed), allow_retries=False)
 
 
-def _failure(notifier: Notifier, error: HerijkError) -> dg.Failure:
-    problems = tell_failure(notifier, str(error))
-    return dg.Failure("; ".join([str(error), *problems]), allow_retries=False)
+def _failure(notifier: Notifier, error: Exception) -> dg.Failure:
+    what = str(error) if isinstance(error, HerijkError) else unexpected(error)
+    problems = tell_failure(notifier, what)
+    return dg.Failure("; ".join([what, *problems]), allow_retries=False)
 
 
-@dg.job(name="rebuild", tags=ONE_AT_A_TIME)
+@dg.job(name="rebuild", tags=ONE_AT_A_TIME | {"dagster/max_runtime": str(LONGEST_S)})
 def rebuild_job() -> None:
     """Everything from the archive to the drafts, the site and a report; publishes nothing."""
     rebuild_archive()
@@ -116,7 +128,7 @@ def archive_sensor(archive: Path) -> dg.SensorDefinition:
 
     def look(context: dg.SensorEvaluationContext) -> dg.SensorResult | dg.SkipReason:
         try:
-            return _look(listing(archive), json.loads(context.cursor or "{}"))
+            return _look(_digest(listing(archive)), context.cursor or "")
         except MissingKnowledgeError as error:
             return dg.SkipReason(str(error))
 
@@ -130,34 +142,21 @@ def archive_sensor(archive: Path) -> dg.SensorDefinition:
     )
 
 
-def _look(now: Listing, cursor: dict[str, Listing]) -> dg.SensorResult:
-    """The cursor holds the listing of the last tick and that of the last request.
+def _look(now: str, cursor: str) -> dg.SensorResult:
+    """The cursor holds the digests of the listings of the last request and of the last tick.
 
     A change counts when two ticks see the same listing: so no clock is asked, and no half copy is
     read.
     """
-    asked, before = cursor.get("asked", {}), cursor.get("seen", {})
-    changes = ", ".join(_changes(asked, now))
-    if not changes:
-        skip = "no file of the archive changed"
-    elif now != before:
-        skip = f"{changes}; waiting until the archive is left alone"
-    else:
-        request = dg.RunRequest(tags={"herijk/changes": changes})
-        return dg.SensorResult(run_requests=[request], cursor=_cursor(now, now))
-    return dg.SensorResult(skip_reason=skip, cursor=_cursor(asked, now))
+    asked, _, before = cursor.partition(" ")
+    if now == asked:
+        return dg.SensorResult(skip_reason="no file of the archive changed", cursor=cursor)
+    if now != before:
+        skip = "files changed; waiting until the archive is left alone"
+        return dg.SensorResult(skip_reason=skip, cursor=f"{asked} {now}")
+    return dg.SensorResult(run_requests=[dg.RunRequest()], cursor=f"{now} {now}")
 
 
-def _cursor(asked: Listing, seen: Listing) -> str:
-    return json.dumps({"asked": asked, "seen": seen})
-
-
-def _changes(was: Listing, now: Listing) -> Iterator[str]:
-    found = {
-        "new": now.keys() - was.keys(),
-        "changed": {path for path in now.keys() & was.keys() if now[path] != was[path]},
-        "removed": was.keys() - now.keys(),
-    }
-    for what, paths in found.items():
-        if paths:
-            yield f"{len(paths)} {what}"
+def _digest(found: Listing) -> str:
+    """A listing in a few letters: a cursor is kept for every tick."""
+    return fingerprint(found)

@@ -27,7 +27,9 @@ def build_defs(archive: str, data: str, settings: Settings) -> dg.Definitions:
             jobs=[automation.rebuild_job],
             schedules=automation.schedules(settings),
             sensors=[automation.archive_sensor(Path(archive))],
-            resources={"notifier": notifier_of(data, settings)},
+            resources={
+                "notifier": dg.ResourceDefinition.hardcoded_resource(notifier_of(data, settings))
+            },
         ),
     )
 

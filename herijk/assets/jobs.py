@@ -5,7 +5,7 @@ from typing import Final
 import dagster as dg
 
 from herijk.assets import archive, checks
-from herijk.assets.resources import Progress, Setup
+from herijk.assets.resources import Progress, Setup, fixed
 from herijk.assets.site import site
 from herijk.assets.tables import STEP_ASSETS
 from herijk.warehouse.build import graph
@@ -56,5 +56,8 @@ def job_defs(setup: Setup, progress: Progress) -> dg.Definitions:
         assets=ASSETS,
         asset_checks=checks.ALL,
         jobs=JOBS,
-        resources={"setup": setup, "progress": dg.ResourceDefinition.hardcoded_resource(progress)},
+        resources={
+            "setup": fixed(setup),
+            "progress": dg.ResourceDefinition.hardcoded_resource(progress),
+        },
     )

@@ -5,20 +5,21 @@ A message that cannot be sent is reported and never stops a rebuild.
 
 import datetime as dt
 import json
+import os
+import urllib.parse
 import urllib.request
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from email.message import EmailMessage
 from email.utils import format_datetime
 from http.client import HTTPException
 from pathlib import Path
 from typing import Any
 
-import dagster as dg
-
 from herijk.assets.settings import Settings
 from herijk.warehouse.store.files import written_beside
 
 TIMEOUT_S = 10.0
+WEBHOOK_VARIABLE = "HERIJK_WEBHOOK"
 
 
 @dataclass(frozen=True)
@@ -31,8 +32,11 @@ class Message:
     sent_at: dt.datetime
 
 
-class Notifier(dg.ConfigurableResource):
+@dataclass(frozen=True)
+class Notifier:
     """Whom to tell; nobody where neither address is given.
+
+    No resource with settings of its own: Dagster's page would show them.
 
     Attributes:
         data: the data folder; mails are put into `outbox/` in it, one file each, for the mail
@@ -44,7 +48,7 @@ class Notifier(dg.ConfigurableResource):
     data: str
     mail_to: str | None = None
     mail_from: str = ""
-    webhook: str | None = None
+    webhook: str | None = field(default=None, repr=False)
 
     def send(self, message: Message) -> list[str]:
         """Sends a message everywhere; returns a sentence for each place where that failed."""
@@ -54,7 +58,8 @@ class Notifier(dg.ConfigurableResource):
                 try:
                     send(message)
                 except (OSError, ValueError, HTTPException) as error:
-                    problems.append(f"no message could be sent to {address}: {error}")
+                    why = str(error).replace(address, _shown(address))
+                    problems.append(f"no message could be sent to {_shown(address)}: {why}")
         return problems
 
     def _mail(self, message: Message) -> None:
@@ -76,11 +81,17 @@ class Notifier(dg.ConfigurableResource):
             pass
 
 
+def _shown(address: str) -> str:
+    """An address without what may be a secret: of a web address, the machine alone."""
+    parts = urllib.parse.urlsplit(address)
+    return f"{parts.scheme}://{parts.hostname}" if parts.hostname else address
+
+
 def notifier_of(data: str, settings: Settings) -> Notifier:
     """The notifier that the settings ask for."""
     return Notifier(
         data=data,
         mail_to=settings.mail_to,
         mail_from=settings.mail_from,
-        webhook=settings.webhook,
+        webhook=os.environ.get(WEBHOOK_VARIABLE, settings.webhook),
     )

@@ -27,7 +27,7 @@ from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.intake.lake import ArchiveChangedError
 from herijk.warehouse.queries.journal import is_reported
 from herijk.warehouse.store.files import written_beside
-from herijk.warehouse.store.lock import only_writer
+from herijk.warehouse.store.lock import nobody_writes, only_writer
 from herijk.warehouse.store.obstacles import obstacles_explained
 from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import DamagedFileError, Store
@@ -84,6 +84,7 @@ def rebuild(
         HerijkError: there is no archive, a promise was broken, another rebuild is at work, or the
             machine is in the way.
     """
+    check_apart(archive, data)
     with obstacles_explained(data):
         settings = read_settings(data)
     setup = Setup(
@@ -217,6 +218,46 @@ class _Jobs:
 
     def _keep(self, checks: Iterable[dg.AssetCheckEvaluation]) -> None:
         self._checks |= {check.asset_check_key: check for check in checks}
+
+
+def check_apart(archive: Path, data: Path) -> None:
+    """Refuses an archive in the data folder: a rebuild would write among what it reads.
+
+    Raises:
+        MissingKnowledgeError: the archive is the data folder, or lies in it.
+    """
+    if archive.resolve().is_relative_to(data.resolve()):
+        raise MissingKnowledgeError(
+            f"the archive {archive} lies in the data folder {data}, or is the same; name a data "
+            "folder outside the archive with --data"
+        )
+
+
+def taking_over(store: Store) -> Iterator[str]:
+    """Ends the runs of a server that was stopped or killed: later ones would wait for them.
+
+    Returns:
+        A sentence for who starts the new server, about each kind of run that was found.
+    """
+    if not nobody_writes(store.root):
+        yield "A rebuild is at work; scheduled ones wait for it."
+        return
+    with _instance(store) as instance:
+        dead = instance.get_runs(dg.RunsFilter(statuses=list(_BEGUN)))
+        for run in dead:
+            instance.report_run_failed(run, "The process it was part of was stopped or killed.")
+        waiting = instance.get_runs_count(dg.RunsFilter(statuses=[dg.DagsterRunStatus.QUEUED]))
+    if dead:
+        yield f"{len(dead)} runs that were stopped or killed are recorded as failed."
+    if waiting:
+        yield f"{waiting} runs wait in the queue, and are done now one by one."
+
+
+_BEGUN: Final = (
+    dg.DagsterRunStatus.STARTED,
+    dg.DagsterRunStatus.STARTING,
+    dg.DagsterRunStatus.CANCELING,
+)
 
 
 def _bury_the_dead(instance: dg.DagsterInstance) -> None:

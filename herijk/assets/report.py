@@ -45,9 +45,10 @@ def write_report(
     text = json.dumps(report, default=str, indent=1)
     folder = store.root / "report"
     if not found.nothing:
-        from herijk.dashboards.report_page import report_page  # noqa: PLC0415 - Altair takes a second
+        from herijk.dashboards.report_page import report_pages  # noqa: PLC0415 - Altair takes a second
 
-        _write(folder / "latest.html", report_page(store, found, report))
+        for name, page in report_pages(store, found, report).items():
+            _write(folder / name, page)
         _write(folder / f"{now:%Y-%m-%dT%H%M%S}.json", text)
     _write(folder / "latest.json", text)
     remember(store)

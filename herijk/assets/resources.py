@@ -60,6 +60,17 @@ class Setup(dg.ConfigurableResource):
         return KnownMethods.of(self.store)
 
 
+def fixed(setup: Setup) -> dg.ResourceDefinition:
+    """The setup as a resource whose folders no run can name otherwise, also from Dagster's page."""
+
+    @dg.resource(config_schema={})
+    def held(context: dg.InitResourceContext) -> Iterator[Setup]:
+        with setup.yield_for_execution(context):
+            yield setup
+
+    return held
+
+
 class Progress(Protocol):
     """Is told what happens; shows it or keeps quiet."""
 

@@ -5,8 +5,10 @@ It lies in the data folder and may be left out. No setting in it can change a nu
 
 from pathlib import Path
 from typing import Final
+from zoneinfo import available_timezones
 
-from pydantic import BaseModel, ConfigDict, Field
+from dagster._utils.schedules import is_valid_cron_schedule
+from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from herijk.pipeline.method.definition import shipped_methods
 from herijk.warehouse.store.settings_file import read_settings_file
@@ -24,7 +26,8 @@ class Settings(BaseModel):
         campaign: when the season of that year is looked at, while it is towed.
         timezone: of both.
         mail_to, mail_from: with `mail_to`, a mail about each report is put into `outbox/`.
-        webhook: an address to which each report is posted as JSON.
+        webhook: an address to which each report is posted as JSON; `HERIJK_WEBHOOK` in the
+            environment goes before it. It may hold a secret and is shown nowhere.
         set_aside_share: more of the tows set aside gives a warning.
         factor_jump: a log factor that moves more gives a warning; a ratio minus 1.
         dask: scheduler of the Dask cluster that reads the seasons: `tcp://host:8786`; without it
@@ -43,6 +46,20 @@ class Settings(BaseModel):
     set_aside_share: float = Field(default=0.1, ge=0, le=1)
     factor_jump: float = Field(default=0.01, gt=0)
     dask: str | None = Field(default=None, pattern=r"^(tcp|tls)://")
+
+    @field_validator("nightly", "campaign")
+    @classmethod
+    def _is_cron(cls, line: str) -> str:
+        if not is_valid_cron_schedule(line):
+            raise ValueError(f"{line!r} is no cron line, such as '0 3 * * *'")
+        return line
+
+    @field_validator("timezone")
+    @classmethod
+    def _is_timezone(cls, name: str) -> str:
+        if name not in available_timezones():
+            raise ValueError(f"{name!r} is no time zone, such as 'Europe/Amsterdam'")
+        return name
 
     @property
     def applied(self) -> tuple[str, ...]:

@@ -71,7 +71,7 @@ def publish(
     as_json: AsJson = False,
 ) -> None:
     """Freeze an edition of the register: it is never changed afterwards."""
-    from herijk.warehouse.editions.publish import Terms, publish_printed
+    from herijk.warehouse.editions.publish import Terms, lines_to_look_at, publish_printed
     from herijk.warehouse.editions.publish import publish as publish_edition
     from herijk.warehouse.store.editions import read_edition
     from herijk.warehouse.store.store import Store
@@ -91,6 +91,7 @@ def publish(
     found = made.about.model_dump(mode="json") | {
         "folder": str(folder),
         "statuses": dict(counts.rows()),
+        "to_look_at": lines_to_look_at(made),
     }
     show(found, text.published, as_json)
 

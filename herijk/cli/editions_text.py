@@ -9,6 +9,26 @@ Report = dict[str, Any]
 KINDS = {"recomputed": "recomputed", "as_printed": "as printed"}
 
 
+def _to_look_at(lines: list[Report]) -> list[str]:
+    """Which lines are marked or left empty, one a line; nothing where none is."""
+    if not lines:
+        return []
+    rows = [
+        f"  {line['fsn_no']} {line['rowers']}{line['crew_class']}: "
+        + (
+            f"tow {line['tow_id']}: {', '.join(line['flags'])}"
+            if line["tow_id"]
+            else "no numbers: the archive rules its tows out (see doubts in the table tows)"
+        )
+        for line in lines
+    ]
+    return [
+        f"{len(lines)} lines need a look; they are marked in the register. Look at each with "
+        "herijk audit, and write what you decide in besluiten.toml:",
+        *rows,
+    ]
+
+
 def published(report: Report) -> str:
     """An edition that was just published."""
     lines = report["tables"]["register"]["rows"]
@@ -26,6 +46,8 @@ def published(report: Report) -> str:
             f"from {report['valid_from']}.",
             f"Decision: {report['decision']}",
             compared,
+            *_to_look_at(report["to_look_at"]),
+            f"Seal, to be kept in the minutes: {report['seal']}",
             f"Folder: {report['folder']}",
             "  register.xlsx, register.csv        the register",
             "  bericht.md, notice.md              one page for the members, Dutch and English",
@@ -182,6 +204,11 @@ def verify(report: Report) -> str:
             for f in report["findings"]
         ]
         parts.append(table(("edition", "", "kind", "where", "what"), rows))
+    if report["head"] is not None:
+        parts.append(
+            f"Head: {report['head']}\nThe seal of the last edition. Keep it, for example in the "
+            "minutes: whoever has it can tell later whether\nany edition was made anew."
+        )
     parts.append(_verdict(report["findings"]))
     return "\n\n".join(parts)
 

@@ -16,13 +16,15 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
+from herijk.cli import documents as commands_documents
 from herijk.cli import editions as commands_editions
 from herijk.cli import methods, text
+from herijk.cli.archive import check, init
 from herijk.cli.arguments import ArchiveFolder, AsJson, DataFolder, show
 from herijk.cli.doctor import doctor
 from herijk.cli.fit import fit
 from herijk.cli.overview import Overview, defaults_of, folders_here
-from herijk.pipeline.errors import BrokenPromiseError, HerijkError
+from herijk.pipeline.errors import BrokenPromiseError, HerijkError, unexpected
 
 if TYPE_CHECKING:
     from herijk.warehouse.store.store import Store
@@ -37,7 +39,10 @@ app = typer.Typer(
 app.add_typer(methods.app, name="methods", invoke_without_command=True)
 
 commands_editions.add_to(app)
+commands_documents.add_to(app)
 app.command()(fit)
+app.command()(check)
+app.command()(init)
 app.command()(doctor)
 
 MOST_TYPES: Final = 2
@@ -50,6 +55,26 @@ def main() -> None:
     except HerijkError as error:
         typer.echo(f"herijk: {error}", err=True)
         sys.exit(1)
+    except (KeyboardInterrupt, SystemExit):
+        raise
+    except BaseException as error:  # a panic of a library in Rust is no Exception
+        typer.echo(f"herijk: {_written_down(error)}", err=True)
+        sys.exit(1)
+
+
+def _written_down(error: BaseException) -> str:
+    """A sentence about an error that nobody foresaw, and where the rest of it stands."""
+    import tempfile
+    import traceback
+
+    with tempfile.NamedTemporaryFile(
+        "w", prefix="herijk-error-", suffix=".txt", encoding="utf-8", delete=False
+    ) as file:
+        file.write("".join(traceback.format_exception(error)))
+    return (
+        f"{unexpected(error)}. Nothing was published. Details stand in {file.name}; please send it "
+        "to who keeps Herijk"
+    )
 
 
 def _version(wanted: bool) -> None:
@@ -113,8 +138,12 @@ def rebuild(
 
     known = methods.known_methods(data)
     chosen = [known.kept(name) for name in method or read_settings(data).applied]
-    with TerminalProgress() as progress:
-        done = run(archive, data, chosen, progress, seasons)
+    try:
+        with TerminalProgress() as progress:
+            done = run(archive, data, chosen, progress, seasons)
+    except Exception as error:
+        _tell_failure(data, error)
+        raise
     report = reports.rebuild_report(Store(data)) | {"done": done.work, "since": done.report}
     show(report, text.rebuild, as_json)
     notifier = notifier_of(str(data), read_settings(data))
@@ -122,6 +151,18 @@ def rebuild(
         typer.echo(f"herijk: {problem}", err=True)
     if failed := failed_checks(done.report):
         raise BrokenPromiseError(f"a check failed: {'; '.join(failed)}")
+
+
+def _tell_failure(data: Path, error: Exception) -> None:
+    """Tells who wants to be told that a rebuild failed, as under `serve`."""
+    from herijk.assets.notify import notifier_of
+    from herijk.assets.report import tell_failure
+    from herijk.assets.settings import read_settings
+
+    what = str(error) if isinstance(error, HerijkError) else unexpected(error)
+    with suppress(HerijkError):  # settings that cannot be read are what failed
+        for problem in tell_failure(notifier_of(str(data), read_settings(data)), what):
+            typer.echo(f"herijk: {problem}", err=True)
 
 
 @app.command()
@@ -132,20 +173,30 @@ def serve(
     port: Annotated[
         int, typer.Option(min=1, max=65534, help="Port of Dagster's page; the site has the next.")
     ] = 3000,
+    may_start: Annotated[
+        bool,
+        typer.Option(help="Let Dagster's page start rebuilds and switch schedules."),
+    ] = False,
 ) -> None:
     """Rebuild by itself: schedules and sensor, with Dagster's page and the site, until stopped."""
-    from herijk.assets.rebuild import prepare_home
+    from herijk.assets.rebuild import check_apart, prepare_home, taking_over
     from herijk.assets.settings import read_settings
     from herijk.cli.serving import Served, serve_until_stopped
+    from herijk.warehouse.store.lock import only_server
     from herijk.warehouse.store.obstacles import obstacles_explained
     from herijk.warehouse.store.store import Store
 
+    def tell(line: str) -> None:
+        typer.echo(line, err=True)
+
+    check_apart(archive, data)
     read_settings(data)
-    with obstacles_explained(data):
-        home = prepare_home(Store(data))
-        serve_until_stopped(
-            Served(archive, data, host, port), home, lambda line: typer.echo(line, err=True)
-        )
+    store = Store(data)
+    with obstacles_explained(data), only_server(data):
+        for line in taking_over(store):
+            tell(line)
+        served = Served(archive, data, host, port, may_start)
+        serve_until_stopped(served, prepare_home(store), tell)
 
 
 @app.command()

@@ -14,15 +14,25 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from functools import partial
-from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Final
 
+from starlette.applications import Starlette
+from starlette.responses import RedirectResponse
+from starlette.routing import Mount, Route
+from starlette.staticfiles import StaticFiles
+
+from herijk.assets.webserver import MAY_START, READ_ONLY
+from herijk.dashboards.guard import LOOPBACK, guarded, listen
 from herijk.pipeline.errors import UnavailableError
 
-SHOWN: Final = ("/site/", "/report/")
+SHOWN: Final = ("site", "report")
 """What of the data folder the site's address shows."""
+
+EXPOSED: Final = (
+    "WARNING: everybody who can reach {host} can read the site and Dagster's page: there is no "
+    "password. Put a proxy with one in front (docs/security.md), or serve on 127.0.0.1"
+)
 
 PATIENCE_S: Final = 20.0
 _DIE_WITH_PARENT: Final = 1
@@ -31,12 +41,17 @@ _DIE_WITH_PARENT: Final = 1
 
 @dataclass(frozen=True)
 class Served:
-    """What is served and where: Dagster at `port`, the site at the next."""
+    """What is served and where: Dagster at `port`, the site at the next.
+
+    Attributes:
+        may_start: whether Dagster's page may start rebuilds and switch schedules.
+    """
 
     archive: Path
     data: Path
     host: str
     port: int
+    may_start: bool = False
 
 
 def serve_until_stopped(what: Served, home: Path, tell: Callable[[str], None]) -> None:
@@ -53,6 +68,9 @@ def serve_until_stopped(what: Served, home: Path, tell: Callable[[str], None]) -
     stop = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
+    if what.host not in LOOPBACK:
+        tell(EXPOSED.format(host=what.host))
+    listen(what.host, what.port).close()  # told now, not by a child
     with _site(what), _dagster(what, home) as children:
         tell(f"Site: http://{what.host}:{what.port + 1}/site/index.html")
         tell(f"Dagster: http://{what.host}:{what.port}/")
@@ -61,49 +79,31 @@ def serve_until_stopped(what: Served, home: Path, tell: Callable[[str], None]) -
                 if child.poll() is not None:
                     raise UnavailableError(
                         f"{name} ended by itself with status {child.returncode}; what it said "
-                        "stands above. Is its port taken? Name another with --port"
+                        "stands above"
                     )
 
 
 # The site
 
 
-class _Handler(SimpleHTTPRequestHandler):
-    """Shows the site and the reports, and nothing else of the data folder."""
-
-    def send_head(self):
-        """Sends what is asked for, where that may be seen."""
-        if self.path == "/":
-            self.send_response(302)
-            self.send_header("Location", "/site/index.html")
-            self.end_headers()
-            return None
-        folder = Path(self.directory).resolve()
-        found = Path(self.translate_path(self.path)).resolve()
-        allowed = [folder / name.strip("/") for name in SHOWN]
-        if not found.is_file() or not any(found.is_relative_to(a) for a in allowed):
-            self.send_error(404)
-            return None
-        return super().send_head()
-
-    def log_message(self, *_: object) -> None:
-        """Says nothing: every page would be a line."""
+def site_app(data: Path) -> Starlette:
+    """The site and the reports of a data folder, and nothing else of it."""
+    shown = [
+        Mount(f"/{name}", StaticFiles(directory=data / name, check_dir=False)) for name in SHOWN
+    ]
+    first = Route("/", lambda _: RedirectResponse("/site/index.html"))
+    return Starlette(routes=[first, *shown])
 
 
 @contextmanager
 def _site(what: Served) -> Iterator[None]:
-    handler = partial(_Handler, directory=str(what.data))
-    try:
-        server = ThreadingHTTPServer((what.host, what.port + 1), handler)
-    except OSError as error:
-        raise UnavailableError(
-            f"{what.host}:{what.port + 1} cannot be used: {error.strerror}. Name another with "
-            "--port"
-        ) from error
-    with server:
-        threading.Thread(target=server.serve_forever, daemon=True).start()
+    with listen(what.host, what.port + 1) as held:
+        server = guarded(site_app(what.data), what.host)
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [held]}, daemon=True)
+        thread.start()
         yield
-        server.shutdown()
+        server.should_exit = True
+        thread.join(PATIENCE_S)
 
 
 # Dagster
@@ -118,17 +118,10 @@ def _dagster(what: Served, home: Path) -> Iterator[dict[str, subprocess.Popen[by
         "HERIJK_DATA": str(what.data.resolve()),
         "DAGSTER_DISABLE_TELEMETRY": "1",
     }
-    location = ["-m", "herijk.assets.definitions"]
+    rights = MAY_START if what.may_start else READ_ONLY
     commands = {
-        "dagster-webserver": [
-            "dagster_webserver",
-            "-h",
-            what.host,
-            "-p",
-            str(what.port),
-            *location,
-        ],
-        "dagster-daemon": ["dagster._daemon", "run", *location],
+        "Dagster's page": ["herijk.assets.webserver", what.host, str(what.port), rights],
+        "Dagster's daemon": ["dagster._daemon", "run", "-m", "herijk.assets.definitions"],
     }
     children: dict[str, subprocess.Popen[bytes]] = {}
     try:

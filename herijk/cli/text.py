@@ -48,9 +48,9 @@ def rebuild(report: Report) -> str:
         + ", ".join(f"{row['season']}: {row['tows']}" for row in report["seasons"])
     )
     if report["set_aside"]:
-        rows = [(r["reason_code"], r["number"]) for r in report["set_aside"]]
-        parts.append("Set aside:\n" + table(("reason", "number"), rows))
-        parts.append(_faults(report["first_faults"], sum(number for _, number in rows)))
+        rows = [(r["lost"], r["reason_code"], r["number"]) for r in report["set_aside"]]
+        parts.append("Set aside:\n" + table(("lost", "reason", "number"), rows))
+        parts.append(_faults(report["first_faults"], sum(number for *_, number in rows)))
     else:
         parts.append("Set aside: nothing.")
     rows = [(r["method"], r["status"], r["number"]) for r in report["curves"]]
@@ -78,15 +78,17 @@ def _indented(lines: Iterable[str]) -> str:
 
 def _faults(first: list[Report], number: int) -> str:
     lines = [f"  {_place(fault)}: {fault['message']}" for fault in first]
-    if number > len(first):
-        lines.append(f"  and {number - len(first)} more: see the table quarantine")
+    told = sum(fault["number"] for fault in first)
+    if number > told:
+        lines.append(f"  and {number - told} more: see the table quarantine")
     return "\n".join(lines)
 
 
 def _place(fault: Report) -> str:
     line = "" if fault["line"] is None else f", line {fault['line']}"
     tow = "" if fault["tow_id"] is None else f" (tow {fault['tow_id']})"
-    return f"{fault['path']}{line}{tow}"
+    more = f" and {fault['number'] - 1} more" if fault["number"] > 1 else ""
+    return f"{fault['path']}{line}{tow}{more}"
 
 
 def _by_season(rows: list[Report]) -> str:
@@ -183,6 +185,7 @@ def log_error(report: Report) -> str:
         parts.append(f"No sound tow in {lacking}: nothing is known of the log there.")
     if report["parts"]:
         parts += ["Each log, and each part of a season in which one was replaced:", _parts(report)]
+    parts += ["What may be wrong with the instruments of a season:", _diagnosis(report)]
     return "\n\n".join(parts)
 
 
@@ -190,6 +193,29 @@ def _seasons_between(seasons: list[int]) -> str:
     """Seasons that are missing between the first and the last."""
     every = range(min(seasons, default=0), max(seasons, default=0))
     return ", ".join(str(season) for season in every if season not in seasons)
+
+
+def _diagnosis(report: Report) -> str:
+    """Faults that were found, or that cannot be told."""
+    if not report["diagnosis"]:
+        return "  nothing was found, and nothing is in doubt"
+    head = ("season", "what", "verdict", "size", "from", "to", "chance", "or else")
+    rows = [
+        (
+            r["season"],
+            r["instrument"] if r["first_tow"] is None else f"{r['instrument']}, {r['first_tow']}",
+            r["verdict"],
+            *(_size(r[name], r["unit"]) for name in ("estimate", "lo", "hi")),
+            "-" if r["p_fault"] is None else f"{r['p_fault']:.0%}",
+            r["confused_with"] or "-",
+        )
+        for r in report["diagnosis"]
+    ]
+    return table(head, rows)
+
+
+def _size(value: float, unit: str) -> str:
+    return f"{value:+.1f} N" if unit == "N" else f"{value:+.1%}"
 
 
 def _parts(report: Report) -> str:

@@ -13,7 +13,7 @@ import altair as alt
 import polars as pl
 import vl_convert
 
-from herijk.dashboards.figures import FIGURES
+from herijk.dashboards.figures import FIGURES, drop_links
 from herijk.dashboards.site.parts import default_method
 from herijk.dashboards.words import speaker
 from herijk.warehouse.queries.views import Views
@@ -90,7 +90,7 @@ def _write(plot: Plot, report: dict[str, Any], folder: Path) -> Path:
         subtitle=[say("simulated")] if report["simulated"] else [],
     )
     spec = FIGURES[plot.figure](plot.rows, say).properties(title=title).to_dict()
-    _drop_links(spec)
+    drop_links(spec)
     for parameter in spec.get("params", []):
         if parameter["name"] == "chosen":
             parameter["value"] = about[0]
@@ -99,16 +99,6 @@ def _write(plot: Plot, report: dict[str, Any], folder: Path) -> Path:
     with written_beside(path) as beside:
         beside.write_text(svg, encoding="utf-8")
     return path
-
-
-def _drop_links(part: Any) -> None:
-    """Takes out the links to pages of the site, which a file of its own does not have beside it."""
-    if isinstance(part, dict):
-        part.pop("href", None)
-    for inner in (
-        part.values() if isinstance(part, dict) else part if isinstance(part, list) else ()
-    ):
-        _drop_links(inner)
 
 
 def _types(report: dict[str, Any]) -> list[str]:

@@ -9,12 +9,14 @@ import polars as pl
 
 from herijk.dashboards.report import outcome_of, values_found
 from herijk.dashboards.site.parts import Page, Section, Table
-from herijk.dashboards.site.render import render_page
+from herijk.dashboards.site.render import Edition
+from herijk.dashboards.words import LANGUAGES, speaker
 from herijk.warehouse.queries.journal import News
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.store import Store
 
 TO_SITE: Final = "../site/"
+FILES: Final = {"nl": "latest.html", "en": "latest.en.html"}
 
 _COLUMNS: Final = {
     "tows": ("what", "tow_id", "fsn_no", "season"),
@@ -29,8 +31,11 @@ _COLUMNS: Final = {
 }
 
 
-def report_page(store: Store, found: News, report: dict[str, Any]) -> str:
-    """The page: what came in, what was set aside, what changed and why, what the checks say."""
+def report_pages(store: Store, found: News, report: dict[str, Any]) -> dict[str, str]:
+    """The page by its file name, in each language, with the moment it was made.
+
+    It has what came in, what was set aside, what changed and why, and what the checks say.
+    """
     checks = pl.DataFrame(
         [
             [check["check"], outcome_of(check), *found]
@@ -53,6 +58,18 @@ def report_page(store: Store, found: News, report: dict[str, Any]) -> str:
         else Section(f"report_{name}", empty="report_none")
         for name, frame in frames.items()
     ]
-    page = Page("report.html", "report", sections, site=TO_SITE)
+    made_at = report["made_at"].replace("T", " ")[:16]
     with Views(store) as views:
-        return render_page(views, page)
+        return {
+            FILES[language]: Edition(views, language).html(
+                Page(
+                    FILES[language],
+                    "report",
+                    sections,
+                    name=f"{speaker(language)('report')} {made_at}",
+                    site=TO_SITE,
+                    others=FILES,
+                )
+            )
+            for language in LANGUAGES
+        }

@@ -19,18 +19,20 @@ import vl_convert
 from herijk.dashboards.audit_plots import VEGA_LITE, file_name
 from herijk.dashboards.figures import FIGURES
 from herijk.dashboards.figures.slides import EXPLAINING, METHODS, QUANTITIES
+from herijk.dashboards.slide_rows import (
+    boats_of_slides,
+    by_tows,
+    compared_frame,
+    lines_frame,
+    method_order,
+    pair_of_types,
+)
 from herijk.dashboards.words import Say, speaker
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.store import Store
-
-PAIR: Final = ("kromhout", "kuiken")
-"""The two types of the presentation; where an archive has others, its two largest."""
-
-SLIDE_BOATS: Final = ("razende snol", "mare australis", "twirre")
-"""The boats of the presentation; where an archive has others, those towed most often."""
 
 ALL_TOWS: Final = "all"
 RECOMPUTED_SEASON: Final = "2014"
@@ -114,7 +116,7 @@ def slides(
 ) -> Iterator[Slide]:
     """Every slide of which the archive has something to show."""
     compared = compared_frame(views)
-    lines = views.table("type_lines").with_columns(_method_order())
+    lines = views.table("type_lines").with_columns(method_order())
     known_choices = lines["tows"].unique().to_list()
     if tows not in known_choices:
         raise MissingKnowledgeError(
@@ -135,46 +137,18 @@ def slides(
     yield from about.boats()
 
 
-def _method_order() -> pl.Expr:
-    places = {name: place for place, name in enumerate(METHODS)}
-    return (
-        pl.col("method")
-        .replace_strict(places, default=len(places), return_dtype=pl.Int32)
-        .alias("order")
-    )
-
-
-def compared_frame(views: Views) -> pl.DataFrame:
-    """Tows of `compared_tows` with a label, "Vecht 8D 2012", as the charts draw them."""
-    label = pl.format("{} {}{} {}", "name", "rowers", "crew_class", "season")
-    return views.compared_tows().with_columns(
-        label.alias("label"), _method_order(), kind=pl.lit("tow")
-    )
-
-
-def lines_frame(views: Views) -> pl.DataFrame:
-    """Points of the fitted lines, as the charts draw them."""
-    return views.table("type_line_points").with_columns(kind=pl.lit("line"))
-
-
 def _types(compared: pl.DataFrame, wanted: Sequence[str]) -> list[str]:
-    """The types asked for, or those of the presentation, or the two with most tows."""
-    counts = (
-        compared.filter(pl.col("boat_type") != UNKNOWN_TYPE)
-        .group_by("boat_type")
-        .len()
-        .sort("len", "boat_type", descending=[True, False])["boat_type"]
-        .to_list()
-    )
+    """The types asked for, or those of the presentation."""
+    known = by_tows(compared)
     found = []
-    for name in wanted or PAIR:
-        like = [t for t in counts if t.casefold().startswith(name.casefold())]
-        if wanted and not like:
+    for name in wanted:
+        like = [t for t in known if t.casefold().startswith(name.casefold())]
+        if not like:
             raise MissingKnowledgeError(
-                f"there is no type {name!r}; the types are {', '.join(sorted(counts))}"
+                f"there is no type {name!r}; the types are {', '.join(sorted(known))}"
             )
-        found += like[:1]
-    return found if len(found) == len(wanted or PAIR) else counts[: len(PAIR)]
+        found.append(like[0])
+    return found or pair_of_types(compared)
 
 
 class _About:
@@ -319,7 +293,7 @@ class _About:
 
     def boats(self) -> Iterator[Slide]:
         """One boat over the years, for the boats of the presentation."""
-        for name in _boats(self.compared):
+        for name in boats_of_slides(self.compared):
             own = self.compared.filter(pl.col("fsn_no") == name)
             curves = self.views.curve_points_of(name)
             rows = curves.join(
@@ -378,18 +352,6 @@ def _last_method(methods: Sequence[str]) -> str:
     """The newest of the four methods that the archive has, else the last."""
     known = [name for name in METHODS if name in methods]
     return (known or list(methods))[-1]
-
-
-def _boats(compared: pl.DataFrame) -> list[str]:
-    """FSN numbers of the boats of the presentation, or of those towed in most seasons."""
-    seasons = (
-        compared.group_by("fsn_no", "name")
-        .agg(pl.col("season").n_unique().alias("seasons"))
-        .sort("seasons", "fsn_no", descending=[True, False])
-    )
-    named = seasons.filter(pl.col("name").str.to_lowercase().is_in(SLIDE_BOATS))
-    chosen = named if named.height else seasons.head(len(SLIDE_BOATS))
-    return [str(number) for number in chosen["fsn_no"]]
 
 
 def _direction(line: dict[str, Any]) -> str:

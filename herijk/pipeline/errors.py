@@ -37,3 +37,9 @@ class BrokenPromiseError(HerijkError):
 
 class UnavailableError(HerijkError):
     """The machine is in the way: someone else writes, the disk is full. Nothing is lost."""
+
+
+def unexpected(error: BaseException) -> str:
+    """One sentence for an error that nobody foresaw."""
+    what = " ".join(str(error).split())[:300]
+    return f"something went wrong that was not foreseen: {type(error).__name__}: {what}"

@@ -1,8 +1,17 @@
 """What the archive holds: boats, tows, their runs, windows given by hand, and what is set aside."""
 
+from functools import partial
+from typing import Final
+
 import dataframely as dy
 
 from herijk.tables import column
+
+LOST: Final = partial(
+    column.text,
+    "what it costs: seconds, run, tow, file, or a row of a list that costs no tow",
+    regex="^(seconds|run|tow|file|row)$",
+)
 
 
 class Boats(dy.Schema):
@@ -12,12 +21,10 @@ class Boats(dy.Schema):
     ht_no = column.text("number in the HT register", nullable=True)
     name = column.text("name of the boat")
     boat_type = column.text("type, empty where not known", nullable=True)
-    waterline_length_m = column.number(
-        "m", "length on the waterline", min_exclusive=0, nullable=True
-    )
-    beam_m = column.number("m", "breadth", min_exclusive=0, nullable=True)
-    bow_height_m = column.number("m", "height of the bow", min_exclusive=0, nullable=True)
-    weight_kg = column.number("kg", "empty boat with oars", min_exclusive=0, nullable=True)
+    waterline_length_m = column.waterline_length("length on the waterline", nullable=True)
+    beam_m = column.beam("breadth", nullable=True)
+    bow_height_m = column.bow_height("height of the bow", nullable=True)
+    weight_kg = column.boat_weight("empty boat with oars", nullable=True)
 
 
 class Seasons(dy.Schema):
@@ -26,10 +33,12 @@ class Seasons(dy.Schema):
     season = column.season(primary_key=True)
     listed = dy.Int32(description="tows in the tow list that could be read", min=0)
     tows = dy.Int32(description="of which used; the others are in quarantine", min=0)
+    runs_set_aside = dy.Int32(description="runs of these that are set aside", min=0)
+    lost_s = column.number("s", "time left out of the other runs, all channels", min=0)
 
 
-class Tows(dy.Schema):
-    """Tows accepted into the warehouse, one row each."""
+class TowFacts(dy.Schema):
+    """What the lists say of a tow, one row each."""
 
     tow_id = column.tow_id(primary_key=True)
     season = column.season()
@@ -37,25 +46,27 @@ class Tows(dy.Schema):
     fsn_no = column.fsn_no()
     rowers = column.rowers()
     crew_class = column.crew_class()
-    declared_speed_m_s = column.speed("speed v0 the crew declared")
-    waterline_length_m = column.number("m", "length on the waterline that day", min_exclusive=0)
-    beam_m = column.number("m", "breadth that day", min_exclusive=0)
-    bow_height_m = column.number("m", "height of the bow that day", min_exclusive=0)
-    weight_kg = column.number("kg", "empty boat with oars, before", nullable=True, min_exclusive=0)
-    weight_after_kg = column.number("kg", "the same, after", nullable=True, min_exclusive=0)
-    crew_weight_kg = column.number("kg", "crew and ballast on board", nullable=True, min=0)
+    declared_speed_m_s = column.declared_speed()
+    waterline_length_m = column.waterline_length("length on the waterline that day")
+    beam_m = column.beam("breadth that day")
+    bow_height_m = column.bow_height("height of the bow that day")
+    weight_kg = column.boat_weight("empty boat with oars, before", nullable=True)
+    weight_after_kg = column.boat_weight("the same, after", nullable=True)
+    crew_weight_kg = column.number(
+        "kg", "crew and ballast on board", nullable=True, min=0, max=6_000
+    )
     water_temperature_c = column.number("C", "water temperature", nullable=True, min=-2, max=35)
     speed_correction_ratio = column.number(
         "1", "speed correction entered by hand, 0.06 for 6 %", nullable=True, min=-0.5, max=0.5
     )
     altered = dy.Bool(description="the boat was altered since its previous tow")
     sample_rate_hz = dy.Int32(
-        description="samples a second", metadata={"unit": "Hz"}, min_exclusive=0
+        description="samples per second", metadata={"unit": "Hz"}, min=1, max=100_000
     )
     empty_thwart = column.text("thwart left free", nullable=True)
-    freeboard_lowest_m = column.number("m", "freeboard at its lowest", nullable=True)
-    freeboard_bow_m = column.number("m", "freeboard at the bow", nullable=True)
-    freeboard_stern_m = column.number("m", "freeboard at the stern", nullable=True)
+    freeboard_lowest_m = column.freeboard("freeboard at its lowest")
+    freeboard_bow_m = column.freeboard("freeboard at the bow")
+    freeboard_stern_m = column.freeboard("freeboard at the stern")
     remark = column.text("remark in the tow list", nullable=True)
     wind_measured = dy.Bool(description="there was an anemometer whose wind can be used")
     log2_measured = dy.Bool(description="there was a second log that can be used")
@@ -67,7 +78,18 @@ class Tows(dy.Schema):
     second_sha256 = column.sha256("its content hash", nullable=True)
 
 
-class TowRuns(dy.Schema):
+class Tows(TowFacts):
+    """Tows accepted into the warehouse, one row each."""
+
+    runs_set_aside = dy.Int32(description="runs to be used that are in quarantine", min=0)
+    doubts = dy.List(
+        dy.String(),
+        description="checks by which all other tows rule this one out: it needs a look, and takes "
+        "no part in what tows share",
+    )
+
+
+class RunList(dy.Schema):
     """Runs of every tow; runs 21 and on are runs 1 and on of the second file."""
 
     tow_id = column.tow_id(primary_key=True)
@@ -77,13 +99,19 @@ class TowRuns(dy.Schema):
     selected = dy.Bool(description="the tow list says to use it")
 
 
+class TowRuns(RunList):
+    """Runs of every tow of which samples can be used."""
+
+    lost_s = column.number("s", "most that is left out of a channel: dropouts, spikes", min=0)
+
+
 class HandWindows(dy.Schema):
     """Windows that a person gave, one row a run; a method may use them (`by_hand`)."""
 
     tow_id = column.tow_id(primary_key=True)
     run = column.run(primary_key=True)
-    start_s = dy.Int16(description="start of the window", metadata={"unit": "s"}, min=0)
-    end_s = dy.Int16(description="end of the window", metadata={"unit": "s"}, min=1)
+    start_s = dy.Int16(description="start of the window", metadata={"unit": "s"}, min=0, max=600)
+    end_s = dy.Int16(description="end of the window", metadata={"unit": "s"}, min=1, max=600)
     reason = column.text("why, in the person's words")
 
 
@@ -101,11 +129,14 @@ class TraceSeconds(dy.Schema):
 
 
 class Quarantine(dy.Schema):
-    """Files and tows set aside, each with the reason in a plain sentence."""
+    """What is set aside, from seconds to files, each with the reason in a plain sentence."""
 
     path = column.text("file, relative to the archive")
     tow_id = column.tow_id(nullable=True)
     line = dy.Int64(description="line in the file", nullable=True, min=1)
     reason_code = column.text("short stable code")
     message = column.text("what is wrong and what to do, in a sentence")
+    lost = LOST()
+    run = column.run(nullable=True)
+    lost_s = column.number("s", "time that is lost", nullable=True, min=0)
     first_seen = dy.Date(description="day on which this fault was first found")

@@ -48,12 +48,42 @@ def run(**rules: Any) -> dy.Int8:
 
 def rowers(**rules: Any) -> dy.Int32:
     """How many rowers."""
-    return dy.Int32(description="rowers the curve is valid for", min=1, max=24, **rules)
+    return dy.Int32(description="rowers the curve is valid for", min=1, max=30, **rules)
 
 
 def crew_class(**rules: Any) -> dy.String:
     """Men or women."""
     return text("H men, D women", regex="^[HD]$", **rules)
+
+
+def declared_speed(**rules: Any) -> dy.Float64:
+    """The speed for which a crew is towed."""
+    return number("m/s", "speed v0 the crew declared", min=0.5, max=6.0, **rules)
+
+
+def waterline_length(description: str, **rules: Any) -> dy.Float64:
+    """The length of a boat."""
+    return number("m", description, min=2.0, max=25.0, **rules)
+
+
+def beam(description: str, **rules: Any) -> dy.Float64:
+    """The breadth of a boat."""
+    return number("m", description, min=0.5, max=6.0, **rules)
+
+
+def bow_height(description: str, **rules: Any) -> dy.Float64:
+    """The height of a boat's bow."""
+    return number("m", description, min=0.1, max=4.0, **rules)
+
+
+def boat_weight(description: str, **rules: Any) -> dy.Float64:
+    """The weight of a boat."""
+    return number("kg", description, min=50.0, max=20_000.0, **rules)
+
+
+def freeboard(description: str, **rules: Any) -> dy.Float64:
+    """A freeboard, negative where a boat lies under water."""
+    return number("m", description, nullable=True, min=-0.5, max=4.0, **rules)
 
 
 def speed(description: str, **rules: Any) -> dy.Float64:

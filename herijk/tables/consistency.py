@@ -277,7 +277,7 @@ class RepeatPairs(dy.Schema):
     season = column.season()
     season_before = column.season()
     ln_ratio = column.number("1", "ln of new / old Cw, at the old declared speed")
-    e_n = column.number("1", "difference / both 95 % intervals (ISO 13528)", nullable=True)
+    e_n = column.number("1", "difference / both intervals (ISO 13528)", nullable=True)
 
 
 class EraShifts(dy.Schema):

@@ -14,6 +14,14 @@ def dtypes(schema: type[dy.Schema]) -> pl.Schema:
     return pl.Schema({name: column.dtype for name, column in schema.columns().items()})
 
 
+def limits(schema: type[dy.Schema], name: str) -> tuple[Any, Any]:
+    """The lowest and highest value that a column declares."""
+    column = schema.columns()[name]
+    if not isinstance(column, dy.Float64 | dy.Int8 | dy.Int16 | dy.Int32 | dy.Int64):
+        raise TypeError(f"{schema.__name__}.{name} has no limits")
+    return column.min, column.max
+
+
 def frame_of(
     schema: type[S], rows: Iterable[Mapping[str, Any]] | Iterable[Sequence[Any]]
 ) -> dy.DataFrame[S]:

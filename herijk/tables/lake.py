@@ -6,7 +6,7 @@ These tables are not in the database and no other program relies on them.
 import dataframely as dy
 
 from herijk.tables import column
-from herijk.tables.archive import Boats, HandWindows, TowRuns, Tows
+from herijk.tables.archive import LOST, Boats, HandWindows, RunList, TowFacts
 
 
 class Faults(dy.Schema):
@@ -17,6 +17,9 @@ class Faults(dy.Schema):
     line = dy.Int64(description="line in the file", nullable=True, min=1)
     reason_code = column.text("short stable code")
     message = column.text("what is wrong and what to do, in a sentence")
+    lost = LOST(nullable=True)
+    run = column.run(nullable=True)
+    lost_s = column.number("s", "time that is lost", nullable=True, min=0)
 
 
 class ListedBoats(Boats):
@@ -26,11 +29,17 @@ class ListedBoats(Boats):
     crew_class = column.crew_class(nullable=True)
 
 
-class ListedTows(Tows):
+class ListedTows(TowFacts):
     """Tows of the lists that could be read, whatever their samples are."""
 
     list_path = column.text("tow list, relative to the archive")
     list_line = dy.Int32(description="line in it", min=2)
+
+
+class ListedRuns(RunList):
+    """Runs of the listed tows, by the plan of their season."""
+
+    planned_s = column.number("s", "how long a run should last", nullable=True, min=0)
 
 
 class ListedWindows(HandWindows):
@@ -78,14 +87,17 @@ class PrintedLines(dy.Schema):
     a_kg_m = column.number("kg/m", "A", nullable=True, min=0, max=1000)
     b_m_s = column.number("m/s", "B", nullable=True, min=0.1, max=1000)
     cw_kg_m = column.number("kg/m", "Cw", nullable=True, min=0.9, max=1000)
-    declared_speed_m_s = column.speed("speed v0 the crew declared", nullable=True)
+    declared_speed_m_s = column.declared_speed(nullable=True)
     tow_date = dy.Date(description="day of the tow", nullable=True)
     path = column.text("file, relative to the archive")
     line = dy.Int32(description="line in it", min=2)
 
 
 class SeasonIndex(dy.Schema):
-    """Where each listed tow's samples and blocks lie, or the fault that was found."""
+    """Where each listed tow's samples and blocks lie, or the fault that was found.
+
+    Of a tow that can be used, also what it lost: runs and seconds.
+    """
 
     tow_id = column.tow_id()
     samples_key = column.text("name of its samples in the lake", nullable=True)
@@ -95,11 +107,14 @@ class SeasonIndex(dy.Schema):
     line = dy.Int64(description="line in it", nullable=True, min=1)
     reason_code = column.text("short stable code of the fault", nullable=True)
     message = column.text("what is wrong, in a sentence", nullable=True)
+    losses = dy.List(
+        dy.Struct(Faults.columns()), nullable=True, description="faults that did not cost the tow"
+    )
 
 
 SEASON_TABLES: dict[str, type[dy.Schema]] = {
     "season_tows": ListedTows,
-    "season_runs": TowRuns,
+    "season_runs": ListedRuns,
     "season_index": SeasonIndex,
 }
 """Tables with a partition per season."""

@@ -23,6 +23,9 @@ class Register(dy.Schema):
     cw_lo_kg_m = column.number("kg/m", column.LOWER_END, nullable=True)
     cw_hi_kg_m = column.number("kg/m", "upper end", nullable=True)
     status = column.text("valid, or why there is no valid curve")
+    flags = dy.List(
+        dy.String(), description="codes of what a person should look at in its tow", nullable=True
+    )
     verification_code = column.text(
         "ten letters and digits that follow from all that made the line; drafts have none",
         nullable=True,

@@ -18,6 +18,7 @@ class RunPoints(dy.Schema):
     cut_reason = column.text(
         "why the rest was cut: codes, comma separated, or by_hand and the reason"
     )
+    lost_s = column.number("s", "most that is left out of a channel", min=0)
     end_speed_m_s = column.number("m/s", "log speed, end of window less start", nullable=True)
     end_force_ratio = column.number("1", "force, the same, / its mean", nullable=True)
     end_wind_m_s = column.number("m/s", "apparent wind speed, the same", nullable=True)

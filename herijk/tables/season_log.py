@@ -64,6 +64,64 @@ class SeasonSteps(dy.Schema):
     )
 
 
+class SeasonDiagnosis(dy.Schema):
+    """What is wrong with the instruments of each season: each possible fault with its odds."""
+
+    method = column.method(primary_key=True)
+    season = column.season(primary_key=True)
+    part = dy.Int32(primary_key=True, description="part of the season, until a log was replaced")
+    instrument = column.text(
+        "log_scale, log_trend (end of the season against its middle), log_change (from a tow on), "
+        "gps_scale (plain GPS), force_scale, force_zero, force_zero_drift (end against middle), or "
+        "fleet_step (all boats changed with this season)",
+        primary_key=True,
+    )
+    unit = column.text("1 for the logarithm of a factor, N for a force")
+    estimate = column.number("as in unit", "expected size; 0 where surely nothing is wrong")
+    lo = column.number("as in unit", "lower end of its 95 % interval")
+    hi = column.number("as in unit", "upper end")
+    p_fault = column.number(
+        "1", "probability of such a fault; empty for what there always is", nullable=True, min=0
+    )
+    distance_sd = column.number(
+        "1", "what is seen against what is assumed, in standard deviations", nullable=True
+    )
+    verdict = column.text(
+        "sound, fault (likelier than not), cannot be told (10 to 50 %), alarm (4 standard "
+        "deviations apart); of a log's factor estimated or not determined",
+        regex="^(sound|fault|cannot be told|alarm|estimated|not determined)$",
+    )
+    alarm = dy.Bool(description="a person should look: fault, cannot be told, or alarm")
+    first_tow = column.text("likeliest first tow after a log changed", nullable=True)
+    rests_on = column.text("what tells")
+    confused_with = column.text("what else would explain it, likeliest first", nullable=True)
+
+
+class TowInstruments(dy.Schema):
+    """What was found of the instruments of each tow, and is corrected in its curve."""
+
+    method = column.method(primary_key=True)
+    tow_id = column.tow_id(primary_key=True)
+    log = column.text("speed source", primary_key=True)
+    factor = column.number(
+        "1", "true speed / log speed; 1 with dGPS; empty: not determined", nullable=True
+    )
+    force_factor = column.number("1", "force read / true force; 1 where no fault was found")
+    force_zero_n = column.number("N", "force read without any; 0 where no fault was found")
+    bend = column.number("1", "q = r / (1 - r) of the boat, r = (v/B)^2 at its usual speed")
+    ln_sd = column.number("1", "their standard deviation in ln Cw / the elasticity 2 + 2 q", min=0)
+    dof = column.number("1", "its degrees of freedom", nullable=True)
+
+
+class BestEstimateWeights(dy.Schema):
+    """What the best estimate of a tow rests on: shares of the boat's tows, 1 together."""
+
+    method = column.method(primary_key=True)
+    tow_id = column.tow_id(primary_key=True)
+    rests_on = column.text("the tow that it rests on", primary_key=True)
+    weight = column.number("1", "its share")
+
+
 class RetowChoice(dy.Schema):
     """Which few boats to tow again, with dGPS, so that the season factors are surest."""
 

@@ -7,6 +7,7 @@ from herijk.assets.definitions import defs
 ASSETS = [
     "archive_index",
     "assessments",
+    "best_estimate_weights",
     "blocks",
     "boats",
     "check_counts",
@@ -43,6 +44,7 @@ ASSETS = [
     "run_statistics",
     "samples",
     "season_changes",
+    "season_diagnosis",
     "season_ladder",
     "season_links",
     "season_steps",
@@ -50,6 +52,7 @@ ASSETS = [
     "site",
     "slow_tows",
     "speed_trend",
+    "tow_instruments",
     "tow_runs",
     "tows",
     "trace_seconds",

@@ -22,10 +22,10 @@ def samples_files(bench: Workbench, season: int) -> list[Path]:
 
 
 def spoil(file: Path) -> bytes:
-    """Puts letters on line 5 of a samples file; gives the old content."""
+    """Puts a run that does not exist on line 5 of a samples file; gives the old content."""
     kept = file.read_bytes()
     lines = kept.split(b"\n")
-    lines[4] = b"x" + lines[4]
+    lines[4] = b"77" + lines[4]
     file.write_bytes(b"\n".join(lines))
     return kept
 
@@ -92,7 +92,7 @@ def test_a_spoiled_file_leaves_alone_and_a_mended_one_comes_back_by_itself(
     assert files_read == [tow]
     set_aside = bench.table("quarantine").select("path", "tow_id", "line", "reason_code").rows()
     path = file.relative_to(bench.archive).as_posix()
-    assert set_aside == [(path, tow, 5, "bad_number")]
+    assert set_aside == [(path, tow, 5, "unknown_run")]
     for name in ("tows", "run_points", "curves"):
         others = built.table(name).filter(pl.col("tow_id") != tow)
         assert_frame_equal(bench.table(name), others, check_exact=True)

@@ -16,7 +16,9 @@ from herijk.warehouse.store.store import Store
 from tests.conftest import METHODS, Workbench
 
 ATTACK = "</script><script>alert(1)</script>"
-FORMULA = "=1+1"
+ACCENT = "Tréwes"
+FORMULA = "Foo;=1+1;bar"
+"""A formula to a spreadsheet that separates by semicolons, wherever it stands in the name."""
 EDITIONS = ("2015-1", "2026-1")
 LINKS = [("log1", 0, "estimated"), ("log1", 1, "estimated"), ("log2", 0, "other log")]
 """Log, part and source of season factors: the methods of the small archive estimate none."""
@@ -37,7 +39,7 @@ def store(built, tmp_path_factory):
         publish(store, shipped_method(method), terms)
     Workbench(built.archive, data).rebuild()
     with duckdb.connect(store.database) as db:
-        for name, which in ((ATTACK, "min"), (FORMULA, "max")):
+        for name, which in ((ATTACK, "min"), (FORMULA, "max"), (ACCENT, "mode")):
             db.execute(
                 f"UPDATE boats SET name = ? WHERE fsn_no = (SELECT {which}(fsn_no) FROM tows)",  # noqa: S608
                 [name],

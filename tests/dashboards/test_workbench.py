@@ -10,7 +10,7 @@ import urllib.request
 import pytest
 from polars.testing import assert_frame_equal
 
-from herijk.dashboards.site.render import KEPT
+from herijk.dashboards.site.cells import KEPT
 from herijk.dashboards.words import LANGUAGES, both
 from herijk.dashboards.workbench import texts
 from herijk.dashboards.workbench.bench import TRIAL, Base, Bench, Named, Question

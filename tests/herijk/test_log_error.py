@@ -37,7 +37,7 @@ def hard(tmp_path_factory) -> EditionBench:
         toml.writelines(f'\n[[set_aside]]\ndate = {day}\nreason = "storm"\n' for day in days)
         toml.write('\n[[log_replaced]]\ndate = 2011-04-01\nlog = "log1"\nreason = "worn"\n')
     bench.rebuild((shipped_method(METHOD),))
-    asked = ("log_factors", "season_links", "season_steps")
+    asked = ("log_factors", "season_links", "season_steps", "season_diagnosis")
     about = pl.DataFrame({"key": ["simulated"], "value": ["true"]})
     tables = {name: bench.store.read(name, METHOD) for name in asked}
     build_database(bench.store.database, tables | {"about": about})

@@ -6,12 +6,12 @@ import numpy as np
 import polars as pl
 
 from herijk.pipeline import curve
-from herijk.warehouse.archive.published import RACE_SCHEMA
+from herijk.tables.lake import ListedRaces
 
 RUN_RATIOS = np.array([0.9, 1.0, 1.1, 0.9, 1.0, 1.1])
 POWER = 0.8
 CREW_KG = 760.0
-NO_RACES = pl.DataFrame(schema=RACE_SCHEMA)
+NO_RACES = ListedRaces.create_empty()
 
 
 def fleet(

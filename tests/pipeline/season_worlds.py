@@ -154,6 +154,8 @@ def _tow(setup, season, boat, boats, ln_cw, ln_weight, change, ln_factor, gps_of
         "anchored": anchored,
         "q": q_log + 2.5 * setup.run_noise * rng.standard_normal(),
         "q_sd": 2.5 * setup.run_noise,
+        "ln_cw_q_cov": 0.0,
+        "day": None,
     }
 
 

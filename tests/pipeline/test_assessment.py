@@ -12,7 +12,7 @@ import polars as pl
 import pytest
 
 from herijk.pipeline.assessment.assess import assess, with_status
-from herijk.pipeline.assessment.checks import CHECKS, CODES
+from herijk.pipeline.assessment.checks import CHECKS, CODES, DOUBTS
 from herijk.pipeline.method.definition import MethodFileError, parse_method, shipped_method
 
 METHOD = "some-method"
@@ -66,9 +66,11 @@ def _tow(boat: int, season: int) -> dict[str, Any]:
         "weight_after_kg": 1008.0 + 5.0 * boat,
         "crew_weight_kg": 760.0,
         "altered": False,
+        "runs_set_aside": 0,
         "freeboard_lowest_m": 0.40,
         "freeboard_bow_m": 0.80,
         "freeboard_stern_m": 0.60,
+        "doubts": [],
     }
 
 
@@ -117,7 +119,7 @@ def sound() -> World:
     return World(
         curves.cast({"runs_used": pl.Int8}),
         pl.DataFrame(points, schema_overrides=integers),
-        pl.DataFrame(tows, schema_overrides=integers),
+        pl.DataFrame(tows, schema_overrides=integers | {"doubts": pl.List(pl.String)}),
     )
 
 
@@ -137,8 +139,10 @@ heavier = {"a_kg_m": 1.08 * A, "cw_kg_m": 1.08 * CW}
 
 # check: (table, tow, changes, observed, limit, what fires as well)
 CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
+    **{code: ("tows", SUBJECT, {"doubts": [code]}, 1, 0, set()) for code in DOUBTS},
     "no_curve": ("curves", SUBJECT, no_curve | gone, 0, 1, set()),
     "few_runs": ("curves", SUBJECT, {"runs_used": 5}, 5, 6, set()),
+    "runs_set_aside": ("tows", SUBJECT, {"runs_set_aside": 1}, 1, 0, set()),
     "unbalanced_runs": ("run_points", SUBJECT, {"used": ~run1 & (pl.col("run") != 2)}, 2, 1, set()),
     "residual_large": ("curves", SUBJECT, {"residual_sd_ratio": 0.045}, 0.045, 0.04, set()),
     "out_and_back_differ": (
@@ -170,6 +174,7 @@ CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
     ),
     "power_outside_range": ("curves", SUBJECT, {"power_w": 95.0}, 95, 90, set()),
     "slow_tow": ("curves", SUBJECT, {"power_w": 59.0}, 59, 60, {"power_outside_range"}),
+    "crew_weight": ("tows", SUBJECT, {"crew_weight_kg": 500.0}, 62.5, 81, {"pulled_askew"}),
     "heavier_after": ("tows", SUBJECT, {"weight_after_kg": 1030.0}, 1030 / 1005 - 1, 0.02, set()),
     "weight_changed": (
         "tows", LATER, {"weight_kg": 980.0}, 980 / 1005 - 1, -0.02, {"heavier_after"},
@@ -207,8 +212,10 @@ def checks_of(world: World, tow_id: str) -> set[str]:
     return set(world.assessed().filter(tow_id=tow_id)["check"])
 
 
-def test_women_have_their_own_power(sound: World) -> None:
+def test_women_have_their_own_power_and_weight(sound: World) -> None:
     women = sound.changed("curves", SUBJECT, crew_class="D", power_w=45.0)
+    assert women.flagged(SUBJECT) == {"crew_weight"}  # of men: 95 kg each
+    women = women.changed("tows", SUBJECT, rowers=10)
     assert women.flagged(SUBJECT) == set()
     assert women.changed("curves", SUBJECT, power_w=60.0).flagged(SUBJECT) == {
         "power_outside_range"

@@ -16,7 +16,7 @@ def frames(rows):
     """Curves and tows from (tow_id, day, boat, rowers, class, status)."""
     curves = pl.DataFrame(
         [
-            {"tow_id": t, "fsn_no": b, "rowers": r, "crew_class": c, "status": s}
+            {"tow_id": t, "fsn_no": b, "rowers": r, "crew_class": c, "status": s, "flags": []}
             | {n: None if s == "rejected" else float(i + 1) for i, n in enumerate(NUMBERS)}
             for t, _, b, r, c, s in rows
         ],

@@ -28,6 +28,7 @@ CURVES = TOWS.select(
     pl.lit(8, pl.Int32).alias("rowers"),
     pl.lit("H").alias("crew_class"),
     pl.lit("accepted").alias("status"),
+    pl.lit([], pl.List(pl.String)).alias("flags"),
 )
 NOBODY = pl.DataFrame(schema={"fsn_no": pl.String, "rowers": pl.Int32, "crew_class": pl.String})
 ON = dt.date(2015, 1, 1)

@@ -102,7 +102,7 @@ def test_budget_is_that_of_the_research_note():
     assert held["component"].to_list() == list(COMPONENTS)
     printed = {
         "calibration": 0.57, "stream_drift": 0.86, "force": 0.30, "wind": 0.58,
-        "anemometer": 0.25, "random": 0.61, "mass": 0.60, "temperature": 0.60,
+        "anemometer": 0.25, "random": 0.61, "mass": 0.60, "temperature": 0.63,
         "straightness": 0.20,
     }  # fmt: skip
     found = {name: 100 * u_of(held, name) for name in printed}
@@ -125,7 +125,7 @@ def test_keys_say_what_tows_have_in_common():
     rows = [tows(), tows(tow_id="2014-002"), tows(tow_id="2015-001", season=2015)]
     held = budget(pl.concat(rows))
     keys = dict(held.group_by("component").agg(pl.col("key").n_unique()).iter_rows())
-    one_each = {"random", "calibration", "stream_drift", "mass", "straightness"}
+    one_each = {"between_tows", "random", "calibration", "stream_drift", "mass", "straightness"}
     assert {name for name, count in keys.items() if count == 3} == one_each
     assert {name for name, count in keys.items() if count == 1} == {"wind"}
     season = {"force", "anemometer", "temperature", "season_log"}
@@ -134,7 +134,7 @@ def test_keys_say_what_tows_have_in_common():
 
 def test_a_recorded_temperature_is_the_tows_own():
     known, unknown = budget(tows(temperature_known=True)), budget(tows())
-    assert u_of(known, "temperature") < 0.2 * u_of(unknown, "temperature")
+    assert u_of(known, "temperature") < 0.5 * u_of(unknown, "temperature")
     kind = pl.col("component") == "temperature"
     assert known.filter(kind)["shared"].to_list() == ["single"]
     assert unknown.filter(kind)["shared"].to_list() == ["season"]
@@ -151,14 +151,12 @@ def test_interval_takes_few_degrees_of_freedom_into_account():
     assert np.log(many["hi_ratio"]) / many["u_ratio"] == pytest.approx(1.95996, abs=1e-4)
 
 
-def test_repeat_tows_replace_what_was_assumed_of_their_scatter():
-    assumed = Assumed().as_repeats_show(tow_sd=0.005, kappa=2.86, air_ratio=0.025)
-    held = budget(tows(temperature_known=True), assumed)
-    unseen_components = ["random", "wind", "season_log"]
-    seen = ~pl.col("component").is_in(unseen_components)
-    assert np.linalg.norm(held.filter(seen)["u_ratio"]) == pytest.approx(0.005)
-    usual = budget(tows(temperature_known=True))
-    unseen = held.filter(~seen)
-    assert unseen["u_ratio"].to_list() == usual.filter(~seen)["u_ratio"].to_list()
-    again = assumed.as_repeats_show(tow_sd=0.005, kappa=2.86, air_ratio=0.025)
-    assert again.mass_ratio == pytest.approx(assumed.mass_ratio)
+def test_repeat_tows_show_what_differs_between_tows_and_shrink_nothing_else():
+    """What repeats share cancels in their difference (ISO 5725-1; GUM, type B)."""
+    few, many = (Assumed().beside_repeats(tow_sd) for tow_sd in (0.0001, 0.02))
+    held, other = (budget(tows(temperature_known=True), assumed) for assumed in (few, many))
+    shared = pl.col("component").is_in(["force", "wind", "anemometer", "mass", "temperature"])
+    assert (held.filter(shared)["u_ratio"] > 0.001).all()
+    assert held.filter(shared)["u_ratio"].to_list() == other.filter(shared)["u_ratio"].to_list()
+    assert u_of(other, "between_tows") == pytest.approx(0.02)
+    assert u_of(other, "calibration") == u_of(other, "stream_drift") == 0.0

@@ -3,6 +3,7 @@
 import pytest
 
 from benchmarks.robustness import mutate
+from herijk.warehouse.archive.plausibility import Judged
 
 
 def quiet(_):
@@ -17,7 +18,9 @@ def test_every_faulty_tow_is_set_aside_or_keeps_its_numbers(tmp_path):
 
 
 def test_a_reader_that_looks_away_is_noticed(tmp_path, monkeypatch):
-    monkeypatch.setattr("herijk.warehouse.intake.lake.check_samples", lambda *_: None)
+    monkeypatch.setattr(
+        "herijk.warehouse.intake.lake.judge_samples", lambda samples, *_: Judged(samples, ())
+    )
     assert mutate.mutate(tmp_path, 15, 2, quiet).wrong != []
 
 

@@ -3,6 +3,7 @@
 import datetime as dt
 import io
 import json
+import os
 import shutil
 import zipfile
 
@@ -10,7 +11,7 @@ import polars as pl
 import pytest
 
 import herijk.pipeline.recompute.recompute
-from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import parse_method, shipped_method
 from herijk.tables.schemas import conform
 from herijk.warehouse.build.published import lineage_rows
@@ -19,6 +20,7 @@ from herijk.warehouse.editions.lineage import lineage
 from herijk.warehouse.editions.publish import publish_printed
 from herijk.warehouse.editions.verify import verify
 from herijk.warehouse.store.editions import read_about, read_edition
+from herijk.warehouse.store.files import file_sha256
 from tests.warehouse.edition_bench import terms
 
 
@@ -354,3 +356,75 @@ def test_a_changed_member_is_told_and_comes_out_otherwise(published_copy):
     findings, wrong = found(published_copy, where="ensemble.parquet")
     assert wrong
     assert [f["kind"] for f in findings] == ["altered", "differs"]
+
+
+# A chain of editions, and what a new seal does not hide
+
+
+def resealed(bench, edition, **changes):
+    """The edition with other values in its register, sealed anew as somebody in the know would."""
+    path = bench.data / "editions" / edition
+    register = pl.read_parquet(path / "register.parquet").with_columns(
+        pl.lit(value).alias(name) for name, value in changes.items()
+    )
+    register.write_parquet(path / "register.parquet")
+    about = read_about(path)
+    files = about.files | {"register.parquet": file_sha256(path / "register.parquet")}
+    sealed = about.model_copy(update={"files": files}).sealed()
+    (path / "edition.json").write_text(sealed.model_dump_json())
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"valid_until": dt.date(2031, 12, 31)},
+        {"declared_speed_m_s": 9.9},
+        {"weight_kg": 1.0},
+        {"waterline_length_m": 99.0},
+        {"name": "Andere Naam"},
+        {"boat_type": "ander"},
+        {"tow_date": dt.date(2014, 1, 1)},
+    ],
+    ids=lambda change: next(iter(change)),
+)
+def test_a_line_changed_and_sealed_anew_comes_out_otherwise(published_copy, change):
+    name = sorted(p.name for p in (published_copy.data / "editions").glob("[!.]*"))[0]
+    resealed(published_copy, name, **change)
+    findings, wrong = found(published_copy, kind="differs", edition=name)
+    assert wrong
+    assert any(next(iter(change)) in finding["message"] for finding in findings)
+
+
+def test_an_edition_that_is_gone_breaks_the_chain(published_copy):
+    editions = published_copy.data / "editions"
+    first = min((p for p in editions.glob("[!.]*")), key=lambda path: read_about(path).number or 0)
+    shutil.rmtree(first)
+    findings, wrong = found(published_copy, kind="missing", where="chain")
+    assert wrong
+    assert findings
+
+
+def test_a_link_in_place_of_a_file_is_told(published_copy, tmp_path):
+    path = next((published_copy.data / "editions").glob("[!.]*")) / "register.csv"
+    path.rename(tmp_path / "elsewhere.csv")
+    path.symlink_to(tmp_path / "elsewhere.csv")
+    findings, wrong = found(published_copy, kind="altered", where="register.csv")
+    assert wrong
+    assert "link" in findings[0]["message"]
+
+
+def test_samples_changed_with_the_same_size_and_time_are_found(published_copy):
+    path = published_copy.archive / published_copy.tow(2009)["samples_path"]
+    before, text = path.stat(), path.read_bytes()
+    path.write_bytes(text[:-3] + bytes([text[-3] ^ 1]) + text[-2:])
+    os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
+    assert found(published_copy, kind="swapped")[1]
+
+
+def test_a_table_changed_in_the_data_folder_is_not_published(published_copy):
+    store = published_copy.store
+    curves = store.read("curves", "as-published")
+    made_from = store.made_from("curves", "as-published")
+    store.write("curves", curves.with_columns(pl.col("cw_kg_m") * 0.9), made_from, "as-published")
+    with pytest.raises(BrokenPromiseError, match="a table of the data folder was changed"):
+        published_copy.publish("9999-1")

@@ -56,7 +56,7 @@ def three_times_too_fast(lines: Lines) -> Lines:
 IN_SAMPLES: dict[int, tuple[Callable[[Lines], Lines], str, int | None]] = {
     1: (lambda lines: [li for li in lines if not li.startswith("4;")], "missing_run", None),
     2: (lambda lines: lines[: line_of(6, ROWS - 60)], "short_run", line_of(6)),
-    3: (lambda lines: [*lines[:3000], "3;2,"], "broken_row", 3001),
+    3: (lambda lines: [*lines[:3000], "3;2,"], "missing_run", None),
     4: (cells(3, to("abc"), 77, 77), "bad_number", 77),
     5: (cells(3, to("NaN"), 88, 88), "bad_number", 88),
     6: (cells(1, to("0,000"), line_of(2, 100), line_of(2, 300)), "log_dropout", line_of(2, 100)),
@@ -66,6 +66,9 @@ IN_SAMPLES: dict[int, tuple[Callable[[Lines], Lines], str, int | None]] = {
     10: (cells(1, to("2,4"), line_of(3, 50), line_of(3, 200)), "stuck_channel", line_of(3, 50)),
 }
 """Tow number of 2009: what is done to its file, the reason code and the line."""
+
+KEPT = (1, 2, 4, 5, 6, 10)
+"""Of these, the tows that lose a run or seconds."""
 
 
 def swapped(header: str) -> str:
@@ -186,11 +189,37 @@ def test_every_message_is_a_sentence_for_a_volunteer(spoiled):
 @pytest.mark.parametrize("table", ["tows", "tow_runs", "run_points", "curves"])
 def test_all_other_rows_are_those_of_the_clean_archive(spoiled, built, table):
     bench, _, lost = spoiled
-    others = built.table(table).filter(~pl.col("tow_id").is_in(list(lost)))
+    untouched = ~pl.col("tow_id").is_in(list(lost))
+    others = built.table(table).filter(untouched)
     assert 0 < others.height < built.table(table).height
     # A tow is also judged against others, so a missing one may change a flag, never a number.
     judged = [c for c in ("status", "flags") if c in others.columns]
-    assert_frame_equal(bench.table(table).drop(judged), others.drop(judged), check_exact=True)
+    found = bench.table(table).filter(untouched).drop(judged)
+    assert_frame_equal(found, others.drop(judged), check_exact=True)
+    kept = set(bench.table("tows")["tow_id"]) & lost
+    assert kept == set(tow_ids(*KEPT))
+
+
+def test_the_quarantine_says_what_each_fault_costs(spoiled):
+    found = spoiled[0].table("quarantine")
+    of_tow = dict(
+        found.filter(pl.col("tow_id").str.starts_with("2009")).select("tow_id", "lost").rows()
+    )
+    assert {tow: of_tow[tow] for tow in tow_ids(*range(1, 11))} == dict(
+        zip(
+            tow_ids(*range(1, 11)),
+            ["run", "run", "tow", "seconds", "seconds", "run", "tow", "tow", "tow", "run"],
+            strict=True,
+        )
+    )
+    assert found.filter(reason_code="bad_race_row")["lost"].to_list() == ["row"]
+    assert found.filter(reason_code="samples_not_listed")["lost"].to_list() == ["file"]
+    points = spoiled[0].table("run_points").filter(tow_id=tow_ids(4)[0], method="rebased-2015")
+    assert points["lost_s"].max() == pytest.approx(
+        found.filter(tow_id=tow_ids(4)[0])["lost_s"].item()
+    )
+    tows = spoiled[0].table("tows").filter(tow_id=tow_ids(1)[0])
+    assert tows["runs_set_aside"].to_list() == [1]
 
 
 def test_a_sound_race_result_beside_a_bad_one_counts(spoiled):

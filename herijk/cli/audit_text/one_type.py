@@ -53,6 +53,7 @@ def one_type(report: Report) -> list[str]:
     ]
     opinion = [line for m in under for line in _prediction(m, under[m], fleet[m])]
     sections = [
+        ("In short, over all tows of all seasons", _each(under, _in_short)),
         (_first_title(under), _lines(under)),
         ("2. Can all boats have the same bend?", _each(under, _equal_bends)),
         (
@@ -71,6 +72,36 @@ def one_type(report: Report) -> list[str]:
     ]
     top = (f"{found['boat_type']}: are equal boats equal?", heading(found), NOTE)
     return ["\n".join(wrapped(line, 0, 0) for line in top), *(section(*one) for one in sections)]
+
+
+def _in_short(under: Report) -> list[str]:
+    """The verdicts over all tows, each with its figure."""
+    lines = [line for line in under["all_tows"] if not line["reason"]]
+    if not lines:
+        return [nothing(under["bends"] | {"reason": under["bends"]["reason"] or "few_boats"})]
+    said = [
+        f"{'; '.join(map(_verdict, lines))} (n {lines[0]['n']} of {lines[0]['n_boats']} boats)."
+    ]
+    said += [_hull(row) for row in under["hull_speed"] if row["b_is_hull_speed"] is not None]
+    names = ", ".join(f"{who(row)} {row['season']}" for row in under["tows_outside"])
+    judged = "Outside the type: " + (names or "no tow") + "."
+    return [" ".join([*said, judged])]
+
+
+def _verdict(line: Report) -> str:
+    letter, against = LETTERS[line["quantity"]], AGAINST[line["explaining"]][0]
+    seen = f"{letter} follows {against}" if line["follows"] else f"{letter} and {against} no trend"
+    return f"{seen}, {share(line['r2'])} explained"
+
+
+def _hull(row: Report) -> str:
+    """Whether B is hull speed."""
+    is_it = "may be" if row["b_is_hull_speed"] else "is not"
+    ends = f"{row['b_ratio_lo']:.2f} to {row['b_ratio_hi']:.2f}"
+    return (
+        f"B {is_it} hull speed: {row['b_ratio']:.2f} times it ({ends}); towed at "
+        f"{share(row['tow_ratio'])} of it."
+    )
 
 
 def _first_title(under: Report) -> str:

@@ -7,7 +7,7 @@ Does not belong here: reading tables, pages, and texts (`dashboards.words`).
 """
 
 from collections.abc import Callable
-from typing import Final
+from typing import Any, Final
 
 import altair as alt
 import polars as pl
@@ -41,6 +41,9 @@ FIGURES: Final[dict[str, Figure]] = {
     "a_weight": types.a_against_weight,
     "cw_standard_weight": types.cw_standard_against_weight,
     "cw_standard_speed": types.cw_standard_against_speed,
+    "type_cw_weight": types.type_cw_against_weight,
+    "type_cw_speed": types.type_cw_declared_against_speed,
+    "boats_compared": compared.boats_compared,
     "shared_bend": types.shared_bend,
     "pair_b_weight": types.pair_b_against_weight,
     "pair_b_speed": types.pair_b_against_speed,
@@ -75,3 +78,13 @@ def png(name: str, frame: pl.DataFrame, say: Say) -> bytes:
     """A figure as a picture, for places that show no Vega."""
     text = FIGURES[name](frame, say).to_json()
     return bytes(vl_convert.vegalite_to_png(text))
+
+
+def drop_links(part: Any) -> None:
+    """Takes the links to pages of the site out of a specification: a picture cannot keep them."""
+    if isinstance(part, dict):
+        part.pop("href", None)
+    for inner in (
+        part.values() if isinstance(part, dict) else part if isinstance(part, list) else ()
+    ):
+        drop_links(inner)

@@ -25,6 +25,7 @@ from herijk.pipeline.steps.window import CUT_REASONS
 
 COMPONENTS = (
     *("anemometer", "calibration", "force", "mass", "random", "season_log", "straightness"),
+    "between_tows",
     *("stream_drift", "temperature", "wind"),
 )
 DIRECTION = "datum.value == 1 ? '{out}' : '{back}'"
@@ -109,11 +110,11 @@ def history(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
 
 
 def traces(frame: pl.DataFrame, say: Say) -> alt.VConcatChart:
-    """Speed, force and wind over each run, with the window that counts.
+    """Speed, force and wind over each run, what does not count greyed out.
 
     Args:
         frame: rows of `kind` trace (`run, second, speed_m_s, gps_m_s, force_n, wind_m_s`) and
-            window (`run, window_start_s, window_end_s, cut_reason`).
+            window (`run, window_start_s, window_end_s, run_end_s, cut_reason`).
         say: gives texts.
     """
     rows = [
@@ -130,7 +131,7 @@ def traces(frame: pl.DataFrame, say: Say) -> alt.VConcatChart:
 
 
 def _cut_reasons(say: Say) -> list[alt.Chart]:
-    """Why the rest of a run was cut, in words, a line a reason, readable over the traces."""
+    """Why the rest of a run was cut, in words, a line a reason, in the room above the traces."""
     text = "datum.cut_reason"
     for code in CUT_REASONS:
         text = f"replace({text}, '{code}', {json.dumps(say(f'code.{code}'))})"
@@ -138,10 +139,31 @@ def _cut_reasons(say: Say) -> list[alt.Chart]:
         alt.Chart()
         .transform_filter("datum.kind == 'window' && datum.cut_reason")
         .transform_calculate(why=text)
-        .encode(x=alt.value(3), y=alt.value(3), text="why:N")
+        .encode(x=alt.value(3), y=alt.value(2), text="why:N")
     )
-    look = {"align": "left", "baseline": "top", "fontSize": 10, "lineBreak": ","}
-    return [why.mark_text(**look, stroke="white", strokeWidth=3), why.mark_text(**look)]
+    return [why.mark_text(align="left", baseline="top", fontSize=10, lineBreak=",")]
+
+
+REASONS_PX = 40
+"""Room above the traces of the first row, for three lines of reasons."""
+
+
+def _cut_parts() -> list[alt.Chart]:
+    """The parts of a run that do not count, greyed out."""
+    window = alt.Chart().transform_filter("datum.kind == 'window'")
+    counted = window.transform_filter("isValid(datum.window_start_s)")
+    none = window.transform_filter("!isValid(datum.window_start_s)")
+    parts = [
+        (counted, "0", "datum.window_start_s"),
+        (counted, "datum.window_end_s", "datum.run_end_s"),
+        (none, "0", "datum.run_end_s"),
+    ]
+    return [
+        which.transform_calculate(cut_from=start, cut_to=end)
+        .mark_rect(color=GREY, opacity=0.3)
+        .encode(alt.X("cut_from:Q"), alt.X2("cut_to:Q"))
+        for which, start, end in parts
+    ]
 
 
 def _trace_row(
@@ -152,22 +174,20 @@ def _trace_row(
     above: Sequence[alt.Chart] = (),
 ) -> alt.FacetChart:
     x = alt.X("second:Q", title=say("time"))
-    window = (
-        alt.Chart()
-        .transform_filter("datum.kind == 'window' && isValid(datum.window_start_s)")
-        .mark_rect(color=GREY, opacity=0.22)
-        .encode(alt.X("window_start_s:Q", title=say("time")), alt.X2("window_end_s:Q"))
-    )
+    height = 110 + (REASONS_PX if above else 0)
+    scale = alt.Scale(zero=False, range=[height, REASONS_PX if above else 0])
     lines = [
         alt.Chart()
         .transform_filter("datum.kind == 'trace'")
         .mark_line(color=ink, strokeDash=dash, strokeWidth=1.3)
-        .encode(x, number(alt.Y, field, title), tooltip=tips((f"{field}:Q", title)))
+        .encode(
+            x, alt.Y(f"{field}:Q", title=title, scale=scale), tooltip=tips((f"{field}:Q", title))
+        )
         for field, ink, dash in fields
     ]
     return (
-        alt.layer(window, *lines, *above, data=frame)
-        .properties(width=150, height=110)
+        alt.layer(*_cut_parts(), *lines, *above, data=frame)
+        .properties(width=150, height=height)
         .facet(alt.Facet("run:O", title=say("run")), columns=6)
     )
 
@@ -196,22 +216,23 @@ def out_and_back(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
 
 
 def wind(frame: pl.DataFrame, say: Say) -> alt.Chart:
-    """Mean apparent wind of each run, by its angle: 0 and 360 are from ahead.
+    """Mean apparent wind of each run, by its angle: 0 is from ahead, minus from port.
 
     Args:
         frame: rows of `run_points`.
         say: gives texts.
     """
-    angles = alt.Scale(domain=[0, 360])
+    angles = alt.Scale(domain=[-180, 180])
     return (
         alt.Chart(frame)
+        .transform_calculate(centred_deg="(datum.wind_angle_deg + 180) % 360 - 180")
         .mark_point(size=80, filled=True, opacity=0.9)
         .encode(
             alt.X(
-                "wind_angle_deg:Q",
+                "centred_deg:Q",
                 title=say("wind_angle"),
                 scale=angles,
-                axis=alt.Axis(values=[0, 45, 90, 135, 180, 225, 270, 315, 360]),
+                axis=alt.Axis(values=[-180, -135, -90, -45, 0, 45, 90, 135, 180]),
             ),
             number(alt.Y, "wind_m_s", say("wind"), zero=True),
             _direction_colour(say),

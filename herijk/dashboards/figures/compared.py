@@ -3,7 +3,7 @@
 import altair as alt
 import polars as pl
 
-from herijk.dashboards.figures.style import HEIGHT, OKABE_ITO, SHAPES, WIDTH, number, tips
+from herijk.dashboards.figures.style import HEIGHT, OKABE_ITO, SHAPES, WIDTH, colour, number, tips
 from herijk.dashboards.words import Say
 from herijk.pipeline.method.definition import COMPLETE
 
@@ -50,5 +50,22 @@ def curves_compared(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
                 ("speed_m_s:Q", say("speed")),
                 ("cw_kg_m:Q", say("cw")),
             ),
+        ),
+    ).properties(width=WIDTH, height=HEIGHT)
+
+
+def boats_compared(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+    """The curves of two boats with their bands; `frame` holds `curve_points` with their `crew`."""
+    x = number(alt.X, "speed_m_s", say("speed"))
+    low, high = alt.Y("cw_lo_kg_m:Q", title=say("cw")), alt.Y2("cw_hi_kg_m:Q")
+    legend = alt.Legend(orient="top", columns=1, labelLimit=400)
+    crew = colour("crew", say("boat"), sort=None, legend=legend)
+    dash = alt.StrokeDash("crew:N", title=say("boat"), sort=None, legend=legend)
+    base = alt.Chart(frame)
+    tip = tips(("crew:N", say("boat")), ("speed_m_s:Q", say("speed")), ("cw_kg_m:Q", say("cw")))
+    return alt.layer(
+        base.mark_area(opacity=0.25).encode(x, low, high, crew),
+        base.mark_line(strokeWidth=2).encode(
+            x, number(alt.Y, "cw_kg_m", say("cw")), crew, dash, tooltip=tip
         ),
     ).properties(width=WIDTH, height=HEIGHT)

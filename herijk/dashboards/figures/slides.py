@@ -11,7 +11,15 @@ from typing import Final
 import altair as alt
 import polars as pl
 
-from herijk.dashboards.figures.style import GREY, OKABE_ITO, colour, named, number, tips
+from herijk.dashboards.figures.style import (
+    GREY,
+    OKABE_ITO,
+    colour,
+    interval_kind,
+    named,
+    number,
+    tips,
+)
 from herijk.dashboards.words import Say
 from herijk.pipeline.consistency.compared import ROWED_RATIO
 
@@ -97,10 +105,16 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], alt
         )
         name = (
             tow.transform_filter("datum.outside")
-            .mark_text(align="left", dx=5, dy=-4, fontSize=9)
+            .mark_text(align="left", dx=5, dy=-4, fontSize=9, limit=110)
             .encode(at, value, text="label:N")
         )
-        bars = bar.encode(at, alt.Y(f"{lo}:Q", title=y_title), alt.Y2(f"{hi}:Q"), ink)
+        bars = bar.encode(
+            at,
+            alt.Y(f"{lo}:Q", title=y_title),
+            alt.Y2(f"{hi}:Q"),
+            ink,
+            strokeDash=interval_kind(),
+        )
         return (
             alt.layer(band, bars, drawn, point, name, data=frame)
             .properties(width=SIDE, height=SIDE)

@@ -7,7 +7,7 @@ from typing import Any, Final
 import altair as alt
 
 from herijk.dashboards.words import Say
-from herijk.pipeline.method.definition import COMPLETE, RUNS_ALONE, shipped_methods
+from herijk.pipeline.method.definition import COMPLETE, RUNS_ALONE, shipped_method, shipped_methods
 
 OKABE_ITO: Final = (
     "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999",
@@ -31,18 +31,18 @@ def colour(field: str, title: str, **more: Any) -> alt.Color:
 def method_colour(say: Say) -> alt.Color:
     """A method by colour: every method that ships has the same in every figure."""
     scale = _of_methods(OKABE_ITO)
-    return alt.Color("method:N", title=say("method"), scale=scale, sort=None, legend=_drawn())
+    return alt.Color("method:N", title=say("method"), scale=scale, sort=None, legend=_drawn(say))
 
 
 def method_shape(say: Say) -> alt.Shape:
     """The same method by shape."""
     scale = _of_methods(SHAPES)
-    return alt.Shape("method:N", title=say("method"), scale=scale, sort=None, legend=_drawn())
+    return alt.Shape("method:N", title=say("method"), scale=scale, sort=None, legend=_drawn(say))
 
 
-def _drawn() -> alt.Legend:
+def _drawn(say: Say) -> alt.Legend:
     """Only methods that are drawn: those that stand side by side, of all that have a look."""
-    return alt.Legend(values=alt.ExprRef("domain('xOffset')"))
+    return alt.Legend(values=alt.ExprRef("domain('xOffset')"), labelExpr=methods_named(say))
 
 
 def _of_methods(looks: Sequence[str]) -> alt.Scale:
@@ -60,6 +60,12 @@ def number(channel: Any, field: str, title: str, zero: bool = False, **more: Any
     """A quantity on an axis that need not begin at zero; labels below it keep apart."""
     across = {"axis": alt.Axis(tickCount=8)} if channel is alt.X else {}
     return channel(f"{field}:Q", title=title, scale=alt.Scale(zero=zero), **across | more)
+
+
+def methods_named(say: Say) -> str:
+    """A Vega expression that gives a method that ships its name in words."""
+    texts = {name: say(f"method.{name}") for name in shipped_methods()}
+    return f"({json.dumps(texts)})[datum.value] || datum.value"
 
 
 def type_legend(say: Say, **more: Any) -> alt.Legend:
@@ -111,6 +117,13 @@ def by_method(
         tooltip=tips(("method:N", say("method")), *more, (f"{field}:Q", title), *limits),
     )
     return [bar, point]
+
+
+def interval_kind() -> dict[str, Any]:
+    """Full or dashed as `interval_dash`, for rows that have their `method` alone."""
+    held = json.dumps([n for n in shipped_methods() if shipped_method(n).interval == RUNS_ALONE])
+    runs_alone = alt.when(f"indexof({held}, datum.method) >= 0")
+    return runs_alone.then(alt.value([3, 2])).otherwise(alt.value([1, 0]))
 
 
 def interval_dash(say: Say) -> alt.StrokeDash:

@@ -4,12 +4,21 @@ Each is a scatter with a selection by dragging (`brush`, read by the page to fil
 parameter `chosen` that the list sets, and points that link to their boat.
 """
 
+import json
 from typing import Any
 
 import altair as alt
 import polars as pl
 
-from herijk.dashboards.figures.style import OKABE_ITO, colour, number, shape, tips, type_legend
+from herijk.dashboards.figures.style import (
+    OKABE_ITO,
+    colour,
+    methods_named,
+    number,
+    shape,
+    tips,
+    type_legend,
+)
 from herijk.dashboards.words import Say
 
 Axes = tuple[tuple[str, str], tuple[str, str]]
@@ -51,7 +60,7 @@ def _scatter(frame: pl.DataFrame, say: Say, axes: Axes) -> alt.FacetChart:
     }
     points = _points(frame, say, axes, more).add_params(brush, chosen)
     return points.properties(width=400, height=280).facet(
-        alt.Facet("method:N", title=None), columns=2
+        alt.Facet("method:N", title=None, header=_methods(say)), columns=2
     )
 
 
@@ -59,8 +68,52 @@ def _pair(frame: pl.DataFrame, say: Say, axes: Axes) -> alt.FacetChart:
     """Two types side by side and methods one above the other, all on the same axes."""
     points = _points(frame, say, axes, {"color": alt.value(OKABE_ITO[0])})
     return points.properties(width=220, height=220).facet(
-        row=alt.Row("method:N", title=None), column=alt.Column("boat_type:N", title=None)
+        row=alt.Row("method:N", title=None, header=_methods(say)),
+        column=alt.Column("boat_type:N", title=None),
     )
+
+
+def _methods(say: Say) -> alt.Header:
+    return alt.Header(labelExpr=methods_named(say))
+
+
+def _one_type(frame: pl.DataFrame, say: Say, axes: Axes, ends: tuple[str, str]) -> alt.LayerChart:
+    """The boats of a type with their intervals, the fitted line, men and women apart."""
+    (x, x_title), (y, y_title) = axes
+    base = alt.Chart(frame)
+    ink = alt.Scale(domain=["H", "D"], range=[OKABE_ITO[0], OKABE_ITO[3]])
+    people = json.dumps({code: say(f"crew.{code}") for code in ("H", "D")})
+    legend = alt.Legend(labelExpr=f"({people})[datum.value] || datum.value")
+    crew = alt.Color("crew_class:N", title=say("class"), scale=ink, legend=legend)
+    line = base.transform_regression(x, y).mark_line(color="black", strokeDash=[4, 3])
+    layers = [line.encode(number(alt.X, x, x_title), number(alt.Y, y, y_title))]
+    if ends[0]:
+        bars = base.mark_rule(opacity=0.6)
+        layers.append(
+            bars.encode(
+                number(alt.X, x, x_title),
+                alt.Y(f"{ends[0]}:Q", title=y_title),
+                alt.Y2(f"{ends[1]}:Q"),
+                crew,
+            )
+        )
+    shapes = alt.Scale(domain=["H", "D"], range=["circle", "triangle-up"])
+    more = {
+        "color": crew,
+        "shape": alt.Shape("crew_class:N", title=say("class"), scale=shapes, legend=legend),
+    }
+    layers.append(_points(frame, say, axes, more))
+    return alt.layer(*layers).properties(width=420, height=300)
+
+
+def type_cw_against_weight(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+    """Cw at the standard speed against weight, of one type."""
+    return _one_type(frame, say, (_weight(say), _cw_standard(say)), ("", ""))
+
+
+def type_cw_declared_against_speed(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+    """Cw at the declared speed against that speed with its interval, of one type."""
+    return _one_type(frame, say, (_speed(say), _cw(say)), ("cw_lo_kg_m", "cw_hi_kg_m"))
 
 
 def _weight(say: Say) -> tuple[str, str]:

@@ -1,9 +1,12 @@
-"""One page per boat: its lines, curve, history, runs, traces and lineage."""
+"""One page per boat: the owner's answer, and folded below it how each number was made."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any
 
 import polars as pl
 
+from herijk.dashboards.answer import Answer
 from herijk.dashboards.site.parts import (
     Chart,
     Page,
@@ -11,8 +14,10 @@ from herijk.dashboards.site.parts import (
     Select,
     Table,
     boat_path,
-    default_method,
+    draft_of,
+    methods_select,
 )
+from herijk.warehouse.queries.answers import DRAFT, answers, newest_edition, own_races
 from herijk.warehouse.queries.views import Views
 
 OF_THE_CURVE = {"tow_id": "tow_id", "method": "method"}
@@ -26,11 +31,31 @@ EXTRA = {
 
 def boat_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
     """The page of every boat that the archive lists."""
-    frames = _frames(views)
+    frames = _frames(views, methods)
     by_boat = {name: _by_boat(frame) for name, frame in frames.items()}
     for fsn_no in frames["boats"]["fsn_no"]:
         own = {name: by_boat[name].get(fsn_no, frame.head(0)) for name, frame in frames.items()}
         yield _page(fsn_no, own, methods)
+
+
+def _answers(own: dict[str, pl.DataFrame]) -> list[Answer]:
+    """What there is to say of each crew."""
+    return [
+        Answer(
+            line=line,
+            races=own["races"]
+            .filter(rowers=line["rowers"], crew_class=line["crew_class"])
+            .to_dicts(),
+            curve=_of_line(own["line"], line),
+            points=_of_line(own["point"], line),
+        )
+        for line in own["answers"].iter_rows(named=True)
+    ]
+
+
+def _of_line(rows: pl.DataFrame, line: dict[str, Any]) -> pl.DataFrame:
+    """The rows of the tow that counts."""
+    return rows.filter(method=line["method"], tow_id=line["tow_id"] or "")
 
 
 def _by_boat(frame: pl.DataFrame) -> dict[str, pl.DataFrame]:
@@ -38,14 +63,21 @@ def _by_boat(frame: pl.DataFrame) -> dict[str, pl.DataFrame]:
     return {str(key[0]): part for key, part in parts.items()}
 
 
-def _frames(views: Views) -> dict[str, pl.DataFrame]:
+def _frames(views: Views, methods: Sequence[str]) -> dict[str, pl.DataFrame]:
     """Everything a boat's page draws, of all boats at once."""
     boat_of = views.table("tows").select("tow_id", "fsn_no")
     points = views.run_points()
+    seconds = views.table("trace_seconds")
+    ends = seconds.group_by("tow_id", "run").agg(run_end_s=pl.col("second").max() + 1)
+    register = views.register()
     curves = views.curves().with_columns(
-        tow=pl.format("{} · {}{}", "tow_id", "rowers", "crew_class")
+        tow=pl.format("{} · {}{}", "tow_date", "rowers", "crew_class")
     )
     declared = curves.drop_nulls("cw_kg_m").with_columns(speed_m_s="declared_speed_m_s")
+    edition = newest_edition(register["edition"].unique().sort().to_list(), draft_of(methods))
+    answered = answers(views, edition)
+    compared = answered["from_edition"].drop_nulls()
+    before = compared[0] if compared.len() else None
     intervals = views.table("methods").select("method", "interval")
     lines = views.table("curve_points").join(boat_of, on="tow_id").join(intervals, on="method")
     lineage = views.table("lineage").with_columns(
@@ -53,15 +85,19 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
     )
     found = {
         "boats": views.table("boats"),
-        "register": views.register(),
+        "answers": answered,
+        "races": own_races(views, before, edition),
+        "register": _once(register),
         "curves": curves,
         "runs": points,
         "line": _kind(lines, "line", "method", *NUMBERS, "interval"),
         "point": _kind(points.drop_nulls("cw_kg_m"), "point", "method", *POINT),
         "declared": _kind(declared, "declared", "method", *NUMBERS, "interval"),
         "stages": _stages(points),
-        "trace": _seconds(views.table("trace_seconds").join(boat_of, on="tow_id")),
-        "window": _kind(points, "window", "method", "run", *WINDOW),
+        "trace": _seconds(seconds.join(boat_of, on="tow_id")),
+        "window": _kind(
+            points.join(ends, on=["tow_id", "run"]), "window", "method", "run", *WINDOW
+        ),
         "lineage": lineage,
         "budget": views.table("uncertainty_budget")
         .select(*FOLLOWS, "component", "shared", "u_ratio", "dof")
@@ -75,7 +111,7 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
 
 
 POINT = ["run", "direction", "speed_m_s", "cw_kg_m", "used"]
-WINDOW = ["window_start_s", "window_end_s", "cut_reason"]
+WINDOW = ["window_start_s", "window_end_s", "run_end_s", "cut_reason"]
 NUMBERS = ["speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"]
 
 
@@ -105,19 +141,20 @@ def _seconds(traces: pl.DataFrame) -> pl.DataFrame:
 
 
 LINE_COLUMNS = (
-    *("edition", "rowers", "crew_class", "tow_id", "tow_date", "valid_until", "status"),
+    *("edition", "rowers", "crew_class", "tow_date", "valid_until", "status"),
     *("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),
     *("verification_code", "method"),
 )
 CURVE_COLUMNS = (
-    *("tow_id", "tow_date", "rowers", "crew_class", "method", "declared_speed_m_s", "a_kg_m"),
+    *("tow_date", "rowers", "crew_class", "method", "declared_speed_m_s", "a_kg_m"),
     *("b_m_s", "b_lo_m_s", "b_hi_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", "power_w"),
     *("weight_kg", "altered", "runs_used", "status", "flags"),
 )
 RUN_COLUMNS = (
     *("run", "direction", "window_start_s", "window_end_s", "cut_reason", "used", "reason"),
-    *("speed_m_s", "gross_cw_kg_m", "air_cw_kg_m", "still_air_cw_kg_m", "cw_kg_m", "cw_sd"),
-    *("wind_m_s", "wind_angle_deg", "tow_id", "method"),
+    *("speed_m_s", "gross_cw_kg_m", "inertia_cw_kg_m", "air_cw_kg_m", "still_air_cw_kg_m"),
+    *("temperature_cw_kg_m", "cw_kg_m", "cw_sd"),
+    *("wind_m_s", "wind_angle_deg"),
 )
 FACT_COLUMNS = (
     *("name", "fsn_no", "ht_no", "boat_type", "waterline_length_m", "beam_m", "bow_height_m"),
@@ -129,20 +166,23 @@ LINEAGE_COLUMNS = ("edition", "crew", "tow_id", "path", "sha256", "method_hash",
 def _page(fsn_no: str, own: dict[str, pl.DataFrame], methods: Sequence[str]) -> Page:
     facts = Section("facts", tables=[Table("boats", own["boats"], FACT_COLUMNS, "facts")])
     name = own["boats"]["name"][0]
-    tows = own["curves"]["tow_id"].unique(maintain_order=True).to_list()
-    if not tows:
+    curves = own["curves"].unique("tow_id", maintain_order=True)
+    if curves.is_empty():
         return Page(boat_path(fsn_no), "boat", [facts], name=name)
+    tows = curves["tow_id"].to_list()
+    named = dict(curves.select("tow_id", "tow").rows())
     selects = [
-        Select("tow_id", "tow", tows, tows[-1]),
-        Select("method", "method", methods, default_method(methods)),
+        Select("tow_id", "tow", tows, tows[-1], named=lambda tow, _: named[tow]),
+        methods_select(methods),
     ]
     return Page(
         boat_path(fsn_no),
         "boat",
-        [facts, *_sections(own)],
+        [replace(facts, folded=True), *_sections(own)],
         name=name,
         selects=selects,
         data=_data(own),
+        answers=_answers(own),
     )
 
 
@@ -170,6 +210,7 @@ def _data(own: dict[str, pl.DataFrame]) -> dict[str, list[pl.DataFrame]]:
 
 
 def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
+    """How the numbers were made: all of it folded."""
     curve = Chart("resistance_curve", "curve", "boat_curve", OF_THE_CURVE)
     history = Chart("history", "curves", "boat_history")
     traces = Chart("traces", "traces", "boat_traces", OF_THE_CURVE)
@@ -178,15 +219,15 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
         Chart("out_and_back", "stages", "boat_out_back", OF_THE_CURVE),
         Chart("wind", "runs", "wind", OF_THE_CURVE),
     ]
-    curves = Table("curves", own["curves"], CURVE_COLUMNS, "boat_history")
-    runs = Table("run_points", own["runs"], RUN_COLUMNS, "boat_runs", FOLLOWS)
+    curves = Table("curves", own["curves"], CURVE_COLUMNS, "boat_history", exact=False)
+    runs = Table("run_points", own["runs"], RUN_COLUMNS, "boat_runs", FOLLOWS, exact=False)
+    lines = Table("register", own["register"], LINE_COLUMNS, "boat_lines")
     found = [
-        Section(
-            "boat_lines", tables=[Table("register", own["register"], LINE_COLUMNS, "boat_lines")]
-        ),
-        Section("boat_curve", "boat_curve_note", [curve]),
+        Section("boat_lines", tables=[lines]),
         Section("boat_history", "boat_history_note", [history], [curves]),
-        Section("boat_traces", "boat_traces_note", [traces], [runs]),
+        Section("boat_curve", "boat_curve_note", [curve]),
+        Section("boat_runs", "boat_runs_note", tables=[runs]),
+        Section("boat_traces", "boat_traces_note", [traces]),
         Section("boat_out_back", "boat_out_back_note", sides),
         Section("uncertainty_budget", "uncertainty_budget_note", [budget]),
     ]
@@ -194,9 +235,18 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
         rows = own.get(name)
         if rows is not None and rows.height:
             follows = [c for c in FOLLOWS if c in columns]
-            table = Table(name, rows, columns, name, follows)
+            table = Table(name, rows, columns, name, follows, exact=False)
             found.append(Section(name, f"{name}_note", tables=[table]))
     lineage = Table("lineage", own["lineage"], LINEAGE_COLUMNS, "boat_lineage")
     if own["lineage"].height:
         found.append(Section("boat_lineage", "boat_lineage_note", tables=[lineage]))
-    return found
+    return [replace(section, folded=True) for section in found]
+
+
+def _once(register: pl.DataFrame) -> pl.DataFrame:
+    """Without the drafts that say what an edition of the same method says."""
+    same = ["method", "fsn_no", "rowers", "crew_class", "tow_id", "cw_kg_m"]
+    is_draft = pl.col("edition").str.starts_with(DRAFT)
+    editions = register.filter(~is_draft)
+    repeated = register.filter(is_draft).join(editions, on=same, how="semi", nulls_equal=True)
+    return register.join(repeated, on=["edition", *same], how="anti", nulls_equal=True)

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import polars as pl
 
+from herijk.dashboards.site import headlines
 from herijk.dashboards.site.boats import boat_pages
 from herijk.dashboards.site.downloads import DOWNLOADS, SHEETS
 from herijk.dashboards.site.parts import (
@@ -13,28 +14,41 @@ from herijk.dashboards.site.parts import (
     Select,
     Table,
     default_method,
+    draft_of,
+    editions_select,
+    methods_select,
     with_page,
 )
-from herijk.dashboards.site.types import types_page
+from herijk.dashboards.site.races import race_pages
+from herijk.dashboards.site.slides import slides_page
+from herijk.dashboards.site.start import methods_table, start_page, words_page
+from herijk.dashboards.site.types import type_pages, types_page
+from herijk.warehouse.queries.answers import line_changes, newest_edition
 from herijk.warehouse.queries.views import Views
 
 MENU = (
-    *("index", "register", "due", "types", "corrections", "reproducibility", "changes"),
-    "quality",
+    *("index", "register", "due", "types", "compare", "races", "corrections", "reproducibility"),
+    *("changes", "quality", "slides", "words"),
 )
 
 
 def all_pages(views: Views) -> Iterator[Page]:
     """Every page of the site."""
     methods = method_names(views)
-    yield _index(views)
-    yield _register(views)
+    changes = line_changes(views)
+    yield start_page(views, methods, changes)
+    yield _register(views, methods)
     yield _due(views, methods)
     yield types_page(views, methods)
+    yield from type_pages(views, methods)
+    yield _compare(views, methods)
+    yield from race_pages(views, methods)
+    yield slides_page(views, methods)
     yield _corrections(views, methods)
     yield _reproducibility(views, methods)
-    yield _changes(views)
+    yield _changes(methods, changes)
     yield _quality(views, methods)
+    yield words_page()
     yield from boat_pages(views, methods)
 
 
@@ -52,36 +66,14 @@ def _whole(views: Views, name: str, title: str, columns: Sequence[str] = ()) -> 
     return [Section(title, tables=[Table(name, frame, columns or frame.columns, title)])]
 
 
-def _method(methods: Sequence[str]) -> Select:
-    return Select("method", "method", methods, default_method(methods))
-
-
-def _index(views: Views) -> Page:
-    pages = [(f"{name}.html", name, f"about_{name}") for name in MENU[1:]]
-    return Page(
-        "index.html",
-        "index",
-        [
-            Section("index_pages", "index_intro", links=pages),
-            Section(
-                "methods",
-                "methods_note",
-                tables=[_methods_table(views)],
-            ),
-        ],
-    )
-
-
-def _methods_table(views: Views) -> Table:
-    """The methods, with the title in the language of the page."""
-    frame = views.table("methods").with_columns(titles=pl.concat_list("title", "title_en"))
-    return Table("methods", frame, ["method", "titles", "content_hash"], "methods")
-
-
 REGISTER_COLUMNS = (
     *("name", "fsn_no", "boat_type", "rowers", "crew_class", "tow_date", "valid_until", "status"),
     *("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),
     *("verification_code", "method"),
+)
+REGISTER_CARDS = (
+    *("name", "fsn_no", "boat_type", "rowers", "crew_class", "cw_kg_m", "cw_lo_kg_m"),
+    *("cw_hi_kg_m", "valid_until", "status"),
 )
 EDITION_COLUMNS = (
     *("edition", "kind", "method", "valid_from", "published_on", "decision", "previous"),
@@ -89,19 +81,24 @@ EDITION_COLUMNS = (
 )
 
 
-def _register(views: Views) -> Page:
+def _register(views: Views, methods: Sequence[str]) -> Page:
     lines = views.register()
     editions = lines["edition"].unique().sort().to_list()
-    table = Table("register", lines, REGISTER_COLUMNS, "register", ["edition"], search=True)
+    chosen = newest_edition(editions, draft_of(methods))
+    table = Table(
+        "register", lines, REGISTER_COLUMNS, "register", ["edition"], search=True,
+        cards=REGISTER_CARDS,
+    )  # fmt: skip
+    headline = headlines.register(lines.filter(edition=chosen))
     return Page(
         "register.html",
         "register",
         [
-            Section("register", "register_note", tables=[table]),
+            Section("register", "register_note", tables=[table], headline=headline),
             *_whole(views, "editions", "editions", EDITION_COLUMNS),
             *_downloads(views),
         ],
-        selects=[Select("edition", "edition", editions, _newest(editions))],
+        selects=[editions_select("edition", editions, chosen)],
     )
 
 
@@ -112,17 +109,12 @@ def _downloads(views: Views) -> list[Section]:
     return [Section("downloads", "downloads_note", files=files)] if files else []
 
 
-def _newest(editions: Sequence[str]) -> str:
-    """The last published edition, or the default method's draft where none is published."""
-    published = [e for e in editions if not e.startswith("concept-")]
-    return published[-1] if published else default_method(editions)
-
-
 DUE_COLUMNS = (
     *("valid_until", "name", "fsn_no", "boat_type", "rowers", "crew_class", "status"),
     *("tow_speed_m_s", "speed_reason", "beyond_curve", "declared_speed_m_s", "power_w"),
     *("raced_speed_m_s", "lowest_speed_m_s", "highest_speed_m_s", "tow_id", "as_of"),
 )
+DUE_CARDS = ("valid_until", "name", "fsn_no", "rowers", "crew_class", "tow_speed_m_s", "status")
 CHOICE_COLUMNS = (
     *("position", "name", "fsn_no", "rowers", "crew_class", "seasons", "valid_until"),
     *("tow_speed_m_s", "factor_sd_before_ratio", "factor_sd_after_ratio"),
@@ -131,13 +123,18 @@ CHOICE_COLUMNS = (
 
 def _due(views: Views, methods: Sequence[str]) -> Page:
     """Who has to tow again, at what speed, and which tows would tell most."""
-    due = Table("due_list", views.due_list(), DUE_COLUMNS, "due_list", ["method"], search=True)
-    sections = [Section("due_list", "due_list_note", tables=[due])]
+    rows = views.due_list()
+    due = Table("due_list", rows, DUE_COLUMNS, "due_list", ["method"], search=True, cards=DUE_CARDS)
+    headline = headlines.due(rows.filter(method=default_method(methods)))
+    sections = [Section("due_list", "due_list_note", tables=[due], headline=headline)]
     choice = views.retow_choice()
     if choice.height:
         table = Table("retow_choice", choice, CHOICE_COLUMNS, "retow_choice", ["method"])
-        sections.append(Section("retow_choice", "retow_choice_note", tables=[table]))
-    return Page("due.html", "due", sections, selects=[_method(methods)])
+        headline = headlines.retow(choice)
+        sections.append(
+            Section("retow_choice", "retow_choice_note", tables=[table], headline=headline)
+        )
+    return Page("due.html", "due", sections, selects=[methods_select(methods)])
 
 
 LINK_COLUMNS = (
@@ -162,7 +159,11 @@ def _corrections(views: Views, methods: list[str]) -> Page:
             ["method"],
         )
         chart = Chart("log_factors", "log_factors", "log_factors")
-        sections.append(Section("log_factors", "log_factors_note", [chart], [table]))
+        own = data["log_factors"].filter(method=default_method(methods))
+        headline = headlines.log_factors(own)
+        sections.append(
+            Section("log_factors", "log_factors_note", [chart], [table], headline=headline)
+        )
     for name, columns in (("season_links", LINK_COLUMNS), ("season_steps", STEP_COLUMNS)):
         if views.has(name):
             table = Table(name, views.table(name), columns, name, ["method"])
@@ -181,7 +182,7 @@ def _corrections(views: Views, methods: list[str]) -> Page:
         "corrections.html",
         "corrections",
         sections,
-        selects=[_method(methods)],
+        selects=[methods_select(methods)],
         data={name: [frame] for name, frame in data.items()},
     )
 
@@ -246,50 +247,93 @@ def _reproducibility(views: Views, methods: list[str]) -> Page:
         frame = read() if views.has(name) else pl.DataFrame()
         if frame.height:
             data[name] = frame if name != "era_shifts" else frame.filter(boat_type="all")
-            table = Table(name, frame, columns.split(), title, ["method"])
-            sections.append(Section(title, note, [figures[name]], [table]))
+            table = Table(name, frame, columns.split(), title, ["method"], exact=False)
+            headline = None
+            if name == "reproducibility":
+                headline = headlines.reproducibility(frame, default_method(methods))
+            sections.append(Section(title, note, [figures[name]], [table], headline=headline))
     return Page(
         "reproducibility.html",
         "reproducibility",
         sections,
-        selects=[_method(methods)],
+        selects=[methods_select(methods)],
         data={name: [frame] for name, frame in data.items()},
     )
 
 
-def _changes(views: Views) -> Page:
-    changes = views.changes() if views.has("register_changes") else pl.DataFrame()
-    if changes.is_empty():
+def _changes(methods: Sequence[str], changes: pl.DataFrame) -> Page:
+    changed = changes.filter(pl.col("change") != "same")
+    if changed.is_empty():
         return Page("changes.html", "changes", [Section("changes_list", empty="no_changes")])
-    editions = changes["to_edition"].unique().sort().to_list()
-    columns = (
-        *("from_edition", "to_edition", "name", "fsn_no", "rowers", "crew_class", "change"),
-        *("cw_ratio", "power_ratio", "time_ratio", "causes"),
-    )
-    table = Table("changes", changes, columns, "changes_list", ["to_edition"], search=True)
+    editions = changed["to_edition"].unique().sort().to_list()
+    chosen = newest_edition(editions, draft_of(methods))
+    table = Table(
+        "changes", changed, CHANGE_COLUMNS, "changes_list", ["to_edition"], search=True,
+        cards=CHANGE_CARDS,
+    )  # fmt: skip
     chart = Chart("changes", "changes", "changes_list", {"to_edition": "to_edition"})
-    drawn = with_page(changes.drop("causes")).drop_nulls("cw_ratio")
+    drawn = with_page(changed.select(*DRAWN_CHANGES)).drop_nulls("cw_ratio")
+    headline = headlines.changes(changes.filter(to_edition=chosen))
     return Page(
         "changes.html",
         "changes",
-        [Section("changes_list", "changes_note", [chart], [table]), _races(views)],
-        selects=[Select("to_edition", "edition", editions, _newest(editions))],
-        data={"changes": [drawn], "races": [with_page(views.races())]},
+        [Section("changes_list", "changes_note", [chart], [table], headline=headline)],
+        selects=[editions_select("to_edition", editions, chosen)],
+        data={"changes": [drawn]},
     )
 
 
-def _races(views: Views) -> Section:
-    races = views.races()
-    if races.is_empty():
-        return Section("races", empty="no_races")
-    columns = (
-        *("from_edition", "to_edition", "race", "race_date", "crew_class", "name", "fsn_no"),
-        *("rowers", "rowing_time_s", "old_power_w", "new_power_w", "old_rank", "new_rank"),
-        "podium_changed",
+CHANGE_COLUMNS = (
+    *("name", "fsn_no", "rowers", "crew_class", "change", "old_cw_kg_m", "new_cw_kg_m"),
+    *(
+        "cw_ratio",
+        "gain_in_two_hours_s",
+        "exceeds_interval",
+        "old_speed_rank",
+        "new_speed_rank",
+        "causes",
+    ),
+    *("from_edition", "to_edition"),
+)
+CHANGE_CARDS = (
+    *("name", "fsn_no", "rowers", "crew_class", "old_cw_kg_m", "new_cw_kg_m"),
+    *("gain_in_two_hours_s", "exceeds_interval"),
+)
+DRAWN_CHANGES = (
+    *("from_edition", "to_edition", "fsn_no", "name", "rowers", "crew_class", "cw_ratio"),
+    "time_ratio",
+)
+
+
+def _compare(views: Views, methods: Sequence[str]) -> Page:
+    """Any two boats over each other, by the tow that counts."""
+    method = default_method(methods)
+    lines = views.register().filter(edition=draft_of(methods)).drop_nulls("cw_kg_m")
+    called = pl.format("{} · {} · {}{}", "name", "fsn_no", "rowers", "crew_class")
+    curves = (
+        lines.select("tow_id", crew=called)
+        .join(views.table("curve_points").filter(method=method), on="tow_id")
+        .select("crew", "speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
+        .sort("crew", "speed_m_s")
     )
-    table = Table("race_changes", races, columns, "races", ["to_edition"], search=True)
-    chart = Chart("race_ranks", "races", "races", {"to_edition": "to_edition"})
-    return Section("races", "races_note", [chart], [table])
+    crews = curves["crew"].unique().sort().to_list()
+    if len(crews) < len(PAIR_OF_BOATS):
+        return Page("compare.html", "compare", [Section("compare", empty="no_values")])
+    chart = Chart("boats_compared", "curves", "compare", {"crew": PAIR_OF_BOATS})
+    first, second = PAIR_OF_BOATS
+    return Page(
+        "compare.html",
+        "compare",
+        [Section("compare_boats", "compare_note", [chart])],
+        selects=[
+            Select(first, "pair_first", crews, crews[0]),
+            Select(second, "pair_second", crews, crews[1]),
+        ],
+        data={"curves": [curves]},
+    )
+
+
+PAIR_OF_BOATS = ("boat_first", "boat_second")
 
 
 def _quality(views: Views, methods: list[str]) -> Page:
@@ -297,6 +341,7 @@ def _quality(views: Views, methods: list[str]) -> Page:
     sections = [
         Section(
             "statuses",
+            headline=headlines.statuses(statuses.filter(method=default_method(methods))),
             charts=[Chart("statuses", "statuses", "statuses", {"method": "method"})],
             tables=[
                 Table("statuses", statuses, statuses.columns, "statuses", ["method"]),
@@ -307,8 +352,10 @@ def _quality(views: Views, methods: list[str]) -> Page:
     for kind, title, note in (("flag", "flags", "flags_note"), ("run", "run_reasons", None)):
         frame = views.counts(kind)
         if frame.height:
-            table = Table(title, frame, ["method", "code", "number"], title, ["method"])
-            sections.append(Section(title, note, tables=[table]))
+            tables = [Table(title, frame, ["code", "number"], title, ["method"])]
+            if kind == "flag":
+                tables.append(_flagged_boats(views))
+            sections.append(Section(title, note, tables=tables))
     checks = views.checks()
     columns = ["method", "check", "severity", "tows", "beyond"]
     table = Table("check_counts", checks, columns, "checks", ["method"])
@@ -317,16 +364,25 @@ def _quality(views: Views, methods: list[str]) -> Page:
         "quality.html",
         "quality",
         sections,
-        selects=[_method(methods)],
+        selects=[methods_select(methods)],
         data={"statuses": [statuses]},
     )
+
+
+def _flagged_boats(views: Views) -> Table:
+    """Which boats each flag is about."""
+    columns = ("flag", "name", "fsn_no", "rowers", "crew_class", "tow_date")
+    rows = views.flagged_boats()
+    return Table("flagged_boats", rows, columns, "flagged_boats", ["method"], search=True)
 
 
 def _set_aside(views: Views) -> Section:
     if not views.has("quarantine"):
         return Section("set_aside", "set_aside_note", empty="nothing_set_aside")
-    columns = ["path", "tow_id", "line", "reason_code", "message", "first_seen"]
-    table = Table("quarantine", views.table("quarantine"), columns, "set_aside", search=True)
+    columns = ["path", "tow_id", "line", "lost", "run", "lost_s", "reason_code", "message"]
+    columns.append("first_seen")
+    faults = views.table("quarantine").with_columns(lost="lost_" + pl.col("lost"))
+    table = Table("quarantine", faults, columns, "set_aside", search=True)
     return Section("set_aside", "set_aside_note", tables=[table])
 
 
@@ -337,8 +393,8 @@ def _rebuilt(views: Views) -> Section:
         "rebuilt",
         "rebuilt_note",
         tables=[
-            Table("seasons", seasons, ("season", "listed", "tows"), "seasons"),
-            _methods_table(views),
+            Table("seasons", seasons, seasons.columns, "seasons"),
+            methods_table(views),
             Table("contents", tables, ("table", "rows", "meaning"), "tables"),
         ],
     )

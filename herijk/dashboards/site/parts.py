@@ -1,14 +1,22 @@
 """What a page is made of: sections with tables, charts and selectors, as plain data."""
 
+import datetime as dt
 import hashlib
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TypeAlias
 
 import polars as pl
 
+from herijk.dashboards.answer import Answer
+from herijk.dashboards.speech import Speech
 from herijk.pipeline.register.register import draft_name
 from herijk.warehouse.build.studies import STUDIED_METHOD
+
+Headline: TypeAlias = Callable[[Speech], str]
+"""What a section shows in one sentence, in the language of a page."""
 
 
 @dataclass(frozen=True)
@@ -23,6 +31,8 @@ class Table:
         follows: columns that a selector of the page filters on.
         search: whether it has a search box.
         linked: whether a selection in a chart filters it by boat.
+        exact: whether cells carry more digits than they show, for the download.
+        cards: on a narrow screen, the columns of a card: its name, then its numbers.
     """
 
     name: str
@@ -32,6 +42,13 @@ class Table:
     follows: Sequence[str] = ()
     search: bool = False
     linked: bool = False
+    exact: bool = True
+    cards: Sequence[str] = ()
+
+    @cached_property
+    def numeric(self) -> set[str]:
+        """Columns that hold numbers."""
+        return {name for name, dtype in self.frame.schema.items() if dtype.is_numeric()}
 
 
 @dataclass(frozen=True)
@@ -52,15 +69,24 @@ class Chart:
     follows: Mapping[str, str | Sequence[str]] = field(default_factory=dict)
 
 
+def _as_it_is(option: str, _: Speech) -> str:
+    return option
+
+
 @dataclass(frozen=True)
 class Select:
-    """A selector: what is chosen filters the charts and tables that follow it."""
+    """A selector: what is chosen filters the charts and tables that follow it.
+
+    Attributes:
+        named: what an option is called in a language.
+    """
 
     name: str
     caption: str
     options: Sequence[str]
     chosen: str
     with_all: bool = False
+    named: Callable[[str, Speech], str] = _as_it_is
 
 
 @dataclass(frozen=True)
@@ -69,8 +95,13 @@ class Section:
 
     Attributes:
         links: path of a page, key of its name and key of a sentence about it.
+        pages: path of a page and its name, which is data.
         files: path of a file to download, and its name, which is data.
         empty: key of what is said where there is nothing to show.
+        folded: whether it opens only when asked for.
+        headline: what it shows, in each language; see `dashboards.site.headlines`.
+        terms: key of a word and key of its meaning.
+        key_figures: key of what is counted, and the figure.
     """
 
     title: str
@@ -78,8 +109,13 @@ class Section:
     charts: Sequence[Chart] = ()
     tables: Sequence[Table] = ()
     links: Sequence[tuple[str, str, str]] = ()
+    pages: Sequence[tuple[str, str]] = ()
     files: Sequence[tuple[str, str]] = ()
     empty: str | None = None
+    folded: bool = False
+    headline: Headline | None = None
+    terms: Sequence[tuple[str, str]] = ()
+    key_figures: Sequence[tuple[str, str | Headline]] = ()
 
 
 @dataclass(frozen=True)
@@ -90,10 +126,12 @@ class Page:
         path: within the site.
         title: key of its title.
         sections: in order.
-        name: of the boat, data rather than a text; empty elsewhere.
+        name: of a boat, type or race, data rather than a text; empty elsewhere.
         selects: selectors.
         data: frames that charts draw, by name; of several, the rows come one below the other.
         site: the way to the site, of a page that lies outside it.
+        answers: what an owner asks, of each crew of a boat.
+        others: the same page in other languages, where it lies elsewhere.
     """
 
     path: str
@@ -103,6 +141,8 @@ class Page:
     selects: Sequence[Select] = ()
     data: Mapping[str, Sequence[pl.DataFrame]] = field(default_factory=dict)
     site: str = ""
+    answers: Sequence[Answer] = ()
+    others: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def chosen(self) -> dict[str, str]:
@@ -116,7 +156,7 @@ class Page:
 
     @property
     def root(self) -> str:
-        """The way from this page to the site's root."""
+        """The way from this page to the first page of its language."""
         return self.site or "../" * self.path.count("/")
 
 
@@ -126,15 +166,46 @@ def default_method(names: Sequence[str]) -> str:
     return [*names, *wanted][-1]
 
 
+def draft_of(methods: Sequence[str]) -> str:
+    """The draft of the method that is shown first."""
+    return draft_name(default_method(methods))
+
+
+def methods_select(methods: Sequence[str], name: str = "method", chosen: str = "") -> Select:
+    """A selector of methods, by what people call them."""
+    first = chosen or default_method(methods)
+    return Select(name, name, methods, first, named=lambda m, speech: speech.say(f"method.{m}"))
+
+
+def editions_select(name: str, editions: Sequence[str], chosen: str) -> Select:
+    """A selector of editions; drafts by the name of their method."""
+    return Select(name, "edition", editions, chosen, named=lambda e, speech: speech.edition(e))
+
+
 def boat_path(fsn_no: str) -> str:
     """The page of a boat: its number if that can be a file name, else with a hash of it."""
-    safe = re.sub(r"[^A-Za-z0-9-]+", "-", fsn_no)
-    if safe != fsn_no:
-        safe += "-" + hashlib.sha256(fsn_no.encode()).hexdigest()[:8]
-    return f"boats/{safe}.html"
+    return _path("boats", fsn_no)
 
 
-def with_page(frame: pl.DataFrame) -> pl.DataFrame:
-    """With the page of each boat, for charts whose points are links."""
-    page = pl.col("fsn_no").map_elements(boat_path, return_dtype=pl.String)
+def type_path(boat_type: str) -> str:
+    """The page of a type of boat."""
+    return _path("types", boat_type)
+
+
+def race_path(race: str, day: dt.date) -> str:
+    """The page of a race."""
+    return _path("races", f"{race}-{day}")
+
+
+def _path(folder: str, name: str) -> str:
+    safe = re.sub(r"[^A-Za-z0-9-]+", "-", name)
+    if safe != name:
+        safe += "-" + hashlib.sha256(name.encode()).hexdigest()[:8]
+    return f"{folder}/{safe}.html"
+
+
+def with_page(frame: pl.DataFrame, root: str = "") -> pl.DataFrame:
+    """With the page of each boat, for charts whose points are links; `root` is the way to them."""
+    paths = {fsn_no: root + boat_path(fsn_no) for fsn_no in frame["fsn_no"].unique()}
+    page = pl.col("fsn_no").replace_strict(paths, return_dtype=pl.String)
     return frame.with_columns(page.alias("page"))

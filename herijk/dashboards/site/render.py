@@ -1,38 +1,42 @@
-"""From pages to files: HTML with the tables, data for the charts, and what all pages share."""
+"""From pages to files: HTML with the tables, data for the charts, and what all pages share.
 
-import datetime as dt
+Every page is made once per language, in Dutch at the root and in English under `en/`; the data of
+its charts once, as a script beside them.
+"""
+
 import json
 import shutil
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator
 from functools import cache
-from itertools import chain, repeat
+from itertools import chain, groupby
 from pathlib import Path
 from typing import Any, Final
 
-import jinja2
 import polars as pl
 import vl_convert
-from markupsafe import Markup, escape
 
+from herijk.dashboards import fonts
+from herijk.dashboards.answer import told
 from herijk.dashboards.figures import FIGURES
-from herijk.dashboards.html import as_json, environment, in_both
+from herijk.dashboards.html import as_json, environment
+from herijk.dashboards.site.cells import Cells
 from herijk.dashboards.site.downloads import copy_sheets
 from herijk.dashboards.site.pages import MENU, all_pages
-from herijk.dashboards.site.parts import Page, Table, boat_path
-from herijk.dashboards.words import LANGUAGES, WORDS, Say, both, speaker
+from herijk.dashboards.site.parts import Page, boat_path, race_path, type_path
+from herijk.dashboards.site.still import still_pictures
+from herijk.dashboards.speech import Speech
+from herijk.dashboards.words import LANGUAGES, WORDS, speaker
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.files import TEMPORARY_PREFIX, put_in_place
 from herijk.warehouse.store.store import Store
 
 HERE: Final = Path(__file__).parent
+DRAWN: Final = 5
+"""Significant digits of what charts draw."""
 OWN_FILES: Final = ("site.css", "site.js")
-DIGITS: Final = (
-    ("_kg_m", 2), ("_m_s", 2), ("_deg", 0), ("_kg", 0), ("_w", 1), ("_s", 0), ("cw_sd", 2),
-    ("_m", 2), ("step_sd", 4), ("_sd", 1), ("dof", 1), ("before_ratio", 6), ("after_ratio", 6),
-    ("slope", 5), ("slope_lo", 5), ("slope_hi", 5),
-)  # fmt: skip
-"""Decimals shown by the ending of a column's name; 4 otherwise."""
+FOLDERS: Final = {"nl": "", "en": "en/"}
+"""Where the pages of each language lie within the site."""
 
 POLICY: Final = "; ".join(
     (
@@ -40,32 +44,14 @@ POLICY: Final = "; ".join(
         "script-src 'self' file:",
         "style-src 'self' file: 'unsafe-inline'",
         "img-src 'self' file: data:",
+        "font-src data:",
         "base-uri 'none'",
         "form-action 'none'",
     )
 )
 """What a browser lets a page load: the site's own files and nothing else; no eval, no connection.
-`file:` because to some browsers a page from disk is no `'self'`; inline styles are Vega's."""
-
-DECIMAL: Final = ","
-"""A page is written in Dutch; `site.js` changes numbers where English is chosen."""
-
-KEPT: Final = 7
-"""Significant digits in downloads and charts; the database holds all."""
-
-CODES: Final = {
-    *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "code"),
-    *("quantity", "explaining", "candidates", "severity", "check", "shared", "kind", "scope"),
-    *("option", "speed_reason", "cause", "log", "flag", "what", "outcome"),
-}
-"""Columns that hold codes of the warehouse, shown as words."""
-
-
-LONG: Final = {
-    *("flags", "cut_reason", "reason", "speed_reason", "causes", "message", "meaning", "decision"),
-    *("candidates", "name"),
-}
-"""Columns of texts that may take several lines."""
+`file:` because to some browsers a page from disk is no `'self'`; inline styles are Vega's; the font
+stands in the style sheet, because some browsers keep fonts of another folder from such a page."""
 
 
 def build_site(store: Store) -> dict[str, int]:
@@ -94,20 +80,95 @@ def _write(views: Views, folder: Path) -> None:
     static.mkdir()
     for name in OWN_FILES:
         shutil.copyfile(HERE / "static" / name, static / name)
+    (static / "font.css").write_text(fonts.style_sheet(), encoding="utf-8")
     (static / "vega.js").write_text(vega_bundle(), encoding="utf-8")
-    (static / "charts.js").write_text(chart_specifications(), encoding="utf-8")
-    about, comments = views.about(), _by_column(views.comments())
-    template = _environment(comments).get_template("page.html.j2")
-    (folder / "boats").mkdir()
+    for language in LANGUAGES:
+        (static / f"charts-{language}.js").write_text(charts_script(language), encoding="utf-8")
+    (static / "find.js").write_text(_search_script(views), encoding="utf-8")
+    editions = [Edition(views, language) for language in LANGUAGES]
     for page in all_pages(views):
-        text = template.render(page=page, menu=MENU, about=about)
-        (folder / page.path).write_text(text, encoding="utf-8")
+        for edition in editions:
+            _put(folder / edition.address(page), edition.html(page))
+        if page.data:
+            _put(folder / _data_path(page), _data_script(page))
 
 
-def render_page(views: Views, page: Page) -> str:
-    """A page by itself, for one that lies outside the site."""
-    template = _environment(_by_column(views.comments())).get_template("page.html.j2")
-    return template.render(page=page, menu=MENU, about=views.about())
+def _put(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+
+
+class Edition:
+    """The pages in one language."""
+
+    def __init__(self, views: Views, language: str) -> None:
+        self.speech = Speech(language)
+        self.about = views.about()
+        comments = _by_column(views.comments()) if language == "en" else {}
+        cells = Cells(self.speech)
+        self._template = environment(
+            HERE / "templates",
+            policy=POLICY,
+            t=self.speech.text,
+            speech=self.speech,
+            rows=cells.rows,
+            told=lambda answer: told(answer, self.speech),
+            still=lambda page: still_pictures(page, self.speech),
+            comments=comments,
+            menu=MENU,
+            about=self.about,
+        ).get_template("page.html.j2")
+
+    def address(self, page: Page) -> str:
+        """Where the page lies within the site."""
+        return FOLDERS[self.speech.language] + page.path
+
+    def html(self, page: Page) -> str:
+        """The page."""
+        language = self.speech.language
+        depth = self.address(page).count("/")
+        site = page.site or "../" * depth
+        other = next(name for name in LANGUAGES if name != language)
+        return self._template.render(
+            page=page,
+            language=language,
+            site=site,
+            root=(site + FOLDERS[language]) if page.site else page.root,
+            other=other,
+            other_page=page.others.get(other) or f"{site}{FOLDERS[other]}{page.path}",
+            data_path=_data_path(page) if page.data else "",
+        )
+
+
+def _data_path(page: Page) -> str:
+    """The script with the data of a page, shared by its languages."""
+    return f"data/{page.path.removesuffix('.html')}.js"
+
+
+def _data_script(page: Page) -> str:
+    """A script and not JSON: a page from disk may load nothing else."""
+    held = {
+        name: [{c.name: _column(c) for c in frame} for frame in frames]
+        for name, frames in page.data.items()
+    }
+    return f"window.HERIJK_DATA = {as_json(held)};\n"
+
+
+def _search_script(views: Views) -> str:
+    """What the search on every page looks through: boats, types and races, with their pages."""
+    return f"window.HERIJK_FIND = {as_json(list(_found(views)))};\n"
+
+
+def _found(views: Views) -> Iterator[list[str]]:
+    boats = views.table("boats").sort("fsn_no")
+    for fsn_no, ht_no, name, boat_type in boats.select(
+        "fsn_no", "ht_no", "name", "boat_type"
+    ).rows():
+        yield [f"{name} · {fsn_no}", f"{ht_no or ''} {boat_type or ''}", boat_path(fsn_no)]
+    for boat_type in views.type_names():
+        yield [boat_type, "", type_path(boat_type)]
+    for race, day in views.race_days():
+        yield [f"{race} {day}", "", race_path(race, day)]
 
 
 def _by_column(comments: dict[str, str]) -> dict[str, str]:
@@ -125,22 +186,20 @@ def vega_bundle() -> str:
 
 
 @cache
-def chart_specifications() -> str:
-    """A script with every figure's Vega-Lite and words in every language, without data."""
-    found = {
-        language: {
-            name: specification(figure, speaker(language)) for name, figure in FIGURES.items()
-        }
-        for language in LANGUAGES
+def chart_specifications(language: str) -> dict[str, Any]:
+    """Every figure's Vega-Lite in a language, without data."""
+    return {name: specification(figure, speaker(language)) for name, figure in FIGURES.items()}
+
+
+def charts_script(language: str) -> str:
+    """A script with the figures and their words in one language."""
+    say = speaker(language)
+    named = {
+        key: say(key) for key in WORDS if key.startswith(("column.", "code.", "method.", "tip."))
     }
-    words = {language: _words_of_charts(speaker(language)) for language in LANGUAGES}
-    return f"window.HERIJK_FIGURES = {as_json(found)};\nwindow.HERIJK_WORDS = {as_json(words)};\n"
-
-
-def _words_of_charts(say: Say) -> dict[str, str]:
-    """Names of columns and codes, yes and no, for the table of a chart; what an empty one says."""
-    named = {key: say(key) for key in WORDS if key.startswith(("column.", "code."))}
-    return named | {"true": say("yes"), "false": say("no"), "no_values": say("no_values")}
+    words = named | {key: say(key) for key in ("yes", "no", "no_values")}
+    figures = as_json(chart_specifications(language))
+    return f"window.HERIJK_FIGURES = {figures};\nwindow.HERIJK_WORDS = {as_json(words)};\n"
 
 
 def specification(figure: Callable[..., Any], say: Callable[[str], str]) -> dict[str, Any]:
@@ -153,189 +212,17 @@ def specification(figure: Callable[..., Any], say: Callable[[str], str]) -> dict
     return dict(json.loads(text))
 
 
-def _data(frames: Sequence[pl.DataFrame]) -> Markup:
-    """Frames as columns, for a data block (`_column`)."""
-    found = [{c.name: _column(c) for c in frame} for frame in frames]
-    return Markup(as_json(found))  # noqa: S704 - as_json escapes
-
-
 def _column(column: pl.Series) -> list[Any] | dict[str, list[Any]]:
     """A list; of texts and of what stays the same for many rows, each value once.
 
     `runs` then has the place of a value and for how many rows it holds, one pair after the other.
     """
+    values = column.to_list()
     if column.dtype.is_float():
-        return column.round_sig_figs(KEPT).to_list()
-    lengths, held = column.rle().struct.unnest().get_columns()
-    if column.dtype != pl.String and 2 * len(held) >= len(column):
-        return column.to_list()
-    values = held.unique(maintain_order=True)
-    places = {value: place for place, value in enumerate(values)}
-    runs = zip((places[value] for value in held), lengths, strict=True)
-    return {"values": values.to_list(), "runs": list(chain.from_iterable(runs))}
-
-
-def _environment(comments: dict[str, str]) -> jinja2.Environment:
-    return environment(
-        HERE / "templates",
-        policy=POLICY,
-        t=_text,
-        both=both,
-        data=_data,
-        rows=_rows,
-        is_number=_is_number,
-        comments=comments,
-    )
-
-
-def _text(key: str) -> Markup:
-    return in_both(both(key))
-
-
-def _is_number(frame: pl.DataFrame, column: str) -> bool:
-    return frame.schema[column].is_numeric()
-
-
-def _rows(page: Page, table: Table) -> tuple[Markup, Markup]:
-    """The rows that the selectors show at first, and all others.
-
-    A browser lays out only the first; `site.js` brings in others when they are chosen.
-    """
-    frame, follows = table.frame, list(table.follows)
-    # Column by column, because the cells of a column are made in one way.
-    cells = zip(*(_cells(frame[c], page.root) for c in table.columns), strict=True)
-    boats = [_BOAT.format(n) for n in frame["fsn_no"]] if table.linked else repeat("")
-    keys = frame.select(follows).rows() if follows else repeat(())
-
-    @cache
-    def marked(key: tuple[str, ...]) -> tuple[list[str], str]:
-        """Where rows of a key stand, and what they say of it besides their cells."""
-        own = dict(zip(follows, key, strict=True))
-        is_first = all(page.chosen[name] in ("", value) for name, value in own.items())
-        unseen = ((name, value) for name, value in own.items() if name not in table.columns)
-        marks = "".join(_FOLLOWED.format(*one) for one in unseen)
-        return first if is_first else others, marks
-
-    first: list[str] = []
-    others: list[str] = []
-    for row, boat, key in zip(cells, boats, keys, strict=False):
-        place, marks = marked(key)
-        place.append(f"<tr{boat}{marks}>{''.join(row)}</tr>")
-    return Markup("\n".join(first)), Markup("\n".join(others))  # noqa: S704 - made of escaped parts
-
-
-_BOAT = Markup(' data-boat="{}"')
-_FOLLOWED = Markup(' data-f-{}="{}"')
-
-
-def _cells(column: pl.Series, root: str) -> list[Markup]:
-    name = column.name
-    if column.dtype.is_float():
-        digits = next((d for ending, d in DIGITS if name.endswith(ending)), 4)
-        return [_number(value, digits) for value in column]
-    if column.dtype.is_integer() and name != "direction":
-        return [_integer(value) for value in column]
-    show = _shower(name, root)
-    mark = _LONG if name in LONG else Markup("")
-
-    def made(value: Any) -> Markup:
-        return _EMPTY if value is None else _shown(value, show, mark)
-
-    if isinstance(column.dtype, pl.List):
-        return [made(value) for value in column]
-    of = {value: made(value) for value in column.unique()}
-    return [of[value] for value in column]
-
-
-_SAME_CELL = Markup("<td{}>{}</td>")
-"""A cell whose text is its value; others have the value in `data-v`."""
-_CELL = Markup('<td{} data-v="{}">{}</td>')
-_LONG = Markup(" class=w")
-_EMPTY = Markup("<td></td>")
-
-
-def _number(value: float | None, digits: int) -> Markup:
-    if value is None:
-        return Markup("<td class=n></td>")
-    shown, exact = f"{value:z.{digits}f}", f"{value:.{KEPT}g}"
-    mark = "" if shown == exact and digits == 0 else f" data-v={exact}"
-    return Markup(f"<td class=n{mark}>{shown.replace('.', DECIMAL)}</td>")  # noqa: S704 - a number
-
-
-def _integer(value: int | None) -> Markup:
-    text = "" if value is None else str(value)
-    return Markup(f"<td class=i>{text}</td>")  # noqa: S704 - a number
-
-
-def _shown(value: Any, show: Callable[[Any], Markup], mark: Markup) -> Markup:
-    plain = ", ".join(value) if isinstance(value, pl.Series | list) else str(value)
-    shown = show(value)
-    if shown == escape(plain):
-        return _SAME_CELL.format(mark, shown)
-    return _CELL.format(mark, plain, shown)
-
-
-def _shower(name: str, root: str) -> Callable[[Any], Markup]:
-    """How values of a column are shown."""
-    if name in ("fsn_no", "influence_boat"):
-        return lambda value: Markup('<a href="{}{}">{}</a>').format(root, boat_path(value), value)
-    return SHOWERS.get(name, _code if name in CODES else _plain)
-
-
-def _direction(value: int) -> Markup:
-    return _text("out" if value == 1 else "back")
-
-
-def _type(value: str) -> Markup:
-    return _text(f"code.{value}") if value in ("unknown", "all") else _plain(value)
-
-
-def _unit(value: str) -> Markup:
-    return _plain("" if value == "1" else value)
-
-
-def _hash(value: str) -> Markup:
-    return Markup('<code title="{}">{}</code>').format(value, value[:12])
-
-
-def _plain(value: Any) -> Markup:
-    if isinstance(value, bool):
-        return _text("yes" if value else "no")
-    if isinstance(value, dt.datetime):
-        return Markup("{}").format(value.isoformat(" "))
-    return Markup("{}").format(value)
-
-
-def _code(value: Any) -> Markup:
-    """A code, or several with commas or as a list, in words."""
-    codes = value.split(",") if isinstance(value, str) else list(value)
-    return Markup(", ").join(_text(f"code.{code}") for code in codes if code)
-
-
-def _causes(value: str) -> Markup:
-    """What a change is attributed to (a method's step by its name), each with its factor."""
-    parts = [
-        Markup('{} <span class="n">{}</span>').format(
-            _text(f"code.{cause.get('step', cause['cause'])}"),
-            f"{cause['factor']:.4f}".replace(".", DECIMAL),
-        )
-        for cause in json.loads(value)
-    ]
-    return Markup(" \u00d7 ").join(parts)
-
-
-def _titles(value: Any) -> Markup:
-    """A title in Dutch and one in English."""
-    nl, en = value
-    return in_both((nl, en))
-
-
-SHOWERS: Final[dict[str, Callable[[Any], Markup]]] = {
-    "titles": _titles,
-    "direction": _direction,
-    "causes": _causes,
-    "boat_type": _type,
-    "unit": _unit,
-    **dict.fromkeys(("sha256", "content_hash", "method_hash", "seal"), _hash),
-}
-"""Columns shown in a way of their own."""
+        return [None if v is None else float(f"{v:.{DRAWN}g}") for v in values]
+    held = [(value, len(list(same))) for value, same in groupby(values)]
+    if column.dtype != pl.String and 2 * len(held) >= len(values):
+        return values
+    places = {value: place for place, value in enumerate(dict.fromkeys(v for v, _ in held))}
+    runs = chain.from_iterable((places[value], number) for value, number in held)
+    return {"values": list(places), "runs": list(runs)}

@@ -1,9 +1,10 @@
 """The page of boat types: are equal boats equal, before and after."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import polars as pl
 
+from herijk.dashboards.site import headlines
 from herijk.dashboards.site.parts import (
     Chart,
     Page,
@@ -11,6 +12,8 @@ from herijk.dashboards.site.parts import (
     Select,
     Table,
     default_method,
+    methods_select,
+    type_path,
     with_page,
 )
 from herijk.warehouse.queries.views import Views
@@ -39,23 +42,77 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
         ["after", "boat_type"], search=True, linked=True,
     )  # fmt: skip
     first, second = _pair(types)
+    links = [(type_path(name), name) for name in types]
     return Page(
         "types.html",
         "types",
         [
+            Section("types_pages", "types_pages_note", pages=links),
             Section("types_charts", "types_note", _before_after("", "boat_type")),
             Section("types_list", tables=[table]),
             Section("types_pair", "types_pair_note", _before_after("pair_", PAIR_SELECTORS)),
             *_type_tables(views),
         ],
         selects=[
-            Select("before", "before", methods, methods[0]),
-            Select("after", "after", methods, default_method(methods)),
+            methods_select(methods, "before", methods[0]),
+            methods_select(methods, "after"),
             Select("boat_type", "type", types, "", with_all=True),
             Select("pair_first", "pair_first", types, first),
             Select("pair_second", "pair_second", types, second),
         ],
         data={"type_boats": [boats.select("method", "page", *columns)]},
+    )
+
+
+TYPE_COLUMNS = (
+    *("name", "fsn_no", "rowers", "crew_class", "season", "weight_kg", "cw_standard_kg_m"),
+    *("declared_speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", "a_kg_m", "b_m_s"),
+)
+TYPE_CARDS = ("name", "fsn_no", "rowers", "crew_class", "cw_standard_kg_m", "cw_kg_m")
+LINE_COLUMNS = (
+    *("quantity", "explaining", "n", "slope", "slope_lo", "slope_hi", "r2", "residual_sd_ratio"),
+)
+
+
+def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
+    """A page for every type: the verdict, its boats, the fitted lines."""
+    if not views.has("pooled_curves"):
+        return
+    boats = with_page(views.type_boats(), "../")
+    lines, tests = views.table("type_consistency"), views.table("type_homogeneity")
+    for boat_type in views.type_names():
+        own = boats.filter(boat_type=boat_type)
+        of_type = (lines.filter(boat_type=boat_type), tests.filter(boat_type=boat_type))
+        yield _type_page(boat_type, own, *of_type, methods)
+
+
+def _type_page(
+    boat_type: str,
+    boats: pl.DataFrame,
+    lines: pl.DataFrame,
+    tests: pl.DataFrame,
+    methods: Sequence[str],
+) -> Page:
+    table = Table(
+        "type_boats", boats, TYPE_COLUMNS, "types_list", ["method"], search=True, cards=TYPE_CARDS
+    )
+    charts = [
+        Chart(name, "boats", name, {"method": "method"})
+        for name in ("type_cw_weight", "type_cw_speed")
+    ]
+    verdict = headlines.homogeneity(tests.filter(method=default_method(methods)))
+    fitted = Table("type_consistency", lines, LINE_COLUMNS, "types_lines", ["method"])
+    drawn = ("method", "page", *TYPE_COLUMNS)
+    return Page(
+        type_path(boat_type),
+        "types",
+        [
+            Section("type_verdict", "type_note", charts, [table], headline=verdict),
+            Section("types_lines", "types_lines_note", tables=[fitted], folded=True),
+        ],
+        name=boat_type,
+        selects=[methods_select(methods)],
+        data={"boats": [boats.select(drawn)]},
     )
 
 

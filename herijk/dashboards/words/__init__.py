@@ -5,10 +5,13 @@ it is. Names of boats, methods and editions are data and never translated.
 """
 
 from collections.abc import Callable, Mapping
+from functools import cache
 from typing import Final, TypeAlias
 
+from herijk.dashboards.words.answers import ANSWERS
 from herijk.dashboards.words.codes import CODES
 from herijk.dashboards.words.columns import COLUMNS
+from herijk.dashboards.words.documents import DOCUMENTS
 from herijk.dashboards.words.pages import PAGES
 from herijk.dashboards.words.report import REPORT
 from herijk.dashboards.words.slides import SLIDES
@@ -21,7 +24,7 @@ Say = Callable[[str], str]
 Words: TypeAlias = Mapping[str, tuple[str, str]]
 """Texts in Dutch and English by key."""
 
-WORDS: Final[Words] = PAGES | SLIDES | REPORT | COLUMNS | CODES
+WORDS: Final[Words] = PAGES | ANSWERS | DOCUMENTS | SLIDES | REPORT | COLUMNS | CODES
 
 
 def both(key: str, words: Words = WORDS) -> tuple[str, str]:
@@ -33,6 +36,7 @@ def both(key: str, words: Words = WORDS) -> tuple[str, str]:
     return known or (bare, bare)
 
 
+@cache
 def speaker(language: str) -> Say:
     """The texts of one language."""
     place = LANGUAGES.index(language)

@@ -13,7 +13,19 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "reproducibility": ("Herhaalbaarheid", "Reproducibility"),
     "changes": ("Wijzigingen", "Changes"),
     "quality": ("Kwaliteit", "Quality"),
+    "compare": ("Vergelijk", "Compare"),
+    "races": ("Wedstrijden", "Races"),
+    "words": ("Woorden", "Words"),
     "boat": ("Sloep", "Boat"),
+    "find": ("Zoek sloep, type of wedstrijd", "Find a boat, type or race"),
+    "found": ("Gevonden", "Found"),
+    "other_language": ("English", "Nederlands"),
+    "cite": ("Verwijs", "Cite"),
+    "how_made": ("Hoe deze getallen tot stand kwamen", "How these numbers were made"),
+    "curve_caption": (
+        "Cw tegen snelheid: kromme met 95 %-band; rond heen, driehoek terug, open telt niet",
+        "Cw against speed: curve with 95 % band; round out, triangle back, open does not count",
+    ),
     "skip": ("Naar de inhoud", "Skip to content"),
     "pages": ("Pagina's", "Pages"),
     "language": ("Taal", "Language"),
@@ -76,7 +88,6 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "Proeven die terzijde zijn gelegd, waarschuwingen, en tellingen van de herrekening.",
         "Tows set aside, flags, and counts of the rebuild.",
     ),
-    "summary": ("In het kort", "Summary"),
     "methods": ("Rekenmethoden", "Methods"),
     "methods_note": (
         "Elk getal hangt af van een methode, en noemt die. Twee gelijke vingerafdrukken zijn "
@@ -87,6 +98,233 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "tables_note": (
         "Alles op deze bladen staat in warehouse.duckdb.",
         "Everything on these pages stands in warehouse.duckdb.",
+    ),
+    "about_compare": (
+        "Twee sloepen over elkaar: wie loopt lichter, bij welke snelheid?",
+        "Two boats over each other: which runs easier, at what speed?",
+    ),
+    "about_races": (
+        "Elke wedstrijd opnieuw gerekend: wint een ander, en hoe zeker is dat?",
+        "Every race computed again: does another win, and how sure is that?",
+    ),
+    "about_words": ("Wat de woorden en tekens betekenen.", "What the words and signs mean."),
+    "now": ("Waar het staat", "Where it stands"),
+    "years": ("Door de seizoenen", "Through the seasons"),
+    "edition_in_force": ("Geldende editie", "Edition in force"),
+    "no_edition": ("nog geen: dit is een concept", "none yet: this is a draft"),
+    "edition_from": ("{edition}, vanaf {day}", "{edition}, from {day}"),
+    "as_of": ("Gezien op", "As of"),
+    "boats_number": ("Sloepen", "Boats"),
+    "tows_number": ("Sleepproeven", "Tows"),
+    "compare_boats": ("Twee sloepen over elkaar", "Two boats over each other"),
+    "compare_note": (
+        "De krommen van het concept dat het best is, elk met zijn 95 %-band. Waar de banden "
+        "elkaar raken, is niet gezegd wie lichter loopt.",
+        "The curves of the best draft, each with its 95 % band. Where the bands touch it is not "
+        "said which boat runs easier.",
+    ),
+    "types_pages": ("Een type", "One type"),
+    "types_pages_note": (
+        "Elk type heeft een pagina: zijn de sloepen gelijk, en hoe liggen ze?",
+        "Every type has a page: are the boats equal, and how do they compare?",
+    ),
+    "type_verdict": ("Zijn deze sloepen gelijk?", "Are these boats equal?"),
+    "type_note": (
+        "De nieuwste proef van elke sloep en ploeg. Standaardsnelheid: de middelste opgegeven "
+        "snelheid van het type, waarbij Cw te vergelijken is; de opgegeven snelheid verschilt per "
+        "ploeg. De stippellijn is de best passende rechte.",
+        "The newest tow of each boat and crew. Standard speed: the median declared speed of the "
+        "type, at which Cw can be compared; the declared speed differs by crew. The dashed line is "
+        "the best straight fit.",
+    ),
+    "type_cw_weight": (
+        "Cw bij standaardsnelheid tegen gewicht",
+        "Cw at standard speed against weight",
+    ),
+    "type_cw_speed": ("Cw bij opgegeven snelheid", "Cw at declared speed"),
+    "flagged_boats": ("Om welke proeven het gaat", "Which tows they are about"),
+    "boat_runs_note": (
+        "Hoe elke run op zijn Cw komt, van links naar rechts: bruto F/v², min versnelling, min "
+        "wind, plus stille lucht, plus temperatuur.",
+        "How each run comes to its Cw, from left to right: gross F/v², less acceleration, less "
+        "wind, plus still air, plus temperature.",
+    ),
+    # Headlines
+    "head_register": (
+        "{known} van {lines} regels hebben een geldige kromme.",
+        "{known} of {lines} lines have a valid curve.",
+    ),
+    "head_changes": (
+        "{changed} van {lines} regels veranderen; {beyond} met meer dan de onzekerheid van beide "
+        "getallen samen",
+        "{changed} of {lines} lines change; {beyond} by more than the uncertainty of both numbers "
+        "together",
+    ),
+    "none_of_them": ("geen", "none"),
+    "head_mostly": ("; meestal vooral door: {cause}.", "; most often mainly: {cause}."),
+    "head_due": (
+        "{soon} ploegen moeten binnen een jaar na {day} slepen; van {over} is de proef dan al "
+        "verlopen.",
+        "{soon} crews have to tow within a year from {day}; the tows of {over} have expired by "
+        "then.",
+    ),
+    "head_retow": (
+        "Deze proeven brengen de onzekerheid van de logfactoren van {before} naar {after} %.",
+        "These tows bring the uncertainty of the log factors from {before} to {after} %.",
+    ),
+    "head_retow_not": (
+        "Het loont niet: deze proeven brengen de onzekerheid van de logfactoren van {before} naar "
+        "{after} %.",
+        "It is not worth it: these tows bring the uncertainty of the log factors from {before} to "
+        "{after} %.",
+    ),
+    "head_statuses": (
+        "Van {curves} krommen zijn er {accepted} goed, {flagged} om na te kijken en {rejected} "
+        "afgekeurd.",
+        "Of {curves} curves {accepted} are sound, {flagged} need a look and {rejected} are "
+        "rejected.",
+    ),
+    "head_reproducibility": (
+        "Een proef herhaalt zich op {now} % ({method}); dat was {then} % ({first}).",
+        "A tow repeats itself to {now} % ({method}); it was {then} % ({first}).",
+    ),
+    "head_log": (
+        "De log zat er het verst naast in {season}: {by}.",
+        "The log was furthest off in {season}: {by}.",
+    ),
+    "head_type_equal": (
+        "Geen teken dat de krommen van deze {n} proeven in bocht verschillen (p = {p}).",
+        "No sign that the bends of the curves of these {n} tows differ (p = {p}).",
+    ),
+    "head_type_differ": (
+        "De krommen van deze {n} proeven verschillen in bocht, meer dan ruis verklaart (p = {p}).",
+        "The bends of the curves of these {n} tows differ by more than noise explains (p = {p}).",
+    ),
+    "head_type_unknown": (
+        "Of de krommen van deze {n} proeven in bocht verschillen, is niet te zeggen: de toets is "
+        "te zwak.",
+        "Whether the bends of the curves of these {n} tows differ cannot be told: the test is too "
+        "weak.",
+    ),
+    "head_type_few": (
+        "Te weinig sloepen om te zeggen of ze gelijk zijn.",
+        "Too few boats to tell whether they are equal.",
+    ),
+    "head_winner_same": (
+        "Bij de {people} wint {new}, net als eerst.",
+        "Among the {people} {new} wins, as before.",
+    ),
+    "head_winner_other": (
+        "Bij de {people} wint {new} in plaats van {old}.",
+        "Among the {people} {new} wins instead of {old}.",
+    ),
+    "head_chance": (
+        " Kans dat een ander wint dan eerst: {chance} %.",
+        " Chance that another wins than before: {chance} %.",
+    ),
+    # Words
+    "words_list": ("Wat de woorden betekenen", "What the words mean"),
+    "words_note": (
+        "Getallen in het Nederlands hebben een komma. Een interval van 95 % bevat de ware waarde "
+        "in 19 van de 20 gevallen, als alle oorzaken erin zitten; waar dat niet zo is, staat het "
+        "erbij.",
+        "An interval of 95 % holds the true value in 19 of 20 cases if all causes are in it; where "
+        "that is not so, it is said.",
+    ),
+    "term_tow": ("Sleepproef", "Tow"),
+    "meaning_tow": (
+        "Het meten van de weerstand door de sloep te slepen: zes runs, drie heen en drie terug.",
+        "Measuring resistance by towing the boat: six runs, three out and three back.",
+    ),
+    "term_cw": ("Cw", "Cw"),
+    "meaning_cw": (
+        "Weerstandscoëfficiënt in kg/m: sleepkracht gedeeld door snelheid in het kwadraat. Hoe "
+        "lager, hoe lichter de sloep loopt.",
+        "Resistance coefficient in kg/m: tow force divided by speed squared. The lower, the "
+        "easier the boat runs.",
+    ),
+    "term_a": ("A", "A"),
+    "meaning_a": ("Cw bij zeer lage snelheid, in kg/m.", "Cw at very low speed, in kg/m."),
+    "term_b": ("B", "B"),
+    "meaning_b": (
+        "De snelheid in m/s waarbij de weerstand volgens de kromme oneindig wordt: hoe lager, hoe "
+        "sneller Cw met de snelheid oploopt. Cw = A / (1 - (v/B)²).",
+        "The speed in m/s at which the curve's resistance becomes infinite: the lower, the faster "
+        "Cw rises with speed. Cw = A / (1 - (v/B)²).",
+    ),
+    "term_declared": ("Opgegeven snelheid", "Declared speed"),
+    "meaning_declared": (
+        "De snelheid die de ploeg zegt te roeien; de kromme geldt van 85 tot 115 % ervan.",
+        "The speed that the crew says it rows; the curve holds from 85 to 115 % of it.",
+    ),
+    "term_interval": ("95 %-interval", "95 % interval"),
+    "meaning_interval": (
+        "Waar de waarde met 95 % zekerheid ligt, gegeven alles wat in de onzekerheid zit.",
+        "Where the value lies with 95 % confidence, given all that the uncertainty is made of.",
+    ),
+    "term_as_measured": ("Zoals gemeten en beste schatting", "As measured and best estimate"),
+    "meaning_as_measured": (
+        "Zoals gemeten: uit de proef zelf. Beste schatting: uit alle proeven van het archief.",
+        "As measured: from the tow itself. Best estimate: from all tows of the archive.",
+    ),
+    "term_log_factor": ("Logfactor", "Log factor"),
+    "meaning_log_factor": (
+        "Ware snelheid gedeeld door de snelheid volgens de log, in een seizoen.",
+        "True speed divided by the speed of the log, in a season.",
+    ),
+    "term_method": ("Methode", "Method"),
+    "meaning_method": (
+        "De afgesproken rekenwijze, van meting tot A en B. Elk getal noemt de zijne.",
+        "The agreed way of computing, from measurement to A and B. Every number names its own.",
+    ),
+    "term_edition": ("Editie en concept", "Edition and draft"),
+    "meaning_edition": (
+        "Een register zoals vastgesteld, dat niet meer verandert. Een concept is niet vastgesteld.",
+        "A register as decided, which never changes. A draft is not decided.",
+    ),
+    "term_flag": ("Waarschuwing", "Flag"),
+    "meaning_flag": (
+        "Iets om naar te kijken; het verandert geen getal.",
+        "Something to look at; it changes no number.",
+    ),
+    "term_set_aside": ("Terzijde gelegd", "Set aside"),
+    "meaning_set_aside": (
+        "Niet gebruikt, met de reden erbij.",
+        "Not used, with the reason.",
+    ),
+    "term_e_n": ("E_n", "E_n"),
+    "meaning_e_n": (
+        "Verschil van twee proeven gedeeld door beide 95 %-intervallen samen; voorbij 1 spreken ze "
+        "elkaar tegen.",
+        "Difference of two tows divided by both 95 % intervals together; beyond 1 they disagree.",
+    ),
+    "term_power": ("Vermogen per roeier", "Power per rower"),
+    "meaning_power": (
+        "Wat elke roeier gemiddeld levert, in watt; wie het meeste levert, wint.",
+        "What each rower gives on average, in watts; who gives most wins.",
+    ),
+    "term_type": ("Standaardsnelheid", "Standard speed"),
+    "meaning_type": (
+        "De middelste opgegeven snelheid van een type; daarbij zijn sloepen te vergelijken.",
+        "The median declared speed of a type; at it boats can be compared.",
+    ),
+    "term_verification_code": ("Controlecode", "Verification code"),
+    "meaning_verification_code": (
+        "Volgt uit alles wat een regel van een editie heeft gemaakt.",
+        "Follows from all that made a line of an edition.",
+    ),
+    "tip.a_kg_m": ("A: Cw bij zeer lage snelheid", "A: Cw at very low speed"),
+    "tip.b_m_s": (
+        "B: de snelheid waarbij de weerstand oneindig wordt",
+        "B: the speed at which resistance becomes infinite",
+    ),
+    "tip.cw_kg_m": (
+        "Cw: sleepkracht gedeeld door snelheid in het kwadraat",
+        "Cw: tow force divided by speed squared",
+    ),
+    "tip.e_n": (
+        "Verschil gedeeld door beide 95 %-intervallen samen; voorbij 1: strijdig",
+        "Difference divided by both 95 % intervals together; beyond 1 they disagree",
     ),
     # Register
     "register_note": (
@@ -142,22 +380,20 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     ),
     "boat_traces": ("Wat de instrumenten zeiden", "What the instruments said"),
     "boat_traces_note": (
-        "Gemiddelden per seconde; snelheid: doorgetrokken log 1, gestreept GPS. Het grijze "
-        "vlak is het venster dat telt; de rest is weggesneden "
-        "om de reden die erboven staat.",
-        "Means per second; speed: solid log 1, dashed GPS. The grey area is the window "
-        "that counts; the rest is cut for the "
-        "reason above it.",
+        "Gemiddelden per seconde; snelheid: doorgetrokken log 1, gestreept GPS. Wit telt; wat "
+        "grijs is, is weggesneden om de reden die erboven staat.",
+        "Means per second; speed: solid log 1, dashed GPS. White counts; what is "
+        "grey is cut for the reason above it.",
     ),
     "boat_runs": ("Runs", "Runs"),
     "boat_out_back": ("Heen tegen terug, en de wind", "Out against back, and the wind"),
     "boat_out_back_note": (
         "Cw voor en na de luchtcorrectie, heen (runs 1-3) en terug (runs 4-6). Na de correctie "
-        "horen heen en terug samen te vallen. Windhoek: 0 en 360 graden is van voren, 180 van "
-        "achteren.",
+        "horen heen en terug samen te vallen. Windhoek: 0 graden is van voren, min van bakboord, "
+        "180 van achteren.",
         "Cw before and after the air correction, out (runs 1-3) and back (runs 4-6). After the "
-        "correction out and back should coincide. Wind angle: 0 and 360 degrees are from ahead, "
-        "180 from behind.",
+        "correction out and back should coincide. Wind angle: 0 degrees is from ahead, minus from "
+        "port, 180 from behind.",
     ),
     "boat_lineage": ("Herkomst", "Lineage"),
     "boat_lineage_note": (
@@ -251,10 +487,12 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "repeats": ("Elk paar", "Every pair"),
     "repeats_note": (
         "ln(nieuwe Cw / oude Cw), bij het seizoen van de nieuwe proef. E_n: het verschil gedeeld "
-        "door beide 95 %-intervallen samen; voorbij 1 spreken twee proeven elkaar tegen. Klik op "
+        "door beide intervallen samen; voorbij 1 spreken twee proeven elkaar tegen. Waar die de "
+        "spreiding van de runs alleen zijn, kan dat de fout van de log zijn. Klik op "
         "een punt om naar de sloep te gaan.",
         "ln(new Cw / old Cw), at the season of the new tow. E_n: the difference divided by both "
-        "95 % intervals together; beyond 1 two tows disagree. Click a point to go to the boat.",
+        "intervals together; beyond 1 two tows disagree. Where these are the spread of the runs "
+        "alone, that may be the log's error. Click a point to go to the boat.",
     ),
     "components": ("Waar de spreiding vandaan komt", "Where the spread comes from"),
     "components_note": (
@@ -277,11 +515,14 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     # Changes
     "changes_list": ("Gewijzigde regels", "Changed lines"),
     "changes_note": (
-        "Cw en vermogen: nieuw / oud, bij de oude opgegeven snelheid. Tijd 0,99: voor hetzelfde "
-        "vermogen moet de ploeg 1 % sneller zijn. De factoren onder Oorzaken vermenigvuldigen tot "
-        "Cw nieuw / oud.",
-        "Cw and power: new / old, at the old declared speed. Time 0.99: for the same power the "
-        "crew has to be 1 % faster. The factors under Causes multiply to Cw new / old.",
+        "Nieuw / oud: bij de oude opgegeven snelheid; vermogen verandert evenveel. In 2 uur: "
+        "seconden die de ploeg voor hetzelfde vermogen langer (+) mag doen of sneller (-) moet "
+        "zijn. Snelheidsplaats: van alle sloepen van de klasse bij gelijk vermogen, niet de plaats "
+        "in een wedstrijd. De oorzaken vermenigvuldigen samen tot Cw nieuw / oud.",
+        "New / old: at the old declared speed; power changes as much. In 2 h: seconds that the "
+        "crew may take longer (+) or has to be faster (-) for the same power. Speed rank: among "
+        "all boats of the class at equal power, not the place in a race. The causes multiply to "
+        "Cw new / old.",
     ),
     # Quality
     "statuses": ("Stand van de krommen", "Status of the curves"),
@@ -312,12 +553,16 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "nothing_set_aside": ("Niets is terzijde gelegd.", "Nothing was set aside."),
     "no_changes": ("Er zijn geen gewijzigde regels.", "There are no changed lines."),
     "editions": ("Uitgegeven edities", "Published editions"),
-    "races": ("Wedstrijden opnieuw gerekend", "Races computed again"),
     "races_note": (
-        "Plaats en vermogen per roeier van elke uitslag onder de oude en de nieuwe editie. Op de "
-        "lijn blijft de plaats gelijk.",
-        "Place and power a rower of every result under the old and the new edition. On the line "
-        "the place stays the same.",
+        "Elke uitslag opnieuw gerekend onder de oude en de nieuwe editie; kies een wedstrijd.",
+        "Every result computed again under the old and the new edition; choose a race.",
+    ),
+    "race_results": ("Uitslag onder beide edities", "Results under both editions"),
+    "race_ranks": ("Plaats oud en nieuw", "Place before and after"),
+    "race_note": (
+        "Plaats en vermogen per roeier in deze wedstrijd, per klasse. Op de lijn blijft de plaats "
+        "gelijk.",
+        "Place and power per rower in this race, by class. On the line the place stays the same.",
     ),
     "no_races": (
         "Het archief bevat geen wedstrijden om opnieuw te rekenen.",

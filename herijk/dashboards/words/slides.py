@@ -13,11 +13,13 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
         "Een open teken is een proef die te langzaam of te snel was voor de standaardsnelheid. De "
         "lijn is de best passende rechte met haar 95 %-interval; bij gewicht en lengte een per "
         "ploegklasse. Een proef die buiten haar type valt, is genoemd. Een streep is het "
-        "95 %-interval van een proef.",
+        "95 %-interval van een proef; een streepjeslijn de spreiding van de runs alleen: de fout "
+        "van de log zit er niet in.",
         "The methods stand side by side on equal axes. Circles are men, triangles women. An open "
         "mark is a tow too slow or too fast for the standard speed. The line is the straight line "
         "that fits best, with its 95 % interval; against weight and length one per crew class. A "
-        "tow outside its type is named. A bar is the 95 % interval of a tow.",
+        "tow outside its type is named. A bar is the 95 % interval of a tow; a dashed "
+        "one the spread of the runs alone: the log's error is not in it.",
     ),
     # Charts
     "men": ("heren", "men"),
@@ -123,4 +125,86 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     "slide.is_apart": ("dat nog afwijkt", "still apart"),
     "slide.not_apart": ("geen afwijking meer gezien", "no difference seen any more"),
     "decimal_mark": (",", "."),
+    # Columns and codes
+    "code.waterline_length_m": ("lengte waterlijn", "waterline length"),
+    "column.a_lo_kg_m": ("A laagste [kg/m]", "A lowest [kg/m]"),
+    "column.a_hi_kg_m": ("A hoogste [kg/m]", "A highest [kg/m]"),
+    "column.b_hull_ratio": ("B / romp\u00adsnelheid", "B / hull speed"),
+    "column.b_ratio": ("B / romp\u00adsnelheid", "B / hull speed"),
+    "column.b_ratio_lo": ("Laagste", "Lowest"),
+    "column.b_ratio_hi": ("Hoogste", "Highest"),
+    "column.cw_standard_kg_m": (
+        "Cw bij standaard\u00adsnelheid [kg/m]",
+        "Cw at standard speed [kg/m]",
+    ),
+    "column.cw_standard_lo_kg_m": ("Laagste [kg/m]", "Lowest [kg/m]"),
+    "column.cw_standard_hi_kg_m": ("Hoogste [kg/m]", "Highest [kg/m]"),
+    "column.hull_speed_m_s": ("Romp\u00adsnelheid [m/s]", "Hull speed [m/s]"),
+    "column.label": ("Proef", "Tow"),
+    "column.newest_method": ("Methode", "Method"),
+    "column.outside": ("Buiten type", "Outside type"),
+    "column.share_stated_1pct": ("Zegt < 1 %", "States < 1 %"),
+    "column.share_stated_2pct": ("Zegt < 2 %", "States < 2 %"),
+    "column.share_seen_1pct": ("Herhaald < 1 %", "Repeated < 1 %"),
+    "column.share_seen_2pct": ("Herhaald < 2 %", "Repeated < 2 %"),
+    "column.tow_hull_ratio": ("Sleep\u00adsnelheid / romp\u00adsnelheid", "Tow speed / hull speed"),
+    "column.tow_ratio": ("Sleep\u00adsnelheid / romp\u00adsnelheid", "Tow speed / hull speed"),
+    "column.tow_share_60_70": ("Deel bij 60-70 %", "Share at 60-70 %"),
+    "column.x": ("x van de lijn", "x of the line"),
+    "column.y": ("y van de lijn", "y of the line"),
+    # Page
+    "slides_weight": ("Tegen gewicht", "Against weight"),
+    "slides_speed": ("Tegen sleepsnelheid", "Against tow speed"),
+    "slides_length": ("Tegen lengte", "Against length"),
+    "slides_hull_speed": ("Is B de rompsnelheid?", "Is B hull speed?"),
+    "slides_years": ("Een sloep door de jaren", "One boat through the years"),
+    **{
+        f"slide_{y}_{x}": (f"{name_nl} tegen {x_nl}", f"{name_en} against {x_en}")
+        for y, (name_nl, name_en) in {
+            "b": ("B", "B"),
+            "a": ("A", "A"),
+            "cw": ("Cw bij standaardsnelheid", "Cw at the standard speed"),
+        }.items()
+        for x, (x_nl, x_en) in {
+            "weight": ("gewicht", "weight"),
+            "speed": ("sleepsnelheid", "tow speed"),
+            "length": ("lengte", "length"),
+        }.items()
+    },
+    "slide_hull_speed": (
+        "B tegen lengte; op de streepjeslijn is B de rompsnelheid",
+        "B against length; on the dashed line B is hull speed",
+    ),
+    "slide_towed_at": (
+        "Sleepsnelheid als deel van de rompsnelheid; grijs: 60-70 %",
+        "Tow speed as part of hull speed; grey: 60-70 %",
+    ),
+    "slide_boat_years": (
+        "Krommen van alle seizoenen; streepjeslijn: de standaardsnelheid",
+        "Curves of all seasons; dashed: the standard speed",
+    ),
+    "claim_hull_speed": ("B en rompsnelheid per type", "B and hull speed per type"),
+    "claim_hull_speed_note": (
+        "Sleepsnelheid en B als deel van de rompsnelheid, 1,25 keer de wortel van de waterlijn. "
+        "Van B de mediaan van de sloepen met haar 95 %-interval: staat 1 daarbuiten, dan is B niet "
+        "de rompsnelheid.",
+        "Tow speed and B as parts of hull speed, 1.25 times the root of the waterline. Of B the "
+        "median of the boats with its 95 % interval: if 1 lies outside it, B is not hull speed.",
+    ),
+    "claim_promise": ("Binnen 2 %, en binnen 1 %?", "Within 2 %, and within 1 %?"),
+    "claim_promise_note": (
+        "De presentatie: een ruime meerderheid binnen 2 %, na verbetering alle binnen 1 %. Eerst "
+        "wat de proeven zelf zeggen (half 95 %-interval; bij de oude methoden alleen de spreiding "
+        "van de runs), dan wat herhaalde proeven laten zien.",
+        "The presentation: a large majority within 2 %, after the improvements all within 1 %. "
+        "First what the tows state themselves (half the 95 % interval; under the old methods the "
+        "spread of the runs alone), then what repeat tows show.",
+    ),
+    "claim_print_summary": ("Komt de druk er weer uit?", "Does print come out again?"),
+    "claim_print_summary_note": (
+        "Gedrukte Cw gedeeld door de herrekende, per seizoen. Kijk hier eerst, voor er iets wordt "
+        "herijkt: wat overblijft is onverklaard.",
+        "Printed Cw over the recomputed, per season. Look here before anything is re-based: what "
+        "is left is unexplained.",
+    ),
 }

@@ -12,7 +12,7 @@ import polars as pl
 import polars.selectors as cs
 from pydantic import BaseModel, ConfigDict, StringConstraints
 
-from herijk.dashboards.site.render import DIGITS, KEPT, LONG
+from herijk.dashboards.site.cells import DIGITS, KEPT, LONG
 from herijk.dashboards.workbench.form import controls
 from herijk.pipeline.errors import HerijkError
 from herijk.pipeline.method.definition import (

@@ -23,9 +23,10 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, JSONResponse, Response
 from starlette.routing import Route
 
+from herijk.dashboards import fonts
 from herijk.dashboards.html import as_json, environment, in_both
 from herijk.dashboards.site.render import chart_specifications, vega_bundle
-from herijk.dashboards.words import both
+from herijk.dashboards.words import LANGUAGES, both
 from herijk.dashboards.workbench.bench import Base, Bench, Named, Question
 from herijk.dashboards.workbench.texts import TEXTS
 from herijk.pipeline.errors import HerijkError, MissingKnowledgeError
@@ -39,8 +40,8 @@ HEADERS: Final = {
     # Vega compiles its expressions, and its tooltips bring a style of their own.
     "Content-Security-Policy": (
         "default-src 'none'; script-src 'self' 'unsafe-eval'; style-src 'self' 'unsafe-inline'; "
-        "img-src data:; connect-src 'self'; form-action 'none'; frame-ancestors 'none'; "
-        "base-uri 'none'"
+        "img-src data:; font-src data:; connect-src 'self'; form-action 'none'; "
+        "frame-ancestors 'none'; base-uri 'none'"
     ),
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
@@ -53,9 +54,11 @@ Wanted = TypeVar("Wanted", bound=BaseModel)
 def application(bench: Bench) -> Starlette:
     """The workbench as a web application."""
     page = _page(bench)
+    figures = {language: chart_specifications(language) for language in LANGUAGES}
     files = {
         "vega.js": vega_bundle(),
-        "figures.js": chart_specifications(),
+        "figures.js": f"window.HERIJK_FIGURES = {as_json(figures)};\n",
+        "font.css": fonts.style_sheet(),
         "site.css": (SITE / "site.css").read_text(encoding="utf-8"),
     } | {f.name: f.read_text(encoding="utf-8") for f in (HERE / "static").iterdir()}
 

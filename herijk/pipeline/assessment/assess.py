@@ -12,7 +12,7 @@ from typing import Final
 
 import polars as pl
 
-from herijk.pipeline.assessment.checks import CHECKS, CODES
+from herijk.pipeline.assessment.checks import CHECKS, CODES, DOUBTS
 from herijk.pipeline.channels import TARGET_SPEED_RATIOS
 from herijk.pipeline.choice import SAME_SHARE
 
@@ -47,6 +47,7 @@ def assess(curves: pl.DataFrame, run_points: pl.DataFrame, tows: pl.DataFrame) -
     observed = [
         _of_curves(curves),
         _of_runs(curves, run_points),
+        _of_doubts(tows),
         _of_sizes(tows),
         _of_previous_curve(curves, tows),
         _of_like_boats(curves, tows),
@@ -184,6 +185,15 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
     )
 
 
+def _of_doubts(tows: pl.DataFrame) -> pl.DataFrame:
+    """By which checks the rest of the archive rules a tow out, judged before any method."""
+    if "doubts" not in tows.columns:
+        return pl.DataFrame(schema={"tow_id": pl.String()})
+    return tows.select(
+        "tow_id", *(pl.col("doubts").list.contains(code).alias(code) for code in DOUBTS)
+    )
+
+
 # Against earlier tows
 
 
@@ -195,8 +205,11 @@ def _of_sizes(tows: pl.DataFrame) -> pl.DataFrame:
     """Weight after, and measurements against those of the boat's previous tow with any crew."""
     same = ~pl.col("altered")
     freeboards = [(pl.col(c) - _before(c, ["fsn_no"])).abs() for c in FREEBOARDS]
+    lost = [c for c in ("runs_set_aside",) if c in tows.columns]
     return tows.sort("tow_date", "tow_id").select(
         "tow_id",
+        *lost,
+        (pl.col("crew_weight_kg") / pl.col("rowers")).alias("crew_weight"),
         (pl.col("weight_after_kg") / pl.col("weight_kg") - 1).alias("heavier_after"),
         pl.when(same).then(pl.max_horizontal(freeboards)).alias("freeboard_changed"),
         *(

@@ -71,6 +71,13 @@ CHECKS: Final = (
         severity="note",
     ),
     Check(
+        "runs_set_aside",
+        "runs that the tow list says to use and whose samples cannot be used",
+        "1",
+        "Sleepproef 2017, 'Eerste beoordeling': faults make runs to be towed again",
+        highest=0.0,
+    ),
+    Check(
         "unbalanced_runs",
         "difference between the number of runs out and back; stream and wind then do not cancel",
         "1",
@@ -117,6 +124,31 @@ CHECKS: Final = (
         "Cw at the declared speed is sound all the same",
         highest=0.0,
         severity="note",
+    ),
+    # The samples beside all other tows (`pipeline.assessment.plausibility`)
+    Check(
+        "force_not_plausible",
+        "whether size, boat, day, season and type rule the force out (1) or not (0): a gain, a "
+        "zero or a unit that is off, or another boat's samples",
+        "1",
+        "inferred: 4.5 standard deviations from what all other tows let expect",
+        highest=0.0,
+    ),
+    Check(
+        "wind_not_plausible",
+        "whether the wind out and back does not leave the boat's own speed (1) or does (0): a "
+        "unit, a scale or a vane that is off",
+        "1",
+        "inferred, as force_not_plausible",
+        highest=0.0,
+    ),
+    Check(
+        "speed_not_plausible",
+        "whether the runs were towed at other speeds than the declared one asks (1) or not (0): a "
+        "speed mistyped, or another boat's samples",
+        "1",
+        "inferred, as force_not_plausible",
+        highest=0.0,
     ),
     # The runs
     Check(
@@ -182,6 +214,15 @@ CHECKS: Final = (
         lowest={"H": 60.0, "D": 34.0},
     ),
     # The boat of the day
+    Check(
+        "crew_weight",
+        "crew and ballast / rowers: the tow is for a standard crew",
+        "kg",
+        "Sleepproef 2017, 'Bemanning': 95 kg a man, 75 kg a woman on average; inferred: 15 % less, "
+        "and 20 % more as the cox may be counted in",
+        lowest={"H": 81.0, "D": 64.0},
+        highest={"H": 114.0, "D": 90.0},
+    ),
     Check(
         "heavier_after",
         "weight after the tow / before it, less 1: a boat that leaks",
@@ -257,5 +298,8 @@ CHECKS: Final = (
     ),
 )
 """Every check, in the order in which flags are listed."""
+
+DOUBTS: Final = ("force_not_plausible", "wind_not_plausible", "speed_not_plausible")
+"""Checks by which the rest of the archive rules a tow out."""
 
 CODES: Final = tuple(check.code for check in CHECKS)

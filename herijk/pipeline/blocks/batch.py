@@ -63,6 +63,13 @@ class Batch:
         return self.tows[name].fill_null(value=True).to_numpy()
 
     @property
+    def trusted(self) -> BoolArray:
+        """Tows that the rest of the archive does not rule out, shape (tows,)."""
+        if "doubts" not in self.tows.columns:
+            return np.ones(self.size, dtype=bool)
+        return (self.tows["doubts"].list.len() == 0).to_numpy()
+
+    @property
     def direction(self) -> IntArray:
         """1 out, -1 back, shape (runs,)."""
         return self.blocks.runs["direction"].to_numpy().astype(np.int64)
@@ -76,6 +83,12 @@ class Batch:
     def target_speed_ratio(self) -> FloatArray:
         """Intended speed / declared speed, shape (runs,)."""
         return self.blocks.runs["target_speed_ratio"].to_numpy()
+
+    @property
+    def lost_s(self) -> FloatArray:
+        """Time left out of each run, shape (runs,); 0 where nothing is said."""
+        runs = self.blocks.runs
+        return runs["lost_s"].to_numpy() if "lost_s" in runs.columns else np.zeros(len(self.tow))
 
     @property
     def selected(self) -> BoolArray:

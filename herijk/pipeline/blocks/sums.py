@@ -32,6 +32,7 @@ _CHANNELS: Final = (
     "wind_speed_m_s",
     "wind_angle_deg",
 )
+_GPS_NAME: Final = "gps_m_s"
 _NOT_MEASURED: Final = {
     "log2_m_s": pl.col("log1_m_s"),
     "wind_speed_m_s": pl.col("log1_m_s"),
@@ -48,22 +49,25 @@ def block_sums(samples: pl.DataFrame, sample_rate_hz: int) -> pl.DataFrame:
 
     Args:
         samples: columns of `pipeline.channels.SAMPLE_SCHEMA`, each run contiguous, speeds positive.
-            Where no wind was measured the air is taken to be still; where there is no log 2, it
-            reads as log 1.
+            Where no wind was measured the air is taken to be still; where there is no log 2, in the
+            tow or in a run, it reads as log 1. A sample that is not a number in any channel but the
+            GPS is left out of its block.
         sample_rate_hz: samples a second.
 
     Returns:
         One row per run and second: `run`, `second` (0 is the first), `n` (samples; the last
-        block of a run may hold fewer) and the sums of `SUM_NAMES`, float64. A sum depends on
-        the samples of its block alone, not on its neighbours, threads or the processor.
+        block of a run may hold fewer, one with samples left out any number down to 0) and the
+        sums of `SUM_NAMES`, float64. A sum depends on the samples of its block alone, not on its
+        neighbours, threads or the processor.
     """
     run = samples["run"].to_numpy()
     blocks = _count(run, sample_rate_hz)
     number, second = np.empty(blocks, np.int8), np.empty(blocks, np.int16)
     n, sums = np.empty(blocks, np.int32), np.empty((_ROWS, blocks))
     filled = _filled(samples)
-    channels = (filled[name].to_numpy() for name in _CHANNELS)
+    channels = [filled[name].to_numpy() for name in _CHANNELS]
     _add_up(run, sample_rate_hz, number, second, n, sums, *channels)
+    _leave_out(channels, sample_rate_hz, n, sums)
     found = pl.Series(sums.ravel())
     return pl.DataFrame(
         [
@@ -81,7 +85,41 @@ def _filled(samples: pl.DataFrame) -> pl.DataFrame:
         value.cast(pl.Float32).alias(name)
         for name, value in _NOT_MEASURED.items()
         if samples[name].null_count()
+    ).with_columns(
+        pl.when(pl.col("log2_m_s").is_nan().all().over("run"))
+        .then("log1_m_s")
+        .otherwise("log2_m_s")
+        .alias("log2_m_s")
     )
+
+
+def _leave_out(
+    channels: list[NDArray[np.float32]], rate_hz: int, n: NDArray[np.int32], sums: FloatArray
+) -> None:
+    """Adds up again, without them, the blocks that have samples that are not numbers."""
+    needed = (values for name, values in zip(_CHANNELS, channels, strict=True) if name != _GPS_NAME)
+    lacking = np.logical_or.reduce([~np.isfinite(values) for values in needed])
+    if not lacking.any():
+        return
+    block = np.repeat(np.arange(len(n)), n)
+    spoilt = np.unique(block[lacking])
+    kept = np.isin(block, spoilt) & ~lacking
+    left, rank, count = np.unique(block[kept], return_inverse=True, return_counts=True)
+    n[spoilt], sums[:, spoilt] = 0, 0.0
+    # Neighbours differ in the run that they are given, so each is a block of its own.
+    number, second = np.empty(len(left), np.int8), np.empty(len(left), np.int16)
+    again = np.empty((_ROWS, len(left)))
+    run = (rank % 2).astype(np.int8)
+    _add_up(
+        run,
+        rate_hz,
+        number,
+        second,
+        np.empty(len(left), np.int32),
+        again,
+        *(values[kept] for values in channels),
+    )
+    n[left], sums[:, left] = count, again
 
 
 P = ParamSpec("P")

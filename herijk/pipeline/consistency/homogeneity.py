@@ -1,8 +1,9 @@
 """Equal boats, equal B? A test, its power, and what the register would be if boats shared a bend.
 
 Boats of a type may differ in the height of their curve; asked is whether they differ in its bend,
-s = 1/B^2. Scatter of the runs is relative and pooled over the type. One row per boat and crew, its
-newest tow. B counts as free, also where the method caps it.
+s = 1/B^2, beyond what class and speed of the tow explain. Scatter of the runs is relative and
+pooled over the type. One row per boat and crew, its newest tow. B counts as free, also where the
+method caps it.
 """
 
 from typing import Any, Final
@@ -34,6 +35,10 @@ SPEED_RATIOS: Final = {"cw_085_kg_m": 0.85, "cw_kg_m": 1.0, "cw_115_kg_m": 1.15}
 BEND_BOUNDS: Final = (-2.0, 0.999)
 """Of the shared s, as a share of that which puts B on the fastest point."""
 
+STEPS: Final = 20
+LEAST_SPREAD: Final = 1e-4
+"""Classes or speeds that differ by less than this do not tell how the bend follows them."""
+
 BEND_MARGIN: Final = 1e-3
 """Within this of the least that a plain search finds lies the least itself."""
 
@@ -60,6 +65,46 @@ def shared_bend(boats: Observed) -> float:
     return float(least) / fastest
 
 
+def expected_bends(boats: Observed) -> tuple[FloatArray, int]:
+    """The s of every boat if all were alike, and how many numbers that took.
+
+    A hyperbola only describes a hull: the bend of equal hulls follows the speed at which they are
+    towed, and men tow faster than women. So s may differ between classes and follow the square of
+    the declared speed; what a column of these cannot show (one class, one speed) is left out. Least
+    squares by Gauss-Newton, each boat with its own height.
+    """
+    women = (boats.table["crew_class"] == "D").to_numpy()
+    speed2 = boats.column("declared_speed_m_s") ** 2
+    columns = [np.ones(len(speed2))]
+    for column in (women.astype(np.float64), speed2 / speed2.mean() - 1.0):
+        design = np.column_stack([*columns, column])
+        enough = len(speed2) > design.shape[1] + 1
+        if enough and np.linalg.svd(design, compute_uv=False)[-1] > LEAST_SPREAD * len(design):
+            columns.append(column)
+    design = np.column_stack(columns)
+    ceiling = BEND_BOUNDS[1] / np.where(boats.points.used, boats.points.speed_m_s, 0.0).max(1) ** 2
+    s = np.full(len(speed2), shared_bend(boats))
+    for _ in range(STEPS):
+        residual, slope = _along_bend(boats, s)
+        pull, weight = (slope * residual).sum(axis=1), (slope**2).sum(axis=1)
+        normal = design.T @ (weight[:, None] * design)
+        move = design @ np.linalg.solve(normal, design.T @ pull)
+        s = np.minimum(s + move, ceiling)
+    return s, design.shape[1]
+
+
+def _along_bend(boats: Observed, s_s2_m2: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Relative residuals of each boat's points at given s, and their slopes but for the height."""
+    points, c0 = boats.points, boats.column("c0_kg_m")[:, None]
+    v2 = np.where(points.used, points.speed_m_s, 0.0) ** 2
+    shape = points.used / (1.0 - s_s2_m2[:, None] * v2)
+    a = height_given_bend(points, s_s2_m2)[:, None]
+    residual = np.where(points.used, points.cw_kg_m - a * shape, 0.0) / c0
+    slope = a * shape**2 * v2 / c0
+    share = (slope * shape).sum(axis=1) / (shape**2).sum(axis=1)
+    return residual, slope - share[:, None] * shape
+
+
 def height_given_bend(points: curve.Points, s_s2_m2: FloatArray) -> FloatArray:
     """A [kg/m] of each curve by least squares with its s given, shape (rows,).
 
@@ -71,10 +116,7 @@ def height_given_bend(points: curve.Points, s_s2_m2: FloatArray) -> FloatArray:
 
 def _misfit(boats: Observed, s_s2_m2: float) -> float:
     """Residual sum of squares relative to each boat's own Cw, with one s for all."""
-    points, s = boats.points, np.full(boats.table.height, s_s2_m2)
-    fitted = curve.cw(height_given_bend(points, s)[:, None], s[:, None], points.speed_m_s)
-    residual = np.where(points.used, points.cw_kg_m - fitted, 0.0)
-    return float(((residual / boats.column("c0_kg_m")[:, None]) ** 2).sum())
+    return float((_along_bend(boats, np.full(boats.table.height, s_s2_m2))[0] ** 2).sum())
 
 
 def _misfit_slope(boats: Observed, s_s2_m2: float) -> float:
@@ -132,21 +174,24 @@ def _tested(boats: Observed, boat_type: str) -> dict[str, Any]:
     if n_boats < FEWEST_BOATS:
         return counts | {"reason": "few_boats"}
     within = float(boats.column("run_rss_ratio2").sum())
-    dof = boats.table.height - 1, int(boats.column("run_dof").sum())
     if within <= 1e-20 * boats.table.height:
         return counts | {"reason": "no_scatter"}
-    shared = shared_bend(boats)
-    f = max(_misfit(boats, shared) - within, 0.0) / dof[0] / (within / dof[1])
+    alike, parameters = expected_bends(boats)
+    dof = boats.table.height - parameters, int(boats.column("run_dof").sum())
+    misfit = float((_along_bend(boats, alike)[0] ** 2).sum())
+    f = max(misfit - within, 0.0) / dof[0] / (within / dof[1])
     sigma = float(np.sqrt(within / dof[1]))
     return (
         counts
         | {"dof_between": dof[0], "dof_within": dof[1], "f_value": f, "run_sd_ratio": sigma}
         | {"p_value": float(scipy.special.fdtrc(*dof, f)), "reason": ""}
-        | _spread(boats, shared, sigma, f)
+        | _spread(boats, shared_bend(boats), sigma, f, dof)
     )
 
 
-def _spread(boats: Observed, shared: float, sigma: float, f: float) -> dict[str, Any]:
+def _spread(
+    boats: Observed, shared: float, sigma: float, f: float, dof: tuple[int, int]
+) -> dict[str, Any]:
     """Power, share of noise, and correlation of A and B by noise alone."""
     speed = float(np.median(boats.column("declared_speed_m_s")))
     r = shared * speed**2
@@ -164,7 +209,6 @@ def _spread(boats: Observed, shared: float, sigma: float, f: float) -> dict[str,
     a = (boats.column("c0_kg_m") / (1.0 + boats.column("q")))[has_b]
     several = len(b) >= FEWEST_BOATS
     noise = sigma * float(np.sqrt(boats.column("q_unit_variance").mean())) / (2 * q * (1 + q))
-    dof = boats.table.height - 1, int(boats.column("run_dof").sum())
     powers = {
         f"power_at_{round(100 * cv)}pct": power(boats, shared, sigma, cv, dof) for cv in POWER_AT
     }

@@ -144,8 +144,9 @@ class Steps(_Options):
 
 
 class RegisterRule(_Options):
-    """How long a tow counts. It changes no curve, only which lines of a register are valid."""
+    """How long a tow counts, and which of its estimates. It changes no curve."""
 
+    estimate: Literal["as_measured", "best_estimate"] = "as_measured"
     valid_years: int = Field(default=5, ge=1, le=20)
     six_years_from: int | None = Field(default=None, ge=1990, le=2100)
 
@@ -234,6 +235,11 @@ def shipped_method(name: str) -> Method:
     return parse_method(shipped_text(name), f"{name}.toml")
 
 
+LONGEST_TEXT: Final = 100_000
+MOST_DOTS: Final = 200
+"""More than any method has; a key of 100,000 parts takes minutes and gigabytes."""
+
+
 def parse_method(text: str, file_name: str, text_of: Callable[[str], str] = shipped_text) -> Method:
     """Reads and checks the text of a method file.
 
@@ -245,6 +251,12 @@ def parse_method(text: str, file_name: str, text_of: Callable[[str], str] = ship
     Raises:
         MethodFileError: with file, line, key and what is allowed.
     """
+    most = max((line.count(".") for line in text.splitlines()), default=0)
+    if len(text) > LONGEST_TEXT or most > MOST_DOTS:
+        raise MethodFileError(
+            f"{file_name}: {len(text)} letters, up to {most} dots in a line; a method has at most "
+            f"{LONGEST_TEXT} and {MOST_DOTS}"
+        )
     reader = _Reader(text, file_name)
     head = reader.head()
     layers = _layers(reader, head, text_of, seen=(head.name,))

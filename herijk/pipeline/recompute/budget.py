@@ -36,6 +36,9 @@ CURVE_SPEED_RATIOS: Final = tuple(thousandths / 1000 for thousandths in range(85
 """Speeds of the points of a curve / declared speed: the range in which a curve is valid, with
 `DECLARED` in the middle."""
 
+MOST_BENT: Final = 0.9
+"""r beyond which a curve tells nothing."""
+
 USUAL_BEND: Final = 0.4
 """q where the archive is not asked for it (research, method.md 0.7: r of 0.3)."""
 
@@ -121,10 +124,10 @@ def cw_bounds(held: pl.DataFrame) -> pl.DataFrame:
 def _budget_of_batch(
     o: Outcome, found: SeasonFactors | None, speed_ratios: Sequence[float]
 ) -> pl.DataFrame:
-    bend = USUAL_BEND if found is None else _median_bend(o)
     scatter = scatter_of(o, found is not None)
     terms = _terms_of_tows(o, found, scatter)
-    cw, r = pl.col("cw_kg_m"), bend / (1.0 + bend) * pl.col("speed_ratio") ** 2
+    cw, bend = pl.col("cw_kg_m"), pl.col("bend")
+    r = (bend / (1.0 + bend) * pl.col("speed_ratio") ** 2).clip(-1.0, MOST_BENT)
     random = np.concatenate([_random_ratio(o, scatter, ratio) for ratio in speed_ratios])
     rows = (
         _at_speeds(o, speed_ratios)
@@ -138,7 +141,7 @@ def _budget_of_batch(
             (pl.col("still_air_kg_m") / cw).alias("still_air_ratio"),
         )
     )
-    return budget(rows, _assumed(o, found, bend, terms["net_air_kg_m"].to_numpy()))
+    return budget(rows, _assumed(o, found))
 
 
 def _at_speeds(o: Outcome, speed_ratios: Sequence[float]) -> pl.DataFrame:
@@ -169,8 +172,13 @@ def _random_ratio(o: Outcome, scatter: curve.Scatter, speed_ratio: float) -> Flo
 def _terms_of_tows(o: Outcome, found: SeasonFactors | None, scatter: curve.Scatter) -> pl.DataFrame:
     """What `propagation.budget` asks of tows, as far as it is the same at any speed."""
     batch = o.batch
-    estimated = np.isfinite(o.estimated.factor)
-    net_air = batch.mean(o.air_kg_m - o.still_air_kg_m, o.used)
+    estimated = np.isfinite(o.estimated.ln_sd)
+    usual = USUAL_BEND if found is None else _median_bend(o)
+    bend = np.where(np.isfinite(o.estimated.bend), o.estimated.bend, usual)
+    # One coefficient for the archive is found by the same anemometer: its scale cancels in the air
+    # taken off, and only what is put back for still air has it.
+    taken_off = 0.0 if o.steps.wind.coefficients == "archive" else o.air_kg_m
+    net_air = batch.mean(taken_off - o.still_air_kg_m, o.used)
     # A larger coefficient takes more off as felt and puts more back for still air.
     still_unit = o.still_air_kg_m / np.maximum(o.still_air_coefficient, 1e-9)
     per_coefficient = batch.mean(still_unit - o.air_unit_kg_m, o.used)
@@ -180,6 +188,7 @@ def _terms_of_tows(o: Outcome, found: SeasonFactors | None, scatter: curve.Scatt
         log_part(o.steps.speed.source),
         pl.lit(o.steps.speed.source).alias("log"),
         pl.Series("random_dof", scatter.dof),
+        pl.Series("bend", bend),
         pl.Series("calibrated", o.calibrated),
         pl.Series("log_sd", np.where(estimated, o.estimated.ln_sd, 0.0)),
         pl.Series("log_dof", np.where(estimated, o.estimated.dof, np.inf)),
@@ -211,16 +220,9 @@ def _wander(o: Outcome, found: SeasonFactors | None) -> FloatArray:
     return wander
 
 
-def _assumed(
-    o: Outcome, found: SeasonFactors | None, bend: float, net_air_kg_m: FloatArray
-) -> Assumed:
+def _assumed(o: Outcome, found: SeasonFactors | None) -> Assumed:
     """What is assumed, or shown by repeat tows: of Cw at the declared speed, whatever is asked."""
-    assumed = Assumed()
+    assumed = Assumed() if found is None else Assumed().beside_repeats(found.tow_sd)
     if o.steps.wind.coefficients == "archive":
         assumed = replace(assumed, wind_coefficient=ARCHIVE_COEFFICIENT_SD)
-    if found is None:
-        return assumed
-    sound = np.isfinite(o.cw_at_declared)
-    air_ratio = net_air_kg_m[sound] / o.cw_at_declared[sound]
-    usual_air = float(np.sqrt(np.mean(air_ratio**2))) if sound.any() else 0.0
-    return assumed.as_repeats_show(found.tow_sd, 2.0 * (1.0 + bend), usual_air)
+    return assumed

@@ -25,13 +25,19 @@ class TowFactor:
     """What was estimated of each tow's log factor, shape (tows,); NaN where nothing was.
 
     Attributes:
-        factor: true speed / log speed of its season and log.
-        ln_sd, dof: standard deviation of its logarithm, and degrees of freedom.
+        factor: true speed / log speed on its day.
+        ln_sd, dof: standard deviation of its logarithm, that of the load cell with it, and degrees
+            of freedom.
+        force_factor, force_zero_n: of the load cell, where one was found faulty; else 1 and 0.
+        bend: q of the boat at its usual speed, by all that is known of it.
     """
 
     factor: FloatArray
     ln_sd: FloatArray
     dof: FloatArray
+    force_factor: FloatArray
+    force_zero_n: FloatArray
+    bend: FloatArray
 
 
 @dataclass(frozen=True)

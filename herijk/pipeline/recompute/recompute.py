@@ -25,6 +25,7 @@ from herijk.pipeline.recompute.season_factors import (
     factor_of_tows,
     find_season_factors,
     is_estimated,
+    tow_instruments,
     without_factor,
 )
 from herijk.pipeline.season_log import SeasonFactors
@@ -72,7 +73,7 @@ def recompute(
     cache = RunCache() if cache is None else cache
     asked = any(is_estimated(held.steps) for held in method.ranges)
     found = season_factors(plans, cache) if asked else None
-    factors = None if found is None else found.factors
+    factors = None if found is None else tow_instruments(found)
     return as_tables(method, tows, evaluate(plans, cache, factors), found, with_bands)
 
 
@@ -82,7 +83,7 @@ def season_factors(plans: Sequence[tuple[Batch, Steps]], cache: RunCache) -> Sea
     None if not a single tow has a curve from which to estimate.
     """
     before = evaluate([(batch, without_factor(steps)) for batch, steps in plans], cache)
-    if not any(np.isfinite(outcome.cw_at_declared).any() for outcome in before):
+    if not any((np.isfinite(o.cw_at_declared) & o.batch.trusted).any() for o in before):
         return None
     return find_season_factors(before)
 
@@ -92,7 +93,7 @@ def log_factors(plans: Sequence[tuple[Batch, Steps]], cache: RunCache) -> pl.Dat
     if not any(is_estimated(steps) for _, steps in plans):
         return None
     found = season_factors(plans, cache)
-    return None if found is None else found.factors
+    return None if found is None else tow_instruments(found)
 
 
 def batches(
@@ -123,8 +124,7 @@ def evaluate(
     Args:
         plans: batches with their steps; what is searched over the archive is searched over them.
         cache: what was found before of the same tows; added to.
-        factors: rows of `SeasonFactors.factors` or of the table `season_links`, for steps that
-            ask for estimated log factors.
+        factors: rows of the table `tow_instruments`, for steps that ask for estimated log factors.
     """
     prepared = [
         _prepare(batch, steps, cache, factor_of_tows(batch, steps, factors))
@@ -136,6 +136,7 @@ def evaluate(
 
 def _prepare(batch: Batch, steps: Steps, cache: RunCache, estimated: TowFactor) -> Prepared:
     windows, means = cache.windows(batch, steps), cache.means(batch, steps)
+    means = means.with_force(estimated.force_factor[batch.tow], estimated.force_zero_n[batch.tow])
     tow_list = batch.of_tow("speed_correction_ratio")
     known = log_factor(steps.speed, tow_list, estimated.factor)
     reasons = _reasons(batch, steps, windows, means)
@@ -306,7 +307,10 @@ def _archive_coefficient(prepared: list[Prepared]) -> float | None:
     """
     if not prepared:
         return None
-    total = np.sum([_misfits(p, ARCHIVE_GRID).sum(axis=1) for p in prepared], axis=0)
+    total = np.sum(
+        [np.where(p.batch.trusted, _misfits(p, ARCHIVE_GRID), 0.0).sum(axis=1) for p in prepared],
+        axis=0,
+    )
     best = int(np.clip(total.argmin(), 1, len(ARCHIVE_GRID) - 2))
     below, here, above = total[best - 1 : best + 2]
     bend = below - 2.0 * here + above

@@ -18,6 +18,7 @@ from herijk.pipeline.arrays import BoolArray
 from herijk.pipeline.assessment.assess import assess, with_status
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.races.race import power_per_rower_w
+from herijk.pipeline.recompute.best import with_best
 from herijk.pipeline.recompute.budget import (
     CURVE_SPEED_RATIOS,
     DECLARED,
@@ -28,7 +29,9 @@ from herijk.pipeline.recompute.budget import (
     scatter_of,
 )
 from herijk.pipeline.recompute.outcome import Outcome
-from herijk.pipeline.season_log import SeasonFactors, log_or_force, other_log_factors, retow_choice
+from herijk.pipeline.recompute.season_factors import tow_instruments
+from herijk.pipeline.season_log import SeasonFactors, other_log_factors, retow_choice
+from herijk.pipeline.season_log.diagnosis import DIAGNOSIS_SCHEMA, STEP_SCHEMA
 from herijk.pipeline.season_log.ties import TIE_SCHEMA
 from herijk.pipeline.steps.speed import log_factor
 from herijk.pipeline.steps.wind import mean_wind_angle_deg
@@ -53,6 +56,9 @@ class Recomputed:
     season_links: pl.DataFrame
     retow_choice: pl.DataFrame
     season_steps: pl.DataFrame
+    season_diagnosis: pl.DataFrame
+    tow_instruments: pl.DataFrame
+    best_estimate_weights: pl.DataFrame
     factors: SeasonFactors | None
 
 
@@ -74,6 +80,7 @@ def as_tables(
     budget = budget_of(outcomes, found, CURVE_SPEED_RATIOS if with_bands else (DECLARED,))
     bounds = cw_bounds(budget)
     curves = together([_curves(o, bounds.filter(at_declared), pooled) for o in outcomes])
+    curves = with_best(curves, found, budget.filter(at_declared))
     assessments = assess(curves, run_points, tows)
     rejecting = [
         (season, check)
@@ -96,6 +103,9 @@ def as_tables(
         season_links=_season_links(found).select(name, pl.all()),
         retow_choice=_retow_choice(found).select(name, pl.all()),
         season_steps=_season_steps(found).select(name, pl.all()),
+        season_diagnosis=_diagnosis(found).select(name, pl.all()),
+        tow_instruments=_instruments(found).select(name, pl.all()),
+        best_estimate_weights=_weights(found).select(name, pl.all()),
         factors=found,
     )
 
@@ -107,6 +117,8 @@ def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
     log1 = np.where(found, blocks.mean("log1_v", mask), 1.0)
     has_limits = o.steps.window.rule != "all"
     wind, log2 = (o.batch.measured(channel)[tow] for channel in ("wind", "log2"))
+    log2_ratio = blocks.mean("log2_v", mask) / log1
+    log2 &= log2_ratio != 1.0  # a run without its log 2 has log 1 in its place
     numbers = {
         "window_start_s": o.windows.start_s,
         "window_end_s": o.windows.end_s,
@@ -127,9 +139,10 @@ def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
         "u_ratio": run_point_ratio(o) if pooled else np.full(len(tow), np.nan),
         "wind_m_s": np.where(wind, blocks.mean("wind_v", mask), np.nan),
         "wind_angle_deg": np.where(wind, mean_wind_angle_deg(blocks, mask), np.nan),
-        "log2_ratio": np.where(log2, blocks.mean("log2_v", mask) / log1, np.nan),
+        "log2_ratio": np.where(log2, log2_ratio, np.nan),
     }
     return blocks.runs.select("tow_id", "run", "direction", "target_speed_ratio").with_columns(
+        pl.Series("lost_s", o.batch.lost_s),
         *(_column(name, values, found) for name, values in numbers.items()),
         _column("ends_ratio", o.windows.ends.in_limits(o.steps.window), found & has_limits),
         _column("gps_ratio", o.means.gps_m_s / log1, found),
@@ -237,15 +250,28 @@ def _season_steps(found: SeasonFactors | None) -> pl.DataFrame:
     """Whether a season's step is the log's or the load cell's; no rows without an estimate."""
     if found is None:
         return pl.DataFrame(schema=STEP_SCHEMA)
-    told = log_or_force(found.tows, found)
-    return told.select(pl.col(name).cast(kind) for name, kind in STEP_SCHEMA.items())
+    return found.steps
 
 
-STEP_SCHEMA = (
-    {"season": pl.Int32(), "part": pl.Int32(), "log": pl.String(), "n_boats": pl.Int32()}
-    | dict.fromkeys(("level_step", "level_step_sd", "force_step", "force_step_sd"), pl.Float64())
-    | {"cause": pl.String()}
+def _diagnosis(found: SeasonFactors | None) -> pl.DataFrame:
+    """What is wrong with the instruments of each season; no rows without an estimate."""
+    return pl.DataFrame(schema=DIAGNOSIS_SCHEMA) if found is None else found.diagnosis
+
+
+def _instruments(found: SeasonFactors | None) -> pl.DataFrame:
+    """What was found of the instruments of each tow; no rows without an estimate."""
+    return pl.DataFrame(schema=INSTRUMENT_SCHEMA) if found is None else tow_instruments(found)
+
+
+def _weights(found: SeasonFactors | None) -> pl.DataFrame:
+    """What each best estimate rests on; no rows without an estimate."""
+    return pl.DataFrame(schema=WEIGHT_SCHEMA) if found is None else found.weights
+
+
+INSTRUMENT_SCHEMA = {"tow_id": pl.String(), "log": pl.String()} | dict.fromkeys(
+    ("factor", "force_factor", "force_zero_n", "bend", "ln_sd", "dof"), pl.Float64()
 )
+WEIGHT_SCHEMA = {"tow_id": pl.String(), "rests_on": pl.String(), "weight": pl.Float64()}
 
 
 def _retow_choice(found: SeasonFactors | None) -> pl.DataFrame:

@@ -6,6 +6,7 @@ stand in `pipeline.season_log`.
 """
 
 from collections.abc import Sequence
+from dataclasses import fields
 from typing import Final
 
 import numpy as np
@@ -17,7 +18,13 @@ from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.method.definition import Steps, Wind
 from herijk.pipeline.recompute.budget import pooled_scatter
 from herijk.pipeline.recompute.outcome import Outcome, TowFactor
-from herijk.pipeline.season_log import GROUP, LINE, SeasonFactors, estimate_season_factors
+from herijk.pipeline.season_log import (
+    GROUP,
+    LINE,
+    SeasonFactors,
+    estimate_season_factors,
+    other_log_factors,
+)
 from herijk.pipeline.steps.calibration import gps_factor
 from herijk.pipeline.steps.speed import log_part
 
@@ -69,24 +76,44 @@ def _tow_rows(outcomes: Sequence[Outcome]) -> pl.DataFrame:
 
 
 def factor_of_tows(batch: Batch, steps: Steps, factors: pl.DataFrame | None) -> TowFactor:
-    """The estimated factor of each tow's log, in its part of the season.
+    """What was estimated of each tow's instruments.
 
     Args:
         batch: the tows.
         steps: what is asked of them.
-        factors: rows of `SeasonFactors.factors`, or of the table `season_links`.
+        factors: rows of the table `tow_instruments`.
     """
-    if factors is None or not is_estimated(steps):
-        nothing = np.full(batch.size, np.nan)
-        return TowFactor(nothing, nothing, nothing)
-    held = batch.tows.select(*log_group(steps)).join(
-        factors.select(*GROUP, "factor", "ln_sd", "dof"),
-        on=GROUP,
-        how="left",
-        maintain_order="left",
+    if factors is None:
+        nothing, none, one = (np.full(batch.size, x) for x in (np.nan, 0.0, 1.0))
+        return TowFactor(nothing, nothing, nothing, one, none, nothing)
+    held = batch.tows.select("tow_id", pl.lit(steps.speed.source).alias("log")).join(
+        factors, on=["tow_id", "log"], how="left", maintain_order="left"
     )
-    columns = (held[name].cast(pl.Float64).to_numpy() for name in ("factor", "ln_sd", "dof"))
-    return TowFactor(*columns)
+    if not is_estimated(steps):
+        held = held.with_columns(pl.lit(None, pl.Float64).alias("factor"))
+    held = held.with_columns(
+        pl.col("force_factor").fill_null(1.0), pl.col("force_zero_n").fill_null(0.0)
+    )
+    names = (field.name for field in fields(TowFactor))
+    return TowFactor(**{name: held[name].cast(pl.Float64).to_numpy() for name in names})
+
+
+def tow_instruments(found: SeasonFactors) -> pl.DataFrame:
+    """What was found of the instruments of each tow; of the other log, by the ratio of both.
+
+    Returns:
+        `tow_id, log`, and the fields of `TowFactor`.
+    """
+    other = (
+        found.tows.filter(~pl.col("anchored"))
+        .select("tow_id", "season", part="other_part", log="other_log")
+        .join(other_log_factors(found).select(*GROUP, "factor", "ln_sd", "dof"), on=GROUP)
+    )
+    shared = found.instruments.select("tow_id", "force_factor", "force_zero_n", "bend")
+    return pl.concat(
+        [found.instruments, other.drop("season", "part").join(shared, on="tow_id")],
+        how="diagonal",
+    ).sort("tow_id", "log")
 
 
 def log_group(steps: Steps) -> tuple[pl.Expr, pl.Expr, pl.Expr]:
@@ -104,7 +131,7 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
     curves = curve.fit(water)
     cw, r = curves.cw_at(speed), curves.s_s2_m2 * speed**2
     errors = curve.covariance(water, curves, pooled_scatter(o), speed)
-    sound = curves.converged & np.isfinite(cw)
+    sound = curves.converged & np.isfinite(cw) & (cw > 0) & batch.trusted
     sure = sound & np.isfinite(errors.c0_variance_kg2_m2)
     safe, safe_r = np.where(sound, cw, 1.0), np.where(sound, r, 0.0)
     calibrated = steps.calibration.rule == GPS
@@ -114,6 +141,7 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
         "ln_cw_sd": np.where(sure, np.sqrt(errors.c0_variance_kg2_m2) / safe, 1.0),
         "q": safe_r / (1.0 - safe_r),
         "q_sd": np.where(sure, np.sqrt(errors.q_variance), 1.0),
+        "ln_cw_q_cov": np.where(sure, errors.c0_q_covariance_kg_m / safe, 0.0),
         "other_ln_ratio": _other_ln_ratio(o),
         "gps_ln_ratio": np.where(has_gps & (not calibrated), gps, np.nan),
         "gps_sd": np.where(has_gps & (not calibrated), gps_sd, np.nan),
@@ -123,6 +151,7 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
         *names,
         pl.col("weight_kg", "waterline_length_m").cast(pl.Float64),
         _boat_type(batch.tows),
+        pl.col("tow_date").dt.ordinal_day().cast(pl.Float64).alias("day"),
         *log_group(steps),
         pl.lit(OTHER_LOG.get(steps.speed.source)).alias("other_log"),
         log_part(OTHER_LOG.get(steps.speed.source, "mean")).alias("other_part"),
@@ -145,6 +174,7 @@ def _other_ln_ratio(o: Outcome) -> FloatArray:
     mean = {log: o.batch.blocks.mean(f"{log}_v", o.windows.mask) for log in ("log1", "log2")}
     turning = o.used & (mean["log1"] > 0) & (mean["log2"] > 0)
     turning &= o.batch.measured("log2")[o.batch.tow]
+    turning &= mean["log1"] != mean["log2"]  # a run without its log 2 has log 1 in its place
     ratio = mean[source] / np.where(turning, mean[OTHER_LOG[source]], 1.0)
     ln_ratio = np.log(np.where(turning, ratio, 1.0))
     return np.where(o.batch.any(turning), o.batch.mean(ln_ratio, turning), np.nan)

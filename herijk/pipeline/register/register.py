@@ -23,9 +23,14 @@ CURVE_COLUMNS: Final = (
     "cw_kg_m",
     "cw_lo_kg_m",
     "cw_hi_kg_m",
+    "flags",
 )
+CW_COLUMNS: Final = ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
 FIVE_YEARS: Final = RegisterRule()
 """A tow counts until the end of the fifth calendar year after it (FSN notice, January 2013)."""
+
+DOUBTED: Final = "doubted"
+"""Status of a line whose tows the rest of the archive rules out."""
 
 EXCLUDE, PREFER = "exclude", "prefer"
 DECISION_SCHEMA: Final = {"tow_id": pl.String(), "verdict": pl.String()}
@@ -61,17 +66,19 @@ def draft_register(
         tows: rows of `tows`.
         boats: listed boats with `fsn_no`, `rowers`, `crew_class`; those never towed are listed too.
         on_date: the day on which validity is judged; later tows do not exist yet.
-        rule: how long a tow counts.
+        rule: how long a tow counts, and which of its estimates.
         decisions: `tow_id` and `verdict`: a tow to `exclude`, or to `prefer` over newer ones.
 
     Returns:
         Rows of the table `register`, with status `valid`, `expired`, `rejected` (towed, but no tow
-        gives a curve), `excluded` (by decision, and there is no other tow) or `never_towed`.
+        gives a curve), `doubted` (the rest of the archive rules its tows out; a person may look and
+        prefer one), `excluded` (by decision, and there is no other tow) or `never_towed`.
     """
-    towed = curves.join(
+    towed = _as_ruled(curves, rule).join(
         tows.filter(pl.col("tow_date") <= on_date).select("tow_id", "tow_date"), on="tow_id"
     )
-    sound = towed.filter(pl.col("status") != "rejected")
+    curved = towed.filter(pl.col("status") != "rejected")
+    sound = curved.join(_doubted(tows, decisions), on="tow_id", how="anti")
     allowed = sound.join(_with_verdict(decisions, EXCLUDE), on="tow_id", how="anti")
     preferred = pl.col("tow_id").is_in(_with_verdict(decisions, PREFER)["tow_id"].implode())
     chosen = (
@@ -90,7 +97,8 @@ def draft_register(
     crews = boats.drop_nulls(["rowers", "crew_class"]).select(LINE)
     without = [
         (sound.join(chosen, on=LINE, how="anti"), "excluded"),
-        (towed.join(sound, on=LINE, how="anti"), "rejected"),
+        (curved.join(sound, on=LINE, how="anti"), DOUBTED),
+        (towed.join(curved, on=LINE, how="anti"), "rejected"),
         (crews.join(towed, on="fsn_no", how="anti"), "never_towed"),
     ]
     lines = [
@@ -98,6 +106,27 @@ def draft_register(
         for frame, status in without
     ]
     return pl.concat([chosen, *lines], how="diagonal").sort(LINE)
+
+
+def _doubted(tows: pl.DataFrame, decisions: pl.DataFrame) -> pl.DataFrame:
+    """Tows that the rest of the archive rules out and nobody preferred after looking."""
+    if "doubts" not in tows.columns:
+        return tows.clear()
+    doubted = tows.filter(pl.col("doubts").list.len() > 0)
+    return doubted.join(_with_verdict(decisions, PREFER), on="tow_id", how="anti")
+
+
+def _as_ruled(curves: pl.DataFrame, rule: RegisterRule) -> pl.DataFrame:
+    """Curves with the estimate that the rule asks for; A follows Cw, B stays."""
+    if rule.estimate == "as_measured":
+        return curves
+    best = pl.col("cw_best_kg_m").is_not_null()
+    ratio = pl.when(best).then(pl.col("cw_best_kg_m") / pl.col("cw_kg_m")).otherwise(1.0)
+    chosen = {name: f"cw_best{name.removeprefix('cw')}" for name in CW_COLUMNS}
+    return curves.with_columns(
+        pl.col("a_kg_m") * ratio,
+        *(pl.when(best).then(other).otherwise(own).alias(own) for own, other in chosen.items()),
+    )
 
 
 def _with_verdict(decisions: pl.DataFrame, verdict: str) -> pl.DataFrame:

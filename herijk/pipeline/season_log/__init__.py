@@ -5,26 +5,26 @@ speed log. A speed error acts on Cw at a fixed speed with the elasticity kappa =
 repeat tows determine it well (research, method.md 8.1). It is the ubercalibration of astronomy:
 boats are the stars, seasons the nights, tows calibrated on dGPS the absolute anchor.
 
-Belongs here: the joint estimate (`joint`), how far tows scatter (`scatter`), how sure it all is
-(`left_out`) and what it rests on (`network`); which boats would tie the seasons together better
-(`ties`); the second estimate without boat identity (`without_boats`); the factor of the log that is
-not in use (`other_log`); the test whether a step is the log's or the load cell's (`cause`). Does
-not: how Cw of a tow is computed, prescribed corrections (never data here) and what is done with the
-factors.
+Belongs here: what is assumed (`assumed`), the unknowns and their effects (`effects`), the density
+of a boat's tows (`likelihood`), the posterior of everything (`posterior`), what it says of tows
+(`tows`), seasons (`diagnosis`) and factors (`estimate`); what it all rests on (`network`); which
+boats would tie the seasons together better (`ties`); the second estimate without boat identity
+(`without_boats`); the factor of the log that is not in use (`other_log`). Does not: how Cw of a tow
+is computed, prescribed corrections (never data here) and what is done with the factors.
 
 The model, for tow k of boat i in season j, with lambda = ln(true speed / log speed):
 
-    ln Cw_k = theta_i + x_k beta + delta (t_k - t0) + h(lambda_j + w_k; r_k) + eps_k
-    ln(GPS / log)_k = lambda_j + w_k + b_j + gamma_k                    (plain GPS, where there is)
+    ln Cw_k = theta_ik + x_k beta + delta (t_k - t0) + h(lambda_k; q_ik) + phi_j + z_k / F_k + eps_k
+    q_k     = g(lambda_k; q_ik) - (1 + q) z_k / F_k + eta_k
+    ln(GPS / log)_k = lambda_k + b_j + gamma_k                       (plain GPS, where there is)
 
-h is what a scale error of the log does to a hyperbola exactly, about kappa lambda. Boats theta are
-eliminated. Wander w, tow noise eps and GPS noise gamma have variances of their own; their
-residuals get the weights of a t distribution, against alterations that nobody reported; of a boat's
-only two tows, the weight of their difference.
+h and g are what a scale error of the log does to a hyperbola exactly (`effects`). theta and q of a
+boat are random, q about its type, and step where it was altered; lambda_k = lambda_j + trend +
+change + wander. phi is the load cell's scale, z its zero. Faults are rare and large: each is there
+or not, and what cannot be told apart is averaged over.
 """
 
 from herijk.pipeline.season_log.assumed import Prior, Settings
-from herijk.pipeline.season_log.cause import log_or_force
 from herijk.pipeline.season_log.estimate import SeasonFactors, estimate_season_factors
 from herijk.pipeline.season_log.network import GROUP, LINE
 from herijk.pipeline.season_log.other_log import other_log_factors
@@ -38,7 +38,6 @@ __all__ = [
     "SeasonFactors",
     "Settings",
     "estimate_season_factors",
-    "log_or_force",
     "other_log_factors",
     "retow_choice",
     "scale_effect",

@@ -14,36 +14,63 @@ class Prior:
 
 @dataclass(frozen=True)
 class Settings:
-    """What is assumed before looking at the data; all of it weak but for `gps_season_sd`.
+    """What is assumed before looking at the data. Standard deviations, unless it says otherwise.
 
     Attributes:
         era_starts: first season of each era of logs; an era has one wander (DOMAIN, history).
+        log_sd: ln factor of a log of which nothing is known: the worst log was 6 % wrong.
         ageing_per_year: change of ln Cw per year; half a per cent has been seen.
         weight_elasticity, length_elasticity: dlnCw / dln of the empty boat's weight, of its length.
-        tow_sd, wander_sd, gps_sd: first guesses of the standard deviations of ln Cw of a tow beyond
-            its random part, of ln of the log factor from tow to tow, and of ln(GPS / log) beyond
-            its given uncertainty. They count as `prior_dof` observations.
-        changed_sd: standard deviation of the change of ln Cw of a boat altered without a report.
-        gps_season_sd: uncertainty of a season's mean GPS / log that does not average out.
+        tow_sd, bend_sd_tow, gps_sd, wander_sd: between tows, each with `spread`: ln Cw beyond its
+            random part, the same of the bend, ln(GPS / log) beyond its given uncertainty, and the
+            ln factor of the log. `spread` is of the logarithm of a variance.
+        season_spread: of the logarithm of a season's variances, against those of the archive.
+        bend_sd, type_bend_sd: bend of boats about that of their type, of a type about its pooled
+            value.
+        changed_sd, changed_bend_sd: change of ln Cw and of the bend of a boat altered without a
+            report.
+        changed_share: of gaps between two tows with such an alteration, as `changed_gaps` gaps
+            would show it.
+        gps_season_sd: a season's mean ln(GPS / log) that does not average out.
         gps_noise_m_s: sideways noise of a fix; the length of a noisy velocity is too long by up to
             noise^2 / (2 v^2). How much of that a receiver smooths away is unknown: half is taken.
-        t_dof: degrees of freedom of the residuals. With 8 the factors come out as near as with 4
-            when 12 % of the boats are altered, and the intervals hold better.
+        force_sd: load cell of a season, as calibrated daily.
+        fault_chance: probability of each kind of fault in a season.
+        force_fault_sd, fleet_fault_sd, gps_fault_sd: size of a fault: of ln force, of ln Cw of all
+            boats from a season on, of the ln speed by GPS.
+        zero_fault_n: zero of the load cell [N]; also its drift from the middle of a season.
+        trend_fault_sd, change_fault_sd: ln factor of a log at the end of a season against its
+            middle, and after it was replaced without a report.
         reference_year: t0.
     """
 
     era_starts: tuple[int, ...] = (2009, 2012)
+    log_sd: float = 0.06
     ageing_per_year: Prior = Prior(0.0, 0.005)
     weight_elasticity: Prior = Prior(0.4, 0.4)
     length_elasticity: Prior = Prior(0.0, 1.0)
-    tow_sd: float = 0.01
+    tow_sd: float = 0.008
+    bend_sd_tow: float = 0.01
+    gps_sd: float = 0.008
+    wander_sd: float = 0.004
+    spread: float = 1.2
+    season_spread: float = 0.3
+    bend_sd: float = 0.08
+    type_bend_sd: float = 0.15
     changed_sd: float = 0.08
-    wander_sd: float = 0.003
-    gps_sd: float = 0.01
-    prior_dof: float = 0.1
+    changed_bend_sd: float = 0.05
+    changed_share: float = 0.08
+    changed_gaps: float = 20.0
     gps_season_sd: float = 0.003
     gps_noise_m_s: float = 0.1
-    t_dof: float = 8.0
+    force_sd: float = 0.002
+    fault_chance: float = 0.01
+    force_fault_sd: float = 0.05
+    fleet_fault_sd: float = 0.03
+    gps_fault_sd: float = 0.02
+    zero_fault_n: float = 10.0
+    trend_fault_sd: float = 0.02
+    change_fault_sd: float = 0.04
     reference_year: int = 2014
 
 

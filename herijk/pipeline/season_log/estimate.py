@@ -1,4 +1,4 @@
-"""From tows to season factors: the joint estimate, its uncertainty and check, as one table."""
+"""From tows to season factors: the joint posterior and its independent check, as tables."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -11,10 +11,11 @@ from herijk.pipeline.arrays import FloatArray, IntArray
 from herijk.pipeline.choice import first_largest
 from herijk.pipeline.errors import BrokenPromiseError
 from herijk.pipeline.season_log.assumed import USUAL, Settings
-from herijk.pipeline.season_log.joint import AGEING, Fit, Rows, fit_jointly, leave_boats_out
-from herijk.pipeline.season_log.left_out import LeftOut
+from herijk.pipeline.season_log.diagnosis import season_diagnosis, season_steps
+from herijk.pipeline.season_log.effects import AGEING, WAYS
 from herijk.pipeline.season_log.network import GROUP, Network
-from herijk.pipeline.season_log.scatter import tow_scatter
+from herijk.pipeline.season_log.posterior import Posterior, Problem, solve
+from herijk.pipeline.season_log.tows import best_estimates, instrument_errors
 from herijk.pipeline.season_log.without_boats import Second, without_boats
 
 LEVEL: Final = 0.95
@@ -35,11 +36,14 @@ class SeasonFactors:
         covariance: covariance of ln factor between the rows of `factors` that are determined, in
             their order.
         wander_sd: standard deviation of ln factor from tow to tow, by first season of the era.
-        tow_sd: standard deviation of ln Cw of a calibrated tow beyond its random part, without
-            boats that changed.
+        tow_sd: standard deviation of ln Cw of a tow beyond its random part and its log.
         ageing_per_year: change of ln Cw per year, with `ageing_sd`.
         weakest_mode_sd: standard deviation of the combination of ln factors that is known worst.
         tows: what it was estimated from.
+        instruments: per tow, what its instruments did: `pipeline.season_log.tows`.
+        best: per tow, what all tows together say of its Cw; `weights`: what that rests on.
+        diagnosis: per season and instrument, what is wrong: `pipeline.season_log.diagnosis`;
+            `steps`: whether a season's step is the log's or the load cell's.
     """
 
     factors: pl.DataFrame
@@ -50,6 +54,11 @@ class SeasonFactors:
     ageing_sd: float
     weakest_mode_sd: float
     tows: pl.DataFrame
+    instruments: pl.DataFrame
+    best: pl.DataFrame
+    weights: pl.DataFrame
+    diagnosis: pl.DataFrame
+    steps: pl.DataFrame
 
     def of_season(self, season: int, log: str) -> tuple[float, float, float, str] | None:
         """Factor, bounds and source of a season; None where not determined.
@@ -76,10 +85,12 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
     Args:
         tows: one row per sound tow:
             `tow_id, season, part, log`; `fsn_no, rowers, crew_class` (the line);
+            `day` within the season (may be null);
             `ln_cw`, ln Cw at one reference speed of the line, by the log as it reads (anchored
             tows: as calibrated) and corrected for everything else;
+            `q` = r / (1 - r) of its curve there; `ln_cw_sd, q_sd, ln_cw_q_cov`, their random part;
             `kappa`, elasticity 2 / (1 - r) of the line's true curve there, from pooled q;
-            `ln_cw_sd`, its random part; `weight_kg, waterline_length_m` (may be null);
+            `weight_kg, waterline_length_m` (may be null);
             `boat_type` (may be null); `altered`, reported, since the line's previous tow;
             `declared_speed_m_s`; `gps_ln_ratio`, ln(mean GPS / log), null without, with `gps_sd`,
             its random part; `anchored`, calibrated on dGPS: no log error is left.
@@ -99,30 +110,35 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
     """
     _refuse_unknown(tows)
     network = Network.of(tows)
-    rows = Rows.of(network, settings)
-    # Ageing, weight and length first, with whatever scatter fits; then the scatter of tows, apart
-    # from wander and changed boats; then everything with it.
-    first = fit_jointly(rows, settings)
-    tow_sd = tow_scatter(*rows.anchored_pairs(first.solution), settings)
-    fit = fit_jointly(rows, settings, tow_sd)
-    spread = leave_boats_out(rows, fit, settings)
-    ageing = fit.ageing_per_year, float(np.sqrt(spread.covariance[AGEING, AGEING]))
-    second = without_boats(network, ageing, settings)
-    n = rows.groups
-    covariance = spread.covariance[:n, :n]
+    problem = Problem.of(network, settings)
+    posterior = solve(problem)
+    fit = posterior.fit
+    ageing = int(np.flatnonzero([problem.unknowns[i].name == AGEING for i in fit.active])[0])
+    ageing_per_year = float(posterior.mean[ageing])
+    ageing_sd = float(np.sqrt(posterior.covariance[ageing, ageing]))
+    second = without_boats(network, (ageing_per_year, ageing_sd), settings)
+    along = _group_means(problem, posterior, network)
+    covariance = along @ posterior.covariance @ along.T
     mode_sd, mode = _weakest_mode(covariance)
-    # The scale of a t distribution is less than its standard deviation.
-    as_sd = float(np.sqrt(settings.t_dof / (settings.t_dof - 2.0)))
-    wander_sd = (as_sd * np.sqrt(fit.variances[2:])).tolist()
+    best, weights = best_estimates(problem, posterior, network)
+    eras = len(settings.era_starts)
+    wander_sd = np.exp(0.5 * fit.state.ln_variance[3 : 3 + eras]).tolist()
+    diagnosis = season_diagnosis(problem, posterior, network)
+    numbers = _numbers(network, posterior, along, mode)
     return SeasonFactors(
-        factors=_described(_numbers(network, fit, spread, mode), network, second),
+        factors=_described(numbers, network, second),
         covariance=covariance,
         wander_sd=dict(zip(settings.era_starts, wander_sd, strict=True)),
-        tow_sd=tow_sd,
-        ageing_per_year=ageing[0],
-        ageing_sd=ageing[1],
+        tow_sd=float(np.exp(0.5 * fit.state.ln_variance[0])),
+        ageing_per_year=ageing_per_year,
+        ageing_sd=ageing_sd,
         weakest_mode_sd=mode_sd,
         tows=tows,
+        instruments=instrument_errors(problem, posterior, network),
+        best=best,
+        weights=weights,
+        diagnosis=diagnosis,
+        steps=season_steps(problem, posterior, network, diagnosis),
     )
 
 
@@ -138,6 +154,15 @@ def _refuse_unknown(tows: pl.DataFrame) -> None:
             )
 
 
+def _group_means(problem: Problem, posterior: Posterior, network: Network) -> FloatArray:
+    """Mean ln factor over the tows of each determined group as a sum of unknowns."""
+    speed = [WAYS[problem.unknowns[i].name] == "speed" for i in posterior.places]
+    share = problem.share[:, posterior.places] * np.array(speed)
+    groups = np.flatnonzero(network.determined)
+    means = [share[network.group == number].mean(axis=0) for number in groups]
+    return np.array(means).reshape(len(groups), len(posterior.places))
+
+
 def _weakest_mode(covariance: FloatArray) -> tuple[float, FloatArray]:
     """The combination of ln factors that is known worst: its sd, and the share of each in it."""
     if not len(covariance):
@@ -148,21 +173,37 @@ def _weakest_mode(covariance: FloatArray) -> tuple[float, FloatArray]:
     return float(np.sqrt(variance[-1])), mode * sign
 
 
-def _numbers(network: Network, fit: Fit, spread: LeftOut, weakest_mode: FloatArray) -> pl.DataFrame:
+def _without_each_boat(network: Network, posterior: Posterior) -> FloatArray:
+    """Change of every unknown of the fit when a boat is left out, (boats, unknowns)."""
+    fit = posterior.fit
+    clusters = int(network.cluster.max()) + 1
+    information = np.zeros((clusters, len(fit.active), len(fit.active)))
+    score = np.zeros((clusters, len(fit.active)))
+    for held in fit.told:
+        whose = network.cluster[held.patterns.tow[:, 0]]
+        np.add.at(information, whose, held.information)
+        np.add.at(score, whose, np.einsum("bi,bip->bp", held.mean_pull, held.slope))
+    left = np.linalg.inv(fit.covariance) - information
+    return np.asarray(-np.linalg.solve(left, score[:, :, None])[:, :, 0])
+
+
+def _numbers(
+    network: Network, posterior: Posterior, along: FloatArray, weakest_mode: FloatArray
+) -> pl.DataFrame:
     """What the joint estimate says about each group; null where it is not determined."""
     known = np.flatnonzero(network.determined)
-    n = len(known)
-    ln_factor, lost = fit.solution[:n], spread.lost[:, :n]
-    move = np.abs(np.expm1(spread.change[:, :n])) * np.exp(ln_factor)
-    move = np.where(lost, np.inf, move)
-    influence = move.max(axis=0, initial=0.0)
-    boat = first_largest(move) if move.size else np.zeros(n)
+    k = len(posterior.fit.active)
+    ln_factor = along @ posterior.mean
+    lost = network.critical[:, known]
+    change = _without_each_boat(network, posterior) @ along[:, :k].T
+    move = np.where(lost, np.inf, np.abs(np.expm1(change)) * np.exp(ln_factor))
+    influence = move.max(axis=0, initial=0.0) if len(known) else np.zeros(0)
     placed = {
         "ln_factor": ln_factor,
-        "ln_sd": np.sqrt(np.diag(spread.covariance)[:n]),
-        "dof": spread.dof[:n],
+        "ln_sd": np.sqrt(np.einsum("gf,fh,gh->g", along, posterior.covariance, along)),
+        "dof": posterior.fit.dof(along[:, :k]),
         "influence": np.where(np.isfinite(influence), influence, np.nan),
-        "boat": boat,
+        "boat": first_largest(move) if move.size else np.zeros(len(known)),
         "critical_boats": lost.sum(axis=0),
         "weakest_mode": weakest_mode,
     }

@@ -4,6 +4,7 @@ Graph and bookkeeping; no statistics.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -73,6 +74,17 @@ class Network:
     def determined(self) -> BoolArray:
         """Groups that are tied to the anchor, shape (groups,)."""
         return np.asarray(self.component == 0)
+
+    @cached_property
+    def critical(self) -> BoolArray:
+        """Whether a group is tied to the anchor no more without a boat, (boats, groups)."""
+        lost = np.zeros((len(self.boat_names), len(self.has_gps)), dtype=bool)
+        for cluster in range(len(self.boat_names)):
+            others = self.cluster != cluster
+            if len(np.unique(self.group[~others])) > 1:
+                component = _connect(self.group[others], self.boat[others], self.has_gps)[1]
+                lost[cluster] = self.determined & (component != 0)
+        return lost
 
     def numbers(self, column: str) -> FloatArray:
         """A column as float64, NaN where null, shape (tows,)."""

@@ -6,7 +6,7 @@ speed divides every coefficient by k^2, and is applied last (`true_cw_kg_m`). Wh
 which factor holds is decided elsewhere.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -47,6 +47,11 @@ class RunMeans:
     inertia_kg_m: FloatArray
     air: AirParts
     gps_m_s: FloatArray
+
+    def with_force(self, factor: FloatArray, zero_n: FloatArray) -> "RunMeans":
+        """These means for a load cell that reads true force x factor + zero, shape (runs,)."""
+        zero = zero_n / _or_one(self.speed_m_s) ** 2
+        return replace(self, gross_kg_m=(self.gross_kg_m - zero) / factor)
 
     def where(self, chosen: BoolArray, other: "RunMeans") -> "RunMeans":
         """These means for the chosen runs, shape (runs,), those of the other elsewhere."""

@@ -49,7 +49,7 @@ def ladder(
         tows: rows of the warehouse's `tows`.
         blocks: their runs.
         links: log factors of both methods, where they were estimated before: their rows of the
-            table `season_links`.
+            table `tow_instruments`.
         cache: what was found before of the same tows; added to.
 
     Returns:

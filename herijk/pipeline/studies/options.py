@@ -55,7 +55,7 @@ def option_effects(
         tows: rows of the warehouse's `tows`.
         blocks: their runs.
         links: log factors of the method, where they were estimated before: its rows of the table
-            `season_links`.
+            `tow_instruments`.
 
     Returns:
         Sorted rows per tow and option: `tow_id`, `option`, `cw_effect_ratio` and `b_effect_ratio`

@@ -132,7 +132,7 @@ def second_means(blocks: pl.DataFrame) -> pl.DataFrame:
         wind_angle_deg` (circular mean).
     """
     angle = pl.arctan2("wind_sin", "wind_cos").degrees() % 360.0
-    return blocks.select(
+    return blocks.filter(pl.col("n") > 0).select(
         "tow_id",
         "run",
         "second",

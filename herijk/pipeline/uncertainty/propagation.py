@@ -36,6 +36,7 @@ COMPONENTS: Final = (
     "random",
     "calibration",
     "stream_drift",
+    "between_tows",
     "force",
     "wind",
     "anemometer",
@@ -154,7 +155,12 @@ class Assumed:
         mass_ratio: crew and gear, on Cw.
         temperature_known_c, temperature_unknown_c: water temperature with and without a record.
         temperature_ratio_per_c: change of Cw with water temperature.
+        temperature_formula_ratio: wetted surface and friction formula.
         straightness_ratio: tows that are pulled slightly askew.
+        force_standard_ratio: the part of `force_ratio` that all seasons share: what differs
+            between them is estimated with the log.
+        mass_standard_ratio: the part of `mass_ratio` that all tows of a boat share.
+        between_tows_ratio: what repeat tows show of all that differs from tow to tow.
     """
 
     calibration_speed_ratio: float = 0.002
@@ -167,40 +173,32 @@ class Assumed:
     temperature_known_c: float = 0.3
     temperature_unknown_c: float = 2.0
     temperature_ratio_per_c: float = 0.003
+    temperature_formula_ratio: float = 0.002
     straightness_ratio: float = 0.002
+    force_standard_ratio: float = 0.002
+    mass_standard_ratio: float = 0.002
+    between_tows_ratio: float = 0.0
 
-    def as_repeats_show(self, tow_sd: float, kappa: float, air_ratio: float) -> "Assumed":
-        """The same, scaled to what repeat tows show.
+    def beside_repeats(self, tow_sd: float) -> "Assumed":
+        """What remains assumed where repeat tows show how far tows scatter.
 
-        Calibration, stream drift, force, anemometer, mass, recorded temperature and straightness
-        cannot be told apart in repeat tows, but their sum is seen there, also of those that a
-        season shares, since repeats are of different seasons. It replaces what is assumed of it.
+        Calibration, stream drift, recorded temperature, straightness and the weighing of the crew
+        differ from tow to tow: repeat tows show their sum. What repeat tows share cancels in their
+        difference, so they never shrink it (ISO 5725-1; GUM, type B).
 
         Args:
-            tow_sd: standard deviation of ln Cw of a calibrated tow beyond its random part, from
+            tow_sd: standard deviation of ln Cw of a tow beyond its random part and its log, from
                 the network of repeat tows (`season_log`).
-            kappa: usual elasticity of Cw to speed, with which the speed errors enter the sum.
-            air_ratio: usual size of the net wind correction / Cw.
         """
-        speed = np.hypot(self.calibration_speed_ratio, self.stream_drift_speed_ratio)
-        parts = (
-            kappa * speed,
-            self.force_ratio,
-            2.0 * self.anemometer_ratio * air_ratio,
-            self.mass_ratio,
-            self.temperature_known_c * self.temperature_ratio_per_c,
-            self.straightness_ratio,
-        )
-        scale = tow_sd / float(np.linalg.norm(parts))
         return replace(
             self,
-            calibration_speed_ratio=scale * self.calibration_speed_ratio,
-            stream_drift_speed_ratio=scale * self.stream_drift_speed_ratio,
-            force_ratio=scale * self.force_ratio,
-            anemometer_ratio=scale * self.anemometer_ratio,
-            mass_ratio=scale * self.mass_ratio,
-            temperature_known_c=scale * self.temperature_known_c,
-            straightness_ratio=scale * self.straightness_ratio,
+            between_tows_ratio=tow_sd,
+            force_ratio=self.force_standard_ratio,
+            calibration_speed_ratio=0.0,
+            stream_drift_speed_ratio=0.0,
+            mass_ratio=self.mass_standard_ratio,
+            temperature_known_c=0.0,
+            straightness_ratio=0.0,
         )
 
 
@@ -242,11 +240,15 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
         "random": pl.col("random_ratio"),
         "calibration": kappa * speed_ratio,
         "stream_drift": kappa * drift_ratio,
+        "between_tows": pl.lit(assumed.between_tows_ratio),
         "force": pl.lit(assumed.force_ratio),
         "wind": pl.when("wind_measured").then(coefficient).otherwise(no_wind),
         "anemometer": 2.0 * assumed.anemometer_ratio * pl.col("air_ratio"),
         "mass": pl.lit(assumed.mass_ratio),
-        "temperature": assumed.temperature_ratio_per_c * temperature_c,
+        "temperature": (
+            (assumed.temperature_ratio_per_c * temperature_c) ** 2
+            + assumed.temperature_formula_ratio**2
+        ).sqrt(),
         "straightness": pl.lit(assumed.straightness_ratio),
         "season_log": kappa * pl.col("log_sd"),
     }

@@ -7,18 +7,13 @@ from typing import Any, Final
 import polars as pl
 
 from herijk.pipeline.errors import DefectiveInputError
+from herijk.tables.frames import frame_of
+from herijk.tables.lake import ListedBoats
 from herijk.warehouse.archive.faults import Fault, fault_from
 from herijk.warehouse.archive.files import BOATS_FILE
 from herijk.warehouse.archive.lists import ListRow, Wording, read_list
 from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.text import Column
-
-# Generous limits of what a rowing sloop and its crew can be, in SI units.
-LENGTH_M: Final = (2.0, 25.0)
-BEAM_M: Final = (0.5, 6.0)
-BOW_HEIGHT_M: Final = (0.1, 4.0)
-WEIGHT_KG: Final = (50.0, 20_000.0)
-ROWERS: Final = (1, 30)
 
 COLUMNS: Final = (
     Column("fsn_no", "fsn_nr"),
@@ -32,20 +27,6 @@ COLUMNS: Final = (
     Column("rowers", "roeiers", required=False),
     Column("crew_class", "klasse", required=False),
 )
-SCHEMA: Final[dict[str, pl.DataType]] = {
-    "fsn_no": pl.String(),
-    "ht_no": pl.String(),
-    "name": pl.String(),
-    "boat_type": pl.String(),
-    "waterline_length_m": pl.Float64(),
-    "beam_m": pl.Float64(),
-    "bow_height_m": pl.Float64(),
-    "weight_kg": pl.Float64(),
-    "rowers": pl.Int32(),
-    "crew_class": pl.String(),
-}
-
-
 OF_THE_BOAT: Final = (
     *("ht_no", "boat_type", "waterline_length_m", "beam_m", "bow_height_m", "weight_kg"),
 )
@@ -71,7 +52,7 @@ class Boats:
     def frame(self) -> pl.DataFrame:
         """Return the good boats, a row for each crew that rows them, in the order of the list."""
         rows = [{**boat, **self.good[boat["fsn_no"]], **_crew_of(boat)} for boat in self.crews]
-        return pl.DataFrame(rows, schema=SCHEMA).unique(maintain_order=True)
+        return frame_of(ListedBoats, rows).unique(maintain_order=True)
 
     def find(self, fsn_no: str) -> Mapping[str, Any] | None:
         """Return a boat by its number; leading zeros do not matter where that leaves one boat."""
@@ -101,7 +82,7 @@ def read_boats(data: bytes, path: str = BOATS_FILE, wording: Wording | None = No
     crews: list[Mapping[str, Any]] = []
     bad: dict[str, Fault] = {}
     faults: list[Fault] = []
-    for row in read_list(data, COLUMNS, "bad_boat_row", path, wording or Wording()):
+    for row in read_list(data, COLUMNS, "bad_boat_row", path, wording or Wording(), ListedBoats):
         try:
             boat = _boat(row)
             merged = _merged(row, boat, good.get(boat["fsn_no"]))
@@ -125,11 +106,11 @@ def _boat(row: ListRow) -> dict[str, Any]:
         "ht_no": row.optional_text("ht_no"),
         "name": row.text("name"),
         "boat_type": row.optional_text("boat_type"),
-        "waterline_length_m": row.optional_number("waterline_length_m", *LENGTH_M),
-        "beam_m": row.optional_number("beam_m", *BEAM_M),
-        "bow_height_m": row.optional_number("bow_height_m", *BOW_HEIGHT_M),
-        "weight_kg": row.optional_number("weight_kg", *WEIGHT_KG),
-        "rowers": row.optional_integer("rowers", *ROWERS),
+        "waterline_length_m": row.optional_number("waterline_length_m"),
+        "beam_m": row.optional_number("beam_m"),
+        "bow_height_m": row.optional_number("bow_height_m"),
+        "weight_kg": row.optional_number("weight_kg"),
+        "rowers": row.optional_integer("rowers"),
         "crew_class": row.crew_class("crew_class") if row.optional_text("crew_class") else None,
     }
 

@@ -2,4 +2,205 @@
 
 from typing import Final
 
-DUTCH: Final[dict[str, str]] = {}
+DUTCH: Final[dict[str, str]] = {
+    # Lists
+    "Line {line}: {what}": "Regel {line}: {what}",
+    "Row {row}: {what}": "Rij {row}: {what}",
+    "line {line} of {path}": "regel {line} van {path}",
+    "column '{column}' is empty.": "kolom '{column}' is leeg.",
+    "column '{column}' is empty, here and in the boat list.": (
+        "kolom '{column}' is leeg, hier en in de lijst van sloepen."
+    ),
+    "column '{column}' is {cell}; {low} to {high} can be right.": (
+        "kolom '{column}' is {cell}; {low} tot {high} kan kloppen."
+    ),
+    "column '{column}' is {cell}; it must be a whole number.": (
+        "kolom '{column}' is {cell}; het moet een geheel getal zijn."
+    ),
+    "column '{column}' is '{cell}', which is not an ordinary number.": (
+        "kolom '{column}' is '{cell}'; dat is geen gewoon getal."
+    ),
+    "column '{column}' is {cell}, while other numbers of this list have their decimals behind a "
+    "'{mark}'; write {whole} or {decimal}.": (
+        "kolom '{column}' is {cell}, terwijl andere getallen in deze lijst een '{mark}' voor de "
+        "decimalen hebben; schrijf {whole} of {decimal}."
+    ),
+    "column '{column}' is '{cell}': is the first number the day or the month?": (
+        "kolom '{column}' is '{cell}': is het eerste getal de dag of de maand?"
+    ),
+    "column '{column}' is '{cell}', not a date such as 2014-03-01 or 01-03-2014.": (
+        "kolom '{column}' is '{cell}'; dat is geen datum zoals 2014-03-01 of 01-03-2014."
+    ),
+    "column '{column}' is '{cell}', which cannot be right.": (
+        "kolom '{column}' is '{cell}'; dat kan niet kloppen."
+    ),
+    "column '{column}' is '{cell}'; H or D is expected.": (
+        "kolom '{column}' is '{cell}'; H of D wordt verwacht."
+    ),
+    "column '{column}' is '{cell}', not ja, nee or empty.": (
+        "kolom '{column}' is '{cell}', niet ja, nee of leeg."
+    ),
+    "column '{column}' is '{cell}'; one run stands in it twice.": (
+        "kolom '{column}' is '{cell}'; er staat een run twee keer in."
+    ),
+    "column '{column}' is '{cell}', but there is no meetfile2.": (
+        "kolom '{column}' is '{cell}', maar er is geen meetfile2."
+    ),
+    "column '{column}' has '{part}'; runs are 1 to {last}, or b1 to b{last} for the second file, "
+    "with commas between them.": (
+        "kolom '{column}' heeft '{part}'; runs zijn 1 tot {last}, of b1 tot b{last} voor het "
+        "tweede bestand, met komma's ertussen."
+    ),
+    "Nobody knows column {names}. Correct it, name it under [headers] in archief.toml, or put it "
+    "there under ignore.": (
+        "Kolom {names} is onbekend. Verbeter de kop, noem hem onder [headers] in archief.toml, of "
+        "zet hem daar bij ignore."
+    ),
+    "the row has {fields} fields where the header has {width}.": (
+        "de rij heeft {fields} velden en de kop {width}."
+    ),
+    "the row has {fields} fields where the header has {width}: '{line}'.": (
+        "de rij heeft {fields} velden en de kop {width}: '{line}'."
+    ),
+    "a quotation mark is not closed, or in mid-field.": (
+        "een aanhalingsteken is niet gesloten, of staat midden in een veld."
+    ),
+    "'{tow}' cannot be a sleep_id: it is too long, or has a slash.": (
+        "'{tow}' kan geen sleep_id zijn: te lang, of met een schuine streep."
+    ),
+    "the date {day} is not in {season}, the year of the list.": (
+        "de datum {day} valt niet in {season}, het jaar van de lijst."
+    ),
+    "the date {day} is not in {season}, the year of the file.": (
+        "de datum {day} valt niet in {season}, het jaar van het bestand."
+    ),
+    "{day} is set aside in archief.toml: {reason}.": (
+        "{day} is terzijde gelegd in archief.toml: {reason}."
+    ),
+    "'roeitijd' is '{cell}', not a time such as 2:10:25.": (
+        "'roeitijd' is '{cell}', geen tijd zoals 2:10:25."
+    ),
+    "'roeitijd' is 0.": "'roeitijd' is 0.",
+    # Rows held against each other
+    "boat {boat} stands in the list twice and the rows differ in {key} ({one} and {other}).": (
+        "sloep {boat} staat twee keer in de lijst en de rijen verschillen in {key} ({one} en "
+        "{other})."
+    ),
+    "boat {boat} cannot be used, see {path}: {why}": (
+        "sloep {boat} is niet te gebruiken, zie {path}: {why}"
+    ),
+    "boat {boat} is not in the boat list.": "sloep {boat} staat niet in de lijst van sloepen.",
+    "sleep_id {tow} stands also on {where}; {ending}": (
+        "sleep_id {tow} staat ook op {where}; {ending}"
+    ),
+    "the rows are equal and the first counts.": "de rijen zijn gelijk en de eerste telt.",
+    "the rows differ, so neither counts.": "de rijen verschillen, dus geen van beide telt.",
+    "sleep_id {tow} is not in the tow list of that year.": (
+        "sleep_id {tow} staat niet in de sleeplijst van dat jaar."
+    ),
+    "tow {tow} has no run {run}.": "sleepproef {tow} heeft geen run {run}.",
+    "run {run} of tow {tow} has more than one window; none of them counts.": (
+        "run {run} van sleepproef {tow} heeft meer dan een venster; geen ervan telt."
+    ),
+    "the window of run {run} of tow {tow} ends at {end} s, but the run lasts {seconds} s.": (
+        "het venster van run {run} van sleepproef {tow} eindigt op {end} s, maar de run duurt "
+        "{seconds} s."
+    ),
+    "'van' is {start} s and 'tot' {end} s; a window ends after it begins.": (
+        "'van' is {start} s en 'tot' {end} s; een venster eindigt na zijn begin."
+    ),
+    "meetfile and meetfile2 hold the same samples.": (
+        "meetfile en meetfile2 bevatten dezelfde metingen."
+    ),
+    "'{path}' holds the samples that {where} uses already for {boat}.": (
+        "'{path}' bevat de metingen die {where} al voor {boat} gebruikt."
+    ),
+    "the samples are also used for {boat} {crew} on {where}; nobody can know whose they are.": (
+        "de metingen zijn ook gebruikt voor {boat} {crew} op {where}; van wie ze zijn is niet te "
+        "weten."
+    ),
+    # Files
+    "there is no file '{name}' in {folder}.": "er is geen bestand '{name}' in {folder}.",
+    "'{name}' can be any of {found}.": "'{name}' kan elk zijn van {found}.",
+    "'{name}' is a path; only the name of a file in {folder} can stand here.": (
+        "'{name}' is een pad; hier kan alleen de naam staan van een bestand in {folder}."
+    ),
+    "No row of the tow list of {season} names this file.": (
+        "Geen rij van de sleeplijst van {season} noemt dit bestand."
+    ),
+    "'{path}' is not read, as nobody knows what it is.": (
+        "'{path}' wordt niet gelezen: het is onbekend wat het is."
+    ),
+    "'{path}' leads outside the archive, where nothing is read.": (
+        "'{path}' leidt naar buiten het archief; daar wordt niets gelezen."
+    ),
+    "'{path}' cannot be read: {error}.": "'{path}' is niet te lezen: {error}.",
+    "'{name}' cannot be read or unpacked: {error}.": (
+        "'{name}' is niet te lezen of uit te pakken: {error}."
+    ),
+    "'{name}' is not there any more.": "'{name}' is er niet meer.",
+    "'{name}' holds more than {limit:.0f} MB, unpacked; a samples file is about 12 MB.": (
+        "'{name}' bevat uitgepakt meer dan {limit:.0f} MB; een meetbestand is ongeveer 12 MB."
+    ),
+    "'{name}' is not a whole TDMS file: {error}.": "'{name}' is geen heel TDMS-bestand: {error}.",
+    "'{name}' is not a whole Parquet file: {error}.": (
+        "'{name}' is geen heel Parquet-bestand: {error}."
+    ),
+    "The file is not a spreadsheet that can be read: {error}.": (
+        "Het bestand is geen leesbaar rekenblad: {error}."
+    ),
+    "Sheet '{name}' has too many rows or columns for a list.": (
+        "Blad '{name}' heeft te veel rijen of kolommen voor een lijst."
+    ),
+    "The file is empty.": "Het bestand is leeg.",
+    "The file is not text in UTF-8, UTF-16 or Windows-1252: it can be damaged.": (
+        "Het bestand is geen tekst in UTF-8, UTF-16 of Windows-1252: het kan beschadigd zijn."
+    ),
+    "The header is no row of a table: {error}.": "De kop is geen rij van een tabel: {error}.",
+    "This LabVIEW file has no header of a segment.": "Dit LabVIEW-bestand heeft geen kop.",
+    # Columns and samples
+    "Not found in the header: {names}. Found: {found}.": (
+        "Niet gevonden in de kop: {names}. Wel: {found}."
+    ),
+    "Column '{header}' has unit [{unit}]; known here: {known}.": (
+        "Kolom '{header}' heeft eenheid [{unit}]; bekend zijn hier: {known}."
+    ),
+    "Column '{header}' can be more than one thing; write its unit behind it: {known}.": (
+        "Kolom '{header}' kan van alles zijn; schrijf de eenheid erachter: {known}."
+    ),
+    "Columns '{first}' and '{second}' are the same; one of them has to go.": (
+        "Kolommen '{first}' en '{second}' zijn dezelfde; een van de twee moet weg."
+    ),
+    "Column '{column}' holds {kind}, not numbers.": "Kolom '{column}' bevat {kind}, geen getallen.",
+    "Nobody knows column '{name}', and there is no 'gps'. Name it under columns of the season's "
+    "profile in archief.toml, or put it there under ignore.": (
+        "Kolom '{name}' is onbekend, en er is geen 'gps'. Noem hem bij columns in het profiel van "
+        "dit seizoen in archief.toml, of zet hem daar bij ignore."
+    ),
+    "Nothing says which run a row is of: there is no column 'run', the time does not start again, "
+    "and the file is not one of several that end in a number.": (
+        "Nergens staat van welke run een rij is: er is geen kolom 'run', de tijd begint niet "
+        "opnieuw, en het bestand is niet een van meer die op een nummer eindigen."
+    ),
+    "Runs {runs} are in the file but not in the plan, so they are not used; give their targets "
+    "and directions under [[plan]] in archief.toml.": (
+        "Runs {runs} staan in het bestand maar niet in het plan en tellen dus niet; geef hun "
+        "doelsnelheden en richtingen onder [[plan]] in archief.toml."
+    ),
+    "No row says which run it belongs to.": "Geen rij zegt bij welke run hij hoort.",
+    "There are no samples in the file.": "Er staan geen metingen in het bestand.",
+    "There are no samples below the header.": "Er staan geen metingen onder de kop.",
+    "run {run:g} does not exist; runs are numbered 1 to {last}.": (
+        "run {run:g} bestaat niet; runs zijn genummerd van 1 tot {last}."
+    ),
+    "run {run} begins again; its rows must stand together.": (
+        "run {run} begint opnieuw; zijn rijen moeten bij elkaar staan."
+    ),
+    "the time does not increase within the run.": "de tijd loopt niet op binnen de run.",
+    "Run {run}: by its times it has {observed:.4g} samples a second, by the list or the profile "
+    "{rate}; they may differ by {most:.0%}.": (
+        "Run {run}: volgens de tijden heeft hij {observed:.4g} metingen per seconde, volgens de "
+        "lijst of het profiel {rate}; dat mag {most:.0%} verschillen."
+    ),
+    "the number for {name} is too large.": "het getal voor {name} is te groot.",
+}

@@ -5,9 +5,13 @@ fault belongs to the module that reads the thing; this one only says what the co
 """
 
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Literal
 
 from herijk.pipeline.errors import DefectiveInputError
+
+Lost = Literal["seconds", "run", "tow", "file", "row"]
+"""What a fault costs: seconds of one channel of a run, a run, a tow, or a file; or a row of a list
+that costs no tow, as one of a race."""
 
 
 @dataclass(frozen=True)
@@ -20,7 +24,7 @@ class Reason:
 
 @dataclass(frozen=True)
 class Fault:
-    """One file or tow that is set aside.
+    """Something that is set aside: seconds, a run, a tow, a file or a row of a list.
 
     Attributes:
         path: posix path relative to the archive.
@@ -28,6 +32,9 @@ class Fault:
         line: line in `path` (the header is line 1), where there is one.
         reason_code: a key of `REASONS`.
         message: a sentence a volunteer understands.
+        lost: what it costs; None for a tow, a row or a file, as it has a tow, a line or neither.
+        run: the run that it costs, or seconds of which.
+        lost_s: how many seconds.
     """
 
     path: str
@@ -35,6 +42,9 @@ class Fault:
     line: int | None
     reason_code: str
     message: str
+    lost: Lost | None = None
+    run: int | None = None
+    lost_s: float | None = None
 
 
 class DefectiveFileError(DefectiveInputError):
@@ -196,6 +206,10 @@ REASONS: Final[dict[str, Reason]] = {
         "A run has a number other than 1 to 6.",
         "Correct the `run` column.",
     ),
+    "run_not_planned": Reason(
+        "A samples file has a run that the plan of its season does not know; it is not used.",
+        "Give the targets and directions of all runs under `[[plan]]` in `archief.toml`.",
+    ),
     "split_run": Reason(
         "The rows of a run do not stand together.",
         "Put the rows of each run together, in the order measured.",
@@ -241,6 +255,16 @@ REASONS: Final[dict[str, Reason]] = {
         "The tow force is negative.",
         "Look whether the sign or the zero of the load cell is wrong; leave out a run of which "
         "only part is negative.",
+    ),
+    "force_not_plausible": Reason(
+        "The force is not that of such a boat: the size of the boat, its other tows, its day and "
+        "its season all rule it out.",
+        "Correct the unit in the header, or look whether these are this boat's samples.",
+    ),
+    "wind_not_plausible": Reason(
+        "The wind out and back together does not leave the boat's own speed, or its angles are "
+        "radians.",
+        "Correct the unit in the header.",
     ),
     "implausible_value": Reason(
         "A value is far outside what can happen in a tow.",

@@ -15,6 +15,7 @@ import pyarrow as pa  # type: ignore[import-untyped]
 
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.faults import DefectiveFileError
+from herijk.warehouse.archive.limits import check_rows
 from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.text import fold_name
 
@@ -39,9 +40,6 @@ _ONE_RUN: Final = re.compile(
     r"(.*?[^0-9])[ _.-]*(?:run|vaart|lauf|r)?[ _.-]*([0-9]{1,2})", re.IGNORECASE
 )
 PROFILE_FILE: Final = "archief.toml"
-LIST_MAX_BYTES: Final = 50_000_000
-SAMPLES_MAX_BYTES: Final = 400_000_000
-"""A tow of 300,000 samples is 12 MB of text."""
 
 _CHUNK_BYTES: Final = 1 << 20
 _COMPRESSION: Final = {".gz": "gzip", ".zst": "zstd"}
@@ -239,7 +237,29 @@ def read_bytes(path: Path, max_bytes: int) -> bytes:
         raise DefectiveInputError("unreadable_file", said) from error
     if len(content) > max_bytes:
         raise too_large(path, max_bytes)
+    check_rows(content)
     return content
+
+
+def read_start(path: Path, most: int) -> bytes:
+    """Return the first bytes of a file, unpacked, up to a whole line where there is one.
+
+    Raises:
+        DefectiveInputError: `unreadable_file`.
+    """
+    compression = _COMPRESSION.get(path.suffix.casefold())
+    try:
+        with path.open("rb") as raw:
+            if compression is None:
+                content = raw.read(most)
+            else:
+                with pa.CompressedInputStream(pa.PythonFile(raw, mode="r"), compression) as stream:
+                    content = stream.read(most)
+    except (OSError, pa.ArrowException) as error:
+        said = say("'{name}' cannot be read or unpacked: {error}.", name=path.name, error=error)
+        raise DefectiveInputError("unreadable_file", said) from error
+    is_utf16 = b"\x00" in content[:100]
+    return bytes(content if is_utf16 else content[: content.rfind(b"\n") + 1] or content)
 
 
 def hash_of_parts(hashes: list[str]) -> str:

@@ -8,12 +8,14 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 import polars as pl
 
 from herijk.pipeline.channels import SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError, MissingKnowledgeError
+from herijk.tables.frames import frame_of
+from herijk.tables.lake import ListedFiles, ListedRuns, ListedTows, ListedWindows
 from herijk.warehouse.archive import boats as boat_list
 from herijk.warehouse.archive import tows as tow_list
 from herijk.warehouse.archive import windows as window_list
@@ -21,7 +23,6 @@ from herijk.warehouse.archive.boats import Boats
 from herijk.warehouse.archive.faults import DefectiveFileError, Fault, fault_from
 from herijk.warehouse.archive.files import (
     BOATS_FILE,
-    LIST_MAX_BYTES,
     PARTS,
     PROFILE_FILE,
     RACES_PATTERN,
@@ -40,16 +41,12 @@ from herijk.warehouse.archive.files import (
     path_inside,
     read_bytes,
 )
+from herijk.warehouse.archive.limits import LIST_MAX_BYTES
 from herijk.warehouse.archive.lists import ListRow, read_list
 from herijk.warehouse.archive.messages import say
+from herijk.warehouse.archive.misfits import misfits
 from herijk.warehouse.archive.profile import Plan, Profiles, read_profiles
 from herijk.warehouse.archive.text import fold_name, shorten
-
-FILES_SCHEMA: Final[dict[str, pl.DataType]] = {
-    "path": pl.String(),
-    "sha256": pl.String(),
-    "size_bytes": pl.Int64(),
-}
 
 _FilesByName = dict[tuple[int, str], list["SamplesFile"]]
 """Samples files by season and the name they answer to."""
@@ -60,10 +57,10 @@ class ArchiveIndex:
     """Everything an archive says, but for the samples themselves.
 
     Attributes:
-        boats: one row a boat (`boats.SCHEMA`).
-        tows: one row a tow that can be read (`tows.SCHEMA`).
-        runs: one row a run of those tows (`tows.RUNS_SCHEMA`); runs of a second file are 21 and on.
-        windows: windows given by hand for those runs (`windows.SCHEMA`), of which nobody knows yet
+        boats: one row a boat (`ListedBoats`).
+        tows: one row a tow that can be read (`ListedTows`).
+        runs: one row a run of those tows (`ListedRuns`); runs of a second file are 21 and on.
+        windows: windows given by hand for those runs (`ListedWindows`), of which nobody knows yet
             whether they lie in their run.
         faults: what is set aside, and why.
         files: every file that was looked at: path, sha256, size_bytes.
@@ -160,15 +157,18 @@ class _Hashes:
 
     def frame(self) -> pl.DataFrame:
         rows = [(path, *self.rows[path]) for path in sorted(self.rows)]
-        return pl.DataFrame(rows, schema=FILES_SCHEMA, orient="row")
+        return frame_of(ListedFiles, rows)
 
 
-def index_archive(root: Path, hash_file: Callable[[Path], str]) -> ArchiveIndex:
+def index_archive(
+    root: Path, hash_file: Callable[[Path], str], profiles: Profiles | None = None
+) -> ArchiveIndex:
     """Read the lists of an archive and find the files of every tow.
 
     Args:
         root: folder of the archive.
         hash_file: gives the SHA-256 of a file; `FileHashes.hash_file` remembers them.
+        profiles: `archief.toml`, where it is not the one in the archive.
 
     Returns:
         The index. The samples have not been opened, only hashed.
@@ -177,7 +177,7 @@ def index_archive(root: Path, hash_file: Callable[[Path], str]) -> ArchiveIndex:
         MissingKnowledgeError: there is no archive, or `archief.toml` cannot be understood.
     """
     _check_present(root)
-    profiles = read_profiles(root)
+    profiles = profiles or read_profiles(root)
     hashes = _Hashes(hash_file)
     faults: list[Fault] = []
     _hash_others(root, hashes, faults)
@@ -194,13 +194,14 @@ def index_archive(root: Path, hash_file: Callable[[Path], str]) -> ArchiveIndex:
     good = _keep(_unique_samples(good), good, faults)
     good = _keep(lambda entry: _join_boat(entry, boats), good, faults)
     good = _keep(lambda entry: _place_day(entry, profiles), good, faults)
+    good = _keep(_fits_table(good), good, faults)
     runs = [run for entry in good for run in _runs(entry)]
     windows = _read_windows(root, profiles, hashes, entries, runs, faults)
     return ArchiveIndex(
         boats=boats.frame(),
-        tows=pl.DataFrame([entry.tow for entry in good], schema=tow_list.SCHEMA),
-        runs=pl.DataFrame(runs, schema=tow_list.RUNS_SCHEMA),
-        windows=pl.DataFrame(windows, schema=window_list.SCHEMA),
+        tows=frame_of(ListedTows, [entry.tow for entry in good]),
+        runs=frame_of(ListedRuns, runs),
+        windows=frame_of(ListedWindows, windows),
         faults=tuple(sorted(faults, key=_fault_order)),
         files=hashes.frame(),
         profiles=profiles,
@@ -261,7 +262,9 @@ def _read_tow_lists(
     for file in list_files(root, "sleeplijsten", TOW_LIST_PATTERN):
         try:
             data = _read_list(root, file.path, hashes)
-            rows = read_list(data, tow_list.COLUMNS, "bad_list_row", file.path, profiles.wording)
+            rows = read_list(
+                data, tow_list.COLUMNS, "bad_list_row", file.path, profiles.wording, ListedTows
+            )
         except DefectiveInputError as error:
             faults.append(fault_from(error, file.path))
             unread_seasons.add(file.season)
@@ -472,6 +475,18 @@ def _find_file(entry: _Entry, name: str, by_name: _FilesByName) -> SamplesFile:
     if outside:
         raise outside_archive(outside[0].path)
     return candidates[0]
+
+
+def _fits_table(entries: Iterable[_Entry]) -> Callable[[_Entry], None]:
+    """Return the question whether a tow lies within the limits of the table `tows`."""
+    frame = frame_of(ListedTows, [entry.tow for entry in entries])
+    why = {row["tow_id"]: sentence for row, sentence in misfits(ListedTows, frame)}
+
+    def question(entry: _Entry) -> None:
+        if entry.tow_id in why:
+            raise entry.fault("bad_list_row", why[entry.tow_id])
+
+    return question
 
 
 def _unique_samples(entries: Iterable[_Entry]) -> Callable[[_Entry], None]:

@@ -7,11 +7,15 @@ modules that read those.
 import datetime as dt
 import re
 import unicodedata
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Final
 
+import dataframely as dy
+
 from herijk.pipeline.errors import DefectiveInputError
+from herijk.tables.frames import limits
 from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.sheets import Sheet, read_sheet
 from herijk.warehouse.archive.text import (
@@ -76,6 +80,9 @@ class Wording:
         return (*HEADERS.get(column.key, ()), *own)
 
 
+Limits = Callable[[str], tuple[float, float]]
+
+
 @dataclass(frozen=True)
 class Reading:
     """What the rows of one list share.
@@ -86,6 +93,7 @@ class Reading:
         words: the value that a folded word stands for.
         date_order: `dmy` or `mdy` where dates with slashes are settled, else empty.
         decimal: the decimal marks that this list surely uses, comma, point, or both.
+        limits: the lowest and highest value of a column that can be right.
     """
 
     columns: Mapping[str, FoundColumn]
@@ -93,6 +101,7 @@ class Reading:
     words: Mapping[str, str]
     date_order: str
     decimal: str
+    limits: Limits
 
 
 @dataclass(frozen=True)
@@ -140,14 +149,16 @@ class ListRow:
             raise self.fault(say("column '{column}' is empty.", column=self.named(key)))
         return value
 
-    def optional_number(self, key: str, lowest: float, highest: float) -> float | None:
+    def optional_number(self, key: str) -> float | None:
         """Return a number in SI units within the limits, None when the cell is empty."""
         cell = self.optional_text(key)
         if cell is None:
             return None
-        self._check_one_meaning(key, cell)
         number, (numerator, denominator) = self._number_and_scale(key, cell)
         value = number * numerator / denominator
+        lowest, highest = self.reading.limits(key)
+        if not lowest <= value <= highest or lowest <= 1000 * value <= highest:
+            self._check_one_meaning(key, cell)
         if not lowest <= value <= highest:
             limits = (limit * denominator / numerator for limit in (lowest, highest))
             low, high = (f"{limit:g}" for limit in limits)
@@ -196,16 +207,16 @@ class ListRow:
                 "ambiguous_number",
             )
 
-    def number(self, key: str, lowest: float, highest: float) -> float:
+    def number(self, key: str) -> float:
         """Return a number that must be there."""
         self.text(key)
-        value = self.optional_number(key, lowest, highest)
+        value = self.optional_number(key)
         assert value is not None  # noqa: S101 - the cell is not empty
         return value
 
-    def optional_integer(self, key: str, lowest: int, highest: int) -> int | None:
+    def optional_integer(self, key: str) -> int | None:
         """Return a whole number, None when the cell is empty."""
-        value = self.optional_number(key, lowest, highest)
+        value = self.optional_number(key)
         if value is None:
             return None
         if value != int(value):
@@ -218,10 +229,10 @@ class ListRow:
             )
         return int(value)
 
-    def integer(self, key: str, lowest: int, highest: int) -> int:
+    def integer(self, key: str) -> int:
         """Return a whole number that must be there."""
         self.text(key)
-        value = self.optional_integer(key, lowest, highest)
+        value = self.optional_integer(key)
         assert value is not None  # noqa: S101 - the cell is not empty
         return value
 
@@ -256,17 +267,18 @@ class ListRow:
         return value
 
     def crew_class(self, key: str) -> str:
-        """Return `H`, `D`, or the class that `[words]` says: `M` for a mixed crew."""
+        """Return `H` or `D`."""
         cell = self.text(key)
         value = CLASSES.get(fold_word(cell))
-        if value is None and cell not in self.reading.words.values():
+        if value is None:
             message = say(
                 "column '{column}' is '{cell}'; H or D is expected.",
                 column=self.named(key),
                 cell=shorten(cell),
+                expected="HD",
             )
             raise self.fault(message)
-        return value or cell
+        return value
 
     def yes_or_no(self, key: str) -> bool:
         """Return whether a cell says yes; an empty one says no."""
@@ -338,6 +350,7 @@ def read_rows(
     data: bytes,
     columns: Sequence[Column],
     reason_code: str,
+    limits: Limits,
     suffix: str = ".csv",
 ) -> list[ListRow]:
     """Return the rows of a table that anybody made; columns nobody asked for are ignored.
@@ -346,6 +359,7 @@ def read_rows(
         data: content of the file.
         columns: the columns to look for.
         reason_code: what a bad value in this table is called.
+        limits: the lowest and highest value of a column that can be right.
         suffix: kind of file.
 
     Raises:
@@ -353,11 +367,16 @@ def read_rows(
     """
     sheet = read_sheet(data, columns, suffix)
     found = find_columns(sheet.header, columns, sheet.line)
-    return _rows(sheet, Reading(found, reason_code, {}, "", ""))
+    return _rows(sheet, Reading(found, reason_code, {}, "", "", limits))
 
 
 def read_list(
-    data: bytes, columns: Sequence[Column], reason_code: str, path: str, wording: Wording
+    data: bytes,
+    columns: Sequence[Column],
+    reason_code: str,
+    path: str,
+    wording: Wording,
+    table: type[dy.Schema],
 ) -> list[ListRow]:
     """Return the rows of a list of the archive; empty ones are left out.
 
@@ -367,6 +386,7 @@ def read_list(
         reason_code: what a bad value in this list is called.
         path: the list, relative to the archive.
         wording: how the lists of this archive are worded.
+        table: declares the limits of each column.
 
     Raises:
         DefectiveInputError: the list as a whole cannot be read, or has a column that nobody knows:
@@ -374,13 +394,23 @@ def read_list(
     """
     wanted = wording.with_names(columns)
     sheet = read_sheet(data, wanted, path[path.rfind(".") :].casefold())
-    found = find_columns(sheet.header, wanted, sheet.line)
+    optional = [replace(column, required=False) for column in wanted]
+    found = find_columns(sheet.header, optional, sheet.line)
     strange = [h for h in unknown_headers(sheet.header, found) if fold(h) not in wording.ignore]
+    free = [column for column in wanted if column.key not in found]
     if strange:
-        raise DefectiveInputError("unknown_column", _strange(strange, wanted), sheet.line)
+        raise DefectiveInputError("unknown_column", _strange(strange, free), sheet.line)
+    find_columns(sheet.header, wanted, sheet.line)
     cells = [cell.strip() for row in sheet.rows for cell in row.fields]
     order = wording.dates.get(path, wording.dates.get("*", "")) or date_order(cells)
-    reading = Reading(found, reason_code, wording.words, order, _decimal_mark(cells))
+    reading = Reading(
+        found,
+        reason_code,
+        wording.words,
+        order,
+        _decimal_mark(cells),
+        partial(limits, table),
+    )
     return _rows(sheet, reading)
 
 
@@ -394,6 +424,7 @@ def _strange(headers: Sequence[str], columns: Sequence[Column]) -> str:
             f"'{shorten(header)}'" + (f" ({column.named}?)" if column else "")
             for header, column in meant.items()
         ),
+        meant=tuple((h, column.header if column else "") for h, column in meant.items()),
     )
 
 

@@ -1,33 +1,50 @@
 """Whether the samples of a tow can be true: missing pieces, dead or stuck instruments, mix-ups.
 
-Only gross faults that make a tow useless as it stands. Judging a good tow (steady windows,
+A fault costs what it touches. Up to `LEFT_OUT_S` of a run may be no number, drop out or spike:
+those samples become NaN, and no sum counts them. Longer faults cost the run; of log 2 and the GPS,
+which only check and calibrate, the channel in that run. What makes every run doubtful (columns
+exchanged, a wrong unit, another boat's samples) costs the tow. Judging a good tow (steady windows,
 agreement of out and back) is measuring method and belongs to `pipeline`.
 """
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Any, Final
 
 import numpy as np
 import polars as pl
+import scipy
 from numpy.typing import NDArray
 
+from herijk.pipeline.arrays import BoolArray
 from herijk.pipeline.channels import SECOND_FILE_OFFSET
-from herijk.warehouse.archive.faults import DefectiveFileError
+from herijk.warehouse.archive.faults import DefectiveFileError, Fault, Lost
 from herijk.warehouse.archive.samples import OUTPUT_NAMES, run_starts
 
 SHORTEST_RUN_RATIO: Final = 0.99
 """Of what is planned."""
+LEFT_OUT_S: Final = 2.0
+"""Longest time in all of a run in which what the run point needs may be left out; as long again for
+log 2 and the GPS each."""
 DROPOUT_M_S: Final = 0.1
 SPEED_RATIO: Final = (0.5, 1.6)
 KM_H_RATIO: Final = (3.0, 4.2)
-SPEED_SPIKE_RATIO: Final = 3.0
+SPEED_SPIKE_RATIO: Final = 0.3
+"""Of the speed around it: a boat and its crew weigh a ton, and cannot change so much in seconds."""
+AROUND_S: Final = 11
+"""The speed around a sample: the median over so many seconds of each one's median."""
 SPEEDS_AGREE_RATIO: Final = (0.6, 1.4)
 RESISTANCE_KG_M: Final = (2.0, 500.0)
 """Mean force over intended speed squared; sloops lie between 15 and 60."""
-FORCE_SPIKE_RATIO: Final = (-3.0, 20.0)
-"""Of the median. A tow line cannot push: what a slack one reads is noise about zero."""
+FORCE_SPIKE_RATIO: Final = (-3.0, 5.0)
+"""Of the usual force. A tow line cannot push: what a slack one reads is noise about zero."""
+FORCE_DEAD_RATIO: Final = 0.05
+FORCE_DEAD_S: Final = 0.1
+"""A force that stays at one value so near zero, for so long, is no force."""
+GUST_RATIO: Final = 2.5
+GUST_M_S: Final = 4.0
+"""Wind over so many times the run's median and so much more is no gust that cups can follow."""
 WIND_SPEED_M_S: Final = (0.0, 40.0)
 WIND_MEAN_M_S: Final = 20.0
 WIND_ANGLE_DEG: Final = (-180.0, 360.0)
@@ -63,6 +80,10 @@ class _Run:
     channels: Mapping[str, Array]
 
     @property
+    def seconds(self) -> float:
+        return len(self.channels["log1"]) / self.rate_hz
+
+    @property
     def name(self) -> str:
         if self.number > SECOND_FILE_OFFSET:
             return f"Run b{self.number - SECOND_FILE_OFFSET}"
@@ -78,8 +99,21 @@ class _Typical:
     lowest: float
 
 
-def check_samples(samples: pl.DataFrame, tow: Mapping[str, Any], runs: pl.DataFrame) -> None:
-    """Check that the selected runs of a tow can be used; the most specific cause comes first.
+@dataclass(frozen=True)
+class Judged:
+    """What is left of a tow's samples.
+
+    Attributes:
+        samples: the given frame without the runs that are lost, NaN where a sample is left out.
+        faults: what was lost: seconds and runs, in the order of the runs.
+    """
+
+    samples: pl.DataFrame
+    faults: tuple[Fault, ...]
+
+
+def judge_samples(samples: pl.DataFrame, tow: Mapping[str, Any], runs: pl.DataFrame) -> Judged:
+    """What of the selected runs of a tow can be used; runs that are not selected stay as they are.
 
     Args:
         samples: frame of `SAMPLE_SCHEMA`, as `read_tow_samples` returns it.
@@ -87,27 +121,63 @@ def check_samples(samples: pl.DataFrame, tow: Mapping[str, Any], runs: pl.DataFr
         runs: `ArchiveIndex.runs`; rows of other tows are ignored.
 
     Raises:
-        DefectiveFileError: the first fault, with the file and the line where it begins.
+        DefectiveFileError: the tow is lost: the most specific cause comes first.
     """
-    selected = list(_selected_runs(samples, tow, runs))
-    for check in (
-        _check_length,
-        _check_mix_ups,
-        _check_speed_unit,
-        _check_dropouts,
-        _check_stuck,
-        _check_gps_stuck,
-        _check_speed,
-        _check_spikes,
-        _check_force,
-        _check_ranges,
-    ):
-        check(selected, tow)
+    found, faults = _selected_runs(samples, tow, runs)
+    selected = len(found) + len(faults)
+    whole = []
+    for run in found:
+        short = _short(run, tow)
+        faults += short
+        if not any(fault.lost == "run" for fault in short):
+            whole.append(run)
+    _check_left(whole, selected, faults)
+    _check_mix_ups(whole, tow)
+    _check_speed_unit(whole, tow)
+    kept: list[_Run] = []
+    usual_kg_m = _usual_resistance_kg_m(whole)
+    for run in whole:
+        mended, of_run = _judge_run(run, tow, usual_kg_m)
+        faults += of_run
+        kept += [] if mended is None else [mended]
+    mended_gps, of_gps = _without_stuck_gps(kept, tow)
+    faults += of_gps
+    _check_left(mended_gps, selected, faults)
+    lost = [fault.run for fault in faults if fault.lost == "run" and fault.run is not None]
+    return Judged(_with_changes(samples, lost, found, mended_gps), tuple(faults))
+
+
+def _check_left(kept: list[_Run], selected: int, faults: list[Fault]) -> None:
+    """A tow of which half of the runs or more are lost is lost itself, for the first reason."""
+    if 2 * len(kept) > selected:
+        return
+    first = next(fault for fault in faults if fault.lost == "run")
+    raise DefectiveFileError(first.reason_code, first.message, first.line, first.path)
+
+
+def _with_changes(
+    samples: pl.DataFrame, lost: list[int], before: list[_Run], after: list[_Run]
+) -> pl.DataFrame:
+    """The samples without lost runs, with NaN where a sample of the others was left out."""
+    if not lost and all(one is other for one, other in zip(before, after, strict=True)):
+        return samples
+    number = samples["run"].to_numpy()
+    changed = {}
+    for key, name in _CHANNELS.items():
+        if samples[name].null_count() == 0:
+            values = samples[name].to_numpy().copy()
+            for run in after:
+                values[number == run.number] = run.channels[key]
+            changed[name] = values
+    return samples.with_columns(pl.Series(n, v) for n, v in changed.items()).filter(
+        ~pl.col("run").is_in(lost)
+    )
 
 
 def _selected_runs(
     samples: pl.DataFrame, tow: Mapping[str, Any], runs: pl.DataFrame
-) -> Iterator[_Run]:
+) -> tuple[list[_Run], list[Fault]]:
+    """The selected runs that are there, and a fault for each that is not."""
     number = samples["run"].to_numpy()
     starts = run_starts(number)
     bounds = dict(
@@ -126,56 +196,81 @@ def _selected_runs(
         if samples[name].null_count() == 0
     }
     wanted = runs.filter((pl.col("tow_id") == tow["tow_id"]) & pl.col("selected"))
+    found, missing = [], []
     for row in wanted.sort("run").iter_rows(named=True):
         if row["run"] not in bounds:
-            raise _missing_run(row["run"], tow, sorted(bounds))
+            missing.append(_missing_run(row["run"], tow, sorted(bounds)))
+            continue
         start, end = bounds[row["run"]]
         offset = second if row["run"] > SECOND_FILE_OFFSET else 0
-        yield _Run(
-            row["run"],
-            int(start) - offset + 2,
-            tow["sample_rate_hz"],
-            tow["declared_speed_m_s"] * row["target_speed_ratio"],
-            row["planned_s"],
-            {key: values[start:end] for key, values in channels.items()},
+        found.append(
+            _Run(
+                row["run"],
+                int(start) - offset + 2,
+                tow["sample_rate_hz"],
+                tow["declared_speed_m_s"] * row["target_speed_ratio"],
+                row["planned_s"],
+                {key: values[start:end] for key, values in channels.items()},
+            )
         )
+    return found, missing
 
 
-def _missing_run(run: int, tow: Mapping[str, Any], present: list[int]) -> DefectiveFileError:
+def _missing_run(run: int, tow: Mapping[str, Any], present: list[int]) -> Fault:
     in_second = run > SECOND_FILE_OFFSET
     offset = SECOND_FILE_OFFSET if in_second else 0
     there = [str(n - offset) for n in present if (n > SECOND_FILE_OFFSET) == in_second]
-    return DefectiveFileError(
+    return Fault(
+        tow["second_path"] if in_second else tow["samples_path"],
+        tow["tow_id"],
+        None,
         "missing_run",
         f"Run {run - offset} is to be used but is not in the file; it holds runs "
         f"{', '.join(there)}.",
-        None,
-        tow["second_path"] if in_second else tow["samples_path"],
+        "run",
+        run,
     )
 
 
 def _fault(
     reason_code: str, message: str, run: _Run, tow: Mapping[str, Any], row: int | None = None
 ) -> DefectiveFileError:
-    """Return the error for a fault in a run; `row` counts from the start of the run."""
+    """Return the error for a fault that costs the tow; `row` counts from the start of the run."""
+    fault = _cost(reason_code, message, run, tow, row)
+    return DefectiveFileError(reason_code, message, fault.line, fault.path)
+
+
+def _cost(
+    reason_code: str,
+    message: str,
+    run: _Run,
+    tow: Mapping[str, Any],
+    row: int | None,
+    lost: Lost = "run",
+    lost_s: float | None = None,
+) -> Fault:
+    """The fault of a run; `row` counts from the start of the run."""
     path = tow["second_path"] if run.number > SECOND_FILE_OFFSET else tow["samples_path"]
     line = None if row is None else run.first_line + row
-    return DefectiveFileError(reason_code, message, line, path)
+    return Fault(path, tow["tow_id"], line, reason_code, message, lost, run.number, lost_s)
 
 
-def _check_length(runs: list[_Run], tow: Mapping[str, Any]) -> None:
-    for run in runs:
-        seconds = len(run.channels["log1"]) / run.rate_hz
-        shortest = SHORTEST_RUN_RATIO * run.planned_s
-        if seconds < shortest:
-            raise _fault(
-                "short_run",
-                f"{run.name} lasts {seconds:.2f} s at {run.rate_hz} samples a second; "
-                f"at least {shortest:g} s is needed.",
-                run,
-                tow,
-                0,
-            )
+def _short(run: _Run, tow: Mapping[str, Any]) -> list[Fault]:
+    if run.seconds >= SHORTEST_RUN_RATIO * run.planned_s:
+        return []
+    missing_s = run.planned_s - run.seconds
+    lost: Lost = "run" if missing_s > LEFT_OUT_S else "seconds"
+    message = (
+        f"{run.name} lasts {run.seconds:.2f} s at {run.rate_hz} samples a second, "
+        f"{missing_s:.2f} s too short; {_what_then(lost)}."
+    )
+    return [_cost("short_run", message, run, tow, 0, lost, missing_s)]
+
+
+def _what_then(lost: Lost) -> str:
+    if lost == "run":
+        return f"up to {LEFT_OUT_S:g} s may be missing, so the run is left out"
+    return "the run goes on without them"
 
 
 # What a typical run looks like: mix-ups of whole columns
@@ -190,7 +285,7 @@ def _typical(runs: list[_Run]) -> dict[str, _Typical]:
         key: _Typical(
             *(
                 float(np.median([measure(run.channels[key]) for run in runs]))
-                for measure in (_median, np.max, np.min)
+                for measure in (_median, np.nanmax, np.nanmin)
             )
         )
         for key in runs[0].channels
@@ -199,7 +294,7 @@ def _typical(runs: list[_Run]) -> dict[str, _Typical]:
 
 def _median(values: Array) -> float:
     """Median of every tenth sample: only gross faults are looked for, and all of them take long."""
-    return float(np.median(values[::10]))
+    return float(np.nanmedian(values[::10]))
 
 
 def _implausible(channels: Mapping[str, _Typical], intended_m_s: float) -> list[str]:
@@ -263,7 +358,7 @@ def _check_mix_ups(runs: list[_Run], tow: Mapping[str, Any]) -> None:
 
 
 def _speed_ratio(runs: list[_Run]) -> float:
-    means = [run.channels["log1"].mean(dtype=np.float64) / run.intended_m_s for run in runs]
+    means = [np.nanmean(run.channels["log1"], dtype=np.float64) / run.intended_m_s for run in runs]
     return float(np.median(means))
 
 
@@ -280,24 +375,186 @@ def _check_speed_unit(runs: list[_Run], tow: Mapping[str, Any]) -> None:
         )
 
 
-# Dead and stuck instruments
+# Samples that are left out
 
 
-def _check_dropouts(runs: list[_Run], tow: Mapping[str, Any]) -> None:
-    for run in runs:
-        for key in ("log1", "log2", "gps"):
-            if key in run.channels and run.channels[key].min() <= DROPOUT_M_S:
-                low = run.channels[key] <= DROPOUT_M_S
-                row = int(low.argmax())
-                raise _fault(
-                    "gps_dropout" if key == "gps" else "log_dropout",
-                    f"{run.name}: {key} drops to {run.channels[key][row]:.3g} m/s, for "
-                    f"{low.sum() / run.rate_hz:.3g} s in all; it must stay above "
-                    f"{DROPOUT_M_S} m/s.",
-                    run,
-                    tow,
-                    row,
-                )
+def _usual_resistance_kg_m(runs: list[_Run]) -> float:
+    """Force / speed squared of a typical run, which a fault over most of one does not move."""
+    each = [_median(run.channels["force"]) / run.intended_m_s**2 for run in runs]
+    return abs(float(np.nanmedian(each)))
+
+
+def _judge_run(
+    run: _Run, tow: Mapping[str, Any], usual_kg_m: float
+) -> tuple[_Run | None, list[Fault]]:
+    """The run without the samples that cannot be, or None where too much or all of it is wrong."""
+    wrong = _wrong_samples(run, usual_kg_m * run.intended_m_s**2)
+    no_row = np.logical_and.reduce([~np.isfinite(values) for values in run.channels.values()])
+    needed = np.logical_or.reduce([mask for key, mask in wrong.items() if key not in SPARE])
+    lost: Lost = "run" if needed.sum() > LEFT_OUT_S * run.rate_hz else "seconds"
+    faults = [_of_rows(run, tow, no_row, lost)] if no_row.any() else []
+    wrong = {key: mask & ~no_row for key, mask in wrong.items() if (mask & ~no_row).any()}
+    channels = dict(run.channels)
+    for key, mask in wrong.items():
+        if key not in SPARE:
+            faults.append(_of_samples(run, tow, key, mask, lost, _what_then(lost)))
+            channels[key] = np.where(mask, np.float32(np.nan), channels[key])
+        elif mask.sum() > LEFT_OUT_S * run.rate_hz:
+            faults.append(_of_samples(run, tow, key, mask, "seconds", _NOT_IN_THIS_RUN))
+            channels[key] = np.full_like(channels[key], np.nan)
+        else:
+            faults.append(_of_samples(run, tow, key, mask, "seconds", _what_then("seconds")))
+            channels[key] = np.where(mask, np.float32(np.nan), channels[key])
+    if lost == "run":
+        return None, [fault for fault in faults if fault.lost == "run"]
+    mended = replace(run, channels=channels) if wrong else run
+    return _judge_whole(mended, tow, faults)
+
+
+SPARE: Final = ("log2", "gps")
+"""Channels without which a run goes on."""
+
+_NOT_IN_THIS_RUN: Final = f"over {LEFT_OUT_S:g} s, so the run goes on without this column"
+
+
+def _of_rows(run: _Run, tow: Mapping[str, Any], mask: BoolArray, lost: Lost) -> Fault:
+    """The fault of rows of which nothing can be read."""
+    seconds = float(mask.sum()) / run.rate_hz
+    message = f"{run.name}: rows do not have their fields, {seconds:.3g} s in all"
+    message += f"; {_what_then(lost)}."
+    return _cost("broken_row", message, run, tow, int(mask.argmax()), lost, seconds)
+
+
+def _of_samples(
+    run: _Run,
+    tow: Mapping[str, Any],
+    key: str,
+    mask: BoolArray,
+    lost: Lost,
+    then: str,
+) -> Fault:
+    """The fault of samples of one channel, named by the first of them."""
+    row = int(mask.argmax())
+    value = run.channels[key][row]
+    seconds = float(mask.sum()) / run.rate_hz
+    message = (
+        f"{run.name}: column '{_WORDS[key]}' {_seen(value)} and is wrong for {seconds:.3g} s in "
+        f"all; {then}."
+    )
+    return _cost(_reason(run, key, row), message, run, tow, row, lost, seconds)
+
+
+def _seen(value: float) -> str:
+    return f"holds {value:.6g}" if np.isfinite(value) else "holds no ordinary number"
+
+
+def _reason(run: _Run, key: str, row: int) -> str:
+    value = run.channels[key][row]
+    if not np.isfinite(value):
+        return "bad_number"
+    if key in _SPEEDS and value <= DROPOUT_M_S:
+        return "gps_dropout" if key == "gps" else "log_dropout"
+    pushes = FORCE_SPIKE_RATIO[0] * abs(_median(run.channels["force"]))
+    return "negative_force" if key == "force" and pushes <= value < 0 else "implausible_value"
+
+
+_SPEEDS: Final = ("log1", "log2", "gps")
+
+
+def _wrong_samples(run: _Run, usual_n: float) -> dict[str, BoolArray]:
+    """Samples that are no number, have dropped out or cannot be, by channel."""
+    wrong = {}
+    for key, values in run.channels.items():
+        if key in _SPEEDS:
+            wrong[key] = _wrong_speed(values, run.rate_hz)
+        elif key == "force":
+            wrong[key] = _wrong_force(values, usual_n, run.rate_hz)
+        elif key == "wind_speed":
+            most = GUST_RATIO * abs(_median(values)) + GUST_M_S
+            wrong[key] = _outside(values, WIND_SPEED_M_S[0], min(WIND_SPEED_M_S[1], most))
+        else:
+            wrong[key] = _outside(values, *WIND_ANGLE_DEG)
+    return wrong
+
+
+def _outside(values: Array, lowest: float, highest: float) -> BoolArray:
+    """Samples that are not between two limits, or no number."""
+    return np.asarray(~((values >= lowest) & (values <= highest)))
+
+
+def _wrong_speed(values: Array, rate_hz: int) -> BoolArray:
+    median = _median(values)
+    far = SPEED_SPIKE_RATIO * abs(median)
+    near = (values > DROPOUT_M_S) & (np.abs(values - median) <= far)
+    if near.all():
+        return np.zeros(len(values), dtype=bool)
+    around = _around(values, rate_hz)
+    steady = np.abs(values - around) <= SPEED_SPIKE_RATIO * around
+    return np.asarray(~((values > DROPOUT_M_S) & steady))
+
+
+def _around(values: Array, rate_hz: int) -> NDArray[np.float64]:
+    """The speed around each sample, which short faults do not move; 0 without any number."""
+    length = max(len(values) // rate_hz, 1)
+    second = np.minimum(np.arange(len(values)) // rate_hz, length - 1)
+    padded = np.full((length, int(np.bincount(second).max())), np.nan)
+    padded[second, np.arange(len(values)) - second * rate_hz] = values
+    known = np.isfinite(padded).any(axis=1)
+    if not known.any():
+        return np.zeros(len(values))
+    medians = np.nanmedian(padded[known], axis=1)
+    filtered = scipy.ndimage.median_filter(medians, AROUND_S, mode="nearest")
+    each = np.interp(np.arange(length), np.flatnonzero(known), filtered)
+    return np.asarray(each[second], dtype=np.float64)
+
+
+def _wrong_force(values: Array, usual_n: float, rate_hz: int) -> BoolArray:
+    low, high = (ratio * usual_n for ratio in FORCE_SPIKE_RATIO)
+    wrong = _outside(values, low, high)
+    if (np.abs(values) <= FORCE_DEAD_RATIO * usual_n).any():
+        wrong |= _dead(values, FORCE_DEAD_RATIO * usual_n, max(int(FORCE_DEAD_S * rate_hz), 3))
+    means = _second_means(np.where(wrong, np.float32(np.nan), values), rate_hz)
+    if (means < 0).any():  # single negative samples are the surge of the tow line
+        second = np.minimum(np.arange(len(values)) // rate_hz, len(means) - 1)
+        wrong |= (means < 0)[second]
+    return wrong
+
+
+def _dead(values: Array, most: float, samples: int) -> BoolArray:
+    """Stretches of at least so many equal samples near zero."""
+    starts = np.concatenate(([0], np.flatnonzero(values[1:] != values[:-1]) + 1))
+    lengths = np.diff(starts, append=len(values))
+    dead = (lengths >= samples) & (np.abs(values[starts]) <= most)
+    return np.asarray(np.repeat(dead, lengths))
+
+
+# What is wrong for longer
+
+
+def _judge_whole(
+    run: _Run, tow: Mapping[str, Any], faults: list[Fault]
+) -> tuple[_Run | None, list[Fault]]:
+    """Stuck instruments and means that cannot be: they cost the run, or a spare channel in it."""
+    for judge in (_stuck, _unlikely_mean):
+        for key in tuple(run.channels):
+            if not np.isfinite(run.channels[key]).any():
+                continue
+            said = judge(run, key)
+            if said is None:
+                continue
+            reason_code, what, row = said
+            if key not in SPARE:
+                message = f"{run.name}: {what}; the run is left out."
+                return None, [_cost(reason_code, message, run, tow, row, "run", run.seconds)]
+            message = f"{run.name}: {what}; the run goes on without this column."
+            faults.append(_cost(reason_code, message, run, tow, row, "seconds", run.seconds))
+            run = _without(run, key)
+    return run, faults
+
+
+def _without(run: _Run, key: str) -> _Run:
+    gone = np.full_like(run.channels[key], np.nan)
+    return replace(run, channels={**run.channels, key: gone})
 
 
 def _longest_hold(values: Array, counts: NDArray[np.bool_] | None = None) -> tuple[int, int]:
@@ -319,164 +576,94 @@ def _may_hold(values: Array, samples: int) -> bool:
     return bool((seen[1:] == seen[:-1]).any())
 
 
-def _check_stuck(runs: list[_Run], tow: Mapping[str, Any]) -> None:
-    for run in runs:
-        wind = run.channels.get("wind_speed", np.zeros(1, np.float32))
-        for key, limit_s, counts in (
-            ("log1", STUCK_S, None),
-            ("log2", STUCK_S, None),
-            ("force", STUCK_S, None),
-            ("wind_speed", STUCK_WIND_SPEED_S, wind != 0),  # cups may stand still
-            ("wind_angle", STUCK_VANE_S, wind > VANE_TURNS_M_S),  # a vane needs wind
-        ):
-            if key not in run.channels:
-                continue
-            if not _may_hold(run.channels[key], int(limit_s * run.rate_hz)):
-                continue
-            row, length = _longest_hold(run.channels[key], counts)
-            if length >= limit_s * run.rate_hz:
-                raise _fault(
-                    "stuck_channel",
-                    f"{run.name}: column '{_WORDS[key]}' holds {run.channels[key][row]:.6g} for "
-                    f"{length / run.rate_hz:.3g} s; less than {limit_s:g} s is normal.",
-                    run,
-                    tow,
-                    row,
-                )
+_STUCK_LIMIT_S: Final = {
+    "log1": STUCK_S,
+    "log2": STUCK_S,
+    "force": STUCK_S,
+    "wind_speed": STUCK_WIND_SPEED_S,
+    "wind_angle": STUCK_VANE_S,
+}
+
+Said = tuple[str, str, int]
+"""Reason code, what is wrong, and the row where it begins."""
 
 
-def _check_gps_stuck(runs: list[_Run], tow: Mapping[str, Any]) -> None:
+def _stuck(run: _Run, key: str) -> Said | None:
+    """A channel that holds one value for too long; the GPS is judged over all runs."""
+    limit_s = _STUCK_LIMIT_S.get(key)
+    values = run.channels[key]
+    if limit_s is None or not _may_hold(values, int(limit_s * run.rate_hz)):
+        return None
+    counts = None
+    if key in ("wind_speed", "wind_angle"):  # cups may stand still, and a vane needs wind
+        wind = run.channels["wind_speed"]
+        counts = wind > (0.0 if key == "wind_speed" else VANE_TURNS_M_S)
+    row, length = _longest_hold(values, counts)
+    if length < limit_s * run.rate_hz:
+        return None
+    what = (
+        f"column '{_WORDS[key]}' holds {values[row]:.6g} for {length / run.rate_hz:.3g} s; less "
+        f"than {limit_s:g} s is normal"
+    )
+    return "stuck_channel", what, row
+
+
+def _unlikely_mean(run: _Run, key: str) -> Said | None:
+    """A mean that cannot be; of the vane there is none."""
+    if key == "wind_angle":
+        return None
+    mean, log1 = (float(np.nanmean(run.channels[k], dtype=np.float64)) for k in (key, "log1"))
+    if key == "log1":
+        low, high = (ratio * run.intended_m_s for ratio in SPEED_RATIO)
+        reason_code = "implausible_speed"
+    else:
+        reason_code = "implausible_value"
+        unit = {"force": run.intended_m_s**2, "wind_speed": WIND_MEAN_M_S}.get(key, log1)
+        ratios = {"force": RESISTANCE_KG_M, "wind_speed": (0.0, 1.0)}.get(key, SPEEDS_AGREE_RATIO)
+        low, high = (ratio * unit for ratio in ratios)
+    if low <= mean <= high:
+        return None
+    if key == "force" and mean <= 0:
+        reason_code = "negative_force"
+    what = f"the mean of column '{_WORDS[key]}' is {mean:.4g}; {low:.3g} to {high:.3g} can be right"
+    return reason_code, what, 0
+
+
+def _without_stuck_gps(runs: list[_Run], tow: Mapping[str, Any]) -> tuple[list[_Run], list[Fault]]:
     """GPS has one fix a second in steps of 0.01 m/s, so a steady boat may well hold one value."""
     held: dict[float, _Run] = {}
+    kept, faults = [], []
     for run in runs:
-        gps = run.channels.get("gps")
-        if gps is None or gps.min() != gps.max():
+        why = _stuck_gps(run, held)
+        if why is None:
+            kept.append(run)
             continue
-        speed = float(gps[0])
-        seconds = _second_means(run.channels["log1"], run.rate_hz)
-        span = float(seconds.max() - seconds.min())
-        before = held.setdefault(speed, run)
-        if span > GPS_MUST_MOVE_M_S:
-            why = f"while log1 changed by {span:.2f} m/s"
-        elif before.intended_m_s != run.intended_m_s:
-            why = f"and so in {before.name.lower()}, at another speed"
-        else:
-            continue
-        raise _fault(
-            "stuck_channel", f"{run.name}: gps holds {speed:.6g} throughout, {why}.", run, tow, 0
-        )
+        message = f"{run.name}: gps holds {run.channels['gps'][0]:.6g} throughout, {why}; the run "
+        message += "goes on without this column."
+        faults.append(_cost("stuck_channel", message, run, tow, 0, "seconds", run.seconds))
+        kept.append(_without(run, "gps"))
+    return kept, faults
+
+
+def _stuck_gps(run: _Run, held: dict[float, _Run]) -> str | None:
+    """Why a GPS that holds one value is stuck; `held` is added to."""
+    gps = run.channels.get("gps")
+    if gps is None or gps.min() != gps.max():  # NaN differs from itself
+        return None
+    seconds = _second_means(run.channels["log1"], run.rate_hz)
+    span = float(np.nanmax(seconds) - np.nanmin(seconds))
+    before = held.setdefault(float(gps[0]), run)
+    if span > GPS_MUST_MOVE_M_S:
+        return f"while log1 changed by {span:.2f} m/s"
+    if before.intended_m_s != run.intended_m_s:
+        return f"and so in {before.name.lower()}, at another speed"
+    return None
 
 
 def _second_means(values: Array, rate_hz: int) -> NDArray[np.float64]:
-    """Return the mean of every whole second."""
+    """Return the mean of every whole second, NaN where one of its samples is none."""
     seconds = len(values) // rate_hz
     means: NDArray[np.float64] = (
         values[: seconds * rate_hz].reshape(seconds, rate_hz).mean(axis=1, dtype=np.float64)
     )
     return means
-
-
-# Values
-
-
-def _check_speed(runs: list[_Run], tow: Mapping[str, Any]) -> None:
-    for run in runs:
-        mean = float(run.channels["log1"].mean(dtype=np.float64))
-        if not _within(mean / run.intended_m_s, SPEED_RATIO):
-            raise _fault(
-                "implausible_speed",
-                f"{run.name}: the mean speed by log1 is {mean:.3g} m/s, "
-                f"{mean / run.intended_m_s:.2f} times the intended {run.intended_m_s:.3g} m/s; "
-                f"{SPEED_RATIO[0]:g} to {SPEED_RATIO[1]:g} times can be right.",
-                run,
-                tow,
-                0,
-            )
-
-
-def _check_spikes(runs: list[_Run], tow: Mapping[str, Any]) -> None:
-    for run in runs:
-        # The median, as a large spike lifts the mean it is compared with.
-        median = abs(_median(run.channels["force"]))
-        force = (FORCE_SPIKE_RATIO[0] * median, FORCE_SPIKE_RATIO[1] * median)
-        fastest = SPEED_SPIKE_RATIO * run.intended_m_s
-        speed = (-fastest, fastest)
-        for key, limits, unit in (
-            ("force", force, "N"),
-            ("log1", speed, "m/s"),
-            ("log2", speed, "m/s"),
-            ("gps", speed, "m/s"),
-        ):
-            if key in run.channels:
-                _check_within(run, tow, key, limits, unit)
-
-
-def _check_within(
-    run: _Run, tow: Mapping[str, Any], key: str, limits: tuple[float, float], unit: str
-) -> None:
-    values = run.channels[key]
-    if values.min() >= limits[0] and values.max() <= limits[1]:
-        return
-    row = int(((values < limits[0]) | (values > limits[1])).argmax())
-    raise _fault(
-        "implausible_value",
-        f"{run.name}: column '{_WORDS[key]}' holds {values[row]:.6g} {unit}; "
-        f"{limits[0]:.4g} to {limits[1]:.4g} can be right.",
-        run,
-        tow,
-        row,
-    )
-
-
-def _check_force(runs: list[_Run], tow: Mapping[str, Any]) -> None:
-    """Single negative samples are the surge of the tow line; a negative second is a fault."""
-    for run in runs:
-        force = run.channels["force"]
-        mean = float(force.mean(dtype=np.float64))
-        if mean <= 0:
-            raise _fault(
-                "negative_force", f"{run.name}: the mean force is {mean:.1f} N.", run, tow, 0
-            )
-        seconds = _second_means(force, run.rate_hz)
-        if seconds.min() < 0:
-            second = int((seconds < 0).argmax())
-            raise _fault(
-                "negative_force",
-                f"{run.name}: in second {second + 1} the mean force is {seconds[second]:.1f} N; "
-                "it must be positive in every second.",
-                run,
-                tow,
-                second * run.rate_hz,
-            )
-
-
-def _check_ranges(runs: list[_Run], tow: Mapping[str, Any]) -> None:
-    for run in runs:
-        mean = _means(run)
-        force_n = tuple(limit * run.intended_m_s**2 for limit in RESISTANCE_KG_M)
-        near_log1 = tuple(limit * mean("log1") for limit in SPEEDS_AGREE_RATIO)
-        for key, limits, unit in (
-            ("log2", near_log1, "m/s"),
-            ("gps", near_log1, "m/s"),
-            ("force", force_n, "N"),
-            ("wind_speed", (0.0, WIND_MEAN_M_S), "m/s"),
-        ):
-            if key in run.channels and not _within(mean(key), (limits[0], limits[1])):
-                raise _fault(
-                    "implausible_value",
-                    f"{run.name}: the mean of column '{_WORDS[key]}' is {mean(key):.4g} {unit}; "
-                    f"{limits[0]:.3g} to {limits[1]:.3g} {unit} can be right.",
-                    run,
-                    tow,
-                    0,
-                )
-        for key, limits, unit in (
-            ("wind_speed", WIND_SPEED_M_S, "m/s"),
-            ("wind_angle", WIND_ANGLE_DEG, "degrees"),
-        ):
-            if key in run.channels:
-                _check_within(run, tow, key, limits, unit)
-
-
-def _means(run: _Run) -> Callable[[str], float]:
-    return lambda key: float(run.channels[key].mean(dtype=np.float64))

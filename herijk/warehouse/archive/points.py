@@ -45,7 +45,7 @@ def read_points(path: Path, speed: str | None, force: str | None) -> pl.DataFram
         other = Column("cw", KNOWN["cw"][0])
     else:
         other = Column("force", force or _first(names, "force", header), "force", "N")
-    rows = read_rows(data, (speed_column, other), "bad_point")
+    rows = read_rows(data, (speed_column, other), "bad_point", lambda _: (0.0, LARGEST))
     return pl.DataFrame(
         [_point(row, other.key) for row in rows],
         schema={"line": pl.Int64, "speed_m_s": pl.Float64, "cw_kg_m": pl.Float64},
@@ -65,8 +65,8 @@ def _first(names: list[str], key: str, header: str) -> str:
 
 def _point(row: ListRow, key: str) -> dict[str, float]:
     row.check_whole()
-    speed = row.number("speed", 0.0, LARGEST)
-    value = row.number(key, 0.0, LARGEST)
+    speed = row.number("speed")
+    value = row.number(key)
     if not speed or not value:
         raise row.fault("a speed and a force must be above zero.")
     cw = value / speed**2 if key == "force" else value

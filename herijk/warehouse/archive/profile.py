@@ -10,7 +10,7 @@ import tomllib
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Any, Final, Literal
+from typing import Annotated, Final, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
@@ -25,7 +25,7 @@ from herijk.pipeline.channels import (
 from herijk.pipeline.errors import DefectiveInputError, MissingKnowledgeError
 from herijk.warehouse.archive.files import PROFILE_FILE, path_inside
 from herijk.warehouse.archive.lists import Wording, fold_word
-from herijk.warehouse.archive.text import Column, fold
+from herijk.warehouse.archive.text import Column, fold, split_header
 from herijk.warehouse.archive.units import UNITS, find_scale
 
 SAMPLE_COLUMNS: Final = (
@@ -270,7 +270,7 @@ class Profiles:
             replace(
                 column,
                 header=table.columns.get(column.key, column.header),  # type: ignore[call-overload]
-                also=() if column.key in table.columns else column.also,
+                also=(*column.also, column.header),
                 unit=table.units.get(column.key, column.unit),  # type: ignore[call-overload]
             )
             for column in known
@@ -294,16 +294,34 @@ def read_profiles(root: Path) -> Profiles:
     Raises:
         MissingKnowledgeError: the file cannot be understood; it names the file and the key.
     """
+    return parse_profiles(profile_text(root))
+
+
+def profile_text(root: Path) -> str:
+    """Return the text of `archief.toml`; empty when there is none.
+
+    Raises:
+        MissingKnowledgeError: it cannot be read, or there are two.
+    """
     try:
         path = _profile_path(root)
-        if path is None:
-            return Profiles()
-        content: dict[str, Any] = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
-        parsed = _File.model_validate(content)
-    except ValidationError as error:
-        raise MissingKnowledgeError(f"{PROFILE_FILE}: {_explain(error)}") from error
+        return "" if path is None else path.read_bytes().decode("utf-8-sig")
     except DefectiveInputError as error:
         raise MissingKnowledgeError(error.message) from error
+    except ValueError as error:
+        raise MissingKnowledgeError(f"{PROFILE_FILE} is not valid TOML: {error}") from error
+
+
+def parse_profiles(text: str) -> Profiles:
+    """Read the text of an `archief.toml`.
+
+    Raises:
+        MissingKnowledgeError: it cannot be understood; the message names the key.
+    """
+    try:
+        parsed = _File.model_validate(tomllib.loads(text))
+    except ValidationError as error:
+        raise MissingKnowledgeError(f"{PROFILE_FILE}: {_explain(error)}") from error
     except (ValueError, RecursionError) as error:
         raise MissingKnowledgeError(f"{PROFILE_FILE} is not valid TOML: {error}") from error
     return Profiles(
@@ -314,7 +332,7 @@ def read_profiles(root: Path) -> Profiles:
         plans=tuple(parsed.plan),
         wording=Wording(
             words={fold_word(word): value for word, value in parsed.words.items()},
-            headers={fold(name): key for name, key in parsed.headers.items()},
+            headers={split_header(name)[0]: key for name, key in parsed.headers.items()},
             ignore=tuple(fold(name) for name in parsed.ignore),
             dates=dict(parsed.dates),
         ),
@@ -327,6 +345,8 @@ def _profile_path(root: Path) -> Path | None:
     Raises:
         MissingKnowledgeError: there are two.
     """
+    if not root.is_dir():
+        return None
     found = sorted(p.name for p in root.iterdir() if p.name.casefold() == PROFILE_FILE)
     if len(found) > 1:
         raise MissingKnowledgeError(f"{' and '.join(found)} both stand in {root}; keep one")

@@ -7,7 +7,7 @@ a careful one that knows lines; the fast one is trusted only where it gives the 
 
 import re
 import unicodedata
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -23,13 +23,14 @@ from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.faults import DefectiveFileError
 from herijk.warehouse.archive.files import (
     PARTS,
-    SAMPLES_MAX_BYTES,
     as_one_run,
     kind_of,
     path_inside,
     read_bytes,
+    read_start,
     too_large,
 )
+from herijk.warehouse.archive.limits import MOST_ROWS, SAMPLES_MAX_BYTES, too_many_rows
 from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.profile import SeasonProfile
 from herijk.warehouse.archive.recordings import is_labview, labview_as_table, read_tdms
@@ -117,10 +118,10 @@ def read_samples(
         A frame with the columns of `SAMPLE_SCHEMA`, one row a sample in the order of the file.
         What was not measured is null throughout: a GPS that is absent or empty, and what the
         profile declares absent. Wind angles are brought to [0, 360); one outside -180..360 cannot
-        be an angle and is left as it is, for `check_samples` to find.
+        be an angle and is left as it is, for `judge_samples` to find.
 
     Raises:
-        DefectiveInputError: the first fault of the file, with its line.
+        DefectiveInputError: the first fault that costs the whole file, with its line.
     """
     kind = kind_of(path)
     if kind == ".parquet":
@@ -134,6 +135,24 @@ def read_samples(
     if "time" in raw.columns:
         _check_time(samples["run"], raw["time"].to_numpy(), sample_rate_hz)
     return samples
+
+
+def check_header(path: Path, profile: SeasonProfile) -> None:
+    """Read the columns of a samples file, not its samples.
+
+    Raises:
+        DefectiveInputError: as `read_samples`, for a fault of the header.
+    """
+    kind = kind_of(path)
+    if kind == ".parquet":
+        try:
+            with pq.ParquetFile(path) as file:
+                names = file.schema_arrow.names
+        except (OSError, pa.ArrowException) as error:
+            raise _not_parquet(path, error) from error
+        _check_nothing_misspelt(names, find_columns(names, profile.columns), profile)
+    elif kind != ".tdms":
+        _split_header(read_start(path, _HEAD_BYTES), profile)
 
 
 def read_tow_samples(root: Path, tow: Mapping[str, Any], profile: SeasonProfile) -> pl.DataFrame:
@@ -346,17 +365,13 @@ def _all_finite(numbers: pl.Series) -> bool:
 
 
 def _read_carefully(body: _Body) -> pl.DataFrame:
-    """Return the same columns, or raise the first fault with its line."""
+    """Return the same columns, NaN where a cell is no number or its row has not all its fields."""
     text = body.data[body.start :].rstrip(b"\r\n").decode()
     lines = pl.Series("line", text.split("\n")).str.strip_suffix("\r")
     if body.delimiter == ",":
         lines = lines.str.replace_all(_QUOTED_DECIMAL_COMMA, '"$1.$2"')
     fields = lines.str.split(body.delimiter)
     whole = fields.list.len() == body.width
-    faults = []
-    if not whole.all():
-        row = int((~whole).arg_max() or 0)
-        faults.append((row, "broken_row", _broken_row(lines[row], fields[row], body)))
     columns: dict[str, pl.Series] = {}
     for key, found in body.columns.items():
         cells = fields.list.get(found.index, null_on_oob=True)
@@ -366,48 +381,16 @@ def _read_carefully(body: _Body) -> pl.DataFrame:
             continue
         if key == "time" and body.clock:
             cells = _seconds_of_clock(cells).cast(pl.String()).fill_null(cells)
-        columns[key], fault = _to_numbers(cells, whole, found.header)
-        if fault is not None:
-            faults.append((fault[0], "bad_number", fault[1]))
-    if faults:
-        row, reason_code, message = min(faults)
-        line = body.line(row)
-        said = say("Line {line}: {what}", line=line, what=message)
-        raise DefectiveInputError(reason_code, said, line=line)
+        columns[key] = _to_numbers(cells, whole)
     return pl.DataFrame(columns)
 
 
-def _broken_row(line: str, fields: pl.Series, body: _Body) -> str:
-    return say(
-        "the row has {fields} fields where the header has {width}: '{line}'.",
-        fields=len(fields),
-        width=body.width,
-        line=shorten(line),
-    )
-
-
-def _to_numbers(
-    cells: pl.Series, whole: pl.Series, header: str
-) -> tuple[pl.Series, tuple[int, str] | None]:
-    """Return text as numbers, and the first row of the whole ones that holds none."""
+def _to_numbers(cells: pl.Series, whole: pl.Series) -> pl.Series:
+    """Return text as numbers, NaN where it is none or the row is not whole."""
     spelled = cells.str.contains(NUMBER_PATTERN)
     numbers = cells.str.replace(",", ".", literal=True).cast(pl.Float64(), strict=False)
-    good = (spelled & numbers.is_finite()).fill_null(value=False)
-    bad = whole & ~good
-    if not bad.any():
-        return numbers, None
-    row = int(bad.arg_max() or 0)
-    return numbers, (row, _bad_number(cells[row], header))
-
-
-def _bad_number(cell: str | None, header: str) -> str:
-    if not cell:
-        return say("column '{column}' is empty.", column=header)
-    return say(
-        "column '{column}' is '{cell}', which is not an ordinary number.",
-        column=header,
-        cell=shorten(cell),
-    )
+    good = (spelled & whole & numbers.is_finite()).fill_null(value=False)
+    return pl.select(pl.when(good).then(numbers).otherwise(float("nan"))).to_series()
 
 
 # Tables of other programs
@@ -421,14 +404,33 @@ def _read_parquet(path: Path, profile: SeasonProfile, max_bytes: int) -> pl.Data
             columns = find_columns(names, profile.columns)
             _check_nothing_misspelt(names, columns, profile)
             _check_parquet_size(path, file, len(columns), max_bytes)
-            table = file.read(columns=[names[found.index] for found in columns.values()])
+            wanted = [names[found.index] for found in columns.values()]
+            table = pa.Table.from_batches(_batches(file, wanted), _schema(file, wanted))
         return pl.DataFrame(pl.from_arrow(table))
     except FileNotFoundError as error:
         said = say("'{name}' is not there any more.", name=path.name)
         raise DefectiveInputError("samples_missing", said) from error
     except (OSError, ValueError, pa.ArrowException, pl.exceptions.PolarsError) as error:
-        said = say("'{name}' is not a whole Parquet file: {error}.", name=path.name, error=error)
-        raise DefectiveInputError("unreadable_file", said) from error
+        raise _not_parquet(path, error) from error
+
+
+def _not_parquet(path: Path, error: Exception) -> DefectiveInputError:
+    said = say("'{name}' is not a whole Parquet file: {error}.", name=path.name, error=error)
+    return DefectiveInputError("unreadable_file", said)
+
+
+def _batches(file: pq.ParquetFile, names: list[str]) -> Iterator[pa.RecordBatch]:
+    """The rows in pieces, as a footer may promise fewer than there are."""
+    rows = 0
+    for batch in file.iter_batches(columns=names):
+        rows += batch.num_rows
+        if rows > MOST_ROWS:
+            raise too_many_rows(rows)
+        yield batch
+
+
+def _schema(file: pq.ParquetFile, names: list[str]) -> pa.Schema:
+    return pa.schema([file.schema_arrow.field(name) for name in names])
 
 
 def _check_parquet_size(path: Path, file: pq.ParquetFile, width: int, max_bytes: int) -> None:
@@ -470,18 +472,7 @@ def _only_numbers(cells: pl.Series, found: FoundColumn) -> pl.Series:
             "Column '{column}' holds {kind}, not numbers.", column=found.header, kind=cells.dtype
         )
         raise DefectiveInputError("bad_number", said)
-    numbers = cells.cast(pl.Float64())
-    bad = ~numbers.is_finite().fill_null(value=False)
-    if bad.any():
-        row = int(bad.arg_max() or 0)
-        what = say(
-            "column '{column}' is '{cell}', which is not an ordinary number.",
-            column=found.header,
-            cell=cells[row],
-        )
-        said = say("Row {row}: {what}", row=row + 1, what=what)
-        raise DefectiveInputError("bad_number", said, line=row + 2)
-    return numbers
+    return cells.cast(pl.Float64()).fill_null(float("nan"))
 
 
 # To the schema
@@ -498,6 +489,8 @@ def _to_si(frame: pl.DataFrame, columns: Mapping[str, FoundColumn]) -> pl.DataFr
 
 def _to_schema(raw: pl.DataFrame) -> pl.DataFrame:
     """Return the frame of `SAMPLE_SCHEMA` from Float64 columns in SI units."""
+    if raw["run"].is_nan().any():
+        raw = _with_known_runs(raw)
     _check_run_numbers(raw["run"])
     absent = (key for key in OUTPUT_NAMES if key not in raw.columns)
     raw = raw.with_columns(pl.lit(None, pl.Float64).alias(key) for key in absent)
@@ -509,19 +502,20 @@ def _to_schema(raw: pl.DataFrame) -> pl.DataFrame:
     # 359.99999999 rounds to 360 in 32 bits; the promise is [0, 360).
     turned = pl.when(pl.col("wind_angle_deg") == 360).then(0.0).otherwise(pl.col("wind_angle_deg"))
     samples = samples.with_columns(turned.cast(pl.Float32()).alias("wind_angle_deg"))
-    _check_finite(samples)
-    return samples
+    # A number such as 1e39 is finite in 64 bits and not in 32.
+    floats = pl.selectors.float()
+    finite = pl.when(floats.is_infinite()).then(float("nan")).otherwise(floats)
+    return samples.with_columns(finite.name.keep())
 
 
-def _check_finite(samples: pl.DataFrame) -> None:
-    """A number such as 1e39 is finite in 64 bits and not in 32."""
-    for name in samples.columns[1:]:
-        infinite = np.isinf(samples[name].to_numpy())
-        if infinite.any():
-            line = int(infinite.argmax()) + 2
-            what = say("the number for {name} is too large.", name=name)
-            said = say("Line {line}: {what}", line=line, what=what)
-            raise DefectiveInputError("bad_number", said, line=line)
+def _with_known_runs(raw: pl.DataFrame) -> pl.DataFrame:
+    """Return the samples with every row in a run: one whose run cannot be read holds no numbers."""
+    unread = raw["run"].is_nan()
+    run = raw["run"].fill_nan(None).forward_fill().backward_fill()
+    if run.null_count():
+        raise DefectiveInputError("unreadable_file", say("No row says which run it belongs to."))
+    others = pl.exclude("run", "time")
+    return raw.with_columns(run, pl.when(unread).then(float("nan")).otherwise(others).name.keep())
 
 
 def _check_run_numbers(run: pl.Series) -> None:
@@ -570,7 +564,8 @@ def _check_time(run: pl.Series, time_s: NDArray[np.float64], rate_hz: int | None
         samples = int(end - start)
         if samples < 2:
             continue
-        observed = (samples - 1) / (time_s[end - 1] - time_s[start])
+        # The usual step: a gap costs its seconds, which `plausibility` counts.
+        observed = 1.0 / float(np.nanmedian(step[start : end - 1]))
         if abs(observed / rate_hz - 1) > TIME_TOLERANCE:
             said = say(
                 "Run {run}: by its times it has {observed:.4g} samples a second, by the list or "

@@ -17,6 +17,7 @@ from functools import cache
 from typing import Final
 
 from herijk.pipeline.errors import DefectiveInputError
+from herijk.warehouse.archive.limits import check_header
 from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.units import UNITS, Scale, find_scale, is_unit
 
@@ -111,8 +112,13 @@ def is_separator_line(line: str) -> bool:
 
 
 def find_delimiter(header_line: str) -> str:
-    """Return the delimiter that occurs most in a header; a blank, then `;`, when there is none."""
+    """Return the delimiter that occurs most in a header; a blank, then `;`, when there is none.
+
+    Raises:
+        DefectiveInputError: `too_large`: it is longer than a header can be.
+    """
     most = max(DELIMITERS, key=header_line.count)
+    check_header(header_line, header_line.count(most) + 1)
     if most not in header_line and len(header_line.split()) > 1:
         return " "
     return most
@@ -172,8 +178,9 @@ def find_columns(
 ) -> dict[str, FoundColumn]:
     """Find columns by name and unit, in any order.
 
-    Two columns may share a name when their dimensions differ (`wind [m/s]`, `wind [gra]`).
-    A header without a unit is the one column of that name that no header with a unit took.
+    Two columns may share a name when their dimensions differ (`wind [m/s]`, `wind [gra]`). A
+    column's own name goes before its other names: where it stands they are left alone. A header
+    without a unit is the one column of that name that no header with a unit took.
 
     Args:
         header: the cells of the header.
@@ -186,10 +193,16 @@ def find_columns(
     wanted = tuple(columns)
     found: dict[str, FoundColumn] = {}
     cells = [split_header(cell) for cell in header]
-    with_unit_first = sorted(range(len(cells)), key=lambda index: cells[index][1] is None)
-    for index in with_unit_first:
+    own_names = {fold(column.header) for column in wanted}
+    own_first = sorted(
+        range(len(cells)), key=lambda i: (cells[i][0] not in own_names, cells[i][1] is None)
+    )
+    for index in own_first:
         name, unit = cells[index]
         namesakes = [column for column in wanted if name and column.answers_to(name)]
+        if name not in own_names:
+            taken = {c.key for c in namesakes if _is_own(c, found)}
+            namesakes = [column for column in namesakes if column.key not in taken]
         if not namesakes:
             continue
         column = _choose(namesakes, unit, header[index], found, line)
@@ -197,8 +210,13 @@ def find_columns(
         found[column.key] = FoundColumn(index, header[index].strip(), scale, column.dimension)
     missing = [column for column in wanted if column.required and column.key not in found]
     if missing:
-        raise DefectiveInputError("missing_column", _missing_message(missing, header), line)
+        raise DefectiveInputError("missing_column", _missing_message(missing, header, found), line)
     return found
+
+
+def _is_own(column: Column, found: Mapping[str, FoundColumn]) -> bool:
+    """Whether a column was found by its own name."""
+    return column.key in found and split_header(found[column.key].header)[0] == fold(column.header)
 
 
 def unknown_headers(header: Sequence[str], found: Mapping[str, FoundColumn]) -> list[str]:
@@ -252,11 +270,15 @@ def _choose(
     return free[0]
 
 
-def _missing_message(missing: list[Column], header: Sequence[str]) -> str:
+def _missing_message(
+    missing: list[Column], header: Sequence[str], found: Mapping[str, FoundColumn]
+) -> str:
     return say(
         "Not found in the header: {names}. Found: {found}.",
         names=", ".join(f"'{column.named}'" for column in missing),
         found=", ".join(f"'{shorten(cell.strip())}'" for cell in header[:30]),
+        keys=tuple(column.key for column in missing),
+        header=tuple(unknown_headers(header, found)),
     )
 
 

@@ -8,21 +8,11 @@ import re
 from collections.abc import Collection, Mapping
 from typing import Any, Final
 
-import polars as pl
-
 from herijk.pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
-from herijk.warehouse.archive.boats import BEAM_M, BOW_HEIGHT_M, LENGTH_M, ROWERS, WEIGHT_KG
 from herijk.warehouse.archive.lists import ListRow, fold_word
 from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.text import Column, shorten
 from herijk.warehouse.archive.words import ALL_RUNS
-
-SPEED_M_S: Final = (0.5, 6.0)
-CREW_WEIGHT_KG: Final = (0.0, 6_000.0)
-TEMPERATURE_C: Final = (-2.0, 40.0)
-CORRECTION_RATIO: Final = (-0.5, 0.5)
-SAMPLE_RATE_HZ: Final = (1, 100_000)
-FREEBOARD_M: Final = (-0.5, 4.0)
 
 COLUMNS: Final = (
     Column("tow_id", "sleep_id"),
@@ -50,49 +40,6 @@ COLUMNS: Final = (
     Column("freeboard_stern_m", "vrijboord achter", "length", "m", required=False),
     Column("remark", "opmerking", required=False),
 )
-SCHEMA: Final[dict[str, pl.DataType]] = {
-    "tow_id": pl.String(),
-    "season": pl.Int32(),
-    "tow_date": pl.Date(),
-    "fsn_no": pl.String(),
-    "rowers": pl.Int32(),
-    "crew_class": pl.String(),
-    "declared_speed_m_s": pl.Float64(),
-    "waterline_length_m": pl.Float64(),
-    "beam_m": pl.Float64(),
-    "bow_height_m": pl.Float64(),
-    "weight_kg": pl.Float64(),
-    "weight_after_kg": pl.Float64(),
-    "crew_weight_kg": pl.Float64(),
-    "water_temperature_c": pl.Float64(),
-    "speed_correction_ratio": pl.Float64(),
-    "altered": pl.Boolean(),
-    "sample_rate_hz": pl.Int32(),
-    "empty_thwart": pl.String(),
-    "freeboard_lowest_m": pl.Float64(),
-    "freeboard_bow_m": pl.Float64(),
-    "freeboard_stern_m": pl.Float64(),
-    "remark": pl.String(),
-    "wind_measured": pl.Boolean(),
-    "log2_measured": pl.Boolean(),
-    "log1_part": pl.Int32(),
-    "log2_part": pl.Int32(),
-    "samples_path": pl.String(),
-    "samples_sha256": pl.String(),
-    "second_path": pl.String(),
-    "second_sha256": pl.String(),
-    "list_path": pl.String(),
-    "list_line": pl.Int32(),
-}
-RUNS_SCHEMA: Final[dict[str, pl.DataType]] = {
-    "tow_id": pl.String(),
-    "run": pl.Int8(),
-    "direction": pl.Int8(),
-    "target_speed_ratio": pl.Float64(),
-    "selected": pl.Boolean(),
-    "planned_s": pl.Float64(),
-}
-
 _RUN: Final = re.compile(r"(b?)([1-9][0-9]?)", re.IGNORECASE)
 _RANGE: Final = re.compile(r"(b?[0-9]+)\s*(?:-|\.\.|:|t/m|tm|tot en met|to|bis)\s*(b?[0-9]+)")
 _TOW_ID: Final = re.compile(r"[^/\\\x00-\x1f]{1,64}")
@@ -114,24 +61,23 @@ def read_tow(row: ListRow, season: int, default_rate_hz: int) -> dict[str, Any]:
         "season": season,
         "tow_date": row.date("tow_date"),
         "fsn_no": row.boat("fsn_no"),
-        "rowers": row.integer("rowers", *ROWERS),
+        "rowers": row.integer("rowers"),
         "crew_class": row.crew_class("crew_class"),
-        "declared_speed_m_s": row.number("declared_speed_m_s", *SPEED_M_S),
-        "waterline_length_m": row.optional_number("waterline_length_m", *LENGTH_M),
-        "beam_m": row.optional_number("beam_m", *BEAM_M),
-        "bow_height_m": row.optional_number("bow_height_m", *BOW_HEIGHT_M),
-        "weight_kg": row.optional_number("weight_kg", *WEIGHT_KG),
-        "weight_after_kg": row.optional_number("weight_after_kg", *WEIGHT_KG),
-        "crew_weight_kg": row.optional_number("crew_weight_kg", *CREW_WEIGHT_KG),
-        "water_temperature_c": row.optional_number("water_temperature_c", *TEMPERATURE_C),
-        "speed_correction_ratio": row.optional_number("speed_correction_ratio", *CORRECTION_RATIO),
+        "declared_speed_m_s": row.number("declared_speed_m_s"),
+        "waterline_length_m": row.optional_number("waterline_length_m"),
+        "beam_m": row.optional_number("beam_m"),
+        "bow_height_m": row.optional_number("bow_height_m"),
+        "weight_kg": row.optional_number("weight_kg"),
+        "weight_after_kg": row.optional_number("weight_after_kg"),
+        "crew_weight_kg": row.optional_number("crew_weight_kg"),
+        "water_temperature_c": row.optional_number("water_temperature_c"),
+        "speed_correction_ratio": row.optional_number("speed_correction_ratio"),
         "altered": row.yes_or_no("altered"),
-        "sample_rate_hz": row.optional_integer("sample_rate_hz", *SAMPLE_RATE_HZ)
-        or default_rate_hz,
+        "sample_rate_hz": row.optional_integer("sample_rate_hz") or default_rate_hz,
         "empty_thwart": row.optional_text("empty_thwart"),
-        "freeboard_lowest_m": row.optional_number("freeboard_lowest_m", *FREEBOARD_M),
-        "freeboard_bow_m": row.optional_number("freeboard_bow_m", *FREEBOARD_M),
-        "freeboard_stern_m": row.optional_number("freeboard_stern_m", *FREEBOARD_M),
+        "freeboard_lowest_m": row.optional_number("freeboard_lowest_m"),
+        "freeboard_bow_m": row.optional_number("freeboard_bow_m"),
+        "freeboard_stern_m": row.optional_number("freeboard_stern_m"),
         "remark": row.optional_text("remark"),
     }
 

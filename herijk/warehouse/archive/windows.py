@@ -13,14 +13,13 @@ import polars as pl
 
 from herijk.pipeline.channels import MOST_RUNS
 from herijk.pipeline.errors import DefectiveInputError
+from herijk.tables.lake import ListedWindows
 from herijk.warehouse.archive.faults import Fault, fault_from
 from herijk.warehouse.archive.lists import ListRow, Wording, read_list
 from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.text import Column, shorten
 from herijk.warehouse.archive.tows import run_number
 
-START_S: Final = (0, 600)
-END_S: Final = (1, 600)
 COLUMNS: Final = (
     Column("tow_id", "sleep_id"),
     Column("run", "run"),
@@ -28,16 +27,6 @@ COLUMNS: Final = (
     Column("end_s", "tot", "time", "s"),
     Column("reason", "reden"),
 )
-SCHEMA: Final[dict[str, pl.DataType]] = {
-    "tow_id": pl.String(),
-    "run": pl.Int8(),
-    "start_s": pl.Int16(),
-    "end_s": pl.Int16(),
-    "reason": pl.String(),
-    "list_path": pl.String(),
-    "list_line": pl.Int64(),
-}
-
 Window = dict[str, Any]
 
 
@@ -66,7 +55,7 @@ def read_windows(
     """
     windows: list[Window] = []
     faults: list[Fault] = []
-    for row in read_list(data, COLUMNS, "bad_window_row", path, wording):
+    for row in read_list(data, COLUMNS, "bad_window_row", path, wording, ListedWindows):
         try:
             window = _read_window(row) | {"list_path": path, "list_line": row.line}
             if _is_wanted(window, row, listed):
@@ -82,7 +71,7 @@ def outside_run(windows: pl.DataFrame, seconds: pl.DataFrame) -> list[Fault]:
     """Return a fault for each window that ends after its run.
 
     Args:
-        windows: rows of `SCHEMA`.
+        windows: rows of `ListedWindows`.
         seconds: `tow_id`, `run` and the run's length in whole `seconds`.
     """
     beyond = windows.join(seconds, on=["tow_id", "run"]).filter(pl.col("end_s") > pl.col("seconds"))
@@ -107,8 +96,8 @@ def _read_window(row: ListRow) -> Window:
     window: Window = {
         "tow_id": row.text("tow_id"),
         "run": run_number(row.text("run"), row, "run", range(1, MOST_RUNS + 1)),
-        "start_s": row.integer("start_s", *START_S),
-        "end_s": row.integer("end_s", *END_S),
+        "start_s": row.integer("start_s"),
+        "end_s": row.integer("end_s"),
         "reason": row.text("reason"),
     }
     if window["start_s"] >= window["end_s"]:

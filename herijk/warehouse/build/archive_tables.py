@@ -8,9 +8,12 @@ from typing import TYPE_CHECKING, Final
 import polars as pl
 
 from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.recompute.facts import with_boat_types
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import Faults
 from herijk.warehouse.archive.windows import outside_run
+from herijk.warehouse.build.plausible import gross_faults, judge, with_doubts
+from herijk.warehouse.build.same_samples import same_samples
 
 if TYPE_CHECKING:
     from herijk.warehouse.build.inputs import Inputs
@@ -39,16 +42,25 @@ def archive_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     index = inputs["season_index"]
     sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
     present = _present_runs(inputs["blocks"])
-    runs = inputs["season_runs"].join(present, on=["tow_id", "run"], how="semi")
+    listed = inputs["season_tows"].join(sound, on="tow_id", how="semi")
+    held = inputs["season_runs"].join(present, on=["tow_id", "run"], how="semi")
+    tows, contradicted = _judged(
+        with_boat_types(listed, inputs["listed_boats"]), held, inputs["blocks"]
+    )
+    sound, runs = (frame.join(tows, on="tow_id", how="semi") for frame in (sound, held))
     windows = inputs["listed_windows"].join(runs, on=["tow_id", "run"], how="semi")
     beyond = frame_of(Faults, map(dataclasses.asdict, outside_run(windows, present)))
-    unsound = index.drop_nulls("reason_code").select(Faults.column_names())
-    set_aside = pl.concat([inputs["list_faults"], beyond, unsound])
+    losses = index.select(pl.col("losses").explode()).unnest("losses").drop_nulls("path")
+    known = [name for name in Faults.column_names() if name in index.columns]
+    unsound = index.drop_nulls("reason_code").select(known)
+    set_aside = pl.concat(
+        [inputs["list_faults"], beyond, unsound, losses, contradicted], how="diagonal"
+    )
     found = {
         "boats": inputs["listed_boats"].unique("fsn_no", keep="last", maintain_order=True),
-        "seasons": _seasons(inputs["season_tows"], sound),
-        "tows": inputs["season_tows"].join(sound, on="tow_id", how="semi"),
-        "tow_runs": runs,
+        "seasons": _seasons(inputs["season_tows"], sound, losses),
+        "tows": _with_lost_runs(tows, losses),
+        "tow_runs": _with_lost_seconds(runs, losses),
         "hand_windows": windows.join(
             beyond, left_on=_LISTED_AT, right_on=["path", "line"], how="anti"
         ),
@@ -64,10 +76,50 @@ def _present_runs(blocks: pl.DataFrame) -> pl.DataFrame:
     return blocks.group_by("tow_id", "run").agg((pl.col("second").max() + 1).alias("seconds"))
 
 
-def _seasons(listed: pl.DataFrame, sound: pl.DataFrame) -> pl.DataFrame:
-    """How many tows each season lists, and how many of them can be used."""
+def _with_lost_runs(tows: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
+    """Adds how many of the runs to be used are set aside."""
+    lost = losses.filter(lost="run").group_by("tow_id").agg(pl.len().alias("runs_set_aside"))
+    return tows.join(lost, on="tow_id", how="left").with_columns(
+        pl.col("runs_set_aside").fill_null(0)
+    )
+
+
+def _with_lost_seconds(runs: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
+    """Adds the longest time that was left out of a channel of each run."""
+    lost = losses.filter(lost="seconds").group_by("tow_id", "run").agg(pl.col("lost_s").max())
+    return runs.join(lost, on=["tow_id", "run"], how="left").with_columns(
+        pl.col("lost_s").fill_null(0.0)
+    )
+
+
+def _judged(
+    tows: pl.DataFrame, runs: pl.DataFrame, blocks: pl.DataFrame
+) -> tuple[pl.DataFrame, pl.DataFrame]:
+    """The tows with their doubts, and the faults of those that the other tows contradict."""
+    twice = same_samples(tows, blocks)
+    once = tows.join(twice, on="tow_id", how="anti")
+    shifts = judge(once, runs.join(once, on="tow_id", how="semi"), blocks)
+    gross = gross_faults(shifts, once)
+    kept = with_doubts(once.join(gross, on="tow_id", how="anti"), shifts)
+    return kept, pl.concat([twice, gross])
+
+
+def _seasons(listed: pl.DataFrame, sound: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
+    """How many tows each season lists, how many can be used, and what is lost of those."""
+    lost = losses.group_by("tow_id").agg(
+        (pl.col("lost") == "run").sum().alias("runs_set_aside"),
+        pl.col("lost_s").filter(pl.col("lost") == "seconds").sum(),
+    )
     is_sound = pl.col("tow_id").is_in(sound["tow_id"].implode())
-    return listed.group_by("season").agg(pl.len().alias("listed"), is_sound.sum().alias("tows"))
+    return (
+        listed.join(lost, on="tow_id", how="left")
+        .group_by("season")
+        .agg(
+            pl.len().alias("listed"),
+            is_sound.sum().alias("tows"),
+            pl.col("runs_set_aside", "lost_s").sum(),
+        )
+    )
 
 
 def _why_nothing(set_aside: pl.DataFrame) -> str:
@@ -88,11 +140,16 @@ def _why_nothing(set_aside: pl.DataFrame) -> str:
 
 
 def _dated(faults: pl.DataFrame, earlier: pl.DataFrame, today: dt.date) -> pl.DataFrame:
-    """Faults with the day on which each was first seen, today for those that are new."""
+    """Faults with what each costs and the day on which it was first seen, today for new ones.
+
+    A fault that does not say what it costs has cost a tow, a row of a list or a file.
+    """
     key = ["path", "tow_id", "line", "reason_code"]
+    of_list = pl.when(pl.col("line").is_null()).then(pl.lit("file")).otherwise(pl.lit("row"))
+    lost = pl.when(pl.col("tow_id").is_not_null()).then(pl.lit("tow")).otherwise(of_list)
     first = earlier.group_by(key).agg(pl.col("first_seen").min())
     return faults.join(first, on=key, how="left", nulls_equal=True).with_columns(
-        pl.col("first_seen").fill_null(today)
+        pl.col("lost").fill_null(lost), pl.col("first_seen").fill_null(today)
     )
 
 

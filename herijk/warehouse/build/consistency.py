@@ -12,10 +12,14 @@ if TYPE_CHECKING:
 
 def consistency_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     """Are equal boats equal: the statistics of every boat type under every method."""
+    trusted = inputs["tows"].filter(pl.col("doubts").list.len() == 0)
+    curves, run_points = (
+        inputs[name].join(trusted, on="tow_id", how="semi") for name in ("curves", "run_points")
+    )
     return consistency.consistency_tables(
-        inputs["curves"],
+        curves,
         inputs["tows"],
         inputs["boats"],
-        inputs["run_points"],
+        run_points,
         inputs["listed_races"],
     )

@@ -9,7 +9,7 @@ import polars as pl
 from herijk.tables.schemas import TABLES, conform
 from herijk.tables.views import VIEWS
 from herijk.warehouse.build.version import code_version
-from herijk.warehouse.store.database import build_database
+from herijk.warehouse.store.database import build_database, left_wal
 from herijk.warehouse.store.files import file_sha256
 from herijk.warehouse.store.store import Store
 
@@ -71,4 +71,5 @@ def _contents(found: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
 def is_whole(store: Store) -> bool:
     """Whether the file is there as it was made; it may have been damaged since."""
     made = store.read(DATABASE_TABLE)["sha256"][0]
-    return store.database.exists() and made == file_sha256(store.database)
+    left = left_wal(store.database).exists()  # a reader would replay it
+    return store.database.exists() and not left and made == file_sha256(store.database)

@@ -13,11 +13,11 @@ from typing import Any, Final
 import duckdb
 import polars as pl
 
-from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.errors import HerijkError
 from herijk.pipeline.method.definition import Method
-from herijk.tables.lake import SEASON_TABLES
+from herijk.tables.lake import SEASON_TABLES, PrintedLines
 from herijk.tables.schemas import TABLES
-from herijk.warehouse.archive.published import REGISTER_SCHEMA, read_published_registers
+from herijk.warehouse.archive.published import read_published_registers
 from herijk.warehouse.build.published import published_made_from, published_tables
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store import decisions
@@ -49,6 +49,9 @@ METHOD_TABLES: Final = (
     "season_links",
     "retow_choice",
     "season_steps",
+    "season_diagnosis",
+    "tow_instruments",
+    "best_estimate_weights",
     "uncertainty_budget",
     "curve_points",
     "assessments",
@@ -93,7 +96,7 @@ class Inputs:
         try:
             with open_database(self.store.database) as db:
                 return pl.DataFrame(db.table(table).pl())
-        except (MissingKnowledgeError, duckdb.Error):  # not made yet, or damaged too
+        except (HerijkError, duckdb.Error):  # not made yet, or damaged too
             return TABLES[table].create_empty()
 
     @cached_property
@@ -127,7 +130,7 @@ def _printed(store: Store) -> pl.DataFrame:
     """Lines of printed registers; none where the archive is not where it was."""
     root = intake.archive_root(store)
     if root is None:
-        return pl.DataFrame(schema=REGISTER_SCHEMA)
+        return PrintedLines.create_empty()
     return read_published_registers(root)[0]
 
 

@@ -36,7 +36,7 @@ def published_tables(store: Store) -> dict[str, pl.DataFrame]:
     for name in edition_names(store):
         edition = read_edition(store, name)
         rows["editions"].append(_edition_row(edition))
-        rows["register"].append(edition.register)
+        rows["register"].append(_with_later_columns(edition.register))
         if CHANGES in edition.tables:
             rows[CHANGES].append(edition.tables[CHANGES])
         if edition.about.kind == "recomputed":
@@ -45,6 +45,13 @@ def published_tables(store: Store) -> dict[str, pl.DataFrame]:
         table: pl.concat([TABLES[table].create_empty(), *(conform(table, f) for f in frames)])
         for table, frames in rows.items()
     }
+
+
+def _with_later_columns(register: pl.DataFrame) -> pl.DataFrame:
+    """Lines of an edition, with what was not yet said of a line when it was published."""
+    columns = TABLES["register"].columns()
+    missing = [n for n, column in columns.items() if column.nullable and n not in register.columns]
+    return register.with_columns(pl.lit(None, columns[n].dtype).alias(n) for n in missing)
 
 
 def _edition_row(edition: Edition) -> pl.DataFrame:

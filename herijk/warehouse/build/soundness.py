@@ -54,5 +54,5 @@ def _rows_in_lake(store: Store, name: str, methods: Sequence[Method]) -> int:
 
 def set_aside_tows(store: Store) -> tuple[int, int]:
     """How many tows are set aside, and how many are listed."""
-    aside = store.read("quarantine")["tow_id"].drop_nulls().n_unique()
+    aside = store.read("quarantine").filter(lost="tow")["tow_id"].n_unique()
     return aside, aside + store.read("tows").height

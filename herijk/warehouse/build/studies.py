@@ -27,7 +27,7 @@ MOST_APART: Final = 1e-10
 def study_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     """The ladder from the first method to each other, and the study of judgement options."""
     blocks, tows, (first, *others) = blocks_of(inputs), inputs["tows"], inputs.methods
-    links = {m.name: _of(m, inputs["season_links"]) for m in inputs.methods}
+    links = {m.name: _of(m, inputs["tow_instruments"]) for m in inputs.methods}
     ladders = [
         ladder(old, new, tows, blocks, (links[old.name], links[new.name])).with_columns(
             pl.lit(old.name).alias("from_method"), pl.lit(new.name).alias("to_method")

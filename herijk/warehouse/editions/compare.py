@@ -193,7 +193,7 @@ def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
 
 def _links(old: Edition, new: Edition) -> tuple[pl.DataFrame, pl.DataFrame] | None:
     """The log factors with which both editions were made; None where one does not have them."""
-    found = [edition.tables.get("season_links") for edition in (old, new)]
+    found = [edition.tables.get("tow_instruments") for edition in (old, new)]
     return None if found[0] is None or found[1] is None else (found[0], found[1])
 
 

@@ -45,7 +45,7 @@ def method_lines(
     return draft.join(
         of_method["tows"].select("tow_id", *TOW_FACTS), on="tow_id", how="left"
     ).with_columns(
-        *(pl.when(valid).then(pl.col(name)).alias(name) for name in NUMBERS),
+        *(pl.when(valid).then(pl.col(name)).alias(name) for name in (*NUMBERS, "flags")),
         pl.when(valid).then(pl.lit(MEASURED)).alias("basis"),
     )
 
@@ -77,8 +77,8 @@ def made_again(store: Store, edition: Edition) -> Again:
         raise MissingKnowledgeError("there is no warehouse to make it from; run herijk rebuild")
     if edition.method is None:
         return Again(printed_lines(store, _printed_file(store, edition)), None)
-    mine = edition.tables["tows"].select("tow_id")
-    tows = tows_of_today(store).join(mine, on="tow_id", how="semi")
+    mine = edition.tables["tows"].select("tow_id", "^doubts$")
+    tows = tows_of_today(store).drop("doubts").join(mine, on="tow_id")
     runs = intake.runs_with_windows(store).join(mine, on="tow_id", how="semi")
     blocks = stack_blocks(intake.all_blocks(store), runs)
     found = recompute(edition.method, tows, blocks)

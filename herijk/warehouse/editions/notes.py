@@ -9,6 +9,7 @@ from typing import Any, Final
 
 import jinja2
 
+from herijk.pipeline.method.definition import COMPLETE
 from herijk.warehouse.editions.compare import Comparison, Report, report
 from herijk.warehouse.editions.printed import REBASED
 from herijk.warehouse.editions.words import DUTCH, ENGLISH, Language, table
@@ -82,6 +83,7 @@ def _facts(edition: Edition, language: Language) -> dict[str, Any]:
         "carried": language.count(carried) if carried else None,
         "carried_from": about.carried_from,
         "members": None if ensemble is None else ensemble["member"].n_unique(),
+        "complete": edition.method is not None and edition.method.interval == COMPLETE,
     }
 
 

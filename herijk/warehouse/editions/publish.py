@@ -10,19 +10,22 @@ import hashlib
 import io
 import json
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import polars as pl
 
-from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.blocks.run_blocks import stack_blocks
+from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.method.writing import method_text
-from herijk.pipeline.register.register import LINE
+from herijk.pipeline.recompute.recompute import recompute
+from herijk.pipeline.register.register import DOUBTED, LINE
 from herijk.tables.register import Register
 from herijk.tables.schemas import conform
 from herijk.warehouse.build.graph import METHOD as METHOD_STEP
 from herijk.warehouse.build.version import code_version
 from herijk.warehouse.editions import notes, sheets
+from herijk.warehouse.editions.chain import chain_head
 from herijk.warehouse.editions.compare import compare
 from herijk.warehouse.editions.inputs import (
     INPUTS_HASH,
@@ -31,10 +34,10 @@ from herijk.warehouse.editions.inputs import (
     inputs_digest,
     tows_of_today,
 )
-from herijk.warehouse.editions.lines import TOW_FACTS, method_lines
+from herijk.warehouse.editions.lines import NUMBERS, TOW_FACTS, method_lines
 from herijk.warehouse.editions.printed import printed_lines, printed_path, with_carried
 from herijk.warehouse.editions.sheets import CODE_FIELD
-from herijk.warehouse.intake.seasons import runs_with_windows
+from herijk.warehouse.intake.seasons import all_blocks, runs_with_windows, typed_tows
 from herijk.warehouse.store import decisions as decided
 from herijk.warehouse.store.editions import (
     ABOUT,
@@ -60,8 +63,13 @@ from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import Store, table_digest
 
 BOAT_FACTS: Final = ("ht_no", "name", "boat_type")
-MADE: Final = ("curves", "run_points", "log_factors", "season_links")
+MADE: Final = ("curves", "run_points", "log_factors", "season_links", "tow_instruments")
 """What a method made of the tows, and an edition keeps."""
+
+SAME_NUMBER: Final = 1e-9
+"""Relative difference up to which a number made again is the same.
+
+Other processors leave other last bits, which come to no more in any table (docs/decisions/0017)."""
 
 PRINTED_METHOD: Final = "as-printed"
 LINE_SCHEMA: Final = {
@@ -154,6 +162,7 @@ def recomputed_edition(
         "tow_runs": runs_with_windows(store),
         **{name: store.read(name, method.name) for name in MADE},
     }
+    _check_made(store, method, tables["curves"])
     crews = store.read("listed_boats")
     lines = method_lines(tables, crews, terms.valid_from, method.validity, decisions)
     if carry is not None:
@@ -168,6 +177,26 @@ def recomputed_edition(
     return Edition(about, tables, method)
 
 
+def _check_made(store: Store, method: Method, curves: pl.DataFrame) -> None:
+    """Refuses curves that are not those that the method makes of the blocks."""
+    blocks = stack_blocks(all_blocks(store), runs_with_windows(store))
+    made = recompute(method, typed_tows(store), blocks, with_bands=False).curves
+    pairs = curves.join(made, on="tow_id", how="full", suffix="_made")
+    same = [
+        (pl.col(name) / pl.col(f"{name}_made") - 1.0).abs().fill_null(0.0) < SAME_NUMBER
+        for name in NUMBERS
+    ]
+    null = [pl.col(name).is_null() == pl.col(f"{name}_made").is_null() for name in NUMBERS]
+    status = pl.col("status").eq_missing(pl.col("status_made"))
+    unequal = pairs.filter(~pl.all_horizontal(*same, *null, status))
+    if unequal.height:
+        raise BrokenPromiseError(
+            f"the curve of tow {unequal['tow_id'][0]}, and {unequal.height - 1} more, are not what "
+            f"{method.name} makes of its samples: a table of the data folder was changed. Remove "
+            f"{store.root / 'lake'} and run herijk rebuild"
+        )
+
+
 def latest_before(store: Store, valid_from: dt.date, published_on: dt.date) -> str | None:
     """The edition that counted last before a day; None if there is none."""
     known = [read_about(store.editions / name) for name in edition_names(store)]
@@ -175,6 +204,13 @@ def latest_before(store: Store, valid_from: dt.date, published_on: dt.date) -> s
     if not earlier:
         return None
     return max(earlier, key=lambda a: (a.valid_from, a.published_on, a.edition)).edition
+
+
+def lines_to_look_at(edition: Edition) -> list[dict[str, Any]]:
+    """Lines with flags, and those left without numbers because their tows are doubted."""
+    to_look_at = (pl.col("flags").list.len() > 0) | (pl.col("status") == DOUBTED)
+    lines = edition.register.filter(to_look_at)
+    return lines.select(*LINE, "status", "tow_id", "flags").to_dicts()
 
 
 def _check_decision(terms: Terms) -> None:
@@ -202,7 +238,10 @@ def _check_decided_tows(decisions: pl.DataFrame, tows: pl.DataFrame) -> None:
 def _about(
     store: Store, terms: Terms, method: Method | None, inputs_digest: str, carry: str | None = None
 ) -> About:
+    head = chain_head(store)
     return About(
+        number=1 if head is None else (head.number or 0) + 1,
+        after_seal=None if head is None else head.seal,
         edition=terms.edition,
         kind="as_printed" if method is None else "recomputed",
         method=None if method is None else method.name,

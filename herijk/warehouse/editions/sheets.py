@@ -10,6 +10,7 @@ import datetime as dt
 import hashlib
 import io
 import json
+import re
 import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,11 +23,13 @@ import xlsxwriter  # type: ignore[import-untyped,unused-ignore]
 from herijk.warehouse.editions.words import DUTCH
 from herijk.warehouse.store.editions import CSV, INPUTS, About
 
+A4: Final = 9
+"""The paper's number in a spreadsheet."""
 BOM: Final = "\ufeff"
 CODE_LENGTH: Final = 10
 CODE_HEADER: Final = "controlecode"
-FORMULA_STARTS: Final = ("=", "+", "-", "@", "\t", "\r")
-"""A text that begins so is taken for a formula by a spreadsheet."""
+FORMULA: Final = re.compile(r"(^|[;,\t\r\n])(\s*)([=+\-@])")
+"""What a spreadsheet takes for a formula, also behind a separator that it splits a cell at."""
 
 FieldType = Literal["string", "number", "integer", "date"]
 
@@ -60,6 +63,7 @@ REGISTER_FIELDS: Final = (
     Field("roeiers", "rowers", "integer", "aantal roeiers waarvoor de regel geldt"),
     Field("klasse", "crew_class", "string", "H heren, D dames"),
     Field("status", "status", "string", "geldig, of waarom er geen geldige kromme is"),
+    Field("nakijken", "flags", "string", "ja: de commissie moet nog naar deze sleep kijken"),
     Field("roeisnelheid [m/s]", "declared_speed_m_s", "number", "opgegeven snelheid", 2),
     Field("A", "a_kg_m", "number", "A in kg/m: de weerstand bij snelheid 0"),
     Field(
@@ -195,6 +199,9 @@ def _field(field: Field) -> dict[str, Any]:
 def _in_words(frame: pl.DataFrame) -> pl.DataFrame:
     """Codes in the words that people read."""
     words = {"status": DUTCH.statuses, "basis": BASIS_WORDS}
+    if "flags" in frame.columns:
+        to_look_at = pl.col("flags").list.len() > 0
+        frame = frame.with_columns(pl.when(to_look_at).then(pl.lit("ja")).alias("flags"))
     return frame.with_columns(
         pl.col(column).replace(words[column]) for column in words if column in frame.columns
     )
@@ -206,9 +213,7 @@ def _printed(value: Any, field: Field) -> str:
     if field.type == "number":
         return f"{value:.{field.decimals}f}".replace(".", ",")
     text = str(value)
-    if field.type == "string" and text.startswith(FORMULA_STARTS):
-        return f"'{text}"
-    return text
+    return FORMULA.sub(r"\1\2'\3", text) if field.type == "string" else text
 
 
 def _code(parts: Sequence[str | None]) -> str:
@@ -229,6 +234,10 @@ def _write_register(
         for row, value in enumerate(frame[field.column].to_list(), 1):
             _write_cell(sheet, (row, place), value, field, style)
     sheet.freeze_panes(1, 1)
+    sheet.repeat_rows(0)
+    sheet.set_landscape()
+    sheet.set_paper(A4)
+    sheet.fit_to_pages(1, 0)
     sheet.autofilter(0, 0, frame.height, len(fields) - 1)
 
 

@@ -18,11 +18,15 @@ from herijk.pipeline.errors import BrokenPromiseError, HerijkError
 from herijk.pipeline.recompute.facts import with_hand_windows
 from herijk.pipeline.register.register import LINE
 from herijk.warehouse.archive import FileHashes, index_archive
+from herijk.warehouse.archive.files import BOATS_FILE
 from herijk.warehouse.build.version import code_version
 from herijk.warehouse.editions import sheets
+from herijk.warehouse.editions.chain import chain_findings
+from herijk.warehouse.editions.finding import Finding
 from herijk.warehouse.editions.inputs import LIST, NOT_INPUT, unchanged_tows
-from herijk.warehouse.editions.lines import NUMBERS, Again, made_again
+from herijk.warehouse.editions.lines import Again, made_again
 from herijk.warehouse.editions.printed import AS_PRINTED
+from herijk.warehouse.editions.publish import BOAT_FACTS, SAME_NUMBER
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.editions import (
     ABOUT,
@@ -39,12 +43,10 @@ from herijk.warehouse.store.editions import (
 from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import Store, table_digest
 
-SAME_NUMBER: Final = 1e-9
-"""Relative difference up to which a number made again is the same.
-
-Other processors leave other last bits, which come to no more in any table (docs/decisions/0017)."""
-
 NEVER_TOWED: Final = "never_towed"
+
+_OWN: Final = ("edition", "method", "verification_code", "inputs_sha256")
+"""Columns of a line that others check."""
 
 MOST_CELLS: Final = 20
 """Altered cells of a file that are named one by one."""
@@ -52,35 +54,21 @@ MOST_CELLS: Final = 20
 Report = dict[str, Any]
 
 
-@dataclass(frozen=True)
-class Finding:
-    """Something that is not as it was.
-
-    Attributes:
-        edition: the edition.
-        kind: `altered`, `missing`, `swapped`, `differs` (made again, another number), `unchecked`
-            or `notice`.
-        where: file, tow or line.
-        message: what is seen, what it was, what to do.
-        wrong: whether a promise is broken; a notice is none.
-    """
-
-    edition: str
-    kind: str
-    where: str
-    message: str
-    wrong: bool = True
-
-
-def verify(store: Store) -> Report:
+def verify(store: Store, afresh: bool = True) -> Report:
     """Checks every published edition.
+
+    Args:
+        store: the data folder.
+        afresh: read every file of the archive again, instead of trusting its size and time.
 
     Returns:
         `editions` (name, kind, `lines`, how many of them were `made_again` and how many came out
-        `equal`), `findings`, and `wrong`: whether any finding is more than a notice.
+        `equal`), `head` (the seal of the last edition published), `findings`, and `wrong`: whether
+        any finding is more than a notice.
     """
     names = edition_names(store)
-    findings: list[Finding] = []
+    hashes = FileHashes() if afresh else FileHashes.load(store.file_hashes)
+    findings, head = chain_findings(store)
     checked = []
     for name in names:
         path = store.editions / name
@@ -89,12 +77,13 @@ def verify(store: Store) -> Report:
         except BrokenPromiseError as error:
             findings.append(Finding(name, "altered", ABOUT, str(error)))
             continue
-        findings += [*_altered(path, about), *_archive(store, path, about)]
+        findings += [*_altered(path, about), *_archive(store, path, about, hashes)]
         counts, differing = _made_again(store, name)
         findings += differing
         checked.append({"edition": name, "kind": about.kind} | counts)
     return {
         "editions": checked,
+        "head": head,
         "findings": [asdict(f) for f in findings],
         "wrong": any(f.wrong for f in findings),
     }
@@ -109,6 +98,10 @@ def _altered(path: Place, about: About) -> Iterator[Finding]:
         yield Finding(name, "altered", ABOUT, f"the folder was renamed; it is {about.edition}")
     if about.seal != about.expected_seal:
         yield Finding(name, "altered", ABOUT, f"{ABOUT} was changed: its seal does not fit")
+    if isinstance(path, Path):
+        for link in sorted(f.name for f in (path, *path.iterdir()) if f.is_symlink()):
+            message = f"{link} is a link to somewhere else; an edition holds its files itself"
+            yield Finding(name, "altered", link, message)
     present = {f.name for f in path.iterdir()}
     for file in sorted(present - {*about.files, ABOUT}):
         yield Finding(name, "notice", file, f"{file} was added after publication", wrong=False)
@@ -223,7 +216,7 @@ def _line_name(row: dict[str, Any]) -> str:
 # Are the archive's files those it was made from?
 
 
-def _archive(store: Store, path: Place, about: About) -> Iterator[Finding]:
+def _archive(store: Store, path: Place, about: About, hashes: FileHashes) -> Iterator[Finding]:
     name = path.name
     root = intake.archive_root(store) if store.made_from("about_archive") is not None else None
     if root is None:
@@ -236,8 +229,6 @@ def _archive(store: Store, path: Place, about: About) -> Iterator[Finding]:
         return
     if not (path / INPUTS).exists():
         return
-    hashes = FileHashes.load(store.file_hashes)
-    lists_changed = False
     for row in sheets.read_csv_cells((path / INPUTS).read_bytes())[1:]:
         if len(row) != len(sheets.INPUT_FIELDS):
             continue  # the file was changed, which is found elsewhere
@@ -246,7 +237,6 @@ def _archive(store: Store, path: Place, about: About) -> Iterator[Finding]:
         if not at.is_file():
             yield Finding(name, "missing", file, f"{file} is gone from the archive; put it back")
         elif hashes.hash_file(at) != sha256:
-            lists_changed |= kind == LIST
             yield Finding(
                 name,
                 "notice" if kind == LIST else "swapped",
@@ -254,7 +244,7 @@ def _archive(store: Store, path: Place, about: About) -> Iterator[Finding]:
                 f"{file} is not the file that the edition was made from",
                 wrong=kind != LIST,
             )
-    if lists_changed and about.kind == "recomputed" and (path / "tows.parquet").exists():
+    if about.kind == "recomputed" and (path / "tows.parquet").exists():
         yield from _list_rows(path, root, hashes)
 
 
@@ -267,7 +257,8 @@ def _list_rows(path: Place, root: Path, hashes: FileHashes) -> Iterator[Finding]
         yield Finding(path.name, "unchecked", "sleeplijsten", str(error))
         return
     runs = with_hand_windows(index.runs, index.windows)
-    for tow in sorted(set(was["tows"]["tow_id"]) - set(index.tows["tow_id"])):
+    faulty = {fault.tow_id for fault in index.faults}  # listed, and told with its files
+    for tow in sorted(set(was["tows"]["tow_id"]) - set(index.tows["tow_id"]) - faulty):
         yield Finding(path.name, "missing", tow, f"tow {tow} is no longer in the tow lists")
     yield from _changed_facts(path.name, was["tows"], index.tows, ["tow_id"])
     yield from _changed_facts(path.name, was["tow_runs"], runs, ["tow_id", "run"])
@@ -318,17 +309,25 @@ def _not_made(name: str, error: Exception) -> Finding:
 def _differing(
     store: Store, edition: Edition, lines: pl.DataFrame, again: Again
 ) -> Iterator[Finding]:
-    columns = ["tow_id", "status", *NUMBERS]
-    known = [name for name in columns if name in again.lines.columns]
+    now = again.lines.drop("flags", strict=False).join(
+        store.read("listed_boats").select("fsn_no", *BOAT_FACTS), on="fsn_no", how="left"
+    )
+    known = [n for n in lines.columns if n in now.columns and n not in (*LINE, "basis", *_OWN)]
     pairs = lines.select(*LINE, "basis", *known).join(
-        again.lines.select(*LINE, *known), on=LINE, how="left", suffix="_now"
+        now.select(*LINE, *known), on=LINE, how="left", suffix="_now"
     )
     reasons = _Reasons.of(store, edition)
+    for row in now.join(edition.register, on=LINE, how="anti").iter_rows(named=True):
+        why, wrong = reasons.why(row | {"basis": None})
+        message = f"made again, there is a line that the edition has not: {why}"
+        yield Finding(edition.about.edition, "differs", _line_name(row), message, wrong)
     for row in pairs.sort(LINE).iter_rows(named=True):
         unequal = [n for n in known if not _same(row[n], row[f"{n}_now"])]
         if not unequal:
             continue
         why, wrong = reasons.why(row)
+        if set(unequal) <= set(BOAT_FACTS) and reasons.boats_changed:
+            why, wrong = "the boat list changed", False
         what = ", ".join(f"{n} {_text(row[n])} becomes {_text(row[f'{n}_now'])}" for n in unequal)
         yield Finding(
             edition.about.edition, "differs", _line_name(row), f"made again, {what}: {why}", wrong
@@ -355,17 +354,19 @@ class _Reasons:
 
     about: About
     present: frozenset[str]
+    boats_changed: bool
     unchanged: frozenset[str]
     same_inputs: bool
 
     @classmethod
     def of(cls, store: Store, edition: Edition) -> "_Reasons":
+        boats_changed = _boats_changed(store, edition)
         if edition.method is None:
-            return cls(edition.about, frozenset(), frozenset(), same_inputs=True)
+            return cls(edition.about, frozenset(), boats_changed, frozenset(), same_inputs=True)
         unchanged = unchanged_tows(store, edition)
         present = frozenset(store.read("tows")["tow_id"])
         same_inputs = len(unchanged) == edition.tables["tows"].height
-        return cls(edition.about, present, unchanged, same_inputs)
+        return cls(edition.about, present, boats_changed, unchanged, same_inputs)
 
     def why(self, row: dict[str, Any]) -> tuple[str, bool]:
         """Why a line comes out otherwise, and whether that breaks a promise."""
@@ -381,6 +382,15 @@ class _Reasons:
         if self.about.code_version != code_version():
             return f"the code changed, from {self.about.code_version} to {code_version()}", False
         return "inputs, method and code are the same; this should not happen", True
+
+
+def _boats_changed(store: Store, edition: Edition) -> bool:
+    """Whether the list of boats is another than when the edition was published."""
+    listed = (store.editions / edition.about.edition / INPUTS).read_bytes()
+    rows = sheets.read_csv_cells(listed)[1:]
+    was = {row[0]: row[2] for row in rows if len(row) == len(sheets.INPUT_FIELDS)}
+    now = dict(store.read("listed_files").select("path", "sha256").rows())
+    return BOATS_FILE not in was or was[BOATS_FILE] != now.get(BOATS_FILE)
 
 
 def _same(was: float | str | None, now: float | str | None) -> bool:

@@ -21,8 +21,8 @@ from herijk.tables.lake import SeasonIndex
 from herijk.warehouse.archive import (
     FileHashes,
     SeasonProfile,
-    check_samples,
     fault_from,
+    judge_samples,
     read_tow_samples,
 )
 from herijk.warehouse.archive.files import PARTS, hash_of_parts
@@ -70,14 +70,19 @@ def read_season(
     Returns:
         The season's index, `SeasonIndex`, sorted by tow.
     """
-    before = _known_faults(store, profile.season)
+    before = _known_tows(store, profile.season)
     hashes = FileHashes.load(store.file_hashes)
     runs_of = dict(runs.partition_by("tow_id", as_dict=True))
 
     def read(tow: Tow) -> dict[str, Any]:
         listed_runs = runs_of[tow["tow_id"],]
         key = _samples_key(tow, listed_runs, profile)
-        row = before.get(key) or _bring_in(store, root, tow, listed_runs, profile, key, hashes)
+        known = before.get(key)
+        if known is not None and known["reason_code"] is not None:
+            row = known
+        else:
+            losses = None if known is None else known["losses"]
+            row = _bring_in(store, root, tow, listed_runs, profile, key, hashes, losses)
         report(tow["tow_id"], row["reason_code"] is not None)
         return row | {"tow_id": tow["tow_id"]}
 
@@ -112,16 +117,21 @@ def _bring_in(
     profile: SeasonProfile,
     key: str,
     hashes: FileHashes,
+    losses: list[dict[str, Any]] | None,
 ) -> dict[str, Any]:
-    """Index row of a tow after its samples and blocks are in the lake, or with its fault."""
+    """Index row of a tow after its samples and blocks are in the lake, or with its fault.
+
+    Its samples are read again also where only what was lost of them (`losses`) is not known.
+    """
     row = dict.fromkeys(SeasonIndex.column_names()) | {"samples_key": key}
     path = store.samples_path(profile.season, key)
     blocks_key = fingerprint(key, tow["sample_rate_hz"], code_hash(*ADDERS))
     blocks_path = store.blocks_path(profile.season, blocks_key)
     try:
-        samples = None if path.exists() else read_tow_samples(root, tow, profile)
-        if samples is not None:
-            check_samples(samples, tow, runs)
+        samples = None
+        if losses is None or not path.exists():
+            judged = judge_samples(read_tow_samples(root, tow, profile), tow, runs)
+            samples, losses = judged.samples, [dataclasses.asdict(f) for f in judged.faults]
             _check_unchanged(root, tow, hashes)
             write_parquet(samples, path, form=LAKE_FORM)
         if not blocks_path.exists():
@@ -132,8 +142,9 @@ def _bring_in(
             write_parquet(sums, blocks_path, form=LAKE_FORM)
     except DefectiveInputError as error:
         _check_unchanged(root, tow, hashes)
-        return row | dataclasses.asdict(fault_from(error, tow["samples_path"], tow["tow_id"]))
-    return row | {"blocks_key": blocks_key, "samples": count_rows(path)}
+        fault = dataclasses.asdict(fault_from(error, tow["samples_path"], tow["tow_id"]))
+        return row | {name: fault[name] for name in row.keys() & fault.keys()}
+    return row | {"blocks_key": blocks_key, "samples": count_rows(path), "losses": losses}
 
 
 class ArchiveChangedError(UnavailableError):
@@ -167,15 +178,14 @@ def forget_season(store: Store, season: int) -> None:
     _remove_unlisted(store, season, SeasonIndex.create_empty())
 
 
-def _known_faults(store: Store, season: int) -> dict[str, dict[str, Any]]:
-    """Faults of the season's last reading, by samples key."""
+def _known_tows(store: Store, season: int) -> dict[str, dict[str, Any]]:
+    """What was found of the season's tows at its last reading, by samples key."""
     if str(season) not in store.partitions("season_index"):
         return {}
     index = store.read("season_index", str(season))
     if index.schema != dtypes(SeasonIndex):
         return {}
-    faulty = index.filter(pl.col("reason_code").is_not_null())
-    return {row["samples_key"]: row for row in faulty.iter_rows(named=True)}
+    return {row["samples_key"]: row for row in index.iter_rows(named=True)}
 
 
 def _samples_key(tow: Tow, runs: pl.DataFrame, profile: SeasonProfile) -> str:

@@ -61,6 +61,9 @@ def _type_under(db: duckdb.DuckDBPyConnection, boat_type: str, method: str) -> R
     return {
         "lines": [line | {"follows": _away_from_zero(line)} for line in lines],
         "closest": closest(lines),
+        "all_tows": [x | {"follows": _away_from_zero(x)} for x in rows(db, _ALL_TOWS, *own)],
+        "hull_speed": rows(db, _HULL_SPEED, *own),
+        "tows_outside": rows(db, _TOWS_OUTSIDE, *own),
         "bends": _bends(_one(db, "type_homogeneity", *own)),
         "speed_trend": _trend(_one(db, "speed_trend", *own)),
         "shared": rows(db, _SHARED, *own),
@@ -212,6 +215,18 @@ def _fleet(db: duckdb.DuckDBPyConnection, method: str) -> Report:
 
 _LINES = """
 SELECT * FROM type_consistency WHERE method = ? AND boat_type = ? ORDER BY quantity, explaining
+"""
+
+_ALL_TOWS = """
+SELECT * FROM type_lines
+WHERE method = ? AND boat_type = ? AND tows = 'all' AND explaining = 'weight_kg' ORDER BY quantity
+"""
+
+_HULL_SPEED = "SELECT * FROM hull_speed WHERE method = ? AND boat_type = ? AND tows = 'all'"
+
+_TOWS_OUTSIDE = """
+SELECT c.*, b.name FROM compared_tows AS c LEFT JOIN boats AS b USING (fsn_no)
+WHERE c.method = ? AND c.boat_type = ? AND c.outside ORDER BY abs(deviation_sd) DESC, tow_id
 """
 
 _SHARED = """

@@ -14,6 +14,7 @@ from typing import Any, Final
 import duckdb
 import polars as pl
 
+from herijk.pipeline.errors import UnavailableError
 from herijk.pipeline.recompute.facts import with_boat_types, with_hand_windows
 from herijk.pipeline.register.changes import NO_PARTS, register_changes, side_by_side
 from herijk.pipeline.register.register import LINE
@@ -127,7 +128,7 @@ def _reported(store: Store) -> Tables | None:
         return None
     try:
         return _tables(path)
-    except duckdb.Error:
+    except (UnavailableError, duckdb.Error):
         return None
 
 

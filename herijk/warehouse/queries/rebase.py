@@ -31,7 +31,7 @@ def rebase(store: Store, method: Method, against: Method) -> Report:
     """
     history = History.of(store)
     old, new = (history.under(m) for m in (against, method))
-    links = old.made.season_links, new.made.season_links
+    links = old.made.tow_instruments, new.made.tow_instruments
     rungs = ladder(against, method, history.tows, history.blocks, links, history.cache)
     rungs = rungs.filter(pl.col("step") != START)
     changes = register_changes(old.register, new.register)

@@ -12,6 +12,16 @@ from herijk.warehouse.store.store import Store
 Report = dict[str, Any]
 BIGGEST = 10
 FIRST_FAULTS = 10
+_FAULTS_BY_REASON = """
+SELECT lost, reason_code, count(*) AS number FROM quarantine GROUP BY ALL
+ORDER BY list_position(['file', 'tow', 'row', 'run', 'seconds'], lost), number DESC, reason_code
+"""
+_FIRST_FAULTS = """
+SELECT min(path) AS path, min(tow_id) AS tow_id, min(line) AS line, message, count(*) AS number
+FROM quarantine GROUP BY lost, reason_code, message
+ORDER BY list_position(['file', 'tow', 'row', 'run', 'seconds'], lost), number DESC, path, line
+LIMIT ?
+"""
 
 
 def rebuild_report(store: Store) -> Report:
@@ -25,16 +35,8 @@ def rebuild_report(store: Store) -> Report:
             "seasons": rows(
                 db, "SELECT season, count(*) AS tows FROM tows GROUP BY season ORDER BY season"
             ),
-            "set_aside": rows(
-                db,
-                "SELECT reason_code, count(*) AS number FROM quarantine "
-                "GROUP BY reason_code ORDER BY number DESC, reason_code",
-            ),
-            "first_faults": rows(
-                db,
-                "SELECT path, tow_id, line, message FROM quarantine ORDER BY path, line LIMIT ?",
-                FIRST_FAULTS,
-            ),
+            "set_aside": rows(db, _FAULTS_BY_REASON),
+            "first_faults": rows(db, _FIRST_FAULTS, FIRST_FAULTS),
             "curves": rows(
                 db,
                 "SELECT method, status, count(*) AS number FROM curves "
@@ -53,6 +55,7 @@ def log_error_report(store: Store, method: str) -> Report:
             "method": method,
             "factors": rows(db, _LOG_FACTORS, method),
             "parts": rows(db, _LOG_PARTS, method),
+            "diagnosis": rows(db, _DIAGNOSIS, method),
         }
 
 
@@ -82,6 +85,14 @@ SELECT season, part, log, source, n_tows, n_links, factor, lo, hi FROM season_li
 WHERE method = ? AND (source = 'other log' OR season IN (
     SELECT season FROM season_links WHERE part > 0 AND source != 'other log'))
 ORDER BY season, log, part
+"""
+
+_DIAGNOSIS = """
+SELECT season, part, instrument, unit, estimate, lo, hi, p_fault, distance_sd, verdict, first_tow,
+       rests_on, confused_with
+FROM season_diagnosis
+WHERE method = ? AND verdict IN ('fault', 'cannot be told', 'alarm', 'not determined')
+ORDER BY season, part, instrument
 """
 
 _BY_SEASON = """

@@ -3,6 +3,7 @@
 Reads the database; writes and computes nothing: every number here stands in a table.
 """
 
+import datetime as dt
 from types import TracebackType
 from typing import Self
 
@@ -19,6 +20,7 @@ class Views:
     def __init__(self, store: Store) -> None:
         if not store.database.exists():
             raise MissingKnowledgeError(f"{store.database} is not there; make it with rebuild")
+        self.store = store
         self._contents: dict[str, int] = {}
         self._db = duckdb.connect(store.database, read_only=True)
         self._db.execute("SET threads = 1")  # rows in one order: same tables, same bytes
@@ -179,6 +181,20 @@ class Views:
             "ORDER BY c.method, c.position"
         )
 
+    def flagged_boats(self) -> pl.DataFrame:
+        """Every flag of every curve with the boat it is about: `method, flag, name, tow_date`."""
+        return self.frame(_FLAGGED_BOATS)
+
+    def type_names(self) -> list[str]:
+        """Types of which a boat is listed, sorted."""
+        types = self.table("boats")["boat_type"].drop_nulls().unique().sort()
+        return [name for name in types.to_list() if name]
+
+    def race_days(self) -> list[tuple[str, dt.date]]:
+        """Races that were replayed, the last one first."""
+        days = self.table("race_changes").select("race", "race_date").unique()
+        return days.sort("race_date", "race", descending=[True, False]).rows()
+
     def races(self) -> pl.DataFrame:
         """Races replayed under two editions, with the boat's name."""
         return self.frame(
@@ -214,6 +230,13 @@ SELECT c.*, t.tow_date, t.weight_kg, t.water_temperature_c, t.altered, t.remark,
 FROM curves AS c JOIN tows AS t USING (tow_id) JOIN methods AS m USING (method)
 LEFT JOIN boats AS b ON b.fsn_no = c.fsn_no
 ORDER BY c.fsn_no, t.tow_date, c.tow_id, c.method
+"""
+
+_FLAGGED_BOATS = """
+SELECT c.method, c.flag, b.name, c.fsn_no, c.rowers, c.crew_class, t.tow_date
+FROM (SELECT *, unnest(flags) AS flag FROM curves) AS c JOIN tows AS t USING (tow_id)
+LEFT JOIN boats AS b ON b.fsn_no = c.fsn_no
+ORDER BY c.method, c.flag, lower(b.name), c.fsn_no, t.tow_date
 """
 
 _TYPE_BOATS = """

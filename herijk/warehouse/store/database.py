@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 import duckdb
 import polars as pl
 
-from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.errors import MissingKnowledgeError, UnavailableError
 from herijk.tables.views import VIEWS
 from herijk.warehouse.store.files import written_beside
 
@@ -21,6 +21,20 @@ if TYPE_CHECKING:
 
 STORAGE: Final = "v1.0.0"
 """Any DuckDB since 1.0 opens the file; the newest form would shut out programs of last year."""
+
+_HELD: Final = (
+    "another program has it open to write in it. Close that program, or let it open the file to "
+    "read only, and try again"
+)
+_SPOILT: Final = (
+    "it is damaged, or another program wrote in it. Make it again with herijk rebuild, which knows "
+    "the archive"
+)
+
+
+def left_wal(path: Path) -> Path:
+    """What another program left beside the database; DuckDB would replay it into a new one."""
+    return path.with_name(f"{path.name}.wal")
 
 
 def build_database(path: Path, tables: Mapping[str, pl.DataFrame]) -> None:
@@ -44,6 +58,7 @@ def build_database(path: Path, tables: Mapping[str, pl.DataFrame]) -> None:
                 _describe(connection, name)
             _add_views(connection, tables)
             connection.execute("COMMIT")
+        left_wal(path).unlink(missing_ok=True)
 
 
 def _describe(connection: duckdb.DuckDBPyConnection, name: str) -> None:
@@ -84,12 +99,17 @@ def open_database(path: Path) -> duckdb.DuckDBPyConnection:
 
     Raises:
         MissingKnowledgeError: it was not made yet.
+        UnavailableError: another program has it open to write, or it cannot be read.
     """
     if not path.exists():
         raise MissingKnowledgeError(
             f"{path} is not there; make it with: herijk rebuild --archive DIR --data {path.parent}"
         )
-    return duckdb.connect(path, read_only=True)
+    try:
+        return duckdb.connect(path, read_only=True)
+    except duckdb.Error as error:
+        held = isinstance(error, duckdb.IOException) and "lock" in str(error).casefold()
+        raise UnavailableError(f"{path} cannot be opened: {_HELD if held else _SPOILT}") from error
 
 
 def rows(

@@ -53,6 +53,7 @@ TABLES: Final = (
     "run_points",
     "log_factors",
     "season_links",
+    "tow_instruments",
     "ensemble",
     CHANGES,
 )
@@ -79,6 +80,8 @@ class About(BaseModel):
         inputs_digest: of all tows that went in with their files, not only those of the lines.
         carried_from: the printed edition of which lines were taken over, if any.
         previous: the edition that the release notes compare with.
+        number, after_seal: place in the chain of editions, from 1, and seal of the one published
+            before; None in editions of before there was a chain.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -95,6 +98,8 @@ class About(BaseModel):
     inputs_digest: str
     carried_from: str | None
     previous: str | None
+    number: int | None = None
+    after_seal: str | None = None
     tables: dict[str, TableDigest] = {}
     files: dict[str, str] = {}
     seal: str = ""
@@ -106,7 +111,8 @@ class About(BaseModel):
     @property
     def expected_seal(self) -> str:
         """SHA-256 of everything but the seal."""
-        held = self.model_dump(mode="json", exclude={"seal"})
+        unchained = {"number", "after_seal"} if self.number is None else set()
+        held = self.model_dump(mode="json", exclude={"seal", *unchained})
         return hashlib.sha256(json.dumps(held, sort_keys=True).encode()).hexdigest()
 
 

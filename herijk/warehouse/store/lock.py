@@ -19,6 +19,7 @@ from herijk.pipeline.errors import UnavailableError
 from herijk.warehouse.store.files import TEMPORARY_PREFIX
 
 LOCK_FILE: Final = "rebuild.lock"
+SERVER_LOCK_FILE: Final = "serve.lock"
 _NOT_OURS: Final = {"audit", "dagster", "editions", "outbox"}
 """Folders of the data folder in which others write, without the lock."""
 
@@ -52,6 +53,34 @@ def only_writer(root: Path, wait: bool = False) -> Iterator[None]:
         finally:
             _held.discard(folder)
             os.ftruncate(lock.fileno(), 0)
+
+
+@contextmanager
+def only_server(root: Path) -> Iterator[None]:
+    """Keeps a second `herijk serve` off a data folder.
+
+    Raises:
+        UnavailableError: there is one already; the message says which.
+    """
+    root.mkdir(parents=True, exist_ok=True)
+    with (root.resolve() / SERVER_LOCK_FILE).open("a+", encoding="utf-8") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            raise UnavailableError(
+                f"{root} is served already, by {_owner(lock.fileno())}. Stop that one first"
+            ) from error
+        _sign(lock.fileno())
+        yield
+
+
+def nobody_writes(root: Path) -> bool:
+    """Whether no rebuild is at work in a data folder just now."""
+    try:
+        with only_writer(root):
+            return True
+    except UnavailableError:
+        return False
 
 
 def _take(handle: int, folder: Path, wait: bool) -> None:

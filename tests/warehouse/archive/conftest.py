@@ -14,9 +14,9 @@ from herijk.warehouse.archive import (
     ArchiveIndex,
     Fault,
     FileHashes,
-    check_samples,
     fault_from,
     index_archive,
+    judge_samples,
     read_tow_samples,
 )
 
@@ -78,11 +78,12 @@ class Archive:
             try:
                 profile = index.profiles.for_season(tow["season"])
                 samples = read_tow_samples(self.root, tow, profile)
-                check_samples(samples, tow, index.runs)
+                judged = judge_samples(samples, tow, index.runs)
             except DefectiveInputError as error:
                 faults.append(fault_from(error, tow["samples_path"], tow["tow_id"]))
             else:
-                good[tow["tow_id"]] = samples
+                good[tow["tow_id"]] = judged.samples
+                faults += judged.faults
         return Scan(index, good, faults)
 
 

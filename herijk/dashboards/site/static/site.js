@@ -1,64 +1,131 @@
 "use strict";
-// Language, tables and charts of every page. Data stand in the page; nothing is fetched.
+// Search, tables and charts of every page. Scripts come from the site; nothing else is fetched.
 (() => {
   const root = document.documentElement;
   const all = (selector, within = document) => [...within.querySelectorAll(selector)];
   const form = document.querySelector(".selects");
   const choice = (name) => form?.elements[name]?.value ?? "";
 
-  // -- Language ---------------------------------------------------------------------------------
+  const site = root.dataset.site;
+  const language = root.lang;
   const LOCALES = {
-    nl: { decimal: ",", thousands: ".", grouping: [3], currency: ["€ ", ""], minus: "-" },
-    en: { decimal: ".", thousands: ",", grouping: [3], currency: ["€", ""], minus: "-" },
+    nl: { decimal: ",", thousands: ".", grouping: [3], currency: ["€ ", ""], minus: "\u2212" },
+    en: { decimal: ".", thousands: ",", grouping: [3], currency: ["€", ""], minus: "\u2212" },
   };
-  // A browser may refuse storage to pages from disk; the choice then lasts as long as the page.
-  const stored = {
-    get: () => { try { return localStorage.getItem("herijk-language"); } catch { return null; } },
-    set: (value) => { try { localStorage.setItem("herijk-language", value); } catch { /* none */ } },
-  };
+  const { decimal } = LOCALES[language];
+  const plain = (text) => text.normalize("NFD").replace(/\p{M}/gu, "").toLowerCase();
 
-  function setLanguage(language) {
-    root.lang = language;
-    all("[data-language]").forEach((button) =>
-      button.setAttribute("aria-pressed", String(button.dataset.language === language)));
-    all("[data-nl]").forEach((element) => {
-      const text = element.dataset[language];
-      if (element.tagName === "OPTION") element.textContent = text;
-      else element.setAttribute("aria-label", text);
-    });
-    setDecimal(LOCALES[language].decimal);
-    all("figure[data-figure]").forEach(redraw);
+  // -- Scripts, when they are needed --------------------------------------------------------------
+  const loaded = new Map();
+
+  function load(path) {
+    if (!loaded.has(path)) {
+      loaded.set(path, new Promise((resolve, reject) => {
+        const script = document.createElement("script");
+        script.src = path;
+        script.onload = resolve;
+        script.onerror = () => reject(new Error(`${path} cannot be read`));
+        document.head.append(script);
+      }));
+    }
+    return loaded.get(path);
   }
 
-  let decimal = ","; // as the pages are written
+  const loadData = () => load(document.body.dataset.data);
+  const loadCharts = () => Promise.all([
+    loadData(), load(`${site}static/charts-${language}.js`), load(`${site}static/vega.js`),
+  ]);
 
-  function setDecimal(mark) {
-    if (mark === decimal) return;
-    decimal = mark;
-    for (const row of [...rowsOfTable.values()].flat()) {
-      all("td.n, span.n", row).forEach((cell) => {
-        cell.textContent = cell.textContent.replace(/[.,]/, mark);
-      });
+  // -- Search -------------------------------------------------------------------------------------
+  const find = document.querySelector(".find");
+  const MOST_FOUND = 12;
+
+  async function search() {
+    await load(`${site}static/find.js`);
+    const words = plain(find.querySelector("input").value).split(/\s+/).filter(Boolean);
+    const list = find.querySelector("ul");
+    list.hidden = words.length === 0;
+    const fits = ([name, more]) => words.every((word) => plain(`${name} ${more}`).includes(word));
+    const found = words.length ? window.HERIJK_FIND.filter(fits).slice(0, MOST_FOUND) : [];
+    list.replaceChildren(...found.map(([name, , page]) => {
+      const link = document.createElement("a");
+      link.href = root.dataset.root + page;
+      link.textContent = name;
+      const item = document.createElement("li");
+      item.append(link);
+      return item;
+    }));
+    if (!found.length) list.append(Object.assign(document.createElement("li"), { textContent: "\u2013" }));
+  }
+
+  find.addEventListener("input", search);
+  find.addEventListener("submit", (event) => {
+    event.preventDefault();
+    find.querySelector("li a")?.click();
+  });
+  find.addEventListener("keydown", (event) => {
+    const links = all("li a", find);
+    const here = links.indexOf(document.activeElement);
+    const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    if (step) { event.preventDefault(); (links[here + step] ?? find.querySelector("input")).focus(); }
+    if (event.key === "Escape") find.querySelector("ul").hidden = true;
+  });
+
+  // -- The address holds what is chosen -------------------------------------------------------------
+  const ownFields = () => all(".selects select, .tools .search");
+  const defaults = new Map(ownFields().map((field) => [field.name, field.value]));
+
+  function readAddress() {
+    const wanted = new URLSearchParams(location.search);
+    for (const field of ownFields()) {
+      const value = wanted.get(field.name);
+      const known = field.tagName !== "SELECT" || [...field.options].some((o) => o.value === value);
+      if (value !== null && known) field.value = value;
     }
+    return wanted.get("sort");
+  }
+
+  function writeAddress(sorted) {
+    const kept = new URLSearchParams(location.search);
+    for (const field of ownFields()) {
+      if (field.value === defaults.get(field.name)) kept.delete(field.name);
+      else kept.set(field.name, field.value);
+    }
+    if (sorted) kept.set("sort", sorted);
+    const text = kept.toString();
+    try {
+      history.replaceState(null, "", (text ? `?${text}` : location.pathname) + location.hash);
+    } catch { /* a browser may keep a page from disk from changing its address */ }
+    const other = document.querySelector(".language");
+    other.href = other.getAttribute("href").replace(/\?.*$/, "") + (text ? `?${text}` : "");
   }
 
   // -- Downloads --------------------------------------------------------------------------------
-  // Text that a spreadsheet would take for a formula is kept text.
+  // As the spreadsheets of the language write it. Text that one would take for a formula, also
+  // after a separator of another language, is kept text.
+  const SEPARATOR = { nl: ";", en: "," }[language];
+
   function csvCell(value) {
     if (value === null || value === undefined) return "";
-    let text = String(value);
-    if (/^[=+\-@\t\r]/.test(text) && !Number.isFinite(Number(text))) text = `'${text}`;
-    return /[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+    if (typeof value === "number") return String(value).replace(".", decimal);
+    const text = String(value).replace(/(^|[;,\t\r\n])(\s*)([=+\-@])/g, "$1$2'$3");
+    return /[",;\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
   }
 
-  function download(name, header, rows) {
-    const text = [header, ...rows].map((row) => row.map(csvCell).join(",")).join("\r\n") + "\r\n";
+  function save(name, parts, type) {
     const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob(["\ufeff", text], { type: "text/csv" }));
-    link.download = `${name}.csv`;
+    link.href = URL.createObjectURL(new Blob(parts, { type }));
+    link.download = name;
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
   }
+
+  function download(name, header, rows) {
+    const text = [header, ...rows].map((row) => row.map(csvCell).join(SEPARATOR)).join("\r\n");
+    save(`${name}.csv`, ["\ufeff", text, "\r\n"], "text/csv");
+  }
+
+  const headingOf = (text) => text.replace(/[\u00ad\u200b]/g, "").trim();
 
   // -- Tables -----------------------------------------------------------------------------------
   // A row that is not shown is not in the document: a browser lays out what is seen.
@@ -68,14 +135,12 @@
   let selected = null; // boats chosen in a chart, or null
 
   function filter(table) {
-    const words = (table.querySelector(".search")?.value ?? "").toLowerCase().split(/\s+/).filter(Boolean);
+    const words = plain(table.querySelector(".search")?.value ?? "").split(/\s+/).filter(Boolean);
     const linked = table.querySelector("table.linked");
-    const follows = JSON.parse(table.dataset.follows).map((name) =>
-      [name, all("th", table).findIndex((header) => header.dataset.c === name)]);
+    const follows = JSON.parse(table.dataset.follows);
     const fits = (row) =>
-      follows.every(([name, place]) => matches(name, // its cell, or where there is none a mark
-        place < 0 ? row.getAttribute(`data-f-${name}`) : valueOf(row.cells[place]))) &&
-      words.every((word) => row.textContent.toLowerCase().includes(word)) &&
+      follows.every((name) => matches(name, row.getAttribute(`data-f-${name}`))) &&
+      words.every((word) => plain(row.textContent).includes(word)) &&
       (!linked || selected === null || selected.has(row.dataset.boat));
     const shown = rowsOfTable.get(table).filter(fits);
     const body = table.querySelector("tbody");
@@ -97,17 +162,26 @@
   // What a cell holds: its text, unless it says otherwise.
   const valueOf = (cell) => cell.dataset.v ?? cell.textContent;
 
-  function sort(table, header) {
+  // The number in a cell, or "" where there is none.
+  function numberOf(cell) {
+    if (cell.dataset.v !== undefined) return Number(cell.dataset.v);
+    const text = cell.textContent.replace(decimal, ".").replace("\u2212", "-");
+    return text === "" ? "" : Number(text);
+  }
+
+  const isNumeric = (cell) => !cell.classList.contains("t");
+
+  function sort(table, header, down = header.getAttribute("aria-sort") === "ascending") {
     const place = [...header.parentElement.children].indexOf(header);
-    const down = header.getAttribute("aria-sort") === "ascending";
     all("th", table).forEach((other) => other.removeAttribute("aria-sort"));
     header.setAttribute("aria-sort", down ? "descending" : "ascending");
     const numeric = header.classList.contains("n");
     const compare = new Intl.Collator("nl", { numeric: true }).compare;
-    const rows = rowsOfTable.get(table).map((row) => [valueOf(row.cells[place]), row]);
+    const key = (cell) => (numeric ? numberOf(cell) : valueOf(cell));
+    const rows = rowsOfTable.get(table).map((row) => [key(row.cells[place]), row]);
     rows.sort(([a], [b]) => {
       if (a === "" || b === "") return (a === "") - (b === "");
-      const order = numeric ? Number(a) - Number(b) : compare(a, b);
+      const order = numeric ? a - b : compare(a, b);
       return down ? -order : order;
     });
     rowsOfTable.set(table, rows.map(([, row]) => row));
@@ -115,13 +189,17 @@
   }
 
   for (const table of tables) {
-    table.querySelector(".search")?.addEventListener("input", () => filter(table));
+    table.querySelector(".search")?.addEventListener("input", () => { filter(table); writeAddress(); });
     table.querySelector(".clear")?.addEventListener("click", () => select(null));
     all("th", table).forEach((header) =>
-      header.querySelector("button").addEventListener("click", () => sort(table, header)));
+      header.querySelector("button").addEventListener("click", () => {
+        sort(table, header);
+        writeAddress(`${table.dataset.table}.${header.dataset.c}.${header.getAttribute("aria-sort")}`);
+      }));
     table.querySelector(".csv").addEventListener("click", () => {
-      download(table.dataset.table, all("th", table).map((h) => h.dataset.c),
-        all("tbody tr", table).map((row) => [...row.cells].map(valueOf)));
+      download(table.dataset.table, all("th", table).map((h) => headingOf(h.textContent)),
+        all("tbody tr", table).map((row) => [...row.cells].map((cell) =>
+          (isNumeric(cell) ? numberOf(cell) : cell.textContent))));
     });
     table.querySelector("table.linked")?.addEventListener("click", (event) => {
       const row = event.target.closest("tbody tr");
@@ -151,10 +229,7 @@
   }
 
   function rowsOf(name) {
-    if (!frames.has(name)) {
-      const block = document.querySelector(`script[data-name="${name}"]`);
-      frames.set(name, JSON.parse(block.textContent).flatMap(asRows));
-    }
+    if (!frames.has(name)) frames.set(name, window.HERIJK_DATA[name].flatMap(asRows));
     return frames.get(name);
   }
 
@@ -166,7 +241,9 @@
 
   // What the selectors say, so that a chart names its tow and method, also in print.
   function picked(figure) {
-    return Object.values(JSON.parse(figure.dataset.follows)).flatMap(chosenOf).join(", ");
+    const names = Object.values(JSON.parse(figure.dataset.follows)).flat();
+    return names.map((name) => form?.elements[name]?.selectedOptions[0])
+      .filter((option) => option?.value).map((option) => option.textContent.trim()).join(", ");
   }
 
   const LABELS = 150; // room for axis and legend beside a chart [px]
@@ -176,13 +253,16 @@
   async function draw(figure) {
     const place = figure.querySelector(".chart");
     const turn = (figure.turn = (figure.turn ?? 0) + 1);
-    const spec = structuredClone(window.HERIJK_FIGURES[root.lang][figure.dataset.figure]);
+    await loadCharts();
+    await document.fonts.load('12px "Open Sans"'); // labels are measured with it
+    if (turn !== figure.turn) return;
+    const spec = structuredClone(window.HERIJK_FIGURES[figure.dataset.figure]);
     const rows = shownRows(figure);
     spec.datasets = { rows };
     fitWidth(spec, figure);
     place.hidden = rows.length === 0;
     figure.querySelector(".picked").textContent =
-      picked(figure) + (place.hidden ? `: ${window.HERIJK_WORDS[root.lang].no_values}` : "");
+      picked(figure) + (place.hidden ? `: ${window.HERIJK_WORDS.no_values}` : "");
     tabulate(figure);
     views.get(figure)?.finalize();
     views.delete(figure);
@@ -191,9 +271,10 @@
         actions: false,
         ast: true, // expressions are interpreted: the page forbids eval
         renderer: "svg",
-        formatLocale: LOCALES[root.lang],
+        formatLocale: LOCALES[language],
         loader: { target: "_self" },
         config: {
+          font: "Open Sans",
           axis: { labelFontSize: 12, titleFontSize: 12, labelLimit: 200 },
           legend: { labelFontSize: 12, titleFontSize: 12, labelLimit: 220 },
           header: { labelFontSize: 12, titleFontSize: 12 },
@@ -211,19 +292,20 @@
   }
 
   // The rows of a chart as a table, made when it is opened: for who cannot see the chart.
-  function tabulate(figure) {
-    const place = figure.querySelector("details");
+  async function tabulate(figure) {
+    const place = figure.querySelector(".values");
     if (!place.open) return;
-    const words = window.HERIJK_WORDS[root.lang];
+    await loadCharts();
+    const words = window.HERIJK_WORDS;
     const rows = shownRows(figure);
     const columns = columnsOf(rows);
     const table = document.createElement("table");
-    table.createCaption().textContent = figure.dataset[root.lang];
+    table.createCaption().textContent = figure.dataset.caption;
     const head = table.createTHead().insertRow();
     for (const column of columns) {
       const cell = document.createElement("th");
       cell.scope = "col";
-      cell.textContent = words[`column.${column}`] ?? column;
+      cell.textContent = headingOf(words[`column.${column}`] ?? column);
       head.append(cell);
     }
     const body = table.createTBody();
@@ -232,8 +314,8 @@
       for (const column of columns) {
         const value = row[column] ?? "";
         const cell = line.insertCell();
-        if (typeof value === "number") cell.className = "i";
-        cell.textContent = words[`code.${column}.${value}`] ?? inWords(value, words);
+        if (typeof value !== "number") cell.className = "t";
+        cell.textContent = words[`code.${column}.${value}`] ?? words[`${column}.${value}`] ?? inWords(value, words);
       }
     }
     place.querySelector(".scroll").replaceChildren(table);
@@ -278,7 +360,7 @@
     const picture = place.querySelector("svg");
     if (!picture) return;
     picture.setAttribute("role", "img");
-    picture.setAttribute("aria-label", `${figure.dataset[root.lang]} ${picked(figure)}`.trim());
+    picture.setAttribute("aria-label", `${figure.dataset.caption} ${picked(figure)}`.trim());
   }
 
   function redraw(figure) {
@@ -319,36 +401,67 @@
     draw(figure);
   }
 
+  const nameOf = (figure) => [document.querySelector("h1").textContent, figure.dataset.caption, picked(figure)]
+    .filter(Boolean).join(", ");
+
+  async function savePicture(figure, kind) {
+    await draw(figure);
+    const { view } = views.get(figure);
+    const name = `${figure.dataset.figure}.${kind}`;
+    if (kind === "svg") { save(name, [await view.toSVG()], "image/svg+xml"); return; }
+    const canvas = await view.toCanvas(3);
+    canvas.toBlob((blob) => save(name, [blob], "image/png"));
+  }
+
+  function cite(figure) {
+    const page = `${root.dataset.site ? location.pathname.split("/").slice(-2).join("/") : location.pathname}`;
+    figure.querySelector(".citation").textContent =
+      `${document.querySelector(".home").textContent}: ${nameOf(figure)}. ${page}${location.search}. ` +
+      document.querySelector("footer p").textContent.trim();
+  }
+
   const charts = all("figure[data-figure]");
   for (const figure of charts) {
-    figure.querySelector("details").addEventListener("toggle", () => tabulate(figure));
-    figure.querySelector(".csv").addEventListener("click", () => {
+    figure.querySelector(".values").addEventListener("toggle", () => tabulate(figure));
+    figure.querySelector(".csv").addEventListener("click", async () => {
+      await loadCharts();
       const rows = shownRows(figure);
       const columns = columnsOf(rows);
-      download(figure.dataset.figure, columns, rows.map((row) => columns.map((c) => row[c])));
+      const words = window.HERIJK_WORDS;
+      download(figure.dataset.figure, columns.map((c) => headingOf(words[`column.${c}`] ?? c)),
+        rows.map((row) => columns.map((c) => row[c])));
     });
+    all(".picture", figure).forEach((button) =>
+      button.addEventListener("click", () => savePicture(figure, button.dataset.as)));
+    figure.querySelector(".cite").addEventListener("click", () => cite(figure));
   }
   const watcher = new IntersectionObserver((entries) => {
     for (const entry of entries) {
       if (entry.isIntersecting) { watcher.unobserve(entry.target); start(entry.target); }
     }
-  }, { rootMargin: "400px" });
+  }, { rootMargin: "200px" });
 
   // -- Begin ------------------------------------------------------------------------------------
-  all("[data-language]").forEach((button) => button.addEventListener("click", () => {
-    stored.set(button.dataset.language);
-    setLanguage(button.dataset.language);
-  }));
   form?.addEventListener("change", () => {
     selected = null;
     tables.forEach(filter);
     charts.forEach(redraw);
+    writeAddress();
   });
   window.addEventListener("beforeprint", () =>
-    charts.filter((figure) => !visible.has(figure)).forEach(start));
-  setLanguage(stored.get() === "en" ? "en" : "nl");
+    charts.filter((figure) => !visible.has(figure) && figure.offsetParent !== null).forEach(start));
+  const sorted = readAddress()?.split(".");
   tables.forEach(filter);
-  // The scripts of the charts come after this one: the tables need not wait for them.
-  document.addEventListener("DOMContentLoaded", () =>
-    charts.forEach((figure) => watcher.observe(figure)));
+  if (sorted) {
+    const header = document.querySelector(`[data-table="${CSS.escape(sorted[0])}"] th[data-c="${CSS.escape(sorted[1])}"]`);
+    if (header) sort(header.closest(".table"), header, sorted[2] === "descending");
+  }
+  writeAddress();
+  // What an address points at is opened, so that it can be seen.
+  const open = () => { document.getElementById(location.hash.slice(1))?.closest("details")?.setAttribute("open", ""); };
+  window.addEventListener("hashchange", open);
+  open();
+  // The page can be read first; its charts come when the browser has time.
+  const later = window.requestIdleCallback ?? ((work) => setTimeout(work, 200));
+  window.addEventListener("load", () => later(() => charts.forEach((figure) => watcher.observe(figure))));
 })();

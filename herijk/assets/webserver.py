@@ -1,0 +1,40 @@
+"""Dagster's page behind the guard; a process of its own, started by `herijk serve`.
+
+    python -m herijk.assets.webserver HOST PORT read-only|may-start
+
+To read only, unless who serves says otherwise: what starts rebuilds are the schedules, the sensor
+and the command.
+"""
+
+import sys
+
+import dagster as dg
+import dagster_webserver
+from dagster._core.workspace.context import WorkspaceProcessContext
+from dagster._core.workspace.load_target import ModuleTarget
+from dagster_webserver.app import create_app_from_workspace_process_context
+
+from herijk.dashboards.guard import guarded, listen
+
+READ_ONLY, MAY_START = "read-only", "may-start"
+DEFINITIONS = ModuleTarget("herijk.assets.definitions", None, None, None)
+
+
+def main(host: str, port: str, rights: str) -> None:
+    """Serves until the process is ended."""
+    with (
+        listen(host, int(port)) as held,
+        dg.DagsterInstance.get() as instance,
+        WorkspaceProcessContext(
+            instance,
+            DEFINITIONS,
+            version=dagster_webserver.__version__,
+            read_only=rights == READ_ONLY,
+        ) as context,
+    ):
+        app = create_app_from_workspace_process_context(context)
+        guarded(app, host).run(sockets=[held])
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,88 @@
+"""The commands that make documents for paper: certificates, and a proposal to vote on."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import typer
+
+from herijk.cli.arguments import DataFolder
+
+if TYPE_CHECKING:
+    from herijk.warehouse.store.store import Store
+
+Language = Annotated[Literal["nl", "en"], typer.Option("--lang", help="Language: nl or en.")]
+Target = Annotated[Path | None, typer.Option("--out", metavar="FILE", help="File to write, a PDF.")]
+
+
+def add_to(app: typer.Typer) -> None:
+    """Adds these commands to the command line."""
+    for command in (certificate, proposal):
+        app.command()(command)
+
+
+def certificate(
+    fsn_no: Annotated[
+        str | None, typer.Argument(metavar="[FSN_NO]", help="Boat; all of the edition without.")
+    ] = None,
+    data: DataFolder = Path("data"),
+    edition: Annotated[
+        str | None, typer.Option(metavar="EDITION", help="Edition; the newest when left out.")
+    ] = None,
+    out: Target = None,
+    lang: Language = "nl",
+) -> None:
+    """The certificate of a boat, a page per crew; or of all boats of an edition in one file."""
+    from herijk.dashboards.documents.certificate import certificates
+    from herijk.warehouse.queries.answers import current_edition
+    from herijk.warehouse.queries.views import Views
+    from herijk.warehouse.store.store import Store
+
+    store = Store(data)
+    with Views(store) as views:
+        chosen = edition or current_edition(views)
+        made = certificates(views, chosen, fsn_no, lang)
+    name = "-".join(filter(None, ("certificate", chosen, fsn_no)))
+    _write(made, out or _documents(store) / f"{name}.pdf")
+
+
+def proposal(
+    methods: Annotated[
+        list[str],
+        typer.Argument(metavar="METHOD...", help="Method proposed; several make a ballot."),
+    ],
+    data: DataFolder = Path("data"),
+    against: Annotated[
+        str, typer.Option(metavar="EDITION", help="Edition that counts now, or a draft.")
+    ] = "concept-as-published",
+    out: Target = None,
+    lang: Language = "nl",
+) -> None:
+    """What a board sends its members before they vote: what changes, for whom, and how sure."""
+    from herijk.dashboards.documents.proposal import proposal as make_proposal
+    from herijk.pipeline.method.definition import shipped_text
+    from herijk.warehouse.queries.views import Views
+    from herijk.warehouse.store.store import Store
+
+    for method in methods:
+        shipped_text(method)
+    store = Store(data)
+    with Views(store) as views:
+        made = make_proposal(views, methods, against, lang)
+    name = "-".join(("proposal", *methods))
+    _write(made, out or _documents(store) / f"{name}.pdf")
+
+
+def _documents(store: "Store") -> Path:
+    return store.root / "documents"
+
+
+def _write(content: bytes, path: Path) -> None:
+    """Writes the file whole, and says where."""
+    from herijk.warehouse.store.files import written_beside
+    from herijk.warehouse.store.obstacles import obstacles_explained
+
+    with obstacles_explained(path.parent):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with written_beside(path) as beside:
+            beside.write_bytes(content)
+    typer.echo(path)

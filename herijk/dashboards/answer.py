@@ -1,0 +1,206 @@
+"""The owner's answer in sentences: what changes for a boat, why, how sure that is, what follows.
+
+The numbers come from `warehouse.queries.answers`, the texts from `dashboards.words.answers`.
+"""
+
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import polars as pl
+from markupsafe import Markup
+
+from herijk.dashboards.pictures import curve_picture, waterfall_picture
+from herijk.dashboards.speech import Speech
+
+Row = dict[str, Any]
+
+FEW: Final = 2
+"""A place among fewer says nothing."""
+SHOWN: Final = 5e-4
+"""A cause that moves Cw by less than this is 0.0 % and is summed with the others."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What there is to say of a boat and crew under an edition.
+
+    Attributes:
+        line: a row of `warehouse.queries.answers.answers`.
+        races: rows of `own_races` of this boat and crew.
+        curve: rows of `curve_points` of the tow that counts.
+        points: rows of `run_points` of that tow.
+    """
+
+    line: Row
+    races: Sequence[Row]
+    curve: pl.DataFrame
+    points: pl.DataFrame
+
+
+@dataclass(frozen=True)
+class Told:
+    """An answer in one language.
+
+    Attributes:
+        crew: which crew it is about.
+        headline: the number, or why there is none.
+        sentences: the rest, in order of what people ask.
+        waterfall, curve: pictures; empty where there is nothing to draw.
+        certificate: key by which the certificate can be asked for.
+    """
+
+    crew: str
+    headline: str
+    sentences: Sequence[str]
+    waterfall: Markup
+    curve: Markup
+
+
+def told(answer: Answer, speech: Speech) -> Told:
+    """The answer in a language."""
+    line = answer.line
+    crew = crew_name(line, speech)
+    title = f"{line['name']} {crew}"
+    return Told(
+        crew=crew,
+        headline=_headline(line, speech),
+        sentences=list(_sentences(answer, speech)),
+        waterfall=_waterfall(line, speech, title),
+        curve=curve_picture(
+            answer.curve, answer.points, speech, f"{speech.say('boat_curve')}: {title}"
+        ),
+    )
+
+
+def crew_name(line: Row, speech: Speech) -> str:
+    """How many rowers of which class: 8 rowers, women."""
+    people = speech.say(f"crew.{line['crew_class']}")
+    return speech.say("crew_of").format(rowers=line["rowers"], people=people)
+
+
+def _headline(line: Row, speech: Speech) -> str:
+    if line["cw_kg_m"] is None:
+        return speech.say("answer_none").format(status=speech.say(f"code.{line['status']}"))
+    new = speech.number(line["cw_kg_m"], 2)
+    if line["cw_ratio"] is None:
+        return speech.say("answer_number").format(new=new)
+    if line["change"] == "same":
+        return speech.say("answer_same").format(new=new)
+    key = "answer_lower" if line["cw_ratio"] < 1 else "answer_higher"
+    old = speech.number(line["old_cw_kg_m"], 2)
+    by = speech.number(100 * abs(line["cw_ratio"] - 1), 1)
+    return speech.say(key).format(old=old, new=new, by=by)
+
+
+def _sentences(answer: Answer, speech: Speech) -> Iterator[str]:
+    line = answer.line
+    if line["cw_kg_m"] is not None:
+        yield from _change(line, speech)
+        yield from _certainty(line, speech)
+        yield from _place(line, speech)
+    yield from (_race(race, speech) for race in answer.races)
+    yield from _validity(line, speech)
+    yield _objection(line, speech)
+
+
+def _change(line: Row, speech: Speech) -> Iterator[str]:
+    """Compared with what, why, and what it is worth in a race."""
+    if line["cw_ratio"] is None:
+        return
+    yield speech.say("answer_compared").format(
+        new=speech.edition(line["edition"]), old=speech.edition(line["from_edition"])
+    )
+    if line["old_declared_speed_m_s"] != line["declared_speed_m_s"]:
+        yield speech.say("answer_other_speed").format(
+            old=speech.number(line["old_declared_speed_m_s"], 2),
+            new=speech.number(line["declared_speed_m_s"], 2),
+        )
+    if line["change"] == "same":
+        return
+    causes = "; ".join(f"{name} {speech.per_cent(f)}" for name, f in causes_of(line, speech))
+    yield speech.say("answer_causes").format(causes=causes)
+    seconds = line["gain_in_two_hours_s"]
+    if seconds is not None:
+        key = "answer_slower" if seconds > 0 else "answer_faster"
+        yield speech.say(key).format(seconds=speech.number(abs(seconds), 0))
+
+
+def causes_of(line: Row, speech: Speech) -> list[tuple[str, float]]:
+    """Name and factor of what made the change, the largest first; small ones as one."""
+    found = [
+        (speech.say(f"code.{cause.get('step', cause['cause'])}"), float(cause["factor"]))
+        for cause in json.loads(line["causes"] or "[]")
+    ]
+    small = [factor for _, factor in found if abs(factor - 1) < SHOWN]
+    large = [(name, factor) for name, factor in found if abs(factor - 1) >= SHOWN]
+    rest = 1.0
+    for factor in small:
+        rest *= factor
+    large.sort(key=lambda cause: -abs(cause[1] - 1))
+    return [*large, *([(speech.say("code.rest"), rest)] if abs(rest - 1) >= SHOWN else [])]
+
+
+def _certainty(line: Row, speech: Speech) -> Iterator[str]:
+    """The interval, what it leaves out, and whether the change exceeds it."""
+    low, high = line["cw_lo_kg_m"], line["cw_hi_kg_m"]
+    if low is not None and high is not None:
+        key = "answer_interval" if line["new_log_known"] else "answer_spread"
+        yield speech.say(key).format(low=speech.number(low, 2), high=speech.number(high, 2))
+    if line.get("cw_best_kg_m") is not None:
+        best = (line[f"cw_best_{end}kg_m"] for end in ("", "lo_", "hi_"))
+        value, low, high = (speech.number(number, 2) for number in best)
+        yield speech.say("answer_best").format(best=value, low=low, high=high)
+    if line["change"] != "changed":
+        return
+    verdict = {True: "answer_exceeds", False: "answer_within", None: "answer_unknown"}
+    yield speech.say(verdict[line["exceeds_interval"]])
+    if line["exceeds_interval"] is not None and not line["old_log_known"]:
+        yield speech.say("answer_old_spread")
+
+
+def _place(line: Row, speech: Speech) -> Iterator[str]:
+    """Its place at equal power, within its type."""
+    if line["new_type_place"] is None or not line["boat_type"] or line["type_size"] < FEW:
+        return
+    same = line["old_type_place"] in (None, line["new_type_place"])
+    key = "answer_place" if same else "answer_place_moved"
+    yield speech.say(key).format(
+        place=line["new_type_place"], old=line["old_type_place"], size=line["type_size"],
+        type=line["boat_type"], people=speech.say(f"crew.{line['crew_class']}"),
+    )  # fmt: skip
+
+
+def _race(race: Row, speech: Speech) -> str:
+    moved = race["old_rank"] != race["new_rank"]
+    return speech.say("answer_race_moved" if moved else "answer_race").format(
+        race=race["race"], day=race["race_date"], size=race["race_size"],
+        old=race["old_rank"] or "?", new=race["new_rank"] or "?",
+    )  # fmt: skip
+
+
+def _validity(line: Row, speech: Speech) -> Iterator[str]:
+    """Until when it counts, and the next tow."""
+    if line["valid_until"] is not None:
+        key = "answer_valid" if line["status"] == "valid" else "answer_expired"
+        yield speech.say(key).format(until=line["valid_until"], tow=line["tow_date"])
+    if line["tow_speed_m_s"] is not None:
+        yield speech.say("answer_next").format(
+            speed=speech.number(line["tow_speed_m_s"], 2),
+            reason=speech.say(f"code.{line['speed_reason']}"),
+        )
+
+
+def _objection(line: Row, speech: Speech) -> str:
+    code = line["verification_code"]
+    asked = speech.say("answer_with_code").format(code=code) if code else ""
+    return speech.say("answer_object").format(fsn_no=line["fsn_no"], code=asked)
+
+
+def _waterfall(line: Row, speech: Speech, title: str) -> Markup:
+    if line["cw_ratio"] is None or line["change"] == "same":
+        return Markup()
+    old = line["cw_ratio"] and line["old_cw_kg_m"]
+    caption = f"{speech.say('waterfall')}: {title}"
+    return waterfall_picture(old, causes_of(line, speech), speech, caption)

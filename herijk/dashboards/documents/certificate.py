@@ -1,0 +1,121 @@
+"""The certificate of a boat and crew: one page A4, and all of an edition in one file."""
+
+import re
+from typing import Any, Final
+
+import segno
+
+from herijk.dashboards.answer import crew_name
+from herijk.dashboards.documents import pdf
+from herijk.dashboards.pictures import curve_picture
+from herijk.dashboards.speech import Speech
+from herijk.warehouse.queries.documents import certificate_lines
+from herijk.warehouse.queries.views import Views
+
+Row = dict[str, Any]
+
+READING: Final = ("certificate_read_cw", "certificate_read_curve", "certificate_read_power")
+
+
+def certificates(views: Views, edition: str, fsn_no: str | None, language: str) -> bytes:
+    """The certificates of a boat in an edition, or of all boats, as PDF.
+
+    Raises:
+        MissingKnowledgeError: there is no such edition, or no valid line in it.
+    """
+    speech = Speech(language)
+    say = speech.say
+    about = views.about()
+    lines = certificate_lines(views, edition, fsn_no)
+    content = {
+        "language": language,
+        "title": f"{say('certificate')} {fsn_no or ''} {edition}".replace("  ", " "),
+        "kind": f"{say('certificate')} · {speech.edition(edition)}",
+        "simulated": say("simulated") if about.get("simulated") == "true" else "",
+        "curve_title": say("boat_curve"),
+        "curve_note": say("curve_caption"),
+        "power_title": say("certificate_power"),
+        "power_head": [say("speed_short"), say("cw"), say("certificate_watts")],
+        "reading_title": say("certificate_reading"),
+        "reading": [say(key) for key in READING],
+        "checking_title": say("certificate_checking"),
+        "footing": f"{say('made_by')} {about.get('code_version', '')}",
+        "certificates": [_one(line, speech) for line in lines],
+    }
+    return pdf("certificate.typ", content)
+
+
+def _one(line: Row, speech: Speech) -> dict[str, Any]:
+    say, number = speech.say, speech.number
+    code = line["verification_code"] or ""
+    crew = crew_name(line, speech)
+    return {
+        "name": line["name"] or line["fsn_no"],
+        "subtitle": " · ".join(filter(None, (line["fsn_no"], line["boat_type"], crew))),
+        "code": code,
+        "qr": _qr(line, code),
+        "headline": say("certificate_headline").format(
+            cw=number(line["cw_kg_m"], 2), speed=number(line["declared_speed_m_s"], 2)
+        ),
+        "interval": _interval(line, speech),
+        "caution": "" if code else say("certificate_draft"),
+        "left": _numbers(line, speech),
+        "right": _terms(line, speech),
+        "curve": str(curve_picture(line["curve"], line["points"], speech, crew)),
+        "curve_alt": f"{say('boat_curve')} {line['fsn_no']} {crew}",
+        "powers": [
+            [number(speed, 2), number(cw, 2), number(power, 1)]
+            for speed, cw, power in line["powers"]
+        ],
+        "checking": say("certificate_check" if code else "certificate_uncheckable").format(
+            code=code, fsn_no=line["fsn_no"], edition=line["edition"]
+        ),
+    }
+
+
+def _qr(line: Row, code: str) -> str:
+    """What a phone reads: the words that the search for a line takes."""
+    if not code:
+        return ""
+    text = f"{line['edition']} {line['fsn_no']} {line['rowers']}{line['crew_class']} {code}"
+    return str(segno.make(text, micro=False).svg_inline(scale=4, border=1))
+
+
+def _interval(line: Row, speech: Speech) -> str:
+    low, high = line["cw_lo_kg_m"], line["cw_hi_kg_m"]
+    if low is None or high is None:
+        return speech.say("certificate_no_interval")
+    key = "answer_interval" if line["new_log_known"] else "answer_spread"
+    return speech.say(key).format(low=speech.number(low, 2), high=speech.number(high, 2))
+
+
+def _numbers(line: Row, speech: Speech) -> list[tuple[str, str]]:
+    return [
+        _fact(line, column, digits, speech)
+        for column, digits in (
+            ("a_kg_m", 3), ("b_m_s", 3), ("declared_speed_m_s", 2), ("waterline_length_m", 2),
+            ("beam_m", 2), ("bow_height_m", 2), ("weight_kg", 0),
+        )
+    ]  # fmt: skip
+
+
+def _fact(line: Row, column: str, digits: int, speech: Speech) -> tuple[str, str]:
+    """A measure with its unit, by the heading of its column."""
+    name = re.sub("[\u00ad\u200b]", "", speech.say(f"column.{column}"))
+    value = line[column]
+    return name, "\u2013" if value is None else speech.number(value, digits)
+
+
+def _terms(line: Row, speech: Speech) -> list[tuple[str, str]]:
+    say = speech.say
+    thwart = {None: "unknown_word", True: "yes", False: "no"}[line["empty_thwart"]]
+    rows = [
+        ("certificate_tow", line["tow_date"]),
+        ("certificate_from", line["valid_from"]),
+        ("certificate_until", line["valid_until"]),
+        ("certificate_edition", speech.edition(line["edition"])),
+        ("certificate_method", say(f"method.{line['method']}") if line["method"] else None),
+        ("certificate_decision", line["decision"]),
+        ("certificate_thwart", say(thwart)),
+    ]
+    return [(say(key), "\u2013" if value is None else str(value)) for key, value in rows]

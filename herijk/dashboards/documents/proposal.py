@@ -1,0 +1,233 @@
+"""The document of a meeting: what a method would change, for whom, and how sure that is."""
+
+import json
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from math import exp, log
+from typing import Any, Final
+
+import polars as pl
+
+from herijk.dashboards.answer import crew_name
+from herijk.dashboards.documents import pdf
+from herijk.dashboards.site import headlines
+from herijk.dashboards.speech import Speech
+from herijk.pipeline.method.definition import shipped_method, shipped_text
+from herijk.pipeline.register.register import draft_name
+from herijk.warehouse.queries.answers import compared, replayed
+from herijk.warehouse.queries.views import Views
+
+Part = dict[str, Any]
+
+LARGEST: Final = 10
+"""Boats named on each side."""
+
+
+def proposal(views: Views, methods: Sequence[str], against: str, language: str) -> bytes:
+    """A proposal of one method, or a ballot of several, as PDF.
+
+    Raises:
+        MissingKnowledgeError: the last rebuild did not apply such a method, or there is no such
+            edition.
+    """
+    speech = Speech(language)
+    say = speech.say
+    lines = {method: compared(views, against, draft_name(method)) for method in methods}
+    about = views.about()
+    titles = [_title(method, language) for method in methods]
+    content = {
+        "language": language,
+        "title": say("proposal_title" if len(methods) == 1 else "proposal_ballot").format(
+            method="; ".join(titles)
+        ),
+        "kind": say("proposal"),
+        "simulated": say("simulated") if about.get("simulated") == "true" else "",
+        "opening": [
+            say("proposal_opening").format(old=speech.edition(against)),
+            say("proposal_why"),
+        ],
+        "parts": [
+            *([_ballot(lines, speech)] if len(methods) > 1 else []),
+            *(part for method in methods for part in _parts(views, method, lines[method], speech)),
+            {"title": say("proposal_check"), "sentences": [say("proposal_checking")], **NO_ROWS},
+        ],
+        "annexes": [
+            {"title": f"{say('proposal_annex')}: {_title(m, language)}", "text": shipped_text(m)}
+            for m in methods
+        ],
+        "footing": f"{say('made_by')} {about.get('code_version', '')}",
+    }
+    return pdf("proposal.typ", content)
+
+
+NO_ROWS: Final[Part] = {"head": [], "rows": []}
+
+
+def _title(method: str, language: str) -> str:
+    known = shipped_method(method)
+    return known.title if language == "nl" else known.title_en
+
+
+def _ballot(lines: dict[str, pl.DataFrame], speech: Speech) -> Part:
+    """The methods side by side."""
+    rows = []
+    for method, changes in lines.items():
+        known = changes.drop_nulls("cw_ratio")
+        rows.append(
+            [
+                speech.say(f"method.{method}"),
+                str(changes.filter(change="changed").height),
+                str(_beyond(changes)),
+                speech.per_cent(known["cw_ratio"].median()),
+                speech.per_cent(known["cw_ratio"].min()),
+                speech.per_cent(known["cw_ratio"].max()),
+            ]
+        )
+    heads = ("method", "code.changed", "column.exceeds_interval", "middle", "lowest", "highest")
+    return {
+        "title": speech.say("proposal_side_by_side"),
+        "sentences": [],
+        "head": [_plain(speech.say(key)) for key in heads],
+        "rows": rows,
+    }
+
+
+def _beyond(changes: pl.DataFrame) -> int:
+    return int(changes["exceeds_interval"].fill_null(False).sum())
+
+
+def _plain(text: str) -> str:
+    return text.replace("\u00ad", "").replace("\u200b", "")
+
+
+def _parts(views: Views, method: str, lines: pl.DataFrame, speech: Speech) -> Iterator[Part]:
+    """What a method changes, why, for whom, in races, and what it leaves undecided."""
+    say = speech.say
+    yield {
+        "title": say("proposal_what").format(method=say(f"method.{method}")),
+        "sentences": [headlines.changes(lines)(speech)],
+        "head": [say("step"), say("proposal_mean"), say("number")],
+        "rows": _steps(lines, speech),
+    }
+    yield _types(lines, speech)
+    yield _boats(lines, speech)
+    yield _races(views, lines, speech)
+    unknown = int(lines["exceeds_interval"].null_count())
+    flagged = views.flagged_boats().filter(method=method)["fsn_no"].n_unique()
+    yield {
+        "title": say("proposal_undecided"),
+        "sentences": [say("proposal_unsure").format(unknown=unknown, flagged=flagged)],
+        **NO_ROWS,
+    }
+
+
+def _steps(lines: pl.DataFrame, speech: Speech) -> list[list[str]]:
+    """The mean effect of each cause over all lines that have it, the largest first."""
+    found: dict[str, list[float]] = defaultdict(list)
+    for causes in lines["causes"].to_list():
+        for cause in json.loads(causes):
+            found[cause.get("step", cause["cause"])].append(log(cause["factor"]))
+    means = {name: sum(values) / len(values) for name, values in found.items()}
+    return [
+        [speech.say(f"code.{name}"), speech.per_cent(exp(means[name])), str(len(found[name]))]
+        for name in sorted(means, key=lambda name: -abs(means[name]))
+    ]
+
+
+def _types(lines: pl.DataFrame, speech: Speech) -> Part:
+    """What changes by type and class."""
+    by_type = (
+        lines.drop_nulls("cw_ratio")
+        .with_columns(pl.col("boat_type").fill_null("unknown").replace("", "unknown"))
+        .group_by("boat_type", "crew_class")
+        .agg(
+            number=pl.len(),
+            ratio=pl.col("cw_ratio").median(),
+            seconds=pl.col("gain_in_two_hours_s").median(),
+            beyond=pl.col("exceeds_interval").fill_null(False).sum(),
+        )
+        .sort("boat_type", "crew_class", descending=[False, True])
+    )
+    heads = ("type", "number", "proposal_median", "column.gain_in_two_hours_s")
+    return {
+        "title": speech.say("proposal_types"),
+        "sentences": [speech.say("proposal_seconds")],
+        "head": [
+            *(_plain(speech.say(key)) for key in heads),
+            _plain(speech.say("column.exceeds_interval")),
+        ],
+        "rows": [
+            [
+                f"{speech.say(f'code.{boat_type}')}, {speech.say(f'crew.{crew_class}')}",
+                str(number),
+                speech.per_cent(ratio),
+                speech.number(seconds, 0, "+"),
+                str(beyond),
+            ]
+            for boat_type, crew_class, number, ratio, seconds, beyond in by_type.rows()
+        ],
+    }
+
+
+def _boats(lines: pl.DataFrame, speech: Speech) -> Part:
+    """The boats that gain and lose most."""
+    known = lines.drop_nulls("cw_ratio").filter(change="changed").sort("cw_ratio")
+    shown = pl.concat([known.head(LARGEST), known.tail(LARGEST)]).unique(maintain_order=True)
+    heads = (
+        "boat",
+        "proposal_old",
+        "proposal_new",
+        "proposal_change",
+        "column.gain_in_two_hours_s",
+    )
+    return {
+        "title": speech.say("proposal_boats"),
+        "sentences": [],
+        "head": [
+            *(_plain(speech.say(key)) for key in heads),
+            _plain(speech.say("column.exceeds_interval")),
+        ],
+        "rows": [_boat(line, speech) for line in shown.to_dicts()],
+    }
+
+
+def _boat(line: dict[str, Any], speech: Speech) -> list[str]:
+    beyond = {None: "unknown_word", True: "yes", False: "no"}[line["exceeds_interval"]]
+    return [
+        f"{line['name'] or line['fsn_no']} ({line['fsn_no']}, {crew_name(line, speech)})",
+        speech.number(line["old_cw_kg_m"], 2),
+        speech.number(line["new_cw_kg_m"], 2),
+        speech.per_cent(line["cw_ratio"]),
+        speech.number(line["gain_in_two_hours_s"], 0, "+"),
+        speech.say(beyond),
+    ]
+
+
+def _races(views: Views, lines: pl.DataFrame, speech: Speech) -> Part:
+    """What it does to the races of the last season: how many places move, and who wins."""
+    say = speech.say
+    winners, moved = replayed(views, lines["from_edition"][0], lines["to_edition"][0])
+    if winners.is_empty():
+        return {"title": say("races"), "sentences": [say("no_races")], **NO_ROWS}
+    last = winners.filter(pl.col("race_date").dt.year() == winners["race_date"].dt.year().max())
+    names = dict(views.table("boats").select("fsn_no", "name").rows())
+    return {
+        "title": say("proposal_races").format(year=last["race_date"][0].year),
+        "sentences": [say("proposal_moved").format(moved=moved[0], results=moved[1])],
+        "head": [say("race"), say("proposal_old"), say("proposal_new"), say("proposal_chance")],
+        "rows": [
+            [
+                f"{race['race']} {race['race_date']}, {say('crew.' + race['crew_class'])}",
+                names.get(race["old_winner"]) or "\u2013",
+                names.get(race["new_winner"]) or "\u2013",
+                _chance(race["change_probability"], speech),
+            ]
+            for race in last.to_dicts()
+        ],
+    }
+
+
+def _chance(chance: float | None, speech: Speech) -> str:
+    if chance is None:
+        return speech.say("unknown_word")
+    return f"{speech.number(100 * chance, 0)}\u00a0%"

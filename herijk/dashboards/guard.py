@@ -1,0 +1,111 @@
+"""What keeps pages of other sites out of a server on this machine, and bounds who connects.
+
+A page that reaches it by a name of its own (DNS rebinding) is refused by its Host header; one that
+sends a form or a script, by its Origin and type. Which pages there are stands elsewhere.
+"""
+
+import socket
+from typing import Final
+
+import uvicorn
+from starlette.responses import PlainTextResponse
+from starlette.types import ASGIApp, Receive, Scope, Send
+from uvicorn.protocols.http.h11_impl import H11Protocol
+
+from herijk.pipeline.errors import UnavailableError
+
+LOOPBACK: Final = ("127.0.0.1", "localhost", "::1")
+MOST_CONNECTIONS: Final = 100
+FIRST_REQUEST_S: Final = 10.0
+"""A connection on which nothing is asked for so long is closed."""
+
+_READING: Final = ("GET", "HEAD", "OPTIONS")
+
+
+class Guard:
+    """An application that answers its own pages only.
+
+    Args:
+        app: the application.
+        host: the address that it listens on; loopback names are always good.
+    """
+
+    def __init__(self, app: ASGIApp, host: str) -> None:
+        self._app, self._hosts = app, {*LOOPBACK, host}
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Passes a request on, or refuses it with 403."""
+        refusal = None if scope["type"] == "lifespan" else self._refusal(scope)
+        if refusal is None:
+            await self._app(scope, receive, send)
+        elif scope["type"] == "websocket":
+            await send({"type": "websocket.close", "code": 1008})
+        else:
+            await PlainTextResponse(refusal, 403)(scope, receive, send)
+
+    def _refusal(self, scope: Scope) -> str | None:
+        """Why a request is not answered; None where it is."""
+        sent = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
+        host = sent.get("host", "")
+        if _name(host) not in self._hosts:
+            return "this server is known under another name"
+        if scope["type"] == "http" and scope["method"] in _READING:
+            asks = scope["path"].endswith("/graphql") and b"query=" in scope["query_string"]
+            return "a query is posted" if asks else None
+        if sent.get("origin", "").partition("://")[2] != host:
+            return "only its own pages may ask"
+        kind = sent.get("content-type", "").partition(";")[0].strip()
+        if scope["type"] == "http" and kind != "application/json":
+            return "JSON is needed"
+        return None
+
+
+def _name(host: str) -> str:
+    """The name in a Host header, without its port."""
+    return host[1:].partition("]")[0] if host.startswith("[") else host.partition(":")[0]
+
+
+class _Impatient(H11Protocol):
+    """Closes a connection on which no request comes."""
+
+    def connection_made(self, transport: object) -> None:
+        """Starts the clock."""
+        super().connection_made(transport)  # type: ignore[arg-type]
+        self.loop.call_later(FIRST_REQUEST_S, self._close_when_silent)
+
+    def _close_when_silent(self) -> None:
+        if self.cycle is None:
+            self.transport.close()
+
+
+def listen(host: str, port: int) -> socket.socket:
+    """A listening socket; port 0 takes any that is free.
+
+    Raises:
+        UnavailableError: the address cannot be used.
+    """
+    held = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET, socket.SOCK_STREAM)
+    held.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        held.bind((host, port))
+        held.listen()
+    except OSError as error:
+        held.close()
+        raise UnavailableError(
+            f"{host}:{port} cannot be used: {error.strerror}. Name another with --port"
+        ) from error
+    return held
+
+
+def guarded(app: ASGIApp, host: str) -> uvicorn.Server:
+    """A server for an application behind the guard, to be run on a socket of `listen`."""
+    return uvicorn.Server(
+        uvicorn.Config(
+            Guard(app, host),
+            http=_Impatient,
+            log_level="warning",
+            access_log=False,
+            limit_concurrency=MOST_CONNECTIONS,
+            timeout_keep_alive=5,
+        )
+    )

@@ -1,0 +1,165 @@
+"""Two small pictures as SVG, for pages that show them at once and for documents.
+
+They need no script and no library in the browser; the charts that people can point at and choose
+from are `dashboards.figures`. Coordinates in pixels, y down.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import accumulate
+from operator import mul
+from typing import Final
+
+import numpy as np
+import polars as pl
+from markupsafe import Markup
+
+from herijk.dashboards.figures.style import BACK, GREY, OKABE_ITO, OUT
+from herijk.dashboards.speech import Speech
+
+WIDTH: Final = 460
+HEIGHT: Final = 230
+LEFT: Final = 52
+BOTTOM: Final = 40
+TOP: Final = 30
+ROW: Final = 26
+LABEL: Final = 185
+VALUE: Final = 70
+LESS, MORE, TOTAL = OKABE_ITO[2], OKABE_ITO[1], OKABE_ITO[0]
+
+_SVG = Markup(
+    '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {} {}" width="{}" height="{}" '
+    'role="img" aria-label="{}" font-family="Open Sans, sans-serif" font-size="12">{}</svg>'
+)
+_TEXT = Markup('<text x="{:.1f}" y="{:.1f}" text-anchor="{}">{}</text>')
+_LINE = Markup(
+    '<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" stroke="{}" stroke-width="{}"/>'
+)
+_BAR = Markup('<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="16" fill="{}"/>')
+_BAND = Markup('<polygon points="{}" fill="{}" fill-opacity="0.35"/>')
+_CURVE = Markup('<polyline points="{}" fill="none" stroke="black" stroke-width="2"/>')
+_OUT = Markup('<circle cx="{:.1f}" cy="{:.1f}" r="4" fill="{}" stroke="{}"/>')
+_BACK = Markup('<path d="M{0:.1f} {1:.1f}l5 9h-10z" fill="{2}" stroke="{3}"/>')
+
+Place = Callable[[float], float]
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A linear scale with round ticks."""
+
+    ticks: Sequence[float]
+    place: Place
+    digits: int
+
+    @classmethod
+    def over(cls, values: Sequence[float], start: float, end: float) -> "Axis":
+        """An axis that holds all values, from one end in pixels to the other."""
+        low, high = min(values), max(values)
+        spread = (high - low) or abs(high) or 1.0
+        power = 10.0 ** np.floor(np.log10(spread / 4))
+        step = next(power * m for m in (1, 2, 5, 10) if spread / (power * m) <= 5)
+        first, last = np.floor(low / step) * step, np.ceil(high / step) * step
+        ticks = np.arange(first, last + step / 2, step).tolist()
+        digits = max(0, -int(np.floor(np.log10(step))))
+        return cls(ticks, lambda v: start + (v - first) / (last - first) * (end - start), digits)
+
+
+def curve_picture(line: pl.DataFrame, points: pl.DataFrame, speech: Speech, title: str) -> Markup:
+    """A curve with its band and the runs that it goes through.
+
+    Args:
+        line: `speed_m_s, cw_kg_m, cw_lo_kg_m, cw_hi_kg_m`, by speed.
+        points: `speed_m_s, cw_kg_m, direction, used`.
+        speech: the language.
+        title: what a screen reader says.
+    """
+    if line.is_empty():
+        return Markup()
+    speeds = [*line["speed_m_s"], *points["speed_m_s"]]
+    values = [*line["cw_lo_kg_m"], *line["cw_hi_kg_m"], *points["cw_kg_m"]]
+    x = Axis.over(speeds, LEFT, WIDTH - 12)
+    y = Axis.over(values, HEIGHT - BOTTOM, TOP)
+    low = _path(x, y, line["speed_m_s"], line["cw_lo_kg_m"])
+    high = _path(x, y, line["speed_m_s"].reverse(), line["cw_hi_kg_m"].reverse())
+    parts = [
+        *_axes(x, y, speech),
+        _BAND.format(f"{low} {high}", OKABE_ITO[5]),
+        _CURVE.format(_path(x, y, line["speed_m_s"], line["cw_kg_m"])),
+        *(_run(x, y, row) for row in points.iter_rows(named=True)),
+    ]
+    return _SVG.format(WIDTH, HEIGHT, WIDTH, HEIGHT, title, Markup().join(parts))
+
+
+def _path(x: Axis, y: Axis, across: pl.Series, up: pl.Series) -> str:
+    return " ".join(f"{x.place(a):.1f},{y.place(b):.1f}" for a, b in zip(across, up, strict=True))
+
+
+def _axes(x: Axis, y: Axis, speech: Speech) -> list[Markup]:
+    floor, left = HEIGHT - BOTTOM, LEFT
+    found = [
+        _LINE.format(left, floor, WIDTH - 12, floor, GREY, 1),
+        _LINE.format(left, floor, left, TOP, GREY, 1),
+        _TEXT.format((left + WIDTH) / 2, HEIGHT - 5, "middle", speech.say("speed")),
+        _TEXT.format(4, 11, "start", speech.say("cw")),
+    ]
+    for tick in x.ticks:
+        found.append(_LINE.format(x.place(tick), floor, x.place(tick), floor + 4, GREY, 1))
+        label = speech.number(tick, x.digits)
+        found.append(_TEXT.format(x.place(tick), floor + 17, "middle", label))
+    for tick in y.ticks:
+        found.append(_LINE.format(left - 4, y.place(tick), WIDTH - 12, y.place(tick), "#ddd", 1))
+        label = speech.number(tick, y.digits)
+        found.append(_TEXT.format(left - 7, y.place(tick) + 4, "end", label))
+    return found
+
+
+def _run(x: Axis, y: Axis, row: dict[str, float]) -> Markup:
+    across, up = x.place(row["speed_m_s"]), y.place(row["cw_kg_m"])
+    out = row["direction"] == 1
+    ink = OUT if out else BACK
+    mark, up = (_OUT, up) if out else (_BACK, up - 5)
+    return mark.format(across, up, ink if row["used"] else "white", ink)
+
+
+def waterfall_picture(
+    old: float, causes: Sequence[tuple[str, float]], speech: Speech, title: str
+) -> Markup:
+    """From the old number to the new one, a bar a cause.
+
+    Args:
+        old: Cw before [kg/m].
+        causes: name and factor of each; they multiply to new / old.
+        speech: the language.
+        title: what a screen reader says.
+    """
+    steps = list(accumulate([old, *(factor for _, factor in causes)], mul))
+    x = Axis.over([*steps, *_around(steps)], LABEL, WIDTH - VALUE)
+    ends = [(speech.say("before_number"), steps[0]), (speech.say("after_number"), steps[-1])]
+    rows = [_end(*ends[0], x, speech)]
+    for (name, factor), before, after in zip(causes, steps[:-1], steps[1:], strict=True):
+        ink = MORE if after > before else LESS
+        left, right = sorted((x.place(before), x.place(after)))
+        rows.append((name, left, max(right - left, 1.0), ink, speech.per_cent(factor)))
+    rows.append(_end(*ends[1], x, speech))
+    parts = [
+        part
+        for place, (name, left, width, ink, value) in enumerate(rows)
+        for part in (
+            _TEXT.format(LABEL - 8, place * ROW + 17, "end", name),
+            _BAR.format(left, place * ROW + 5, width, ink),
+            _TEXT.format(WIDTH, place * ROW + 17, "end", value),
+        )
+    ]
+    return _SVG.format(WIDTH, len(rows) * ROW, WIDTH, len(rows) * ROW, title, Markup().join(parts))
+
+
+def _around(steps: Sequence[float]) -> tuple[float, float]:
+    """A little room at both ends, so that the shortest bar is seen."""
+    room = 0.25 * (max(steps) - min(steps)) or 0.01 * steps[0]
+    return min(steps) - room, max(steps) + room
+
+
+def _end(name: str, value: float, x: Axis, speech: Speech) -> tuple[str, float, float, str, str]:
+    """A bar that begins at the left: a number, not a change."""
+    return name, LABEL, max(x.place(value) - LABEL, 1.0), TOTAL, speech.number(value, 2)

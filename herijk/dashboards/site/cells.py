@@ -1,0 +1,190 @@
+"""Cells of tables in one language: numbers, codes in words, links and hashes."""
+
+import datetime as dt
+import json
+from collections.abc import Callable, Sequence
+from functools import cache
+from itertools import repeat
+from typing import Any, Final
+
+import polars as pl
+from markupsafe import Markup, escape
+
+from herijk.dashboards.site.parts import Page, Table, boat_path, type_path
+from herijk.dashboards.speech import Speech, duration
+from herijk.dashboards.words import LANGUAGES
+
+DIGITS: Final = (
+    ("_kg_m", 2), ("_m_s", 2), ("_deg", 0), ("_kg", 0), ("_w", 1), ("_s", 0), ("cw_sd", 2),
+    ("_m", 2), ("step_sd", 4), ("_sd", 1), ("dof", 1), ("before_ratio", 6), ("after_ratio", 6),
+    ("slope", 5), ("slope_lo", 5), ("slope_hi", 5),
+)  # fmt: skip
+"""Decimals shown by the ending of a column's name; 4 otherwise."""
+
+KEPT: Final = 7
+"""Significant digits in downloads and charts; the database holds all."""
+
+CODES: Final = {
+    *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "code"),
+    *("quantity", "explaining", "candidates", "severity", "check", "shared", "kind", "scope"),
+    *("option", "speed_reason", "cause", "log", "flag", "what", "outcome", "reason_code", "lost"),
+}
+"""Columns that hold codes of the warehouse, shown as words."""
+
+LONG: Final = {
+    *("flags", "cut_reason", "reason", "speed_reason", "causes", "message", "meaning", "decision"),
+    *("candidates", "name"),
+}
+"""Columns of texts that may take several lines."""
+
+METHODS: Final = {"method", "from_method", "to_method"}
+EDITIONS: Final = {"edition", "from_edition", "to_edition", "previous"}
+
+Show = Callable[[Any], Markup]
+
+_EMPTY = Markup("<td class=t>")
+_SAME_CELL = Markup("<td class={}>{}")
+"""A cell whose text is its value; others have the value in `data-v`. End tags are left out: HTML
+closes a cell and a row by itself, and a boat's page has thousands. For the same reason a number is
+what has no class: text is `t`, and `w` where it may be wide."""
+_CELL = Markup('<td class={} data-v="{}">{}')
+_SHORT = Markup("t")
+_LONG = Markup('"t w"')
+_BOAT = Markup(' data-boat="{}"')
+_FOLLOWED = Markup(' data-f-{}="{}"')
+
+
+class Cells:
+    """Makes rows of tables in one language."""
+
+    def __init__(self, speech: Speech) -> None:
+        self.speech = speech
+        self.text = speech.text
+
+    def rows(self, page: Page, table: Table) -> tuple[Markup, Markup]:
+        """The rows that the selectors show at first, and all others.
+
+        A browser lays out only the first; `site.js` brings in others when they are chosen.
+        """
+        frame, follows = table.frame, list(table.follows)
+        # Column by column, because the cells of a column are made in one way.
+        cells = zip(
+            *(self._cells(frame[c], page.root, table.exact) for c in table.columns), strict=True
+        )
+        boats = [_BOAT.format(n) for n in frame["fsn_no"]] if table.linked else repeat("")
+        keys = frame.select(follows).rows() if follows else repeat(())
+
+        @cache
+        def marked(key: tuple[str, ...]) -> tuple[list[str], str]:
+            """Where rows of a key stand, and what they say of it besides their cells."""
+            own = dict(zip(follows, key, strict=True))
+            is_first = all(page.chosen[name] in ("", value) for name, value in own.items())
+            marks = "".join(_FOLLOWED.format(*one) for one in own.items())
+            return first if is_first else others, marks
+
+        first: list[str] = []
+        others: list[str] = []
+        for row, boat, key in zip(cells, boats, keys, strict=False):
+            place, marks = marked(key)
+            place.append(f"<tr{boat}{marks}>{''.join(row)}")
+        return Markup("\n".join(first)), Markup("\n".join(others))  # noqa: S704 - escaped parts
+
+    def _cells(self, column: pl.Series, root: str, exact: bool) -> Sequence[Markup]:
+        name = column.name
+        if name == "rowing_time_s":
+            return [_EMPTY if v is None else _CELL.format(_SHORT, v, duration(v)) for v in column]
+        if column.dtype.is_float():
+            digits = next((d for ending, d in DIGITS if name.endswith(ending)), 4)
+            return [self._number(value, digits, exact) for value in column.to_list()]
+        if column.dtype.is_integer() and name != "direction":
+            return [_integer(value) for value in column.to_list()]
+        show = self._shower(name, root)
+        mark = _LONG if name in LONG else _SHORT
+
+        def made(value: Any) -> Markup:
+            return _EMPTY if value is None else _shown(value, show, mark)
+
+        if isinstance(column.dtype, pl.List):
+            return [made(value) for value in column]
+        values = column.to_list()
+        of = {value: made(value) for value in set(values)}
+        return [of[value] for value in values]
+
+    def _number(self, value: float | None, digits: int, exact: bool) -> Markup:
+        if value is None:
+            return Markup("<td>")
+        shown, held = self.speech.number(value, digits), f"{value:.{KEPT}g}"
+        mark = f" data-v={held}" if exact and shown != held else ""
+        return Markup(f"<td{mark}>{shown}")  # noqa: S704 - a number
+
+    def _shower(self, name: str, root: str) -> Show:
+        """How values of a column are shown."""
+        if name in ("fsn_no", "influence_boat"):
+            return lambda value: Markup('<a href="{}{}">{}</a>').format(
+                root, boat_path(value), value
+            )
+        if name == "boat_type":
+            return lambda value: self._type(value, root)
+        named = {
+            "titles": self._titles,
+            "direction": lambda value: self.text("out" if value == 1 else "back"),
+            "causes": self._causes,
+            "unit": lambda value: self._plain("" if value == "1" else value),
+            **dict.fromkeys(("sha256", "content_hash", "method_hash", "seal"), _hash),
+            **dict.fromkeys(METHODS, lambda value: self.text(f"method.{value}")),
+            **dict.fromkeys(EDITIONS, self._edition),
+            **dict.fromkeys(CODES, self._code),
+        }
+        return named.get(name, self._plain)
+
+    def _edition(self, value: str) -> Markup:
+        return Markup("{}").format(self.speech.edition(value))
+
+    def _type(self, value: str, root: str) -> Markup:
+        if value in ("unknown", "all"):
+            return self.text(f"code.{value}")
+        return Markup('<a href="{}{}">{}</a>').format(root, type_path(value), value)
+
+    def _plain(self, value: Any) -> Markup:
+        if isinstance(value, bool):
+            return self.text("yes" if value else "no")
+        if isinstance(value, dt.datetime):
+            return Markup("{}").format(value.isoformat(" "))
+        return Markup("{}").format(value)
+
+    def _code(self, value: Any) -> Markup:
+        """A code, or several with commas or as a list, in words."""
+        codes = value.split(",") if isinstance(value, str) else list(value)
+        return Markup(", ").join(self.text(f"code.{code}") for code in codes if code)
+
+    def _causes(self, value: str) -> Markup:
+        """What a change is attributed to (a method's step by its name), each in per cent."""
+        parts = [
+            Markup("{} {}").format(
+                self.speech.say(f"code.{cause.get('step', cause['cause'])}"),
+                self.speech.per_cent(cause["factor"]),
+            )
+            for cause in json.loads(value)
+        ]
+        return Markup("; ").join(parts)
+
+    def _titles(self, value: Any) -> Markup:
+        """The title in this language, of one in Dutch and one in English."""
+        return Markup("{}").format(value[LANGUAGES.index(self.speech.language)])
+
+
+def _integer(value: int | None) -> Markup:
+    text = "" if value is None else str(value)
+    return Markup(f"<td>{text}")  # noqa: S704 - a number
+
+
+def _shown(value: Any, show: Show, mark: Markup) -> Markup:
+    plain = ", ".join(value) if isinstance(value, pl.Series | list) else str(value)
+    shown = show(value)
+    if shown == escape(plain):
+        return _SAME_CELL.format(mark, shown)
+    return _CELL.format(mark, plain, shown)
+
+
+def _hash(value: str) -> Markup:
+    return Markup("<code>{}</code>").format(value[:12])

@@ -1,0 +1,119 @@
+"""What a section shows, in one computed sentence: the main point first.
+
+Each function takes the rows that are shown at first and gives a sentence per language.
+"""
+
+import datetime as dt
+import json
+from collections import Counter
+
+import polars as pl
+
+from herijk.dashboards.site.parts import Headline
+from herijk.dashboards.speech import Speech
+
+CLEAR_P = 0.05
+STRONG_POWER = 0.8
+MONTHS_AHEAD = dt.timedelta(days=365)
+
+
+def register(lines: pl.DataFrame) -> Headline:
+    """How many lines have a curve."""
+    known = lines["cw_kg_m"].drop_nulls().len()
+    return lambda speech: speech.say("head_register").format(lines=lines.height, known=known)
+
+
+def changes(lines: pl.DataFrame) -> Headline:
+    """How many lines change, by more than their uncertainty, and mostly why."""
+    changed = lines.filter(pl.col("change") == "changed")
+    beyond = int(changed["exceeds_interval"].fill_null(False).sum())
+    causes = Counter(filter(None, (_largest(text) for text in changed["causes"].to_list())))
+
+    def sentence(speech: Speech) -> str:
+        text = speech.say("head_changes").format(
+            changed=changed.height, lines=lines.height, beyond=beyond or speech.say("none_of_them")
+        )
+        if not causes:
+            return text
+        cause = speech.say(f"code.{causes.most_common(1)[0][0]}")
+        return text + speech.say("head_mostly").format(cause=cause)
+
+    return sentence
+
+
+def _largest(causes: str) -> str | None:
+    found = json.loads(causes)
+    if not found:
+        return None
+    most = max(found, key=lambda cause: abs(cause["factor"] - 1))
+    return str(most.get("step", most["cause"]))
+
+
+def due(lines: pl.DataFrame) -> Headline:
+    """How many have to tow within a year."""
+    as_of = lines["as_of"].max()
+    soon = lines.filter(pl.col("valid_until").is_between(as_of, as_of + MONTHS_AHEAD)).height
+    over = lines.filter(pl.col("valid_until") < as_of).height
+    return lambda speech: speech.say("head_due").format(soon=soon, over=over, day=as_of)
+
+
+def retow(choice: pl.DataFrame) -> Headline:
+    """Whether the most informative tows are worth it."""
+    before, after = choice["factor_sd_before_ratio"].max(), choice["factor_sd_after_ratio"].min()
+
+    def sentence(speech: Speech) -> str:
+        key = "head_retow" if after < WORTH * before else "head_retow_not"
+        return speech.say(key).format(
+            before=speech.number(100 * before, 2), after=speech.number(100 * after, 2)
+        )
+
+    return sentence
+
+
+WORTH = 0.9
+"""A set of tows is worth its trouble where it takes a tenth or more off the uncertainty."""
+
+
+def statuses(rows: pl.DataFrame) -> Headline:
+    """How many curves are sound."""
+    counts = dict(rows.group_by("status").agg(pl.col("number").sum()).rows())
+    return lambda speech: speech.say("head_statuses").format(
+        curves=sum(counts.values()),
+        accepted=counts.get("accepted", 0),
+        flagged=counts.get("flagged", 0),
+        rejected=counts.get("rejected", 0),
+    )
+
+
+def reproducibility(rows: pl.DataFrame, method: str) -> Headline | None:
+    """How well a tow repeats itself, as published and now."""
+    spread = dict(rows.filter(scope="all").select("method", "sd_ratio").drop_nulls().rows())
+    if method not in spread:
+        return None
+    first = next(iter(spread))
+    return lambda speech: speech.say("head_reproducibility").format(
+        now=speech.number(100 * spread[method], 1), method=speech.say(f"method.{method}"),
+        then=speech.number(100 * spread[first], 1), first=speech.say(f"method.{first}"),
+    )  # fmt: skip
+
+
+def log_factors(rows: pl.DataFrame) -> Headline | None:
+    """Where the log was furthest off."""
+    known = rows.drop_nulls("factor")
+    if known.is_empty():
+        return None
+    off = known.sort((pl.col("factor") - 1).abs(), descending=True).row(0, named=True)
+    return lambda speech: speech.say("head_log").format(
+        season=off["season"], by=speech.per_cent(1 / off["factor"])
+    )
+
+
+def homogeneity(test: pl.DataFrame) -> Headline:
+    """Whether the boats of a type have equal curves: yes, no, or not to be told."""
+    if test.is_empty() or test["p_value"][0] is None:
+        return lambda speech: speech.say("head_type_few")
+    p_value, power = test["p_value"][0], test["power_at_10pct"][0] or 0.0
+    key = "head_type_differ" if p_value < CLEAR_P else "head_type_equal"
+    if p_value >= CLEAR_P and power < STRONG_POWER:
+        key = "head_type_unknown"
+    return lambda speech: speech.say(key).format(n=test["n"][0], p=speech.number(p_value, 2))

@@ -1,0 +1,99 @@
+"""The races computed again: a list, and a page for each."""
+
+from collections.abc import Iterator, Sequence
+from typing import TypeAlias
+
+import polars as pl
+
+from herijk.dashboards.site.parts import (
+    Chart,
+    Headline,
+    Page,
+    Section,
+    Table,
+    draft_of,
+    editions_select,
+    race_path,
+    with_page,
+)
+from herijk.dashboards.speech import Speech
+from herijk.warehouse.queries.answers import newest_edition, race_chances
+from herijk.warehouse.queries.views import Views
+
+Chances: TypeAlias = dict[tuple[str, str], float | None]
+"""How likely another winner is, by race with its day and class."""
+
+COLUMNS = (
+    *("crew_class", "name", "fsn_no", "rowers", "rowing_time_s", "old_power_w", "new_power_w"),
+    *("old_rank", "new_rank", "podium_changed"),
+)
+CARDS = ("name", "fsn_no", "rowing_time_s", "old_rank", "new_rank")
+
+
+def race_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
+    """The list of races, and a page for each."""
+    races = views.races() if views.has("race_changes") else pl.DataFrame()
+    if races.is_empty():
+        yield Page("races.html", "races", [Section("races", empty="no_races")])
+        return
+    editions = races["to_edition"].unique().sort().to_list()
+    chosen = newest_edition(editions, draft_of(methods))
+    days = views.race_days()
+    links = [(race_path(race, day), f"{race} {day}") for race, day in days]
+    yield Page("races.html", "races", [Section("races", "races_note", pages=links)])
+    chances = race_chances(views, races.filter(to_edition=chosen)["from_edition"][0], chosen)
+    for race, day in days:
+        own = races.filter(race=race, race_date=day)
+        yield _race(race_path(race, day), f"{race} {day}", own, editions, chosen, chances)
+
+
+def _race(
+    path: str,
+    name: str,
+    rows: pl.DataFrame,
+    editions: Sequence[str],
+    chosen: str,
+    chances: Chances,
+) -> Page:
+    now = rows.filter(to_edition=chosen)
+    table = Table("race_changes", rows, COLUMNS, "races", ["to_edition"], search=True, cards=CARDS)
+    chart = Chart("race_ranks", "races", "race_ranks", {"to_edition": "to_edition"})
+    return Page(
+        path,
+        "races",
+        [Section("race_results", "race_note", [chart], [table], headline=_winners(now, chances))],
+        name=name,
+        selects=[editions_select("to_edition", editions, chosen)],
+        data={"races": [with_page(rows, "../")]},
+    )
+
+
+def _winners(rows: pl.DataFrame, chances: Chances) -> Headline:
+    """Who wins each class, and how likely it is that another does."""
+
+    def sentence(speech: Speech) -> str:
+        return " ".join(
+            _winner(speech, str(crew_class), of_class, chances)
+            for (crew_class,), of_class in rows.group_by("crew_class", maintain_order=True)
+        )
+
+    return sentence
+
+
+def _winner(
+    speech: Speech,
+    crew_class: str,
+    rows: pl.DataFrame,
+    chances: Chances,
+) -> str:
+    old, new = (
+        rows.filter(pl.col(rank) == 1)["name"].to_list() for rank in ("old_rank", "new_rank")
+    )
+    if not old or not new:
+        return ""
+    key = "head_winner_same" if old[0] == new[0] else "head_winner_other"
+    text = speech.say(key).format(people=speech.say(f"crew.{crew_class}"), old=old[0], new=new[0])
+    chance = chances.get((f"{rows['race'][0]} {rows['race_date'][0]}", crew_class))
+    if chance is None:
+        return text
+    return text + speech.say("head_chance").format(chance=speech.number(100 * chance, 0))

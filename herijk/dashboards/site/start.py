@@ -1,0 +1,86 @@
+"""The start page: where things stand; and the page of words."""
+
+from collections.abc import Sequence
+
+import polars as pl
+
+from herijk.dashboards.site import headlines
+from herijk.dashboards.site.parts import (
+    Chart,
+    Headline,
+    Page,
+    Section,
+    Table,
+    draft_of,
+    methods_select,
+)
+from herijk.dashboards.speech import Speech
+from herijk.warehouse.queries.answers import newest_edition
+from herijk.warehouse.queries.views import Views
+
+CARDS = ("register", "due", "types", "compare", "races", "corrections", "reproducibility",
+         "changes", "quality", "slides", "words")  # fmt: skip
+TERMS = ("tow", "cw", "a", "b", "declared", "interval", "as_measured", "log_factor", "method",
+         "edition", "flag", "set_aside", "e_n", "power", "type", "verification_code")  # fmt: skip
+
+
+def start_page(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> Page:
+    """The edition in force, key figures, what changes, the years, and where to go."""
+    editions = changes["to_edition"].unique().sort().to_list() if changes.height else []
+    chosen = newest_edition(editions, draft_of(methods))
+    links = [(f"{name}.html", name, f"about_{name}") for name in CARDS]
+    years = views.table("season_changes")
+    sections = [
+        Section(
+            "now",
+            "index_intro",
+            key_figures=_figures(views),
+            headline=headlines.changes(changes.filter(to_edition=chosen)) if editions else None,
+        ),
+        Section("index_pages", links=links),
+    ]
+    if years.height:
+        chart = Chart("season_change", "years", "season_change", {"method": "method"})
+        sections.append(Section("years", "season_change_note", [chart]))
+    sections.append(Section("methods", "methods_note", tables=[methods_table(views)]))
+    return Page(
+        "index.html",
+        "index",
+        sections,
+        selects=[methods_select(methods)] if years.height else [],
+        data={"years": [years]} if years.height else {},
+    )
+
+
+def methods_table(views: Views) -> Table:
+    """The methods, with the title in the language of the page."""
+    frame = views.table("methods").with_columns(titles=pl.concat_list("title", "title_en"))
+    return Table("methods", frame, ["method", "titles", "content_hash"], "methods")
+
+
+def _figures(views: Views) -> list[tuple[str, str | Headline]]:
+    """Which edition counts, and how much there is."""
+    editions = views.table("editions").sort("valid_from")
+    tows, seasons = views.table("tows"), views.table("seasons")["season"]
+    return [
+        ("edition_in_force", _in_force(editions)),
+        ("as_of", str(views.table("due_list")["as_of"].max())),
+        ("boats_number", str(views.table("boats").height)),
+        ("tows_number", f"{tows.height} ({seasons.min()}\u2013{seasons.max()})"),
+    ]
+
+
+def _in_force(editions: pl.DataFrame) -> Headline:
+    def text(speech: Speech) -> str:
+        if editions.is_empty():
+            return speech.say("no_edition")
+        last = editions.row(-1, named=True)
+        return speech.say("edition_from").format(edition=last["edition"], day=last["valid_from"])
+
+    return text
+
+
+def words_page() -> Page:
+    """What the words mean, and how to read a page."""
+    terms = [(f"term_{name}", f"meaning_{name}") for name in TERMS]
+    return Page("words.html", "words", [Section("words_list", "words_note", terms=terms)])

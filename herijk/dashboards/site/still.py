@@ -1,0 +1,66 @@
+"""A page's first chart as a picture made with the page, to be seen before any script is there."""
+
+import re
+from typing import Final
+
+import altair as alt
+import polars as pl
+import vl_convert
+from markupsafe import Markup
+
+from herijk.dashboards import fonts
+from herijk.dashboards.figures import FIGURES, drop_links
+from herijk.dashboards.site.parts import Chart, Page
+from herijk.dashboards.speech import Speech
+
+VEGA_LITE: Final = ".".join(alt.SCHEMA_VERSION.removeprefix("v").split(".")[:2])
+LOCALES: Final = {
+    "nl": {"decimal": ",", "thousands": ".", "grouping": [3], "currency": ["€ ", ""]},
+    "en": {"decimal": ".", "thousands": ",", "grouping": [3], "currency": ["€", ""]},
+}
+
+vl_convert.register_font_directory(str(fonts.FOLDER))
+
+
+def still_pictures(page: Page, speech: Speech) -> dict[str, Markup]:
+    """The first chart that is seen at once, by its name."""
+    charts = [c for s in page.sections if not s.folded for c in s.charts]
+    if not charts:
+        return {}
+    rows = _shown(page, charts[0])
+    if rows.is_empty():
+        return {}
+    return {charts[0].figure: still(charts[0].figure, rows, speech)}
+
+
+def still(figure: str, rows: pl.DataFrame, speech: Speech) -> Markup:
+    """A figure as SVG."""
+    spec = FIGURES[figure](rows, speech.say).to_dict(validate=False)
+    drop_links(spec)
+    svg = vl_convert.vegalite_to_svg(
+        spec, vl_version=VEGA_LITE, config=CONFIG, format_locale=LOCALES[speech.language]
+    )
+    return Markup(_renumbered(svg))  # noqa: S704 - Vega escapes texts
+
+
+def _renumbered(svg: str) -> str:
+    """Names of clipping areas from 0: Vega counts on from one picture to the next."""
+    names = dict.fromkeys(re.findall(r'id="(clip\d+)"', svg))
+    places = {name: f"clip{place}" for place, name in enumerate(names)}
+    return re.sub(r"\bclip\d+\b", lambda found: places[found[0]], svg)
+
+
+CONFIG: Final = {"font": fonts.FAMILY}
+
+
+def _shown(page: Page, chart: Chart) -> pl.DataFrame:
+    """The rows that the selectors show at first, as `site.js` chooses them."""
+    rows = pl.concat(page.data[chart.data], how="diagonal_relaxed")
+    for column, names in chart.follows.items():
+        wanted = [page.chosen[name] for name in ([names] if isinstance(names, str) else names)]
+        chosen = [value for value in wanted if value != ""]
+        if chosen:
+            rows = rows.filter(
+                pl.col(column).is_null() | pl.col(column).cast(pl.String).is_in(chosen)
+            )
+    return rows

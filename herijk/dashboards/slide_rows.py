@@ -1,0 +1,67 @@
+"""The rows of the slide book: which tows, types and boats, for the files and for the page."""
+
+from typing import Final
+
+import polars as pl
+
+from herijk.dashboards.figures.slides import METHODS
+from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
+from herijk.warehouse.queries.views import Views
+
+PAIR: Final = ("kromhout", "kuiken")
+"""The two types of the presentation; where an archive has others, its two largest."""
+
+SLIDE_BOATS: Final = ("razende snol", "mare australis", "twirre")
+"""The boats of the presentation; where an archive has others, those towed most often."""
+
+
+def method_order() -> pl.Expr:
+    """The place of a method in history, as the column `order`."""
+    places = {name: place for place, name in enumerate(METHODS)}
+    return (
+        pl.col("method")
+        .replace_strict(places, default=len(places), return_dtype=pl.Int32)
+        .alias("order")
+    )
+
+
+def compared_frame(views: Views) -> pl.DataFrame:
+    """Tows of `compared_tows` with a label, "Vecht 8D 2012", as the charts draw them."""
+    label = pl.format("{} {}{} {}", "name", "rowers", "crew_class", "season")
+    return views.compared_tows().with_columns(
+        label.alias("label"), method_order(), kind=pl.lit("tow")
+    )
+
+
+def lines_frame(views: Views) -> pl.DataFrame:
+    """Points of the fitted lines, as the charts draw them."""
+    return views.table("type_line_points").with_columns(kind=pl.lit("line"))
+
+
+def pair_of_types(compared: pl.DataFrame) -> list[str]:
+    """The two types of the presentation, or the two with most tows."""
+    known = by_tows(compared)
+    pair = [t for name in PAIR for t in known if t.casefold().startswith(name)]
+    return pair if len(pair) == len(PAIR) else known[: len(PAIR)]
+
+
+def by_tows(compared: pl.DataFrame) -> list[str]:
+    """Types of boat, that with most tows first; without any, the boats of no type."""
+    counts = (
+        compared.group_by("boat_type")
+        .len()
+        .sort("len", "boat_type", descending=[True, False])["boat_type"]
+    )
+    return [t for t in counts if t != UNKNOWN_TYPE] or counts.to_list()
+
+
+def boats_of_slides(compared: pl.DataFrame) -> list[str]:
+    """FSN numbers of the boats of the presentation, or of those towed in most seasons."""
+    seasons = (
+        compared.group_by("fsn_no", "name")
+        .agg(pl.col("season").n_unique().alias("seasons"))
+        .sort("seasons", "fsn_no", descending=[True, False])
+    )
+    named = seasons.filter(pl.col("name").str.to_lowercase().is_in(SLIDE_BOATS))
+    chosen = named if named.height else seasons.head(len(SLIDE_BOATS))
+    return [str(number) for number in chosen["fsn_no"]]

@@ -1,0 +1,44 @@
+"""Numbers and texts as people of one language write them."""
+
+from typing import Final
+
+from markupsafe import Markup, escape
+
+from herijk.dashboards.words import speaker
+
+DECIMALS: Final = {"nl": ",", "en": "."}
+MINUS: Final = "\u2212"
+
+
+class Speech:
+    """Texts, and numbers with the decimal mark of a language and a true minus sign."""
+
+    def __init__(self, language: str) -> None:
+        self.language = language
+        self.say = speaker(language)
+        self.decimal = DECIMALS[language]
+
+    def text(self, key: str) -> Markup:
+        """A text, escaped."""
+        return escape(self.say(key))
+
+    def number(self, value: float, digits: int, sign: str = "") -> str:
+        """A number with so many decimals; `sign` is "+" where a plus is to be shown."""
+        shown = f"{value:{sign}z.{digits}f}"
+        return shown.replace(".", self.decimal).replace("-", MINUS)
+
+    def per_cent(self, ratio: float) -> str:
+        """A ratio as a change in per cent, with its sign."""
+        return f"{self.number(100 * (ratio - 1), 1, '+')}\u00a0%"
+
+    def edition(self, edition: str) -> str:
+        """An edition as people call it: a draft by its method."""
+        if not edition.startswith("concept-"):
+            return edition
+        return f"{self.say('draft')}: {self.say('method.' + edition.removeprefix('concept-'))}"
+
+
+def duration(seconds: float) -> str:
+    """A time rowed as people say it: 1:55:11."""
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes // 60}:{minutes % 60:02d}:{rest:02d}"

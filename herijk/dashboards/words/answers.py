@@ -1,0 +1,116 @@
+"""The owner's answer: its sentences. Braces are filled in by `dashboards.answer`."""
+
+from typing import Final
+
+ANSWERS: Final[dict[str, tuple[str, str]]] = {
+    "crew_of": ("{rowers} roeiers, {people}", "{rowers} rowers, {people}"),
+    "crew.H": ("heren", "men"),
+    "crew.D": ("dames", "women"),
+    "draft": ("concept", "draft"),
+    "before_number": ("was", "was"),
+    "after_number": ("wordt", "becomes"),
+    "waterfall": (
+        "Van het oude naar het nieuwe getal, Cw in kg/m",
+        "From the old number to the new, Cw in kg/m",
+    ),
+    "answer_none": ("Geen geldig getal: {status}.", "No valid number: {status}."),
+    "answer_number": ("Cw is {new} kg/m.", "Cw is {new} kg/m."),
+    "answer_same": ("Cw blijft {new} kg/m.", "Cw stays {new} kg/m."),
+    "answer_lower": (
+        "Cw gaat van {old} naar {new} kg/m: {by} % lager.",
+        "Cw goes from {old} to {new} kg/m: {by} % lower.",
+    ),
+    "answer_higher": (
+        "Cw gaat van {old} naar {new} kg/m: {by} % hoger.",
+        "Cw goes from {old} to {new} kg/m: {by} % higher.",
+    ),
+    "answer_compared": ("Vergeleken: {new}, met {old}.", "Compared: {new}, with {old}."),
+    "answer_other_speed": (
+        "De opgegeven snelheid is een andere: {new} in plaats van {old} m/s. Het percentage geldt "
+        "bij de oude snelheid.",
+        "The declared speed is another one: {new} instead of {old} m/s. The percentage holds at "
+        "the old speed.",
+    ),
+    "answer_causes": ("Waardoor: {causes}.", "Why: {causes}."),
+    "answer_slower": (
+        "Voor hetzelfde vermogen mag de ploeg over een wedstrijd van twee uur {seconds} s langer "
+        "doen.",
+        "For the same power the crew may take {seconds} s longer over a race of two hours.",
+    ),
+    "answer_faster": (
+        "Voor hetzelfde vermogen moet de ploeg een wedstrijd van twee uur {seconds} s sneller "
+        "roeien.",
+        "For the same power the crew has to row a race of two hours {seconds} s faster.",
+    ),
+    "answer_interval": (
+        "Met 95 % zekerheid ligt Cw tussen {low} en {high} kg/m.",
+        "With 95 % confidence Cw lies between {low} and {high} kg/m.",
+    ),
+    "answer_spread": (
+        "De runs alleen al laten Cw tussen {low} en {high} kg/m; de fout van de log komt daar nog "
+        "bij en is onder deze methode niet bekend.",
+        "The scatter of the runs alone leaves Cw between {low} and {high} kg/m; the error of the "
+        "log comes on top of that and is not known under this method.",
+    ),
+    "answer_best": (
+        "De beste schatting uit alle proeven van het archief is {best} kg/m ({low} tot {high}).",
+        "The best estimate from all tows of the archive is {best} kg/m ({low} to {high}).",
+    ),
+    "answer_exceeds": (
+        "De verandering is groter dan de onzekerheid van beide getallen samen.",
+        "The change is larger than the uncertainty of both numbers together.",
+    ),
+    "answer_within": (
+        "De verandering valt binnen de onzekerheid van beide getallen samen.",
+        "The change lies within the uncertainty of both numbers together.",
+    ),
+    "answer_unknown": (
+        "Of de verandering groter is dan de onzekerheid, is niet te zeggen: van een van beide "
+        "getallen is zij niet bekend.",
+        "Whether the change is larger than the uncertainty cannot be told: that of one of the "
+        "numbers is not known.",
+    ),
+    "answer_old_spread": (
+        "In de onzekerheid van het oude getal zit de fout van de log niet: zij is te klein.",
+        "The uncertainty of the old number leaves out the error of the log: it is too small.",
+    ),
+    "answer_place": (
+        "Bij gelijk vermogen per roeier is dit de nummer {place} in snelheid van {size} van het "
+        "type {type} ({people}).",
+        "At equal power per rower this is number {place} in speed of {size} of type {type} "
+        "({people}).",
+    ),
+    "answer_place_moved": (
+        "Bij gelijk vermogen per roeier wordt dit de nummer {place} in snelheid van {size} van het "
+        "type {type} ({people}); dat was {old}.",
+        "At equal power per rower this becomes number {place} in speed of {size} of type {type} "
+        "({people}); it was {old}.",
+    ),
+    "answer_race": (
+        "{race} {day}: de uitslag blijft plaats {new} van {size}.",
+        "{race} {day}: the result stays place {new} of {size}.",
+    ),
+    "answer_race_moved": (
+        "{race} {day}: de uitslag wordt plaats {new} van {size}; dat was {old}.",
+        "{race} {day}: the result becomes place {new} of {size}; it was {old}.",
+    ),
+    "answer_valid": (
+        "De proef van {tow} telt tot en met {until}.",
+        "The tow of {tow} counts until and including {until}.",
+    ),
+    "answer_expired": (
+        "De proef van {tow} telde tot en met {until}.",
+        "The tow of {tow} counted until and including {until}.",
+    ),
+    "answer_next": (
+        "Volgende proef: sleep bij {speed} m/s ({reason}).",
+        "Next tow: at {speed} m/s ({reason}).",
+    ),
+    "answer_object": (
+        "Klopt er iets niet? Meld het de commissie en noem {fsn_no}{code}. Hoe het getal tot stand "
+        "kwam, staat hieronder.",
+        "Is something wrong? Tell the committee, and name {fsn_no}{code}. How the number was made "
+        "is shown below.",
+    ),
+    "answer_with_code": (" en controlecode {code}", " and verification code {code}"),
+}

@@ -1,0 +1,135 @@
+"""Mean-shift outliers: groups of observations that all the others rule out.
+
+Observations are Gaussian with known variances: independent noise and random effects. The shift of a
+group in a given direction g is estimated from all the rest: with P the inverse of the covariance of
+y, it is g'Py / g'Pg, with variance 1 / g'Pg (Cook & Weisberg 1982, Residuals and Influence in
+Regression, 2.2.2). The clearest shift is taken out, which makes it a fixed effect, and the rest is
+judged again. What is observed and what may shift is said elsewhere.
+"""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import scipy
+
+from herijk.pipeline.arrays import BoolArray, FloatArray
+from herijk.pipeline.choice import first_largest
+
+NARROWEST: Final = 0.5
+"""An archive may scatter less than is assumed; a limit shrinks to half at most."""
+
+SAME_DIRECTION: Final = 1e-6
+"""What is left of a direction of which so little is, was taken out with another."""
+
+FEWEST_FOR_SCALE: Final = 10
+NORMAL_MAD: Final = 0.6745
+
+
+@dataclass(frozen=True)
+class Observations:
+    """What is seen, and how it scatters beforehand.
+
+    Attributes:
+        values: deviations from the expected mean, shape (n,).
+        variance: of their independent noise, shape (n,).
+        effects: which random effects each one has, sparse, shape (n, effects).
+        effect_variance: shape (effects,).
+    """
+
+    values: FloatArray
+    variance: FloatArray
+    effects: scipy.sparse.csr_array
+    effect_variance: FloatArray
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """What may have shifted.
+
+    Attributes:
+        directions: one a column, sparse, shape (n, candidates).
+        single: whether a column is of one tow, whose scatter the archive itself shows.
+        least: smallest size that matters, shape (candidates,).
+    """
+
+    directions: scipy.sparse.csc_array
+    single: BoolArray
+    least: FloatArray
+
+
+def find_shifts(
+    seen: Observations, may: Candidates, limit: float
+) -> list[tuple[int, float, float]]:
+    """Shifts beyond so many standard deviations, the clearest first.
+
+    Where tows scatter more or less than is assumed, the limit moves with them.
+
+    Returns:
+        Place of the candidate, its size, and the standard deviation of that.
+    """
+    precision = _Precision.of(seen)
+    score = np.asarray(may.directions.T @ precision.times(seen.values))
+    at_first = precision.weights(may.directions)
+    weight = at_first.copy()
+    limits = limit * _scales(score, weight, may.single)
+    found: list[tuple[int, float, float]] = []
+    while True:
+        told = weight > SAME_DIRECTION * at_first
+        sd = 1.0 / np.sqrt(np.where(told, weight, 1.0))
+        size = score * sd**2
+        beyond = np.abs(size) / (sd * limits)
+        beyond[~told | (np.abs(size) < may.least)] = 0.0
+        best = int(first_largest(beyond))
+        if beyond[best] < 1.0:
+            return found
+        found.append((best, float(size[best]), float(sd[best])))
+        moved = precision.take_out(may.directions[:, [best]].toarray()[:, 0])
+        share = np.asarray(may.directions.T @ moved)
+        score = score - share * size[best]
+        weight = weight - share**2 * sd[best] ** 2
+
+
+class _Precision:
+    """The inverse of the covariance of what is seen, less what was taken out (Woodbury)."""
+
+    def __init__(self, seen: Observations, root: FloatArray) -> None:
+        self._seen, self._root = seen, root
+        self._taken: list[tuple[FloatArray, float]] = []
+
+    @classmethod
+    def of(cls, seen: Observations) -> "_Precision":
+        scaled = seen.effects.multiply(1.0 / seen.variance[:, None])
+        within = (seen.effects.T @ scaled).toarray() + np.diag(1.0 / seen.effect_variance)
+        return cls(seen, np.linalg.cholesky(within))
+
+    def times(self, values: FloatArray) -> FloatArray:
+        """The product with a vector, before anything is taken out."""
+        scaled = values / self._seen.variance
+        effects = scipy.linalg.cho_solve((self._root, True), self._seen.effects.T @ scaled)
+        return np.asarray(scaled - (self._seen.effects @ effects) / self._seen.variance)
+
+    def take_out(self, direction: FloatArray) -> FloatArray:
+        """The product with a direction, which is a fixed effect from then on."""
+        product = self.times(direction)
+        for before, inverse in self._taken:
+            product -= before * (before @ direction) * inverse
+        self._taken.append((product, 1.0 / float(product @ direction)))
+        return product
+
+    def weights(self, directions: scipy.sparse.csc_array) -> FloatArray:
+        """Gives g'Pg of each direction, before anything is taken out."""
+        scaled = directions.multiply(1.0 / self._seen.variance[:, None]).tocsc()
+        own = np.asarray(directions.multiply(scaled).sum(axis=0)).ravel()
+        shared = scipy.linalg.solve_triangular(
+            self._root, (self._seen.effects.T @ scaled).toarray(), lower=True
+        )
+        return np.asarray(own - (shared**2).sum(axis=0))
+
+
+def _scales(score: FloatArray, weight: FloatArray, single: BoolArray) -> FloatArray:
+    """How much wider or narrower tows scatter than is assumed; groups never count as narrower."""
+    if single.sum() < FEWEST_FOR_SCALE:
+        return np.ones(len(score))
+    scatter = float(np.median(np.abs(score[single]) / np.sqrt(weight[single]))) / NORMAL_MAD
+    return np.where(single, max(scatter, NARROWEST), max(scatter, 1.0))

@@ -1,0 +1,253 @@
+"""Plausibility: can the samples of a tow be true, beside size, type, boat, day, season and archive?
+
+A force in kgf under a header of newtons is a sound number of a boat that does not exist. No tow
+shows that by itself; the others do. What each tow shows is held against what all the others let
+expect, and a shift of a tow, a day, a season or the whole archive that they rule out is found and
+named. Nothing here depends on a method, and nothing here changes a number: whoever computes leaves
+these tows out of what others share.
+
+The expectation is a Gaussian model with known variances (mean-shift outliers; Cook & Weisberg 1982,
+Residuals and Influence in Regression, 2.2.2): the shift of a group of tows is estimated from all
+other tows, the clearest is taken out, and the rest is judged again without it.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+import polars as pl
+import scipy
+
+from herijk.pipeline.arrays import FloatArray, IntArray
+from herijk.pipeline.assessment.likely_unit import likely_cause
+from herijk.pipeline.assessment.mean_shift import Candidates, Observations, find_shifts
+from herijk.pipeline.assessment.seen import USUAL_BEND, Seen
+from herijk.pipeline.blocks.batch import Batch
+
+LIMIT: Final = 4.5
+"""Standard deviations from which a shift is no chance: one in 300,000, as thousands are tried."""
+
+FEWEST: Final = 3
+"""Tows that a day, a season or an archive needs before it is judged as a whole."""
+
+GROSS: Final = np.log(1.6)
+"""Shift of a logarithm that no boat explains: the widest spread within a type is far less."""
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Standard deviations that one observed quantity has beforehand (inferred).
+
+    Attributes:
+        tow, day, season, archive: of a single tow, and of what those of a group share.
+        boat, boat_type: of what the tows of a boat and crew, or of a type, share.
+        log_alone: of what those of a season without GPS share besides.
+    """
+
+    tow: float
+    day: float
+    season: float
+    archive: float
+    boat: float = 0.0
+    boat_type: float = 0.0
+    log_alone: float = 0.0
+
+
+LEVEL: Final = Spread(
+    tow=0.045, day=0.025, season=0.05, archive=0.20, boat=0.12, boat_type=0.10, log_alone=0.12
+)
+"""Of ln Cw at the declared speed: logs of before 2012 are 6 % wrong, which is 15 % in Cw."""
+BEND: Final = Spread(tow=0.10, day=0.03, season=0.05, archive=0.30, boat=0.20, boat_type=0.10)
+"""Of dlnCw/dlnv: B lies at 1.06 to 1.5 times the hull speed."""
+WIND_AHEAD: Final = Spread(tow=0.06, day=0.03, season=0.05, archive=0.05)
+WIND_ABEAM: Final = Spread(tow=0.06, day=0.03, season=0.05, archive=0.05)
+SPEED: Final = Spread(tow=0.008, day=0.004, season=0.01, archive=0.01)
+
+LEAST: Final = {"force": 0.05, "zero": 0.0, "wind": 0.2, "vane": 0.2, "speed": 0.025}
+"""Sizes that matter, however clear: smaller ones change Cw by less than a tow scatters."""
+
+
+@dataclass(frozen=True)
+class Shift:
+    """A shift that chance does not explain.
+
+    Attributes:
+        kind, key: what shifted: the `tow`, `day`, `season` or `archive`, and which.
+        quantity: `force`, `zero` (of the load cell), `wind` (its speed), `vane` or `speed`.
+        size: of ln force; in N for a zero; relative for the others.
+        sd: its standard deviation; 0 where the samples themselves leave no doubt.
+        tows: the tows in it, sorted.
+        cause: what would do this; empty where nothing known does.
+    """
+
+    kind: str
+    key: str
+    quantity: str
+    size: float
+    sd: float
+    tows: tuple[str, ...]
+    cause: str
+
+    @property
+    def is_gross(self) -> bool:
+        """Whether nothing but a wrong unit, column or file does this."""
+        if self.quantity == "vane":
+            return self.cause != ""
+        if self.quantity == "wind":
+            return self.cause != "" and abs(np.log1p(self.size)) > GROSS
+        return self.quantity == "force" and abs(self.size) > GROSS
+
+
+def implausible(batch: Batch) -> list[Shift]:
+    """Shifts of force, wind and speed that the other tows rule out, the clearest first.
+
+    Args:
+        batch: all tows of the archive with their runs, in one batch.
+    """
+    seen = Seen.of(batch)
+    return [
+        *_in_radians(seen),
+        *_of_force(seen),
+        *_of_one(seen, "wind", seen.wind_ahead, WIND_AHEAD, _GROUPS),
+        *_of_one(seen, "vane", seen.wind_abeam, WIND_ABEAM, _GROUPS),
+        *_of_one(seen, "speed", seen.speed, SPEED, ("tow",)),
+    ]
+
+
+_RADIANS: Final = "radians instead of degrees"
+_GROUPS: Final = ("tow", "day", "season", "archive")
+
+
+def _in_radians(seen: Seen) -> Iterator[Shift]:
+    """Tows whose wind angles are radians; a season, where most of its tows are."""
+    tows, whose = seen.batch.tows["tow_id"].to_numpy(), seen.batch.of_tow("season")
+    for season in seen.batch.seasons:
+        mine = whose == season
+        found = mine & seen.in_radians
+        if found.sum() >= FEWEST and found.sum() > 0.5 * mine.sum():
+            yield Shift("season", str(season), "vane", 1.0, 0.0, tuple(tows[mine]), _RADIANS)
+        else:
+            for tow in tows[found]:
+                yield Shift("tow", str(tow), "vane", 1.0, 0.0, (str(tow),), _RADIANS)
+
+
+# What may have shifted, and how much it scatters by itself
+
+Group = tuple[str, str, IntArray]
+"""Kind, key, and the places of its tows."""
+
+
+def _groups(tows: pl.DataFrame, kinds: tuple[str, ...]) -> list[Group]:
+    """The groups that are judged."""
+    keys = {
+        "tow": tows["tow_id"],
+        "day": tows["tow_date"].cast(pl.String),
+        "season": tows["season"].cast(pl.String),
+        "archive": pl.repeat("", tows.height, eager=True),
+    }
+    return [
+        (kind, str(name), places)
+        for kind in kinds
+        for name, places in _places(keys[kind])
+        if kind == "tow" or len(places) >= FEWEST
+    ]
+
+
+def _places(key: pl.Series) -> Iterator[tuple[str, IntArray]]:
+    names, rank = np.unique(key.to_numpy(), return_inverse=True)
+    order, ends = np.argsort(rank, kind="stable"), np.cumsum(np.bincount(rank))
+    yield from zip(names, np.split(order, ends[:-1]), strict=True)
+
+
+def _effects(tows: pl.DataFrame, spread: Spread) -> tuple[scipy.sparse.csr_array, FloatArray]:
+    """Random effects of tows, shape (tows, effects), and the variance of each."""
+    line = ("fsn_no", "rowers", "crew_class")
+    altered = pl.col("altered").cast(pl.Int32)
+    keyed = tows.with_columns(
+        pl.lit(0).alias("archive"),
+        altered.cum_sum().over(line, order_by=["tow_date", "tow_id"]).alias("state"),
+    )
+    kinds = {
+        ("archive",): spread.archive,
+        ("season",): spread.season,
+        ("log_alone",): spread.log_alone,
+        ("tow_date",): spread.day,
+        ("boat_type",): spread.boat_type,
+        (*line, "state"): spread.boat,
+    }
+    shared, variance = [], []
+    for by, sd in kinds.items():
+        if sd == 0.0 or not set(by) <= set(keyed.columns):
+            continue
+        rank = keyed.select(pl.struct(by).rank("dense")).to_series().to_numpy() - 1
+        of_kind = scipy.sparse.csr_array((np.ones(tows.height), (np.arange(tows.height), rank)))
+        shared.append(of_kind)
+        variance.append(np.full(of_kind.shape[1], sd**2))
+    return scipy.sparse.hstack(shared, format="csr"), np.concatenate(variance)
+
+
+def _of_one(
+    seen: Seen, quantity: str, values: FloatArray, spread: Spread, kinds: tuple[str, ...]
+) -> list[Shift]:
+    """Shifts of one observed quantity."""
+    there = np.isfinite(values)
+    tows = seen.batch.tows.filter(pl.Series(there))
+    if tows.is_empty():
+        return []
+    effects, variance = _effects(tows, spread)
+    observed = Observations(values[there], np.full(tows.height, spread.tow**2), effects, variance)
+    groups = _groups(tows, kinds)
+    columns = [np.where(np.isin(np.arange(tows.height), g[2]), 1.0, 0.0) for g in groups]
+    return _named(tows, observed, [(quantity, g, c) for g, c in zip(groups, columns, strict=True)])
+
+
+def _of_force(seen: Seen) -> list[Shift]:
+    """Shifts of the force's gain, and of its zero, which changes the bend in its own way."""
+    known = np.isfinite(seen.level) & np.isfinite(seen.bend) & (seen.force_n > 0)
+    alone = pl.when(pl.Series(seen.has_gps)).then(0).otherwise("season").alias("log_alone")
+    tows = seen.batch.tows.with_columns(alone).filter(pl.Series(known))
+    if tows.is_empty():
+        return []
+    level, level_variance = _effects(tows, LEVEL)
+    bend, bend_variance = _effects(tows, BEND)
+    noise = np.concatenate(
+        [np.full(tows.height, LEVEL.tow**2), BEND.tow**2 + seen.bend_sd[known] ** 2]
+    )
+    observed = Observations(
+        np.concatenate([seen.level[known], seen.bend[known]]),
+        noise,
+        scipy.sparse.block_diag([level, bend], format="csr"),
+        np.concatenate([level_variance, bend_variance]),
+    )
+    per_newton = 1.0 / seen.force_n[known]
+    columns = []
+    for group in _groups(tows, _GROUPS):
+        mine = np.isin(np.arange(tows.height), group[2]).astype(np.float64)
+        columns.append(("force", group, np.concatenate([mine, np.zeros(tows.height)])))
+        zero = mine * per_newton
+        columns.append(("zero", group, np.concatenate([zero, -(2.0 + USUAL_BEND) * zero])))
+    return _named(tows, observed, columns)
+
+
+def _named(
+    tows: pl.DataFrame, observed: Observations, columns: list[tuple[str, Group, FloatArray]]
+) -> list[Shift]:
+    """The shifts that are found among columns of quantity, group and direction."""
+    directions = scipy.sparse.csc_array(np.column_stack([c for _, _, c in columns]))
+    may = Candidates(
+        directions,
+        np.array([kind == "tow" for _, (kind, _, _), _ in columns]),
+        np.array([LEAST[quantity] for quantity, _, _ in columns]),
+    )
+    found = []
+    for place, size, sd in find_shifts(observed, may, LIMIT):
+        quantity, (kind, key, places), _ = columns[place]
+        ids = tuple(tows["tow_id"].gather(np.sort(places)))
+        cause = likely_cause(quantity, _ln_ratio(quantity, size), sd)
+        found.append(Shift(kind, key, quantity, size, sd, ids, cause))
+    return found
+
+
+def _ln_ratio(quantity: str, size: float) -> float:
+    return float(np.log(max(1.0 + size, 0.01))) if quantity == "wind" else size

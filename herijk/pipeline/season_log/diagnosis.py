@@ -1,0 +1,239 @@
+"""What is wrong with the instruments of each season: one row per season and possible fault.
+
+Every season has them all, dGPS or not: dGPS anchors speed and nothing else. Where a fault cannot be
+told from another, both say so.
+"""
+
+from typing import Final
+
+import numpy as np
+import polars as pl
+import scipy
+
+from herijk.pipeline.arrays import FloatArray
+from herijk.pipeline.season_log.effects import CHANGE, FORCE, LOG, OF_BOATS, ZERO, ZERO_DRIFT
+from herijk.pipeline.season_log.likelihood import LEVEL as LEVEL_NUMBER
+from herijk.pipeline.season_log.network import GROUP, Network
+from herijk.pipeline.season_log.posterior import Posterior, Problem
+
+LEVEL: Final = 0.95
+FOUND: Final = 0.5
+"""A fault of this probability is in the model."""
+POSSIBLE: Final = 0.1
+"""One of this probability cannot be told."""
+ALARM_SD: Final = 4.0
+FAULT: Final = "fault"
+ALARM: Final = "alarm"
+CANNOT_BE_TOLD: Final = "cannot be told"
+NOT_DETERMINED: Final = "not determined"
+FORCES: Final = (FORCE, ZERO, ZERO_DRIFT)
+_VERDICT: Final = ("season", "part", "instrument", "verdict")
+
+STEP_SCHEMA: Final = (
+    {"season": pl.Int32(), "part": pl.Int32(), "log": pl.String(), "n_boats": pl.Int32()}
+    | dict.fromkeys(("level_step", "level_step_sd", "force_step", "force_step_sd"), pl.Float64())
+    | {"cause": pl.String()}
+)
+
+DIAGNOSIS_SCHEMA: Final = {
+    "season": pl.Int32(),
+    "part": pl.Int32(),
+    "instrument": pl.String(),
+    "unit": pl.String(),
+    "estimate": pl.Float64(),
+    "lo": pl.Float64(),
+    "hi": pl.Float64(),
+    "p_fault": pl.Float64(),
+    "distance_sd": pl.Float64(),
+    "verdict": pl.String(),
+    "alarm": pl.Boolean(),
+    "first_tow": pl.String(),
+    "rests_on": pl.String(),
+    "confused_with": pl.String(),
+}
+
+
+def season_diagnosis(problem: Problem, posterior: Posterior, network: Network) -> pl.DataFrame:
+    """The diagnosis of every season.
+
+    Returns:
+        Rows of `DIAGNOSIS_SCHEMA`. `estimate` with its 95 % interval is the logarithm of a factor,
+        or newtons; `p_fault` the probability that there is such a fault, null for what there always
+        is; `distance_sd` how far what is seen lies from what is assumed, in standard deviations;
+        `verdict` is `sound`, `cannot be told`, `fault` or, for the factor of a log, `estimated` or
+        `not determined`; a distance of 4 is an `alarm`. `alarm`: a person should look.
+    """
+    keys: dict[tuple[int, int, str], list[int]] = {}
+    for column, place in enumerate(posterior.places):
+        unknown = problem.unknowns[place]
+        if unknown.season is not None:
+            part = 0 if unknown.group is None else network.groups["part"][unknown.group]
+            keys.setdefault((unknown.season, part, unknown.name), []).append(column)
+    rows = [
+        _row(problem, posterior, network, key, columns) for key, columns in sorted(keys.items())
+    ]
+    return pl.DataFrame(rows, schema=DIAGNOSIS_SCHEMA, orient="row")
+
+
+def season_steps(
+    problem: Problem, posterior: Posterior, network: Network, diagnosis: pl.DataFrame
+) -> pl.DataFrame:
+    """Whether the step of a season against the others comes from the log or from the load cell.
+
+    Returns:
+        Rows of `STEP_SCHEMA`: `level_step`, what log and load cell together do to ln Cw, and
+        `force_step`, the part of the load cell, with standard deviations; `cause` is `force` where
+        a fault of the load cell is likelier than not, `not told` where one cannot be told or the
+        season is not determined, `log` where the level differs by more than twice its standard
+        deviation, else `none`.
+    """
+    names = np.array([problem.unknowns[i].name for i in posterior.places])
+    level = problem.design(posterior.fit.slopes, posterior.places)[:, LEVEL_NUMBER]
+    instruments = np.where(np.isin(names, tuple(OF_BOATS)), 0.0, level)
+    forces = np.where(np.isin(names, FORCES), instruments, 0.0)
+    verdicts = {(r[0], r[1], r[2]): r[3] for r in diagnosis.select(*_VERDICT).iter_rows()}
+    rows = []
+    placed = network.tows.select(GROUP).with_row_index("row")
+    for key, part in placed.group_by(GROUP, maintain_order=True):
+        mine = part["row"].to_numpy()
+        step, step_sd = _mean_effect(posterior, instruments[mine])
+        force, force_sd = _mean_effect(posterior, forces[mine])
+        season = int(str(key[0]))
+        of_force = {verdicts.get((season, 0, name)) for name in FORCES}
+        lost = verdicts.get((season, int(str(key[1])), LOG)) == NOT_DETERMINED
+        rows.append(
+            dict(zip(GROUP, key, strict=True))
+            | {
+                "n_boats": _boats_elsewhere(network, season),
+                "level_step": step,
+                "level_step_sd": step_sd,
+                "force_step": force,
+                "force_step_sd": force_sd,
+                "cause": _cause(of_force, lost, abs(step) > 2.0 * step_sd),
+            }
+        )
+    return pl.DataFrame(rows, schema=STEP_SCHEMA).sort(GROUP)
+
+
+def _mean_effect(posterior: Posterior, effects: FloatArray) -> tuple[float, float]:
+    """Mean over tows of what unknowns do to ln Cw, and its standard deviation."""
+    along = effects.mean(axis=0)
+    variance = max(float(along @ posterior.covariance @ along), 0.0)
+    return float(along @ posterior.mean), float(np.sqrt(variance))
+
+
+def _cause(of_force: set[str | None], lost: bool, steps: bool) -> str:
+    if of_force & {FAULT, ALARM}:
+        return "force"
+    if lost or CANNOT_BE_TOLD in of_force:
+        return "not told"
+    return "log" if steps else "none"
+
+
+def _row(
+    problem: Problem,
+    posterior: Posterior,
+    network: Network,
+    key: tuple[int, int, str],
+    columns: list[int],
+) -> dict[str, object]:
+    """One season and instrument: what all its unknowns add up to."""
+    season, part, name = key
+    k = len(posterior.fit.active)
+    faults = [c - k for c in columns if c >= k]
+    mean = float(posterior.mean[columns].sum())
+    variance = float(posterior.covariance[np.ix_(columns, columns)].sum())
+    half = float(scipy.special.ndtri(0.5 * (1.0 + LEVEL))) * np.sqrt(max(variance, 0.0))
+    chance = min(float(posterior.chance[faults].sum()), 1.0) if faults else None
+    distance = _distance(problem, posterior, columns)
+    verdict = _verdict(network, key, chance, distance)
+    return {
+        "season": season,
+        "part": part,
+        "instrument": name,
+        "unit": "N" if name in (ZERO, ZERO_DRIFT) else "1",
+        "estimate": mean,
+        "lo": mean - half,
+        "hi": mean + half,
+        "p_fault": chance,
+        "distance_sd": distance,
+        "verdict": verdict,
+        "alarm": verdict in (FAULT, ALARM, CANNOT_BE_TOLD),
+        "first_tow": _first_tow(problem, posterior, network, faults, chance),
+        "rests_on": _rests_on(network, season),
+        "confused_with": _confused_with(problem, posterior, faults),
+    }
+
+
+def _distance(problem: Problem, posterior: Posterior, columns: list[int]) -> float | None:
+    """How far what the archive shows of an unknown that there always is lies from its prior."""
+    fit = posterior.fit
+    always = [c for c in columns if c < len(fit.active) and fit.active[c] in problem.always]
+    if not always or problem.unknowns[fit.active[always[0]]].name == LOG:
+        return None
+    prior = problem.unknowns[fit.active[always[0]]].sd ** 2
+    shown = prior - fit.covariance[always[0], always[0]]
+    return float(fit.value[always[0]] / np.sqrt(max(shown, 1e-6 * prior)))
+
+
+def _verdict(
+    network: Network,
+    key: tuple[int, int, str],
+    chance: float | None,
+    distance: float | None,
+) -> str:
+    season, part, name = key
+    if name == LOG:
+        mine = (network.groups["season"] == season) & (network.groups["part"] == part)
+        return "estimated" if network.determined[mine.to_numpy()].all() else NOT_DETERMINED
+    if chance is not None and chance >= FOUND:
+        return FAULT
+    if distance is not None and abs(distance) >= ALARM_SD:
+        return ALARM
+    return CANNOT_BE_TOLD if chance is not None and chance >= POSSIBLE else "sound"
+
+
+def _first_tow(
+    problem: Problem,
+    posterior: Posterior,
+    network: Network,
+    faults: list[int],
+    chance: float | None,
+) -> str | None:
+    """First tow after the likeliest change of a log, where there seems to be one."""
+    changes = [f for f in faults if problem.unknowns[problem.faults[f]].name == CHANGE]
+    if not changes or chance is None or chance < POSSIBLE:
+        return None
+    likeliest = problem.faults[max(changes, key=lambda f: float(posterior.chance[f]))]
+    after = network.tows.filter(pl.Series(problem.unknowns[likeliest].share > 0))
+    return str(after.sort("day", "tow_id")["tow_id"][0])
+
+
+def _boats_elsewhere(network: Network, season: int) -> int:
+    """Boats of a season that were towed in other seasons too."""
+    mine = network.numbers("season") == season
+    return len(set(network.boat[mine].tolist()) & set(network.boat[~mine].tolist()))
+
+
+def _rests_on(network: Network, season: int) -> str:
+    """What tells: repeat boats, plain GPS, dGPS."""
+    mine = network.numbers("season") == season
+    told = [f"{_boats_elsewhere(network, season)} boats towed in other seasons too"]
+    if np.isfinite(network.numbers("gps_ln_ratio")[mine & (network.group >= 0)]).any():
+        told.append("plain GPS")
+    if (network.group[mine] < 0).any():
+        told.append("dGPS")
+    return ", ".join(told)
+
+
+def _confused_with(problem: Problem, posterior: Posterior, faults: list[int]) -> str | None:
+    """Other faults that would explain as much, likeliest first."""
+    chance: FloatArray = posterior.instead[faults].sum(axis=0) + posterior.instead[:, faults].sum(
+        axis=1
+    )
+    named: dict[str, float] = {}
+    for fault, p in zip(problem.faults.tolist(), chance.tolist(), strict=True):
+        other = problem.unknowns[fault]
+        named[f"{other.name} {other.season}"] = named.get(f"{other.name} {other.season}", 0.0) + p
+    likely = sorted((-p, name) for name, p in named.items() if p >= POSSIBLE)
+    return ", ".join(name for _, name in likely) or None

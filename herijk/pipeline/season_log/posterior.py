@@ -1,0 +1,529 @@
+"""All unknowns at once: their posterior, the variances, and which faults there may be.
+
+Given the alterations and faults the model is linear and Gaussian. The unknowns and the variances
+are searched by scoring (REML: Patterson & Thompson 1971; variances with log-normal priors), the
+posterior is Laplace's about the mode. A fault joins or leaves the model by its odds, one at a time;
+the answer is averaged over the best model and all that differ from it by one fault more, one less,
+or one for another (Bayesian model averaging in Occam's window: Madigan & Raftery 1994).
+"""
+
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+import scipy
+
+from herijk.pipeline.arrays import FloatArray, IntArray
+from herijk.pipeline.choice import first_largest
+from herijk.pipeline.season_log.assumed import Settings
+from herijk.pipeline.season_log.effects import WAYS, Slopes, Unknown, slopes, unknowns_of
+from herijk.pipeline.season_log.likelihood import GPS, Patterns, Told, patterns_of, tell
+from herijk.pipeline.season_log.network import Network
+
+MAX_ITERATIONS: Final = 100
+TOLERANCE: Final = 1e-10
+UNTROUBLED: Final = 4
+"""First iterations, in which no boat is taken for altered: logs may be far off yet."""
+LEAST_SD: Final = 0.001
+"""No number of a tow is ever better known: keeps the search finite where all tows agree."""
+NO_ALTERATION: Final = 1e-9
+ACCELERATED: Final = 8
+MODEST: Final = 0.1
+"""Steps are accelerated after so many, when they are no larger than this."""
+REMEMBERED: Final = 5
+"""Steps that the acceleration looks back on."""
+MOST_FAULTS: Final = 12
+WINDOW: Final = 20.0
+"""Models that are so many times less likely than the best are left out (Madigan & Raftery)."""
+ROUGH: Final = 1e-4
+"""Movement at which a fit is good enough to ask which faults there are."""
+NOT_OBSERVED: Final = 1e4
+"""Variance of a number that a tow does not have."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """The tows of an archive as arrays; n tows.
+
+    Attributes:
+        observed: (n, 3) level (less its boat's mean), bend and ln(GPS / log).
+        given: (n, 3, 3) their random covariance.
+        absent: (n, 3, 3) huge variance of numbers that a tow does not have.
+        boat_level: (n,) that mean.
+        q, force_n: (n,) usual bend and force.
+        unknowns: what there always is, then possible faults.
+        share: (n, unknowns) how much of each a tow has.
+        season, era: (n,) index; era -1 for calibrated tows.
+        groups: boats by their number of tows.
+    """
+
+    observed: FloatArray
+    given: FloatArray
+    absent: FloatArray
+    boat_level: FloatArray
+    q: FloatArray
+    force_n: FloatArray
+    unknowns: list[Unknown]
+    share: FloatArray
+    season: IntArray
+    era: IntArray
+    groups: list[Patterns]
+    settings: Settings
+
+    @classmethod
+    def of(cls, network: Network, settings: Settings) -> "Problem":
+        """The problem that a network poses."""
+        level, gps = network.numbers("ln_cw"), network.numbers("gps_ln_ratio")
+        mean = _boat_mean(level, network.boat)
+        has_gps = np.isfinite(gps) & (network.group >= 0)
+        excess = 0.25 * (settings.gps_noise_m_s / network.numbers("declared_speed_m_s")) ** 2
+        cov = network.numbers("ln_cw_q_cov")
+        given = np.zeros((len(level), 3, 3))
+        given[:, 0, 0], given[:, 1, 1] = (network.numbers(n) ** 2 for n in ("ln_cw_sd", "q_sd"))
+        given[:, 0, 1] = given[:, 1, 0] = cov
+        given[:, GPS, GPS] = np.where(has_gps, network.numbers("gps_sd") ** 2, 0.0)
+        given += LEAST_SD**2 * np.eye(3)
+        absent = np.zeros((len(level), 3, 3))
+        absent[:, GPS, GPS] = np.where(has_gps, 0.0, NOT_OBSERVED)
+        unknowns = unknowns_of(network, settings)
+        season = network.numbers("season")
+        era = np.searchsorted(settings.era_starts, season, side="right") - 1
+        return cls(
+            np.stack(
+                [
+                    level - mean,
+                    network.numbers("q"),
+                    np.where(has_gps, gps - excess, 0.0),
+                ],
+                axis=1,
+            ),
+            given,
+            absent,
+            mean,
+            _boat_mean(0.5 * network.numbers("kappa") - 1.0, network.boat),
+            np.exp(level) * network.numbers("declared_speed_m_s") ** 2,
+            unknowns,
+            np.stack([u.share for u in unknowns], axis=1),
+            np.unique(season, return_inverse=True)[1],
+            np.where(network.group >= 0, np.maximum(era, 0), -1),
+            patterns_of(network.boat, settings),
+            settings,
+        )
+
+    @property
+    def always(self) -> IntArray:
+        """Unknowns that there always are."""
+        return np.flatnonzero([u.chance == 1.0 for u in self.unknowns])
+
+    @property
+    def faults(self) -> IntArray:
+        """Unknowns of faults that there may be."""
+        return np.flatnonzero([u.chance < 1.0 for u in self.unknowns])
+
+    def slopes(self, value: FloatArray, active: IntArray) -> tuple[Slopes, FloatArray]:
+        """Slopes and residuals, (n, 3), at values of the active unknowns."""
+        way = np.array([WAYS[self.unknowns[i].name] for i in active])
+        speed = way == "speed"
+        share = self.share[:, active]
+        held = slopes(self.q, self.force_n, share[:, speed] @ value[speed])
+        others = np.where(speed, 0.0, value)
+        return held, self.observed - held.predicted - self.design(held, active) @ others
+
+    def design(self, held: Slopes, chosen: IntArray) -> FloatArray:
+        """Slopes of the numbers by some unknowns, (n, 3, chosen)."""
+        by = np.stack([held.ways[WAYS[self.unknowns[i].name]] for i in chosen], axis=2)
+        return np.asarray(by * self.share[:, None, chosen])
+
+
+def _boat_mean(values: FloatArray, boat: IntArray) -> FloatArray:
+    """Mean over the boat's tows, for each tow."""
+    boats = int(boat.max(initial=-1)) + 1
+    count = np.maximum(np.bincount(boat, minlength=boats), 1)
+    return np.asarray((np.bincount(boat, values, boats) / count)[boat])
+
+
+@dataclass(frozen=True)
+class _State:
+    """What is searched: the active unknowns, ln variances, and the share of alterations."""
+
+    value: FloatArray
+    ln_variance: FloatArray
+    share: float
+
+    @property
+    def array(self) -> FloatArray:
+        return np.concatenate([self.value, self.ln_variance, [scipy.special.logit(self.share)]])
+
+    def of(self, array: FloatArray) -> "_State":
+        k = len(self.value)
+        return _State(array[:k], array[k:-1], float(scipy.special.expit(array[-1])))
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Unknowns and variances at their mode.
+
+    Attributes:
+        active: (k,) unknowns in the model.
+        state: their values, the ln variances (between tows, of bend, of GPS, wander of each era,
+            then the factor of each season) and the share of gaps between tows with an alteration
+            that was not reported.
+        covariance: (k, k) of those.
+        ln_variance_covariance: of the ln variances.
+        told: what the boats say there.
+        slopes: of the numbers of each tow.
+        own: (n, 3, 3) covariance of what is a tow's own.
+        parts: (variances, n, 3, 3) slope of `own` by each ln variance.
+    """
+
+    active: IntArray
+    state: _State
+    covariance: FloatArray
+    ln_variance_covariance: FloatArray
+    told: list[Told]
+    slopes: Slopes
+    own: FloatArray
+    parts: FloatArray
+
+    @property
+    def value(self) -> FloatArray:
+        """Values of the active unknowns, (k,)."""
+        return self.state.value
+
+    def dof(self, direction: FloatArray) -> FloatArray:
+        """Satterthwaite's degrees of freedom of combinations of the active unknowns.
+
+        Args:
+            direction: (combinations, k).
+        """
+        along = direction @ self.covariance
+        by = np.zeros((len(direction), len(self.parts)))
+        for held in self.told:
+            boats, tows = held.patterns.tow.shape
+            moved = held.mean_precision @ held.slope @ along.T
+            moved = moved.reshape(boats, tows, 3, -1)
+            part = self.parts[:, held.patterns.tow]
+            by += np.einsum("btic,abtij,btjc->ca", moved, part, moved, optimize=True)
+        variance = (along * direction).sum(axis=1)
+        spread = np.einsum("ca,ab,cb->c", by, self.ln_variance_covariance, by)
+        return np.asarray(2.0 * variance**2 / np.maximum(spread, 1e-300))
+
+
+def fit(
+    problem: Problem, active: IntArray, start: Fit | None = None, tolerance: float = TOLERANCE
+) -> Fit:
+    """Unknowns and variances with given faults in the model.
+
+    Args:
+        problem: the archive.
+        active: unknowns in the model.
+        start: an earlier fit to begin at.
+        tolerance: movement below which nothing moves any more.
+    """
+    mean = _prior(problem, active)[0]
+    if start is None:
+        prior = _variance_prior(problem)[0]
+        now = _State(mean, prior, problem.settings.changed_share)
+    else:
+        before = dict(zip(start.active.tolist(), start.state.value.tolist(), strict=True))
+        kept = [before.get(i, m) for i, m in zip(active.tolist(), mean.tolist(), strict=True)]
+        now = replace(start.state, value=np.array(kept))
+    places, steps = [now.array], []
+    for iteration in range(MAX_ITERATIONS):
+        untroubled = start is None and iteration < UNTROUBLED
+        found, step = _step(problem, active, now, untroubled)
+        steps.append(step)
+        if np.abs(step).max() < tolerance and not untroubled:
+            break
+        following = _accelerated(places[-1 - REMEMBERED :], steps[-1 - REMEMBERED :])
+        settled = iteration >= ACCELERATED and np.abs(step).max() < MODEST
+        places.append(following if settled else places[-1] + step)
+        now = now.of(places[-1])
+    return found
+
+
+def _step(
+    problem: Problem, active: IntArray, now: _State, untroubled: bool
+) -> tuple[Fit, FloatArray]:
+    """What is known at a state, and the scoring step from there."""
+    mean, precision = _prior(problem, active)
+    prior, prior_precision = _variance_prior(problem)
+    held, residual = problem.slopes(now.value, active)
+    own, parts = _own(problem, held, now.ln_variance)
+    design = problem.design(held, active)
+    share = NO_ALTERATION if untroubled else now.share
+    told = list(tell(problem.groups, residual, own, held.state, design, share))
+    full = np.sum([t.complete_information.sum(axis=0) for t in told], axis=0)
+    seen = np.sum([t.information.sum(axis=0) for t in told], axis=0)
+    covariance: FloatArray = np.linalg.inv(_positive(seen, full, precision)).astype(np.float64)
+    score = np.sum([t.score for t in told], axis=0)
+    step = covariance @ (score - precision * (now.value - mean))
+    slope, fisher = _variance_slopes(told, covariance, parts)
+    fisher += np.diag(prior_precision)
+    ln_variance_covariance: FloatArray = np.linalg.inv(fisher).astype(np.float64)
+    move = ln_variance_covariance @ (slope - prior_precision * (now.ln_variance - prior))
+    gain = scipy.special.logit(_share(told, problem.settings)) - scipy.special.logit(now.share)
+    found = Fit(active, now, covariance, ln_variance_covariance, told, held, own, parts)
+    return found, np.concatenate([step, np.clip(move, -1.0, 1.0), [gain]])
+
+
+def _accelerated(places: list[FloatArray], steps: list[FloatArray]) -> FloatArray:
+    """Next place by Anderson's acceleration (1965) of the last steps."""
+    moved, changed = np.diff(places, axis=0), np.diff(steps, axis=0)
+    if not len(moved):
+        return np.asarray(places[-1] + steps[-1])
+    weight = np.linalg.lstsq(changed.T, steps[-1], rcond=1e-10)[0]
+    return np.asarray(places[-1] + steps[-1] - weight @ (moved + changed))
+
+
+def _prior(problem: Problem, active: IntArray) -> tuple[FloatArray, FloatArray]:
+    chosen = [problem.unknowns[i] for i in active]
+    return np.array([u.mean for u in chosen]), np.array([u.sd for u in chosen]) ** -2.0
+
+
+def _positive(seen: FloatArray, full: FloatArray, precision: FloatArray) -> FloatArray:
+    """Observed information with the prior; that for known alterations where it is no maximum."""
+    normal = seen + np.diag(precision)
+    try:
+        np.linalg.cholesky(normal)
+    except np.linalg.LinAlgError:
+        return full + np.diag(precision)
+    return normal
+
+
+def _variance_prior(problem: Problem) -> tuple[FloatArray, FloatArray]:
+    """Mean and precision of every ln variance."""
+    s = problem.settings
+    eras = [s.wander_sd] * len(s.era_starts)
+    seasons = int(problem.season.max()) + 1
+    mean = np.concatenate(
+        [2.0 * np.log([s.tow_sd, s.bend_sd_tow, s.gps_sd, *eras]), np.zeros(seasons)]
+    )
+    sd = np.concatenate([np.full(3 + len(eras), s.spread), np.full(seasons, s.season_spread)])
+    return mean, sd**-2.0
+
+
+def _own(problem: Problem, held: Slopes, ln_variance: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Covariance of what is a tow's own, (n, 3, 3), and its slopes by each ln variance."""
+    n, eras = len(problem.q), len(problem.settings.era_starts)
+    variance = np.exp(ln_variance)
+    own_factor = variance[3 + eras :][problem.season]
+    parts = np.zeros((len(ln_variance), n, 3, 3))
+    for place in range(3):
+        parts[place, :, place, place] = variance[place]
+    by_speed = held.ways["speed"]
+    for era in range(eras):
+        wander = (problem.era == era)[:, None] * by_speed
+        parts[3 + era] = variance[3 + era] * wander[:, :, None] * wander[:, None, :]
+    parts[: 3 + eras] *= own_factor[:, None, None]
+    own = problem.given * own_factor[:, None, None] + parts[: 3 + eras].sum(axis=0)
+    for season in range(len(ln_variance) - 3 - eras):
+        parts[3 + eras + season] = own * (problem.season == season)[:, None, None]
+    return own + problem.absent, parts
+
+
+def _variance_slopes(
+    told: list[Told], covariance: FloatArray, parts: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Slope of the restricted ln likelihood by the ln variances, and their information."""
+    slope, fisher = np.zeros(len(parts)), np.zeros((len(parts), len(parts)))
+    for t in told:
+        boats, tows = t.patterns.tow.shape
+        design = t.mean_precision @ t.slope
+        excess = np.einsum("bp,bpi,bpj->bij", t.weight, t.pull, t.pull) - t.mean_precision
+        excess += design @ covariance @ np.swapaxes(design, 1, 2)
+        each = np.arange(tows)
+        blocks = excess.reshape(boats, tows, 3, tows, 3)[:, each, :, each, :]
+        part = parts[:, t.patterns.tow]
+        slope += 0.5 * np.einsum("tbij,abtji->a", blocks, part, optimize=True)
+        precision = t.mean_precision.reshape(boats, tows, 3, tows, 3)
+        across = np.einsum("bkilj,abljm->abkilm", precision, part, optimize=True)
+        turned = np.ascontiguousarray(across.transpose(0, 1, 4, 5, 2, 3)).reshape(len(parts), -1)
+        fisher += 0.5 * across.reshape(len(parts), -1) @ turned.T
+    return slope, fisher
+
+
+def _share(told: list[Told], settings: Settings) -> float:
+    """Share of gaps with an alteration: those found and those held of it beforehand."""
+    found, gaps = settings.changed_share * settings.changed_gaps, settings.changed_gaps
+    for t in told:
+        found += float((t.weight @ t.patterns.steps).sum())
+        gaps += t.patterns.tow.size - len(t.patterns.tow)
+    return found / gaps
+
+
+@dataclass(frozen=True)
+class Posterior:
+    """What is known of all unknowns, averaged over the faults that there may be.
+
+    Attributes:
+        fit: with the faults that are likelier than not.
+        places: (k + faults,) index of each unknown below: those of the fit, then every fault.
+        mean, covariance: of their values; a fault that is not there is 0.
+        chance: (faults,) probability of each fault, in the order of `Problem.faults`.
+        instead: (faults, faults) probability that the one is there and would have been taken for
+            the other: what it could be confused with.
+    """
+
+    fit: Fit
+    places: IntArray
+    mean: FloatArray
+    covariance: FloatArray
+    chance: FloatArray
+    instead: FloatArray
+
+
+def solve(problem: Problem) -> Posterior:
+    """The posterior of everything, with the faults that the archive shows."""
+    active = problem.always
+    found = fit(problem, active, tolerance=ROUGH)
+    for _ in range(2 * MOST_FAULTS):
+        chosen = _better(problem, found)
+        if chosen is None:
+            break
+        found = fit(problem, chosen, found, ROUGH)
+    return _averaged(problem, fit(problem, found.active, found))
+
+
+@dataclass(frozen=True)
+class _More:
+    """What one more fault would do to a fit: `ln_odds` of it, its value and variance, (faults,).
+
+    `shift` (k, faults) is how much the unknowns of the fit fall per unit of the fault.
+    """
+
+    ln_odds: FloatArray
+    value: FloatArray
+    variance: FloatArray
+    shift: FloatArray
+
+
+def _candidates(problem: Problem, found: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Information of every fault with the fit's unknowns and itself, and its score."""
+    design = problem.design(found.slopes, problem.faults)
+    across = np.zeros((len(found.active), len(problem.faults)))
+    itself, score = np.zeros(len(problem.faults)), np.zeros(len(problem.faults))
+    for t in found.told:
+        boats, n = t.mean_pull.shape
+        by = design[t.patterns.tow].reshape(boats, n, -1)
+        off = t.pull - t.mean_pull[:, None]
+        seen = t.mean_precision - np.einsum("bp,bpi,bpj->bij", t.weight, off, off)
+        weighted = seen @ by
+        across += np.einsum("bik,bif->kf", t.slope, weighted, optimize=True)
+        itself += (by * weighted).sum(axis=(0, 1))
+        score += np.einsum("bi,bif->f", t.mean_pull, by, optimize=True)
+    return across, itself, score
+
+
+def _more(
+    problem: Problem,
+    candidates: tuple[FloatArray, FloatArray, FloatArray],
+    covariance: FloatArray,
+    away: FloatArray,
+) -> _More:
+    """Every fault added to a normal posterior whose mean is `away` from the fit's."""
+    across, itself, score = candidates
+    held = [problem.unknowns[i] for i in problem.faults]
+    prior = np.array([u.sd for u in held]) ** 2
+    chance = np.array([u.chance for u in held])
+    shift = covariance @ across
+    information = np.maximum(itself - (across * shift).sum(axis=0), 0.0)
+    pull = score - across.T @ away
+    variance = prior / (1.0 + prior * information)
+    ln_odds = 0.5 * (pull**2 * variance + np.log(variance / prior))
+    ln_odds += np.log(chance / (1.0 - chance))
+    return _More(ln_odds, variance * pull, variance, shift)
+
+
+def _in_fit(problem: Problem, found: Fit) -> tuple[IntArray, FloatArray]:
+    """Faults in the fit, as places among its unknowns, and their ln odds (Savage-Dickey)."""
+    places = np.flatnonzero(np.isin(found.active, problem.faults))
+    held = [problem.unknowns[i] for i in found.active[places]]
+    variance = np.diag(found.covariance)[places]
+    square = found.value[places] ** 2 / variance
+    prior = np.array([u.sd for u in held]) ** 2
+    chance = np.array([u.chance for u in held])
+    ln_odds = 0.5 * (square + np.log(variance / prior)) + np.log(chance / (1.0 - chance))
+    return places, ln_odds
+
+
+def _better(problem: Problem, found: Fit) -> IntArray | None:
+    """The unknowns with the fault that is missed most, or without the one that is not needed."""
+    places, ln_odds = _in_fit(problem, found)
+    if len(places) and ln_odds.min() < 0.0:
+        return np.delete(found.active, places[int(ln_odds.argmin())])
+    if len(places) == MOST_FAULTS:
+        return None
+    nothing = np.zeros(len(found.active))
+    more = _more(problem, _candidates(problem, found), found.covariance, nothing).ln_odds
+    more[np.isin(problem.faults, found.active)] = -np.inf
+    best = int(first_largest(more))
+    return np.append(found.active, problem.faults[best]) if more[best] > 0.0 else None
+
+
+def _in_window(problem: Problem, weight: FloatArray) -> FloatArray:
+    """Weights of the models in Occam's window, 1 together.
+
+    A fault that is twenty times less likely than the best model lies in the tails that an interval
+    of 95 % leaves out. All places where one log may have changed count as one.
+    """
+    held = [problem.unknowns[i] for i in problem.faults]
+    names = [(u.name, u.season, u.group) for u in held]
+    kinds = {name: number for number, name in enumerate(dict.fromkeys(names))}
+    kind = np.array([kinds[name] for name in names], dtype=np.int64)
+    together = np.stack([np.bincount(kind, row[:-1], len(kinds))[kind] for row in weight])
+    kept = weight.copy()
+    kept[:, :-1][together * WINDOW < weight.max()] = 0.0
+    return np.asarray(kept / kept.sum())
+
+
+def _averaged(problem: Problem, found: Fit) -> Posterior:
+    """Averages over the fit and all models that differ by one fault more, less, or for another."""
+    candidates = _candidates(problem, found)
+    k, faults = len(found.active), len(problem.faults)
+    places, ln_odds = _in_fit(problem, found)
+    own = [int(np.flatnonzero(problem.faults == found.active[p])[0]) for p in places]
+    bases = [(0.0, -1, found.covariance, np.zeros(k))]
+    for place, odds in zip(places.tolist(), ln_odds.tolist(), strict=True):
+        along = found.covariance[:, place] / found.covariance[place, place]
+        without = found.covariance - np.outer(along, found.covariance[place])
+        bases.append((-odds, place, without, -along * found.value[place]))
+    ln_weight, models = [], []
+    for ln_base, _, covariance, away in bases:
+        more = _more(problem, candidates, covariance, away)
+        more.ln_odds[own] = -np.inf
+        ln_weight.append(np.append(ln_base + more.ln_odds, ln_base))
+        models.append(more)
+    all_weight = np.exp(np.array(ln_weight) - np.max(ln_weight))
+    all_weight /= all_weight.sum()
+    weight = _in_window(problem, all_weight)
+    mean, second = np.zeros(k + faults), np.zeros((k + faults, k + faults))
+    chance, instead = np.zeros(faults), np.zeros((faults, faults))
+    for w, all_w, more, (_, place, covariance, away) in zip(
+        weight, all_weight, models, bases, strict=True
+    ):
+        centre = np.append(found.value + away, np.zeros(faults))
+        spread = np.zeros_like(second)
+        spread[:k, :k] = covariance
+        # Column f of `way` is how all unknowns move with fault f.
+        way = np.vstack([-more.shift, np.eye(faults)])
+        step = w[:-1] * more.value
+        total = w.sum() * centre + way @ step
+        square = way * (w[:-1] * (more.variance + more.value**2)) @ way.T
+        cross = np.outer(centre, way @ step)
+        mean += total
+        second += w.sum() * (spread + np.outer(centre, centre)) + square + cross + cross.T
+        chance += all_w[:-1]
+        for p, fault in zip(places.tolist(), own, strict=True):
+            if p != place:
+                chance[fault] += all_w.sum()
+            else:
+                instead[fault] += all_w[:-1]
+    return Posterior(
+        found,
+        np.append(found.active, problem.faults),
+        mean,
+        second - np.outer(mean, mean),
+        chance,
+        instead,
+    )

@@ -1,0 +1,201 @@
+"""What the posterior says of single tows: instrument errors, and the boat's best estimate.
+
+The measurand is ln Cw of the hull at its reference speed on the day of the tow. As measured, a tow
+stands alone with the corrections of its instruments; the best estimate adds what the boat's other
+tows say. Its weights on the boat's tows sum to 1: the boat's level is its own.
+"""
+
+from typing import Final
+
+import numpy as np
+import polars as pl
+import scipy
+
+from herijk.pipeline.arrays import BoolArray, FloatArray
+from herijk.pipeline.season_log.effects import FORCE, OF_BOATS, WAYS, ZERO, ZERO_DRIFT, slopes
+from herijk.pipeline.season_log.likelihood import LEVEL, Told
+from herijk.pipeline.season_log.network import Network
+from herijk.pipeline.season_log.posterior import Posterior, Problem
+
+LEVEL_OF_INTERVALS: Final = 0.95
+BISECTIONS: Final = 40
+FARTHEST_SD: Final = 12.0
+LEAST_WEIGHT: Final = 0.005
+"""A smaller share of what an estimate rests on is left out of the list."""
+
+
+def instrument_errors(problem: Problem, posterior: Posterior, network: Network) -> pl.DataFrame:
+    """What the instruments did to each tow.
+
+    A fault of the load cell counts from where it is likelier than not; what is less likely is in
+    the uncertainty alone.
+
+    Returns:
+        `tow_id, log`, `factor` of the log (null where the season is not determined; 1 with dGPS),
+        `force_factor` and `force_zero_n` of the load cell: read = true x factor + zero; `bend`, q
+        of the boat; `ln_sd` and `dof` of what all of them do to ln Cw, per unit of the elasticity
+        2 + 2 q. In the order of the network.
+    """
+    design, of_boats, speed = _design(problem, posterior)
+    level = np.where(of_boats, 0.0, design[:, LEVEL])
+    share = problem.share[:, posterior.places]
+    names = np.array([problem.unknowns[i].name for i in posterior.places])
+    found = np.isin(posterior.places, posterior.fit.active) & np.isin(
+        posterior.places, problem.faults
+    )
+    k = len(posterior.fit.active)
+    found[k:] = False
+    force, zero = found & (names == FORCE), found & np.isin(names, (ZERO, ZERO_DRIFT))
+    variance = np.maximum(((level @ posterior.covariance) * level).sum(axis=1), 0.0)
+    loose = network.group >= 0
+    determined = ~loose
+    determined[loose] = network.determined[network.group[loose]]
+    known = np.sqrt(variance) / (2.0 + 2.0 * problem.q)
+    return network.tows.select(
+        "tow_id",
+        "log",
+        _where(determined, "factor", np.exp(share[:, speed] @ posterior.mean[speed])),
+        pl.Series("force_factor", np.exp(share[:, force] @ posterior.mean[force])),
+        pl.Series("force_zero_n", share[:, zero] @ posterior.mean[zero]),
+        pl.Series("bend", problem.q),
+        pl.Series("ln_sd", np.where(determined, known, problem.settings.log_sd)),
+        pl.Series("dof", posterior.fit.dof(level[:, :k])),
+    )
+
+
+def _where(known: BoolArray, name: str, values: FloatArray) -> pl.Series:
+    """A column of numbers, null where not known."""
+    return pl.Series(name, np.where(known, values, np.nan)).fill_nan(None)
+
+
+def best_estimates(
+    problem: Problem, posterior: Posterior, network: Network
+) -> tuple[pl.DataFrame, pl.DataFrame]:
+    """What all tows of a boat, and all boats, say of ln Cw at each tow.
+
+    Returns:
+        `tow_id, as_measured, ln_cw, sd, lo, hi` (95 %), in the order of the network: ln Cw by the
+        tow alone with the corrections of `instrument_errors`, then by all; and the shares
+        `tow_id, rests_on, weight` that sum to 1 per tow.
+    """
+    design, of_boats, _ = _design(problem, posterior)
+    true_level = np.where(of_boats, design[:, LEVEL], 0.0)
+    away = posterior.mean.copy()
+    away[: len(posterior.fit.value)] -= posterior.fit.value
+    numbers = np.zeros((len(problem.q), 4))
+    shares = []
+    for held in posterior.fit.told:
+        found = _of_boats(held, posterior, (design, true_level, away))
+        numbers[held.patterns.tow] = found[0]
+        tows = held.patterns.tow.shape[1]
+        shares.append(
+            pl.DataFrame(
+                {
+                    "tow": np.repeat(held.patterns.tow, tows, axis=1).ravel(),
+                    "other": np.tile(held.patterns.tow, (1, tows)).ravel(),
+                    "weight": found[1].ravel(),
+                }
+            )
+        )
+    base = problem.boat_level + true_level @ np.append(
+        posterior.fit.value, np.zeros(len(away) - len(posterior.fit.value))
+    )
+    ln_cw, sd, lo, hi = numbers.T
+    names = network.tows["tow_id"]
+    loose = network.group >= 0
+    lost = np.zeros(len(loose), dtype=bool)
+    lost[loose] = ~network.determined[network.group[loose]]
+    lost_tows = np.flatnonzero(lost)
+    weights = (
+        pl.concat(shares)
+        .with_columns(
+            pl.when(pl.col("tow").is_in(lost_tows.tolist()))
+            .then((pl.col("tow") == pl.col("other")).cast(pl.Float64))
+            .otherwise("weight")
+            .alias("weight")
+        )
+        .filter(pl.col("weight").abs() >= LEAST_WEIGHT)
+        .sort("tow", "other")
+        .select(
+            "tow",
+            "other",
+            pl.col("weight") / pl.col("weight").sum().over("tow"),
+        )
+    )
+    return (
+        network.tows.select(
+            "tow_id",
+            pl.Series("as_measured", _as_measured(problem, posterior, network)),
+            pl.Series("ln_cw", base + ln_cw),
+            pl.Series("sd", sd),
+            pl.Series("lo", base + lo),
+            pl.Series("hi", base + hi),
+        ),
+        weights.select(
+            tow_id=names.gather(weights["tow"]),
+            rests_on=names.gather(weights["other"]),
+            weight=weights["weight"],
+        ),
+    )
+
+
+def _as_measured(problem: Problem, posterior: Posterior, network: Network) -> FloatArray:
+    """Ln Cw of each tow alone, with its instruments corrected as `instrument_errors` says."""
+    found = instrument_errors(problem, posterior, network)
+    factor, scale, zero = (
+        found[name].fill_null(1.0).to_numpy() for name in ("factor", "force_factor", "force_zero_n")
+    )
+    by_log = slopes(problem.q, problem.force_n, np.log(factor)).predicted[:, LEVEL]
+    by_force = np.log(scale) - np.log1p(-zero / problem.force_n)
+    return np.asarray(network.numbers("ln_cw") - by_log - by_force)
+
+
+def _design(problem: Problem, posterior: Posterior) -> tuple[FloatArray, BoolArray, BoolArray]:
+    """Slopes of each tow's numbers by all unknowns; which are of boats, which of the log."""
+    names = [problem.unknowns[i].name for i in posterior.places]
+    design = problem.design(posterior.fit.slopes, posterior.places)
+    of_boats = np.array([name in OF_BOATS for name in names])
+    return design, of_boats, np.array([WAYS[name] == "speed" for name in names])
+
+
+def _of_boats(
+    held: Told,
+    posterior: Posterior,
+    given: tuple[FloatArray, FloatArray, FloatArray],
+) -> tuple[FloatArray, FloatArray]:
+    """Boats with the same number of tows: (boats, tows, 4) numbers, (boats, tows, tows) shares."""
+    design, true_level, away = given
+    tow = held.patterns.tow
+    boats, tows = tow.shape
+    state = posterior.fit.slopes.state[tow][..., 0]
+    # Covariance of the level at each tow with every number of the boat, per pattern.
+    with_level = np.einsum("pkl,bli->bpkli", held.patterns.level, state)
+    with_level = with_level.reshape(boats, -1, tows, 3 * tows)
+    gain = with_level @ held.precision
+    prior = np.einsum("pkk->pk", held.patterns.level)
+    variance = prior - (gain * with_level).sum(axis=3)
+    by = true_level[tow][:, None] - gain @ design[tow].reshape(boats, 1, 3 * tows, -1)
+    mean = np.einsum("bpkn,bpn->bpk", with_level, held.pull) + by @ away
+    shared = np.einsum("bpkf,fg,bpkg->bpk", by, posterior.covariance, by, optimize=True)
+    variance = np.maximum(variance + shared, 1e-12)
+    weight = np.repeat(held.weight[:, :, None], tows, axis=2)
+    average = (weight * mean).sum(axis=1)
+    spread = (weight * (variance + (mean - average[:, None]) ** 2)).sum(axis=1)
+    bounds = _quantiles(weight, mean, np.sqrt(variance))
+    numbers = np.stack([average, np.sqrt(spread), *bounds], axis=2)
+    on_level = gain.reshape(boats, -1, tows, tows, 3)[..., LEVEL]
+    return numbers, np.einsum("bp,bpkl->bkl", held.weight, on_level)
+
+
+def _quantiles(weight: FloatArray, mean: FloatArray, sd: FloatArray) -> list[FloatArray]:
+    """Bounds of the 95 % interval of normal mixtures over axis 1, by bisection."""
+    bounds = []
+    for level in (0.5 - LEVEL_OF_INTERVALS / 2, 0.5 + LEVEL_OF_INTERVALS / 2):
+        low = (mean - FARTHEST_SD * sd).min(axis=1)
+        high = (mean + FARTHEST_SD * sd).max(axis=1)
+        for _ in range(BISECTIONS):
+            middle = 0.5 * (low + high)
+            below = (weight * scipy.special.ndtr((middle[:, None] - mean) / sd)).sum(axis=1)
+            low, high = np.where(below < level, middle, low), np.where(below < level, high, middle)
+        bounds.append(0.5 * (low + high))
+    return bounds

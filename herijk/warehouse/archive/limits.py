@@ -1,0 +1,54 @@
+"""How large a file of the archive may be: so that no reader takes more than a gigabyte.
+
+A small file can unpack to a large one, and a large header or footer can ask for more than the rest
+of it. Everything larger is set aside with `too_large`.
+"""
+
+from typing import Final
+
+from herijk.pipeline.errors import DefectiveInputError
+
+LIST_MAX_BYTES: Final = 20_000_000
+SAMPLES_MAX_BYTES: Final = 250_000_000
+"""Of a file, unpacked; one tow of six runs at 1000 Hz is 12 MB."""
+
+MOST_ROWS: Final = 3_000_000
+"""Ten times the samples of a tow."""
+
+LONGEST_HEADER: Final = 20_000
+MOST_COLUMNS: Final = 500
+
+
+def check_rows(data: bytes) -> None:
+    """Refuses a text with too many lines, before they are taken apart.
+
+    Raises:
+        DefectiveInputError: `too_large`.
+    """
+    rows = data.count(b"\n")
+    if rows > MOST_ROWS:
+        raise too_many_rows(rows)
+
+
+def too_many_rows(rows: int) -> DefectiveInputError:
+    """The error for a file with more rows than a tow can have."""
+    return DefectiveInputError(
+        "too_large",
+        f"The file has {rows} rows or more; at most {MOST_ROWS} can be right, and a tow of six "
+        "runs at 1000 Hz has 300000.",
+    )
+
+
+def check_header(line: str, columns: int) -> None:
+    """Refuses a header that is none.
+
+    Raises:
+        DefectiveInputError: `too_large`.
+    """
+    if len(line) > LONGEST_HEADER or columns > MOST_COLUMNS:
+        raise DefectiveInputError(
+            "too_large",
+            f"The header has {columns} columns in {len(line)} letters; at most {MOST_COLUMNS} in "
+            f"{LONGEST_HEADER} can be right.",
+            line=1,
+        )

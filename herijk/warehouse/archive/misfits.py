@@ -1,0 +1,29 @@
+"""Rows that a declared table does not allow, each with a sentence that says why."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import dataframely as dy
+import polars as pl
+
+from herijk.tables.frames import limits
+from herijk.warehouse.archive.messages import Sentence, say
+
+
+def misfits(
+    table: type[dy.Schema], frame: pl.DataFrame
+) -> Iterator[tuple[Mapping[str, Any], Sentence]]:
+    """Yield each row outside the declared limits, with the first limit that it breaks."""
+    _, failure = table.filter(frame)
+    for row in failure.details().iter_rows(named=True):
+        broken = next(name for name, state in row.items() if state == "invalid")
+        yield row, _why(table, row, *broken.split("|"))
+
+
+def _why(table: type[dy.Schema], row: Mapping[str, Any], column: str, rule: str) -> Sentence:
+    named = {"column": column, "cell": row[column]}
+    if rule not in {"min", "max"}:
+        return say("column '{column}' is '{cell}', which cannot be right.", **named)
+    low, high = limits(table, column)
+    message = "column '{column}' is {cell}; {low} to {high} can be right."
+    return say(message, **named, low=low, high=high)

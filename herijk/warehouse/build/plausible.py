@@ -1,0 +1,96 @@
+"""Tows that the rest of the archive rules out: set aside, or doubted.
+
+What is judged, and how, stands in `pipeline.assessment.plausibility`. A wrong unit costs the tow,
+or the season, as any fault of a file does. A smaller shift keeps its tow, which then needs a look
+and takes no part in what tows share.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import Final
+
+import polars as pl
+
+from herijk.pipeline.assessment.plausibility import Shift, implausible
+from herijk.pipeline.blocks.batch import Batch
+from herijk.pipeline.blocks.run_blocks import stack_blocks
+from herijk.tables.lake import Faults
+
+_FAULTS: Final = {name: column.dtype for name, column in Faults.columns().items()}
+
+_CODES: Final = {
+    "force": "force_not_plausible",
+    "zero": "force_not_plausible",
+    "wind": "wind_not_plausible",
+    "vane": "wind_not_plausible",
+    "speed": "speed_not_plausible",
+}
+"""Reason code of a tow set aside, and check of one that is doubted."""
+
+
+def judge(tows: pl.DataFrame, runs: pl.DataFrame, blocks: pl.DataFrame) -> list[Shift]:
+    """The shifts of an archive's tows.
+
+    Args:
+        tows: rows of `tows` with `boat_type`.
+        runs: their rows of `tow_runs`.
+        blocks: blocks of at least these.
+    """
+    if tows.is_empty():
+        return []
+    return implausible(Batch.of(tows, stack_blocks(blocks, runs)))
+
+
+def gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> pl.DataFrame:
+    """A fault of every tow that a wrong unit, column or file costs, each once."""
+    sentences = {
+        tow: (_CODES[shift.quantity], _sentence(shift))
+        for shift in reversed(shifts)
+        if shift.is_gross
+        for tow in shift.tows
+    }
+    rows = [
+        (path, tow, None, *sentences[tow])
+        for path, tow in tows.select("samples_path", "tow_id").iter_rows()
+        if tow in sentences
+    ]
+    return pl.DataFrame(rows, schema=_FAULTS, orient="row")
+
+
+def with_doubts(tows: pl.DataFrame, shifts: Sequence[Shift]) -> pl.DataFrame:
+    """The tows with `doubts`: the checks by which the rest of the archive rules them out."""
+    codes = {
+        tow: sorted({_CODES[s.quantity] for s in shifts if tow in s.tows}) for tow in tows["tow_id"]
+    }
+    return tows.with_columns(pl.Series("doubts", list(codes.values()), pl.List(pl.String)))
+
+
+def _sentence(shift: Shift) -> str:
+    """What is seen, what it may be, and what to do, for a volunteer."""
+    whose = {
+        "tow": "This tow",
+        "day": f"All {len(shift.tows)} tows of {shift.key}",
+        "season": f"All {len(shift.tows)} tows of season {shift.key}",
+        "archive": "All tows of the archive",
+    }[shift.kind]
+    return f"{whose}: {_seen(shift)}. {_way_out(shift)}"
+
+
+def _seen(shift: Shift) -> str:
+    if shift.quantity == "force":
+        return (
+            f"the force is {math.exp(shift.size):.2g} times what the size of the boat and the "
+            "other tows give"
+        )
+    if shift.quantity == "wind":
+        return (
+            f"the wind is {1.0 + shift.size:.2g} times what out and back together give, which is "
+            "the boat's own speed"
+        )
+    return "all wind angles lie between -3.14 and 6.28, as angles in radians do"
+
+
+def _way_out(shift: Shift) -> str:
+    if not shift.cause:
+        return "Look whether these are this boat's samples, and what the load cell was set to."
+    return f"It looks like {shift.cause}: correct the unit in the header, or the scale."

@@ -1,0 +1,182 @@
+"""What an owner asks of a line: old and new number, why, how sure, and where that leaves the boat.
+
+Joins the tables and `pipeline.register.changes`; computes nothing else. Words are in `dashboards`.
+"""
+
+from typing import Final
+
+import polars as pl
+
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.register.changes import register_changes, side_by_side, steps_of_lines
+from herijk.pipeline.register.register import LINE, draft_name
+from herijk.pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
+from herijk.warehouse.build.studies import STUDIED_METHOD
+from herijk.warehouse.queries.views import Views
+from herijk.warehouse.store.editions import read_edition
+from herijk.warehouse.store.ensemble import read_ensemble
+
+PAIR: Final = ("from_edition", "to_edition")
+DRAFT: Final = "concept-"
+
+
+def newest_edition(editions: list[str], default: str) -> str:
+    """The last published edition, or this draft where none is published."""
+    return next((e for e in reversed(editions) if not e.startswith(DRAFT)), default)
+
+
+def current_edition(views: Views) -> str:
+    """The edition that people ask about: the newest that is published, or the best draft."""
+    editions = views.table("register")["edition"].unique().sort().to_list()
+    return newest_edition(editions, draft_name(STUDIED_METHOD))
+
+
+def line_changes(views: Views) -> pl.DataFrame:
+    """Every pair of lines that is compared: `register_changes`, with both numbers beside it.
+
+    Returns:
+        Columns of `register_changes` and `side_by_side`, the boat's `name` and `boat_type`; causes
+        of a draft's change by step.
+    """
+    register = views.table("register")
+    changes = views.table("register_changes")
+    found = [
+        _pair(views, register, changes.filter(from_edition=old, to_edition=new))
+        for old, new in changes.select(PAIR).unique().sort(PAIR).rows()
+    ]
+    if not found:
+        return changes
+    names = views.table("boats").select("fsn_no", "name", "boat_type")
+    return pl.concat(found).join(names, on="fsn_no", how="left", maintain_order="left")
+
+
+def compared(views: Views, old: str, new: str) -> pl.DataFrame:
+    """Any two editions or drafts side by side, as `line_changes` has those that are kept.
+
+    Raises:
+        MissingKnowledgeError: there is no such edition or draft.
+    """
+    register = views.table("register")
+    before, after = (register.filter(edition=edition) for edition in (old, new))
+    for edition, side in ((old, before), (new, after)):
+        if side.is_empty():
+            known = ", ".join(register["edition"].unique().sort())
+            raise MissingKnowledgeError(f"there is no edition {edition}; there are {known}")
+    names = views.table("boats").select("fsn_no", "name", "boat_type")
+    steps = steps_of_lines(after, _steps(views, before, after))
+    found = _side_by_side(before, after, register_changes(before, after, steps))
+    return found.join(names, on="fsn_no", how="left", maintain_order="left")
+
+
+def _pair(views: Views, register: pl.DataFrame, changes: pl.DataFrame) -> pl.DataFrame:
+    """The changes between two editions with both sides."""
+    old, new = (register.filter(pl.col("edition") == changes[side][0]) for side in PAIR)
+    if changes["to_edition"][0].startswith(DRAFT):
+        changes = register_changes(old, new, steps_of_lines(new, _steps(views, old, new)))
+    return _side_by_side(old, new, changes)
+
+
+def _side_by_side(old: pl.DataFrame, new: pl.DataFrame, changes: pl.DataFrame) -> pl.DataFrame:
+    sides = side_by_side(old, new).rename({f"{s}_rank": f"{s}_speed_rank" for s in ("old", "new")})
+    return changes.join(sides, on=LINE, how="left", maintain_order="left")
+
+
+def _steps(views: Views, old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
+    """What each step does to a tow, from the method of one register to that of the other."""
+    methods = {"from_method": old["method"][0], "to_method": new["method"][0]}
+    same = old.join(new, on=[*LINE, "tow_id"], how="semi").select("tow_id")
+    steps = views.table("correction_steps").filter(**methods).join(same, on="tow_id", how="semi")
+    return steps.filter(pl.col("position") > 0)
+
+
+def answers(views: Views, edition: str) -> pl.DataFrame:
+    """Every line of an edition with what there is to say of it.
+
+    Returns:
+        Rows of `register` of that edition with the columns of `line_changes` where it is compared
+        with another; `old_type_place`, `new_type_place` and `type_size` among boats of its type
+        and class; `old_log_known` and `new_log_known`: whether the interval holds the error of the
+        log; what `due_list` says of the next tow; and what the tow weighed and measured.
+    """
+    changes = line_changes(views).filter(to_edition=edition)
+    lines = views.register().filter(edition=edition)
+    compared = changes.drop("name", "boat_type", "to_edition", strict=False)
+    known = views.table("methods").select("method", log_known=pl.col("interval") == "complete")
+    tows = views.table("tows")
+    methods = dict(views.table("register").select("edition", "method").unique().rows())
+    due = views.table("due_list").select(
+        "method", *LINE, "tow_speed_m_s", "speed_reason", "as_of",
+        next_before="valid_until",
+    )  # fmt: skip
+    sizes = ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg", "empty_thwart")
+    found = (
+        lines.join(compared, on=LINE, how="left", maintain_order="left")
+        .with_columns(old_method=pl.col("from_edition").replace(methods))
+        .join(tows.select("tow_id", *sizes), on="tow_id", how="left", maintain_order="left")
+        .join(due, on=["method", *LINE], how="left", maintain_order="left")
+    )
+    for side, method in (("old", "old_method"), ("new", "method")):
+        mine = known.rename({"method": method, "log_known": f"{side}_log_known"})
+        found = found.join(mine, on=method, how="left", maintain_order="left")
+    return _with_places(found)
+
+
+def _with_places(lines: pl.DataFrame) -> pl.DataFrame:
+    """With the place of each line among the boats of its type and class."""
+    like = ("boat_type", "crew_class")
+    places = (
+        pl.col(f"{side}_speed_rank")
+        .rank("min")
+        .over(like)
+        .cast(pl.Int32)
+        .alias(f"{side}_type_place")
+        for side in ("old", "new")
+    )
+    return lines.with_columns(
+        *places, pl.col("new_speed_rank").count().over(like).cast(pl.Int32).alias("type_size")
+    )
+
+
+def own_races(views: Views, old: str | None, edition: str) -> pl.DataFrame:
+    """Results of races under two editions, with how many took part in race and class."""
+    races = views.races().filter(from_edition=old or "", to_edition=edition)
+    size = pl.len().over("race", "race_date", "crew_class").alias("race_size")
+    return races.with_columns(size)
+
+
+def race_chances(views: Views, old: str, new: str) -> dict[tuple[str, str], float | None]:
+    """How likely it is that another crew wins under the new edition, by race and class.
+
+    Returns:
+        By race with its day, and class; None where the new register has no ensemble.
+    """
+    winners, _ = replayed(views, old, new)
+    return {
+        (f"{race} {day}", crew_class): chance
+        for race, day, crew_class, chance in winners.select(
+            "race", "race_date", "crew_class", "change_probability"
+        ).rows()
+    }
+
+
+def replayed(views: Views, old: str, new: str) -> tuple[pl.DataFrame, tuple[int, int]]:
+    """Who wins the archive's races under two editions, and how many results change place.
+
+    Returns:
+        Rows of `pipeline.register.replay.winner_changes`; results that change place, and all.
+    """
+    register, results = views.table("register"), views.store.read("listed_races")
+    lines = register.filter(edition=new)
+    before, after = (
+        replay(register.filter(edition=edition), results, RaceRules()) for edition in (old, new)
+    )
+    moved = race_changes(before, after).filter(pl.col("old_rank").ne_missing(pl.col("new_rank")))
+    members = _members(views, new, lines["method"][0])
+    return winner_changes(before, after, lines, members), (moved.height, results.height)
+
+
+def _members(views: Views, edition: str, method: str) -> pl.DataFrame:
+    """The ensemble of a draft from the lake, of an edition from its folder."""
+    if edition.startswith(DRAFT):
+        return read_ensemble(views.store, method)
+    return read_edition(views.store, edition).tables.get("ensemble", pl.DataFrame())

@@ -1,0 +1,67 @@
+"""What printed documents say: the lines of certificates, and a proposal against what counts now."""
+
+from typing import Any, Final
+
+import numpy as np
+import polars as pl
+
+from herijk.pipeline.curve import cw, s_of_b
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.races.race import power_per_rower_w
+from herijk.warehouse.queries.answers import answers
+from herijk.warehouse.queries.views import Views
+
+SPEEDS: Final = (0.85, 0.90, 0.95, 1.0, 1.05, 1.10, 1.15)
+"""Speeds of the power table, as parts of the declared speed: where the curve holds."""
+
+
+def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[dict[str, Any]]:
+    """The valid lines of an edition, of one boat or all, with what their certificates say.
+
+    Returns:
+        Rows of `answers` with `decision`, `valid_from` and `published_on` of the edition, `powers`
+        (speed [m/s], Cw [kg/m] and power a rower [W] over the range of the curve), and the rows of
+        `curve_points` and `run_points` of the tow (`curve`, `points`).
+
+    Raises:
+        MissingKnowledgeError: there is no such edition, or no valid line of that boat in it.
+    """
+    lines = answers(views, edition)
+    if lines.is_empty():
+        known = ", ".join(views.table("register")["edition"].unique().sort())
+        raise MissingKnowledgeError(f"there is no edition {edition}; there are {known}")
+    wanted = lines.filter(pl.col("cw_kg_m").is_not_null())
+    if fsn_no is not None:
+        wanted = wanted.filter(pl.col("fsn_no").str.to_lowercase() == fsn_no.lower())
+    if wanted.is_empty():
+        raise MissingKnowledgeError(
+            f"edition {edition} has no valid line of {fsn_no or 'any boat'}"
+        )
+    about = views.table("editions").filter(edition=edition)
+    terms = about.select("decision", "valid_from", "published_on").to_dicts() or [
+        {"decision": None, "valid_from": None, "published_on": None}
+    ]
+    curves, points = views.table("curve_points"), views.run_points()
+    return [
+        line
+        | terms[0]
+        | {
+            "powers": _powers(line),
+            "curve": _of_tow(curves, line),
+            "points": _of_tow(points, line).drop_nulls("cw_kg_m"),
+        }
+        for line in wanted.sort("name", "fsn_no", "rowers", "crew_class").to_dicts()
+    ]
+
+
+def _of_tow(rows: pl.DataFrame, line: dict[str, Any]) -> pl.DataFrame:
+    return rows.filter(method=line["method"] or "", tow_id=line["tow_id"] or "")
+
+
+def _powers(line: dict[str, Any]) -> list[tuple[float, float, float]]:
+    """Speed, Cw and power a rower, from the A and B that are printed."""
+    speed = np.array(SPEEDS) * line["declared_speed_m_s"]
+    b = np.inf if line["b_m_s"] is None else line["b_m_s"]
+    resistance = cw(line["a_kg_m"], s_of_b(b), speed)
+    power = power_per_rower_w(resistance, speed, np.full(speed.shape, line["rowers"]))
+    return list(zip(speed.tolist(), resistance.tolist(), power.tolist(), strict=True))

@@ -1,0 +1,119 @@
+"""The owner's answer, in words: each sentence says what its numbers say, and no more."""
+
+import datetime as dt
+import re
+
+import polars as pl
+import pytest
+
+from herijk.dashboards.answer import Answer, told
+from herijk.dashboards.site import headlines
+from herijk.dashboards.speech import Speech, duration
+
+NL, EN = Speech("nl"), Speech("en")
+LINE = {
+    "fsn_no": "FSN106", "name": "Tréwes", "boat_type": "Vlet", "rowers": 8, "crew_class": "D",
+    "edition": "2026-1", "from_edition": "concept-as-published", "change": "changed",
+    "cw_kg_m": 31.01, "cw_lo_kg_m": 30.52, "cw_hi_kg_m": 31.51, "cw_ratio": 0.967,
+    "old_cw_kg_m": 32.07, "declared_speed_m_s": 2.31, "old_declared_speed_m_s": 2.31,
+    "causes": '[{"cause": "method", "step": "temperature", "factor": 0.97},'
+    ' {"cause": "method", "step": "wind", "factor": 0.9969}]',
+    "gain_in_two_hours_s": -79.2, "exceeds_interval": False, "old_log_known": True,
+    "new_log_known": True, "old_type_place": 3, "new_type_place": 2, "type_size": 5,
+    "status": "valid", "tow_date": dt.date(2017, 3, 10), "valid_until": dt.date(2022, 12, 31),
+    "tow_speed_m_s": 2.25, "speed_reason": "brought_down", "verification_code": "ABCDEFGHIJ",
+}  # fmt: skip
+RACE = {"race": "Spiegelrace", "race_date": dt.date(2018, 6, 4), "race_size": 35}
+EMPTY = pl.DataFrame(schema=["speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"])
+
+
+def said(speech=NL, races=(), **other):
+    found = told(Answer(LINE | other, races, EMPTY, EMPTY), speech)
+    return "\n".join([found.headline, *found.sentences])
+
+
+def test_old_and_new_number_by_how_much_and_why():
+    text = said()
+    assert "van 32,07 naar 31,01 kg/m: 3,3 % lager" in text
+    assert "temperatuur \N{MINUS SIGN}3,0\N{NO-BREAK SPACE}%; wind \N{MINUS SIGN}0,3" in text
+    assert "from 32.07 to 31.01 kg/m: 3.3 % lower" in said(EN)
+
+
+@pytest.mark.parametrize(("seconds", "words"), [(-79.2, "79 s sneller"), (79.2, "79 s langer")])
+def test_what_it_is_worth_in_a_race(seconds, words):
+    assert words in said(gain_in_two_hours_s=seconds)
+
+
+@pytest.mark.parametrize(
+    ("exceeds", "words"),
+    [(True, "is groter dan"), (False, "valt binnen"), (None, "niet te zeggen")],
+)
+def test_whether_it_exceeds_the_uncertainty(exceeds, words):
+    assert words in said(exceeds_interval=exceeds)
+
+
+def test_an_interval_that_leaves_the_log_out_says_so():
+    assert "Met 95 % zekerheid" in said()
+    text = said(new_log_known=False)
+    assert "95 %" not in text
+    assert "de fout van de log komt daar nog bij" in text
+    assert "zit de fout van de log niet" in said(old_log_known=False)
+
+
+def test_the_place_in_a_race_is_not_the_place_at_equal_power():
+    text = said(races=[RACE | {"old_rank": 12, "new_rank": 11}])
+    assert "de nummer 2 in snelheid van 5 van het type Vlet (dames); dat was 3" in text
+    assert "Spiegelrace 2018-06-04: de uitslag wordt plaats 11 van 35; dat was 12" in text
+
+
+def test_places_that_swap_on_the_podium_are_told():
+    assert "wordt plaats 2" in said(races=[RACE | {"old_rank": 3, "new_rank": 2}])
+
+
+def test_valid_comes_with_its_day():
+    assert "telt tot en met 2022-12-31" in said()
+    assert "telde tot en met 2022-12-31" in said(status="expired", cw_kg_m=None, cw_ratio=None)
+
+
+def test_another_declared_speed_is_told():
+    assert "2,31 in plaats van 2,40" in said(old_declared_speed_m_s=2.40)
+
+
+def test_both_estimates_stand_beside_each_other_where_they_are_known():
+    text = said(cw_best_kg_m=31.2, cw_best_lo_kg_m=30.9, cw_best_hi_kg_m=31.5)
+    assert "beste schatting uit alle proeven van het archief is 31,20" in text
+
+
+def test_how_to_object_names_boat_and_code():
+    assert "noem FSN106 en controlecode ABCDEFGHIJ" in said()
+
+
+def test_the_waterfall_has_a_bar_for_both_ends_and_every_cause():
+    picture = told(Answer(LINE, (), EMPTY, EMPTY), NL).waterfall
+    assert picture.count("<rect") == 2 + 2
+    assert re.search(r'aria-label="[^"]*Tr\w+wes', picture)
+
+
+def test_names_in_pictures_are_escaped():
+    picture = told(Answer(LINE | {"name": "<script>"}, (), EMPTY, EMPTY), NL).waterfall
+    assert "<script>" not in picture
+
+
+@pytest.mark.parametrize(("seconds", "shown"), [(6911.0, "1:55:11"), (599.6, "0:10:00")])
+def test_a_time_rowed_is_in_hours(seconds, shown):
+    assert duration(seconds) == shown
+
+
+@pytest.mark.parametrize(("after", "words"), [(0.004606, "loont niet"), (0.003, "Deze proeven")])
+def test_tows_that_are_not_worth_it_are_told(after, words):
+    choice = pl.DataFrame({"factor_sd_before_ratio": [0.004667], "factor_sd_after_ratio": [after]})
+    assert words in headlines.retow(choice)(NL)
+
+
+@pytest.mark.parametrize(
+    ("p_value", "power", "words"),
+    [(0.6, 0.9, "Geen teken"), (0.6, 0.3, "niet te zeggen"), (0.01, 0.9, "verschillen in bocht")],
+)
+def test_a_type_s_verdict(p_value, power, words):
+    test = pl.DataFrame({"p_value": [p_value], "power_at_10pct": [power], "n": [11]})
+    assert words in headlines.homogeneity(test)(NL)

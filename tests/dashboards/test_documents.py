@@ -1,0 +1,104 @@
+"""Certificates and proposals: what goes into them, and that they are made alike each time."""
+
+import io
+
+import pytest
+from pypdf import PdfReader
+
+from herijk.dashboards.documents import certificate, proposal
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.races.race import power_per_rower_w
+from herijk.warehouse.queries.views import Views
+from tests.conftest import METHODS
+from tests.dashboards.conftest import EDITIONS
+
+
+@pytest.fixture(scope="module")
+def views(store):
+    with Views(store) as views:
+        yield views
+
+
+@pytest.fixture
+def contents(monkeypatch):
+    """What templates are given, instead of the documents."""
+    found = []
+    for module in (certificate, proposal):
+        monkeypatch.setattr(module, "pdf", lambda _, content: found.append(content) or b"")
+    return found
+
+
+def lines_of(views, edition):
+    return views.register().filter(edition=edition).drop_nulls("cw_kg_m")
+
+
+def test_a_certificate_says_what_the_register_says(views, contents):
+    line = lines_of(views, EDITIONS[-1]).row(0, named=True)
+    certificate.certificates(views, EDITIONS[-1], line["fsn_no"].lower(), "en")
+    mine = [c for c in contents[0]["certificates"] if c["code"] == line["verification_code"]]
+    assert len(mine) == 1
+    shown = dict(mine[0]["left"]) | dict(mine[0]["right"])
+    assert shown["A [kg/m]"] == f"{line['a_kg_m']:.3f}"
+    assert shown["Valid until"] == str(line["valid_until"])
+    assert shown["Decision"] == "SKC <8 mei>"
+    assert "<svg" in mine[0]["qr"]
+    speed, cw, power = (float(text) for text in mine[0]["powers"][3])
+    assert speed == pytest.approx(line["declared_speed_m_s"], abs=0.005)
+    assert cw == pytest.approx(line["cw_kg_m"], abs=0.005)
+    exact = power_per_rower_w(line["cw_kg_m"], line["declared_speed_m_s"], line["rowers"])
+    assert power == pytest.approx(float(exact), abs=0.05)
+
+
+def test_all_certificates_of_an_edition_are_in_one_file(views, contents):
+    certificate.certificates(views, EDITIONS[-1], None, "nl")
+    assert len(contents[0]["certificates"]) == lines_of(views, EDITIONS[-1]).height
+
+
+def test_a_draft_is_no_certificate(views, contents):
+    line = lines_of(views, "concept-as-published").row(0, named=True)
+    certificate.certificates(views, "concept-as-published", line["fsn_no"], "nl")
+    assert "geen geldige meetbrief" in contents[0]["certificates"][0]["caution"]
+    assert contents[0]["certificates"][0]["qr"] == ""
+    assert contents[0]["simulated"].startswith("GESIMULEERD")
+
+
+@pytest.mark.parametrize(("edition", "fsn_no"), [("1999-1", None), (EDITIONS[-1], "FSN9")])
+def test_what_is_not_there_is_told(views, edition, fsn_no):
+    with pytest.raises(MissingKnowledgeError, match=r"there is no edition|no valid line"):
+        certificate.certificates(views, edition, fsn_no, "nl")
+
+
+def test_a_proposal_counts_every_line_that_changes(views, contents):
+    proposal.proposal(views, [METHODS[1]], EDITIONS[0], "en")
+    lines = proposal.compared(views, EDITIONS[0], f"concept-{METHODS[1]}")
+    changed = lines.filter(change="changed").height
+    parts = {part["title"]: part for part in contents[0]["parts"]}
+    assert (
+        f"{changed} of {lines.height} lines change"
+        in parts["What changes: rules of 2015"]["sentences"][0]
+    )
+    by_type = parts["For whom: by type"]["rows"]
+    assert sum(int(row[1]) for row in by_type) == lines.drop_nulls("cw_ratio").height
+    assert contents[0]["annexes"][0]["text"].count("[") > 1
+
+
+def test_several_methods_make_a_ballot(views, contents):
+    proposal.proposal(views, METHODS, EDITIONS[0], "nl")
+    assert [row[0] for row in contents[0]["parts"][0]["rows"]] == [
+        "zoals gepubliceerd",
+        "regels van 2015",
+    ]
+
+
+def test_the_same_tables_give_the_same_document(views):
+    fsn_no = lines_of(views, EDITIONS[-1])["fsn_no"][0]
+    made = [certificate.certificates(views, EDITIONS[-1], fsn_no, "nl") for _ in range(2)]
+    assert made[0] == made[1]
+    crews = lines_of(views, EDITIONS[-1]).filter(fsn_no=fsn_no).height
+    assert len(PdfReader(io.BytesIO(made[0])).pages) == crews
+
+
+def test_a_proposal_takes_six_pages_at_most_before_its_annex(views):
+    made = proposal.proposal(views, [METHODS[1]], EDITIONS[0], "nl")
+    texts = [page.extract_text() for page in PdfReader(io.BytesIO(made)).pages]
+    assert len([text for text in texts if "Bijlage" not in text]) <= 6

@@ -1,0 +1,160 @@
+"""Every limit of every column that comes from a list: one step outside is set aside, inside not.
+
+The limits are those of the declared tables; nothing here repeats one.
+"""
+
+import pytest
+
+from herijk.pipeline.errors import DefectiveInputError
+from herijk.tables.frames import frame_of, limits
+from herijk.tables.lake import (
+    ListedBoats,
+    ListedRaces,
+    ListedTows,
+    ListedWindows,
+    PrintedLines,
+)
+from herijk.warehouse.archive import boats, published, tows, windows
+from herijk.warehouse.archive.lists import Wording, read_list
+from herijk.warehouse.archive.misfits import misfits
+
+TOW = {
+    "sleep_id": "2014-001",
+    "datum": "2014-03-08",
+    "fsn_nr": "FSN1",
+    "meetfile": "a",
+    "roeiers": "8",
+    "klasse": "H",
+    "roeisnelheid [m/s]": "2.5",
+    "lengte [m]": "8",
+    "breedte [m]": "2",
+    "hoogte [m]": "1",
+    "gewicht [kg]": "600",
+    "gewicht na [kg]": "600",
+    "bemanning [kg]": "700",
+    "watertemperatuur [C]": "8",
+    "correctie [%]": "0",
+    "meetfrequentie [Hz]": "1000",
+    "vrijboord laagst [m]": "0.4",
+    "vrijboord boeg [m]": "0.5",
+    "vrijboord achter [m]": "0.5",
+}
+BOAT = {
+    "fsn_nr": "FSN1",
+    "ht_nr": "1",
+    "sloep": "een",
+    "type": "",
+    "roeiers": "8",
+    "klasse": "H",
+    **{k: TOW[k] for k in ("lengte [m]", "breedte [m]", "hoogte [m]", "gewicht [kg]")},
+}
+WINDOW = {"sleep_id": "2014-001", "run": "1", "van [s]": "5", "tot [s]": "45", "reden": "zwaan"}
+RACE = {
+    "wedstrijd": "a",
+    "datum": "2014-06-01",
+    "afstand [m]": "9000",
+    "fsn_nr": "FSN1",
+    "roeiers": "8",
+    "klasse": "H",
+    "roeitijd": "1:00:00",
+    "stroom [m]": "0",
+    "straf [W]": "0",
+}
+PRINTED = {
+    "fsn_nr": "FSN1",
+    "roeiers": "8",
+    "klasse": "H",
+    "A": "30",
+    "B [m/s]": "5",
+    "Cw": "40",
+    "roeisnelheid [m/s]": "2.5",
+    "sleepdatum": "2014-03-08",
+}
+LISTS = {
+    "boats": (ListedBoats, boats.COLUMNS, BOAT, boats._boat),
+    "tows": (ListedTows, tows.COLUMNS, TOW, lambda row: tows.read_tow(row, 2014, 1000)),
+    "windows": (ListedWindows, windows.COLUMNS, WINDOW, windows._read_window),
+    "races": (
+        ListedRaces,
+        published.RACE_COLUMNS,
+        RACE,
+        lambda row: published._race_result(row, 2014),
+    ),
+    "registers": (
+        PrintedLines,
+        published.REGISTER_COLUMNS,
+        PRINTED,
+        lambda row: published._register_line(row, 2014),
+    ),
+}
+
+
+def values_of(name, cells):
+    """What a list of one row is read as."""
+    table, columns, _, read = LISTS[name]
+    text = ";".join(cells) + "\n" + ";".join(cells.values()) + "\n"
+    (row,) = read_list(text.encode(), columns, "bad_row", "list.csv", Wording(), table)
+    return read(row)
+
+
+def limited():
+    """Every limit of a column that a list has: list, column, header, sign and limit."""
+    for name, (table, columns, cells, _) in LISTS.items():
+        for column in columns:
+            header = next((h for h in cells if h.split(" [")[0] == column.header), None)
+            if header is None or column.key not in table.column_names():
+                continue
+            declared = table.columns()[column.key]
+            if not (declared.dtype.is_numeric() and column.key != "run"):
+                continue
+            for sign, limit in zip((-1, 1), limits(table, column.key), strict=True):
+                if limit is not None:
+                    yield pytest.param(
+                        name, column.key, header, sign, limit, id=f"{name}-{column.key}-{sign}"
+                    )
+
+
+def cell_of(header, value):
+    return f"{value * 100 if '%' in header else value:.9g}"
+
+
+@pytest.mark.parametrize(("name", "key", "header", "sign", "limit"), list(limited()))
+def test_one_step_outside_is_set_aside_and_inside_accepted(name, key, header, sign, limit):
+    table, _, cells, _ = LISTS[name]
+    whole = table.columns()[key].dtype.is_integer()
+    step = 1 if whole else 1e-3 * max(1.0, abs(limit))
+    others = dict(cells)
+    if name == "windows":  # a window ends after it begins
+        others |= {"van [s]": "0"} if key == "end_s" else {"tot [s]": "600"}
+    inside = limit if whole and name != "windows" else limit - sign * step
+    accepted = values_of(name, others | {header: cell_of(header, inside)})
+    assert accepted[key] == pytest.approx(inside)
+    usual = values_of(name, others)
+    assert {k: v for k, v in accepted.items() if k != key} == {
+        k: v for k, v in usual.items() if k != key
+    }
+    with pytest.raises(DefectiveInputError, match="can be right") as fault:
+        values_of(name, others | {header: cell_of(header, limit + sign * step)})
+    assert (fault.value.reason_code, fault.value.line) == ("bad_row", 2)
+
+
+@pytest.mark.parametrize(("season", "fits"), [(1989, False), (1990, True), (2100, True)])
+def test_a_season_outside_its_limits_is_set_aside_with_a_sentence(season, fits):
+    row = {**values_of("races", RACE), "season": season, "path": "a.csv", "line": 2}
+    found = [why for _, why in misfits(ListedRaces, frame_of(ListedRaces, [row]))]
+    sentence = f"column 'season' is {season}; 1990 to 2100 can be right."
+    assert found == ([] if fits else [sentence])
+
+
+def test_a_tow_list_of_an_impossible_year_is_set_aside(archive):
+    """The rest of the archive is read all the same."""
+    lists = archive.root / "sleeplijsten"
+    text = (lists / "sleeplijst_2014.csv").read_text("utf-8")
+    (lists / "sleeplijst_1985.csv").write_text(
+        text.replace("2014-0", "1985-0").replace(";2014-", ";1985-"), "utf-8"
+    )
+    (archive.root / "meetdata_2014").rename(archive.root / "kept")
+    (archive.root / "kept").rename(archive.root / "meetdata_2014")
+    found = archive.scan()
+    assert len(found.good) == 3
+    assert {f.path for f in found.faults} == {"sleeplijsten/sleeplijst_1985.csv"}

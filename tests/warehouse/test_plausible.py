@@ -1,0 +1,162 @@
+"""A wrong number that looks sound is not published: units, gains, zeros and wind of a real archive.
+
+The archive is sound; a fault is put in by changing the unit in a header or the numbers themselves.
+"""
+
+import datetime as dt
+import re
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import polars as pl
+import pytest
+
+from herijk.pipeline.method.definition import shipped_method
+from herijk.simulate import WorldSettings, simulate_world
+from herijk.simulate.archive_writer import write_simulated_archive
+from herijk.warehouse.build.graph import ARCHIVE
+from herijk.warehouse.build.graph import METHOD as METHOD_STEP
+from herijk.warehouse.editions.publish import Terms, lines_to_look_at, publish
+from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.store.editions import read_edition
+from herijk.warehouse.store.store import Store
+
+DAY = dt.date(2026, 11, 22)
+WORLD = WorldSettings(seasons=(2015, 2016, 2017), tows_per_season=10, rate_hz=20, seed=5)
+METHOD = "rebased"
+
+
+class Archive:
+    """An archive, and what is made of it without Dagster."""
+
+    def __init__(self, root: Path) -> None:
+        self.root, self.store = root / "archive", Store(root / "data")
+
+    def file_of(self, tow_id: str) -> Path:
+        listed = self.store.read_all("season_tows").filter(tow_id=tow_id)
+        return self.root / str(listed["samples_path"][0])
+
+    def season(self, season: int) -> list[str]:
+        listed: list[str] = (
+            self.store.read_all("season_tows").filter(season=season)["tow_id"].to_list()
+        )
+        return listed
+
+    def change(self, tow_id: str, changed: Callable[[str], str]) -> None:
+        path = self.file_of(tow_id)
+        path.write_bytes(changed(path.read_bytes().decode("utf-8")).encode("utf-8"))
+
+    def collect(self) -> None:
+        intake.bring_in(self.store, self.root)
+        ARCHIVE.make(self.store, (), DAY)
+
+    def quarantined(self) -> dict[str, tuple[str, str]]:
+        faults = self.store.read("quarantine").drop_nulls("tow_id")
+        return {t: (c, m) for t, c, m in faults.select("tow_id", "reason_code", "message").rows()}
+
+    def doubts(self) -> dict[str, list[str]]:
+        doubted = self.store.read("tows").filter(pl.col("doubts").list.len() > 0)
+        return dict(doubted.select("tow_id", "doubts").rows())
+
+    def curves(self) -> pl.DataFrame:
+        METHOD_STEP.make(self.store, [shipped_method(METHOD)])
+        return self.store.read("curves", METHOD)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Archive:
+    archive = Archive(tmp_path_factory.mktemp("plausible"))
+    write_simulated_archive(archive.root, simulate_world(WORLD))
+    archive.collect()
+    return archive
+
+
+@pytest.fixture
+def archive(whole: Archive, tmp_path: Path) -> Archive:
+    for name in ("archive", "data"):
+        shutil.copytree(whole.root.parent / name, tmp_path / name)
+    return Archive(tmp_path)
+
+
+def header(word: str, unit: str) -> Callable[[str], str]:
+    """Gives a column another unit; its numbers stay."""
+    return lambda text: re.sub(rf"{re.escape(word)} \[[^]]*\]", f"{word} [{unit}]", text, count=1)
+
+
+def added_to_force(newtons: float) -> Callable[[str], str]:
+    def changed(text: str) -> str:
+        head, *rows = text.splitlines()
+        place = next(i for i, name in enumerate(head.split(";")) if name.startswith("kracht"))
+        cells = [row.split(";") for row in rows]
+        for row in cells:
+            number = float(row[place].replace(",", ".")) + newtons
+            row[place] = f"{number:.3f}".replace(".", ",")
+        return "\n".join([head, *(";".join(row) for row in cells)]) + "\n"
+
+    return changed
+
+
+def test_a_sound_archive_is_not_doubted(whole):
+    assert not whole.quarantined()
+    assert not whole.doubts()
+
+
+@pytest.mark.parametrize(
+    ("change", "code", "word"),
+    [
+        (header("kracht", "kgf"), "force_not_plausible", "kgf"),
+        (header("wind", "kn"), "wind_not_plausible", "knots"),
+    ],
+    ids=["kgf", "knots"],
+)
+def test_a_tow_in_another_unit_is_set_aside_with_the_likely_unit(archive, change, code, word):
+    archive.change("2016-004", change)
+    archive.collect()
+    found = archive.quarantined()
+    assert set(found) == {"2016-004"}
+    assert found["2016-004"][0] == code
+    assert word in found["2016-004"][1]
+    assert not archive.doubts()
+
+
+def test_a_season_in_another_unit_is_set_aside_as_a_season_in_one_sentence(archive):
+    mine = archive.season(2016)
+    for tow in mine:
+        archive.change(tow, header("kracht", "kgf"))
+    archive.collect()
+    found = archive.quarantined()
+    assert set(found) == set(mine)
+    (sentence,) = {message for _, message in found.values()}
+    assert f"All {len(mine)} tows of season 2016" in sentence
+    assert "kgf" in sentence
+    assert not archive.doubts()
+
+
+@pytest.mark.parametrize(("ending", "last"), [("\r\n", "\r\n"), ("\n", "\n\n")])
+def test_samples_of_another_boat_are_found_also_when_written_otherwise(archive, ending, last):
+    taken, other = "2016-003", "2017-005"
+    text = archive.file_of(taken).read_text("utf-8").rstrip()
+    archive.file_of(other).write_bytes((text.replace("\n", ending) + last).encode())
+    archive.collect()
+    found = archive.quarantined()
+    assert {tow: code for tow, (code, _) in found.items()} == dict.fromkeys(
+        (taken, other), "samples_listed_twice"
+    )
+
+
+def test_a_zero_that_is_off_is_doubted_shared_with_nobody_and_not_published(archive):
+    sound = archive.curves()
+    tow = "2017-002"
+    archive.change(tow, added_to_force(100.0))
+    archive.collect()
+    assert archive.doubts() == {tow: ["force_not_plausible"]}
+    now = archive.curves()
+    both = sound.join(now, on="tow_id", suffix="_now").filter(pl.col("tow_id") != tow)
+    assert ((both["cw_kg_m_now"] / both["cw_kg_m"]).log().abs().max()) < 0.002
+    assert "force_not_plausible" in now.filter(tow_id=tow)["flags"][0]
+    publish(archive.store, shipped_method(METHOD), Terms("2018-1", dt.date(2018, 1, 1), "SKC", DAY))
+    edition = read_edition(archive.store, "2018-1")
+    assert tow not in edition.register["tow_id"].drop_nulls().to_list()
+    doubted = [line for line in lines_to_look_at(edition) if line["status"] == "doubted"]
+    assert len(doubted) == 1
