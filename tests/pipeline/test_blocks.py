@@ -118,6 +118,30 @@ def test_a_run_of_50_s_has_50_full_blocks(rate_hz):
     assert blocks["n"].to_list() == [rate_hz] * 100
 
 
+@given(
+    share=st.floats(0.01, 0.999),
+    channel=st.sampled_from([c for c in SAMPLE_SCHEMA if c not in ("run", "gps_m_s")]),
+    seed=st.integers(0, 99),
+)
+def test_samples_that_are_no_numbers_are_left_out_however_many(share, channel, seed):
+    samples = samples_of([400, 300, 350], seed)
+    gone = np.random.default_rng(seed).random(len(samples)) < share
+    values = np.where(gone, np.float32(np.nan), samples[channel].to_numpy())
+    found = block_sums(samples.with_columns(pl.Series(channel, values)), 5)
+    whole = samples.with_columns(
+        second=pl.int_range(pl.len()).over("run") // 5, left=~pl.Series(gone)
+    )
+    expected = whole.group_by("run", "second", maintain_order=True).agg(
+        n=pl.col("left").sum(), force=pl.col("force_n").cast(pl.Float64).filter("left").sum()
+    )
+    if channel == "log2_m_s" and gone.all():  # then it reads as log 1
+        return
+    assert found["n"].to_list() == expected["n"].to_list()
+    assert found.select(pl.selectors.float().is_finite().all()).row(0) == (True,) * len(SUM_NAMES)
+    if channel != "force_n":
+        assert np.allclose(found["force"], expected["force"], rtol=EXACT)
+
+
 def test_the_last_block_may_be_short():
     blocks = block_sums(samples_of([25, 20, 1]), 10)
     assert blocks.select("run", "second", "n").rows() == [

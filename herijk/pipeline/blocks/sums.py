@@ -33,6 +33,8 @@ _CHANNELS: Final = (
     "wind_angle_deg",
 )
 _GPS_NAME: Final = "gps_m_s"
+_RUN_NUMBERS: Final = 128
+"""Runs that a number of a run can tell apart."""
 _NOT_MEASURED: Final = {
     "log2_m_s": pl.col("log1_m_s"),
     "wind_speed_m_s": pl.col("log1_m_s"),
@@ -103,23 +105,20 @@ def _leave_out(
         return
     block = np.repeat(np.arange(len(n)), n)
     spoilt = np.unique(block[lacking])
-    kept = np.isin(block, spoilt) & ~lacking
-    left, rank, count = np.unique(block[kept], return_inverse=True, return_counts=True)
+    kept = np.flatnonzero(np.isin(block, spoilt) & ~lacking)
     n[spoilt], sums[:, spoilt] = 0, 0.0
-    # Neighbours differ in the run that they are given, so each is a block of its own.
-    number, second = np.empty(len(left), np.int8), np.empty(len(left), np.int16)
-    again = np.empty((_ROWS, len(left)))
-    run = (rank % 2).astype(np.int8)
-    _add_up(
-        run,
-        rate_hz,
-        number,
-        second,
-        np.empty(len(left), np.int32),
-        again,
-        *(values[kept] for values in channels),
-    )
-    n[left], sums[:, left] = count, again
+    left, count = np.unique(block[kept], return_counts=True)
+    for first in range(0, len(left), _RUN_NUMBERS):
+        some = left[first : first + _RUN_NUMBERS]
+        rows = kept[(block[kept] >= some[0]) & (block[kept] <= some[-1])]
+        # Each block is given a run of its own: however few samples are left, it ends with them.
+        run = np.searchsorted(some, block[rows]).astype(np.int8)
+        number, second = np.empty(len(some), np.int8), np.empty(len(some), np.int16)
+        again = np.empty((_ROWS, len(some)))
+        held = (values[rows] for values in channels)
+        _add_up(run, rate_hz, number, second, np.empty(len(some), np.int32), again, *held)
+        sums[:, some] = again
+    n[left] = count
 
 
 P = ParamSpec("P")
