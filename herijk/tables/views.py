@@ -39,7 +39,8 @@ SELECT method, boat_type, crew_class, rowers, fsn_no, name, tow_id, season, stat
     standard_speed_m_s, declared_speed_m_s, a_kg_m, b_m_s,
     CASE WHEN bend_s2_m2 * standard_speed_m_s ^ 2 < 1
         THEN a_kg_m / (1 - bend_s2_m2 * standard_speed_m_s ^ 2) END AS cw_standard_kg_m
-FROM typed""",
+FROM typed
+ORDER BY method, tow_id""",
     ),
     "boats_by_type": View(
         "Per method, type and class: boats, tows, and the middle of A, B and Cw.",
@@ -47,7 +48,8 @@ FROM typed""",
 SELECT method, boat_type, crew_class, count(DISTINCT fsn_no) AS boats, count(*) AS tows,
     median(a_kg_m) AS a_kg_m, median(b_m_s) AS b_m_s, median(cw_standard_kg_m) AS cw_standard_kg_m
 FROM curves_at_standard_speed
-GROUP BY method, boat_type, crew_class""",
+GROUP BY method, boat_type, crew_class
+ORDER BY method, boat_type, crew_class""",
     ),
     "changes_by_cause": View(
         "One row per changed line and cause; the factors of a line multiply to its cw_ratio.",
