@@ -13,7 +13,7 @@ Report = dict[str, Any]
 BIGGEST = 10
 FIRST_FAULTS = 10
 _FAULTS_BY_REASON = """
-SELECT lost, reason_code, count(*) AS number FROM quarantine GROUP BY ALL
+SELECT lost, reason_code, count(*) AS number FROM quarantine GROUP BY lost, reason_code
 ORDER BY list_position(['file', 'tow', 'row', 'run', 'seconds'], lost), number DESC, reason_code
 """
 _FIRST_FAULTS = """
