@@ -276,6 +276,7 @@ def test_races_follow_the_edition(visitor, store):
 def test_choosing_a_method_changes_the_curve(visitor, attacked):
     page = visitor.open(boat_path(attacked))
     visitor.unfold()
+    visitor.draw_all()
     chart = page.locator("figure[data-figure=resistance_curve] .chart.drawn")
     chart.locator("svg").wait_for()
     before = chart.inner_html()
