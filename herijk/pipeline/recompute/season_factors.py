@@ -156,6 +156,7 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
         pl.lit(OTHER_LOG.get(steps.speed.source)).alias("other_log"),
         log_part(OTHER_LOG.get(steps.speed.source, "mean")).alias("other_part"),
         pl.lit(calibrated).alias("anchored"),
+        pl.Series("temperature_known", o.temperature_known),
         *(pl.Series(name, values).fill_nan(None) for name, values in numbers.items()),
     )
 

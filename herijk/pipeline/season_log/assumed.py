@@ -27,6 +27,9 @@ class Settings:
         season_spread: of the logarithm of a season's variances, against those of the archive.
         bend_sd, type_bend_sd: bend of boats about that of their type, of a type about its pooled
             value.
+        season_bend_sd: bend of all boats in a season that no dGPS calibrates. A real hull is no
+            hyperbola: towed at speeds that are a log's error off, all bends move together, by as
+            much as the error itself moves them. So a bend alone tells no log from a load cell.
         changed_sd, changed_bend_sd: change of ln Cw and of the bend of a boat altered without a
             report.
         changed_share: of gaps between two tows with such an alteration, as `changed_gaps` gaps
@@ -35,6 +38,8 @@ class Settings:
         gps_noise_m_s: sideways noise of a fix; the length of a noisy velocity is too long by up to
             noise^2 / (2 v^2). How much of that a receiver smooths away is unknown: half is taken.
         force_sd: load cell of a season, as calibrated daily.
+        water_sd: ln Cw of a season's tows whose water temperature nobody wrote down: 0.3 % per
+            degree, and 4 C either way.
         fault_chance: probability of each kind of fault in a season.
         force_fault_sd, fleet_fault_sd, gps_fault_sd: size of a fault: of ln force, of ln Cw of all
             boats from a season on, of the ln speed by GPS.
@@ -57,6 +62,7 @@ class Settings:
     season_spread: float = 0.3
     bend_sd: float = 0.08
     type_bend_sd: float = 0.15
+    season_bend_sd: float = 0.06
     changed_sd: float = 0.08
     changed_bend_sd: float = 0.05
     changed_share: float = 0.08
@@ -64,6 +70,7 @@ class Settings:
     gps_season_sd: float = 0.003
     gps_noise_m_s: float = 0.1
     force_sd: float = 0.002
+    water_sd: float = 0.012
     fault_chance: float = 0.01
     force_fault_sd: float = 0.05
     fleet_fault_sd: float = 0.03

@@ -31,11 +31,13 @@ ZERO: Final = "force_zero"
 ZERO_DRIFT: Final = "force_zero_drift"
 TREND: Final = "log_trend"
 CHANGE: Final = "log_change"
+WATER: Final = "water_temperature"
 FLEET: Final = "fleet_step"
 AGEING: Final = "ageing"
 WEIGHT: Final = "weight"
 LENGTH: Final = "length"
 TYPE_BEND: Final = "type_bend"
+SEASON_BEND: Final = "season_bend"
 
 WAYS: Final = {
     LOG: "speed",
@@ -43,6 +45,7 @@ WAYS: Final = {
     CHANGE: "speed",
     GPS_SCALE: "gps",
     FORCE: "level",
+    WATER: "level",
     FLEET: "level",
     AGEING: "level",
     WEIGHT: "level",
@@ -50,11 +53,12 @@ WAYS: Final = {
     ZERO: "zero",
     ZERO_DRIFT: "zero",
     TYPE_BEND: "bend",
+    SEASON_BEND: "bend",
 }
 """By which way an unknown reaches the numbers of a tow."""
 
 
-OF_BOATS: Final = frozenset({FLEET, AGEING, WEIGHT, LENGTH, TYPE_BEND})
+OF_BOATS: Final = frozenset({FLEET, AGEING, WEIGHT, LENGTH, TYPE_BEND, SEASON_BEND})
 """Unknowns of boats; all others are of instruments."""
 
 FEWEST_AFTER_CHANGE: Final = 3
@@ -95,12 +99,16 @@ def _always(network: Network, settings: Settings) -> Iterator[Unknown]:
     for number, year in enumerate(network.groups["season"]):
         mine = network.group == number
         yield Unknown(LOG, year, number, None, mine * 1.0, settings.log_sd)
+        yield Unknown(SEASON_BEND, year, number, None, mine * 1.0, settings.season_bend_sd)
         if network.has_gps[number]:
             with_gps = mine & np.isfinite(network.numbers("gps_ln_ratio"))
             sd = float(np.hypot(settings.gps_season_sd, excess[with_gps].mean() / np.sqrt(3.0)))
             yield Unknown(GPS_SCALE, year, number, None, mine * 1.0, sd)
     for year in np.unique(season).astype(int).tolist():
         yield Unknown(FORCE, year, None, None, (season == year) * 1.0, settings.force_sd)
+        unrecorded = (season == year) & ~network.tows["temperature_known"].to_numpy()
+        if unrecorded.any():
+            yield Unknown(WATER, year, None, None, unrecorded * 1.0, settings.water_sd)
     for name, values, prior in (
         (AGEING, season - settings.reference_year, settings.ageing_per_year),
         (WEIGHT, ln_size(network, "weight_kg"), settings.weight_elasticity),

@@ -93,7 +93,8 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
             `weight_kg, waterline_length_m` (may be null);
             `boat_type` (may be null); `altered`, reported, since the line's previous tow;
             `declared_speed_m_s`; `gps_ln_ratio`, ln(mean GPS / log), null without, with `gps_sd`,
-            its random part; `anchored`, calibrated on dGPS: no log error is left.
+            its random part; `anchored`, calibrated on dGPS: no log error is left;
+            `temperature_known`, of the water.
         settings: what is assumed beforehand.
 
     Returns:
