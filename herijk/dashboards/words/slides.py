@@ -98,9 +98,9 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     ),
     "slide.towed": (
         "De helft van de proeven ligt boven {ratio} van de rompsnelheid; {share} ligt tussen 60 en "
-        "70 %, zoals de presentatie zegt.",
-        "Half of the tows lie above {ratio} of hull speed; {share} lie between 60 and 70 %, as the "
-        "presentation says.",
+        "70 %, waar de presentatie het roeien plaatst.",
+        "Half of the tows lie above {ratio} of hull speed; {share} lie between 60 and 70 %, where "
+        "the presentation puts rowing.",
     ),
     "slide.raced": (
         "{n} proeven zijn met weinig vermogen gesleept of in een wedstrijd buiten hun kromme "
