@@ -52,7 +52,7 @@ class Archive:
         ARCHIVE.make(self.store, (), DAY)
 
     def quarantined(self) -> dict[str, tuple[str, str]]:
-        faults = self.store.read("quarantine").drop_nulls("tow_id")
+        faults = self.store.read("quarantine").filter(lost="tow")
         return {t: (c, m) for t, c, m in faults.select("tow_id", "reason_code", "message").rows()}
 
     def doubts(self) -> dict[str, list[str]]:

@@ -5,6 +5,7 @@ or the season, as any fault of a file does. A smaller shift keeps its tow, which
 and takes no part in what tows share.
 """
 
+import dataclasses
 import math
 from collections.abc import Sequence
 from typing import Final
@@ -14,9 +15,9 @@ import polars as pl
 from herijk.pipeline.assessment.plausibility import Shift, implausible
 from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.blocks.run_blocks import stack_blocks
+from herijk.tables.frames import frame_of
 from herijk.tables.lake import Faults
-
-_FAULTS: Final = {name: column.dtype for name, column in Faults.columns().items()}
+from herijk.warehouse.archive.faults import Fault
 
 _CODES: Final = {
     "force": "force_not_plausible",
@@ -49,12 +50,12 @@ def gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> pl.DataFrame:
         if shift.is_gross
         for tow in shift.tows
     }
-    rows = [
-        (path, tow, None, *sentences[tow])
+    faults = [
+        Fault(path, tow, None, *sentences[tow], lost="tow")
         for path, tow in tows.select("samples_path", "tow_id").iter_rows()
         if tow in sentences
     ]
-    return pl.DataFrame(rows, schema=_FAULTS, orient="row")
+    return frame_of(Faults, map(dataclasses.asdict, faults))
 
 
 def with_doubts(tows: pl.DataFrame, shifts: Sequence[Shift]) -> pl.DataFrame:

@@ -6,15 +6,17 @@ can know, so between boats or crews it costs all of them; of one boat and crew t
 it. Files equal byte by byte are found before, in `warehouse.archive.index`.
 """
 
+import dataclasses
 from collections.abc import Iterator
 from typing import Final
 
 import polars as pl
 
 from herijk.pipeline.channels import SECOND_FILE_OFFSET
+from herijk.tables.frames import frame_of
 from herijk.tables.lake import Faults
+from herijk.warehouse.archive.faults import Fault
 
-_FAULTS: Final = {name: column.dtype for name, column in Faults.columns().items()}
 _CONTENT: Final = ("n", "force", "log1_v", "log1_cw", "wind_v")
 LINE: Final = ("fsn_no", "rowers", "crew_class")
 
@@ -37,14 +39,14 @@ def same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
         .join(facts, on="tow_id")
         .sort("tow_date", "tow_id", "run")
     )
-    rows = [
-        row for _, same in runs.group_by(_CONTENT, maintain_order=True) for row in _faults(same)
+    faults = [
+        fault for _, same in runs.group_by(_CONTENT, maintain_order=True) for fault in _faults(same)
     ]
-    found = pl.DataFrame(rows, schema=_FAULTS, orient="row")
+    found = frame_of(Faults, map(dataclasses.asdict, faults))
     return found.unique("tow_id", keep="first", maintain_order=True)
 
 
-def _faults(same: pl.DataFrame) -> Iterator[tuple[str, str, None, str, str]]:
+def _faults(same: pl.DataFrame) -> Iterator[Fault]:
     """Faults for one content: of all its tows, or of all but the first."""
     first = same.row(0, named=True)
     of_one = same.select(LINE).n_unique() == 1
@@ -54,7 +56,7 @@ def _faults(same: pl.DataFrame) -> Iterator[tuple[str, str, None, str, str]]:
             continue
         if of_one and row["run"] > SECOND_FILE_OFFSET:
             continue
-        yield (
+        yield Fault(
             row["samples_path"],
             row["tow_id"],
             None,
@@ -62,4 +64,5 @@ def _faults(same: pl.DataFrame) -> Iterator[tuple[str, str, None, str, str]]:
             f"Run {row['run'] % SECOND_FILE_OFFSET} holds the very samples of tow "
             f"{other['tow_id']} ({other['samples_path']}) of {other['fsn_no']} "
             f"{other['rowers']}{other['crew_class']}, packed or written otherwise.",
+            lost="tow",
         )
