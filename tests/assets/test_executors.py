@@ -46,6 +46,7 @@ def test_the_multiprocess_executor_gives_identical_tables(built, tmp_path, monke
     ]
     with dg.DagsterInstance.from_config(str(home)) as instance:
         instance.add_dynamic_partitions("season", [str(season) for season in SMALL.seasons])
+        instance.add_dynamic_partitions("method", list(METHODS))
         for name, partition in steps:
             job = dg.build_reconstructable_job(
                 "tests.assets.test_executors", "job_of", (str(bench.archive), str(bench.data), name)

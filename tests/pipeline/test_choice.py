@@ -5,6 +5,7 @@ import polars as pl
 import pytest
 
 from herijk.pipeline.assessment.assess import _held_against_limits
+from herijk.pipeline.assessment.checks import CHECKS
 from herijk.pipeline.choice import first_largest
 
 
@@ -23,8 +24,9 @@ def test_of_equals_the_first_is_chosen(values, place):
     assert first_largest(np.array([values, values]).T).tolist() == [place, place]
 
 
-@pytest.mark.parametrize(("observed", "limit"), [(-2e-16, 0.03), (0.0, 0.03), (-0.01, -0.03)])
-def test_half_way_between_two_limits_rounding_does_not_choose(observed, limit):
+@pytest.mark.parametrize(("observed", "side"), [(-2e-16, 1), (0.0, 1), (-0.01, 0)])
+def test_half_way_between_two_limits_rounding_does_not_choose(observed, side):
+    check = next(check for check in CHECKS if check.code == "out_and_back_differ")
     curves = pl.DataFrame({"method": ["m"], "tow_id": ["t"], "season": [2014], "crew_class": ["H"]})
     long = pl.DataFrame({"tow_id": ["t"], "check": ["out_and_back_differ"], "observed": [observed]})
-    assert _held_against_limits(long, curves)["limit"].item() == limit
+    assert _held_against_limits(long, curves)["limit"].item() == check.limits("H")[side]
