@@ -17,6 +17,7 @@ from unittest import mock
 from distributed import Client
 from polars.testing import assert_frame_equal
 
+from herijk.warehouse.build.database import DATABASE_TABLE
 from herijk.warehouse.store import bucket
 from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import Store, read_parquet
@@ -128,7 +129,7 @@ def assert_same_lake(one: Store, other: Store) -> None:
     """
     files, others = _files_below(one.lake), _files_below(other.lake)
     assert files.keys() == others.keys()
-    for name in files.keys() - {"tables/database.parquet"}:
+    for name in files.keys() - {f"tables/{DATABASE_TABLE}.parquet"}:
         assert_frame_equal(read_parquet(files[name]), read_parquet(others[name]), check_exact=True)
     for table, partition in {_table(name) for name in files if name.startswith("tables/")}:
         assert one.made_from(table, partition) == other.made_from(table, partition), table
