@@ -54,10 +54,10 @@ def test_a_race_and_a_decision_change_the_list_at_the_next_rebuild(bench):
         'reden = "scheef"\nwie = "SKC"\ndatum = 2014-05-01\n',
         encoding="utf-8",
     )
-    statistics = bench.store.table_path("type_consistency")
-    made = statistics.stat().st_mtime_ns
+    curves = bench.store.table_path("curves", METHOD)
+    made = curves.stat().st_mtime_ns
     assert bench.rebuild().database
-    assert statistics.stat().st_mtime_ns == made  # of boat types: neither concerns them
+    assert curves.stat().st_mtime_ns == made  # of tows: neither concerns them
     after = bench.table("due_list").filter(pl.col("method") == METHOD)
     raced = after.filter(**key).row(0, named=True)
     assert raced["as_of"] == day

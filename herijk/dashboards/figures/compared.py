@@ -3,7 +3,16 @@
 import altair as alt
 import polars as pl
 
-from herijk.dashboards.figures.style import HEIGHT, OKABE_ITO, SHAPES, WIDTH, colour, number, tips
+from herijk.dashboards.figures.style import (
+    HEIGHT,
+    OKABE_ITO,
+    SHAPES,
+    WIDTH,
+    colour,
+    methods_named,
+    number,
+    tips,
+)
 from herijk.dashboards.words import Say
 from herijk.pipeline.method.definition import COMPLETE
 
@@ -25,7 +34,8 @@ def curves_compared(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     # One legend, that of the points: colour and dash of the lines would each have their own.
     colour = alt.Color("method:N", scale=ink, sort=None, legend=None)
     dash = alt.StrokeDash("method:N", scale=dashes, sort=None, legend=None)
-    look = {"title": say("method"), "sort": None}
+    names = alt.Legend(labelExpr=methods_named(say))
+    look = {"title": say("method"), "sort": None, "legend": names}
     base = alt.Chart(frame)
     line = base.transform_filter("datum.kind == 'line'")
     point = base.transform_filter("datum.kind == 'point'")

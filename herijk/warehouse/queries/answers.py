@@ -45,7 +45,7 @@ def line_changes(views: Views) -> pl.DataFrame:
         for old, new in changes.select(PAIR).unique().sort(PAIR).rows()
     ]
     if not found:
-        return changes
+        found = [_side_by_side(register.clear(), register.clear(), changes)]
     names = views.table("boats").select("fsn_no", "name", "boat_type")
     return pl.concat(found).join(names, on="fsn_no", how="left", maintain_order="left")
 
@@ -100,7 +100,7 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
     """
     changes = line_changes(views).filter(to_edition=edition)
     lines = views.register().filter(edition=edition)
-    compared = changes.drop("name", "boat_type", "to_edition", strict=False)
+    compared = changes.drop("name", "boat_type", "to_edition")
     known = views.table("methods").select("method", log_known=pl.col("interval") == "complete")
     tows = views.table("tows")
     methods = dict(views.table("register").select("edition", "method").unique().rows())
