@@ -22,6 +22,7 @@ from herijk.assets.resources import QUIET_LOG, Progress, Setup
 from herijk.assets.settings import read_settings
 from herijk.assets.site import site_is_stale
 from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.warehouse.build.graph import DATABASE
 from herijk.warehouse.build.step import Step
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.intake.lake import ArchiveChangedError
@@ -169,12 +170,12 @@ class _Rebuild:
             self.jobs.run(BUILD_JOBS[step], method)
             if method is not None and method not in self.done.methods:
                 self.done.methods.append(method)
+            self.done.database |= step is DATABASE
 
     def _make_site(self) -> None:
         if site_is_stale(self.store):
             self.progress.step("making the site")
             self.jobs.run(SITE)
-            self.done.database = True
 
 
 class _Jobs:

@@ -211,7 +211,7 @@ def test_the_old_database_stays_when_a_step_fails(bench, built, monkeypatch):
             "herijk.warehouse.build.method_tables.recompute",
             BrokenPromiseError("a promise was broken"),
         ),
-        ("herijk.warehouse.store.database._comment", OSError("disk full")),
+        ("herijk.warehouse.store.database._describe", OSError("disk full")),
     ):
         with monkeypatch.context() as patched:
             patched.setattr(place, mock.Mock(side_effect=error))

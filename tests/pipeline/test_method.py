@@ -130,7 +130,7 @@ def test_every_error_says_where_what_and_what_is_allowed(case):
 
 def test_a_very_long_line_is_refused_at_once():
     begin = time.process_time()
-    with pytest.raises(MethodFileError, match="line 1: titel: unknown key"):
+    with pytest.raises(MethodFileError, match=r"200\d+ letters.* a method has at most 100000"):
         parse(f'titel = "{"a" * 200_000}"\n' + method_text())
     assert time.process_time() - begin < 2.0
 

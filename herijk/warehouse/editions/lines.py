@@ -25,6 +25,12 @@ from herijk.warehouse.store import decisions as decided
 from herijk.warehouse.store.editions import DECISIONS, INPUTS, Edition, edition_path, read_edition
 from herijk.warehouse.store.store import Store
 
+SAME_NUMBER: Final = 1e-9
+"""Relative difference up to which a number made again is the same.
+
+Other processors leave other last bits, which come to no more in any table (docs/decisions/0017)."""
+
+BOAT_FACTS: Final = ("ht_no", "name", "boat_type")
 NUMBERS: Final = ("a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
 TOW_FACTS: Final = ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg", INPUTS_HASH)
 MEASURED: Final = "measured"

@@ -34,7 +34,13 @@ from herijk.warehouse.editions.inputs import (
     inputs_digest,
     tows_of_today,
 )
-from herijk.warehouse.editions.lines import NUMBERS, TOW_FACTS, method_lines
+from herijk.warehouse.editions.lines import (
+    BOAT_FACTS,
+    NUMBERS,
+    SAME_NUMBER,
+    TOW_FACTS,
+    method_lines,
+)
 from herijk.warehouse.editions.printed import printed_lines, printed_path, with_carried
 from herijk.warehouse.editions.sheets import CODE_FIELD
 from herijk.warehouse.intake.seasons import all_blocks, runs_with_windows, typed_tows
@@ -62,14 +68,8 @@ from herijk.warehouse.store.ensemble import read_ensemble
 from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import Store, table_digest
 
-BOAT_FACTS: Final = ("ht_no", "name", "boat_type")
 MADE: Final = ("curves", "run_points", "log_factors", "season_links", "tow_instruments")
 """What a method made of the tows, and an edition keeps."""
-
-SAME_NUMBER: Final = 1e-9
-"""Relative difference up to which a number made again is the same.
-
-Other processors leave other last bits, which come to no more in any table (docs/decisions/0017)."""
 
 PRINTED_METHOD: Final = "as-printed"
 LINE_SCHEMA: Final = {

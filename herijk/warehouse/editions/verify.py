@@ -24,9 +24,8 @@ from herijk.warehouse.editions import sheets
 from herijk.warehouse.editions.chain import chain_findings
 from herijk.warehouse.editions.finding import Finding
 from herijk.warehouse.editions.inputs import LIST, NOT_INPUT, unchanged_tows
-from herijk.warehouse.editions.lines import Again, made_again
+from herijk.warehouse.editions.lines import BOAT_FACTS, SAME_NUMBER, Again, made_again
 from herijk.warehouse.editions.printed import AS_PRINTED
-from herijk.warehouse.editions.publish import BOAT_FACTS, SAME_NUMBER
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.editions import (
     ABOUT,

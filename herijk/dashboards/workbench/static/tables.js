@@ -36,7 +36,7 @@ function fill(table) {
     header(table, column))));
   const rows = rowsOf(table);
   const counts = new Set(columns.filter((column) =>
-    state.answer[table.dataset.table].every((row) => isCount(row[column]))));
+    state.answer[table.dataset.table].every((row) => isCount(row[column])) && !column.startsWith("share")));
   table.querySelector("tbody").replaceChildren(...rows.map((row) => {
     const line = make("tr", {}, ...columns.map((column) =>
       cell(row, column, counts.has(column))));
@@ -67,7 +67,8 @@ function header(table, column) {
 const digitsOf = (column) =>
   (start.digits.find(([ending]) => column.endsWith(ending)) ?? ["", 4])[1];
 
-// A column of nothing but whole numbers counts something; in another a 1 has decimals too.
+// A column of nothing but whole numbers counts something, unless it holds shares; in another a 1
+// has decimals too.
 const isCount = (value) => value === null || Number.isInteger(value);
 
 function cell(row, column, isOfCounts) {
