@@ -229,7 +229,8 @@ def test_set_aside_tows_of_a_boat_are_found_by_number_or_file_and_no_others(benc
         bench,
         "UPDATE boats SET name = 'Razende Snol' WHERE fsn_no = 'FSN101'",
         *(
-            f"INSERT INTO quarantine VALUES ('{path}', NULL, NULL, 'x', '{message}', '2026-01-01')"  # noqa: S608
+            f"INSERT INTO quarantine BY NAME SELECT '{path}' AS path, 'x' AS reason_code, "
+            f"'{message}' AS message, 'file' AS lost, DATE '2026-01-01' AS first_seen"
             for path, message in (
                 ("a.csv", "boat FSN101 is not in the list"),
                 ("b.csv", "boat FSN1010 is not in the list"),
