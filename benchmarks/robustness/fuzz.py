@@ -148,14 +148,15 @@ def independent(data: bytes) -> np.ndarray:
     except UnicodeDecodeError:
         text = data.decode("cp1252")
     usual = csv.field_size_limit(len(text) + 1)  # of the whole process, so put back
-    rows = list(csv.reader(io.StringIO(text.rstrip("\r\n"), newline="\n"), delimiter=";"))
+    lines = text.rstrip("\r\n").split("\n")  # a quotation mark ends with its line
+    rows = [next(csv.reader([line], delimiter=";"), []) for line in lines]
     csv.field_size_limit(usual)
     width = len(rows[0])
     return np.array([_python_row(row, width) for row in rows[1:]])
 
 
 def _python_row(row: list[str], width: int) -> list[float]:
-    """A row with too few or too many fields, or no run, says nothing: what is in which place is unsure."""
+    """A row with too few or too many fields, or without a run, says nothing."""
     numbers = [_python_number(cell) for cell in row[:5]]
     return numbers if len(row) == width and np.isfinite(numbers[0]) else [np.nan] * 5
 

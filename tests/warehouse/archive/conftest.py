@@ -105,8 +105,8 @@ def _samples(seed: int, declared_m_s: float) -> str:
         log2 = speed + rng.normal(0, 0.03, ROWS)
         gps = np.repeat((speed + rng.normal(0, 0.02, ROWS // RATE_HZ)).round(2), RATE_HZ)
         force = 40 * speed**2 + rng.normal(0, 80, ROWS)
-        wind = speed + rng.normal(0, 0.3, ROWS)  # a calm day: the boat's own wind, from ahead
-        angle = rng.normal(5, 15, ROWS) % 360
+        wind = 4 + rng.normal(0, 0.3, ROWS)
+        angle = (rng.normal(5 if run < 4 else 190, 15, ROWS)) % 360
         lines += [
             ";".join([str(run), *(f"{value:.3f}".replace(".", ",") for value in row)])
             for row in zip(log1, log2, gps, force, wind, angle, strict=True)
