@@ -42,7 +42,7 @@ SETTLED = 10.0
 PAUSE_S = 1.0
 LONGER = 1.5
 """So many times as long as the last undisturbed rebuild may one take that does everything first."""
-SCRIPTS = ("vega.js", "charts.js")
+SCRIPTS = ("vega.js", "charts-nl.js", "charts-en.js")
 
 
 @dataclass
@@ -112,7 +112,7 @@ def be_victim(archive: Path, data: Path) -> None:
     """
     scripts = {name: (data / "site" / "static" / name).read_text("utf-8") for name in SCRIPTS}
     render.vega_bundle = lambda: scripts["vega.js"]
-    render.chart_specifications = lambda: scripts["charts.js"]
+    render.charts_script = lambda language: scripts[f"charts-{language}.js"]
     print("ready", flush=True)
     sys.stdin.readline()
     rebuild(archive, data, METHODS, Quiet())
