@@ -11,7 +11,7 @@ import polars as pl
 from herijk.pipeline.blocks.run_blocks import stack_blocks
 from herijk.pipeline.blocks.sums import block_sums
 from herijk.pipeline.channels import BACK, OUT, RUNS_PER_FILE, SAMPLE_SCHEMA, TARGET_SPEED_RATIOS
-from herijk.pipeline.errors import HerijkError, MissingKnowledgeError
+from herijk.pipeline.errors import HerijkError
 from herijk.pipeline.method.definition import (
     Method,
     parse_method,
@@ -20,6 +20,7 @@ from herijk.pipeline.method.definition import (
 )
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.tables.archive import Tows
+from herijk.warehouse.store.methods import text_of_file
 
 REQUIRED: Final = ("declared_speed_m_s", "waterline_length_m", "beam_m", "bow_height_m")
 DEFAULTS: Final = {
@@ -68,9 +69,7 @@ def method(name_or_file: str | Path) -> Method:
     file = Path(name_or_file)
     if file.suffix != ".toml":
         return shipped_method(str(name_or_file))
-    if not file.is_file():
-        raise MissingKnowledgeError(f"there is no method file {file}")
-    return parse_method(file.read_text(encoding="utf-8"), str(file))
+    return parse_method(text_of_file(file), str(file))
 
 
 def apply_method(
