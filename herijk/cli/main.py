@@ -272,10 +272,14 @@ def slides(
     tows: Annotated[
         str, typer.Option(metavar="all|newest|SEASON", help="Which tows are drawn.")
     ] = "all",
+    boat: Annotated[
+        list[str] | None,
+        typer.Option(help="Boat through the years, by number or name; repeat for more."),
+    ] = None,
     language: Annotated[str, typer.Option(help="nl or en.", metavar="nl|en")] = "nl",
 ) -> None:
     """Every chart of the 2015 presentation over this archive, as SVG and PNG and in one PDF."""
-    from herijk.dashboards.slides import write_slides
+    from herijk.dashboards.slides import Asked, write_slides
     from herijk.dashboards.words import LANGUAGES
     from herijk.warehouse.store.store import Store
 
@@ -284,7 +288,8 @@ def slides(
     if len(boat_type or ()) > MOST_TYPES:
         raise typer.BadParameter("give one or two types")
     store = Store(data)
-    written = write_slides(store, out or store.root / "slides", language, boat_type or (), tows)
+    asked = Asked(boat_type or (), tows, boat or ())
+    written = write_slides(store, out or store.root / "slides", language, asked)
     typer.echo("\n".join(str(path) for path in written))
 
 

@@ -7,7 +7,6 @@ and the statistics behind a sentence (`pipeline.consistency`).
 
 import io
 from collections.abc import Iterator, Sequence
-from math import log
 from pathlib import Path
 from typing import Any, Final, Literal, NamedTuple
 
@@ -18,25 +17,27 @@ import vl_convert
 
 from herijk.dashboards.audit_plots import VEGA_LITE, file_name
 from herijk.dashboards.figures import FIGURES
-from herijk.dashboards.figures.slides import EXPLAINING, METHODS, QUANTITIES
+from herijk.dashboards.figures.slides import EXPLAINING, QUANTITIES
 from herijk.dashboards.slide_rows import (
+    RECOMPUTED_SEASON,
     boats_of_slides,
     by_tows,
     compared_frame,
     lines_frame,
-    method_order,
+    methods_of,
     pair_of_types,
 )
 from herijk.dashboards.words import Say, speaker
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
 from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.studies.tool_options import AS_READ, SPEEDS, TICKS
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.store import Store
 
 ALL_TOWS: Final = "all"
-RECOMPUTED_SEASON: Final = "2014"
-"""The slide "2014 opnieuw berekend"."""
+CLEAR_R2: Final = 0.3
+"""From here on a line without a clear slope is not called "no link": too few boats tell."""
 
 WIDTH_OF_TEXT: Final = 140
 LOCALES: Final[dict[str, Literal["nl-NL", "en-GB"]]] = {"nl": "nl-NL", "en": "en-GB"}
@@ -53,8 +54,20 @@ class Slide(NamedTuple):
     sentence: str
 
 
+class Asked(NamedTuple):
+    """What the slides are about: types, those of the presentation when none; tows; boats."""
+
+    types: Sequence[str] = ()
+    tows: str = ALL_TOWS
+    boats: Sequence[str] = ()
+
+
+THE_PRESENTATION: Final = Asked()
+"""Its types, boats, and all tows."""
+
+
 def write_slides(
-    store: Store, folder: Path, language: str, types: Sequence[str] = (), tows: str = ALL_TOWS
+    store: Store, folder: Path, language: str, asked: Asked = THE_PRESENTATION
 ) -> list[Path]:
     """Writes every slide as SVG and PNG, and all of them as one PDF.
 
@@ -62,16 +75,15 @@ def write_slides(
         store: where the database lies.
         folder: where they go; made if it is not there.
         language: nl or en.
-        types: one or two types of boat; those of the presentation when none.
-        tows: `all`, `newest`, or a season.
+        asked: types, one or two; tows, `all`, `newest` or a season; boats by number or name.
 
     Raises:
-        MissingKnowledgeError: there is no such type or choice of tows, or no database.
+        MissingKnowledgeError: there is no such type, boat or choice of tows, or no database.
     """
     say = speaker(language)
     with Views(store) as views:
         simulated = views.about().get("simulated") == "true"
-        made = list(slides(views, say, types, tows))
+        made = list(slides(views, say, asked))
     folder.mkdir(parents=True, exist_ok=True)
     book, written = pypdf.PdfWriter(), []
     for number, slide in enumerate(made, 1):
@@ -96,7 +108,7 @@ def _svg(slide: Slide, language: str, simulated: bool) -> str:
     lines = [*_wrapped(slide.sentence), *([say("simulated")] if simulated else [])]
     title = alt.Title(slide.title, subtitle=lines, anchor="start", offset=12)
     chart = FIGURES[slide.figure](slide.rows, say).properties(title=title)
-    spec = chart.to_dict()
+    spec = chart.to_dict(validate=False)
     locale = LOCALES[language]
     return str(vl_convert.vegalite_to_svg(spec, vl_version=VEGA_LITE, format_locale=locale))
 
@@ -111,57 +123,69 @@ def _wrapped(text: str) -> list[str]:
     return lines
 
 
-def slides(
-    views: Views, say: Say, types: Sequence[str] = (), tows: str = ALL_TOWS
-) -> Iterator[Slide]:
+def slides(views: Views, say: Say, asked: Asked = THE_PRESENTATION) -> Iterator[Slide]:
     """Every slide of which the archive has something to show."""
-    compared = compared_frame(views)
-    lines = views.table("type_lines").with_columns(method_order())
-    known_choices = lines["tows"].unique().to_list()
-    if tows not in known_choices:
-        raise MissingKnowledgeError(
-            f"there are no tows {tows!r}; choose from {', '.join(sorted(known_choices))}"
-        )
-    chosen = _types(compared, types)
-    about = _About(views, say, compared, lines)
+    about = Book(views, say)
+    types, tows = about.types(asked.types), about.tows(asked.tows)
     for quantity in QUANTITIES:
         for explaining in EXPLAINING:
-            yield about.against(quantity, explaining, chosen, tows)
-    if RECOMPUTED_SEASON in known_choices and tows == ALL_TOWS:
+            yield about.against(quantity, explaining, types, tows)
+    if RECOMPUTED_SEASON in about.choices and tows == ALL_TOWS:
         for explaining in ("weight", "speed"):
-            yield about.against("cw", explaining, chosen, RECOMPUTED_SEASON)
+            yield about.against("cw", explaining, types, RECOMPUTED_SEASON)
     yield about.hull_speed()
     yield about.towed_at()
     yield from about.raced_beyond()
     yield from about.eras()
-    yield from about.boats()
+    for boat in boats_of_slides(views, about.compared, asked.boats):
+        yield from about.boat(boat)
+    yield from about.tick_effects()
 
 
-def _types(compared: pl.DataFrame, wanted: Sequence[str]) -> list[str]:
-    """The types asked for, or those of the presentation."""
-    known = by_tows(compared)
-    found = []
-    for name in wanted:
-        like = [t for t in known if t.casefold().startswith(name.casefold())]
-        if not like:
-            raise MissingKnowledgeError(
-                f"there is no type {name!r}; the types are {', '.join(sorted(known))}"
-            )
-        found.append(like[0])
-    return found or pair_of_types(compared)
-
-
-class _About:
+class Book:
     """The slides of an archive in one language."""
 
-    def __init__(self, views: Views, say: Say, compared: pl.DataFrame, lines: pl.DataFrame) -> None:
-        self.views, self.say, self.compared, self.lines = views, say, compared, lines
-        held = compared.select("method", "order").unique().sort("order", "method")
-        self.before, self.after = held["method"][0], _last_method(held["method"].to_list())
+    def __init__(self, views: Views, say: Say) -> None:
+        self.views, self.say = views, say
+        self.compared = compared_frame(views)
+        self.lines = views.table("type_lines")
+        self.held = self.compared["method"].unique().to_list()
+        self.choices = self.lines["tows"].unique().to_list()
+
+    def types(self, wanted: Sequence[str]) -> list[str]:
+        """The types asked for, or those of the presentation."""
+        known = by_tows(self.compared)
+        found = []
+        for name in wanted:
+            like = [t for t in known if t.casefold().startswith(name.casefold())]
+            if not like:
+                raise MissingKnowledgeError(
+                    f"there is no type {name!r}; the types are {', '.join(sorted(known))}"
+                )
+            found.append(like[0])
+        return found or pair_of_types(self.compared)
+
+    def tows(self, wanted: str) -> str:
+        """The choice of tows, if there is such a one."""
+        if wanted not in self.choices:
+            raise MissingKnowledgeError(
+                f"there are no tows {wanted!r}; choose from {', '.join(sorted(self.choices))}"
+            )
+        return wanted
+
+    def ends(self, tows: str = ALL_TOWS) -> tuple[str, str]:
+        """The methods before and after all corrections."""
+        methods = methods_of(self.held, tows)
+        return methods[0], methods[-1]
+
+    def method(self, name: str) -> str:
+        """A method as people call it."""
+        return self.say(f"method.{name}")
 
     def against(self, quantity: str, explaining: str, types: list[str], tows: str) -> Slide:
         """A quantity against an explaining variable, of some types and tows."""
         own = pl.col("boat_type").is_in(types)
+        own &= pl.col("method").is_in(methods_of(self.held, tows))
         rows = pl.concat(
             [
                 _of_choice(self.compared, tows).filter(own),
@@ -177,10 +201,11 @@ class _About:
             title += self.say("slide.of_season").format(tows=words)
         said = [self._line(quantity, explaining, name, tows) for name in types]
         name = f"{quantity} {explaining} {tows}"
-        sentence = " ".join(said) + self._outside(rows)
+        sentence = " ".join(said) + self._outside(rows, tows)
         return Slide(name, f"slide_{quantity}_{explaining}", rows, title, sentence)
 
     def _line(self, quantity: str, explaining: str, boat_type: str, tows: str) -> str:
+        """What the line of a type says after all corrections, and its share before."""
         own = self.lines.filter(
             boat_type=boat_type,
             tows=tows,
@@ -188,79 +213,94 @@ class _About:
             explaining=EXPLAINING[explaining],
         )
         found = {row["method"]: row for row in own.iter_rows(named=True)}
-        before, after = found.get(self.before), found.get(self.after)
+        before, after = (found.get(name) for name in self.ends(tows))
+        counted = self._counted(after)
         if after is None or after["slope"] is None:
-            n, boats = (after["n"], after["n_boats"]) if after else (0, 0)
-            return self.say("slide.no_line").format(type=boat_type, n=n, boats=boats)
+            return self.say("slide.no_line").format(type=boat_type, counted=counted)
         words = {
             "y": self.say(f"slide.{quantity}"),
             "x": self.say(f"slide.x.{explaining}"),
         }
-        verdict = _direction(after)
         return self.say("slide.line").format(
             type=boat_type,
-            verdict=self.say(f"slide.{verdict}").format(**words),
-            before=self.before,
-            after=self.after,
+            verdict=self.say(f"slide.{_direction(after)}").format(**words),
+            before=self.method(self.ends(tows)[0]),
+            after=self.method(self.ends(tows)[1]),
             r2_before=_share(before["r2"] if before else None),
             r2_after=_share(after["r2"]),
-            n=after["n"],
-            boats=after["n_boats"],
+            counted=counted,
         )
 
-    def _outside(self, rows: pl.DataFrame) -> str:
+    def _counted(self, line: dict[str, Any] | None) -> str:
+        """How many tows of how many boats."""
+        n, boats = (line["n"], line["n_boats"]) if line else (0, 0)
+        return self.say("slide.counted").format(
+            tows=self._number(n, "tow"), boats=self._number(boats, "boat")
+        )
+
+    def _number(self, n: int, what: str) -> str:
+        return self.say(f"slide.{'one' if n == 1 else 'many'}_{what}").format(n=n)
+
+    def _outside(self, rows: pl.DataFrame, tows: str) -> str:
         """The tows outside their type after correction, by boat, crew and season."""
-        names = rows.filter(pl.col("outside"), method=self.after)["label"].to_list()
-        if not names:
-            return ""
-        return " " + self.say("slide.outside").format(after=self.after, names=", ".join(names))
+        after = self.ends(tows)[1]
+        names = rows.filter(pl.col("outside"), method=after)["label"].to_list()
+        key = "slide.outside" if names else "slide.none_outside"
+        return " " + self.say(key).format(after=self.method(after), names=", ".join(names))
 
     def hull_speed(self) -> Slide:
         """B against length, and against hull speed."""
+        after = self.ends()[1]
         row = self.views.table("hull_speed").filter(
-            method=self.after, tows=ALL_TOWS, boat_type=ALL_TOWS
+            method=self.ends()[1], tows=ALL_TOWS, boat_type=ALL_TOWS
         )
         found = row.row(0, named=True)
         key = {None: "b_unknown", True: "b_is", False: "b_is_not"}[found["b_is_hull_speed"]]
         sentence = self.say(f"slide.{key}").format(
-            after=self.after,
+            after=self.method(after),
             ratio=self._digits(found["b_ratio"]),
             lo=self._digits(found["b_ratio_lo"]),
             hi=self._digits(found["b_ratio_hi"]),
-            boats=found["n_boats"],
+            boats=self._number(found["n_boats"], "boat"),
             share=_share(found["b_share_within_5pct"]),
         )
-        known = self.compared.filter(pl.col("boat_type") != UNKNOWN_TYPE)
+        known = self._compared_methods().filter(pl.col("boat_type") != UNKNOWN_TYPE)
         return Slide(
             "hull speed", "slide_hull_speed", known, self.say("slide.hull_speed"), sentence
         )
 
+    def _compared_methods(self) -> pl.DataFrame:
+        return self.compared.filter(pl.col("method").is_in(methods_of(self.held)))
+
     def towed_at(self) -> Slide:
         """Tow speed as part of hull speed."""
         row = self.views.table("hull_speed").filter(
-            method=self.after, tows=ALL_TOWS, boat_type=ALL_TOWS
+            method=self.ends()[1], tows=ALL_TOWS, boat_type=ALL_TOWS
         )
         found = row.row(0, named=True)
         sentence = self.say("slide.towed").format(
             ratio=_share(found["tow_ratio"]), share=_share(found["tow_share_60_70"])
         )
-        rows = self.compared.with_columns(newest_method=pl.lit(self.after))
+        rows = self.compared.filter(method=self.ends()[1]).with_columns(newest_method="method")
         return Slide("towed at", "slide_towed_at", rows, self.say("slide.towed_at"), sentence)
 
     def raced_beyond(self) -> Iterator[Slide]:
         """Race power by curves that are used where they do not count."""
         label = pl.format("{} {}{} {}", "name", "rowers", "crew_class", "season")
         rows = self.views.slow_tows().with_columns(label.alias("label"))
-        rows = rows.filter(pl.col("power_ratio_raced").is_not_null())
-        after = rows.filter(method=self.after)
+        rows = rows.filter(
+            pl.col("power_ratio_raced").is_not_null(),
+            pl.col("method").is_in(methods_of(self.held)),
+        )
+        after = rows.filter(method=self.ends()[1])
         if after.is_empty():
             return
         both = after.filter(pl.col("raced_high") & (pl.col("power_w") < _low_power()))
         sentence = self.say("slide.raced").format(
-            n=after.height,
+            n=self._number(after.height, "tow"),
             up=after.filter(pl.col("power_ratio_raced_lo") > 1).height,
             down=after.filter(pl.col("power_ratio_raced_hi") < 1).height,
-            both=", ".join(both["label"]) or "-",
+            both=", ".join(both["label"]) or self.say("slide.no_tow"),
         )
         title = self.say("slide.raced_beyond")
         yield Slide("raced beyond", "slide_raced_beyond", rows, title, sentence)
@@ -268,44 +308,93 @@ class _About:
     def eras(self) -> Iterator[Slide]:
         """Seasons that stand apart, before and after."""
         rows = self.views.table("era_shifts").filter(
-            pl.col("shift_ratio").is_not_null(), boat_type=ALL_TOWS
+            pl.col("shift_ratio").is_not_null(),
+            pl.col("method").is_in(methods_of(self.held)),
+            boat_type=ALL_TOWS,
         )
         of = {(r["method"], r["era"]): r for r in rows.iter_rows(named=True)}
-        eras = rows["era"].unique().sort().to_list()
+        ends = self.ends()
         said = [
-            self._apart(of[self.before, era], of[self.after, era])
-            for era in eras
-            if (self.before, era) in of and (self.after, era) in of
+            self.say("slide.apart").format(
+                era=era, before=self._apart(of[ends[0], era]), after=self._apart(of[ends[1], era])
+            )
+            for era in rows["era"].unique().sort()
+            if all((name, era) in of for name in ends)
         ]
         if said:
             yield Slide("eras", "eras", rows, self.say("slide.eras"), " ".join(said))
 
-    def _apart(self, before: dict[str, Any], after: dict[str, Any]) -> str:
-        """How far an era's tows lie above the next of the same boats."""
-        return self.say("slide.apart").format(
-            era=before["era"],
-            before=self.before,
-            after=self.after,
-            before_shift=_signed(-log(before["shift_ratio"])),
-            after_shift=_signed(-log(after["shift_ratio"])),
-            verdict=self.say("slide.is_apart" if after["apart"] else "slide.not_apart"),
+    def _apart(self, row: dict[str, Any]) -> str:
+        """Whether an era's tows stand apart from the next of the same boats, and by how much."""
+        ends = sorted(1.0 / row[end] - 1.0 for end in ("shift_ratio", "lo", "hi"))
+        key = "slide.is_apart" if row["apart"] else "slide.not_apart"
+        return self.say(key).format(
+            method=self.method(row["method"]),
+            shift=_signed(1.0 / row["shift_ratio"] - 1.0),
+            lo=_signed(ends[0]),
+            hi=_signed(ends[-1]),
         )
 
-    def boats(self) -> Iterator[Slide]:
-        """One boat over the years, for the boats of the presentation."""
-        for name in boats_of_slides(self.compared):
-            own = self.compared.filter(pl.col("fsn_no") == name)
-            curves = self.views.curve_points_of(name)
-            rows = curves.join(
-                own.select("method", "tow_id", "standard_speed_m_s"), on=["method", "tow_id"]
-            )
-            title = self.say("slide.boat_years").format(name=own["name"][0])
-            yield Slide(
-                f"years {own['name'][0]}", "slide_boat_years", rows, title, self._years(own)
-            )
+    def boat(self, fsn_no: str) -> Iterator[Slide]:
+        """One boat over the years, and what the tool's ticks do to one of its tows."""
+        own = self._compared_methods().filter(fsn_no=fsn_no)
+        if own.is_empty():
+            return
+        name = own["name"][0]
+        common = own.select("method", "tow_id", "standard_speed_m_s")
+        rows = self.views.curve_points_of(fsn_no).join(common, on=["method", "tow_id"])
+        title = self.say("slide.boat_years").format(name=name)
+        yield Slide(f"years {name}", "slide_boat_years", rows, title, self._years(own))
+        yield from self._ticks(own.sort("season", "tow_id"))
+
+    def _ticks(self, own: pl.DataFrame) -> Iterator[Slide]:
+        """The tow of 2014, as on the slide, or the boat's newest."""
+        of_2014 = own.filter(season=int(RECOMPUTED_SEASON))
+        tow = (of_2014 if of_2014.height else own).row(-1, named=True)
+        rows = self.views.option_curves(tow["tow_id"]).filter(pl.col("method") == self._ticked())
+        if rows.is_empty():
+            return
+        effects = self.views.table("option_effects").filter(
+            method=self._ticked(), study="tool", tow_id=tow["tow_id"]
+        )
+        at_read = rows.filter(speed=AS_READ)["cw_kg_m"]
+        sentence = self.say("slide.ticks_said").format(
+            spread=_share(at_read.max() / at_read.min() - 1.0),
+            n=at_read.len(),
+            method=self.method(self._ticked()),
+            effects=self._effects(dict(effects.select("option", "cw_effect_ratio").rows())),
+        )
+        title = self.say("slide.ticks").format(tow=tow["label"])
+        yield Slide(f"ticks {tow['name']}", "slide_ticks", rows, title, sentence)
+
+    def _ticked(self) -> str:
+        """The method under which the ticks are shown: the last of those studied."""
+        held = self.views.table("option_summary").filter(study="tool")["method"].to_list()
+        return ([name for name in methods_of(self.held) if name in held] or [""])[-1]
+
+    def _effects(self, of: dict[str, float | None]) -> str:
+        """What ticks and speeds do to Cw, the largest first."""
+        known = {o: e - 1.0 for o, e in of.items() if e is not None and o in (*TICKS, *SPEEDS)}
+        largest = sorted(known, key=lambda option: -abs(known[option]))
+        return ", ".join(f"{self.say(f'code.{o}')} {self._signed_fine(known[o])}" for o in largest)
+
+    def tick_effects(self) -> Iterator[Slide]:
+        """What the ticks do to all boats."""
+        rows = self.views.table("option_summary").filter(study="tool")
+        own = rows.filter(method=self._ticked())
+        if own.is_empty():
+            return
+        sentence = self.say("slide.tick_effects_said").format(
+            method=self.method(self._ticked()),
+            tows=self._number(own["tows"].max(), "tow"),
+            effects=self._effects(dict(own.select("option", "median_ratio").rows())),
+        )
+        title = self.say("slide.tick_effects")
+        yield Slide("ticks fleet", "slide_tick_effects", rows, title, sentence)
 
     def _years(self, own: pl.DataFrame) -> str:
         """How far the tows of each crew lie apart at the common speed."""
+        before, after = self.ends()
         cw = pl.col("cw_standard_kg_m")
         crews = (
             own.drop_nulls("cw_standard_kg_m")
@@ -319,20 +408,24 @@ class _About:
                 speed=self._digits(own["standard_speed_m_s"][0]),
                 crew=crew,
                 n=n,
-                before=self.before,
-                after=self.after,
-                before_spread=_share(spread.get((self.before, crew), (0, None))[1]),
+                before=self.method(before),
+                after=self.method(after),
+                before_spread=_share(spread.get((before, crew), (0, None))[1]),
                 after_spread=_share(value),
             )
             for (method, crew), (n, value) in spread.items()
-            if method == self.after
+            if method == after
         ]
-        return " ".join(said)
+        return " ".join(said) or self.say("slide.one_tow_a_crew")
 
     def _digits(self, value: float | None) -> str:
         """A number with two decimals, as this language writes it."""
         text = "-" if value is None else f"{value:.2f}"
         return text.replace(".", self.say("decimal_mark"))
+
+    def _signed_fine(self, ratio: float) -> str:
+        """A change in per cent with one decimal, as this language writes it."""
+        return f"{100 * ratio:+z.1f} %".replace(".", self.say("decimal_mark"))
 
 
 def _of_choice(compared: pl.DataFrame, tows: str) -> pl.DataFrame:
@@ -348,17 +441,13 @@ def _low_power() -> pl.Expr:
     return pl.col("crew_class").replace_strict({"H": 70.0, "D": 40.0}, return_dtype=pl.Float64)
 
 
-def _last_method(methods: Sequence[str]) -> str:
-    """The newest of the four methods that the archive has, else the last."""
-    known = [name for name in METHODS if name in methods]
-    return (known or list(methods))[-1]
-
-
 def _direction(line: dict[str, Any]) -> str:
-    """Whether a slope's interval leaves out zero, and on which side."""
+    """Whether a slope's interval leaves out zero, and on which side; else whether it could."""
     if line["slope_lo"] > 0:
         return "rises"
-    return "falls" if line["slope_hi"] < 0 else "none"
+    if line["slope_hi"] < 0:
+        return "falls"
+    return "unclear" if (line["r2"] or 0.0) >= CLEAR_R2 else "none"
 
 
 def _share(ratio: float | None) -> str:
@@ -366,4 +455,4 @@ def _share(ratio: float | None) -> str:
 
 
 def _signed(ratio: float) -> str:
-    return f"{100 * ratio:+.0f} %"
+    return f"{100 * ratio:+z.0f} %".replace("+0 %", "0 %")

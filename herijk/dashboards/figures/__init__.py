@@ -24,6 +24,8 @@ from herijk.dashboards.figures import (
 )
 from herijk.dashboards.words import Say
 
+alt.data_transformers.disable_max_rows()  # an archive of 1,000 tows has more than 5,000 rows
+
 Figure = Callable[[pl.DataFrame, Say], alt.TopLevelMixin]
 
 FIGURES: Final[dict[str, Figure]] = {
@@ -65,6 +67,8 @@ FIGURES: Final[dict[str, Figure]] = {
     "slide_towed_at": slides.towed_at,
     "slide_raced_beyond": slides.raced_beyond,
     "slide_boat_years": slides.boat_years,
+    "slide_ticks": slides.ticks,
+    "slide_tick_effects": slides.tick_effects,
     **{
         f"slide_{quantity}_{explaining}": slides.against(quantity, explaining)
         for quantity in slides.QUANTITIES

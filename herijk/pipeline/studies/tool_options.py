@@ -17,7 +17,7 @@ from herijk.pipeline.method.definition import Method, Steps
 from herijk.pipeline.recompute.outcome import Outcome
 from herijk.pipeline.recompute.recompute import batches, evaluate, log_factors
 from herijk.pipeline.recompute.run_cache import RunCache
-from herijk.pipeline.studies.options import ALL_OPTIONS, OPERATION, Choice, chosen
+from herijk.pipeline.studies.options import ALL_OPTIONS, Choice, chosen
 
 TICKS: Final = {
     "optimisation": Choice("wind", "coefficients", ("fixed", "per_run")),
@@ -27,15 +27,16 @@ TICKS: Final = {
 }
 """By column: "Optimalisatie", "Afkappen", "WindVaanCorrectie", "B uit sloeplengte"."""
 
-AS_READ, DGPS, MULTIPLY, DIVIDE, ESTIMATED = "as_read", "dgps", "multiply", "divide", "estimated"
+SPEED_NAMES: Final = ("as_read", "dgps", "multiply", "divide", "estimated")
+AS_READ, DGPS, MULTIPLY, DIVIDE, ESTIMATED = SPEED_NAMES
 
 SPEEDS: Final = {
-    "calibration.rule": (AS_READ, DGPS),
-    "speed.correction": (AS_READ, MULTIPLY),
-    OPERATION: (MULTIPLY, DIVIDE),
-    "speed.estimate": (AS_READ, ESTIMATED),
+    "dgps": (AS_READ, DGPS),
+    "correction": (AS_READ, MULTIPLY),
+    "operation": (MULTIPLY, DIVIDE),
+    "estimate": (AS_READ, ESTIMATED),
 }
-"""Pairs of speeds whose difference is the effect of an option."""
+"""Pairs of speeds, by the name of what makes the second of the first."""
 
 
 def option_curves(
@@ -113,13 +114,14 @@ def tick_effects(curves: pl.DataFrame) -> pl.DataFrame:
         curves: rows of `option_curves`.
 
     Returns:
-        Rows as of `options.option_effects`; an effect is null unless every combination counts.
+        Rows as of `options.option_effects`, options named as in `TICKS` and `SPEEDS`; an effect is
+        null unless every combination counts.
     """
     logs = curves.with_columns(
         cw=pl.col("cw_kg_m").log(), b=pl.col("b_m_s").log(), n=pl.len().over("tow_id", "speed")
     )
     whole = logs.filter(pl.col("n") == 2 ** len(TICKS))
-    ticks = [_effect(whole, c.name, pl.col(name)) for name, c in TICKS.items()]
+    ticks = [_effect(whole, name, pl.col(name)) for name in TICKS]
     pairs = [
         _effect(whole.filter(pl.col("speed").is_in(pair)), name, pl.col("speed") == pair[1])
         for name, pair in SPEEDS.items()

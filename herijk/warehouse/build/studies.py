@@ -45,9 +45,7 @@ def study_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
         for old, new in (_in_order(first, other) for other in others)
     ]
     ticked = {
-        m: option_curves(m, tows, blocks, links[m.name])
-        for m in inputs.methods
-        if m.name in TICKED
+        m: option_curves(m, tows, blocks, links[m.name]) for m in inputs.methods if m.name in TICKED
     }
     effects = [
         *((m, TOOL, tick_effects(curves)) for m, curves in ticked.items()),
