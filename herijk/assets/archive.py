@@ -16,7 +16,7 @@ LOOKED_AT = dg.FreshnessPolicy.time_window(
 
 
 @dg.asset(group_name="archive", kinds={"parquet"}, code_version="1", freshness_policy=LOOKED_AT)
-def archive_index(setup: Setup) -> dg.MaterializeResult[None]:
+def archive_index(setup: Setup) -> dg.MaterializeResult:
     """Boats, tow lists and files of the archive, with what is wrong in the lists."""
     found = intake.index(setup.store, setup.archive_root)
     return dg.MaterializeResult(
@@ -40,12 +40,12 @@ def archive_index(setup: Setup) -> dg.MaterializeResult[None]:
 )
 def samples(
     context: dg.AssetExecutionContext, setup: Setup, progress: dg.ResourceParam[Progress]
-) -> dg.MaterializeResult[None]:
+) -> dg.MaterializeResult:
     """The samples of one season's tows, in Parquet; faulty tows are set aside."""
     return read(setup, int(context.partition_key), progress)
 
 
-def read(setup: Setup, season: int, progress: Progress) -> dg.MaterializeResult[None]:
+def read(setup: Setup, season: int, progress: Progress) -> dg.MaterializeResult:
     """Brings a season's samples into the lake."""
     found = intake.read_season(setup.store, setup.archive_root, season, progress.tow_read)
     faulty = found.filter(pl.col("reason_code").is_not_null())
@@ -74,12 +74,12 @@ def read(setup: Setup, season: int, progress: Progress) -> dg.MaterializeResult[
     kinds={"parquet"},
     code_version="1",
 )
-def blocks(context: dg.AssetExecutionContext, setup: Setup) -> dg.MaterializeResult[None]:
+def blocks(context: dg.AssetExecutionContext, setup: Setup) -> dg.MaterializeResult:
     """Sums over each second of each run of one season."""
     return add_up(setup, int(context.partition_key))
 
 
-def add_up(setup: Setup, season: int) -> dg.MaterializeResult[None]:
+def add_up(setup: Setup, season: int) -> dg.MaterializeResult:
     """Puts a season's blocks together in one table."""
     found = intake.collect_blocks(setup.store, season)
     return dg.MaterializeResult(metadata={"dagster/row_count": found.height})

@@ -37,7 +37,7 @@ def read_season(context: dg.OpExecutionContext, config: Season) -> None:
 
 
 def _log(
-    context: dg.OpExecutionContext, asset: dg.AssetsDefinition, result: dg.MaterializeResult[None]
+    context: dg.OpExecutionContext, asset: dg.AssetsDefinition, result: dg.MaterializeResult
 ) -> None:
     """Records an asset's partition and its checks, as the asset itself would."""
     season = str(context.op_config["season"])

@@ -35,7 +35,7 @@ def site_is_stale(store: Store) -> bool:
 
 
 @dg.asset(deps=[DATABASE_TABLE], group_name="site", kinds={"html"})
-def site(setup: Setup) -> dg.MaterializeResult[None]:
+def site(setup: Setup) -> dg.MaterializeResult:
     """Pages people can look at, swapped in whole."""
     from herijk.dashboards.site import build_site  # noqa: PLC0415 - Altair takes a second to import
 
