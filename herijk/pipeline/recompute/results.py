@@ -1,7 +1,7 @@
 """The results of a method as tables of the warehouse.
 
 Arrays in, frames out; a number that is not known becomes null here, never NaN. What is computed
-stands in `pipeline.recompute.recompute`; how sure it is, in `pipeline.recompute.budget`; what a
+is in `pipeline.recompute.recompute`; how sure it is, in `pipeline.recompute.budget`; what a
 person should look at, in `pipeline.assessment.assess`.
 """
 
@@ -196,7 +196,7 @@ def _log_factors(o: Outcome, found: SeasonFactors | None) -> pl.DataFrame:
     """The factor of each season: from GPS, estimated, prescribed or none, in this order.
 
     With a calibration per tow it is the mean of the tows' factors, with a t interval of that mean.
-    A tow's own factor stands in `run_points.speed_factor`.
+    A tow's own factor is in `run_points.speed_factor`.
     """
     seasons = o.batch.tows["season"].unique().sort()
     if o.steps.calibration.rule != "none":

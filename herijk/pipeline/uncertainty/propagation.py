@@ -115,7 +115,7 @@ def residual_scatter(
 ) -> tuple[FloatArray, FloatArray]:
     """Relative scatter of run points about their curves, pooled over each season's tows.
 
-    Four degrees of freedom a tow are too few for its own (research, method.md 4.4). This is the
+    Four degrees of freedom per tow are too few for its own (research, method.md 4.4). This is the
     check on `run_point_uncertainty`: it also has in it what differs from run to run.
 
     Args:
@@ -209,7 +209,7 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
     of its log in place of calibration and stream drift: a log feels the water, not the stream.
 
     Args:
-        tows: one row a tow and speed: `tow_id`, `speed_ratio` (that speed / the declared one),
+        tows: one row per tow and speed: `tow_id`, `speed_ratio` (that speed / the declared one),
             `season, part, log`; `kappa`; `random_ratio` (of C0, from the scatter of the run
             points) with `random_dof`; `calibrated` (on dGPS); `log_sd` and `log_dof` of the
             season's ln factor (0 and any where calibrated), `wander_sd` of the log (0 where

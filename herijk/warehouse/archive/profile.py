@@ -161,7 +161,9 @@ class _PlanTable(_Strict):
         if (self.seasons is None) == (not self.tows):
             raise ValueError("a plan is for seasons or for tows: give one of the two")
         if len(self.targets) != len(self.directions):
-            raise ValueError("targets and directions must have one entry a run, so as many of both")
+            raise ValueError(
+                "targets and directions must have one entry per run, so as many of both"
+            )
         return self
 
     @property
@@ -196,7 +198,7 @@ class SeasonProfile:
     Attributes:
         season: the year.
         columns: the columns to look for, with name and default unit of that season.
-        sample_rate_hz: samples a second where the tow list does not say.
+        sample_rate_hz: samples per second where the tow list does not say.
         absent: what was not on board, or is not to be used: `wind`, `log2`, `gps`.
         header: the names of the columns of files that have none.
         ignore: names of columns that are known and not used.
@@ -349,7 +351,7 @@ def _profile_path(root: Path) -> Path | None:
         return None
     found = sorted(p.name for p in root.iterdir() if p.name.casefold() == PROFILE_FILE)
     if len(found) > 1:
-        raise MissingKnowledgeError(f"{' and '.join(found)} both stand in {root}; keep one")
+        raise MissingKnowledgeError(f"{' and '.join(found)} both are in {root}; keep one")
     path = path_inside(root, found[0]) if found else None
     return path if path is not None and path.is_file() else None
 
