@@ -1,6 +1,7 @@
 """From archive files to blocks: the heavy part, partitioned by season."""
 
 import datetime as dt
+from typing import Any
 
 import dagster as dg
 import polars as pl
@@ -8,6 +9,7 @@ import polars as pl
 from herijk.assets.partitions import seasons
 from herijk.assets.resources import Progress, Setup
 from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.store.code import ADDERS, READERS, code_hash
 
 LOOKED_AT = dg.FreshnessPolicy.time_window(
     warn_window=dt.timedelta(hours=26), fail_window=dt.timedelta(hours=50)
@@ -15,7 +17,19 @@ LOOKED_AT = dg.FreshnessPolicy.time_window(
 """Every rebuild looks through the archive, also when it finds no change."""
 
 
-@dg.asset(group_name="archive", kinds={"parquet"}, code_version="1", freshness_policy=LOOKED_AT)
+OF_THE_ARCHIVE: Any = {
+    "group_name": "archive",
+    "kinds": {"parquet"},
+    "owners": ["team:archive"],
+    "tags": {"herijk/subject": "archive"},
+}
+
+
+@dg.asset(
+    code_version=code_hash("herijk.warehouse.archive.index"),
+    freshness_policy=LOOKED_AT,
+    **OF_THE_ARCHIVE,
+)
 def archive_index(setup: Setup) -> dg.MaterializeResult:
     """Boats, tow lists and files of the archive, with what is wrong in the lists."""
     found = intake.index(setup.store, setup.archive_root)
@@ -33,9 +47,8 @@ def archive_index(setup: Setup) -> dg.MaterializeResult:
 @dg.asset(
     deps=[archive_index],
     partitions_def=seasons,
-    group_name="archive",
-    kinds={"parquet"},
-    code_version="1",
+    code_version=code_hash(*READERS),
+    **OF_THE_ARCHIVE,
     check_specs=[dg.AssetCheckSpec("most_tows_sound", asset="samples")],
 )
 def samples(
@@ -70,9 +83,8 @@ def read(setup: Setup, season: int, progress: Progress) -> dg.MaterializeResult:
 @dg.asset(
     deps=[samples],
     partitions_def=seasons,
-    group_name="archive",
-    kinds={"parquet"},
-    code_version="1",
+    code_version=code_hash(*ADDERS),
+    **OF_THE_ARCHIVE,
 )
 def blocks(context: dg.AssetExecutionContext, setup: Setup) -> dg.MaterializeResult:
     """Sums over each second of each run of one season."""
