@@ -1,7 +1,6 @@
 """From archive files to blocks: the heavy part, partitioned by season."""
 
 import datetime as dt
-from typing import Any
 
 import dagster as dg
 import polars as pl
@@ -17,18 +16,17 @@ LOOKED_AT = dg.FreshnessPolicy.time_window(
 """Every rebuild looks through the archive, also when it finds no change."""
 
 
-OF_THE_ARCHIVE: Any = {
-    "group_name": "archive",
-    "kinds": {"parquet"},
-    "owners": ["team:archive"],
-    "tags": {"herijk/subject": "archive"},
-}
+OWNERS = ["team:archive"]
+SUBJECT = {"herijk/subject": "archive"}
 
 
 @dg.asset(
     code_version=code_hash("herijk.warehouse.archive.index"),
     freshness_policy=LOOKED_AT,
-    **OF_THE_ARCHIVE,
+    group_name="archive",
+    kinds={"parquet"},
+    owners=OWNERS,
+    tags=SUBJECT,
 )
 def archive_index(setup: Setup) -> dg.MaterializeResult:
     """Boats, tow lists and files of the archive, with what is wrong in the lists."""
@@ -48,7 +46,10 @@ def archive_index(setup: Setup) -> dg.MaterializeResult:
     deps=[archive_index],
     partitions_def=seasons,
     code_version=code_hash(*READERS),
-    **OF_THE_ARCHIVE,
+    group_name="archive",
+    kinds={"parquet"},
+    owners=OWNERS,
+    tags=SUBJECT,
     check_specs=[dg.AssetCheckSpec("most_tows_sound", asset="samples")],
 )
 def samples(
@@ -84,7 +85,10 @@ def read(setup: Setup, season: int, progress: Progress) -> dg.MaterializeResult:
     deps=[samples],
     partitions_def=seasons,
     code_version=code_hash(*ADDERS),
-    **OF_THE_ARCHIVE,
+    group_name="archive",
+    kinds={"parquet"},
+    owners=OWNERS,
+    tags=SUBJECT,
 )
 def blocks(context: dg.AssetExecutionContext, setup: Setup) -> dg.MaterializeResult:
     """Sums over each second of each run of one season."""
