@@ -61,31 +61,34 @@ def _corrected(prepared: Prepared, found: Anemometer) -> Prepared:
 def anemometer_diagnosis(outcomes: Sequence[Outcome]) -> pl.DataFrame:
     """Rows of `season_diagnosis`: the anemometer of every season where it was estimated."""
     tows = pl.concat(
-        [
-            o.batch.tows.select("season", estimate=o.wind_ln_scale, sd=o.wind_ln_sd)
-            for o in outcomes
-        ]
+        [o.batch.tows.select("season", estimate=o.wind_ln_scale, sd=o.wind_ln_sd) for o in outcomes]
     )
-    seasons = tows.filter(pl.col("sd").is_finite()).group_by("season").agg(
-        pl.col("estimate", "sd").first(), pl.len().alias("tows")
+    seasons = (
+        tows.filter(pl.col("sd").is_finite())
+        .group_by("season")
+        .agg(pl.col("estimate", "sd").first(), pl.len().alias("tows"))
     )
     half = scipy.special.ndtri(0.975) * pl.col("sd")
     shown = (USUAL_SD**2 - pl.col("sd") ** 2).clip(1e-6 * USUAL_SD**2).sqrt()
     distance = pl.col("estimate") / shown
     alarm = distance.abs() >= ALARM_SD
-    return seasons.sort("season").select(
-        "season",
-        pl.lit(0).alias("part"),
-        pl.lit(ANEMOMETER).alias("instrument"),
-        pl.lit("1").alias("unit"),
-        "estimate",
-        (pl.col("estimate") - half).alias("lo"),
-        (pl.col("estimate") + half).alias("hi"),
-        pl.lit(None).alias("p_fault"),
-        distance.alias("distance_sd"),
-        pl.when(alarm).then(pl.lit(ALARM)).otherwise(pl.lit(SOUND)).alias("verdict"),
-        alarm.alias("alarm"),
-        pl.lit(None).alias("first_tow"),
-        pl.format("wind out and back of {} tows", "tows").alias("rests_on"),
-        pl.lit(None).alias("confused_with"),
-    ).cast(DIAGNOSIS_SCHEMA)
+    return (
+        seasons.sort("season")
+        .select(
+            "season",
+            pl.lit(0).alias("part"),
+            pl.lit(ANEMOMETER).alias("instrument"),
+            pl.lit("1").alias("unit"),
+            "estimate",
+            (pl.col("estimate") - half).alias("lo"),
+            (pl.col("estimate") + half).alias("hi"),
+            pl.lit(None).alias("p_fault"),
+            distance.alias("distance_sd"),
+            pl.when(alarm).then(pl.lit(ALARM)).otherwise(pl.lit(SOUND)).alias("verdict"),
+            alarm.alias("alarm"),
+            pl.lit(None).alias("first_tow"),
+            pl.format("wind out and back of {} tows", "tows").alias("rests_on"),
+            pl.lit(None).alias("confused_with"),
+        )
+        .cast(pl.Schema(DIAGNOSIS_SCHEMA))
+    )

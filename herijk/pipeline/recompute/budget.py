@@ -77,7 +77,7 @@ def _departure(o: Outcome, speed_ratios: Sequence[float]) -> Departure:
         ratio,
         used & batch.trusted[:, None],
         o.points.speed_m_s / batch.of_tow("declared_speed_m_s")[:, None],
-        batch.by_tow(batch.direction),
+        batch.by_tow(batch.direction.astype(np.float64)),
         batch.by_tow(batch.target_speed_ratio),
         np.array(speed_ratios),
     )

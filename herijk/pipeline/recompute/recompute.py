@@ -48,6 +48,7 @@ NOT_CALIBRATED = "not_calibrated"
 PER_RUN_ITERATIONS = 4
 """The old tool printed "4 iteraties" (presentation 2015, screens of Razende Snol)."""
 
+
 class ArchiveCoefficient(NamedTuple):
     """The drag coefficient of the whole archive, with its standard deviation."""
 

@@ -130,7 +130,9 @@ def anemometer_of_seasons(ratio: WindRatio) -> Anemometer:
         for values in (ratio.ahead, ratio.abeam, ratio.shared_sd)
     )
     length = np.where(tows > 0, np.hypot(ahead, abeam), 1.0)
-    along = (ratio.ahead[known] * ahead[mine] + ratio.abeam[known] * abeam[mine]) / length[mine] ** 2
+    along = (ratio.ahead[known] * ahead[mine] + ratio.abeam[known] * abeam[mine]) / length[
+        mine
+    ] ** 2
     spare = np.maximum(tows - 1.0, 0.0).sum()
     tow_sd = np.sqrt(((along - 1.0) ** 2).sum() / spare) if spare else USUAL_TOW_SD
     variance = np.where(tows > 0, tow_sd**2 / count + shared**2, 1e6)

@@ -212,12 +212,13 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
     Args:
         tows: one row a tow and speed: `tow_id`, `speed_ratio` (that speed / the declared one),
             `season, part, log`; `kappa`; `random_ratio` (of C0, from the scatter of the run
-            points) with `random_dof`; `misfit_ratio`, of hulls about the hyperbola; `calibrated` (on dGPS); `log_sd` and `log_dof` of the
-            season's ln factor (0 and any where calibrated), `wander_sd` of the log (0 where
-            calibrated); `air_ratio`, net wind correction / Cw, and `air_per_coefficient`, change of
-            ln Cw per unit of drag coefficient (both signed); `wind_ln_sd`, of the anemometer's ln
-            scale, null where it is taken as it reads; `wind_measured`, and where it was not
-            `still_air_ratio`, still-air part / Cw; `temperature_known`.
+            points) with `random_dof`; `misfit_ratio`, of the hull about its hyperbola;
+            `calibrated` (on dGPS); `log_sd` and `log_dof` of the season's ln factor (0 and any
+            where calibrated), `wander_sd` of the log (0 where calibrated); `air_ratio`, net wind
+            correction / Cw, and `air_per_coefficient`, change of ln Cw per unit of drag coefficient
+            (both signed); `wind_ln_sd`, of the anemometer's ln scale, null where it is taken as it
+            reads; `wind_measured`, and where it was not `still_air_ratio`, still-air part / Cw;
+            `temperature_known`.
         assumed: what the archive cannot show; give `wind_coefficient` what the archive-wide search
             came to where that was used.
 
