@@ -79,6 +79,9 @@ TABLES: Final[dict[str, type[dy.Schema]]] = {
     "lineage": editions.Lineage,
 }
 
+ABOUT: Final[dict[str, type[dy.Schema]]] = {"about": archive.About, "contents": archive.Contents}
+"""Tables of the database about itself."""
+
 
 def conform(name: str, frame: pl.DataFrame) -> pl.DataFrame:
     """The declared columns of a table, in order, sorted by its key and checked.

@@ -78,6 +78,7 @@ class Wind(_Options):
     behind: float = Field(default=0.5, ge=0.0, le=2.0)
     side: float = Field(default=0.2, ge=0.0, le=2.0)
     averaging_s: int = Field(default=0, ge=0, le=15)
+    anemometer: Literal["as_read", "estimated"] = "as_read"
     reading: Literal["as_felt", "cw_vac_2014", "cw_opt_2014"] = "as_felt"
 
 

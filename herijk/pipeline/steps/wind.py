@@ -43,6 +43,10 @@ class AirParts:
         """The air part for given coefficients, shape (runs,), kg/m."""
         return ahead * self.ahead + behind * self.behind + side * self.side
 
+    def times(self, factor: FloatArray) -> "AirParts":
+        """These parts times a factor of each run, shape (runs,)."""
+        return AirParts(self.ahead * factor, self.behind * factor, self.side * factor)
+
     def where(self, chosen: BoolArray, other: "AirParts") -> "AirParts":
         """These parts for the chosen runs, shape (runs,), those of the other elsewhere."""
         return AirParts(

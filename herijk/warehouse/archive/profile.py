@@ -171,8 +171,16 @@ class _PlanTable(_Strict):
         return Plan(tuple(self.targets), _ways(self.directions), self.seconds)
 
 
+class Publication(_Strict):
+    """Who publishes what is made from the archive, and what others may do with it."""
+
+    publisher: Annotated[str, Field(min_length=1)] | None = None
+    licence: Annotated[str, Field(pattern=r"^([A-Za-z0-9.+-]+|https?://\S+)$")] | None = None
+
+
 class _File(_Strict):
     simulated: bool = False
+    publication: Publication = Publication()
     profile: list[_ProfileTable] = []
     plan: list[_PlanTable] = []
     words: dict[str, str] = {}
@@ -218,6 +226,7 @@ class Profiles:
 
     Attributes:
         simulated: the archive says of itself that it was made by a simulator.
+        publication: publisher and licence of what is made from it.
         tables: the season ranges that differ.
         set_aside: days whose tows are not used.
         log_replaced: days from which another log was on board.
@@ -226,6 +235,7 @@ class Profiles:
     """
 
     simulated: bool = False
+    publication: Publication = field(default_factory=Publication)
     tables: tuple[_ProfileTable, ...] = ()
     plans: tuple[_PlanTable, ...] = ()
     wording: Wording = field(default_factory=Wording)
@@ -328,6 +338,7 @@ def parse_profiles(text: str) -> Profiles:
         raise MissingKnowledgeError(f"{PROFILE_FILE} is not valid TOML: {error}") from error
     return Profiles(
         simulated=parsed.simulated,
+        publication=parsed.publication,
         tables=tuple(parsed.profile),
         set_aside=tuple(parsed.set_aside),
         log_replaced=tuple(parsed.log_replaced),
