@@ -24,6 +24,8 @@ from herijk.dashboards.figures.style import (
 )
 from herijk.dashboards.words import Say
 from herijk.pipeline.consistency.compared import ROWED_RATIO
+from herijk.pipeline.studies.claims import CHANNELS
+from herijk.pipeline.studies.options import CHOICES
 from herijk.pipeline.studies.tool_options import SPEED_NAMES, SPEEDS, TICKS
 
 METHODS: Final = ("as-published", "corrected-2013", "rebased-2015", "rebased")
@@ -33,6 +35,13 @@ OF_2014: Final = ("as-published-2014", "as-published", "rebased-2015", "rebased"
 """What was done to the tows of 2014: the correction of 2013 did not touch them."""
 
 _ORDER: Final = ("as-published-2014", *METHODS)
+
+CODES: Final = (
+    *("unknown", *TICKS, *SPEEDS, *SPEED_NAMES),
+    *(choice.name for choice in CHOICES),
+    *(f"channel.{name}" for name in CHANNELS),
+)
+"""Codes that the charts of the slides show in words."""
 
 SIDE: Final = 190
 QUANTITIES: Final = {
@@ -55,7 +64,7 @@ TITLES: Final = {
 }
 
 
-def _panels(chart: alt.LayerChart, say: Say, of: str = "", columns: int = 4) -> alt.FacetChart:
+def panels(chart: alt.LayerChart, say: Say, of: str = "", columns: int = 4) -> alt.FacetChart:
     """A chart per method; with a column `of`, such as the type, all methods of each of its values.
 
     Panels are wrapped, so that a page can put fewer in a row; their key sorts by that column, then
@@ -68,16 +77,16 @@ def _panels(chart: alt.LayerChart, say: Say, of: str = "", columns: int = 4) -> 
     first, method = (f"split(datum.value, '|')[{n}]" for n in (0, 2))
     label = f"({names})[{method}] || {method}"
     if of:
-        label = f"{_in_words(first, say)} + ' · ' + ({label})"
+        label = f"{in_words(first, say)} + ' · ' + ({label})"
     header = alt.Header(labelExpr=label, labelLimit=260)
     return chart.transform_calculate(panel=key).facet(
         alt.Facet("panel:N", title=None, header=header), columns=columns
     )
 
 
-def _in_words(value: str, say: Say) -> str:
+def in_words(value: str, say: Say) -> str:
     """A Vega expression that says what a code means; names stay as they are."""
-    texts = {code: say(f"code.{code}") for code in ("unknown", *TICKS, *SPEEDS, *SPEED_NAMES)}
+    texts = {code: say(f"code.{code}") for code in CODES}
     return f"(({json.dumps(texts)})[{value}] || {value})"
 
 
@@ -146,7 +155,7 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Dra
             strokeDash=interval_kind(),
         )
         drawing = alt.layer(band, bars, drawn, point, name, data=frame)
-        return _panels(drawing.properties(width=SIDE, height=SIDE), say, "boat_type")
+        return panels(drawing.properties(width=SIDE, height=SIDE), say, "boat_type")
 
     return figure
 
@@ -172,7 +181,7 @@ def b_and_hull_speed(frame: pl.DataFrame, say: Say) -> Drawing:
     hull = tow.mark_line(color="black", strokeDash=[5, 3]).encode(
         x, number(alt.Y, "hull_speed_m_s", say("b")), order="waterline_length_m:Q"
     )
-    return _panels(alt.layer(points, hull, data=frame).properties(width=SIDE, height=SIDE), say)
+    return panels(alt.layer(points, hull, data=frame).properties(width=SIDE, height=SIDE), say)
 
 
 def towed_at(frame: pl.DataFrame, say: Say) -> Drawing:
@@ -223,7 +232,7 @@ def raced_beyond(frame: pl.DataFrame, say: Say) -> Drawing:
         ),
     )
     one = alt.Chart().mark_rule(color=GREY, strokeDash=[3, 3]).encode(x=alt.datum(1.0))
-    return _panels(
+    return panels(
         alt.layer(one, bar, point, data=frame).properties(width=SIDE, height=alt.Step(16)), say
     )
 
@@ -250,88 +259,6 @@ def boat_years(frame: pl.DataFrame, say: Say) -> Drawing:
     common = base.mark_rule(color=GREY, strokeDash=[3, 3]).encode(
         alt.X("mean(standard_speed_m_s):Q", title=say("speed"))
     )
-    return _panels(
+    return panels(
         alt.layer(common, curve, data=frame).properties(width=SIDE, height=SIDE), say, "name"
     )
-
-
-def ticks(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
-    """Curves of a tow under every combination of the tool's ticks, overlaid.
-
-    Each panel draws all of them and colours one tick: on or off. `frame` holds rows of
-    `option_curves` with `declared_speed_m_s`; the points of a curve are made from A and Cw.
-    """
-    seen = f"{{'true': '{say('yes')}', 'false': '{say('no')}'}}[datum.value]"
-    used = _in_words("datum.value", say)
-    curve = (
-        alt.Chart()
-        .transform_fold(list(TICKS), as_=["tick", "on"])
-        .transform_calculate(
-            curve="datum.speed + datum.optimisation + datum.trimming + datum.vane "
-            "+ datum.b_from_length",
-            ratio="sequence(0.85, 1.16, 0.03)",
-        )
-        .transform_flatten(["ratio"])
-        .transform_calculate(
-            speed_m_s="datum.ratio * datum.declared_speed_m_s",
-            cw_m="datum.a_kg_m / (1 - (1 - datum.a_kg_m / datum.cw_kg_m) * pow(datum.ratio, 2))",
-        )
-        .mark_line(strokeWidth=1.2, opacity=0.8)
-        .encode(
-            number(alt.X, "speed_m_s", say("speed")),
-            number(alt.Y, "cw_m", say("cw")),
-            alt.Color(
-                "on:N",
-                title=say("ticked"),
-                scale=alt.Scale(domain=[False, True], range=[OKABE_ITO[0], OKABE_ITO[1]]),
-                legend=alt.Legend(labelExpr=seen, orient="bottom"),
-            ),
-            alt.StrokeDash(
-                "speed:N",
-                title=say("log_speed"),
-                scale=alt.Scale(
-                    domain=list(SPEED_NAMES), range=[[1, 0], [5, 2], [5, 2], [2, 2], [5, 2, 1, 2]]
-                ),
-                legend=alt.Legend(labelExpr=used, orient="bottom"),
-            ),
-            alt.Detail("curve:N"),
-        )
-    )
-    drawing = alt.layer(curve, data=frame).properties(width=SIDE, height=SIDE)
-    label = _in_words("datum.value", say)
-    return drawing.facet(
-        alt.Facet(
-            "tick:N",
-            title=None,
-            sort=list(TICKS),
-            header=alt.Header(labelExpr=label, labelLimit=260),
-        ),
-        columns=len(TICKS),
-    )
-
-
-def tick_effects(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
-    """What each tick of the tool does to Cw over all tows: median and middle 90 %.
-
-    `frame` holds the rows of `option_summary` of the study `tool`.
-    """
-    order = [*TICKS, *SPEEDS]
-    base = alt.Chart().encode(
-        alt.Y(
-            "option:N",
-            title=say("option"),
-            sort=order,
-            axis=alt.Axis(labelExpr=_in_words("datum.value", say), labelLimit=260),
-        )
-    )
-    ratio = say("ratio_cw")
-    bar = base.mark_rule(strokeWidth=3, color=OKABE_ITO[0]).encode(
-        number(alt.X, "lo_ratio", ratio), alt.X2("hi_ratio:Q")
-    )
-    point = base.mark_point(filled=True, size=70, color="black", opacity=1).encode(
-        number(alt.X, "median_ratio", ratio),
-        tooltip=tips(("option:N", say("option")), ("median_ratio:Q", ratio), ("tows:Q", "n")),
-    )
-    one = alt.Chart().mark_rule(color=GREY, strokeDash=[3, 3]).encode(x=alt.datum(1.0))
-    drawing = alt.layer(one, bar, point, data=frame)
-    return _panels(drawing.properties(width=260, height=alt.Step(24)), say, columns=2)

@@ -50,6 +50,18 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     "code.correction": ("snelheidscorrectie", "speed correction"),
     "code.operation": ("delen i.p.v. vermenigvuldigen", "dividing, not multiplying"),
     "code.estimate": ("geschatte logfactor", "estimated log factor"),
+    "sd_ratio": ("Spreiding / gemiddelde", "Spread / mean"),
+    "median_ratio": ("Mediaan / gemiddelde", "Median / mean"),
+    "log1_ratio": ("Snelheid / log 1", "Speed / log 1"),
+    "mean": ("Gemiddelde", "Mean"),
+    "sd": ("Spreiding", "Spread"),
+    "median": ("Mediaan", "Median"),
+    "code.channel.log1": ("log 1 [m/s]", "log 1 [m/s]"),
+    "code.channel.log2": ("log 2 [m/s]", "log 2 [m/s]"),
+    "code.channel.gps": ("GPS [m/s]", "GPS [m/s]"),
+    "code.channel.force": ("kracht [N]", "force [N]"),
+    "code.channel.wind": ("wind [m/s]", "wind [m/s]"),
+    "code.channel.cw": ("Cw gemeten [kg/m]", "Cw measured [kg/m]"),
     # Titles
     "slide.weight": ("{y} tegen gewicht: {types}", "{y} against weight: {types}"),
     "slide.speed": ("{y} tegen sleepsnelheid: {types}", "{y} against tow speed: {types}"),
@@ -208,6 +220,49 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     "slides_speed": ("Tegen sleepsnelheid", "Against tow speed"),
     "slides_length": ("Tegen lengte", "Against length"),
     "slides_hull_speed": ("Is B de rompsnelheid?", "Is B hull speed?"),
+    "slides_2014": ("2014 opnieuw berekend", "2014 recomputed"),
+    "slides_2014_note": (
+        "De proeven van 2014 zoals ze dat jaar uitkwamen, begin 2015 herrekend met afkappen en "
+        "dGPS, en na alle verbeteringen.",
+        "The tows of 2014 as they came out that year, recomputed early in 2015 with trimming and "
+        "dGPS, and after all improvements.",
+    ),
+    "slides_raced": (
+        "Traag gesleept, hard geroeid",
+        "Towed slowly, raced fast",
+    ),
+    "slide_raced_beyond": (
+        "Vermogen in een wedstrijd: eigen kromme tegen die van het type",
+        "Race power: own curve against that of the type",
+    ),
+    "slides_eras": (
+        "Wijken seizoenen met andere instrumenten af?",
+        "Do seasons with other instruments stand apart?",
+    ),
+    "slides_ticks": ("De vier opties van 2015", "The four options of 2015"),
+    "slides_ticks_note": (
+        "Optimalisatie, afkappen, windvaancorrectie en B uit sloeplengte: alle zestien combinaties "
+        "over elkaar, met de snelheid van de log en na correctie. Elk vak kleurt een optie.",
+        "Optimisation, trimming, wind-vane correction and B from length: all sixteen combinations "
+        "overlaid, with the log's speed and after correction. Each panel colours one option.",
+    ),
+    "slide_ticks": (
+        "Krommen onder alle combinaties van de opties",
+        "Curves under all combinations of the options",
+    ),
+    "slide_tick_effects": ("Wat elke optie met Cw doet", "What each option does to Cw"),
+    "boat_ticks": ("Wat andere keuzen met de kromme doen", "What other choices do to the curve"),
+    "run_statistics": (
+        "Spreiding binnen elke run; streepjeslijn: 10 %",
+        "Spread within each run; dashed: 10 %",
+    ),
+    "boat_statistics": ("De metingen per run", "The measurements per run"),
+    "boat_statistics_note": (
+        "Wat het programma van 2014 per run liet zien: gemiddelde, spreiding, mediaan en hun "
+        "verhoudingen, hier van secondegemiddelden. De getallen staan in de tabel eronder.",
+        "What the tool of 2014 showed of each run: mean, spread, median and their ratios, here of "
+        "means per second. The numbers are in the table below it.",
+    ),
     "slides_years": ("Een sloep door de jaren", "One boat through the years"),
     **{
         f"slide_{y}_{x}": (f"{name_nl} tegen {x_nl}", f"{name_en} against {x_en}")
