@@ -357,10 +357,10 @@ class Book:
         effects = self.views.table("option_effects").filter(
             method=self._ticked(), study="tool", tow_id=tow["tow_id"]
         )
-        at_read = rows.filter(speed=AS_READ)["cw_kg_m"]
+        at_read = rows.filter(speed=AS_READ)["cw_kg_m"].to_numpy()
         sentence = self.say("slide.ticks_said").format(
-            spread=_share(at_read.max() / at_read.min() - 1.0),
-            n=at_read.len(),
+            spread=_share(float(at_read.max() / at_read.min()) - 1.0),
+            n=len(at_read),
             method=self.method(self._ticked()),
             effects=self._effects(dict(effects.select("option", "cw_effect_ratio").rows())),
         )
@@ -386,7 +386,7 @@ class Book:
             return
         sentence = self.say("slide.tick_effects_said").format(
             method=self.method(self._ticked()),
-            tows=self._number(own["tows"].max(), "tow"),
+            tows=self._number(max(own["tows"].to_list()), "tow"),
             effects=self._effects(dict(own.select("option", "median_ratio").rows())),
         )
         title = self.say("slide.tick_effects")

@@ -7,7 +7,7 @@ with its season and crew. Frames come from `dashboards.slides`.
 
 import json
 from collections.abc import Callable
-from typing import Final
+from typing import Any, Final
 
 import altair as alt
 import polars as pl
@@ -64,12 +64,13 @@ TITLES: Final = {
 }
 
 
-def panels(chart: alt.LayerChart, say: Say, of: str = "", columns: int = 4) -> alt.FacetChart:
+def panels(chart: Any, say: Say, of: str = "", **look: Any) -> Drawing:
     """A chart per method; with a column `of`, such as the type, all methods of each of its values.
 
     Panels are wrapped, so that a page can put fewer in a row; their key sorts by that column, then
-    by the method's place in history.
+    by the method's place in history. `look` are `columns`, `width` and `height` of a panel.
     """
+    look = {"columns": len(METHODS), "width": SIDE, "height": SIDE} | look
     place = f"indexof({json.dumps(_ORDER)}, datum.method)"
     value = f"datum.{of}" if of else "''"
     key = f"{value} + '|' + ({place} < 0 ? 9 : {place}) + '|' + datum.method"
@@ -79,9 +80,11 @@ def panels(chart: alt.LayerChart, say: Say, of: str = "", columns: int = 4) -> a
     if of:
         label = f"{in_words(first, say)} + ' · ' + ({label})"
     header = alt.Header(labelExpr=label, labelLimit=260)
-    return chart.transform_calculate(panel=key).facet(
-        alt.Facet("panel:N", title=None, header=header), columns=columns
+    sized = chart.properties(width=look["width"], height=look["height"])
+    drawn: Drawing = sized.transform_calculate(panel=key).facet(
+        alt.Facet("panel:N", title=None, header=header), columns=look["columns"]
     )
+    return drawn
 
 
 def in_words(value: str, say: Say) -> str:
@@ -155,7 +158,7 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Dra
             strokeDash=interval_kind(),
         )
         drawing = alt.layer(band, bars, drawn, point, name, data=frame)
-        return panels(drawing.properties(width=SIDE, height=SIDE), say, "boat_type")
+        return panels(drawing, say, "boat_type")
 
     return figure
 
@@ -181,7 +184,7 @@ def b_and_hull_speed(frame: pl.DataFrame, say: Say) -> Drawing:
     hull = tow.mark_line(color="black", strokeDash=[5, 3]).encode(
         x, number(alt.Y, "hull_speed_m_s", say("b")), order="waterline_length_m:Q"
     )
-    return panels(alt.layer(points, hull, data=frame).properties(width=SIDE, height=SIDE), say)
+    return panels(alt.layer(points, hull, data=frame), say)
 
 
 def towed_at(frame: pl.DataFrame, say: Say) -> Drawing:
@@ -232,9 +235,7 @@ def raced_beyond(frame: pl.DataFrame, say: Say) -> Drawing:
         ),
     )
     one = alt.Chart().mark_rule(color=GREY, strokeDash=[3, 3]).encode(x=alt.datum(1.0))
-    return panels(
-        alt.layer(one, bar, point, data=frame).properties(width=SIDE, height=alt.Step(16)), say
-    )
+    return panels(alt.layer(one, bar, point, data=frame), say, height=alt.Step(16))
 
 
 def boat_years(frame: pl.DataFrame, say: Say) -> Drawing:
@@ -259,6 +260,4 @@ def boat_years(frame: pl.DataFrame, say: Say) -> Drawing:
     common = base.mark_rule(color=GREY, strokeDash=[3, 3]).encode(
         alt.X("mean(standard_speed_m_s):Q", title=say("speed"))
     )
-    return panels(
-        alt.layer(common, curve, data=frame).properties(width=SIDE, height=SIDE), say, "name"
-    )
+    return panels(alt.layer(common, curve, data=frame), say, "name")

@@ -6,7 +6,7 @@ import altair as alt
 import polars as pl
 
 from herijk.dashboards.figures.slides import SIDE, in_words, panels
-from herijk.dashboards.figures.style import GREY, OKABE_ITO, number, tips
+from herijk.dashboards.figures.style import GREY, OKABE_ITO, Drawing, number, tips
 from herijk.dashboards.words import Say
 from herijk.pipeline.studies.claims import CHANNELS
 from herijk.pipeline.studies.options import CHOICES
@@ -16,7 +16,7 @@ MOST_SCATTER: Final = 0.10
 """Sleepproef 2017: "standaard-deviatie < 10% van de meetwaarde"."""
 
 
-def ticks(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+def ticks(frame: pl.DataFrame, say: Say) -> Drawing:
     """Curves of a tow under every combination of the tool's ticks, overlaid.
 
     Each panel draws all of them and colours one tick: on or off. `frame` holds rows of
@@ -71,7 +71,7 @@ def ticks(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
     )
 
 
-def tick_effects(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+def tick_effects(frame: pl.DataFrame, say: Say) -> Drawing:
     """What each choice does to Cw: median and middle 90 % of tows.
 
     `frame` holds rows of `option_summary`; of a single tow without the bar.
@@ -95,10 +95,10 @@ def tick_effects(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
     )
     one = alt.Chart().mark_rule(color=GREY, strokeDash=[3, 3]).encode(x=alt.datum(1.0))
     drawing = alt.layer(one, bar, point, data=frame)
-    return panels(drawing.properties(width=260, height=alt.Step(24)), say, columns=2)
+    return panels(drawing, say, columns=2, width=260, height=alt.Step(24))
 
 
-def run_statistics(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+def run_statistics(frame: pl.DataFrame, say: Say) -> Drawing:
     """Spread of each channel within each run, as part of its mean; `frame` is `run_statistics`."""
     point = (
         alt.Chart()
