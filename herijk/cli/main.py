@@ -231,11 +231,18 @@ def audit(
     names: Annotated[
         list[str],
         typer.Argument(
-            metavar="FSN_NO|TYPE [TYPE]", help="A boat, FSN211, or one or two types of boat."
+            metavar="BOAT|TYPE [TYPE]",
+            help='A boat by number or name, FSN211 or "Razende Snol", or one or two types.',
         ),
     ],
     data: DataFolder = Path("data"),
     method: Annotated[str | None, typer.Option(help="Show this method only.")] = None,
+    tows: Annotated[
+        str,
+        typer.Option(
+            metavar="all|newest|SEASON|A:B", help="Which tows a type's statistics rest on."
+        ),
+    ] = "newest",
     plots: Annotated[
         Path | None,
         typer.Option(help="Folder for the plots. Default: audit/NAME in --data.", metavar="DIR"),
@@ -253,7 +260,7 @@ def audit(
     if method is not None:
         methods.known_methods(data).text(method)
     store = Store(data)
-    report = audit_report(store, names, method)
+    report = audit_report(store, names, method, tows)
     folder = plots or store.root / "audit" / file_name(" ".join(names))
     drawn = _plots(store, report, folder)
     show(report | {"plots": [str(path) for path in drawn]}, audit_text.audit, as_json)
@@ -279,7 +286,8 @@ def slides(
     language: Annotated[str, typer.Option(help="nl or en.", metavar="nl|en")] = "nl",
 ) -> None:
     """Every chart of the 2015 presentation over this archive, as SVG and PNG and in one PDF."""
-    from herijk.dashboards.slides import Asked, write_slides
+    from herijk.dashboards.slide_book import Asked
+    from herijk.dashboards.slides import write_slides
     from herijk.dashboards.words import LANGUAGES
     from herijk.warehouse.store.store import Store
 

@@ -5,7 +5,8 @@ import itertools
 import pypdf
 import pytest
 
-from herijk.dashboards import slides as book
+from herijk.dashboards import slide_book as book
+from herijk.dashboards import slides as files
 from herijk.dashboards.figures.slides import METHODS
 from herijk.dashboards.words import LANGUAGES, speaker
 from herijk.pipeline.errors import MissingKnowledgeError
@@ -53,8 +54,8 @@ def test_a_type_or_choice_of_tows_that_is_not_there_is_told(built):
 
 def test_slides_are_written_as_pictures_and_as_one_document(built, made, tmp_path, monkeypatch):
     few = made["en"][6:8]
-    monkeypatch.setattr(book, "slides", lambda *_: iter(few))
-    written = book.write_slides(built.store, tmp_path / "book", "en")
+    monkeypatch.setattr(files, "slides", lambda *_: iter(few))
+    written = files.write_slides(built.store, tmp_path / "book", "en")
     assert [path.suffix for path in written] == [".svg", ".png", ".svg", ".png", ".pdf"]
     assert len(pypdf.PdfReader(written[-1]).pages) == 2
     svg = written[0].read_text(encoding="utf-8")

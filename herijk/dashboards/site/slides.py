@@ -15,8 +15,8 @@ from herijk.dashboards.site.parts import (
     Table,
     default_method,
 )
+from herijk.dashboards.slide_book import Slide, slides
 from herijk.dashboards.slide_rows import compared_frame, lines_frame, methods_of, pair_of_types
-from herijk.dashboards.slides import Slide, slides
 from herijk.dashboards.words import LANGUAGES, speaker
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
 from herijk.warehouse.queries.views import Views

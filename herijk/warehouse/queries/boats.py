@@ -17,13 +17,9 @@ def boats_named(boats: pl.DataFrame, name: str) -> list[str]:
     """FSN numbers of the boats with that number, else of those with that name; perhaps none."""
     wanted = plain(name)
     for column in ("fsn_no", "name"):
-        found = [
-            number
-            for number, text in boats.select("fsn_no", column).sort("fsn_no").rows()
-            if plain(text or "") == wanted
-        ]
-        if found:
-            return found
+        like = [plain(text or "") == wanted for text in boats[column]]
+        if any(like):
+            return boats.filter(pl.Series(like, dtype=pl.Boolean))["fsn_no"].sort().to_list()
     return []
 
 
