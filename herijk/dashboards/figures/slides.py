@@ -87,6 +87,12 @@ def panels(chart: Any, say: Say, of: str = "", **look: Any) -> Drawing:
     return drawn
 
 
+def small(field: str, title: str) -> alt.X:
+    """A quantity along a narrow panel: labels that keep apart."""
+    axis = alt.Axis(tickCount=5, labelOverlap=True)
+    return alt.X(f"{field}:Q", title=title, scale=alt.Scale(zero=False), axis=axis)
+
+
 def in_words(value: str, say: Say) -> str:
     """A Vega expression that says what a code means; names stay as they are."""
     texts = {code: say(f"code.{code}") for code in CODES}
@@ -121,14 +127,14 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Dra
         line = alt.Chart().transform_filter(
             f"datum.kind == 'line' && datum.quantity == '{y}' && datum.explaining == '{x}'"
         )
-        at, value = number(alt.X, x, x_title), number(alt.Y, y, y_title)
+        at, value = small(x, x_title), number(alt.Y, y, y_title)
         by_class = alt.Detail("crew_class:N")
         ink, form = _crew(say)
         band = line.mark_area(color=GREY, opacity=0.18, clip=True).encode(
-            number(alt.X, "x", x_title), alt.Y("lo:Q", title=y_title), alt.Y2("hi:Q"), by_class
+            small("x", x_title), alt.Y("lo:Q", title=y_title), alt.Y2("hi:Q"), by_class
         )
         drawn = line.mark_line(color=GREY, clip=True).encode(
-            number(alt.X, "x", x_title), number(alt.Y, "y", y_title), by_class
+            small("x", x_title), number(alt.Y, "y", y_title), by_class
         )
         bar = tow.transform_filter(f"isValid(datum.{hi})").mark_rule(opacity=0.35, clip=True)
         point = tow.mark_point(size=38, strokeWidth=1.2).encode(
@@ -147,7 +153,7 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Dra
         )
         name = (
             tow.transform_filter("datum.outside")
-            .mark_text(align="left", dx=5, dy=-4, fontSize=9, limit=110)
+            .mark_text(dy=-9, fontSize=9, limit=110)
             .encode(at, value, text="label:N")
         )
         bars = bar.encode(
@@ -166,7 +172,7 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Dra
 def b_and_hull_speed(frame: pl.DataFrame, say: Say) -> Drawing:
     """B of every tow against length, with the line on which B is hull speed."""
     tow = alt.Chart().transform_filter("datum.kind == 'tow'")
-    x = number(alt.X, "waterline_length_m", say("waterline_length"))
+    x = small("waterline_length_m", say("waterline_length"))
     ink = colour("boat_type", say("type"), legend=alt.Legend(orient="bottom"))
     points = (
         tow.transform_filter("isValid(datum.b_m_s)")
@@ -250,7 +256,7 @@ def boat_years(frame: pl.DataFrame, say: Say) -> Drawing:
         legend=alt.Legend(orient="bottom"),
     )  # fmt: skip
     curve = base.mark_line(strokeWidth=2).encode(
-        number(alt.X, "speed_m_s", say("speed")),
+        small("speed_m_s", say("speed")),
         number(alt.Y, "cw_kg_m", say("cw")),
         ink,
         alt.StrokeDash("crew:N", title=say("crew"), legend=alt.Legend(orient="bottom")),

@@ -5,7 +5,7 @@ from typing import Final
 import altair as alt
 import polars as pl
 
-from herijk.dashboards.figures.slides import SIDE, in_words, panels
+from herijk.dashboards.figures.slides import SIDE, in_words, panels, small
 from herijk.dashboards.figures.style import GREY, OKABE_ITO, Drawing, number, tips
 from herijk.dashboards.words import Say
 from herijk.pipeline.studies.claims import CHANNELS
@@ -35,12 +35,13 @@ def ticks(frame: pl.DataFrame, say: Say) -> Drawing:
         .transform_flatten(["ratio"])
         .transform_calculate(
             speed_m_s="datum.ratio * datum.declared_speed_m_s",
-            cw_m="datum.a_kg_m / (1 - (1 - datum.a_kg_m / datum.cw_kg_m) * pow(datum.ratio, 2))",
+            cw_curve_kg_m="datum.a_kg_m "
+            "/ (1 - (1 - datum.a_kg_m / datum.cw_kg_m) * pow(datum.ratio, 2))",
         )
         .mark_line(strokeWidth=1.2, opacity=0.8)
         .encode(
-            number(alt.X, "speed_m_s", say("speed")),
-            number(alt.Y, "cw_m", say("cw")),
+            small("speed_m_s", say("speed")),
+            number(alt.Y, "cw_curve_kg_m", say("cw")),
             alt.Color(
                 "on:N",
                 title=say("ticked"),

@@ -182,8 +182,8 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
         "What the options of 2015 do to all boats",
     ),
     "slide.tick_effects_said": (
-        "Cw verandert in het midden van {tows} door: {effects} ({method}). De streep is het midden "
-        "van 90 % van de proeven.",
+        "De mediane verandering van Cw over {tows}: {effects} ({method}). De streep omvat de "
+        "middelste 90 % van de proeven.",
         "The median change of Cw over {tows}: {effects} ({method}). The bar holds the middle 90 % "
         "of the tows.",
     ),
