@@ -19,7 +19,7 @@ from typing import Final
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.limits import check_header
 from herijk.warehouse.archive.messages import say
-from herijk.warehouse.archive.units import UNITS, Scale, find_scale, is_unit
+from herijk.warehouse.archive.units import UNITS, Scale, find_scale, is_any_unit, is_unit
 
 DELIMITERS: Final = (";", "\t", ",", "|")
 HEADER_WITHIN: Final = 60
@@ -30,7 +30,9 @@ NUMBER_PATTERN: Final = r"^[+-]?([0-9]+([.,][0-9]*)?|[.,][0-9]+)([eE][+-]?[0-9]+
 
 _NUMBER: Final = re.compile(NUMBER_PATTERN)
 _BRACKETS: Final = re.compile(r"\[([^\[\]]*)\]|\(([^()]*)\)")
-_UNIT_BEHIND: Final = re.compile(r"^(.*\S)(?:\s*,|\s+in)\s+(\S+)$")
+_UNIT_BEHIND: Final = re.compile(r"^(.*?[^\s_,])(?:\s*,\s+|\s+in\s+|[\s_]+)(m_s|[^\s_]+)$")
+_NO_UNIT_BEHIND: Final = frozenset("cgsw")
+"""Single letters that mean something else behind a name: `log C`, `meetfile s`."""
 
 
 @dataclass(frozen=True)
@@ -158,19 +160,46 @@ def fold_name(text: str) -> str:
 def split_header(cell: str) -> tuple[str, str | None]:
     """Return the folded name in a header cell, and its unit as written where it has one.
 
-    A unit stands in brackets, or behind a comma or `in`; other brackets belong to the name.
+    A unit stands in brackets, or last (`kracht, N`, `snelheid in kn`, `breedte_cm`); other brackets
+    belong to the name.
     """
     cell = cell.strip()
     groups = list(_BRACKETS.finditer(cell))
-    units = [group for group in groups if is_unit(group[1] or group[2] or "")]
+    units = [group for group in groups if is_any_unit(group[1] or group[2] or "")]
     square = [group for group in groups if group[1] is not None]
     for group in units or square[-1:]:
         name = cell[: group.start()] + cell[group.end() :]
         return fold(name), (group[1] or group[2] or "").strip()
     behind = _UNIT_BEHIND.match(cell)
-    if behind and is_unit(behind[2]):
-        return fold(behind[1]), behind[2]
+    unit = behind[2].replace("m_s", "m/s") if behind else ""
+    if behind and is_unit(unit) and unit.casefold() not in _NO_UNIT_BEHIND:
+        return fold(behind[1]), unit
     return fold(cell), None
+
+
+def with_units(header: Sequence[str], below: Sequence[str]) -> list[str] | None:
+    """Return a header with the units of the row below it; None where that row is no row of units.
+
+    Args:
+        header: the cells of the header.
+        below: the cells of the next row: `m/s`, `[N]`, or nothing.
+    """
+    units = [cell.strip().strip("[]()").strip() for cell in below]
+    if len(units) > len(header) or not any(units):
+        return None
+    if not any(map(is_unit, units)):
+        return None
+    if not all(is_any_unit(unit) for unit in units if fold(unit) or unit in {"%", "°"}):
+        return None
+    units += [""] * (len(header) - len(units))
+    pairs = zip(header, units, strict=True)
+    return [f"{name} [{unit}]" if is_any_unit(unit) else name for name, unit in pairs]
+
+
+def is_rest_of_header(cells: Sequence[str]) -> bool:
+    """Whether a row below a header goes on with it: units among it, and not a digit."""
+    units = [cell.strip().strip("[]()").strip() for cell in cells]
+    return any(map(is_unit, units)) and not any(map(str.isdigit, "".join(cells)))
 
 
 def find_columns(
