@@ -474,10 +474,12 @@ _LIKE_A_DATE: Final = re.compile(r"[0-9]{1,4}[-/. ]+([0-9]{1,2}|[^\W\d]{3,9})[-/
 _LIKE_A_NUMBER: Final = re.compile(r"(?:ca\.?|~|±)?\s*[+-]?[0-9]+([.,][0-9]+)?\s*[^0-9]{0,8}$")
 _LIKE_A_TIME: Final = re.compile(r"[0-9]{1,2}\s*[:.uhUH]\s*[0-9]{2}.*")
 _LIKE_RUNS: Final = re.compile(
-    r"b?[0-9]{1,2}(\s*([,;+&\s.-]|en|and|und|t/m|tm|bis|to)\s*b?[0-9]{1,2})+"
+    r"b?[0-9]{1,2}(\s*([,;+&\s.-]|en|and|und|t/m|tm|bis|to)\s*b?[0-9]{1,2}){2,}"
+    r"|[0-9]{1,2}\s*(-|t/m|tm|bis|to)\s*[0-9]{1,2}"
 )
 _LOOKS: Final[Mapping[str, Callable[[str], bool]]] = {
     "crew_class": lambda cell: fold_word(cell) in {*CLASSES, *"mvwf"},
+    "tow_id": lambda cell: _LIKE_A_DATE.fullmatch(cell) is None,
     "fsn_no": lambda cell: _BOAT.fullmatch(cell) is not None,
     "use_runs": lambda cell: (
         fold_word(cell) in ALL_RUNS or _LIKE_RUNS.fullmatch(fold_word(cell)) is not None

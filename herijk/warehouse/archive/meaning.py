@@ -60,23 +60,20 @@ def meanings(
         free: the columns that were not found.
         fits: whether a cell can stand in a column.
     """
+    found: dict[str, Meaning] = {}
     needed = [column for column in free if column.required]
-    found = _by_name(strange, needed, fits)
-    found |= _by_content(_without(strange, found), _without_columns(free, found), fits)
-    found |= _by_name(_without(strange, found), _without_columns(free, found), fits)
-    found |= _by_unit(_without(strange, found), _without_columns(free, found), fits)
+    by_content = [column for column in free if column.key in _BY_CONTENT]
+    for guess, columns in (
+        (_by_name, needed),
+        (_by_content, needed),
+        (_by_name, free),
+        (_by_content, by_content),
+        (_by_unit, free),
+    ):
+        taken = {meaning.column for meaning in found.values()}
+        left = {header: cells for header, cells in strange.items() if header not in found}
+        found |= guess(left, [column for column in columns if column not in taken], fits)
     return tuple(found.get(header, Meaning(header, None)) for header in strange)
-
-
-def _without(
-    strange: Mapping[str, Sequence[str]], found: Mapping[str, Meaning]
-) -> dict[str, Sequence[str]]:
-    return {header: cells for header, cells in strange.items() if header not in found}
-
-
-def _without_columns(free: Sequence[Column], found: Mapping[str, Meaning]) -> list[Column]:
-    taken = {meaning.column for meaning in found.values()}
-    return [column for column in free if column not in taken]
 
 
 def _by_name(
@@ -101,11 +98,9 @@ def _by_name(
 def _by_content(
     strange: Mapping[str, Sequence[str]], free: Sequence[Column], fits: Fits
 ) -> dict[str, Meaning]:
-    """Return the headers whose cells are what a column holds that has to be there."""
+    """Return the headers whose cells are what a column holds."""
     found: dict[str, Meaning] = {}
     for column in free:
-        if not (column.required or column.key in _BY_CONTENT):
-            continue
         for header, cells in strange.items():
             is_it = any(cells) and _share(column, cells, fits) == 1 and _may_hold(column, header)
             if is_it and header not in found and (column.key not in _DISTINCT or _differ(cells)):

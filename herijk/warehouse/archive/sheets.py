@@ -117,7 +117,7 @@ def _whole_header(
         if units := with_units(header, below):
             return units, place + 1
         lower = _joined_rows(header, below)
-        if lower and (is_rest_of_header(below) or _names_more(lower, header, columns)):
+        if lower and (is_rest_of_header(header, below) or _names_more(lower, header, columns)):
             return lower, place + 1
     return header, place
 

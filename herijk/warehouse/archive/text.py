@@ -196,10 +196,13 @@ def with_units(header: Sequence[str], below: Sequence[str]) -> list[str] | None:
     return [f"{name} [{unit}]" if is_any_unit(unit) else name for name, unit in pairs]
 
 
-def is_rest_of_header(cells: Sequence[str]) -> bool:
-    """Whether a row below a header goes on with it: units among it, and not a digit."""
-    units = [cell.strip().strip("[]()").strip() for cell in cells]
-    return any(map(is_unit, units)) and not any(map(str.isdigit, "".join(cells)))
+def is_rest_of_header(header: Sequence[str], below: Sequence[str]) -> bool:
+    """Whether a row goes on with the header above it: not a digit, and units or names it lacks."""
+    if any(map(str.isdigit, "".join(below))) or not any(map(str.strip, below)):
+        return False
+    names = [cell.strip() for cell in header if cell.strip()]
+    has_units = any(is_unit(cell.strip("[]() ")) or split_header(cell)[1] for cell in below)
+    return has_units or len(set(names)) < len(names)
 
 
 def find_columns(
@@ -209,7 +212,7 @@ def find_columns(
 
     Two columns may share a name when their dimensions differ (`wind [m/s]`, `wind [gra]`). A
     column's own name goes before its other names: where it stands they are left alone. A header
-    without a unit is the one column of that name that no header with a unit took.
+    without a unit is the one column of that name that no other header took.
 
     Args:
         header: the cells of the header.
@@ -223,20 +226,19 @@ def find_columns(
     found: dict[str, FoundColumn] = {}
     cells = [split_header(cell) for cell in header]
     own_names = {fold(column.header) for column in wanted}
-    own_first = sorted(
-        range(len(cells)), key=lambda i: (cells[i][0] not in own_names, cells[i][1] is None)
-    )
-    for index in own_first:
-        name, unit = cells[index]
-        namesakes = [column for column in wanted if name and column.answers_to(name)]
-        if name not in own_names:
-            taken = {c.key for c in namesakes if _is_own(c, found)}
-            namesakes = [column for column in namesakes if column.key not in taken]
-        if not namesakes:
-            continue
-        column = _choose(namesakes, unit, header[index], found, line)
-        scale = find_scale(column.dimension, unit or column.unit) or (1, 1)
-        found[column.key] = FoundColumn(index, header[index].strip(), scale, column.dimension)
+    own_first = sorted(range(len(cells)), key=lambda i: cells[i][0] not in own_names)
+    for is_clear in (True, False):
+        for index in own_first:
+            name, unit = cells[index]
+            namesakes = [column for column in wanted if name and column.answers_to(name)]
+            if name not in own_names:
+                taken = {c.key for c in namesakes if _is_own(c, found)}
+                namesakes = [column for column in namesakes if column.key not in taken]
+            if not namesakes or (unit is not None or len(namesakes) == 1) != is_clear:
+                continue
+            column = _choose(namesakes, unit, header[index], found, line)
+            scale = find_scale(column.dimension, unit or column.unit) or (1, 1)
+            found[column.key] = FoundColumn(index, header[index].strip(), scale, column.dimension)
     missing = [column for column in wanted if column.required and column.key not in found]
     if missing:
         raise DefectiveInputError("missing_column", _missing_message(missing, header, found), line)
