@@ -1,7 +1,7 @@
 """The command `herijk`: arguments in, results out. Messages go to stderr, results to stdout.
 
 Exit status: 0 done (also with tows set aside: they are listed), 1 could not do it, 2 wrong
-arguments. What a command does stands in `assets`, `warehouse` and `pipeline`; how a result looks
+arguments. What a command does is in `assets`, `warehouse` and `pipeline`; how a result looks
 as text, in `cli.text`.
 
 A command imports what it needs when it runs: Polars, SciPy, Altair and Dagster take seconds
@@ -72,7 +72,7 @@ def _written_down(error: BaseException) -> str:
     ) as file:
         file.write("".join(traceback.format_exception(error)))
     return (
-        f"{unexpected(error)}. Nothing was published. Details stand in {file.name}; please send it "
+        f"{unexpected(error)}. Nothing was published. Details are in {file.name}; please send it "
         "to who keeps Herijk"
     )
 
@@ -308,16 +308,17 @@ def workbench(
     ] = 8765,
 ) -> None:
     """Change a method's options in a browser and see at once what happens to all boats."""
+    from herijk.dashboards.guard import listen
     from herijk.dashboards.workbench.bench import Bench
-    from herijk.dashboards.workbench.server import address, listen, serving
+    from herijk.dashboards.workbench.server import LOOPBACK, address, serving
     from herijk.warehouse.queries.history import History
     from herijk.warehouse.store.store import Store
 
-    held, store = listen(port), Store(data)
+    listening, store = listen(LOOPBACK, port), Store(data)
     bench = Bench(store, History.of(store))
-    typer.echo(f"The workbench is at {address(held)} (on this machine only); Ctrl-C stops it.")
+    typer.echo(f"The workbench is at {address(listening)} (on this machine only); Ctrl-C stops it.")
     with suppress(KeyboardInterrupt):
-        serving(bench).run(sockets=[held])
+        serving(bench).run(sockets=[listening])
 
 
 @app.command("log-error")

@@ -1,6 +1,6 @@
 """Races replayed under a register: power, rank and podium, and what another register changes.
 
-The formulas stand in `pipeline.races.race` and `pipeline.curve`; here they are put together for a
+The formulas are in `pipeline.races.race` and `pipeline.curve`; here they are put together for a
 whole race file. Which rules a race was rowed under is data: `RaceRules`. Wind, waves and depth are
 no part of the handicap (presentation R. Pot, 24 January 2015).
 """
@@ -22,6 +22,8 @@ from herijk.pipeline.races.race import (
 )
 from herijk.pipeline.register.register import LINE
 from herijk.pipeline.uncertainty.ensemble import share_first
+from herijk.tables.frames import dtypes
+from herijk.tables.register import RaceChanges
 
 Fatigue = Literal["none", "known", "extend"]
 Stream = Literal["distance_first", "net_speed_over_legs"]
@@ -33,9 +35,7 @@ CLASSIFICATION: Final = (*RACE, "crew_class")
 PODIUM: Final = 3
 
 WINNER_SCHEMA: Final = {
-    "race": pl.String(),
-    "race_date": pl.Date(),
-    "crew_class": pl.String(),
+    **{name: dtypes(RaceChanges)[name] for name in CLASSIFICATION},
     "old_winner": pl.String(),
     "new_winner": pl.String(),
     "winner_changed": pl.Boolean(),
@@ -75,10 +75,10 @@ def replay(
     Args:
         register: lines with `fsn_no`, `rowers`, `crew_class`, `a_kg_m`, `b_m_s`; of one edition.
         results: `race`, `race_date`, `fsn_no`, `rowers`, `crew_class`, `distance_m`,
-            `rowing_time_s`, `stream_m`, `penalty_w` (watt a rower, taken off).
+            `rowing_time_s`, `stream_m`, `penalty_w` (watt per rower, taken off).
         rules: how they are computed.
         legs: `race`, `race_date`, `fsn_no`, `rowers`, `crew_class`, `distance_m`, `time_s`,
-            `stream_m`, one row a leg; for the rule over legs.
+            `stream_m`, one row per leg; for the rule over legs.
 
     Returns:
         The results with `speed_m_s`, `cw_kg_m`, `fatigue_factor`, `power_w` (a rower, corrected,

@@ -2,7 +2,7 @@
 
 Titles, blank lines and Excel's `sep=;` above the header are passed over, and so are totals and
 notes below the rows. A header may take two rows, the second for units or the rest of the names.
-What the columns mean stands in `lists`; samples are read faster, in `samples`.
+What the columns mean is in `lists`; samples are read faster, in `samples`.
 """
 
 import datetime as dt
@@ -235,7 +235,7 @@ def _sheet(
 
 
 def _as_text(cell: Any) -> str:
-    """Return a cell as it would stand in a table of text."""
+    """Return a cell as it would be in a table of text."""
     if isinstance(cell, bool):
         return "ja" if cell else "nee"
     if isinstance(cell, float):
