@@ -124,17 +124,19 @@ def open_database(path: Path) -> duckdb.DuckDBPyConnection:
     try:
         return duckdb.connect(path, read_only=True)
     except duckdb.Error as error:
-        held = isinstance(error, duckdb.IOException) and "lock" in str(error).casefold()
-        raise UnavailableError(f"{path} cannot be opened: {_HELD if held else _SPOILT}") from error
+        locked = isinstance(error, duckdb.IOException) and "lock" in str(error).casefold()
+        raise UnavailableError(
+            f"{path} cannot be opened: {_HELD if locked else _SPOILT}"
+        ) from error
 
 
 def rows(
     connection: duckdb.DuckDBPyConnection, query: str, *values: object
 ) -> list[dict[str, Any]]:
     """What a query gives, a dictionary a row; `values` fill its question marks."""
-    found = connection.execute(query, list(values))
-    names = [column[0] for column in found.description or []]
-    return [dict(zip(names, row, strict=True)) for row in found.fetchall()]
+    cursor = connection.execute(query, list(values))
+    names = [column[0] for column in cursor.description or []]
+    return [dict(zip(names, row, strict=True)) for row in cursor.fetchall()]
 
 
 def is_simulated(connection: duckdb.DuckDBPyConnection) -> bool:

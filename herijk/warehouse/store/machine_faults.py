@@ -85,10 +85,10 @@ def machine_faults_explained(root: Path) -> Iterator[None]:
     except (HerijkError, KeyboardInterrupt, SystemExit):
         raise
     except BaseException as error:  # a panic of a library in Rust is no Exception
-        found = _machine_fault(error)
-        if found is None:
+        explanation = _machine_fault(error)
+        if explanation is None:
             raise
-        raise UnavailableError(f"{found.format(root=root)}. {REASSURANCE}") from error
+        raise UnavailableError(f"{explanation.format(root=root)}. {REASSURANCE}") from error
 
 
 def is_machine_fault(error: BaseException) -> bool:
@@ -101,9 +101,9 @@ def _machine_fault(error: BaseException) -> str | None:
         if isinstance(one, OSError) and one.errno in _BY_NUMBER:
             return _BY_NUMBER[one.errno]
         text = str(one).casefold()
-        for words, found in _BY_WORDS.items():
+        for words, kind in _BY_WORDS.items():
             if words in text:
-                return found
+                return kind
     return None
 
 
