@@ -110,6 +110,10 @@ def _quoted(text: str | None) -> str:
     return "'" + (text or "").replace("'", "''") + "'"
 
 
+Row = dict[str, Any]
+"""A row of a query, by the names of its columns."""
+
+
 def open_database(path: Path) -> duckdb.DuckDBPyConnection:
     """The database, to read only.
 
@@ -130,9 +134,7 @@ def open_database(path: Path) -> duckdb.DuckDBPyConnection:
         ) from error
 
 
-def rows(
-    connection: duckdb.DuckDBPyConnection, query: str, *values: object
-) -> list[dict[str, Any]]:
+def rows(connection: duckdb.DuckDBPyConnection, query: str, *values: object) -> list[Row]:
     """What a query gives, a dictionary a row; `values` fill its question marks."""
     cursor = connection.execute(query, list(values))
     names = [column[0] for column in cursor.description or []]
