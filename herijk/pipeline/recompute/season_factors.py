@@ -111,7 +111,10 @@ def tow_instruments(estimated: SeasonFactors) -> pl.DataFrame:
     )
     shared = estimated.instruments.select("tow_id", "force_factor", "force_zero_n", "bend")
     return pl.concat(
-        [estimated.instruments, other.drop("season", "part").join(shared, on="tow_id")],
+        [
+            estimated.instruments.drop("others_ln_ratio"),
+            other.drop("season", "part").join(shared, on="tow_id"),
+        ],
         how="diagonal",
     ).sort("tow_id", "log")
 
