@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.warehouse.store.database import Row, is_simulated, open_database, rows
+from herijk.warehouse.store.database import Row, is_simulated, open_results, rows
 from herijk.warehouse.store.store import Store
 
 EXPIRED, THIS_YEAR, LATER, NEVER = "expired", "this_year", "later", "without_curve"
@@ -40,7 +40,7 @@ def due_report(store: Store, method: str) -> DueReport:
     Raises:
         MissingKnowledgeError: the method was not applied by the last rebuild.
     """
-    with open_database(store.database) as db:
+    with open_results(store.database) as db:
         lines = rows(db, _LINES, method)
         choice = rows(db, _CHOICE, method)
         simulated = is_simulated(db)

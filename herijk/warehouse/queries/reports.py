@@ -6,7 +6,7 @@ or one type is in `warehouse.queries.audit`.
 
 from dataclasses import dataclass
 
-from herijk.warehouse.store.database import Row, is_simulated, open_database, rows
+from herijk.warehouse.store.database import Row, is_simulated, open_database, open_results, rows
 from herijk.warehouse.store.store import Store
 
 BIGGEST = 10
@@ -93,7 +93,7 @@ def rebuild_report(store: Store) -> RebuildReport:
 
 def log_error_report(store: Store, method: str) -> LogErrorReport:
     """The log factor of every season under a method, and what the estimated ones rest on."""
-    with open_database(store.database) as db:
+    with open_results(store.database) as db:
         return LogErrorReport(
             simulated=is_simulated(db),
             method=method,
