@@ -57,6 +57,7 @@ def rebuild(report: Report) -> str:
     parts.append("Curves:\n" + table(("method", "status", "number"), rows))
     if report["by_season"]:
         parts.append(_by_season(report["by_season"]))
+    if report["biggest_changes"]:
         parts.append(_biggest(report["biggest_changes"]))
     parts.append(
         f"Tables: {report['database']}\nSite: {report['site']}\nReport: {report['report']}"

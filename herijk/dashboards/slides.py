@@ -31,6 +31,7 @@ from herijk.dashboards.words import Say, speaker
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.queries.views import Views
+from herijk.warehouse.store.database import choice_of
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.store import Store
 
@@ -119,9 +120,7 @@ def slides(
     lines = views.table("type_lines").with_columns(method_order())
     known_choices = lines["tows"].unique().to_list()
     if tows not in known_choices:
-        raise MissingKnowledgeError(
-            f"there are no tows {tows!r}; choose from {', '.join(sorted(known_choices))}"
-        )
+        raise MissingKnowledgeError(f"there are no tows {tows!r}; {choice_of(known_choices)}")
     chosen = _types(compared, types)
     about = _About(views, say, compared, lines)
     for quantity in QUANTITIES:

@@ -120,7 +120,7 @@ def _faults(root: Path, profiles: Profiles) -> tuple[ArchiveIndex | None, list[F
     Files that nobody reads come first, and alone: they can be the lists.
     """
     unread = strangers(root, profiles)
-    if unread:
+    if any(propose(fault, profiles.wording.files) for fault in unread):
         return None, unread
     lacking = missing_lists(root, profiles)
     if lacking:

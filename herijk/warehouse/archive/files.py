@@ -207,11 +207,35 @@ def _find_folder(root: Path, name: str) -> Path:
 def _entries(folder: Path) -> list[Path]:
     if not folder.is_dir():
         return []
-    return sorted(entry for entry in folder.iterdir() if not entry.name.startswith("."))
+    return sorted(
+        entry
+        for entry in folder.iterdir()
+        if not entry.name.startswith(".") and _can_be_written(entry.name)
+    )
+
+
+def _can_be_written(name: str) -> bool:
+    """Whether a name is text; one made under another encoding can hold bytes that are none."""
+    try:
+        name.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
+def list_misnamed(root: Path) -> list[str]:
+    """Return files and folders whose names are no text, which are not read, with `?` for that."""
+    found = (
+        Path(folder, name)
+        for folder, folders, files in os.walk(root)
+        for name in (*folders, *files)
+        if not _can_be_written(name)
+    )
+    return sorted(os.fsencode(_path_in(root, path)).decode(errors="replace") for path in found)
 
 
 def _archive_file(root: Path, entry: Path, season: int) -> ArchiveFile:
-    inside = entry.resolve().is_relative_to(root.resolve()) and entry.is_file()
+    inside = _is_inside(root, entry) and entry.is_file()
     return ArchiveFile(entry.relative_to(root).as_posix(), entry, season, inside)
 
 
@@ -255,7 +279,10 @@ def path_inside(root: Path, relative: str) -> Path:
 
 
 def _is_inside(root: Path, full: Path) -> bool:
-    return full.resolve().is_relative_to(root.resolve())
+    try:
+        return full.resolve().is_relative_to(root.resolve())
+    except (RuntimeError, OSError):  # a link to itself
+        return False
 
 
 def outside_archive(relative: str) -> DefectiveFileError:

@@ -34,6 +34,7 @@ from herijk.warehouse.archive.files import (
     find_boats_file,
     hash_of_parts,
     list_files,
+    list_misnamed,
     list_sample_files,
     list_strangers,
     match_key,
@@ -264,7 +265,12 @@ def _read_boats(root: Path, profiles: Profiles, hashes: _Hashes, faults: list[Fa
 
 def strangers(root: Path, profiles: Profiles) -> list[Fault]:
     """Return what lies in the archive and is not read; what it can be, where that can be told."""
-    return [
+    message = "The name of '{name}' has letters that cannot be read; give it another name."
+    misnamed = [
+        Fault(path, None, None, "unrecognised_file", say(message, name=path))
+        for path in list_misnamed(root)
+    ]
+    return misnamed + [
         Fault(path, None, None, "unrecognised_file", _about_stranger(root, path))
         for path in list_strangers(root, profiles.wording.files)
         if fold(path) not in profiles.wording.ignore

@@ -13,7 +13,7 @@ import re
 import unicodedata
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import Final
 
 from herijk.pipeline.errors import DefectiveInputError
@@ -141,6 +141,7 @@ def split_line(line: str, delimiter: str) -> list[str]:
         raise DefectiveInputError("unreadable_file", said, line=1) from error
 
 
+@lru_cache(10_000)
 def fold(text: str) -> str:
     """Return a header for comparing: its letters and digits, without case and accents."""
     plain = unicodedata.normalize("NFKD", text).casefold()
@@ -265,8 +266,13 @@ def nearest_column(cell: str, columns: Iterable[Column]) -> Column | None:
 
 def score_of(header: Sequence[str], columns: Iterable[Column]) -> int:
     """Return how many cells of a line are names of columns: the header has most."""
-    names = {fold(name) for column in columns for name in (column.header, *column.also)}
+    names = _names_of(tuple(columns))
     return sum(split_header(cell)[0] in names for cell in header)
+
+
+@cache
+def _names_of(columns: tuple[Column, ...]) -> frozenset[str]:
+    return frozenset(fold(name) for c in columns for name in (c.header, *c.also))
 
 
 def _choose(

@@ -13,6 +13,7 @@ from herijk.pipeline.register.register import LINE, draft_name
 from herijk.pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
 from herijk.warehouse.build.studies import STUDIED_METHOD
 from herijk.warehouse.queries.views import Views
+from herijk.warehouse.store.database import choice_of
 from herijk.warehouse.store.editions import read_edition
 from herijk.warehouse.store.ensemble import read_ensemble
 
@@ -60,8 +61,8 @@ def compared(views: Views, old: str, new: str) -> pl.DataFrame:
     before, after = (register.filter(edition=edition) for edition in (old, new))
     for edition, side in ((old, before), (new, after)):
         if side.is_empty():
-            known = ", ".join(register["edition"].unique().sort())
-            raise MissingKnowledgeError(f"there is no edition {edition}; there are {known}")
+            known = choice_of(register["edition"].unique())
+            raise MissingKnowledgeError(f"there is no edition {edition}; {known}")
     names = views.table("boats").select("fsn_no", "name", "boat_type")
     steps = steps_of_lines(after, _steps(views, before, after))
     found = _side_by_side(before, after, register_changes(before, after, steps))

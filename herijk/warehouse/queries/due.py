@@ -6,7 +6,7 @@ The rule for the speed is `pipeline.register.due`'s.
 from typing import Any, Final
 
 from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.warehouse.store.database import is_simulated, open_database, rows
+from herijk.warehouse.store.database import is_simulated, open_results, rows
 from herijk.warehouse.store.store import Store
 
 Report = dict[str, Any]
@@ -21,7 +21,7 @@ def due_report(store: Store, method: str) -> Report:
     Raises:
         MissingKnowledgeError: the method was not applied by the last rebuild.
     """
-    with open_database(store.database) as db:
+    with open_results(store.database) as db:
         lines = rows(db, _LINES, method)
         choice = rows(db, _CHOICE, method)
         simulated = is_simulated(db)

@@ -6,7 +6,7 @@ or one type is in `warehouse.queries.audit`.
 
 from typing import Any
 
-from herijk.warehouse.store.database import is_simulated, open_database, rows
+from herijk.warehouse.store.database import is_simulated, open_database, open_results, rows
 from herijk.warehouse.store.store import Store
 
 Report = dict[str, Any]
@@ -49,7 +49,7 @@ def rebuild_report(store: Store) -> Report:
 
 def log_error_report(store: Store, method: str) -> Report:
     """The log factor of every season under a method, and what the estimated ones rest on."""
-    with open_database(store.database) as db:
+    with open_results(store.database) as db:
         return {
             "simulated": is_simulated(db),
             "method": method,

@@ -5,7 +5,7 @@ sees the new ones. Nobody sees half of either. What is asked of it is in `wareho
 and `warehouse.queries.audit`.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -110,6 +110,12 @@ def _quoted(text: str | None) -> str:
     return "'" + (text or "").replace("'", "''") + "'"
 
 
+NO_TOW: Final = (
+    "the last rebuild found none that it could use; `herijk check ARCHIVE` and the table "
+    "quarantine say why"
+)
+
+
 def open_database(path: Path) -> duckdb.DuckDBPyConnection:
     """The database, to read only.
 
@@ -126,6 +132,26 @@ def open_database(path: Path) -> duckdb.DuckDBPyConnection:
     except duckdb.Error as error:
         held = isinstance(error, duckdb.IOException) and "lock" in str(error).casefold()
         raise UnavailableError(f"{path} cannot be opened: {_HELD if held else _SPOILT}") from error
+
+
+def open_results(path: Path) -> duckdb.DuckDBPyConnection:
+    """The database of a rebuild that accepted a tow.
+
+    Raises:
+        MissingKnowledgeError: it was not made yet, or no tow was accepted.
+        UnavailableError: as `open_database`.
+    """
+    connection = open_database(path)
+    if connection.execute("SELECT 1 FROM tows LIMIT 1").fetchone() is None:
+        connection.close()
+        raise MissingKnowledgeError(f"{path} has no tow: {NO_TOW}")
+    return connection
+
+
+def choice_of(names: Iterable[str]) -> str:
+    """What can be chosen, for a sentence: names, or why there is none."""
+    known = ", ".join(sorted(names))
+    return f"there are {known}" if known else f"there is none: {NO_TOW}"
 
 
 def rows(
