@@ -136,8 +136,9 @@ def _same_or_own_slopes(boats: Observed) -> _Squares:
     x = np.where(used, (ln_speed - middle) / ln_speed[used].std(), 0.0)
     women = (boats.table["crew_class"] == "D").to_numpy()[:, None]
     shape = [x**power for power in range(2, HIGHEST_POWER + 1)]
-    same = _rest(used, [used], [x, women * x, *shape], ln_cw)
-    own = _rest(used, [used, x], shape, ln_cw)
+    height = used.astype(np.float64)
+    same = _rest(used, [height], [x, women * x, *shape], ln_cw)
+    own = _rest(used, [height, x], shape, ln_cw)
     boats_in_both, points = len(used), int(used.sum())
     return _Squares(
         max(same[0] - own[0], 0.0),
