@@ -16,7 +16,7 @@ from herijk.assets.notify import Message, Notifier
 from herijk.dashboards.report import found_in_words, headlines, mail
 from herijk.dashboards.words import speaker
 from herijk.warehouse.build.version import code_version
-from herijk.warehouse.queries.journal import as_plain, news, remember
+from herijk.warehouse.queries.change_report import as_plain, change_report, remember
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.store import Store
 
@@ -30,7 +30,7 @@ def write_report(
 
     Where nothing changed, the page about the last change stays.
     """
-    found = news(store)
+    changes = change_report(store)
     about = store.read("about_archive")
     report = {
         "made_at": now.isoformat(timespec="seconds"),
@@ -38,16 +38,16 @@ def write_report(
         "simulated": about["simulated"][0],
         "code_version": code_version(),
         "done": done,
-        **as_plain(found),
+        **as_plain(changes),
         "checks": [_plain(check) for check in checks],
     }
     report["headlines"] = headlines(report, speaker("en"))
     text = json.dumps(report, default=str, indent=1)
     folder = store.root / "report"
-    if not found.nothing:
+    if not changes.nothing:
         from herijk.dashboards.report_page import report_pages  # noqa: PLC0415 - Altair takes a second
 
-        for name, page in report_pages(store, found, report).items():
+        for name, page in report_pages(store, changes, report).items():
             _write(folder / name, page)
         _write(folder / f"{now:%Y-%m-%dT%H%M%S}.json", text)
     _write(folder / "latest.json", text)

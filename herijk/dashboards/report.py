@@ -1,6 +1,6 @@
 """The report of a rebuild in words: headlines, and a mail. Its page is in `report_page`.
 
-What changed is found out in `warehouse.queries.journal`; texts are in `dashboards.words`.
+What changed is found out in `warehouse.queries.change_report`; texts are in `dashboards.words`.
 """
 
 from collections.abc import Iterable
@@ -51,8 +51,8 @@ def _line(line: Report) -> str:
 
 def headlines(report: Report, say: Say) -> list[str]:
     """What happened in a few lines, the most important first."""
-    found = [*_wrong(report, say), *_moved(report, say)]
-    return found or [say("report_nothing")]
+    sentences = [*_wrong(report, say), *_moved(report, say)]
+    return sentences or [say("report_nothing")]
 
 
 def _wrong(report: Report, say: Say) -> Iterable[str]:

@@ -25,6 +25,7 @@ from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.studies.tool_options import AS_READ, SPEEDS, TICKS
 from herijk.warehouse.queries.views import Views
+from herijk.warehouse.store.database import choice_of
 
 ALL_TOWS: Final = "all"
 
@@ -99,9 +100,7 @@ class Book:
     def tows(self, wanted: str) -> str:
         """The choice of tows, if there is such a one."""
         if wanted not in self.choices:
-            raise MissingKnowledgeError(
-                f"there are no tows {wanted!r}; choose from {', '.join(sorted(self.choices))}"
-            )
+            raise MissingKnowledgeError(f"there are no tows {wanted!r}; {choice_of(self.choices)}")
         return wanted
 
     def ends(self, tows: str = ALL_TOWS) -> tuple[str, str]:

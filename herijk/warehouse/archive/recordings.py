@@ -65,13 +65,13 @@ def labview_as_table(text: str) -> tuple[str, list[int]]:
 
 def _about(lines: list[str]) -> dict[str, str]:
     """Return what the head of the file says, by name."""
-    found = {}
+    properties = {}
     for line in lines[:40]:
         if line.strip().startswith(_END_OF_HEADER):
             break
         name, _, value = line.replace("\t", ",", 1).partition(",")
-        found[name.strip().casefold()] = value.strip(", \t")
-    return found
+        properties[name.strip().casefold()] = value.strip(", \t")
+    return properties
 
 
 def _segment_header(lines: list[str], start: int, separator: str) -> tuple[list[str], list[int]]:
@@ -139,6 +139,9 @@ def _group(group: Any, place: int) -> pl.DataFrame:
             values if values.dtype != object else values.astype(str)
         )
     frame = pl.DataFrame(columns)
+    step = next((channel.properties.get("wf_increment", 0.0) for channel in group.channels()), 0.0)
+    if step > 0 and not any(name.startswith("tijd") for name in map(str.casefold, columns)):
+        frame = frame.with_columns((pl.int_range(pl.len()) * step).alias("tijd [s]"))
     if any(name.casefold().strip() == "run" for name in columns):
         return frame
     number = _NUMBER_IN_NAME.search(group.name)

@@ -15,7 +15,7 @@ from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.queries.audit_types import TYPE, type_facts, types_page
 from herijk.warehouse.queries.boats import boats_named, plain, the_boat
 from herijk.warehouse.queries.chosen_tows import NEWEST, choose
-from herijk.warehouse.store.database import is_simulated, open_database, rows
+from herijk.warehouse.store.database import is_simulated, open_results, rows
 from herijk.warehouse.store.store import Store
 
 Report = dict[str, Any]
@@ -42,7 +42,7 @@ def audit(
     Raises:
         MissingKnowledgeError: there is no such boat, type or method, or no database.
     """
-    with open_database(store.database) as db:
+    with open_results(store.database) as db:
         methods = _methods(db, method)
         chosen = methods if method else _usual(methods)
         boat = _boat_named(db, names[0]) if len(names) == 1 else None

@@ -48,7 +48,7 @@ Tables = dict[str, pl.DataFrame]
 
 
 @dataclass(frozen=True)
-class News:
+class ChangeReport:
     """What is otherwise than at the last report.
 
     Attributes:
@@ -79,14 +79,14 @@ def reported_database(store: Store) -> Path:
     return store.root / "report" / "reported.duckdb"
 
 
-def news(store: Store) -> News:
+def change_report(store: Store) -> ChangeReport:
     """What changed in the database since the last report."""
     if is_reported(store):
         return _nothing()
     now = _tables(store.database)
     was = _reported(store)
     before = was or {name: frame.clear() for name, frame in now.items()}
-    return News(
+    return ChangeReport(
         first=was is None,
         tows=_tows(before, now),
         set_aside=_faults(before["quarantine"], now["quarantine"]),
@@ -95,12 +95,12 @@ def news(store: Store) -> News:
     )
 
 
-def _nothing() -> News:
-    """No news."""
+def _nothing() -> ChangeReport:
+    """No changes."""
     keys = {name: TABLES[name].create_empty() for name in ("tows", "quarantine", "log_factors")}
     what = pl.lit(None, pl.String).alias("what")
     tows, faults = (keys[name].with_columns(what) for name in ("tows", "quarantine"))
-    return News(False, tows, faults, keys["log_factors"], _no_lines())
+    return ChangeReport(False, tows, faults, keys["log_factors"], _no_lines())
 
 
 def is_reported(store: Store) -> bool:
@@ -205,8 +205,8 @@ def _factors(was: pl.DataFrame, now: pl.DataFrame) -> pl.DataFrame:
 
 def _lines(was: Tables, now: Tables) -> pl.DataFrame:
     drafts = [_draft_lines(was, now, method) for method in now["methods"]["method"]]
-    found = [draft for draft in drafts if draft is not None]
-    return pl.concat(found or [_no_lines()], how="diagonal_relaxed")
+    known = [draft for draft in drafts if draft is not None]
+    return pl.concat(known or [_no_lines()], how="diagonal_relaxed")
 
 
 def _no_lines() -> pl.DataFrame:
@@ -279,19 +279,19 @@ def _ground(tow: bool, own: bool, others: bool, method: bool, code: bool) -> str
 # As plain data
 
 
-def as_plain(found: News) -> dict[str, Any]:
-    """The news as plain data, for a page, a mail or a program."""
+def as_plain(report: ChangeReport) -> dict[str, Any]:
+    """The report as plain data, for a page, a mail or a program."""
     return {
-        "first": found.first,
-        "nothing_changed": found.nothing,
-        "tows": _counted(found.tows, ["what"]),
-        "tow_rows": [] if found.first else found.tows.to_dicts(),
-        "set_aside": _counted(found.set_aside, ["what", "reason_code"]),
-        "set_aside_rows": found.set_aside.to_dicts(),
-        "factors": found.factors.to_dicts(),
-        "register": _counted(found.lines, ["to_edition", "change"]),
-        "beyond_interval": int(found.lines["exceeds_interval"].fill_null(False).sum()),
-        "lines": found.lines.to_dicts(),
+        "first": report.first,
+        "nothing_changed": report.nothing,
+        "tows": _counted(report.tows, ["what"]),
+        "tow_rows": [] if report.first else report.tows.to_dicts(),
+        "set_aside": _counted(report.set_aside, ["what", "reason_code"]),
+        "set_aside_rows": report.set_aside.to_dicts(),
+        "factors": report.factors.to_dicts(),
+        "register": _counted(report.lines, ["to_edition", "change"]),
+        "beyond_interval": int(report.lines["exceeds_interval"].fill_null(False).sum()),
+        "lines": report.lines.to_dicts(),
     }
 
 
