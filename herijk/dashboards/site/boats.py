@@ -105,7 +105,11 @@ def _frames(views: Views, methods: Sequence[str]) -> dict[str, pl.DataFrame]:
         .join(boat_of, on="tow_id", maintain_order="left"),
     }
     statistics = views.table("run_statistics").join(boat_of, on="tow_id", maintain_order="left")
-    found |= {"statistics": statistics, "ticks": _ticks(views), "choices": _choices(views, boat_of)}
+    frames |= {
+        "statistics": statistics,
+        "ticks": _ticks(views),
+        "choices": _choices(views, boat_of),
+    }
     for name in EXTRA:
         if views.has(name):
             rows = views.flagged() if name == "assessments" else views.table(name)
