@@ -29,6 +29,10 @@ TOW_COLUMNS = (
     *("hull_speed_m_s", "tow_hull_ratio", "b_hull_ratio"),
     *(column for columns in QUANTITIES.values() for column in columns),
 )
+NOT_DRAWN = (
+    *("fsn_no", "tow_id", "rowers", "candidates", "reason", "study", "newest", "slow"),
+    *("displacement_kg", "expected_cw_kg_m"),
+)
 CLAIMS = {
     "hull_speed": "boat_type tows n n_boats tow_ratio tow_share_60_70 b_ratio b_ratio_lo "
     "b_ratio_hi",
@@ -118,7 +122,7 @@ def _data_name(slide: Slide) -> str:
 
 def _thin(rows: pl.DataFrame) -> pl.DataFrame:
     """Without columns that no chart draws."""
-    return rows.select(pl.exclude("fsn_no", "tow_id", "rowers", "candidates", "reason"))
+    return rows.select(pl.exclude(NOT_DRAWN))
 
 
 def _charts(explaining: str, book: Drawn) -> list[Chart]:
