@@ -26,8 +26,6 @@ def shift(row):
 DRAWN = {
     "all tows": pl.lit(value=True),
     "newest": pl.col("newest"),
-    "2014": pl.col("season") == 2014,
-    "2014, men": (pl.col("season") == 2014) & (pl.col("crew_class") == "H"),
     "all tows, men": pl.col("crew_class") == "H",
 }
 
