@@ -4,7 +4,7 @@
 
 Each world has ten seasons of 24 tows at 20 Hz and goes from samples to `log_factors` and
 `season_steps`, as an archive does. "clean" and "history" worlds are those of `methods.py`. 64
-worlds give 320 factors a line. Many more worlds, without samples, are in `season.py`.
+worlds give 320 factors per line. Many more worlds, without samples, are in `season.py`.
 """
 
 import os

@@ -238,7 +238,7 @@ def taking_over(store: Store) -> Iterator[str]:
     """Ends the runs of a server that was stopped or killed: later ones would wait for them.
 
     Returns:
-        A sentence for who starts the new server, about each kind of run that was found.
+        A sentence for anyone who starts the new server, about each kind of run that was found.
     """
     if not nobody_writes(store.root):
         yield "A rebuild is at work; scheduled ones wait for it."

@@ -1,6 +1,6 @@
 """What a rebuild leaves to be read: a page, JSON, and a message to who wants one.
 
-They stand under `report/` in the data folder: `latest.json` about the last rebuild, `latest.html`
+They are under `report/` in the data folder: `latest.json` about the last rebuild, `latest.html`
 about the last that changed something, and a dated JSON for each of those.
 """
 

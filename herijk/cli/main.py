@@ -1,7 +1,7 @@
 """The command `herijk`: arguments in, results out. Messages go to stderr, results to stdout.
 
 Exit status: 0 done (also with tows set aside: they are listed), 1 could not do it, 2 wrong
-arguments. What a command does stands in `assets`, `warehouse` and `pipeline`; how a result looks
+arguments. What a command does is in `assets`, `warehouse` and `pipeline`; how a result looks
 as text, in `cli.text`.
 
 A command imports what it needs when it runs: Polars, SciPy, Altair and Dagster take seconds
@@ -72,7 +72,7 @@ def _written_down(error: BaseException) -> str:
     ) as file:
         file.write("".join(traceback.format_exception(error)))
     return (
-        f"{unexpected(error)}. Nothing was published. Details stand in {file.name}; please send it "
+        f"{unexpected(error)}. Nothing was published. Details are in {file.name}; please send it "
         "to who keeps Herijk"
     )
 

@@ -174,6 +174,8 @@ def register(world):
         anchored.alias("calibrated"),
         pl.col("ln_cw_sd").alias("random_ratio"),
         pl.lit(200.0).alias("random_dof"),
+        pl.lit(0.0).alias("misfit_ratio"),
+        pl.lit(None, pl.Float64).alias("wind_ln_sd"),
         pl.lit(1.0).alias("speed_ratio"),
         pl.lit(0.025).alias("air_ratio"),
         pl.lit(0.05).alias("air_per_coefficient"),

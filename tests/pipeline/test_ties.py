@@ -16,7 +16,7 @@ LINE = ["fsn_no", "rowers", "crew_class"]
 
 @pytest.fixture(scope="module")
 def tows():
-    """A sparse archive: nine tows a season of forty boats."""
+    """A sparse archive: nine tows per season of forty boats."""
     return simulate(dataclasses.replace(CLEAN, tows_a_season=9, boats=40), 7).tows
 
 

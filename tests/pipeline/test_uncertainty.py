@@ -20,6 +20,7 @@ def tows(**changed):
     usual = {
         "tow_id": "2014-001", "speed_ratio": 1.0, "season": 2014, "part": 0, "log": "log1",
         "kappa": 2.86,
+        "misfit_ratio": 0.0, "wind_ln_sd": None,
         "random_ratio": 0.0061, "random_dof": 96.0, "calibrated": True, "log_sd": 0.0,
         "log_dof": np.inf, "wander_sd": 0.0, "air_ratio": 0.025, "air_per_coefficient": 0.05,
         "wind_measured": True, "still_air_ratio": 0.025, "temperature_known": False,
@@ -125,7 +126,15 @@ def test_keys_say_what_tows_have_in_common():
     rows = [tows(), tows(tow_id="2014-002"), tows(tow_id="2015-001", season=2015)]
     held = budget(pl.concat(rows))
     keys = dict(held.group_by("component").agg(pl.col("key").n_unique()).iter_rows())
-    one_each = {"between_tows", "random", "calibration", "stream_drift", "mass", "straightness"}
+    one_each = {
+        "between_tows",
+        "misfit",
+        "random",
+        "calibration",
+        "stream_drift",
+        "mass",
+        "straightness",
+    }
     assert {name for name, count in keys.items() if count == 3} == one_each
     assert {name for name, count in keys.items() if count == 1} == {"wind"}
     season = {"force", "anemometer", "temperature", "season_log"}

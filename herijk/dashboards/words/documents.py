@@ -45,7 +45,7 @@ DOCUMENTS: Final[dict[str, tuple[str, str]]] = {
         "staan, bij dezelfde getallen. De QR-code bevat editie, nummer, ploeg en controlecode. "
         "Klopt er iets niet, meld het de commissie.",
         "Look {fsn_no} up in the register of edition {edition}: the same verification code {code} "
-        "must stand there, with the same numbers. The QR code holds edition, number, crew and "
+        "must be there, with the same numbers. The QR code holds edition, number, crew and "
         "code. If something is wrong, tell the committee.",
     ),
     "certificate_uncheckable": (

@@ -1,7 +1,8 @@
 """The best estimate of each tow's Cw, beside what was measured.
 
 All tows together know a boat at one speed; what they change there, as a ratio, is taken for the
-declared speed. What all tows share, and repeats can therefore not show, is added to the interval
+declared speed, and how far their points show the hull to lie from its hyperbola is added. What
+all tows share, and repeats can therefore not show, is added to the interval
 (ISO 5725-1: precision is not trueness). A tow of a season that is not determined stays as measured:
 the bend of its curves alone would say what its log was, and no hull is an exact hyperbola.
 """
@@ -22,7 +23,10 @@ QUANTILE: Final = 1.959964
 
 
 def with_best(
-    curves: pl.DataFrame, found: SeasonFactors | None, budget: pl.DataFrame
+    curves: pl.DataFrame,
+    found: SeasonFactors | None,
+    budget: pl.DataFrame,
+    misfit: pl.DataFrame,
 ) -> pl.DataFrame:
     """Curves with `BEST`: Cw at the declared speed by all tows together, with its 95 % interval.
 
@@ -30,6 +34,7 @@ def with_best(
         curves: rows of the table.
         found: what all tows say; None where the method does not ask it: the columns are null.
         budget: rows of the budget at the declared speed.
+        misfit: how far each hull lies from its curve there.
     """
     if found is None:
         return curves.with_columns(pl.lit(None, pl.Float64).alias(name) for name in BEST)
@@ -41,13 +46,14 @@ def with_best(
     determined = found.instruments.drop_nulls("factor").select("tow_id")
     known = found.best.join(determined, on="tow_id", how="semi")
     held = curves.join(known, on="tow_id", how="left", maintain_order="left").join(
-        shared, on="tow_id", how="left", maintain_order="left"
+        shared.join(misfit, on="tow_id"), on="tow_id", how="left", maintain_order="left"
     )
-    best = pl.col("cw_kg_m") * (pl.col("ln_cw") - pl.col("as_measured")).exp()
+    moved = pl.col("ln_cw") - pl.col("as_measured") + pl.col("misfit").log1p()
+    best = pl.col("cw_kg_m") * moved.exp()
 
     def half(end: str) -> pl.Expr:
         own = pl.col(end) - pl.col("ln_cw")
-        return (own**2 + QUANTILE**2 * pl.col("shared")).sqrt()
+        return (own**2 + QUANTILE**2 * (pl.col("shared") + pl.col("misfit_variance"))).sqrt()
 
     by_all = (best, best * (-half("lo")).exp(), best * half("hi").exp())
     measured = ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")

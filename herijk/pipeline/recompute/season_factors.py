@@ -2,7 +2,7 @@
 
 Every tow is first computed without any factor for the seasons whose factor is estimated; from
 those curves the factors follow, once, and are applied after (never tuned in a loop). The statistics
-stand in `pipeline.season_log`.
+are in `pipeline.season_log`.
 """
 
 from collections.abc import Sequence

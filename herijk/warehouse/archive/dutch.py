@@ -40,7 +40,7 @@ DUTCH: Final[dict[str, str]] = {
     "column '{column}' is '{cell}', not ja, nee or empty.": (
         "kolom '{column}' is '{cell}', niet ja, nee of leeg."
     ),
-    "column '{column}' is '{cell}'; one run stands in it twice.": (
+    "column '{column}' is '{cell}'; it names one run twice.": (
         "kolom '{column}' is '{cell}'; er staat een run twee keer in."
     ),
     "column '{column}' is '{cell}', but there is no meetfile2.": (
@@ -81,8 +81,8 @@ DUTCH: Final[dict[str, str]] = {
         "'roeitijd' is '{cell}', geen tijd zoals 2:10:25."
     ),
     "'roeitijd' is 0.": "'roeitijd' is 0.",
-    # Rows held against each other
-    "boat {boat} stands in the list twice and the rows differ in {key} ({one} and {other}).": (
+    # Rows compared with each other
+    "boat {boat} is in the list twice and the rows differ in {key} ({one} and {other}).": (
         "sloep {boat} staat twee keer in de lijst en de rijen verschillen in {key} ({one} en "
         "{other})."
     ),
@@ -197,7 +197,7 @@ DUTCH: Final[dict[str, str]] = {
         "run {run} begint opnieuw; zijn rijen moeten bij elkaar staan."
     ),
     "the time does not increase within the run.": "de tijd loopt niet op binnen de run.",
-    "Run {run}: by its times it has {observed:.4g} samples a second, by the list or the profile "
+    "Run {run}: by its times it has {observed:.4g} samples per second, by the list or the profile "
     "{rate}; they may differ by {most:.0%}.": (
         "Run {run}: volgens de tijden heeft hij {observed:.4g} metingen per seconde, volgens de "
         "lijst of het profiel {rate}; dat mag {most:.0%} verschillen."

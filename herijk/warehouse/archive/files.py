@@ -1,6 +1,6 @@
 """Where the archive's files are, and reading their bytes within bounds.
 
-Knows folder names, safe paths and compression; not what stands in a file.
+Knows folder names, safe paths and compression; not what is in a file.
 """
 
 import hashlib

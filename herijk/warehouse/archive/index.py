@@ -1,7 +1,7 @@
 """What is in an archive: its boats, its tows with their files, and what is set aside.
 
 Reads the lists and hashes the files; reading samples belongs to `samples`. Rows, boats and files
-are held against each other here, one question after the other; a tow falls out at the first.
+are compared with each other here, one question after the other; a tow falls out at the first.
 """
 
 from collections import defaultdict
@@ -57,9 +57,9 @@ class ArchiveIndex:
     """Everything an archive says, but for the samples themselves.
 
     Attributes:
-        boats: one row a boat (`ListedBoats`).
-        tows: one row a tow that can be read (`ListedTows`).
-        runs: one row a run of those tows (`ListedRuns`); runs of a second file are 21 and on.
+        boats: one row per boat (`ListedBoats`).
+        tows: one row per tow that can be read (`ListedTows`).
+        runs: one row per run of those tows (`ListedRuns`); runs of a second file are 21 and on.
         windows: windows given by hand for those runs (`ListedWindows`), of which nobody knows yet
             whether they lie in their run.
         faults: what is set aside, and why.
@@ -385,7 +385,7 @@ def _not_listed(
     return faults
 
 
-# Rows, boats and files held against each other
+# Rows, boats and files compared with each other
 
 
 def _keep(

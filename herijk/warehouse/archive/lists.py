@@ -1,6 +1,6 @@
 """Reading a list: a small table of text with one header, and the values in its rows.
 
-What the columns of the tow list, the boat list, a register or race results mean stands in the
+What the columns of the tow list, the boat list, a register or race results mean is in the
 modules that read those.
 """
 

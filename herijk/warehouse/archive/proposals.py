@@ -43,7 +43,7 @@ class Proposal:
 
     @property
     def line(self) -> str:
-        """The line as it stands in the file, its section first."""
+        """The line as it is in the file, its section first."""
         if self.section in {"ignore", "absent"}:
             body = f'{self.section} = ["{self.value}"]'
         elif self.section == "columns":
@@ -159,7 +159,7 @@ _RULES: Final = {
 
 
 def merged(text: str, proposals: Iterable[Proposal]) -> str:
-    """Return `archief.toml` with proposals written in; what stands there stays."""
+    """Return `archief.toml` with proposals written in; what is there stays."""
     document = tomlkit.parse(text)
     for proposal in proposals:
         if proposal.section == "ignore":

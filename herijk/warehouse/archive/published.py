@@ -1,4 +1,4 @@
-"""Registers as they were published, and race results: what the recomputed history is held against.
+"""Registers as they were published, and race results: what the recomputed history is compared with.
 
 Both are optional in an archive. Computing with them belongs elsewhere.
 """

@@ -115,7 +115,7 @@ def read_samples(
         run: the run that the file is, where it is one of several.
 
     Returns:
-        A frame with the columns of `SAMPLE_SCHEMA`, one row a sample in the order of the file.
+        A frame with the columns of `SAMPLE_SCHEMA`, one row per sample in the order of the file.
         What was not measured is null throughout: a GPS that is absent or empty, and what the
         profile declares absent. Wind angles are brought to [0, 360); one outside -180..360 cannot
         be an angle and is left as it is, for `judge_samples` to find.
@@ -568,7 +568,7 @@ def _check_time(run: pl.Series, time_s: NDArray[np.float64], rate_hz: int | None
         observed = 1.0 / float(np.nanmedian(step[start : end - 1]))
         if abs(observed / rate_hz - 1) > TIME_TOLERANCE:
             said = say(
-                "Run {run}: by its times it has {observed:.4g} samples a second, by the list or "
+                "Run {run}: by its times it has {observed:.4g} samples per second, by the list or "
                 "the profile {rate}; they may differ by {most:.0%}.",
                 run=run[int(start)],
                 observed=observed,

@@ -1,7 +1,7 @@
 """The rows of a table of text or of a spreadsheet, as fields of text with their line.
 
 Titles, blank lines and Excel's `sep=;` above the header are passed over. What the columns mean
-stands in `lists`; samples are read faster, in `samples`.
+is in `lists`; samples are read faster, in `samples`.
 """
 
 import datetime as dt
@@ -135,7 +135,7 @@ def _sheet(
 
 
 def _as_text(cell: Any) -> str:
-    """Return a cell as it would stand in a table of text."""
+    """Return a cell as it would be in a table of text."""
     if isinstance(cell, bool):
         return "ja" if cell else "nee"
     if isinstance(cell, float):

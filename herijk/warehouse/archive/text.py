@@ -1,7 +1,7 @@
 """How the federation's text is spelled: bytes, delimiters, headers, units and numbers.
 
 Nothing here knows which file or column it is about, and nothing is guessed from the size of a
-number: a unit stands in the header or is the declared default.
+number: a unit is in the header or is the declared default.
 """
 
 import codecs
@@ -55,7 +55,7 @@ class Column:
 
     @property
     def named(self) -> str:
-        """Name and unit as they stand in a header."""
+        """Name and unit as they are in a header."""
         return f"{self.header} [{self.unit}]" if self.unit else self.header
 
     def answers_to(self, name: str) -> bool:
@@ -65,7 +65,7 @@ class Column:
 
 @dataclass(frozen=True)
 class FoundColumn:
-    """Where a column stands in a file: its index, the header as written, and the unit's scale."""
+    """Where a column is in a file: its index, the header as written, and the unit's scale."""
 
     index: int
     header: str
@@ -158,7 +158,7 @@ def fold_name(text: str) -> str:
 def split_header(cell: str) -> tuple[str, str | None]:
     """Return the folded name in a header cell, and its unit as written where it has one.
 
-    A unit stands in brackets, or behind a comma or `in`; other brackets belong to the name.
+    A unit is in brackets, or behind a comma or `in`; other brackets belong to the name.
     """
     cell = cell.strip()
     groups = list(_BRACKETS.finditer(cell))

@@ -117,7 +117,7 @@ def read_selection(row: ListRow, planned: Collection[int]) -> frozenset[int]:
     runs = [run_number(part, row, row.named("use_runs"), planned) for part in parts]
     values = {"column": row.named("use_runs"), "cell": shorten(cell)}
     if len(set(runs)) < len(runs):
-        raise row.fault(say("column '{column}' is '{cell}'; one run stands in it twice.", **values))
+        raise row.fault(say("column '{column}' is '{cell}'; it names one run twice.", **values))
     if max(runs) > SECOND_FILE_OFFSET and row.optional_text("second_file") is None:
         raise row.fault(say("column '{column}' is '{cell}', but there is no meetfile2.", **values))
     return frozenset(runs)

@@ -4,7 +4,7 @@ The lake holds Parquet: the samples and the blocks of each tow, written once and
 and the tables, one file per table or per partition of it (a season, a method). Each table file
 carries the fingerprint of what it was made from, so that a rebuild does only what changed. Lake and
 editions may lie in a bucket instead of the data folder (`warehouse.store.storage`). What a table
-means stands in `tables.schemas`; the database that readers use is `warehouse.store.database`.
+means is in `tables.schemas`; the database that readers use is `warehouse.store.database`.
 """
 
 import hashlib
