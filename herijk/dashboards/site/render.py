@@ -9,6 +9,7 @@ import shutil
 import tempfile
 from collections.abc import Callable, Iterator
 from functools import cache
+from importlib.metadata import version
 from itertools import chain, groupby
 from pathlib import Path
 from typing import Any, Final
@@ -186,7 +187,7 @@ def _by_column(comments: dict[str, str]) -> dict[str, str]:
 def vega_bundle() -> str:
     """Vega, Vega-Lite and Vega-Embed in one script, as Altair's own converter ships them."""
     bundle = vl_convert.javascript_bundle
-    return kept("vega", vl_convert.__version__, lambda: str(bundle()))  # type: ignore[call-arg]  # its stub lacks the default
+    return kept("vega", version("vl-convert-python"), lambda: str(bundle()))  # type: ignore[call-arg]  # its stub lacks the default
 
 
 @cache
