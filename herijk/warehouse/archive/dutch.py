@@ -7,6 +7,23 @@ DUTCH: Final[dict[str, str]] = {
     "Line {line}: {what}": "Regel {line}: {what}",
     "Row {row}: {what}": "Rij {row}: {what}",
     "line {line} of {path}": "regel {line} van {path}",
+    "sheet '{sheet}': {what}": "blad '{sheet}': {what}",
+    "there is no list of boats: {path} is expected.": (
+        "er is geen lijst van sloepen: {path} wordt verwacht."
+    ),
+    "there is no list of tows: {path} is expected.": (
+        "er is geen lijst van sleepproeven: {path} wordt verwacht."
+    ),
+    "'{path}' is not read: it has another name than the archive's files. It can be {kinds}; say "
+    "so under [files] in archief.toml.": (
+        "'{path}' wordt niet gelezen: de naam is anders dan die van bestanden van het archief. Het "
+        "kan {kinds} zijn; zet dat onder [files] in archief.toml."
+    ),
+    "No run lasts longer than {lasts:.1f} s at {rate} samples a second, and {planned:.0f} s is "
+    "planned: is the rate {observed:.0f}?": (
+        "Geen run duurt langer dan {lasts:.1f} s bij {rate} metingen per seconde, en {planned:.0f} "
+        "s is gepland: is de frequentie {observed:.0f}?"
+    ),
     "column '{column}' is empty.": "kolom '{column}' is leeg.",
     "column '{column}' is empty, here and in the boat list.": (
         "kolom '{column}' is leeg, hier en in de lijst van sloepen."

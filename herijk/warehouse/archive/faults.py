@@ -86,6 +86,10 @@ REASONS: Final[dict[str, Reason]] = {
         "A file in a folder of lists has a name that is not one of the lists.",
         "Rename it, e.g. `sleeplijst_2014.csv`, or move it out of the folder.",
     ),
+    "missing_list": Reason(
+        "The list of boats, or every list of tows, is not there.",
+        "Put it into its folder, or name it under `[files]` in `archief.toml`.",
+    ),
     "missing_column": Reason(
         "A column that is needed is not in the header.",
         "Correct the header, or name the column in `archief.toml`.",

@@ -23,7 +23,7 @@ from herijk.pipeline.channels import (
     TARGET_SPEED_RATIOS,
 )
 from herijk.pipeline.errors import DefectiveInputError, MissingKnowledgeError
-from herijk.warehouse.archive.files import PROFILE_FILE, path_inside
+from herijk.warehouse.archive.files import PROFILE_FILE, STANDS_FOR, path_inside
 from herijk.warehouse.archive.lists import Wording, fold_word
 from herijk.warehouse.archive.text import Column, fold, split_header
 from herijk.warehouse.archive.units import UNITS, find_scale
@@ -187,6 +187,7 @@ class _File(_Strict):
     headers: dict[str, str] = {}
     ignore: list[str] = []
     dates: dict[str, Literal["dmy", "mdy"]] = {}
+    files: dict[str, Annotated[str, Field(pattern=f"^{STANDS_FOR.pattern}$")]] = {}
     set_aside: list[SetAside] = []
     log_replaced: list[LogReplaced] = []
 
@@ -348,6 +349,7 @@ def parse_profiles(text: str) -> Profiles:
             headers={split_header(name)[0]: key for name, key in parsed.headers.items()},
             ignore=tuple(fold(name) for name in parsed.ignore),
             dates=dict(parsed.dates),
+            files=dict(parsed.files),
         ),
     )
 

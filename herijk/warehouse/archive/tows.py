@@ -18,6 +18,7 @@ COLUMNS: Final = (
     Column("tow_id", "sleep_id"),
     Column("tow_date", "datum"),
     Column("fsn_no", "fsn_nr"),
+    Column("name", "sloep", required=False),
     Column("file", "meetfile"),
     Column("second_file", "meetfile2", required=False),
     Column("rowers", "roeiers"),
