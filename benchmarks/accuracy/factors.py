@@ -1,4 +1,4 @@
-"""How near the season log factors of whole archives come to the truth, and how sure they say to be.
+"""How near season log factors come to the truth, and how often their intervals hold.
 
     PYTHONPATH=. python benchmarks/accuracy/factors.py [worlds]
 

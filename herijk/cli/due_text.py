@@ -76,7 +76,7 @@ def _line(line: Report) -> tuple[Any, ...]:
 def _choice(choice: list[Report]) -> str:
     title = "To tie the seasons together best, tow these again, in this order"
     if not choice:
-        return f"{title}: nobody, this method estimates no log error that a tow would make surer."
+        return f"{title}: nobody, this method estimates no log error, so no tow would narrow it."
     rows = [
         (
             c["position"],

@@ -183,7 +183,7 @@ def serve(
     from herijk.assets.settings import read_settings
     from herijk.cli.serving import Served, serve_until_stopped
     from herijk.warehouse.store.lock import only_server
-    from herijk.warehouse.store.obstacles import obstacles_explained
+    from herijk.warehouse.store.machine_faults import machine_faults_explained
     from herijk.warehouse.store.store import Store
 
     def tell(line: str) -> None:
@@ -192,7 +192,7 @@ def serve(
     check_apart(archive, data)
     read_settings(data)
     store = Store(data)
-    with obstacles_explained(data), only_server(data):
+    with machine_faults_explained(data), only_server(data):
         for line in taking_over(store):
             tell(line)
         served = Served(archive, data, host, port, may_start)
@@ -327,7 +327,7 @@ def log_error(
     method: Annotated[str, typer.Option(help="Method whose factors are shown.")] = "rebased",
     as_json: AsJson = False,
 ) -> None:
-    """How wrong the speed log was in each season, how sure that is, and what it rests on."""
+    """How wrong the speed log was in each season, with its uncertainty and what it rests on."""
     from herijk.warehouse.queries import reports
     from herijk.warehouse.store.store import Store
 

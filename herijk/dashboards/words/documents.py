@@ -7,7 +7,7 @@ DOCUMENTS: Final[dict[str, tuple[str, str]]] = {
     "certificate_headline": ("Cw {cw} kg/m bij {speed} m/s", "Cw {cw} kg/m at {speed} m/s"),
     "certificate_no_interval": (
         "Hoe zeker dit getal is, is niet bekend.",
-        "How sure this number is, is not known.",
+        "The uncertainty of this number is not known.",
     ),
     "certificate_draft": (
         "Concept: niet vastgesteld, en dus geen geldige meetbrief.",

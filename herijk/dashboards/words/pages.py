@@ -104,8 +104,8 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "Two boats over each other: which runs easier, at what speed?",
     ),
     "about_races": (
-        "Elke wedstrijd opnieuw gerekend: wint een ander, en hoe zeker is dat?",
-        "Every race computed again: does another win, and how sure is that?",
+        "Elke wedstrijd opnieuw gerekend: wint een ander, en hoe waarschijnlijk is dat?",
+        "Every race computed again: is there another winner, and how likely is that?",
     ),
     "about_words": ("Wat de woorden en tekens betekenen.", "What the words and signs mean."),
     "now": ("Waar het staat", "Where it stands"),

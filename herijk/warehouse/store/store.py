@@ -21,7 +21,7 @@ import pyarrow as pa  # type: ignore[import-untyped]
 import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
 from herijk.pipeline.errors import BrokenPromiseError
-from herijk.warehouse.store.obstacles import is_obstacle
+from herijk.warehouse.store.machine_faults import is_machine_fault
 from herijk.warehouse.store.storage import Locations, Place, place, read_locations, written_whole
 
 FINGERPRINT_KEY: Final = "herijk.fingerprint"
@@ -124,7 +124,7 @@ class Store:
             held = (_footer(path).metadata or {}).get(FINGERPRINT_KEY.encode())
             return None if held is None else bytes(held).decode()
         except _UNREADABLE as error:
-            if is_obstacle(error):
+            if is_machine_fault(error):
                 raise
             return None
 
@@ -195,7 +195,7 @@ def _damage_named(path: Place) -> Iterator[None]:
     except FileNotFoundError:
         raise
     except _UNREADABLE as error:
-        if is_obstacle(error):
+        if is_machine_fault(error):
             raise
         raise DamagedFileError(path) from error
 
