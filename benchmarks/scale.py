@@ -33,7 +33,7 @@ from polars.testing import assert_frame_equal
 from benchmarks.world import RATE_HZ, SEASONS, World
 from herijk.assets import rebuild
 from herijk.assets.cluster import read_seasons
-from herijk.assets.resources import Quiet
+from herijk.assets.progress import Quiet
 from herijk.pipeline.method.definition import shipped_method, shipped_methods
 from herijk.warehouse.editions.publish import Terms, publish
 from herijk.warehouse.intake import seasons as intake

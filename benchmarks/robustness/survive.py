@@ -26,8 +26,8 @@ from pathlib import Path
 import duckdb
 
 import herijk.dashboards.site  # noqa: F401 - takes a second, and victims are killed by the clock
+from herijk.assets.progress import Quiet
 from herijk.assets.rebuild import rebuild
-from herijk.assets.resources import Quiet
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.warehouse.store.store import Store, fingerprint, table_digest

@@ -6,7 +6,9 @@ import dagster as dg
 import polars as pl
 
 from herijk.assets.partitions import seasons
-from herijk.assets.resources import Progress, Setup
+from herijk.assets.progress import Progress
+from herijk.assets.resources import Setup
+from herijk.warehouse.archive import ArchiveIndex
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.code import ADDERS, READERS, code_hash
 
@@ -31,15 +33,18 @@ SUBJECT = {"herijk/subject": "archive"}
 def archive_index(setup: Setup) -> dg.MaterializeResult:
     """Boats, tow lists and files of the archive, with what is wrong in the lists."""
     found = intake.index(setup.store, setup.archive_root)
-    return dg.MaterializeResult(
-        metadata={
-            "dagster/row_count": found.tows.height,
-            "boats": found.boats.height,
-            "files": found.files.height,
-            "faults": len(found.faults),
-            "simulated": found.profiles.simulated,
-        }
-    )
+    return dg.MaterializeResult(metadata=index_metadata(found))
+
+
+def index_metadata(found: ArchiveIndex) -> dict[str, int | bool]:
+    """What is shown of an index."""
+    return {
+        "dagster/row_count": found.tows.height,
+        "boats": found.boats.height,
+        "files": found.files.height,
+        "faults": len(found.faults),
+        "simulated": found.profiles.simulated,
+    }
 
 
 @dg.asset(

@@ -12,7 +12,7 @@ import pytest
 
 from herijk.assets import rebuild
 from herijk.assets.cluster import read_seasons
-from herijk.assets.resources import Quiet
+from herijk.assets.progress import Quiet
 from herijk.pipeline.errors import UnavailableError
 from herijk.pipeline.method.definition import shipped_method
 from herijk.warehouse.editions.publish import Terms, publish

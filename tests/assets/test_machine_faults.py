@@ -81,7 +81,7 @@ LIMITED = """
 import resource, sys
 from pathlib import Path
 from herijk.assets.rebuild import rebuild
-from herijk.assets.resources import Quiet
+from herijk.assets.progress import Quiet
 from herijk.pipeline.errors import UnavailableError
 import herijk.dashboards.report_page, herijk.dashboards.site
 _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
@@ -128,7 +128,7 @@ AS_NOBODY = """
 import os, sys
 from pathlib import Path
 from herijk.assets.rebuild import rebuild
-from herijk.assets.resources import Quiet
+from herijk.assets.progress import Quiet
 from herijk.pipeline.errors import UnavailableError
 os.setuid(int(sys.argv[3]))
 try:
