@@ -38,7 +38,7 @@ def _dagster_in_memory(store: Store) -> Iterator[dg.DagsterInstance]:
 
 def _without_site() -> AbstractContextManager[object]:
     """Inside, the site counts as made."""
-    return mock.patch.object(herijk.assets.rebuild, "site_is_stale", lambda _: False)
+    return mock.patch.object(herijk.assets.rebuild, "site_is_stale", return_value=False)
 
 
 @dataclass(frozen=True)

@@ -120,7 +120,7 @@ _BEGUN: Final = (
 )
 
 
-def _end_killed_runs(instance: dg.DagsterInstance) -> None:
+def _end_lost_runs(instance: dg.DagsterInstance) -> None:
     """Records runs of killed rebuilds as failed; only who holds the lock can tell."""
     unfinished = dg.RunsFilter(tags={STEP_TAG: list(NAMES)}, statuses=[dg.DagsterRunStatus.STARTED])
     for run in instance.get_runs(unfinished):
@@ -140,7 +140,7 @@ def opened_instance(store: Store) -> Iterator[dg.DagsterInstance]:
 def opened_jobs(setup: Setup, progress: Progress) -> Iterator[Jobs]:
     """The jobs of a rebuild, by whoever holds the lock: runs of killed rebuilds are ended."""
     with opened_instance(setup.store) as instance:
-        _end_killed_runs(instance)
+        _end_lost_runs(instance)
         yield Jobs(job_defs(setup, progress), instance)
 
 

@@ -18,34 +18,38 @@ BEST: Final = ("cw_best_kg_m", "cw_best_lo_kg_m", "cw_best_hi_kg_m")
 NOT_SEEN_BY_REPEATS: Final = ("force", "wind", "anemometer", "mass", "temperature")
 """Components of the budget that repeat tows share."""
 
+OTHERS: Final = "cw_others_kg_m"
+
 QUANTILE: Final = 1.959964
 """Of a normal distribution, for intervals of 95 %."""
 
 
 def with_best(
     curves: pl.DataFrame,
-    found: SeasonFactors | None,
+    estimated: SeasonFactors | None,
     budget: pl.DataFrame,
     misfit: pl.DataFrame,
 ) -> pl.DataFrame:
     """Curves with `BEST`: Cw at the declared speed by all tows together, with its 95 % interval.
 
+    And with `OTHERS`: Cw as measured, with the instruments as all other boats show them.
+
     Args:
         curves: rows of the table.
-        found: what all tows say; None where the method does not ask it: the columns are null.
+        estimated: what all tows say; None where the method does not ask it: the columns are null.
         budget: rows of the budget at the declared speed.
         misfit: how far each hull lies from its curve there.
     """
-    if found is None:
-        return curves.with_columns(pl.lit(None, pl.Float64).alias(name) for name in BEST)
+    if estimated is None:
+        return curves.with_columns(pl.lit(None, pl.Float64).alias(n) for n in (*BEST, OTHERS))
     shared = (
         budget.filter(pl.col("component").is_in(NOT_SEEN_BY_REPEATS))
         .group_by("tow_id")
         .agg((pl.col("u_ratio") ** 2).sum().alias("shared"))
     )
-    determined = found.instruments.drop_nulls("factor").select("tow_id")
-    known = found.best.join(determined, on="tow_id", how="semi")
-    held = curves.join(known, on="tow_id", how="left", maintain_order="left").join(
+    determined = estimated.instruments.drop_nulls("factor").select("tow_id", "others_ln_ratio")
+    known = estimated.best.join(determined, on="tow_id")
+    joined = curves.join(known, on="tow_id", how="left", maintain_order="left").join(
         shared.join(misfit, on="tow_id"), on="tow_id", how="left", maintain_order="left"
     )
     moved = pl.col("ln_cw") - pl.col("as_measured") + pl.col("misfit").log1p()
@@ -57,10 +61,11 @@ def with_best(
 
     by_all = (best, best * (-half("lo")).exp(), best * half("hi").exp())
     measured = ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
-    return held.select(
+    return joined.select(
         *curves.columns,
         *(
             pl.coalesce(values, alone).alias(name)
             for name, values, alone in zip(BEST, by_all, measured, strict=True)
         ),
+        (pl.col("cw_kg_m") * pl.col("others_ln_ratio").fill_null(0.0).exp()).alias(OTHERS),
     )
