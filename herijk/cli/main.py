@@ -349,6 +349,7 @@ def simulate(
     from herijk.cli.progress import TerminalProgress
     from herijk.simulate import WORLDS, simulate_world, world_settings
     from herijk.simulate.archive_writer import write_simulated_archive
+    from herijk.warehouse.store.machine_faults import machine_faults_explained
 
     if worlds:
         typer.echo("\n".join(f"{name:18s}{named.about}" for name, named in WORLDS.items()))
@@ -358,7 +359,7 @@ def simulate(
     settings = world_settings(
         world, seasons=tuple(seasons), tows_per_season=tows_per_season, rate_hz=rate, seed=seed
     )
-    with TerminalProgress() as progress:
+    with machine_faults_explained(directory), TerminalProgress() as progress:
         progress.expect(len(seasons) * tows_per_season)
         truth = write_simulated_archive(
             directory, simulate_world(settings), lambda done, _: progress.tow_read(str(done), False)
