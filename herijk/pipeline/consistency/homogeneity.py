@@ -52,11 +52,11 @@ def shared_bend(boats: Observed) -> float:
     """The one s = 1/B^2 [s2/m2] that fits all boats best, each with its own height."""
     fastest = float(np.where(boats.points.used, boats.points.speed_m_s, 0.0).max()) ** 2
     lowest, highest = BEND_BOUNDS
-    found = scipy.optimize.minimize_scalar(
+    optimum = scipy.optimize.minimize_scalar(
         lambda r: _misfit(boats, r / fastest), bounds=BEND_BOUNDS, method="bounded"
     )
-    below = max(float(found.x) - BEND_MARGIN, lowest)
-    above = min(float(found.x) + BEND_MARGIN, highest)
+    below = max(float(optimum.x) - BEND_MARGIN, lowest)
+    above = min(float(optimum.x) + BEND_MARGIN, highest)
     if _misfit_slope(boats, below / fastest) >= 0.0:
         return below / fastest
     if _misfit_slope(boats, above / fastest) <= 0.0:
