@@ -217,7 +217,7 @@ def _diagnosis(report: "LogErrorReport") -> str:
     return table(head, rows)
 
 
-def _what(row: Report) -> str:
+def _what(row: Row) -> str:
     """What may be wrong, in words, and from which tow on."""
     words = str(row["instrument"]).replace("_", " ")
     return words if row["first_tow"] is None else f"{words}, from {row['first_tow']}"
