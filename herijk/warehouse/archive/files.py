@@ -97,15 +97,15 @@ def list_files(root: Path, kind: ListKind, named: Mapping[str, str]) -> list[Arc
         named: what other files and folders stand for, by their path (`[files]`).
     """
     matches = ((e, _match_list(kind, e.name)) for e in _entries_of(root, kind.folder))
-    found = [
+    files = [
         _archive_file(root, entry, int(match[1] or 0))
         for entry, match in matches
         if match is not None and (entry.is_file() or entry.is_symlink())
     ]
     for path, name, season in _named(named):
         if name == kind.stands_for and (root / path).is_file():
-            found.append(_archive_file(root, root / path, season))
-    return sorted(found, key=lambda file: file.path)
+            files.append(_archive_file(root, root / path, season))
+    return sorted(files, key=lambda file: file.path)
 
 
 def _match_list(kind: ListKind, name: str) -> re.Match[str] | None:
@@ -138,7 +138,7 @@ def list_sample_files(root: Path, named: Mapping[str, str]) -> list[ArchiveFile]
 def list_strangers(root: Path, named: Mapping[str, str]) -> list[str]:
     """Return the files and folders of an archive that nobody reads, relative to it."""
     folders = {kind.folder: _find_folder(root, kind.folder) for kind in LIST_KINDS}
-    found = [
+    strangers = [
         entry
         for name, folder in folders.items()
         for entry in _entries(folder)
@@ -146,14 +146,14 @@ def list_strangers(root: Path, named: Mapping[str, str]) -> list[str]:
     ]
     sample_folders = {folder for _, folder in _sample_folders(root, named)}
     for folder in sample_folders:
-        found += [entry for entry in _files_of_tows(folder) if not sample_suffix(entry.name)]
+        strangers += [entry for entry in _files_of_tows(folder) if not sample_suffix(entry.name)]
     known = {*folders.values(), *sample_folders, *(root / path for path in named)}
-    found += [
+    strangers += [
         entry
         for entry in _entries(root)
         if entry not in known and entry.name.casefold() != PROFILE_FILE
     ]
-    opened = [inner for entry in found for inner in _opened(entry, known)]
+    opened = [inner for entry in strangers for inner in _opened(entry, known)]
     return [_path_in(root, e) for e in opened if not _NOT_OURS.fullmatch(e.name)]
 
 
@@ -172,8 +172,8 @@ def _path_in(root: Path, entry: Path) -> str:
 
 def find_boats_file(root: Path, named: Mapping[str, str]) -> str | None:
     """Return the path of the boat list, whatever kind of file it is; None when there is none."""
-    found = list_files(root, BOAT_LIST, named)
-    return found[0].path if found else None
+    lists = list_files(root, BOAT_LIST, named)
+    return lists[0].path if lists else None
 
 
 def _sample_folders(root: Path, named: Mapping[str, str]) -> Iterator[tuple[int, Path]]:

@@ -517,8 +517,8 @@ def _find_file(entry: _Entry, name: str, by_name: _FilesByName) -> SamplesFile:
         message = say("there is no file '{name}' in {folder}.", **values)
         raise entry.fault("samples_missing", message)
     if len(candidates) > 1:
-        found = ", ".join(f"'{file.parts[0].full_path.name}'" for file in candidates)
-        message = say("'{name}' can be any of {found}.", name=shorten(name), found=found)
+        names = ", ".join(f"'{file.parts[0].full_path.name}'" for file in candidates)
+        message = say("'{name}' can be any of {found}.", name=shorten(name), found=names)
         raise entry.fault("ambiguous_file", message)
     outside = [part for part in candidates[0].parts if not part.inside]
     if outside:

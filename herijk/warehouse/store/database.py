@@ -110,6 +110,9 @@ def _quoted(text: str | None) -> str:
     return "'" + (text or "").replace("'", "''") + "'"
 
 
+Row = dict[str, Any]
+"""A row of a query, by the names of its columns."""
+
 NO_TOW: Final = (
     "the last rebuild found none that it could use; `herijk check ARCHIVE` and the table "
     "quarantine say why"
@@ -130,8 +133,10 @@ def open_database(path: Path) -> duckdb.DuckDBPyConnection:
     try:
         return duckdb.connect(path, read_only=True)
     except duckdb.Error as error:
-        held = isinstance(error, duckdb.IOException) and "lock" in str(error).casefold()
-        raise UnavailableError(f"{path} cannot be opened: {_HELD if held else _SPOILT}") from error
+        locked = isinstance(error, duckdb.IOException) and "lock" in str(error).casefold()
+        raise UnavailableError(
+            f"{path} cannot be opened: {_HELD if locked else _SPOILT}"
+        ) from error
 
 
 def open_results(path: Path) -> duckdb.DuckDBPyConnection:
@@ -154,13 +159,11 @@ def choice_of(names: Iterable[str]) -> str:
     return f"there are {known}" if known else f"there is none: {NO_TOW}"
 
 
-def rows(
-    connection: duckdb.DuckDBPyConnection, query: str, *values: object
-) -> list[dict[str, Any]]:
+def rows(connection: duckdb.DuckDBPyConnection, query: str, *values: object) -> list[Row]:
     """What a query gives, a dictionary a row; `values` fill its question marks."""
-    found = connection.execute(query, list(values))
-    names = [column[0] for column in found.description or []]
-    return [dict(zip(names, row, strict=True)) for row in found.fetchall()]
+    cursor = connection.execute(query, list(values))
+    names = [column[0] for column in cursor.description or []]
+    return [dict(zip(names, row, strict=True)) for row in cursor.fetchall()]
 
 
 def is_simulated(connection: duckdb.DuckDBPyConnection) -> bool:

@@ -93,15 +93,15 @@ def machine_faults_explained(root: Path) -> Iterator[None]:
     except (HerijkError, KeyboardInterrupt, SystemExit):
         raise
     except BaseException as error:  # a panic of a library in Rust is no Exception
-        found = _machine_fault(error)
-        if found is None:
+        explanation = _machine_fault(error)
+        if explanation is None:
             raise
-        said = _said(found, error, root)
+        said = _said(explanation, error, root)
         raise UnavailableError(f"{said}. {REASSURANCE}") from error
 
 
 def _said(found: str, error: BaseException, root: Path) -> str:
-    """The sentence about an obstacle, with the path that it is about."""
+    """The sentence about a fault of the machine, with the path that it is about."""
     if found == _FORBIDDEN:
         names = (str(e.filename) for e in _causes(error) if isinstance(e, OSError) and e.filename)
         path = next(names, None)
@@ -128,9 +128,9 @@ def _machine_fault(error: BaseException) -> str | None:
         if isinstance(one, OSError) and one.errno in _BY_NUMBER:
             return _BY_NUMBER[one.errno]
         text = str(one).casefold()
-        for words, found in _BY_WORDS.items():
+        for words, kind in _BY_WORDS.items():
             if words in text:
-                return found
+                return kind
     return None
 
 
