@@ -263,7 +263,7 @@ _BEGUN: Final = (
 
 
 def _end_lost_runs(instance: dg.DagsterInstance) -> None:
-    """Records runs of killed rebuilds as failed; only who holds the lock can tell."""
+    """Records runs of killed rebuilds as failed; only the holder of the lock can tell."""
     unfinished = dg.RunsFilter(tags={STEP_TAG: list(NAMES)}, statuses=[dg.DagsterRunStatus.STARTED])
     for run in instance.get_runs(unfinished):
         instance.report_run_failed(run, "The rebuild it was part of was killed.")

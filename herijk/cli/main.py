@@ -73,7 +73,7 @@ def _written_down(error: BaseException) -> str:
         file.write("".join(traceback.format_exception(error)))
     return (
         f"{unexpected(error)}. Nothing was published. Details are in {file.name}; please send it "
-        "to who keeps Herijk"
+        "to whoever maintains Herijk"
     )
 
 
@@ -156,7 +156,7 @@ def rebuild(
 
 
 def _tell_failure(data: Path, error: Exception) -> None:
-    """Tells who wants to be told that a rebuild failed, as under `serve`."""
+    """Tells those who asked to be told that a rebuild failed, as under `serve`."""
     from herijk.assets.notify import notifier_of
     from herijk.assets.report import tell_failure
     from herijk.assets.settings import read_settings
