@@ -68,7 +68,7 @@ class Workbench:
     @staticmethod
     def records_in_memory() -> AbstractContextManager[object]:
         """Inside, rebuilds keep no records of Dagster's on disk."""
-        return mock.patch.object(herijk.assets.runs, "opened_instance", _dagster_in_memory)
+        return mock.patch.object(herijk.assets.runs, "instance_of", _dagster_in_memory)
 
     def table(self, name: str) -> pl.DataFrame:
         """A table as a reader of the database gets it."""
