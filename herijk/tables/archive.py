@@ -106,7 +106,7 @@ class TowRuns(RunList):
 
 
 class HandWindows(dy.Schema):
-    """Windows that a person gave, one row a run; a method may use them (`by_hand`)."""
+    """Windows that a person gave, one row per run; a method may use them (`by_hand`)."""
 
     tow_id = column.tow_id(primary_key=True)
     run = column.run(primary_key=True)

@@ -21,7 +21,7 @@ from herijk.assets.report import failed_checks, tell
 from herijk.assets.settings import read_settings
 from herijk.dashboards.words import both
 from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.warehouse.queries.journal import news, reported_database
+from herijk.warehouse.queries.change_report import change_report, reported_database
 from tests.assets.test_rebuild import samples_files, spoil, tow_of
 from tests.conftest import METHODS
 from tests.warehouse.test_faults import Archive, cells, line_of, times
@@ -83,7 +83,7 @@ def test_a_log_factor_that_shows_the_same_did_not_move(bench):
     with duckdb.connect(reported_database(bench.store)) as db:
         db.execute("UPDATE log_factors SET factor = factor * 1.00004 WHERE season = 2009")
         db.execute("UPDATE log_factors SET factor = factor * 1.00006 WHERE season = 2014")
-    assert news(bench.store).factors["season"].unique().to_list() == [2014]
+    assert change_report(bench.store).factors["season"].unique().to_list() == [2014]
 
 
 def test_a_second_rebuild_reports_that_nothing_changed(bench):

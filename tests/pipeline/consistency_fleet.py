@@ -1,4 +1,4 @@
-"""A fleet of one type with known truth, as tables; repetitions stand in the column `method`."""
+"""A fleet of one type with known truth, as tables; repetitions are in the column `method`."""
 
 import datetime as dt
 

@@ -440,7 +440,7 @@ def test_every_choice_of_tows_has_its_line_with_its_own_count(three_seasons):
     assert (drawn["lo"] < drawn["y"]).all()
 
 
-def test_repeats_of_few_boats_do_not_make_a_line_surer():
+def test_repeats_of_few_boats_do_not_narrow_a_line():
     tables = fleet(7, boats=6, seasons=tuple(range(2009, 2019)), noise=0.005, height_sd=0.05)
     lines, _ = type_lines(observe(*tables))
     width = lines.filter(quantity="cw_standard_kg_m", explaining="weight_kg").select(

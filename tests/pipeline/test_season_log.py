@@ -89,7 +89,7 @@ def test_ageing_is_told_from_log_errors():
 def test_wander_within_the_season_is_found_and_widens_the_interval():
     found = estimate_season_factors(simulate(replace(CLEAN, wander=0.015), 2).tows)
     calm = estimate_season_factors(simulate(CLEAN, 2).tows)
-    assert found.wander_sd[2009] == pytest.approx(0.015, abs=0.006)
+    assert found.tow_log_sd[2009] == pytest.approx(0.015, abs=0.006)
     assert (found.factors["ln_sd"] > 1.3 * calm.factors["ln_sd"]).all()
 
 
@@ -243,7 +243,7 @@ def test_the_last_bits_of_the_tows_do_not_reach_the_factors(seed):
     found, other = (estimate_season_factors(t) for t in (tows, jittered(tows, seed)))
     assert unequal({"factors": found.factors}, {"factors": other.factors}) == []
     assert found.tow_sd == pytest.approx(other.tow_sd, rel=SAME)
-    assert found.wander_sd == pytest.approx(other.wander_sd, rel=SAME)
+    assert found.tow_log_sd == pytest.approx(other.tow_log_sd, rel=SAME)
     chosen, others = (retow_choice(one) for one in (found, other))
     assert unequal({"choice": chosen}, {"choice": others}) == []
 

@@ -22,7 +22,7 @@ def tows(**changed):
         "kappa": 2.86,
         "misfit_ratio": 0.0, "wind_ln_sd": None,
         "random_ratio": 0.0061, "random_dof": 96.0, "calibrated": True, "log_sd": 0.0,
-        "log_dof": np.inf, "wander_sd": 0.0, "air_ratio": 0.025, "air_per_coefficient": 0.05,
+        "log_dof": np.inf, "tow_log_sd": 0.0, "air_ratio": 0.025, "air_per_coefficient": 0.05,
         "wind_measured": True, "still_air_ratio": 0.025, "temperature_known": False,
     }  # fmt: skip
     return pl.DataFrame([usual | changed])
@@ -111,8 +111,10 @@ def test_budget_is_that_of_the_research_note():
     assert 100 * combine(held)["u_ratio"][0] == pytest.approx(1.6, abs=0.06)
 
 
-def test_a_tow_without_dgps_has_wander_and_the_season_in_place_of_calibration():
-    held = budget(tows(calibrated=False, log_sd=0.0035, log_dof=25.0, wander_sd=0.012, season=2010))
+def test_a_tow_without_dgps_has_the_log_and_the_season_in_place_of_calibration():
+    held = budget(
+        tows(calibrated=False, log_sd=0.0035, log_dof=25.0, tow_log_sd=0.012, season=2010)
+    )
     assert u_of(held, "stream_drift") == 0
     assert u_of(held, "calibration") == pytest.approx(2.86 * 0.012)
     assert u_of(held, "season_log") == pytest.approx(2.86 * 0.0035)

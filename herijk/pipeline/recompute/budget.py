@@ -1,4 +1,4 @@
-"""How sure a curve is: the random part from its points, and the budget of every component.
+"""The uncertainty of a curve: the random part from its points, and the budget of every component.
 
 Here outcomes are given to `pipeline.uncertainty.propagation`, which has the formulas, and the
 interval of Cw at the declared speed comes back. A method with estimated season factors knows the
@@ -246,7 +246,7 @@ def _terms_of_tows(o: Outcome, found: SeasonFactors | None, scatter: curve.Scatt
         pl.Series("calibrated", o.calibrated),
         pl.Series("log_sd", np.where(estimated, o.estimated.ln_sd, 0.0)),
         pl.Series("log_dof", np.where(estimated, o.estimated.dof, np.inf)),
-        pl.Series("wander_sd", np.where(o.calibrated, 0.0, _wander(o, found))),
+        pl.Series("tow_log_sd", np.where(o.calibrated, 0.0, _tow_log_sd(o, found))),
         pl.Series("net_air_kg_m", net_air),
         pl.Series("wind_ln_sd", o.wind_ln_sd).fill_nan(None),
         pl.Series("air_per_coefficient_kg_m", per_coefficient),
@@ -264,15 +264,15 @@ def _median_bend(o: Outcome) -> float:
     return float(np.median(r[known] / (1.0 - r[known]))) if known.any() else USUAL_BEND
 
 
-def _wander(o: Outcome, found: SeasonFactors | None) -> FloatArray:
+def _tow_log_sd(o: Outcome, found: SeasonFactors | None) -> FloatArray:
     """Standard deviation of ln of the log factor from tow to tow, by era."""
     if found is None:
         return np.zeros(o.batch.size)
     season = o.batch.of_tow("season")
-    wander = np.zeros(o.batch.size)
-    for first, sd in sorted(found.wander_sd.items()):
-        wander = np.where(season >= first, sd, wander)
-    return wander
+    log_sd = np.zeros(o.batch.size)
+    for first, sd in sorted(found.tow_log_sd.items()):
+        log_sd = np.where(season >= first, sd, log_sd)
+    return log_sd
 
 
 def _assumed(o: Outcome, found: SeasonFactors | None) -> Assumed:

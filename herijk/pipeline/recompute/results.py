@@ -1,7 +1,7 @@
 """The results of a method as tables of the warehouse.
 
 Arrays in, frames out; a number that is not known becomes null here, never NaN. What is computed
-stands in `pipeline.recompute.recompute`; how sure it is, in `pipeline.recompute.budget`; what a
+is in `pipeline.recompute.recompute`; its uncertainty, in `pipeline.recompute.budget`; what a
 person should look at, in `pipeline.assessment.assess`.
 """
 
@@ -34,7 +34,7 @@ from herijk.pipeline.recompute.outcome import Outcome
 from herijk.pipeline.recompute.season_factors import tow_instruments
 from herijk.pipeline.season_log import SeasonFactors, other_log_factors, retow_choice
 from herijk.pipeline.season_log.diagnosis import DIAGNOSIS_SCHEMA, STEP_SCHEMA
-from herijk.pipeline.season_log.ties import TIE_SCHEMA
+from herijk.pipeline.season_log.retow_design import RETOW_SCHEMA
 from herijk.pipeline.steps.speed import log_factor
 from herijk.pipeline.steps.wind import mean_wind_angle_deg
 from herijk.tables.frames import dtypes
@@ -199,7 +199,7 @@ def _log_factors(o: Outcome, found: SeasonFactors | None) -> pl.DataFrame:
     """The factor of each season: from GPS, estimated, prescribed or none, in this order.
 
     With a calibration per tow it is the mean of the tows' factors, with a t interval of that mean.
-    A tow's own factor stands in `run_points.speed_factor`.
+    A tow's own factor is in `run_points.speed_factor`.
     """
     seasons = o.batch.tows["season"].unique().sort()
     if o.steps.calibration.rule != "none":
@@ -280,8 +280,8 @@ WEIGHT_SCHEMA = dtypes(BestEstimateWeights, without=["method"])
 
 
 def _retow_choice(found: SeasonFactors | None) -> pl.DataFrame:
-    """The boats that would make estimated factors surer; no rows where nothing was estimated."""
-    return pl.DataFrame(schema=TIE_SCHEMA) if found is None else retow_choice(found)
+    """The boats whose next tow would narrow the factors most; no rows without an estimate."""
+    return pl.DataFrame(schema=RETOW_SCHEMA) if found is None else retow_choice(found)
 
 
 LINK_SCHEMA = dtypes(SeasonLinks, without=["method"])

@@ -35,7 +35,7 @@ class SeasonFactors:
             lo_no_boats, hi_no_boats, agreement`. See `estimate_season_factors`.
         covariance: covariance of ln factor between the rows of `factors` that are determined, in
             their order.
-        wander_sd: standard deviation of ln factor from tow to tow, by first season of the era.
+        tow_log_sd: standard deviation of ln factor from tow to tow, by first season of the era.
         tow_sd: standard deviation of ln Cw of a tow beyond its random part and its log.
         ageing_per_year: change of ln Cw per year, with `ageing_sd`.
         weakest_mode_sd: standard deviation of the combination of ln factors that is known worst.
@@ -48,7 +48,7 @@ class SeasonFactors:
 
     factors: pl.DataFrame
     covariance: FloatArray
-    wander_sd: dict[int, float]
+    tow_log_sd: dict[int, float]
     tow_sd: float
     ageing_per_year: float
     ageing_sd: float
@@ -123,13 +123,13 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
     mode_sd, mode = _weakest_mode(covariance)
     best, weights = best_estimates(problem, posterior, network)
     eras = len(settings.era_starts)
-    wander_sd = np.exp(0.5 * fit.state.ln_variance[3 : 3 + eras]).tolist()
+    tow_log_sd = np.exp(0.5 * fit.state.ln_variance[3 : 3 + eras]).tolist()
     diagnosis = season_diagnosis(problem, posterior, network)
     numbers = _numbers(network, posterior, along, mode)
     return SeasonFactors(
         factors=_described(numbers, network, second),
         covariance=covariance,
-        wander_sd=dict(zip(settings.era_starts, wander_sd, strict=True)),
+        tow_log_sd=dict(zip(settings.era_starts, tow_log_sd, strict=True)),
         tow_sd=float(np.exp(0.5 * fit.state.ln_variance[0])),
         ageing_per_year=ageing_per_year,
         ageing_sd=ageing_sd,

@@ -3,7 +3,7 @@
 The air force is taken away as the wind was felt on the moving boom, and the force in still air
 at boat speed is added (Sleepproef, R. Pot 2017, "Wind"; the same structure as ITTC 7.5-04-01-01.1
 eq. 9). Divided by boat speed squared, the still-air part is a constant of the boat. Here: the two
-formulas and the coefficients that are searched. Areas stand in `pipeline.steps.hull`.
+formulas and the coefficients that are searched. Areas are in `pipeline.steps.hull`.
 """
 
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""How sure a run point and a tow's Cw are, component by component.
+"""The uncertainty of a run point and of Cw of a tow, component by component.
 
 Belongs here: what the unrest of force and speed within runs says about a run mean, the budget of a
 tow with what its components share with other tows, and the interval that follows. Does not: the
@@ -116,7 +116,7 @@ def residual_scatter(
 ) -> tuple[FloatArray, FloatArray]:
     """Relative scatter of run points about their curves, pooled over each season's tows.
 
-    Four degrees of freedom a tow are too few for its own (research, method.md 4.4). This is the
+    Four degrees of freedom per tow are too few for its own (research, method.md 4.4). This is the
     check on `run_point_uncertainty`: it also has in it what differs from run to run.
 
     Args:
@@ -210,11 +210,11 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
     of its log in place of calibration and stream drift: a log feels the water, not the stream.
 
     Args:
-        tows: one row a tow and speed: `tow_id`, `speed_ratio` (that speed / the declared one),
+        tows: one row per tow and speed: `tow_id`, `speed_ratio` (that speed / the declared one),
             `season, part, log`; `kappa`; `random_ratio` (of C0, from the scatter of the run
             points) with `random_dof`; `misfit_ratio`, of the hull about its hyperbola;
             `calibrated` (on dGPS); `log_sd` and `log_dof` of the season's ln factor (0 and any
-            where calibrated), `wander_sd` of the log (0 where calibrated); `air_ratio`, net wind
+            where calibrated), `tow_log_sd` of the log (0 where calibrated); `air_ratio`, net wind
             correction / Cw, and `air_per_coefficient`, change of ln Cw per unit of drag coefficient
             (both signed); `wind_ln_sd`, of the anemometer's ln scale, null where it is taken as it
             reads; `wind_measured`, and where it was not `still_air_ratio`, still-air part / Cw;
@@ -234,7 +234,7 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
         pl.when(known).then(assumed.temperature_known_c).otherwise(assumed.temperature_unknown_c)
     )
     speed_ratio = (
-        pl.when(calibrated).then(assumed.calibration_speed_ratio).otherwise(pl.col("wander_sd"))
+        pl.when(calibrated).then(assumed.calibration_speed_ratio).otherwise(pl.col("tow_log_sd"))
     )
     drift_ratio = pl.when(calibrated).then(assumed.stream_drift_speed_ratio).otherwise(0.0)
     coefficient = pl.col("air_per_coefficient") * assumed.wind_coefficient

@@ -112,7 +112,7 @@ def _owner(signature: Path) -> str:
 
 
 def remove_leftovers(root: Path) -> None:
-    """Removes what was still being written. Only for who holds the lock: nobody else writes."""
+    """Removes what was still being written; the caller holds the lock, so nobody else writes."""
     for folder in (root, *(f for f in root.iterdir() if f.is_dir() and f.name not in _NOT_OURS)):
         pattern = f"{TEMPORARY_PREFIX}*"
         for left in list(folder.glob(pattern) if folder == root else folder.rglob(pattern)):
