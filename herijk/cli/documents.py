@@ -60,13 +60,13 @@ def proposal(
     as_json: AsJson = False,
 ) -> None:
     """What a board sends its members before they vote: what changes, for whom, how uncertain."""
+    from herijk.cli.methods import known_methods
     from herijk.dashboards.documents.proposal import proposal as make_proposal
-    from herijk.pipeline.method.definition import shipped_text
     from herijk.warehouse.queries.views import Views
     from herijk.warehouse.store.store import Store
 
     for method in methods:
-        shipped_text(method)
+        known_methods(data).text(method)
     store = Store(data)
     with Views(store) as views:
         made = make_proposal(views, methods, against, lang)
