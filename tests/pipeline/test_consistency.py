@@ -508,6 +508,17 @@ def test_e_n_is_the_difference_in_both_intervals():
     assert pair["e_n"] == pytest.approx(difference / np.hypot(*half))
 
 
+def test_a_pair_is_compared_by_the_instruments_of_other_boats():
+    curves, tows, *_ = fleet(21, boats=1, seasons=(2014, 2016), speeds_m_s=[2.5])
+    by_others = curves.with_columns(
+        (pl.col("cw_kg_m") * pl.col("season").replace_strict({2014: 1.01, 2016: 1.0})).alias(
+            "cw_others_kg_m"
+        )
+    )
+    own, others = (repeat_pairs(c, tows)["ln_ratio"][0] for c in (curves, by_others))
+    assert others == pytest.approx(own - np.log(1.01))
+
+
 def test_no_pair_across_an_alteration():
     curves, tows, *_ = fleet(22, boats=2, seasons=(2014, 2016))
     tows = tows.with_columns((pl.col("tow_id") == "2016-001").alias("altered"))

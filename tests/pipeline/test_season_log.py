@@ -45,6 +45,28 @@ def moved(tows, expression, by):
     )
 
 
+def test_a_boat_left_out_moves_its_own_tows_as_leaving_it_out_does():
+    """E_n of a boat is by the factors that the other boats give."""
+    world = simulate(replace(CLEAN, boats=20, tows_a_season=8), 3)
+    found = estimate_season_factors(world.tows)
+    boats = world.tows.filter(pl.col("season") == 2010)["fsn_no"].unique()
+    said, true = [], []
+    for boat in boats.sort()[:4]:
+        others = estimate_season_factors(world.tows.filter(pl.col("fsn_no") != boat)).factors
+        rows = (
+            found.instruments.join(
+                world.tows.filter(pl.col("fsn_no") == boat).select("tow_id", "season"), on="tow_id"
+            )
+            .join(others.select("season", others="factor"), on="season")
+            .drop_nulls()
+        )
+        said += rows["others_ln_ratio"].to_list()
+        true += (-(2 + 2 * rows["bend"]) * (rows["others"] / rows["factor"]).log()).to_list()
+    assert len(said) > 4
+    assert np.corrcoef(said, true)[0, 1] > 0.9
+    assert np.std(np.subtract(said, true)) < 0.4 * np.std(true)
+
+
 @pytest.mark.parametrize("factor", [0.94, 1.0, 1.06])
 def test_scale_effect_is_that_of_refitting_the_hyperbola(factor):
     a, b, v0 = 31.6, 4.44, 2.35

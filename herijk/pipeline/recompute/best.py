@@ -18,6 +18,8 @@ BEST: Final = ("cw_best_kg_m", "cw_best_lo_kg_m", "cw_best_hi_kg_m")
 NOT_SEEN_BY_REPEATS: Final = ("force", "wind", "anemometer", "mass", "temperature")
 """Components of the budget that repeat tows share."""
 
+OTHERS: Final = "cw_others_kg_m"
+
 QUANTILE: Final = 1.959964
 """Of a normal distribution, for intervals of 95 %."""
 
@@ -30,6 +32,8 @@ def with_best(
 ) -> pl.DataFrame:
     """Curves with `BEST`: Cw at the declared speed by all tows together, with its 95 % interval.
 
+    And with `OTHERS`: Cw as measured, with the instruments as all other boats show them.
+
     Args:
         curves: rows of the table.
         found: what all tows say; None where the method does not ask it: the columns are null.
@@ -37,14 +41,14 @@ def with_best(
         misfit: how far each hull lies from its curve there.
     """
     if found is None:
-        return curves.with_columns(pl.lit(None, pl.Float64).alias(name) for name in BEST)
+        return curves.with_columns(pl.lit(None, pl.Float64).alias(n) for n in (*BEST, OTHERS))
     shared = (
         budget.filter(pl.col("component").is_in(NOT_SEEN_BY_REPEATS))
         .group_by("tow_id")
         .agg((pl.col("u_ratio") ** 2).sum().alias("shared"))
     )
-    determined = found.instruments.drop_nulls("factor").select("tow_id")
-    known = found.best.join(determined, on="tow_id", how="semi")
+    determined = found.instruments.drop_nulls("factor").select("tow_id", "others_ln_ratio")
+    known = found.best.join(determined, on="tow_id")
     held = curves.join(known, on="tow_id", how="left", maintain_order="left").join(
         shared.join(misfit, on="tow_id"), on="tow_id", how="left", maintain_order="left"
     )
@@ -63,4 +67,5 @@ def with_best(
             pl.coalesce(values, alone).alias(name)
             for name, values, alone in zip(BEST, by_all, measured, strict=True)
         ),
+        (pl.col("cw_kg_m") * pl.col("others_ln_ratio").fill_null(0.0).exp()).alias(OTHERS),
     )

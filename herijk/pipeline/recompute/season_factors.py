@@ -111,7 +111,10 @@ def tow_instruments(found: SeasonFactors) -> pl.DataFrame:
     )
     shared = found.instruments.select("tow_id", "force_factor", "force_zero_n", "bend")
     return pl.concat(
-        [found.instruments, other.drop("season", "part").join(shared, on="tow_id")],
+        [
+            found.instruments.drop("others_ln_ratio"),
+            other.drop("season", "part").join(shared, on="tow_id"),
+        ],
         how="diagonal",
     ).sort("tow_id", "log")
 

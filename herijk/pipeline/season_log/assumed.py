@@ -63,8 +63,8 @@ class Settings:
     bend_sd: float = 0.08
     type_bend_sd: float = 0.15
     season_bend_sd: float = 0.06
-    changed_sd: float = 0.08
-    changed_bend_sd: float = 0.05
+    changed_sd: float = 0.05
+    changed_bend_sd: float = 0.02
     changed_share: float = 0.08
     changed_gaps: float = 20.0
     gps_season_sd: float = 0.003

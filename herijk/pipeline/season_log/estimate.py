@@ -121,11 +121,13 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
     along = _group_means(problem, posterior, network)
     covariance = along @ posterior.covariance @ along.T
     mode_sd, mode = _weakest_mode(covariance)
-    best, weights = best_estimates(problem, posterior, network)
+    change = _without_each_boat(network, posterior)
+    instruments = instrument_errors(problem, posterior, network, change)
+    best, weights = best_estimates(problem, posterior, network, instruments)
     eras = len(settings.era_starts)
     tow_log_sd = np.exp(0.5 * fit.state.ln_variance[3 : 3 + eras]).tolist()
     diagnosis = season_diagnosis(problem, posterior, network)
-    numbers = _numbers(network, posterior, along, mode)
+    numbers = _numbers(network, posterior, along, mode, change)
     return SeasonFactors(
         factors=_described(numbers, network, second),
         covariance=covariance,
@@ -135,7 +137,7 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
         ageing_sd=ageing_sd,
         weakest_mode_sd=mode_sd,
         tows=tows,
-        instruments=instrument_errors(problem, posterior, network),
+        instruments=instruments,
         best=best,
         weights=weights,
         diagnosis=diagnosis,
@@ -189,15 +191,19 @@ def _without_each_boat(network: Network, posterior: Posterior) -> FloatArray:
 
 
 def _numbers(
-    network: Network, posterior: Posterior, along: FloatArray, weakest_mode: FloatArray
+    network: Network,
+    posterior: Posterior,
+    along: FloatArray,
+    weakest_mode: FloatArray,
+    change: FloatArray,
 ) -> pl.DataFrame:
     """What the joint estimate says about each group; null where it is not determined."""
     known = np.flatnonzero(network.determined)
     k = len(posterior.fit.active)
     ln_factor = along @ posterior.mean
     lost = network.critical[:, known]
-    change = _without_each_boat(network, posterior) @ along[:, :k].T
-    move = np.where(lost, np.inf, np.abs(np.expm1(change)) * np.exp(ln_factor))
+    moved = np.expm1(change @ along[:, :k].T)
+    move = np.where(lost, np.inf, np.abs(moved) * np.exp(ln_factor))
     influence = move.max(axis=0, initial=0.0) if len(known) else np.zeros(0)
     placed = {
         "ln_factor": ln_factor,
