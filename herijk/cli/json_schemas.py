@@ -470,6 +470,7 @@ def _audit() -> Schema:
         "Where a boat's numbers come from; or, of types, whether their boats are equal.",
         {
             **SIMULATED,
+            "about": text("boat, or types"),
             "methods": texts("methods shown"),
             **of_boat,
             **of_types,
