@@ -96,7 +96,7 @@ def rebuild(
         factor_jump=settings.factor_jump,
     )
     with machine_faults_explained(data), only_writer(data), _instance(setup.store) as instance:
-        _bury_the_dead(instance)
+        _end_lost_runs(instance)
         work = _Rebuild(_Jobs(job_defs(setup, progress), instance), setup, progress, settings.dask)
         _mending(lambda: work.do(archive, seasons))
     return work.done
@@ -261,7 +261,7 @@ _BEGUN: Final = (
 )
 
 
-def _bury_the_dead(instance: dg.DagsterInstance) -> None:
+def _end_lost_runs(instance: dg.DagsterInstance) -> None:
     """Records runs of killed rebuilds as failed; only who holds the lock can tell."""
     unfinished = dg.RunsFilter(tags={STEP_TAG: list(NAMES)}, statuses=[dg.DagsterRunStatus.STARTED])
     for run in instance.get_runs(unfinished):

@@ -122,7 +122,7 @@ CHOICE_COLUMNS = (
 
 
 def _due(views: Views, methods: Sequence[str]) -> Page:
-    """Who has to tow again, at what speed, and which tows would tell most."""
+    """Who has to tow again, at what speed, and which boats to tow again."""
     rows = views.due_list()
     due = Table("due_list", rows, DUE_COLUMNS, "due_list", ["method"], search=True, cards=DUE_CARDS)
     headline = headlines.due(rows.filter(method=default_method(methods)))

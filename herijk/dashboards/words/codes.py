@@ -141,7 +141,7 @@ CODES: Final[dict[str, tuple[str, str]]] = {
         "venster: kracht op 5 %, niet 10 %",
         "window: force within 5 %, not 10 %",
     ),
-    "code.speed.operation": ("delen i.p.v. malen", "divide, not multiply"),
+    "code.speed.operation": ("delen in plaats van vermenigvuldigen", "divide instead of multiply"),
     "code.run_point.estimator": ("runpunt uit gemiddelden", "run point from means"),
     "code.wind.coefficients": ("luchtcoëfficiënt uit archief", "air coefficient from archive"),
     "code.wind.averaging_s": ("wind gemiddeld over 3 s", "wind averaged over 3 s"),
