@@ -284,8 +284,35 @@ def _diff() -> Schema:
             "causes": rows("per cause and step", cause),
             "largest": lines,
             "rows": lines,
+            "race_rules": record(
+                "how races are worked out", {"fatigue": text("fatigue"), "stream": text("stream")}
+            ),
+            "races": _or_none(rows("races under both; null without results", _race())),
+            "winners": _or_none(rows("who wins under both", _winner())),
         },
     )
+
+
+def _or_none(schema: Schema) -> Schema:
+    return schema | {"type": [schema["type"], "null"]}
+
+
+def _race() -> dict[str, Schema]:
+    return columns(
+        "race_changes",
+        *("race", "race_date", "fsn_no", "rowers", "crew_class", "rowing_time_s"),
+        *("old_power_w", "new_power_w", "old_rank", "new_rank", "podium_changed"),
+    )
+
+
+def _winner() -> dict[str, Schema]:
+    return {
+        **columns("race_changes", "race", "race_date", "crew_class"),
+        "old_winner": text("boat that wins under the old edition", maybe=True),
+        "new_winner": text("boat that wins under the new edition", maybe=True),
+        "winner_changed": flag("they differ"),
+        "change_probability": number("share of members in which another boat wins", True),
+    }
 
 
 def _verify() -> Schema:
