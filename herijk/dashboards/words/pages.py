@@ -604,6 +604,17 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "their standard deviation (sd); for a step below 0.03 or below twice its sd no cause is "
         "looked for.",
     ),
+    "season_diagnosis": ("Instrumenten per seizoen", "Instruments by season"),
+    "season_diagnosis_note": (
+        "Wat er in een seizoen mis kan zijn met log, GPS, krachtmeter, windmeter of temperatuur. "
+        "Fout: waarschijnlijker wel dan niet. Niet te zeggen: 10 tot 50 %. Alarm: 4 "
+        "standaardafwijkingen van wat gewoon is. Grootte: logaritme van een factor (0,04 is "
+        "4 %), of in N. Wat niet in de tabel staat, is in orde.",
+        "What may be wrong in a season with log, GPS, load cell, anemometer or temperature. Fault: "
+        "likelier than not. Cannot be told: 10 to 50 %. Alarm: 4 standard deviations from what is "
+        "usual. Size: logarithm of a factor (0.04 is 4 %), or in N. What is not in the table is "
+        "sound.",
+    ),
     "eras": ("Wijkt een tijdvak af?", "Does an era differ?"),
     "eras_note": (
         "Volgende proef van dezelfde sloepen, in een later tijdvak, tegen die in het tijdvak "

@@ -37,7 +37,7 @@ def audit(
         tows: over which tows a type's statistics are: see `chosen_tows`.
 
     Returns:
-        The report of `_boat_page` or `_types_page`, with `about`: boat or types.
+        A boat page or a page of types, with `about`: boat or types.
 
     Raises:
         MissingKnowledgeError: there is no such boat, type or method, or no database.
