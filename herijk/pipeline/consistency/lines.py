@@ -21,7 +21,6 @@ from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.consistency import mixed
 from herijk.pipeline.consistency.eras import Era
 from herijk.pipeline.consistency.observed import (
-    LINE,
     UNKNOWN_TYPE,
     Observed,
     bend_at,
@@ -32,6 +31,7 @@ from herijk.pipeline.consistency.observed import (
 )
 from herijk.pipeline.consistency.reml import Problem
 from herijk.pipeline.consistency.tow_speed import is_slow
+from herijk.tables.column import LINE
 from herijk.tables.consistency import TypeLinePoints, TypeLines, TypeOutliers
 from herijk.tables.frames import frame_of
 

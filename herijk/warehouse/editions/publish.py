@@ -19,8 +19,9 @@ from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.method.writing import method_text
 from herijk.pipeline.recompute.recompute import recompute
-from herijk.pipeline.register.register import DOUBTED, LINE
+from herijk.pipeline.register.register import DOUBTED
 from herijk.tables.archive import Boats, Tows
+from herijk.tables.column import LINE
 from herijk.tables.frames import dtypes
 from herijk.tables.register import Register
 from herijk.tables.schemas import conform
