@@ -8,7 +8,8 @@ from typing import Final
 
 import polars as pl
 
-LINE: Final = ("fsn_no", "rowers", "crew_class")
+from herijk.tables.column import LINE
+
 PROMISED: Final = {"1pct": 0.01, "2pct": 0.02}
 """Presentation 2015, "N.B.": within 2 % for the great majority; less than 1 % for all."""
 
@@ -134,7 +135,7 @@ def run_statistics(blocks: pl.DataFrame) -> pl.DataFrame:
     swings faster. The mean is the same.
 
     Args:
-        blocks: rows of `pipeline.blocks.run_blocks.block_sums` with `tow_id`.
+        blocks: rows of `pipeline.blocks.sums.block_sums` with `tow_id`.
 
     Returns:
         Rows of the table `run_statistics`, one per tow, run and channel that was recorded.
