@@ -177,7 +177,7 @@ def ln_size(network: Network, column: str) -> FloatArray:
     size = network.numbers(column)
     known = size > 0
     ln = np.log(np.where(known, size, 1.0))
-    usable = network.boat_mean(~known * 1.0) == 0.0
+    usable = network.boat_mean((~known).astype(np.float64)) == 0.0
     return np.where(usable, ln - network.boat_mean(ln), 0.0)
 
 
