@@ -18,7 +18,7 @@ import pytest
 
 from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import parse_method, shipped_method
-from herijk.pipeline.register.register import LINE
+from herijk.tables.column import LINE
 from herijk.tables.schemas import conform
 from herijk.warehouse.build.published import published_made_from, published_tables
 from herijk.warehouse.editions import sheets

@@ -11,8 +11,8 @@ from typing import Final
 import polars as pl
 
 from herijk.pipeline.method.definition import RegisterRule
+from herijk.tables.column import LINE
 
-LINE: Final = ("fsn_no", "rowers", "crew_class")
 CURVE_COLUMNS: Final = (
     "tow_id",
     "tow_date",

@@ -20,8 +20,8 @@ from herijk.pipeline.races.race import (
     net_speed_over_legs_m_s,
     power_per_rower_w,
 )
-from herijk.pipeline.register.register import LINE
 from herijk.pipeline.uncertainty.ensemble import share_first
+from herijk.tables.column import LINE
 from herijk.tables.frames import dtypes
 from herijk.tables.register import RaceChanges
 

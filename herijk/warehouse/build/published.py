@@ -7,7 +7,7 @@ import polars as pl
 
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.recompute.facts import samples_files
-from herijk.pipeline.register.register import LINE
+from herijk.tables.column import LINE
 from herijk.tables.schemas import TABLES, conform
 from herijk.warehouse.store.editions import (
     CHANGES,

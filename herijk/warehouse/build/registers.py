@@ -9,7 +9,8 @@ from herijk.pipeline.method.definition import Method
 from herijk.pipeline.recompute.facts import samples_files
 from herijk.pipeline.register.changes import register_changes
 from herijk.pipeline.register.due import due_list
-from herijk.pipeline.register.register import LINE, draft_name, draft_register
+from herijk.pipeline.register.register import draft_name, draft_register
+from herijk.tables.column import LINE
 from herijk.tables.editions import Editions
 from herijk.tables.register import RegisterChanges
 from herijk.tables.schemas import conform

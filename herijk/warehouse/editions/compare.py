@@ -23,9 +23,9 @@ from herijk.pipeline.register.changes import (
     side_by_side,
     steps_of_lines,
 )
-from herijk.pipeline.register.register import LINE
 from herijk.pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
 from herijk.pipeline.studies.ladder import ladder
+from herijk.tables.column import LINE
 from herijk.tables.studies import CorrectionSteps
 from herijk.warehouse.archive import read_races
 from herijk.warehouse.build.version import code_version

@@ -15,8 +15,9 @@ from herijk.pipeline.blocks.run_blocks import stack_blocks
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import RegisterRule
 from herijk.pipeline.recompute.recompute import recompute
-from herijk.pipeline.register.register import LINE, draft_register
+from herijk.pipeline.register.register import draft_register
 from herijk.pipeline.uncertainty.ensemble import tow_ensemble
+from herijk.tables.column import LINE
 from herijk.warehouse.editions import sheets
 from herijk.warehouse.editions.inputs import INPUTS_HASH, tows_of_today
 from herijk.warehouse.editions.printed import printed_lines, with_carried

@@ -19,8 +19,9 @@ from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.method.writing import method_text
 from herijk.pipeline.recompute.recompute import recompute
-from herijk.pipeline.register.register import DOUBTED, LINE
+from herijk.pipeline.register.register import DOUBTED
 from herijk.tables.archive import Boats, Tows
+from herijk.tables.column import LINE
 from herijk.tables.frames import dtypes
 from herijk.tables.register import Register
 from herijk.tables.schemas import conform
@@ -67,6 +68,7 @@ from herijk.warehouse.store.editions import (
     write_folder,
 )
 from herijk.warehouse.store.ensemble import read_ensemble
+from herijk.warehouse.store.package import Rights
 from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import Store, table_digest
 
@@ -295,7 +297,8 @@ def _write(store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str,
         **{name: text.encode("utf-8") for name, text in written.items()},
         **{f"{name}.parquet": _parquet(tables[name]) for name in TABLES if name in tables},
     }
-    contents[PACKAGE] = sheets.package_bytes(about, contents, notes.summary(edition))
+    summary, rights = notes.summary(edition), Rights.of(store)
+    contents[PACKAGE] = sheets.package_bytes(about, contents, summary, rights)
     sealed = about.model_copy(
         update={
             "tables": {

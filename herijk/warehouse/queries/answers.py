@@ -9,8 +9,9 @@ import polars as pl
 
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.register.changes import register_changes, side_by_side, steps_of_lines
-from herijk.pipeline.register.register import LINE, draft_name
+from herijk.pipeline.register.register import draft_name
 from herijk.pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
+from herijk.tables.column import LINE
 from herijk.warehouse.build.studies import STUDIED_METHOD
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.database import choice_of

@@ -17,7 +17,7 @@ import polars as pl
 from herijk.pipeline.errors import UnavailableError
 from herijk.pipeline.recompute.facts import with_boat_types, with_hand_windows
 from herijk.pipeline.register.changes import NO_PARTS, register_changes, side_by_side
-from herijk.pipeline.register.register import LINE
+from herijk.tables.column import LINE
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.editions.compare import (
     CODE,

@@ -10,8 +10,8 @@ import polars as pl
 
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.register.changes import register_changes
-from herijk.pipeline.register.register import LINE
 from herijk.pipeline.studies.ladder import START, ladder
+from herijk.tables.column import LINE
 from herijk.warehouse.queries.history import History
 from herijk.warehouse.store.database import Row
 from herijk.warehouse.store.store import Store
