@@ -23,7 +23,7 @@ from herijk.tables.register import Register
 from herijk.tables.studies import CorrectionSteps
 
 SAME_RATIO: Final = 5e-4
-"""A difference up to 0.05 % counts as the same (research, method.md T21)."""
+"""A difference up to 0.05 % counts as the same (docs/method.md, 11; inferred)."""
 
 NO_FACTOR: Final = SAME_SHARE
 """A factor this near to 1 is rounding and is not listed as a cause."""
