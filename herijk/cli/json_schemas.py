@@ -285,7 +285,12 @@ def _diff() -> Schema:
             "largest": lines,
             "rows": lines,
             "race_rules": record(
-                "how races are worked out", {"fatigue": text("fatigue"), "stream": text("stream")}
+                "how races are worked out",
+                {
+                    "fatigue": text("correction for fatigue"),
+                    "stream": text("how the stream is taken off"),
+                    "speed_decimals": whole("decimals of the speed; null for all", maybe=True),
+                },
             ),
             "races": _or_none(rows("races under both; null without results", _race())),
             "winners": _or_none(rows("who wins under both", _winner())),
@@ -311,7 +316,9 @@ def _winner() -> dict[str, Schema]:
         "old_winner": text("boat that wins under the old edition", maybe=True),
         "new_winner": text("boat that wins under the new edition", maybe=True),
         "winner_changed": flag("they differ"),
-        "change_probability": number("share of members in which another boat wins", True),
+        "change_probability": number(
+            "probability that another boat wins than under the old edition", True
+        ),
     }
 
 
