@@ -98,7 +98,7 @@ def test_residuals_are_pooled_over_the_season_with_their_degrees_of_freedom():
 
 
 def test_the_budget_of_a_usual_tow():
-    """The project's own note on uncertainties, r = 0.3: its figures in per cent, to the last digit."""
+    """The project's note on uncertainties, r = 0.3: its figures in per cent, to the last digit."""
     held = budget(tows())
     assert held["component"].to_list() == list(COMPONENTS)
     printed = {
