@@ -13,10 +13,11 @@ from herijk.dashboards.site.parts import (
     Section,
     Select,
     Table,
-    default_method,
+    methods_select,
 )
 from herijk.dashboards.slide_book import Slide, slides
 from herijk.dashboards.slide_rows import compared_frame, lines_frame, methods_of, pair_of_types
+from herijk.dashboards.speech import Speech
 from herijk.dashboards.words import LANGUAGES, speaker
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
 from herijk.warehouse.queries.views import Views
@@ -83,10 +84,10 @@ def slides_page(views: Views, methods: Sequence[str]) -> Page:
         "slides",
         [section for section in sections if section.charts or section.tables],
         selects=[
-            Select("tows", "tows", tows, ALL_TOWS),
+            Select("tows", "tows", tows, ALL_TOWS, named=_tows_named),
             Select("pair_first", "pair_first", types, pair[0]),
             Select("pair_second", "pair_second", types, pair[-1]),
-            Select("method", "method", methods, default_method(methods)),
+            methods_select(methods),
         ],
         data={"slides": [*_by_choice(drawn), lines]} | book.data(),
     )
@@ -118,6 +119,12 @@ class Drawn(NamedTuple):
 
 def _data_name(slide: Slide) -> str:
     return slide.name.replace(" ", "_")
+
+
+def _tows_named(tows: str, speech: Speech) -> str:
+    """A choice of tows in words; a season as it is."""
+    words = {ALL_TOWS: "code.all", "newest": "newest_only"}
+    return speech.say(words[tows]) if tows in words else tows
 
 
 def _thin(rows: pl.DataFrame) -> pl.DataFrame:
