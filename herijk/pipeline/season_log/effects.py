@@ -8,8 +8,8 @@ speed and its bend q = r / (1 - r) into
 
     ln Cw + 2 lambda - ln m,    q y^2 / m,    m = 1 - q (y^2 - 1)
 
-A load cell that reads exp(phi) times the force adds phi to ln Cw and leaves q; one whose zero is
-off by the share g of the force adds g to ln Cw and -(1 + q) g to the bend (method.md 8.2).
+A load cell that reads exp(phi) times the force adds phi to ln Cw and leaves q. One whose zero is
+off by the share g of the force adds g to ln Cw and -(1 + q) g to the bend (docs/method.md, 4).
 """
 
 from collections.abc import Iterator

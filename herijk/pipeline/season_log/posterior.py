@@ -2,8 +2,8 @@
 
 Given the alterations and faults the model is linear and Gaussian. The unknowns and the variances
 are searched by scoring (REML: Patterson & Thompson 1971; variances with log-normal priors), the
-posterior is Laplace's about the mode. A fault joins or leaves the model by its odds, one at a time;
-the answer is averaged over the best model and all that differ from it by one fault more, one less,
+posterior is Laplace's about the mode. A fault joins or leaves the model by its odds, one at a time.
+The answer is averaged over the best model and all that differ from it by one fault more, one less,
 or one for another (Bayesian model averaging in Occam's window: Madigan & Raftery 1994).
 """
 
