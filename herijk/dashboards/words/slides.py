@@ -217,6 +217,7 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
         "Tow speed by hull speed",
     ),
     "column.speed": ("Snelheid", "Speed"),
+    "column.study": ("Studie", "Study"),
     "column.trimming": ("Afkappen", "Trimming"),
     "column.vane": ("Windvaan\u00adcorrectie", "Wind-vane correction"),
     "column.label": ("Proef", "Tow"),
