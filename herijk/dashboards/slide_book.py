@@ -289,6 +289,7 @@ class Book:
         )
         at_read = rows.filter(speed=AS_READ)["cw_kg_m"].to_numpy()
         sentence = self.say("slide.ticks_said").format(
+            tow=tow["label"],
             spread=_share(float(at_read.max() / at_read.min()) - 1.0),
             n=len(at_read),
             method=self.method(self._ticked()),

@@ -172,9 +172,11 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
         "{tow}: all combinations of the four options of 2015",
     ),
     "slide.ticks_said": (
-        "De hoogste van {n} krommen ligt {spread} boven de laagste (Cw bij de opgegeven snelheid, "
+        "{tow}: de hoogste van {n} krommen ligt {spread} boven de laagste (Cw bij de opgegeven "
+        "snelheid, "
         "log zoals gelezen, {method}). Gemiddeld over de andere keuzen: {effects}.",
-        "The highest of {n} curves lies {spread} above the lowest (Cw at the declared speed, log "
+        "{tow}: the highest of {n} curves lies {spread} above the lowest (Cw at the declared "
+        "speed, log "
         "as read, {method}). On average over the other choices: {effects}.",
     ),
     "slide.tick_effects": (
