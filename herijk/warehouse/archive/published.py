@@ -12,7 +12,8 @@ import dataframely as dy
 import polars as pl
 
 from herijk.pipeline.errors import DefectiveInputError
-from herijk.tables.frames import frame_of
+from herijk.tables.archive import TowFacts
+from herijk.tables.frames import frame_of, limits
 from herijk.tables.lake import ListedRaces, PrintedLines
 from herijk.warehouse.archive.faults import Fault, fault_from
 from herijk.warehouse.archive.files import (
@@ -32,6 +33,11 @@ from herijk.warehouse.archive.text import Column, shorten
 
 NEVER_TOWED_CW: Final = (0.995, 1.005)
 """Published Cw of boats without a valid tow: 1, as printed in two decimals. No hull comes near."""
+
+CW_AS_PRINTED: Final = 0.01
+"""By how much a printed Cw may differ from its A and B, beside what rounding does: an intermediate
+result was sometimes rounded too."""
+_BELOW_ONE: Final = 0.999
 
 REGISTER_COLUMNS: Final = (
     Column("fsn_no", "fsn_nr"),
@@ -124,6 +130,8 @@ def _read_all(
 def _register_line(row: ListRow, season: int) -> dict[str, Any]:
     cw = row.number("cw_kg_m")
     valid = not NEVER_TOWED_CW[0] <= cw <= NEVER_TOWED_CW[1]
+    if valid:
+        _check_curve(row)
     return {
         "season": season,
         "fsn_no": row.boat("fsn_no"),
@@ -138,26 +146,62 @@ def _register_line(row: ListRow, season: int) -> dict[str, Any]:
     }
 
 
+def _check_curve(row: ListRow) -> None:
+    """Holds a printed Cw against A, B and the speed beside it: two exchanged, or one mistyped.
+
+    Raises:
+        DefectiveInputError: Cw = A / (1 - (v/B)^2) does not hold, however the numbers were rounded.
+    """
+    keys = ("a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s")
+    if row.optional_number("declared_speed_m_s") is None:
+        return
+    a, b, cw, speed = (row.number(key) for key in keys)
+    printed = {key: row.text(key) for key in keys}
+    if b <= speed:
+        message = "B is {b_m_s} m/s and the speed {declared_speed_m_s}; B must be higher."
+        raise row.fault(say(message, **printed))
+    half_a, half_b, half_cw, half_v = (_half_unit(printed[key]) for key in keys)
+    slowest = (speed - half_v) / (b + half_b)
+    fastest = min((speed + half_v) / (b - half_b), _BELOW_ONE)
+    lowest = (a - half_a) / (1.0 - slowest**2) - half_cw
+    highest = (a + half_a) / (1.0 - fastest**2) + half_cw
+    if not lowest * (1.0 - CW_AS_PRINTED) <= cw <= highest * (1.0 + CW_AS_PRINTED):
+        message = (
+            "Cw is {cw_kg_m}, but A {a_kg_m} and B {b_m_s} give {given:.2f} at "
+            "{declared_speed_m_s} m/s; one of them is wrong, or two are exchanged."
+        )
+        given = a / (1.0 - (speed / b) ** 2)
+        raise row.fault(say(message, **printed, given=given))
+
+
+def _half_unit(cell: str) -> float:
+    """Half a unit of the last digit that is printed."""
+    decimals = re.search(r"[.,]([0-9]+)", cell)
+    return 0.5 * 10.0 ** -(len(decimals[1]) if decimals else 0)
+
+
 def _race_result(row: ListRow, season: int) -> dict[str, Any]:
     day = row.date("race_date")
     if day.year != season:
         message = "the date {day} is not in {season}, the year of the file."
         raise row.fault(say(message, day=day, season=season))
+    distance, stream = row.number("distance_m"), row.optional_number("stream_m")
     return {
         "season": season,
         "race": row.text("race"),
         "race_date": day,
-        "distance_m": row.number("distance_m"),
+        "distance_m": distance,
         "fsn_no": row.boat("fsn_no"),
         "rowers": row.integer("rowers"),
         "crew_class": row.crew_class("crew_class"),
-        "rowing_time_s": _rowing_time(row),
-        "stream_m": row.optional_number("stream_m"),
+        "rowing_time_s": _rowing_time(row, distance - (stream or 0.0)),
+        "stream_m": stream,
         "penalty_w": row.optional_number("penalty_w"),
     }
 
 
-def _rowing_time(row: ListRow) -> float:
+def _rowing_time(row: ListRow, distance_m: float) -> float:
+    """Time rowed [s] for a distance through the water, which must give a speed that can be."""
     cell = row.text("rowing_time_s")
     match = _ROWING_TIME.fullmatch(cell)
     if match is None:
@@ -166,4 +210,12 @@ def _rowing_time(row: ListRow) -> float:
     seconds = int(match[1]) * 3600 + int(match[2]) * 60 + int(match[3])
     if seconds == 0:
         raise row.fault(say("'roeitijd' is 0."))
+    lowest, highest = limits(TowFacts, "declared_speed_m_s")
+    if not lowest <= distance_m / seconds <= highest:
+        message = (
+            "'roeitijd' is {cell} for {km:g} km through the water: {speed:.3g} m/s; {low:g} to "
+            "{high:g} can be right."
+        )
+        values = {"km": distance_m / 1000, "speed": distance_m / seconds}
+        raise row.fault(say(message, cell=cell, **values, low=lowest, high=highest))
     return float(seconds)

@@ -200,3 +200,37 @@ def test_faulty_rows_of_registers_and_races(archive: Archive) -> None:
     races, faults = read_races(archive.root)
     assert [(f.reason_code, f.line) for f in faults] == [("bad_race_row", 2)]
     assert len(races) == 1
+
+
+@pytest.mark.parametrize(
+    ("cells", "why"),
+    [
+        ("43,89;4,44;31,60;2,35", "Cw is 31,60, but A 43,89 and B 4,44 give 60.97 at 2,35 m/s"),
+        ("31,60;2,35;43,89;2,35", "B must be higher"),
+        ("31,60;2,10;43,89;2,35", "B must be higher"),
+        ("31,60;4,44;48,39;2,35", "give 43.90"),
+    ],
+)
+def test_a_printed_line_must_fit_its_own_curve(archive: Archive, cells: str, why: str) -> None:
+    """The printed examples (presentation 2015) hold; A and Cw exchanged, or digits, do not."""
+    (archive.root / "sloepregister/sloepregister_2014.csv").write_text(
+        "fsn_nr;roeiers;klasse;A;B;Cw;roeisnelheid [m/s];sleepdatum\n"
+        f"FSN1;8;H;{cells};2012-03-10\nFSN2;12;H;32,62;5,59;41,63;2,60;2012-03-10\n"
+        "FSN3;8;D;14,93;3,90;25,36;2,50;2012-03-10\nFSN4;8;H;32;6;39;2,6;2012-03-10\n"
+    )
+    register, faults = read_published_registers(archive.root)
+    assert [(f.reason_code, f.line) for f in faults] == [("bad_register_row", 2)]
+    assert why in faults[0].message
+    assert register["fsn_no"].to_list() == ["FSN2", "FSN3", "FSN4"]
+
+
+@pytest.mark.parametrize(("time", "stream"), [("0:02:10", ""), ("21:30:25", ""), ("2:10:25", "20")])
+def test_a_race_at_no_boats_speed_is_set_aside(archive: Archive, time: str, stream: str) -> None:
+    (archive.root / "wedstrijden/race_2016.csv").write_text(
+        "wedstrijd;datum;afstand [km];fsn_nr;roeiers;klasse;roeitijd;stroom [km];straf [W]\n"
+        f"Race;2016-06-04;18,4;FSN1;8;H;{time};{stream};\n"
+    )
+    races, faults = read_races(archive.root)
+    assert races.is_empty()
+    assert [(f.reason_code, f.line) for f in faults] == [("bad_race_row", 2)]
+    assert "m/s; 0.5 to 6 can be right" in faults[0].message
