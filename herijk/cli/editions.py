@@ -104,19 +104,15 @@ def diff(
         str,
         typer.Option(help="Fatigue correction of races: none, known (2 to 3 h only) or extend."),
     ] = "extend",
-    stream: Annotated[
-        str, typer.Option(help="Stream in races: distance_first or net_speed_over_legs.")
-    ] = "distance_first",
     as_json: AsJson = False,
 ) -> None:
     """Two editions side by side: who gains, who loses, why, and what it does to races."""
-    from herijk.pipeline.register.replay import FATIGUES, STREAMS, RaceRules
+    from herijk.pipeline.register.replay import FATIGUES, RaceRules
     from herijk.warehouse.editions import compare
     from herijk.warehouse.store.store import Store
 
     rules = RaceRules(
         fatigue=_one_of(FATIGUES, fatigue, "--fatigue"),  # type: ignore[arg-type]
-        stream=_one_of(STREAMS, stream, "--stream"),  # type: ignore[arg-type]
     )
     store = Store(data)
     found = compare.diff(store, old, new)

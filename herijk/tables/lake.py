@@ -67,6 +67,7 @@ class ListedRaces(dy.Schema):
     fsn_no = column.fsn_no()
     rowers = column.rowers()
     crew_class = column.crew_class()
+    empty_thwart = column.text("thwart left free, where it is given", nullable=True)
     rowing_time_s = column.number("s", "time rowed", min_exclusive=0)
     stream_m = column.number(
         "m", "distance that the stream carried the boat", nullable=True, min=-500_000, max=500_000
@@ -83,6 +84,7 @@ class PrintedLines(dy.Schema):
     fsn_no = column.fsn_no()
     rowers = column.rowers()
     crew_class = column.crew_class()
+    empty_thwart = column.empty_thwart()
     has_valid_curve = dy.Bool(description="A, B and Cw are of a measured curve")
     a_kg_m = column.number("kg/m", "A", nullable=True, min=0, max=1000)
     b_m_s = column.number("m/s", "B", nullable=True, min=0.1, max=1000)

@@ -27,13 +27,14 @@ KEPT: Final = 7
 CODES: Final = {
     *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "code"),
     *("quantity", "explaining", "candidates", "severity", "check", "shared", "kind", "scope"),
+    *("old_remark", "new_remark"),
     *("option", "speed_reason", "cause", "log", "flag", "what", "outcome", "reason_code", "lost"),
 }
 """Columns that hold codes of the warehouse, shown as words."""
 
 LONG: Final = {
     *("flags", "cut_reason", "reason", "speed_reason", "causes", "message", "meaning", "decision"),
-    *("candidates", "name"),
+    *("candidates", "name", "old_remark", "new_remark"),
 }
 """Columns of texts that may take several lines."""
 

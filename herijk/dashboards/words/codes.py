@@ -122,6 +122,20 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.slow_tow": ("te langzaam gesleept", "slow tow"),
     "code.unbalanced_runs": ("heen en terug niet evenveel", "unbalanced runs"),
     "code.beam_changed": ("breedte veranderd", "beam changed"),
+    "code.not_in_register": ("niet in het register", "not in the register"),
+    "code.no_line_that_day": (
+        "op die dag geen geldige regel",
+        "no line was valid that day",
+    ),
+    "code.thwart_not_given": (
+        "meer regels, en de uitslag noemt geen lege doft",
+        "more than one line, and the result names no empty thwart",
+    ),
+    "code.speed_not_below_b": ("sneller dan B", "faster than B"),
+    "code.beyond_curve": (
+        "buiten 85-115 % van de roeisnelheid: de kromme is daar niet geldig",
+        "outside 85-115 % of the declared speed, where the curve does not hold",
+    ),
     "code.bow_height_changed": ("boeghoogte veranderd", "bow height changed"),
     "code.length_changed": ("lengte veranderd", "length changed"),
     "code.weight_changed": ("gewicht veranderd", "weight changed"),

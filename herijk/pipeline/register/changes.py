@@ -35,6 +35,7 @@ PART_SCHEMA: Final = {
     "fsn_no": pl.String(),
     "rowers": pl.Int32(),
     "crew_class": pl.String(),
+    "empty_thwart": pl.String(),
     "cause": pl.String(),
     "step": pl.String(),
     "factor": pl.Float64(),

@@ -12,6 +12,7 @@ import dataframely as dy
 import polars as pl
 
 from herijk.pipeline.errors import DefectiveInputError
+from herijk.pipeline.register.register import NO_EMPTY_THWART
 from herijk.tables.archive import TowFacts
 from herijk.tables.frames import frame_of, limits
 from herijk.tables.lake import ListedRaces, PrintedLines
@@ -48,6 +49,7 @@ REGISTER_COLUMNS: Final = (
     Column("cw_kg_m", "Cw"),
     Column("declared_speed_m_s", "roeisnelheid", "speed", "m/s"),
     Column("tow_date", "sleepdatum"),
+    Column("empty_thwart", "lege doft", required=False),
 )
 RACE_COLUMNS: Final = (
     Column("race", "wedstrijd"),
@@ -59,6 +61,7 @@ RACE_COLUMNS: Final = (
     Column("rowing_time_s", "roeitijd"),
     Column("stream_m", "stroom", "length", "km", required=False),
     Column("penalty_w", "straf", "power", "W", required=False),
+    Column("empty_thwart", "lege doft", required=False),
 )
 _ROWING_TIME: Final = re.compile(r"([0-9]{1,2}):([0-5][0-9]):([0-5][0-9])(?:[.,]0*)?")
 
@@ -143,6 +146,7 @@ def _register_line(row: ListRow, season: int) -> dict[str, Any]:
         "cw_kg_m": cw if valid else None,
         "declared_speed_m_s": row.optional_number("declared_speed_m_s"),
         "tow_date": row.optional_date("tow_date"),
+        "empty_thwart": row.optional_text("empty_thwart") or NO_EMPTY_THWART,
     }
 
 
@@ -197,6 +201,7 @@ def _race_result(row: ListRow, season: int) -> dict[str, Any]:
         "rowing_time_s": _rowing_time(row, distance - (stream or 0.0)),
         "stream_m": stream,
         "penalty_w": row.optional_number("penalty_w"),
+        "empty_thwart": row.optional_text("empty_thwart"),
     }
 
 

@@ -26,6 +26,7 @@ from herijk.pipeline.register.register import LINE
 from herijk.pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
 from herijk.pipeline.studies.ladder import ladder
 from herijk.warehouse.archive import read_races
+from herijk.warehouse.build.published import lines_in_time
 from herijk.warehouse.build.version import code_version
 from herijk.warehouse.editions.inputs import INPUTS_HASH, same_tows, tows_of_today, unchanged_tows
 from herijk.warehouse.editions.lines import MEASURED, made_again
@@ -124,11 +125,11 @@ def race_effects(store: Store, old: Edition, new: Edition, rules: RaceRules) -> 
     results = None if root is None else read_races(root)[0]
     if results is None or results.is_empty():
         return None
-    before, after = (replay(edition.register, results, rules) for edition in (old, new))
-    members = new.tables.get("ensemble", pl.DataFrame())
-    return RaceEffects(
-        race_changes(before, after), winner_changes(before, after, new.register, members)
+    before, after = (
+        replay(lines_in_time(store, edition), results, rules) for edition in (old, new)
     )
+    members = new.tables.get("ensemble", pl.DataFrame())
+    return RaceEffects(race_changes(before, after), winner_changes(before, after, members))
 
 
 def _code_parts(store: Store, old: Edition, new: Edition) -> pl.DataFrame:

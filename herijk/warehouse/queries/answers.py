@@ -102,17 +102,14 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
     lines = views.register().filter(edition=edition)
     compared = changes.drop("name", "boat_type", "to_edition")
     known = views.table("methods").select("method", log_known=pl.col("interval") == "complete")
-    tows = views.table("tows")
     methods = dict(views.table("register").select("edition", "method").unique().rows())
     due = views.table("due_list").select(
         "method", *LINE, "tow_speed_m_s", "speed_reason", "as_of",
         next_before="valid_until",
     )  # fmt: skip
-    sizes = ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg", "empty_thwart")
     found = (
         lines.join(compared, on=LINE, how="left", maintain_order="left")
         .with_columns(old_method=pl.col("from_edition").replace(methods))
-        .join(tows.select("tow_id", *sizes), on="tow_id", how="left", maintain_order="left")
         .join(due, on=["method", *LINE], how="left", maintain_order="left")
     )
     for side, method in (("old", "old_method"), ("new", "method")):
@@ -165,14 +162,14 @@ def replayed(views: Views, old: str, new: str) -> tuple[pl.DataFrame, tuple[int,
     Returns:
         Rows of `pipeline.register.replay.winner_changes`; results that change place, and all.
     """
-    register, results = views.table("register"), views.store.read("listed_races")
-    lines = register.filter(edition=new)
+    history, results = views.table("register_history"), views.store.read("listed_races")
     before, after = (
-        replay(register.filter(edition=edition), results, RaceRules()) for edition in (old, new)
+        replay(history.filter(edition=edition), results, RaceRules()) for edition in (old, new)
     )
     moved = race_changes(before, after).filter(pl.col("old_rank").ne_missing(pl.col("new_rank")))
-    members = _members(views, new, lines["method"][0])
-    return winner_changes(before, after, lines, members), (moved.height, results.height)
+    method = history.filter(edition=new)["method"].first()
+    members = _members(views, new, str(method))
+    return winner_changes(before, after, members), (moved.height, results.height)
 
 
 def _members(views: Views, edition: str, method: str) -> pl.DataFrame:

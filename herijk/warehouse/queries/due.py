@@ -23,7 +23,7 @@ def due_report(store: Store, method: str) -> Report:
     """
     with open_database(store.database) as db:
         lines = rows(db, _LINES, method)
-        choice = rows(db, _CHOICE, method)
+        choice = [row for row in rows(db, RETOW_CHOICE) if row["method"] == method]
         simulated = is_simulated(db)
     if not lines:
         raise MissingKnowledgeError(
@@ -52,9 +52,14 @@ SELECT d.*, b.name, b.boat_type FROM due_list AS d LEFT JOIN boats AS b USING (f
 WHERE d.method = ? ORDER BY d.valid_until NULLS LAST, d.fsn_no, d.rowers, d.crew_class
 """
 
-_CHOICE = """
+RETOW_CHOICE: Final = """
 SELECT c.*, b.name, d.valid_until, d.tow_speed_m_s
 FROM retow_choice AS c LEFT JOIN boats AS b USING (fsn_no)
-LEFT JOIN due_list AS d USING (method, fsn_no, rowers, crew_class)
-WHERE c.method = ? ORDER BY c.position
+LEFT JOIN (
+    SELECT method, fsn_no, rowers, crew_class, max(valid_until) AS valid_until,
+           arg_max(tow_speed_m_s, valid_until) AS tow_speed_m_s
+    FROM due_list GROUP BY method, fsn_no, rowers, crew_class
+) AS d USING (method, fsn_no, rowers, crew_class)
+ORDER BY c.method, c.position
 """
+"""Boats to tow again, with last day and next speed of the line that lasts longest."""

@@ -66,7 +66,7 @@ def _most_affected(
     largest = (
         changes.drop_nulls("cw_ratio")
         .with_columns(pl.col("cw_ratio").log().abs().alias("size"))
-        .sort("size", *LINE, descending=[True, False, False, False])
+        .sort("size", *LINE, descending=[True, *(False for _ in LINE)])
         .head(MOST_AFFECTED)
     )
     factors = rungs.pivot("step", index="tow_id", values="factor")

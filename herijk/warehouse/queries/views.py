@@ -11,6 +11,7 @@ import duckdb
 import polars as pl
 
 from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.warehouse.queries.due import RETOW_CHOICE
 from herijk.warehouse.store.store import Store
 
 
@@ -174,12 +175,7 @@ class Views:
 
     def retow_choice(self) -> pl.DataFrame:
         """Boats that would make the season factors surest, with name and next speed."""
-        return self.frame(
-            "SELECT c.*, b.name, d.valid_until, d.tow_speed_m_s FROM retow_choice AS c "
-            "LEFT JOIN boats AS b USING (fsn_no) "
-            "LEFT JOIN due_list AS d USING (method, fsn_no, rowers, crew_class) "
-            "ORDER BY c.method, c.position"
-        )
+        return self.frame(RETOW_CHOICE)
 
     def flagged_boats(self) -> pl.DataFrame:
         """Every flag of every curve with the boat it is about: `method, flag, name, tow_date`."""
@@ -204,8 +200,9 @@ class Views:
 
 
 _REGISTER = """
-SELECT r.edition, r.fsn_no, b.name, b.boat_type, r.rowers, r.crew_class, r.tow_date, r.valid_until,
-       r.status, r.declared_speed_m_s, r.a_kg_m, r.b_m_s, r.cw_kg_m, r.cw_lo_kg_m, r.cw_hi_kg_m,
+SELECT r.edition, r.fsn_no, b.name, b.boat_type, r.rowers, r.crew_class, r.empty_thwart,
+       r.waterline_length_m, r.beam_m, r.bow_height_m, r.weight_kg, r.tow_date, r.valid_until,
+       r.as_of, r.status, r.declared_speed_m_s, r.a_kg_m, r.b_m_s, r.cw_kg_m, r.cw_lo_kg_m, r.cw_hi_kg_m,
        r.tow_id, r.method, r.verification_code
 FROM register AS r LEFT JOIN boats AS b USING (fsn_no)
 ORDER BY edition, lower(b.name), fsn_no, rowers, crew_class
