@@ -75,8 +75,9 @@ def draft_register(
 
     Returns:
         Rows of the table `register`, `as_of` that day, with status `valid`, `expired`, `rejected`
-        (towed, but no tow gives a curve), `doubted` (the rest of the archive rules its tows out; a person may look and
-        prefer one), `excluded` (by decision, and there is no other tow) or `never_towed`.
+        (towed, but no tow gives a curve), `doubted` (the rest of the archive rules its tows out; a
+        person may look and prefer one), `excluded` (by decision, and there is no other tow) or
+        `never_towed`.
     """
     towed = _towed(_as_ruled(curves, rule), tows.filter(pl.col("tow_date") <= on_date))
     curved = towed.filter(pl.col("status") != "rejected")
