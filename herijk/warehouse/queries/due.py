@@ -3,9 +3,11 @@
 The rule for the speed is `pipeline.register.due`'s.
 """
 
+import datetime as dt
 from typing import Any, Final
 
 from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.warehouse.queries.as_of import lay_over
 from herijk.warehouse.store.database import is_simulated, open_database, rows
 from herijk.warehouse.store.store import Store
 
@@ -15,13 +17,20 @@ EXPIRED, THIS_YEAR, LATER, NEVER = "expired", "this_year", "later", "without_cur
 URGENCIES: Final = (EXPIRED, THIS_YEAR, NEVER, LATER)
 
 
-def due_report(store: Store, method: str) -> Report:
+def due_report(store: Store, method: str, as_of: dt.date | None = None) -> Report:
     """Who is due under a method, at what speed, and which boats would tie the seasons together.
+
+    Args:
+        store: the data folder.
+        method: whose curves are asked for the speeds.
+        as_of: the day on which is looked; that of the last tow or race when left out.
 
     Raises:
         MissingKnowledgeError: the method was not applied by the last rebuild.
     """
     with open_database(store.database) as db:
+        if as_of is not None:
+            lay_over(db, store, as_of)
         lines = rows(db, _LINES, method)
         choice = [row for row in rows(db, RETOW_CHOICE) if row["method"] == method]
         simulated = is_simulated(db)
@@ -34,6 +43,7 @@ def due_report(store: Store, method: str) -> Report:
         "method": method,
         "simulated": simulated,
         "as_of": lines[0]["as_of"],
+        "asked": as_of is not None,
         "lines": [line | {"urgency": _urgency(line)} for line in lines],
         "retow_choice": choice,
     }

@@ -206,7 +206,8 @@ def read_edition(store: Store, edition: str) -> Edition:
     """
     path = edition_path(store, edition)
     about = read_about(path)
-    tables = {name: _as_of_now(read_table(path, name)) for name in about.tables}
+    tables = {name: read_table(path, name) for name in about.tables}
+    tables |= {name: _as_of_now(tables[name]) for name in ("register", CHANGES) if name in tables}
     method = None
     if about.kind == "recomputed":
         method = parse_method((path / METHOD).read_text(encoding="utf-8"), f"{edition}/{METHOD}")
@@ -215,7 +216,7 @@ def read_edition(store: Store, edition: str) -> Edition:
 
 def _as_of_now(table: pl.DataFrame) -> pl.DataFrame:
     """A table with what its lines did not say yet when it was published: a thwart left free."""
-    if not set(LINE[:-1]) <= set(table.columns) or "empty_thwart" in table.columns:
+    if "empty_thwart" in table.columns:
         return table
     return table.with_columns(pl.lit(NO_EMPTY_THWART).alias("empty_thwart"))
 
