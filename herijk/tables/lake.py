@@ -77,6 +77,29 @@ class ListedRaces(dy.Schema):
     line = dy.Int32(description="line in it", min=2)
 
 
+class ListedForceChecks(dy.Schema):
+    """Readings of the load cell while a known weight hung on it."""
+
+    season = column.season()
+    day = dy.Date(description="day of the reading")
+    weight_kg = column.number("kg", "known weight", min=1, max=2000)
+    reading_n = column.number("N", "what the load cell read", min=1, max=30_000)
+    path = column.text("file, relative to the archive")
+    line = dy.Int32(description="line in it", min=2)
+
+
+class ListedLamps(dy.Schema):
+    """When a warning lamp burned: the tow line was not square."""
+
+    season = column.season()
+    tow_id = column.tow_id()
+    run = column.run()
+    start_s = column.number("s", "from the start of the run", min=0, max=600)
+    end_s = column.number("s", "the same, when it went out", min=0, max=600)
+    path = column.text("file, relative to the archive")
+    line = dy.Int32(description="line in it", min=2)
+
+
 class PrintedLines(dy.Schema):
     """Lines of registers as they were published."""
 

@@ -24,6 +24,8 @@ _LIST: Final = r"\.(?:csv|txt|tsv|xlsx|xlsm|xls|ods)"
 BOATS_PATTERN: Final = r"sloependata" + _LIST
 TOW_LIST_PATTERN: Final = r"sleeplijst[ _-]*([0-9]{4})" + _LIST
 WINDOWS_PATTERN: Final = r"vensters[ _-]*([0-9]{4})" + _LIST
+FORCE_CHECKS_PATTERN: Final = r"krachtijkingen[ _-]*([0-9]{4})" + _LIST
+LAMPS_PATTERN: Final = r"lampjes[ _-]*([0-9]{4})" + _LIST
 REGISTER_PATTERN: Final = r"sloepregister[ _-]*([0-9]{4})" + _LIST
 RACES_PATTERN: Final = r".+?[ _-]*([0-9]{4})" + _LIST
 TEXT_SUFFIXES: Final = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm")
@@ -92,7 +94,9 @@ def list_sample_files(root: Path) -> list[ArchiveFile]:
 def list_strangers(root: Path) -> list[str]:
     """Return the files of an archive that nobody reads, relative to it."""
     lists = {
-        "sleeplijsten": f"{TOW_LIST_PATTERN}|{WINDOWS_PATTERN}",
+        "sleeplijsten": "|".join(
+            (TOW_LIST_PATTERN, WINDOWS_PATTERN, FORCE_CHECKS_PATTERN, LAMPS_PATTERN)
+        ),
         "sloepregister": f"{BOATS_PATTERN}|{REGISTER_PATTERN}",
         "wedstrijden": RACES_PATTERN,
     }

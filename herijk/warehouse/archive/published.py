@@ -78,7 +78,7 @@ def read_published_registers(
         without a valid curve (published as Cw = 1) has `has_valid_curve` false and no A, B and Cw.
     """
     files = list_files(root, "sloepregister", REGISTER_PATTERN)
-    return _read_all(
+    return read_lists(
         root, files, REGISTER_COLUMNS, "bad_register_row", PrintedLines, _register_line, wording
     )
 
@@ -93,10 +93,10 @@ def read_races(
         that cannot be read.
     """
     files = list_files(root, "wedstrijden", RACES_PATTERN)
-    return _read_all(root, files, RACE_COLUMNS, "bad_race_row", ListedRaces, _race_result, wording)
+    return read_lists(root, files, RACE_COLUMNS, "bad_race_row", ListedRaces, _race_result, wording)
 
 
-def _read_all(
+def read_lists(
     root: Path,
     files: Sequence[ArchiveFile],
     columns: Sequence[Column],
@@ -105,6 +105,17 @@ def _read_all(
     read_row: _ReadRow,
     wording: Wording | None,
 ) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
+    """Read lists of one kind: rows of `table`, and a fault for each that cannot be read.
+
+    Args:
+        root: folder of the archive.
+        files: the lists.
+        columns: of their rows.
+        reason_code: of a row that cannot be read.
+        table: declares the limits of each value; has `path` and `line` too.
+        read_row: from a row and the year in the file's name to the other values.
+        wording: how the lists are worded; that of `archief.toml` when None.
+    """
     wording = wording or read_profiles(root).wording
     good: list[dict[str, Any]] = []
     faults: list[Fault] = []

@@ -24,7 +24,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import Method, parse_method
-from herijk.pipeline.register.register import LINE, NO_EMPTY_THWART
+from herijk.pipeline.register.register import NO_EMPTY_THWART
 from herijk.warehouse.store.files import TEMPORARY_PREFIX
 from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import Store
