@@ -234,3 +234,30 @@ def test_a_race_at_no_boats_speed_is_set_aside(archive: Archive, time: str, stre
     assert races.is_empty()
     assert [(f.reason_code, f.line) for f in faults] == [("bad_race_row", 2)]
     assert "m/s; 0.5 to 6 can be right" in faults[0].message
+
+
+def test_readings_of_the_load_cell_and_lamps_go_to_their_tows(archive: Archive) -> None:
+    """A known weight of 50 kg pulls 490.65 N; each tow takes the last day up to its own."""
+    day = archive.scan().index.tows["tow_date"].min()
+    (archive.root / "sleeplijsten/krachtijkingen_2014.csv").write_text(
+        f"datum;gewicht [kg];aflezing [N]\n{day};50;493,1\n{day};50;492,1\n{day};50;494,1\n"
+        f"{day};50;0\n2014-12-31;50;400\n"
+    )
+    (archive.root / "sleeplijsten/lampjes_2014.csv").write_text(
+        "sleep_id;run;van [s];tot [s]\n2014-001;2;5;10\n2014-001;2;20;30\n2014-001;3;1;2\n"
+        "2014-099;1;1;2\n2014-001;1;3;3\n"
+    )
+    index = archive.scan().index
+    tow = index.tows.row(by_predicate=pl.col("tow_id") == "2014-001", named=True)
+    assert tow["load_cell_ratio"] == pytest.approx(493.1 / 490.65)
+    scatter = 1.0 / 490.65 / 3**0.5
+    assert tow["load_cell_sd"] == pytest.approx((scatter**2 + 0.001**2) ** 0.5)
+    assert tow["lamp_ratio"] == pytest.approx(15.0 / 50.0)
+    others = index.tows.filter(pl.col("tow_id") != "2014-001")
+    assert others["lamp_ratio"].null_count() == others.height
+    faults = [(f.path.split("/")[-1], f.line, f.reason_code) for f in index.faults]
+    assert faults == [
+        ("krachtijkingen_2014.csv", 5, "bad_instrument_row"),
+        ("lampjes_2014.csv", 5, "bad_instrument_row"),
+        ("lampjes_2014.csv", 6, "bad_instrument_row"),
+    ]
