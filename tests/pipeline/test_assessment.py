@@ -74,6 +74,7 @@ def _tow(boat: int, season: int) -> dict[str, Any]:
         "unusual": [],
         "lamp_ratio": 0.1,
         "load_cell_ratio": 1.002,
+        "speed_correction_ratio": 0.02,
     }
 
 
@@ -145,6 +146,7 @@ heavier = {"a_kg_m": 1.08 * A, "cw_kg_m": 1.08 * CW}
 CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
     **{code: ("tows", SUBJECT, {"doubts": [code]}, 1, 0, set()) for code in DOUBTS},
     **{code: ("tows", SUBJECT, {"unusual": [code]}, 1, 0, set()) for code in UNUSUAL},
+    "correction_not_used": ("run_points", SUBJECT, {"speed_factor": 1.0}, 0.02, 0, set()),
     "lamps_burned": ("tows", SUBJECT, {"lamp_ratio": 0.3}, 0.3, 0.2, set()),
     "load_cell_off": ("tows", SUBJECT, {"load_cell_ratio": 0.985}, -0.015, -0.01, set()),
     "weight_by_freeboard": (

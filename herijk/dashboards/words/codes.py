@@ -60,6 +60,10 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.force_unusual": ("kracht valt op", "force stands out"),
     "code.wind_unusual": ("wind valt op", "wind stands out"),
     "code.speed_unusual": ("snelheid valt op", "speed stands out"),
+    "code.correction_not_used": (
+        "correctie uit de sleeplijst niet gebruikt",
+        "correction of the tow list not used",
+    ),
     "code.lamps_burned": ("lampjes brandden lang", "warning lamps burned long"),
     "code.load_cell_off": ("krachtopnemer wijkt af van ijkgewicht", "load cell off"),
     "code.weight_by_freeboard": (

@@ -49,6 +49,7 @@ def assess(curves: pl.DataFrame, run_points: pl.DataFrame, tows: pl.DataFrame) -
         _of_curves(curves),
         _of_runs(curves, run_points),
         _of_doubts(tows),
+        _of_correction(run_points, tows),
         _of_sizes(tows),
         _of_freeboards(tows),
         _of_previous_curve(curves, tows),
@@ -198,6 +199,18 @@ def _of_doubts(tows: pl.DataFrame) -> pl.DataFrame:
             if column in tows.columns
             for code in codes
         ),
+    )
+
+
+def _of_correction(run_points: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+    """The tow list's speed correction, where the speeds are as the log read them; else 0."""
+    if "speed_correction_ratio" not in tows.columns:
+        return pl.DataFrame(schema={"tow_id": pl.String()})
+    as_read = (pl.col("speed_factor") - 1.0).abs().max() < SAME_SHARE
+    speeds = run_points.filter("used").group_by("tow_id").agg(as_read.alias("as_read"))
+    listed = pl.col("speed_correction_ratio")
+    return tows.join(speeds, on="tow_id").select(
+        "tow_id", correction_not_used=pl.when("as_read").then(listed).otherwise(listed * 0.0)
     )
 
 

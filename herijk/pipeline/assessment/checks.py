@@ -220,6 +220,16 @@ CHECKS: Final = (
     ),
     # Instruments, and the declared speed
     Check(
+        "correction_not_used",
+        "speed correction in the tow list that the method does not use in this season",
+        "1",
+        "presentation 24-01-2015, 'Correctie [%]': entered by hand; a method that corrects no log "
+        "leaves it out, and one that estimates the log's error has no need of it",
+        lowest=0.0,
+        highest=0.0,
+        severity="note",
+    ),
+    Check(
         "lamps_burned",
         "largest part of a run in which a warning lamp burned: the tow line was not square",
         "1",

@@ -48,7 +48,7 @@ def lay_over(db: duckdb.DuckDBPyConnection, store: Store, day: dt.date) -> None:
         "race_changes": read["race_changes"].filter(pl.col("race_date") <= day),
     }
     for name, frame in made.items():
-        held = frame.select(TABLES[name].columns()).to_arrow()
+        held = frame.select(TABLES[name].column_names()).to_arrow()
         db.register("held", held)
         db.execute(f'CREATE TEMP TABLE "{name}" AS SELECT * FROM held')  # noqa: S608
         db.unregister("held")
