@@ -1,7 +1,7 @@
 """The command `herijk`: arguments in, results out. Messages go to stderr, results to stdout.
 
 Exit status: 0 done (also with tows set aside: they are listed), 1 could not do it, 2 wrong
-arguments. What a command does stands in `assets`, `warehouse` and `pipeline`; how a result looks
+arguments. What a command does is in `assets`, `warehouse` and `pipeline`; how a result looks
 as text, in `cli.text`.
 
 A command imports what it needs when it runs: Polars, SciPy, Altair and Dagster take seconds
@@ -72,7 +72,7 @@ def _written_down(error: BaseException) -> str:
     ) as file:
         file.write("".join(traceback.format_exception(error)))
     return (
-        f"{unexpected(error)}. Nothing was published. Details stand in {file.name}; please send it "
+        f"{unexpected(error)}. Nothing was published. Details are in {file.name}; please send it "
         "to who keeps Herijk"
     )
 
@@ -183,7 +183,7 @@ def serve(
     from herijk.assets.settings import read_settings
     from herijk.cli.serving import Served, serve_until_stopped
     from herijk.warehouse.store.lock import only_server
-    from herijk.warehouse.store.obstacles import obstacles_explained
+    from herijk.warehouse.store.machine_faults import machine_faults_explained
     from herijk.warehouse.store.store import Store
 
     def tell(line: str) -> None:
@@ -192,7 +192,7 @@ def serve(
     check_apart(archive, data)
     read_settings(data)
     store = Store(data)
-    with obstacles_explained(data), only_server(data):
+    with machine_faults_explained(data), only_server(data):
         for line in taking_over(store):
             tell(line)
         served = Served(archive, data, host, port, may_start)
@@ -308,16 +308,17 @@ def workbench(
     ] = 8765,
 ) -> None:
     """Change a method's options in a browser and see at once what happens to all boats."""
+    from herijk.dashboards.guard import listen
     from herijk.dashboards.workbench.bench import Bench
-    from herijk.dashboards.workbench.server import address, listen, serving
+    from herijk.dashboards.workbench.server import LOOPBACK, address, serving
     from herijk.warehouse.queries.history import History
     from herijk.warehouse.store.store import Store
 
-    held, store = listen(port), Store(data)
+    listening, store = listen(LOOPBACK, port), Store(data)
     bench = Bench(store, History.of(store))
-    typer.echo(f"The workbench is at {address(held)} (on this machine only); Ctrl-C stops it.")
+    typer.echo(f"The workbench is at {address(listening)} (on this machine only); Ctrl-C stops it.")
     with suppress(KeyboardInterrupt):
-        serving(bench).run(sockets=[held])
+        serving(bench).run(sockets=[listening])
 
 
 @app.command("log-error")
@@ -326,7 +327,7 @@ def log_error(
     method: Annotated[str, typer.Option(help="Method whose factors are shown.")] = "rebased",
     as_json: AsJson = False,
 ) -> None:
-    """How wrong the speed log was in each season, how sure that is, and what it rests on."""
+    """How wrong the speed log was in each season, with its uncertainty and what it rests on."""
     from herijk.warehouse.queries import reports
     from herijk.warehouse.store.store import Store
 

@@ -8,8 +8,9 @@ import threading
 import duckdb
 import pytest
 
+from herijk.dashboards.guard import listen
 from herijk.dashboards.site import build_site
-from herijk.dashboards.workbench.server import address, listen, serving
+from herijk.dashboards.workbench.server import LOOPBACK, address, serving
 from herijk.pipeline.method.definition import shipped_method
 from herijk.warehouse.editions.publish import Terms, publish
 from herijk.warehouse.store.store import Store
@@ -18,7 +19,7 @@ from tests.conftest import METHODS, Workbench
 ATTACK = "</script><script>alert(1)</script>"
 ACCENT = "Tréwes"
 FORMULA = "Foo;=1+1;bar"
-"""A formula to a spreadsheet that separates by semicolons, wherever it stands in the name."""
+"""A formula to a spreadsheet that separates by semicolons, wherever it is in the name."""
 EDITIONS = ("2015-1", "2026-1")
 LINKS = [("log1", 0, "estimated"), ("log1", 1, "estimated"), ("log2", 0, "other log")]
 """Log, part and source of season factors: the methods of the small archive estimate none."""
@@ -75,7 +76,7 @@ def attacked(built):
 @contextlib.contextmanager
 def served(bench):
     """The address of a workbench that runs meanwhile."""
-    held = listen(0)
+    held = listen(LOOPBACK, 0)
     server = serving(bench)
     thread = threading.Thread(target=server.run, kwargs={"sockets": [held]})
     thread.start()

@@ -1,5 +1,7 @@
 """Figures of two methods laid over each other."""
 
+from typing import Any
+
 import altair as alt
 import polars as pl
 
@@ -8,6 +10,7 @@ from herijk.dashboards.figures.style import (
     OKABE_ITO,
     SHAPES,
     WIDTH,
+    Drawing,
     colour,
     methods_named,
     number,
@@ -17,25 +20,25 @@ from herijk.dashboards.words import Say
 from herijk.pipeline.method.definition import COMPLETE
 
 
-def curves_compared(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+def curves_compared(frame: pl.DataFrame, say: Say) -> Drawing:
     """A tow's curve and run points under two methods, with the interval at the declared speed.
 
     Args:
         frame: rows of `kind` line, point and declared
-            (`warehouse.queries.trial.Trial.boat_figure`).
+            (`warehouse.queries.scenario.Scenario.boat_figure`).
         say: gives texts.
     """
     x = number(alt.X, "speed_m_s", say("speed"))
     y = number(alt.Y, "cw_kg_m", say("cw"))
     low, high = alt.Y("cw_lo_kg_m:Q", title=say("cw")), alt.Y2("cw_hi_kg_m:Q")
-    # What as-published and a method on trial look like in the figures of all methods.
+    # What as-published and a scenario look like in the figures of all methods.
     ink, marks = (alt.Scale(range=[looks[0], looks[4]]) for looks in (OKABE_ITO, SHAPES))
     dashes = alt.Scale(range=[[5, 4], [1, 0]])
     # One legend, that of the points: colour and dash of the lines would each have their own.
     colour = alt.Color("method:N", scale=ink, sort=None, legend=None)
     dash = alt.StrokeDash("method:N", scale=dashes, sort=None, legend=None)
     names = alt.Legend(labelExpr=methods_named(say))
-    look = {"title": say("method"), "sort": None, "legend": names}
+    look: dict[str, Any] = {"title": say("method"), "sort": None, "legend": names}
     base = alt.Chart(frame)
     line = base.transform_filter("datum.kind == 'line'")
     point = base.transform_filter("datum.kind == 'point'")
@@ -64,7 +67,7 @@ def curves_compared(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     ).properties(width=WIDTH, height=HEIGHT)
 
 
-def boats_compared(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+def boats_compared(frame: pl.DataFrame, say: Say) -> Drawing:
     """The curves of two boats with their bands; `frame` holds `curve_points` with their `crew`."""
     x = number(alt.X, "speed_m_s", say("speed"))
     low, high = alt.Y("cw_lo_kg_m:Q", title=say("cw")), alt.Y2("cw_hi_kg_m:Q")

@@ -52,7 +52,7 @@ POLICY: Final = "; ".join(
 )
 """What a browser lets a page load: the site's own files and nothing else; no eval, no connection.
 `file:` because to some browsers a page from disk is no `'self'`; inline styles are Vega's; the font
-stands in the style sheet, because some browsers keep fonts of another folder from such a page."""
+is in the style sheet, because some browsers keep fonts of another folder from such a page."""
 
 
 def build_site(store: Store) -> dict[str, int]:
@@ -188,7 +188,7 @@ def _by_column(comments: dict[str, str]) -> dict[str, str]:
 @cache
 def vega_bundle() -> str:
     """Vega, Vega-Lite and Vega-Embed in one script, as Altair's own converter ships them."""
-    return str(vl_convert.javascript_bundle())
+    return str(vl_convert.javascript_bundle())  # type: ignore[call-arg]  # its stub lacks the default
 
 
 @cache

@@ -1,6 +1,6 @@
 """Races replayed under a register: power, rank and podium, and what another register changes.
 
-The formulas stand in `pipeline.races.race` and `pipeline.curve`; here they are put together for a
+The formulas are in `pipeline.races.race` and `pipeline.curve`; here they are put together for a
 whole race file. Which rules a race was rowed under is data: `RaceRules`. Wind, waves and depth are
 no part of the handicap (presentation R. Pot, 24 January 2015).
 """
@@ -18,6 +18,8 @@ from herijk.pipeline.races.race import fatigue_factor, mean_speed_m_s, power_per
 from herijk.pipeline.register.due import VALID_RATIOS
 from herijk.pipeline.register.register import LINE, NO_EMPTY_THWART
 from herijk.pipeline.uncertainty.ensemble import share_first
+from herijk.tables.frames import dtypes
+from herijk.tables.register import RaceChanges
 
 Fatigue = Literal["none", "known", "extend"]
 FATIGUES: Final = get_args(Fatigue)
@@ -27,9 +29,7 @@ CLASSIFICATION: Final = (*RACE, "crew_class")
 PODIUM: Final = 3
 
 WINNER_SCHEMA: Final = {
-    "race": pl.String(),
-    "race_date": pl.Date(),
-    "crew_class": pl.String(),
+    **{name: dtypes(RaceChanges)[name] for name in CLASSIFICATION},
     "old_winner": pl.String(),
     "new_winner": pl.String(),
     "winner_changed": pl.Boolean(),
@@ -67,7 +67,7 @@ def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.D
         lines: `LINE`, `tow_id`, `tow_date`, `valid_until`, `declared_speed_m_s`, `a_kg_m`, `b_m_s`,
             `cw_kg_m`; of all days, the one that goes before others last (`lines_of_all_days`).
         results: `race`, `race_date`, `LINE` (the thwart null where it is not given), `distance_m`,
-            `rowing_time_s`, `stream_m`, `penalty_w` (watt a rower, taken off).
+            `rowing_time_s`, `stream_m`, `penalty_w` (watt per rower, taken off).
         rules: how they are computed.
 
     Returns:

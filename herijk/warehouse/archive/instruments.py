@@ -16,7 +16,7 @@ import polars as pl
 from herijk.pipeline.channels import MOST_RUNS
 from herijk.tables.lake import ListedForceChecks, ListedLamps
 from herijk.warehouse.archive.faults import Fault
-from herijk.warehouse.archive.files import FORCE_CHECKS_PATTERN, LAMPS_PATTERN, list_files
+from herijk.warehouse.archive.files import FORCE_CHECKS, LAMPS, list_files
 from herijk.warehouse.archive.lists import ListRow, Wording
 from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.published import read_lists
@@ -49,7 +49,7 @@ LAMP_COLUMNS: Final = (
 
 def read_force_checks(root: Path, wording: Wording) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
     """Read every list of readings of the load cell, and the lines that cannot be read."""
-    files = list_files(root, "sleeplijsten", FORCE_CHECKS_PATTERN)
+    files = list_files(root, FORCE_CHECKS, wording.files)
     return read_lists(
         root,
         files,
@@ -69,7 +69,7 @@ def read_lamps(
     def lamp(row: ListRow, season: int) -> dict[str, Any]:
         return _lamp(row, season, tow_ids)
 
-    files = list_files(root, "sleeplijsten", LAMPS_PATTERN)
+    files = list_files(root, LAMPS, wording.files)
     return read_lists(root, files, LAMP_COLUMNS, "bad_instrument_row", ListedLamps, lamp, wording)
 
 

@@ -1,4 +1,4 @@
-"""Registers as they were published, and race results: what the recomputed history is held against.
+"""Registers as they were published, and race results: what the recomputed history is compared with.
 
 Both are optional in an archive. Computing with them belongs elsewhere.
 """
@@ -18,8 +18,8 @@ from herijk.tables.frames import frame_of, limits
 from herijk.tables.lake import ListedRaces, PrintedLines
 from herijk.warehouse.archive.faults import Fault, fault_from
 from herijk.warehouse.archive.files import (
-    RACES_PATTERN,
-    REGISTER_PATTERN,
+    RACES,
+    REGISTERS,
     ArchiveFile,
     list_files,
     path_inside,
@@ -63,7 +63,9 @@ RACE_COLUMNS: Final = (
     Column("penalty_w", "straf", "power", "W", required=False),
     Column("empty_thwart", "lege doft", required=False),
 )
-_ROWING_TIME: Final = re.compile(r"([0-9]{1,2}):([0-5][0-9]):([0-5][0-9])(?:[.,]0*)?")
+_ROWING_TIME: Final = re.compile(
+    r"([0-9]{1,2})(?::|\.|[uh]\s*)([0-5]?[0-9])(?::|\.|['m]\s*)([0-5]?[0-9])(?:[.,]0*|[\"s])?"
+)
 
 _ReadRow = Callable[[ListRow, int], dict[str, Any]]
 
@@ -77,7 +79,8 @@ def read_published_registers(
         One row a line of a register (`PrintedLines`), and the lines that cannot be read. A boat
         without a valid curve (published as Cw = 1) has `has_valid_curve` false and no A, B and Cw.
     """
-    files = list_files(root, "sloepregister", REGISTER_PATTERN)
+    wording = wording or read_profiles(root).wording
+    files = list_files(root, REGISTERS, wording.files)
     return read_lists(
         root, files, REGISTER_COLUMNS, "bad_register_row", PrintedLines, _register_line, wording
     )
@@ -92,7 +95,8 @@ def read_races(
         One row a result (`ListedRaces`; distances in m, times in s, penalties in W), and the lines
         that cannot be read.
     """
-    files = list_files(root, "wedstrijden", RACES_PATTERN)
+    wording = wording or read_profiles(root).wording
+    files = list_files(root, RACES, wording.files)
     return read_lists(root, files, RACE_COLUMNS, "bad_race_row", ListedRaces, _race_result, wording)
 
 
@@ -103,7 +107,7 @@ def read_lists(
     reason_code: str,
     table: type[dy.Schema],
     read_row: _ReadRow,
-    wording: Wording | None,
+    wording: Wording,
 ) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
     """Read lists of one kind: rows of `table`, and a fault for each that cannot be read.
 
@@ -114,9 +118,8 @@ def read_lists(
         reason_code: of a row that cannot be read.
         table: declares the limits of each value; has `path` and `line` too.
         read_row: from a row and the year in the file's name to the other values.
-        wording: how the lists are worded; that of `archief.toml` when None.
+        wording: how the lists are worded.
     """
-    wording = wording or read_profiles(root).wording
     good: list[dict[str, Any]] = []
     faults: list[Fault] = []
     for file in files:
@@ -197,12 +200,12 @@ def _half_unit(cell: str) -> float:
 
 def _race_result(row: ListRow, season: int) -> dict[str, Any]:
     day = row.date("race_date")
-    if day.year != season:
+    if season and day.year != season:
         message = "the date {day} is not in {season}, the year of the file."
         raise row.fault(say(message, day=day, season=season))
     distance, stream = row.number("distance_m"), row.optional_number("stream_m")
     return {
-        "season": season,
+        "season": day.year,
         "race": row.text("race"),
         "race_date": day,
         "distance_m": distance,

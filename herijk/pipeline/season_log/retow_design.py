@@ -16,21 +16,15 @@ from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.choice import first_largest
 from herijk.pipeline.season_log.estimate import SeasonFactors
 from herijk.pipeline.season_log.network import LINE, Network
+from herijk.tables.frames import dtypes
+from herijk.tables.season_log import RetowChoice
 
 UNKNOWN_SD: Final = 0.06
 """Of ln factor of a season that nothing ties to the anchor: the worst log was 6 % wrong."""
 
 MOST_BOATS: Final = 10
 
-TIE_SCHEMA: Final = {
-    "position": pl.Int32(),
-    "fsn_no": pl.String(),
-    "rowers": pl.Int32(),
-    "crew_class": pl.String(),
-    "seasons": pl.String(),
-    "factor_sd_before_ratio": pl.Float64(),
-    "factor_sd_after_ratio": pl.Float64(),
-}
+RETOW_SCHEMA: Final = dtypes(RetowChoice, without=["method"])
 
 
 def retow_choice(found: SeasonFactors, most: int = MOST_BOATS) -> pl.DataFrame:
@@ -46,12 +40,12 @@ def retow_choice(found: SeasonFactors, most: int = MOST_BOATS) -> pl.DataFrame:
         most: no more boats than this; fewer where another one would tell nothing.
 
     Returns:
-        Rows of `TIE_SCHEMA`: `seasons` are those without dGPS in which the boat was towed;
+        Rows of `RETOW_SCHEMA`: `seasons` are those without dGPS in which the boat was towed;
         `factor_sd_*_ratio` the root of the mean variance of all ln factors before and after.
     """
     network = Network.of(found.tows)
     if not network.groups.height:
-        return pl.DataFrame(schema=TIE_SCHEMA)
+        return pl.DataFrame(schema=RETOW_SCHEMA)
     covariance = _covariance(found)
     tie, variance, current = _candidates(network, found)
     season = network.groups["season"].to_numpy()
@@ -78,7 +72,7 @@ def retow_choice(found: SeasonFactors, most: int = MOST_BOATS) -> pl.DataFrame:
                 "factor_sd_after_ratio": _typical_sd(covariance),
             }
         )
-    return pl.DataFrame(rows, schema=TIE_SCHEMA)
+    return pl.DataFrame(rows, schema=RETOW_SCHEMA)
 
 
 def _covariance(found: SeasonFactors) -> FloatArray:
@@ -99,10 +93,10 @@ def _candidates(network: Network, found: SeasonFactors) -> tuple[FloatArray, Flo
     """
     kappa, random_sd, season = (network.numbers(n) for n in ("kappa", "ln_cw_sd", "season"))
     loose = network.group >= 0
-    wander = np.zeros(len(season))
-    for first, sd in sorted(found.wander_sd.items()):
-        wander = np.where(season >= first, sd, wander)
-    own = random_sd**2 + found.tow_sd**2 + np.where(loose, kappa * wander, 0.0) ** 2
+    log_sd = np.zeros(len(season))
+    for first, sd in sorted(found.tow_log_sd.items()):
+        log_sd = np.where(season >= first, sd, log_sd)
+    own = random_sd**2 + found.tow_sd**2 + np.where(loose, kappa * log_sd, 0.0) ** 2
     boats = int(network.boat.max()) + 1
     weight = np.bincount(network.boat, 1.0 / own, boats)
     tie = np.zeros((boats, network.groups.height))
