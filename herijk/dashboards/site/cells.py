@@ -27,7 +27,7 @@ KEPT: Final = 7
 CODES: Final = {
     *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "code"),
     *("quantity", "explaining", "candidates", "severity", "check", "shared", "kind", "scope"),
-    *("old_remark", "new_remark"),
+    *("old_remark", "new_remark", "choice"),
     *("option", "speed_reason", "cause", "log", "flag", "what", "outcome", "reason_code", "lost"),
 }
 """Columns that hold codes of the warehouse, shown as words."""

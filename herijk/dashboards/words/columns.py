@@ -113,6 +113,7 @@ COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "column.end_force_ratio": ("Verschil kracht, eind min begin", "Force, end less start"),
     "column.end_wind_m_s": ("Verschil wind, eind min begin", "Wind, end less start"),
     "column.ends_ratio": ("Verschil / grens", "Difference / limit"),
+    "column.choice": ("Van meer runs", "Of more runs"),
     "column.cut_reason": ("Waarom gesneden", "Why cut"),
     "column.wind_m_s": ("Wind [m/s]", "Wind [m/s]"),
     "column.wind_angle_deg": ("Windhoek [graden]", "Wind angle [deg]"),

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from herijk.pipeline import curve
 from herijk.pipeline.arrays import BoolArray
 from herijk.pipeline.assessment.assess import assess, with_status
+from herijk.pipeline.assessment.run_choice import with_run_choice
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.races.race import power_per_rower_w
 from herijk.pipeline.recompute.anemometer import anemometer_diagnosis
@@ -80,7 +81,7 @@ def as_tables(
         return pl.concat(frames).select(name, pl.all())
 
     pooled, at_declared = found is not None, pl.col("speed_ratio") == DECLARED
-    run_points = together([_run_points(o, pooled) for o in outcomes])
+    run_points = with_run_choice(together([_run_points(o, pooled) for o in outcomes]))
     budget = budget_of(outcomes, found, CURVE_SPEED_RATIOS if with_bands else (DECLARED,))
     bounds = cw_bounds(budget)
     curves = together([_curves(o, bounds.filter(at_declared), pooled) for o in outcomes])
