@@ -41,6 +41,13 @@ DECISION_SCHEMA: Final = {"tow_id": pl.String(), "verdict": pl.String()}
 NO_DECISIONS: Final = pl.DataFrame(schema=DECISION_SCHEMA)
 
 
+def with_empty_thwart(lines: pl.DataFrame) -> pl.DataFrame:
+    """Lines that were made before they said which thwart was left free."""
+    if "empty_thwart" in lines.columns:
+        return lines
+    return lines.with_columns(pl.lit(NO_EMPTY_THWART).alias("empty_thwart"))
+
+
 def draft_name(method: str) -> str:
     """Name of the unpublished edition that a method would give."""
     return f"concept-{method}"

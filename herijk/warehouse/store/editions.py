@@ -23,7 +23,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import Method, parse_method
-from herijk.pipeline.register.register import NO_EMPTY_THWART
+from herijk.pipeline.register.register import with_empty_thwart
 from herijk.warehouse.store.files import TEMPORARY_PREFIX, sync
 from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import Store
@@ -206,18 +206,13 @@ def read_edition(store: Store, edition: str) -> Edition:
     path = edition_path(store, edition)
     about = read_about(path)
     tables = {name: read_table(path, name) for name in about.tables}
-    tables |= {name: _as_of_now(tables[name]) for name in ("register", CHANGES) if name in tables}
+    tables |= {
+        name: with_empty_thwart(tables[name]) for name in ("register", CHANGES) if name in tables
+    }
     method = None
     if about.kind == "recomputed":
         method = parse_method((path / METHOD).read_text(encoding="utf-8"), f"{edition}/{METHOD}")
     return Edition(about, tables, method)
-
-
-def _as_of_now(table: pl.DataFrame) -> pl.DataFrame:
-    """A table with what its lines did not say yet when it was published: a thwart left free."""
-    if "empty_thwart" in table.columns:
-        return table
-    return table.with_columns(pl.lit(NO_EMPTY_THWART).alias("empty_thwart"))
 
 
 def method_of_edition(store: Store, edition: str) -> Method:
