@@ -261,3 +261,16 @@ def test_readings_of_the_load_cell_and_lamps_go_to_their_tows(archive: Archive) 
         ("lampjes_2014.csv", 5, "bad_instrument_row"),
         ("lampjes_2014.csv", 6, "bad_instrument_row"),
     ]
+
+
+def test_a_thousand_with_a_point_beside_decimal_commas_is_no_number(archive: Archive) -> None:
+    """1.012 beside 998,5 may be a thousand and twelve: never 1.012 N."""
+    archive.cells(
+        4, lambda cell, _: f"{float(cell.replace(',', '.')):.1f}".replace(".", ","), 2, 1 + 6 * ROWS
+    )
+    archive.cells(4, lambda _, __: "1.012", line_of(2, 7), line_of(2, 9))
+    scan = archive.scan()
+    force = scan.good["2014-001"].filter(run=2)["force_n"]
+    assert force[7:10].is_nan().all()
+    assert not force[:7].is_nan().any()
+    assert [(f.reason_code, f.lost, f.run) for f in scan.faults] == [("bad_number", "seconds", 2)]
