@@ -102,7 +102,7 @@ def _write(plot: Plot, report: dict[str, Any], folder: Path) -> Path:
 
 
 def _types(report: dict[str, Any]) -> list[str]:
-    return [found["boat_type"] for found in report["types"]]
+    return [one["boat_type"] for one in report["types"]]
 
 
 def file_name(text: str) -> str:

@@ -226,9 +226,9 @@ def _column(column: pl.Series) -> list[Any] | dict[str, list[Any]]:
     values = column.to_list()
     if column.dtype.is_float():
         return [None if v is None else float(f"{v:.{DRAWN}g}") for v in values]
-    held = [(value, len(list(same))) for value, same in groupby(values)]
-    if column.dtype != pl.String and 2 * len(held) >= len(values):
+    stretches = [(value, len(list(same))) for value, same in groupby(values)]
+    if column.dtype != pl.String and 2 * len(stretches) >= len(values):
         return values
-    places = {value: place for place, value in enumerate(dict.fromkeys(v for v, _ in held))}
-    runs = chain.from_iterable((places[value], number) for value, number in held)
+    places = {value: place for place, value in enumerate(dict.fromkeys(v for v, _ in stretches))}
+    runs = chain.from_iterable((places[value], number) for value, number in stretches)
     return {"values": list(places), "runs": list(runs)}

@@ -89,7 +89,7 @@ def find_shifts(seen: Observations, may: Candidates, limit: float, look: float) 
     weight = at_first.copy()
     scales = _scales(score, weight, may.single)
     limits, clear = limit * scales, True
-    found: list[Found] = []
+    shifts: list[Found] = []
     while True:
         told = weight > SAME_DIRECTION * at_first
         sd = 1.0 / np.sqrt(np.where(told, weight, 1.0))
@@ -99,10 +99,10 @@ def find_shifts(seen: Observations, may: Candidates, limit: float, look: float) 
         best = int(first_largest(beyond))
         if beyond[best] < 1.0:
             if not clear:
-                return found
+                return shifts
             limits, clear = np.where(may.single, look * scales, np.inf), False
             continue
-        found.append(Found(best, float(size[best]), float(sd[best]), clear))
+        shifts.append(Found(best, float(size[best]), float(sd[best]), clear))
         moved = precision.take_out(may.directions[:, [best]].toarray()[:, 0])
         share = np.asarray(may.directions.T @ moved)
         score = score - share * size[best]

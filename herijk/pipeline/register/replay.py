@@ -81,25 +81,25 @@ def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.D
     Raises:
         MissingKnowledgeError: a race time outside what is known of fatigue.
     """
-    found = _with_lines(results.sort(*RACE, *LINE), lines.drop_nulls("a_kg_m"))
-    through_water = found["distance_m"] - found["stream_m"].fill_null(0.0)
-    speed = mean_speed_m_s(through_water, found["rowing_time_s"])
+    rowed = _with_lines(results.sort(*RACE, *LINE), lines.drop_nulls("a_kg_m"))
+    through_water = rowed["distance_m"] - rowed["stream_m"].fill_null(0.0)
+    speed = mean_speed_m_s(through_water, rowed["rowing_time_s"])
     if rules.speed_decimals is not None:
         speed = np.round(speed, rules.speed_decimals)
-    a, s = curve_of_lines(found)
+    a, s = curve_of_lines(rowed)
     resistance = cw(np.nan_to_num(a), np.nan_to_num(s), speed)
     has_line = np.isfinite(a)
     sound = has_line & np.isfinite(resistance)
-    fatigue = _fatigue(found, rules)
-    power = power_per_rower_w(np.where(sound, resistance, 0.0), speed, found["rowers"]) * fatigue
-    penalty = found["penalty_w"].fill_null(0.0).to_numpy()
-    low, high = (ratio * found["declared_speed_m_s"].to_numpy() for ratio in VALID_RATIOS)
+    fatigue = _fatigue(rowed, rules)
+    power = power_per_rower_w(np.where(sound, resistance, 0.0), speed, rowed["rowers"]) * fatigue
+    penalty = rowed["penalty_w"].fill_null(0.0).to_numpy()
+    low, high = (ratio * rowed["declared_speed_m_s"].to_numpy() for ratio in VALID_RATIOS)
     beyond = (speed < low) | (speed > high)
-    without = found["without"].to_numpy()
+    without = rowed["without"].to_numpy()
     remark = np.select([~has_line, ~sound, beyond], [without, ABOVE_B, BEYOND_CURVE], "")
     rank = pl.col("power_w").rank("min", descending=True).over(CLASSIFICATION).cast(pl.Int32)
     return (
-        found.drop("without", "tow_date", "valid_until", "declared_speed_m_s")
+        rowed.drop("without", "tow_date", "valid_until", "declared_speed_m_s")
         .rename({"cw_kg_m": "declared_cw_kg_m"})
         .with_columns(
             pl.Series("speed_m_s", speed),
@@ -206,11 +206,11 @@ def winner_changes(old: pl.DataFrame, new: pl.DataFrame, members: pl.DataFrame) 
         One row a race and class: `old_winner`, `new_winner` (boat; null where nobody has a power),
         `winner_changed` and `change_probability` (null where it is not known).
     """
-    found = []
+    rows = []
     for key, results in new.group_by(CLASSIFICATION, maintain_order=True):
         before = old.filter(*(pl.col(n) == k for n, k in zip(CLASSIFICATION, key, strict=True)))
         winners = [_winner(results_of) for results_of in (before, results)]
-        found.append(
+        rows.append(
             dict(zip(CLASSIFICATION, key, strict=True))
             | {
                 "old_winner": None if winners[0] is None else winners[0][0],
@@ -219,7 +219,7 @@ def winner_changes(old: pl.DataFrame, new: pl.DataFrame, members: pl.DataFrame) 
                 "change_probability": _change_probability(results, winners[0], members),
             }
         )
-    return pl.DataFrame(found, schema=WINNER_SCHEMA).sort(CLASSIFICATION)
+    return pl.DataFrame(rows, schema=WINNER_SCHEMA).sort(CLASSIFICATION)
 
 
 def _winner(results: pl.DataFrame) -> tuple[object, ...] | None:

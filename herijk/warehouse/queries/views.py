@@ -7,12 +7,11 @@ import datetime as dt
 from types import TracebackType
 from typing import Self
 
-import duckdb
 import polars as pl
 
-from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.queries.as_of import lay_over
 from herijk.warehouse.queries.due import RETOW_CHOICE
+from herijk.warehouse.store.database import open_database
 from herijk.warehouse.store.store import Store
 
 
@@ -20,11 +19,9 @@ class Views:
     """The open database, with the questions pages ask; as of a day, if one is given."""
 
     def __init__(self, store: Store, as_of: dt.date | None = None) -> None:
-        if not store.database.exists():
-            raise MissingKnowledgeError(f"{store.database} is not there; make it with rebuild")
         self.store = store
         self._contents: dict[str, int] = {}
-        self._db = duckdb.connect(store.database, read_only=True)
+        self._db = open_database(store.database)
         self._db.execute("SET threads = 1")  # rows in one order: same tables, same bytes
         if as_of is not None:
             lay_over(self._db, store, as_of)
