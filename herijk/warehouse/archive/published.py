@@ -82,7 +82,7 @@ def read_published_registers(
     wording = wording or read_profiles(root).wording
     files = list_files(root, REGISTERS, wording.files)
     return read_lists(
-        root, files, REGISTER_COLUMNS, "bad_register_row", PrintedLines, _register_line, wording
+        root, files, REGISTER_COLUMNS, "bad_register_row", PrintedLines, _fitting_line, wording
     )
 
 
@@ -97,7 +97,9 @@ def read_races(
     """
     wording = wording or read_profiles(root).wording
     files = list_files(root, RACES, wording.files)
-    return read_lists(root, files, RACE_COLUMNS, "bad_race_row", ListedRaces, _race_result, wording)
+    return read_lists(
+        root, files, RACE_COLUMNS, "bad_race_row", ListedRaces, _possible_result, wording
+    )
 
 
 def read_lists(
@@ -147,8 +149,6 @@ def read_lists(
 def _register_line(row: ListRow, season: int) -> dict[str, Any]:
     cw = row.number("cw_kg_m")
     valid = not NEVER_TOWED_CW[0] <= cw <= NEVER_TOWED_CW[1]
-    if valid:
-        _check_curve(row)
     return {
         "season": season,
         "fsn_no": row.boat("fsn_no"),
@@ -162,6 +162,14 @@ def _register_line(row: ListRow, season: int) -> dict[str, Any]:
         "tow_date": row.optional_date("tow_date"),
         "empty_thwart": row.optional_text("empty_thwart") or NO_EMPTY_THWART,
     }
+
+
+def _fitting_line(row: ListRow, season: int) -> dict[str, Any]:
+    """A line of a register that is its own curve."""
+    line = _register_line(row, season)
+    if line["has_valid_curve"]:
+        _check_curve(row)
+    return line
 
 
 def _check_curve(row: ListRow) -> None:
@@ -203,24 +211,38 @@ def _race_result(row: ListRow, season: int) -> dict[str, Any]:
     if season and day.year != season:
         message = "the date {day} is not in {season}, the year of the file."
         raise row.fault(say(message, day=day, season=season))
-    distance, stream = row.number("distance_m"), row.optional_number("stream_m")
     return {
         "season": day.year,
         "race": row.text("race"),
         "race_date": day,
-        "distance_m": distance,
+        "distance_m": row.number("distance_m"),
         "fsn_no": row.boat("fsn_no"),
         "rowers": row.integer("rowers"),
         "crew_class": row.crew_class("crew_class"),
-        "rowing_time_s": _rowing_time(row, distance - (stream or 0.0)),
-        "stream_m": stream,
+        "rowing_time_s": _rowing_time(row),
+        "stream_m": row.optional_number("stream_m"),
         "penalty_w": row.optional_number("penalty_w"),
         "empty_thwart": row.optional_text("empty_thwart"),
     }
 
 
-def _rowing_time(row: ListRow, distance_m: float) -> float:
-    """Time rowed [s] for a distance through the water, which must give a speed that can be."""
+def _possible_result(row: ListRow, season: int) -> dict[str, Any]:
+    """A result whose speed through the water a boat can have."""
+    result = _race_result(row, season)
+    through_water_m = result["distance_m"] - (result["stream_m"] or 0.0)
+    speed = through_water_m / result["rowing_time_s"]
+    lowest, highest = limits(TowFacts, "declared_speed_m_s")
+    if not lowest <= speed <= highest:
+        message = (
+            "'roeitijd' is {cell} for {km:g} km through the water: {speed:.3g} m/s; {low:g} to "
+            "{high:g} can be right."
+        )
+        values = {"cell": row.text("rowing_time_s"), "km": through_water_m / 1000, "speed": speed}
+        raise row.fault(say(message, **values, low=lowest, high=highest))
+    return result
+
+
+def _rowing_time(row: ListRow) -> float:
     cell = row.text("rowing_time_s")
     match = _ROWING_TIME.fullmatch(cell)
     if match is None:
@@ -229,12 +251,4 @@ def _rowing_time(row: ListRow, distance_m: float) -> float:
     seconds = int(match[1]) * 3600 + int(match[2]) * 60 + int(match[3])
     if seconds == 0:
         raise row.fault(say("'roeitijd' is 0."))
-    lowest, highest = limits(TowFacts, "declared_speed_m_s")
-    if not lowest <= distance_m / seconds <= highest:
-        message = (
-            "'roeitijd' is {cell} for {km:g} km through the water: {speed:.3g} m/s; {low:g} to "
-            "{high:g} can be right."
-        )
-        values = {"km": distance_m / 1000, "speed": distance_m / seconds}
-        raise row.fault(say(message, cell=cell, **values, low=lowest, high=highest))
     return float(seconds)
