@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, Final
 
 import dagster as dg
+import yaml  # type: ignore[import-untyped]
 
 from herijk.assets import partitions
 from herijk.assets.jobs import BUILD_JOBS, CHECK, INDEX, NAMES, READ, SITE, job_defs
@@ -95,8 +96,8 @@ def rebuild(
         set_aside_share=settings.set_aside_share,
         factor_jump=settings.factor_jump,
     )
-    with machine_faults_explained(data), only_writer(data), _instance(setup.store) as instance:
-        _bury_the_dead(instance)
+    with machine_faults_explained(data), only_writer(data), instance_of(setup.store) as instance:
+        _end_lost_runs(instance)
         work = _Rebuild(_Jobs(job_defs(setup, progress), instance), setup, progress, settings.dask)
         _mending(lambda: work.do(archive, seasons))
     return work.done
@@ -243,7 +244,7 @@ def taking_over(store: Store) -> Iterator[str]:
     if not nobody_writes(store.root):
         yield "A rebuild is at work; scheduled ones wait for it."
         return
-    with _instance(store) as instance:
+    with instance_of(store) as instance:
         dead = instance.get_runs(dg.RunsFilter(statuses=list(_BEGUN)))
         for run in dead:
             instance.report_run_failed(run, "The process it was part of was stopped or killed.")
@@ -261,19 +262,27 @@ _BEGUN: Final = (
 )
 
 
-def _bury_the_dead(instance: dg.DagsterInstance) -> None:
-    """Records runs of killed rebuilds as failed; only who holds the lock can tell."""
+def _end_lost_runs(instance: dg.DagsterInstance) -> None:
+    """Records runs of killed rebuilds as failed; only the holder of the lock can tell."""
     unfinished = dg.RunsFilter(tags={STEP_TAG: list(NAMES)}, statuses=[dg.DagsterRunStatus.STARTED])
     for run in instance.get_runs(unfinished):
         instance.report_run_failed(run, "The rebuild it was part of was killed.")
 
 
 @contextmanager
-def _instance(store: Store) -> Iterator[dg.DagsterInstance]:
+def instance_of(store: Store) -> Iterator[dg.DagsterInstance]:
     """Dagster's own records, under the data folder."""
     home = prepare_home(store)
     os.environ["DAGSTER_HOME"] = str(home)
-    with dg.DagsterInstance.from_config(str(home)) as instance:
+    try:
+        opened = dg.DagsterInstance.from_config(str(home))
+    except (yaml.YAMLError, dg.DagsterError) as error:
+        what = " ".join(str(error).split())[:200]
+        raise MissingKnowledgeError(
+            f"{home / 'dagster.yaml'} cannot be understood: {what}. Mend it, or remove it: it is "
+            "made again with the usual settings"
+        ) from error
+    with opened as instance:
         yield instance
 
 

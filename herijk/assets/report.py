@@ -1,4 +1,4 @@
-"""What a rebuild leaves to be read: a page, JSON, and a message to who wants one.
+"""What a rebuild leaves to be read: a page, JSON, and a message to anyone who wants one.
 
 They are under `report/` in the data folder: `latest.json` about the last rebuild, `latest.html`
 about the last that changed something, and a dated JSON for each of those.
@@ -80,7 +80,7 @@ def failed_checks(report: Report) -> list[str]:
 
 
 def tell(notifier: Notifier, report: Report) -> list[str]:
-    """Sends the report to who wants it, where something changed or a check failed.
+    """Sends the report to those who want it, where something changed or a check failed.
 
     Returns:
         A sentence for each message that could not be sent.

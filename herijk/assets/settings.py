@@ -1,4 +1,4 @@
-"""`beheer.toml`: when to rebuild, whom to tell and who helps, written by who runs it.
+"""`beheer.toml`: when to rebuild, whom to tell and who helps, written by whoever runs it.
 
 It lies in the data folder and may be left out. No setting in it can change a number.
 """

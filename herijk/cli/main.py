@@ -73,7 +73,7 @@ def _written_down(error: BaseException) -> str:
         file.write("".join(traceback.format_exception(error)))
     return (
         f"{unexpected(error)}. Nothing was published. Details are in {file.name}; please send it "
-        "to who keeps Herijk"
+        "to whoever maintains Herijk"
     )
 
 
@@ -156,7 +156,7 @@ def rebuild(
 
 
 def _tell_failure(data: Path, error: Exception) -> None:
-    """Tells who wants to be told that a rebuild failed, as under `serve`."""
+    """Tells those who asked to be told that a rebuild failed, as under `serve`."""
     from herijk.assets.notify import notifier_of
     from herijk.assets.report import tell_failure
     from herijk.assets.settings import read_settings
@@ -351,6 +351,7 @@ def simulate(
     from herijk.cli.progress import TerminalProgress
     from herijk.simulate import WORLDS, simulate_world, world_settings
     from herijk.simulate.archive_writer import write_simulated_archive
+    from herijk.warehouse.store.machine_faults import machine_faults_explained
 
     if worlds:
         typer.echo("\n".join(f"{name:18s}{named.about}" for name, named in WORLDS.items()))
@@ -360,7 +361,7 @@ def simulate(
     settings = world_settings(
         world, seasons=tuple(seasons), tows_per_season=tows_per_season, rate_hz=rate, seed=seed
     )
-    with TerminalProgress() as progress:
+    with machine_faults_explained(directory), TerminalProgress() as progress:
         progress.expect(len(seasons) * tows_per_season)
         truth = write_simulated_archive(
             directory, simulate_world(settings), lambda done, _: progress.tow_read(str(done), False)

@@ -29,12 +29,13 @@ CODES: Final = {
     *("quantity", "explaining", "candidates", "severity", "check", "shared", "kind", "scope"),
     *("old_remark", "new_remark", "choice"),
     *("option", "speed_reason", "cause", "log", "flag", "what", "outcome", "reason_code", "lost"),
+    *("instrument", "verdict", "confused_with"),
 }
 """Columns that hold codes of the warehouse, shown as words."""
 
 LONG: Final = {
     *("flags", "cut_reason", "reason", "speed_reason", "causes", "message", "meaning", "decision"),
-    *("candidates", "name", "old_remark", "new_remark"),
+    *("candidates", "name", "confused_with", "old_remark", "new_remark"),
 }
 """Columns of texts that may take several lines."""
 

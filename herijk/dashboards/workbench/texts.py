@@ -39,7 +39,7 @@ TEXTS: Final[Words] = {
     "busy": ("Bezig met herrekenen ...", "Recomputing ..."),
     "done_in": ("Herrekend en getekend in", "Recomputed and drawn in"),
     "tows_in_all": ("proeven", "tows"),
-    "refused": ("Dit kan niet:", "This cannot be:"),
+    "refused": ("Dit kan niet:", "Not possible:"),
     "failed": (
         "De werkbank gaf een fout; in het venster waar hij gestart is, staat meer.",
         "The workbench failed; the terminal it was started in says more.",
@@ -49,10 +49,10 @@ TEXTS: Final[Words] = {
         "The workbench no longer answers. Start it again with herijk workbench.",
     ),
     "left_out": (
-        "Niet bij elke wijziging berekend: de band om een kromme over haar hele bereik (haar "
+        "Niet bij elke wijziging berekend: de band om een kromme over het hele bereik (het "
         "interval bij de opgegeven snelheid wel), de rechte lijnen en uitschieters per type en de "
         "oorzaken van spreiding. Die staan op de site na een herrekening.",
-        "Not computed at every change: the band round a curve over its whole range (its interval "
+        "Not computed at every change: the band around a curve over its whole range (its interval "
         "at the declared speed is), the lines and outliers per type and the causes of spread. "
         "They are on the site after a rebuild.",
     ),

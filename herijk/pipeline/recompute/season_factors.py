@@ -161,6 +161,7 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
         pl.lit(calibrated).alias("anchored"),
         pl.Series("temperature_known", o.temperature_known),
         force_uncertainty(batch.tows).alias("force_sd"),
+        pl.Series("reference_ratio", batch.of_tow("declared_speed_m_s") / speed),
         *(pl.Series(name, values).fill_nan(None) for name, values in numbers.items()),
     )
 
