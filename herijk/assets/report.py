@@ -8,9 +8,7 @@ import datetime as dt
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
-
-import dagster as dg
+from typing import TYPE_CHECKING, Any, Final
 
 from herijk.assets.notify import Message, Notifier
 from herijk.dashboards.report import found_in_words, headlines, mail
@@ -20,11 +18,17 @@ from herijk.warehouse.queries.change_report import as_plain, change_report, reme
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.store import Store
 
+if TYPE_CHECKING:  # Dagster takes two seconds, and only a rebuild with work to do needs it
+    import dagster as dg
+
 Report = dict[str, Any]
+
+ERROR: Final = "ERROR"
+"""Dagster's word for a check whose failing means that a table is not what it promises."""
 
 
 def write_report(
-    store: Store, done: Report, checks: Sequence[dg.AssetCheckEvaluation], now: dt.datetime
+    store: Store, done: Report, checks: Sequence["dg.AssetCheckEvaluation"], now: dt.datetime
 ) -> Report:
     """Finds out what changed, writes page and JSON, and returns the JSON as plain data.
 
@@ -55,7 +59,7 @@ def write_report(
     return report
 
 
-def _plain(check: dg.AssetCheckEvaluation) -> Report:
+def _plain(check: "dg.AssetCheckEvaluation") -> Report:
     return {
         "asset": check.asset_key.to_user_string(),
         "check": check.check_name,
@@ -75,7 +79,7 @@ def failed_checks(report: Report) -> list[str]:
     return [
         f"{check['check']}: {found_in_words(check, speaker('en'))}"
         for check in report["checks"]
-        if not check["passed"] and check["severity"] == dg.AssetCheckSeverity.ERROR.value
+        if not check["passed"] and check["severity"] == ERROR
     ]
 
 

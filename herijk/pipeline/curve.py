@@ -24,6 +24,9 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
 
+VALID_RATIO: Final = (0.85, 1.15)
+"""Speeds at which a curve counts, as ratios of its declared speed (Cw-kromme, R. Pot 2015)."""
+
 CHUNK_FITS: Final = 8192
 """Fits worked on at a time, so that the working arrays stay in the processor's cache."""
 

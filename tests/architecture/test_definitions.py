@@ -4,7 +4,8 @@ import dagster as dg
 
 from herijk.assets.definitions import defs
 from herijk.assets.jobs import job_defs
-from herijk.assets.resources import Quiet, Setup
+from herijk.assets.progress import Quiet
+from herijk.assets.resources import Setup
 from herijk.tables.schemas import TABLES
 from tests.conftest import METHODS
 

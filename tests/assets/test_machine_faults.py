@@ -11,7 +11,7 @@ import duckdb
 import pytest
 
 import herijk.warehouse.intake.lake
-from herijk.assets.rebuild import instance_of
+from herijk.assets.runs import instance_of
 from herijk.pipeline.errors import MissingKnowledgeError, UnavailableError
 from herijk.warehouse.intake.lake import ArchiveChangedError
 from herijk.warehouse.store.machine_faults import machine_faults_explained
@@ -83,7 +83,7 @@ LIMITED = """
 import resource, sys
 from pathlib import Path
 from herijk.assets.rebuild import rebuild
-from herijk.assets.resources import Quiet
+from herijk.assets.progress import Quiet
 from herijk.pipeline.errors import UnavailableError
 import herijk.dashboards.report_page, herijk.dashboards.site
 _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
@@ -130,7 +130,7 @@ AS_NOBODY = """
 import os, sys
 from pathlib import Path
 from herijk.assets.rebuild import rebuild
-from herijk.assets.resources import Quiet
+from herijk.assets.progress import Quiet
 from herijk.pipeline.errors import UnavailableError
 os.setuid(int(sys.argv[3]))
 try:

@@ -10,10 +10,12 @@ import shutil
 import tempfile
 from collections.abc import Callable, Iterator
 from functools import cache
+from importlib.metadata import version
 from itertools import chain, groupby
 from pathlib import Path
 from typing import Any, Final
 
+import altair as alt
 import polars as pl
 import vl_convert
 
@@ -21,6 +23,7 @@ from herijk.dashboards import fonts
 from herijk.dashboards.answer import told
 from herijk.dashboards.figures import FIGURES
 from herijk.dashboards.html import as_json, environment
+from herijk.dashboards.kept import kept
 from herijk.dashboards.site.cells import Cells
 from herijk.dashboards.site.downloads import copy_sheets
 from herijk.dashboards.site.pages import MENU, all_pages
@@ -29,8 +32,9 @@ from herijk.dashboards.site.still import still_pictures
 from herijk.dashboards.speech import Speech
 from herijk.dashboards.words import LANGUAGES, WORDS, speaker
 from herijk.warehouse.queries.views import Views
+from herijk.warehouse.store.code import code_hash
 from herijk.warehouse.store.files import TEMPORARY_PREFIX, put_in_place
-from herijk.warehouse.store.store import Store
+from herijk.warehouse.store.store import Store, fingerprint
 
 HERE: Final = Path(__file__).parent
 DRAWN: Final = 5
@@ -188,13 +192,21 @@ def _by_column(comments: dict[str, str]) -> dict[str, str]:
 @cache
 def vega_bundle() -> str:
     """Vega, Vega-Lite and Vega-Embed in one script, as Altair's own converter ships them."""
-    return str(vl_convert.javascript_bundle())  # type: ignore[call-arg]  # its stub lacks the default
+    bundle = vl_convert.javascript_bundle
+    return kept("vega", version("vl-convert-python"), lambda: str(bundle()))  # type: ignore[call-arg]  # its stub lacks the default
 
 
 @cache
 def chart_specifications(language: str) -> dict[str, Any]:
     """Every figure's Vega-Lite in a language, without data."""
-    return {name: specification(figure, speaker(language)) for name, figure in FIGURES.items()}
+
+    def make() -> str:
+        say = speaker(language)
+        return as_json({name: specification(figure, say) for name, figure in FIGURES.items()})
+
+    made_from = fingerprint(alt.__version__, WORDS, code_hash("herijk.dashboards.figures"))
+    found: dict[str, Any] = json.loads(kept(f"charts-{language}", made_from, make))
+    return found
 
 
 def charts_script(language: str) -> str:

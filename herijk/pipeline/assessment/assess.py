@@ -16,8 +16,8 @@ from herijk.pipeline.assessment.checks import CHECKS, CODES, DOUBTS, UNUSUAL
 from herijk.pipeline.assessment.freeboard import by_freeboard
 from herijk.pipeline.channels import TARGET_SPEED_RATIOS
 from herijk.pipeline.choice import SAME_SHARE
+from herijk.tables.column import LINE
 
-LINE: Final = ("fsn_no", "rowers", "crew_class")
 LIKE: Final = ("boat_type", "rowers", "crew_class")
 FEWEST_LIKE_BOATS: Final = 4
 """A type needs so many boats before one of them can stick out (inferred)."""

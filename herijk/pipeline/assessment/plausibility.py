@@ -24,6 +24,7 @@ from herijk.pipeline.assessment.likely_unit import likely_cause
 from herijk.pipeline.assessment.mean_shift import Candidates, Observations, find_shifts
 from herijk.pipeline.assessment.seen import USUAL_BEND, Seen
 from herijk.pipeline.blocks.batch import Batch
+from herijk.tables.column import LINE
 
 LIMIT: Final = 4.5
 """Standard deviations from which a shift is no chance: one in 300,000, as thousands are tried."""
@@ -172,7 +173,7 @@ def _places(key: pl.Series) -> Iterator[tuple[str, IntArray]]:
 
 def _effects(tows: pl.DataFrame, spread: Spread) -> tuple[scipy.sparse.csr_array, FloatArray]:
     """Random effects of tows, shape (tows, effects), and the variance of each."""
-    line = ("fsn_no", "rowers", "crew_class")
+    line = LINE
     altered = pl.col("altered").cast(pl.Int32)
     keyed = tows.with_columns(
         pl.lit(0).alias("archive"),

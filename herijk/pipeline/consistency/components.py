@@ -12,13 +12,13 @@ import polars as pl
 from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.consistency import mixed
 from herijk.pipeline.consistency.observed import (
-    LINE,
     UNKNOWN_TYPE,
     Observed,
     curve_at,
     ln_cw_unit_variance,
 )
 from herijk.pipeline.consistency.reml import Problem
+from herijk.tables.column import LINE
 from herijk.tables.consistency import VarianceComponents
 from herijk.tables.frames import frame_of
 

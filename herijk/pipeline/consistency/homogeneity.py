@@ -15,14 +15,9 @@ import scipy
 from herijk.pipeline import curve
 from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.consistency import mixed
-from herijk.pipeline.consistency.observed import (
-    LINE,
-    UNKNOWN_TYPE,
-    Observed,
-    newest,
-    q_at,
-)
+from herijk.pipeline.consistency.observed import UNKNOWN_TYPE, Observed, newest, q_at
 from herijk.pipeline.consistency.reml import Problem
+from herijk.tables.column import LINE
 from herijk.tables.consistency import PooledCurves, TypeHomogeneity
 from herijk.tables.frames import frame_of
 

@@ -13,13 +13,11 @@ import polars as pl
 
 from herijk.pipeline import curve
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
+from herijk.pipeline.curve import VALID_RATIO
+from herijk.tables.column import LINE
 
 UNKNOWN_TYPE: Final = "unknown"
-LINE: Final = ("fsn_no", "rowers", "crew_class")
-"""A boat with one crew, as the register knows it."""
 
-VALID_RATIO: Final = (0.85, 1.15)
-"""Speeds at which a curve counts, as ratios of its declared speed (Cw-kromme, R. Pot 2015)."""
 
 FEWEST_POINTS: Final = 3
 NORMAL_95: Final = 1.959963984540054

@@ -12,7 +12,6 @@ import polars as pl
 from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.consistency import mixed
 from herijk.pipeline.consistency.observed import (
-    LINE,
     NORMAL_95,
     UNKNOWN_TYPE,
     Observed,
@@ -22,6 +21,7 @@ from herijk.pipeline.consistency.observed import (
 )
 from herijk.pipeline.consistency.reml import Problem
 from herijk.pipeline.quantiles import t_quantile
+from herijk.tables.column import LINE
 from herijk.tables.consistency import PredictedCw, PredictionError
 from herijk.tables.frames import frame_of
 

@@ -14,9 +14,7 @@ from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.consistency import mixed
 from herijk.pipeline.consistency.homogeneity import height_given_bend, shared_bend
 from herijk.pipeline.consistency.observed import (
-    LINE,
     UNKNOWN_TYPE,
-    VALID_RATIO,
     Observed,
     counts_at,
     curve_anywhere,
@@ -24,8 +22,10 @@ from herijk.pipeline.consistency.observed import (
     q_at,
 )
 from herijk.pipeline.consistency.reml import Problem
+from herijk.pipeline.curve import VALID_RATIO
 from herijk.pipeline.races.race import mean_speed_m_s, power_per_rower_w
 from herijk.pipeline.steps.hull import hull_speed_m_s
+from herijk.tables.column import LINE
 from herijk.tables.consistency import SlowTows, SpeedTrend
 from herijk.tables.frames import frame_of
 

@@ -12,6 +12,7 @@ from typing import Final
 import polars as pl
 
 from herijk.pipeline.assessment.checks import CHECKS
+from herijk.pipeline.curve import VALID_RATIO
 from herijk.pipeline.races.power import curve_of_lines, speed_at_power
 from herijk.pipeline.races.race import mean_speed_m_s, power_per_rower_w
 from herijk.pipeline.register.register import LINE
@@ -24,8 +25,6 @@ LOWEST_W: Final = {c: _IN_RANGE.limits(c)[0] for c in ("H", "D")}
 HIGHEST_W: Final = {c: _IN_RANGE.limits(c)[1] for c in ("H", "D")}
 """Power per rower at a realistic tow speed."""
 
-VALID_RATIOS: Final = (0.85, 1.15)
-"""A curve holds between these shares of its declared speed (Cw-kromme, R. Pot 2015)."""
 
 IN_RANGE = "in_range"
 TOO_FAST = "brought_down"
@@ -73,7 +72,7 @@ def due_list(
     own = lines.filter(pl.col("a_kg_m").is_not_null())
     known = own.with_columns(_powers(own)).with_columns(_of_own_curve())
     without = _of_like_boats(lines.join(own, on=LINE, how="anti"), known)
-    low, high = (pl.col("declared_speed_m_s") * ratio for ratio in VALID_RATIOS)
+    low, high = (pl.col("declared_speed_m_s") * ratio for ratio in VALID_RATIO)
     return (
         pl.concat([known, without], how="diagonal_relaxed")
         .select(

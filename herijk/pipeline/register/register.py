@@ -11,8 +11,9 @@ from typing import Final
 import polars as pl
 
 from herijk.pipeline.method.definition import RegisterRule
+from herijk.tables.column import LINE as CREW
 
-LINE: Final = ("fsn_no", "rowers", "crew_class", "empty_thwart")
+LINE: Final = (*CREW, "empty_thwart")
 """What a line is for. A curve measured with a thwart left free holds only with that thwart free
 (Sleepproef, R. Pot 2017, "Bemanning"); `NO_EMPTY_THWART` where all are manned."""
 

@@ -27,10 +27,11 @@ or not, and what cannot be told apart is averaged over.
 
 from herijk.pipeline.season_log.assumed import Prior, Settings
 from herijk.pipeline.season_log.estimate import SeasonFactors, estimate_season_factors
-from herijk.pipeline.season_log.network import GROUP, LINE
+from herijk.pipeline.season_log.network import GROUP
 from herijk.pipeline.season_log.other_log import other_log_factors
 from herijk.pipeline.season_log.retow_design import retow_choice
 from herijk.pipeline.season_log.scale import scale_effect
+from herijk.tables.column import LINE
 
 __all__ = [
     "GROUP",

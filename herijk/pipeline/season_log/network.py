@@ -12,10 +12,10 @@ import polars as pl
 import scipy
 
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
+from herijk.tables.column import LINE
 
 GROUP: Final = ("season", "part", "log")
 """What has a log factor of its own: one log, in a season or the part of it until a replacement."""
-LINE: Final = ("fsn_no", "rowers", "crew_class")
 BOAT: Final = (*LINE, "state")
 """A line as it was until a reported alteration."""
 

@@ -15,7 +15,8 @@ import polars as pl
 from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.choice import first_largest
 from herijk.pipeline.season_log.estimate import SeasonFactors
-from herijk.pipeline.season_log.network import LINE, Network
+from herijk.pipeline.season_log.network import Network
+from herijk.tables.column import LINE
 from herijk.tables.frames import dtypes
 from herijk.tables.season_log import RetowChoice
 

@@ -8,7 +8,8 @@ from typing import Final
 
 import polars as pl
 
-LINE: Final = ("fsn_no", "rowers", "crew_class")
+from herijk.tables.column import LINE
+
 PROMISED: Final = {"1pct": 0.01, "2pct": 0.02}
 """Presentation 2015, "N.B.": within 2 % for the great majority; less than 1 % for all."""
 

@@ -13,12 +13,12 @@ from typing import Final
 import polars as pl
 
 from herijk.pipeline.channels import SECOND_FILE_OFFSET
+from herijk.tables.column import LINE
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import Faults
 from herijk.warehouse.archive.faults import Fault
 
 _CONTENT: Final = ("n", "force", "log1_v", "log1_cw", "wind_v")
-LINE: Final = ("fsn_no", "rowers", "crew_class")
 
 
 def same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:

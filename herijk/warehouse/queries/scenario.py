@@ -12,7 +12,8 @@ import numpy as np
 import polars as pl
 
 from herijk.pipeline import curve
-from herijk.pipeline.consistency.observed import UNKNOWN_TYPE, VALID_RATIO, bend_of_curve, newest
+from herijk.pipeline.consistency.observed import UNKNOWN_TYPE, bend_of_curve, newest
+from herijk.pipeline.curve import VALID_RATIO
 from herijk.pipeline.register.changes import register_changes, side_by_side
 from herijk.pipeline.register.register import LINE
 from herijk.warehouse.queries.history import Draft
