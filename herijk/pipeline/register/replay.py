@@ -12,10 +12,9 @@ import numpy as np
 import polars as pl
 
 from herijk.pipeline.arrays import FloatArray
-from herijk.pipeline.curve import cw
+from herijk.pipeline.curve import VALID_RATIO, cw
 from herijk.pipeline.races.power import curve_of_lines
 from herijk.pipeline.races.race import fatigue_factor, mean_speed_m_s, power_per_rower_w
-from herijk.pipeline.register.due import VALID_RATIOS
 from herijk.pipeline.register.register import LINE, NO_EMPTY_THWART
 from herijk.pipeline.uncertainty.ensemble import share_first
 from herijk.tables.frames import dtypes
@@ -93,7 +92,7 @@ def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.D
     fatigue = _fatigue(rowed, rules)
     power = power_per_rower_w(np.where(sound, resistance, 0.0), speed, rowed["rowers"]) * fatigue
     penalty = rowed["penalty_w"].fill_null(0.0).to_numpy()
-    low, high = (ratio * rowed["declared_speed_m_s"].to_numpy() for ratio in VALID_RATIOS)
+    low, high = (ratio * rowed["declared_speed_m_s"].to_numpy() for ratio in VALID_RATIO)
     beyond = (speed < low) | (speed > high)
     without = rowed["without"].to_numpy()
     remark = np.select([~has_line, ~sound, beyond], [without, ABOVE_B, BEYOND_CURVE], "")
