@@ -23,7 +23,7 @@ from herijk.pipeline.register.changes import (
     side_by_side,
     steps_of_lines,
 )
-from herijk.pipeline.register.register import LINE
+from herijk.pipeline.register.register import LINE, NO_EMPTY_THWART
 from herijk.pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
 from herijk.pipeline.studies.ladder import ladder
 from herijk.tables.studies import CorrectionSteps
@@ -159,7 +159,8 @@ def _printed_parts(old: Edition, new: Edition) -> pl.DataFrame:
     """
     if old.method is not None or "curves" not in new.tables:
         return NO_PARTS
-    tows = new.tables["tows"].select("tow_id", "tow_date")
+    thwart = pl.col("empty_thwart").fill_null(NO_EMPTY_THWART)
+    tows = new.tables["tows"].select("tow_id", "tow_date", thwart)
     curves = new.tables["curves"].join(tows, on="tow_id").with_columns(edition=pl.lit("printed"))
     day = [*LINE, "tow_date"]
     same_tow = curves.join(old.register, on=day, how="semi").unique(day, keep="none")
