@@ -25,8 +25,8 @@ help:
 	@echo "make scale  measure one Dask worker against two, with an S3 server on this machine"
 	@echo "make accuracy  how near the truth the rebased history comes in every simulated world; it can be stopped"
 	@echo "make accuracy-parts  the same for season factors, methods and the consistency analysis apart"
-	@echo "make survive  kill 200 rebuilds at random moments and compare the tables after each"
-	@echo "make fuzz   throw 20,000 damaged files at the readers, and put 300 faults in an archive"
+	@echo "make survive  kill $(KILLS) rebuilds at random moments and compare the tables after each"
+	@echo "make fuzz   throw $(INPUTS) damaged files at the readers, and put 300 faults in an archive"
 	@echo "make full-scale  memory and time of a rebuild of 1,000 tows; needs 20 GB and an hour"
 	@echo "make env    make the environment in .venv, and nothing more"
 	@echo "make clean  remove the environment, the demo and the caches"
@@ -106,11 +106,15 @@ accuracy: $(DEVELOP)
 accuracy-parts: $(DEVELOP)
 	@for part in $(PARTS); do echo "== $$part"; PYTHONPATH=. $(BIN)/python -m benchmarks.accuracy.$$part || exit 1; done
 
+# Both are long. Shorter: make survive KILLS=10, make fuzz INPUTS=2000
+KILLS ?= 1000
+INPUTS ?= 100000
+
 survive: $(DEVELOP)
-	@OPENBLAS_NUM_THREADS=1 PYTHONPATH=. $(BIN)/python -u benchmarks/robustness/survive.py 200
+	@OPENBLAS_NUM_THREADS=1 PYTHONPATH=. $(BIN)/python -u benchmarks/robustness/survive.py $(KILLS)
 
 fuzz: $(DEVELOP)
-	@PYTHONPATH=. $(BIN)/python benchmarks/robustness/fuzz.py 20000
+	@PYTHONPATH=. $(BIN)/python benchmarks/robustness/fuzz.py $(INPUTS)
 	@OPENBLAS_NUM_THREADS=1 PYTHONPATH=. $(BIN)/python benchmarks/robustness/mutate.py 300
 
 full-scale: $(DEVELOP)

@@ -234,11 +234,18 @@ def audit(
     names: Annotated[
         list[str],
         typer.Argument(
-            metavar="FSN_NO|TYPE [TYPE]", help="A boat, FSN211, or one or two types of boat."
+            metavar="BOAT|TYPE [TYPE]",
+            help='A boat by number or name, FSN211 or "Razende Snol", or one or two types.',
         ),
     ],
     data: DataFolder = Path("data"),
     method: Annotated[str | None, typer.Option(help="Show this method only.")] = None,
+    tows: Annotated[
+        str,
+        typer.Option(
+            metavar="all|newest|SEASON|A:B", help="Which tows a type's statistics rest on."
+        ),
+    ] = "newest",
     plots: Annotated[
         Path | None,
         typer.Option(help="Folder for the plots. Default: audit/NAME in --data.", metavar="DIR"),
@@ -256,7 +263,7 @@ def audit(
     if method is not None:
         methods.known_methods(data).text(method)
     store = Store(data)
-    report = audit_report(store, names, method)
+    report = audit_report(store, names, method, tows)
     folder = plots or store.root / "audit" / file_name(" ".join(names))
     drawn = _plots(store, report, folder)
     show(report | {"plots": [str(path) for path in drawn]}, audit_text.audit, as_json)
@@ -275,10 +282,15 @@ def slides(
     tows: Annotated[
         str, typer.Option(metavar="all|newest|SEASON", help="Which tows are drawn.")
     ] = "all",
+    boat: Annotated[
+        list[str] | None,
+        typer.Option(help="Boat through the years, by number or name; repeat for more."),
+    ] = None,
     language: Annotated[str, typer.Option(help="nl or en.", metavar="nl|en")] = "nl",
     as_json: AsJson = False,
 ) -> None:
     """Every chart of the 2015 presentation over this archive, as SVG and PNG and in one PDF."""
+    from herijk.dashboards.slide_book import Asked
     from herijk.dashboards.slides import write_slides
     from herijk.dashboards.words import LANGUAGES
     from herijk.warehouse.store.store import Store
@@ -288,7 +300,8 @@ def slides(
     if len(boat_type or ()) > MOST_TYPES:
         raise typer.BadParameter("give one or two types")
     store = Store(data)
-    written = write_slides(store, out or store.root / "slides", language, boat_type or (), tows)
+    asked = Asked(boat_type or (), tows, boat or ())
+    written = write_slides(store, out or store.root / "slides", language, asked)
     show_files(written, as_json)
 
 

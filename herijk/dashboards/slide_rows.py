@@ -1,36 +1,35 @@
 """The rows of the slide book: which tows, types and boats, for the files and for the page."""
 
+from collections.abc import Sequence
 from typing import Final
 
 import polars as pl
 
-from herijk.dashboards.figures.slides import METHODS
+from herijk.dashboards.figures.slides import METHODS, OF_2014
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
+from herijk.warehouse.queries.boats import the_boat
 from herijk.warehouse.queries.views import Views
 
 PAIR: Final = ("kromhout", "kuiken")
 """The two types of the presentation; where an archive has others, its two largest."""
 
+RECOMPUTED_SEASON: Final = "2014"
+"""The slide "2014 opnieuw berekend"."""
+
 SLIDE_BOATS: Final = ("razende snol", "mare australis", "twirre")
 """The boats of the presentation; where an archive has others, those towed most often."""
 
 
-def method_order() -> pl.Expr:
-    """The place of a method in history, as the column `order`."""
-    places = {name: place for place, name in enumerate(METHODS)}
-    return (
-        pl.col("method")
-        .replace_strict(places, default=len(places), return_dtype=pl.Int32)
-        .alias("order")
-    )
+def methods_of(held: Sequence[str], tows: str = "all") -> list[str]:
+    """The four methods that are compared, of those that are held; of 2014 what was done to it."""
+    wanted = OF_2014 if tows == RECOMPUTED_SEASON else METHODS
+    return [name for name in wanted if name in held] or sorted(held)
 
 
 def compared_frame(views: Views) -> pl.DataFrame:
     """Tows of `compared_tows` with a label, "Vecht 8D 2012", as the charts draw them."""
     label = pl.format("{} {}{} {}", "name", "rowers", "crew_class", "season")
-    return views.compared_tows().with_columns(
-        label.alias("label"), method_order(), kind=pl.lit("tow")
-    )
+    return views.compared_tows().with_columns(label.alias("label"), kind=pl.lit("tow"))
 
 
 def lines_frame(views: Views) -> pl.DataFrame:
@@ -55,8 +54,14 @@ def by_tows(compared: pl.DataFrame) -> list[str]:
     return [t for t in counts if t != UNKNOWN_TYPE] or counts.to_list()
 
 
-def boats_of_slides(compared: pl.DataFrame) -> list[str]:
-    """FSN numbers of the boats of the presentation, or of those towed in most seasons."""
+def boats_of_slides(views: Views, compared: pl.DataFrame, wanted: Sequence[str] = ()) -> list[str]:
+    """FSN numbers of the boats asked for, else those of the presentation, else towed most often.
+
+    Raises:
+        MissingKnowledgeError: there is no such boat, or several of that name.
+    """
+    if wanted:
+        return [the_boat(views.table("boats"), name) for name in wanted]
     seasons = (
         compared.group_by("fsn_no", "name")
         .agg(pl.col("season").n_unique().alias("seasons"))

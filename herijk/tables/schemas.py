@@ -49,6 +49,7 @@ TABLES: Final[dict[str, type[dy.Schema]]] = {
     "race_changes": register.RaceChanges,
     "correction_steps": studies.CorrectionSteps,
     "option_effects": studies.OptionEffects,
+    "option_curves": studies.OptionCurves,
     "season_changes": studies.SeasonChanges,
     "season_ladder": studies.SeasonLadder,
     "option_summary": studies.OptionSummary,

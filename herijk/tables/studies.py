@@ -46,10 +46,14 @@ class SeasonChanges(dy.Schema):
     highest_ratio = column.number("1", "highest ratio of a tow", min_exclusive=0)
 
 
+_STUDY = "judgement: what could be chosen either way; tool: what the tool of 2015 let one tick"
+
+
 class OptionEffects(dy.Schema):
-    """How much choices of judgement matter, on top of a method."""
+    """How much choices matter, on top of a method: of judgement, and those of the tool of 2015."""
 
     method = column.method(primary_key=True)
+    study = column.text(_STUDY, primary_key=True, regex="^(judgement|tool)$")
     tow_id = column.tow_id(primary_key=True)
     option = column.text("option of a step, or all", primary_key=True)
     cw_effect_ratio = column.number("1", "Cw with the second value / with the first", nullable=True)
@@ -60,10 +64,31 @@ class OptionEffects(dy.Schema):
     b_interval_ratio = column.number("1", "the same for B; empty: no bound", nullable=True, min=0)
 
 
-class OptionSummary(dy.Schema):
-    """How much each option of judgement moves Cw over all tows."""
+class OptionCurves(dy.Schema):
+    """Curves of a tow under every combination of the ticks of the tool of 2015, at each speed."""
 
     method = column.method(primary_key=True)
+    tow_id = column.tow_id(primary_key=True)
+    speed = column.text(
+        "the log as_read, with the method's dgps or estimated factor, or its percentage by which "
+        "to multiply or divide",
+        primary_key=True,
+        regex="^(as_read|dgps|estimated|multiply|divide)$",
+    )
+    optimisation = dy.Bool(description="air coefficients searched per run", primary_key=True)
+    trimming = dy.Bool(description="only the steady part of a run", primary_key=True)
+    vane = dy.Bool(description="wind averaged over 3 s", primary_key=True)
+    b_from_length = dy.Bool(description="B is hull speed", primary_key=True)
+    a_kg_m = column.number("kg/m", "A")
+    b_m_s = column.number("m/s", "B; empty where Cw does not rise", nullable=True)
+    cw_kg_m = column.number("kg/m", "Cw at the declared speed")
+
+
+class OptionSummary(dy.Schema):
+    """How much each option moves Cw over all tows to which it can matter."""
+
+    method = column.method(primary_key=True)
+    study = column.text(_STUDY, primary_key=True, regex="^(judgement|tool)$")
     option = column.text("option of a step", primary_key=True)
     tows = dy.Int32(description="tows", min=1)
     median_ratio = column.number("1", "median of Cw with the second value / with the first")

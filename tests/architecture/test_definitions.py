@@ -29,6 +29,7 @@ ASSETS = [
     "lineage",
     "log_factors",
     "methods",
+    "option_curves",
     "option_effects",
     "option_summary",
     "pooled_curves",

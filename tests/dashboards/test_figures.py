@@ -52,6 +52,9 @@ AXES = {
     "slide_towed_at": {"tow_hull_ratio", "boat_type"},
     "slide_raced_beyond": {"power_ratio_raced", "power_ratio_raced_lo", "label"},
     "slide_boat_years": {"speed_m_s", "cw_kg_m", "standard_speed_m_s"},
+    "slide_ticks": {"speed_m_s", "cw_curve_kg_m"},
+    "slide_tick_effects": {"median_ratio", "lo_ratio", "option"},
+    "run_statistics": {"run", "sd_ratio"},
 } | {
     f"slide_{y}_{x}": {"x", "y", "lo", *slides.QUANTITIES[y][:2], slides.EXPLAINING[x]}
     for y in slides.QUANTITIES
@@ -179,3 +182,9 @@ def test_a_code_without_a_text_is_shown_as_it_is():
     assert both("code.something_new") == ("something_new", "something_new")
     with pytest.raises(KeyError):
         both("nosuchtext")
+
+
+def test_an_archive_of_a_thousand_tows_can_be_drawn():
+    many = pl.DataFrame({"kind": ["tow"] * 6000, "method": "rebased", "tow_hull_ratio": 0.7})
+    (rows,) = FIGURES["slide_towed_at"](many, speaker("en")).to_dict()["datasets"].values()
+    assert len(rows) == 6000

@@ -40,6 +40,7 @@ def hard(tmp_path_factory) -> EditionBench:
     asked = ("log_factors", "season_links", "season_steps", "season_diagnosis")
     about = pl.DataFrame({"key": ["simulated"], "value": ["true"]})
     tables = {name: bench.store.read(name, METHOD) for name in asked}
+    tables["tows"] = bench.store.read("tows")
     build_database(bench.store.database, tables | {"about": about})
     return bench
 

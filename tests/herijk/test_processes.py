@@ -10,6 +10,7 @@ import polars as pl
 
 from herijk.warehouse.store.store import table_digest
 from tests.conftest import METHODS, SMALL, Workbench
+from tests.herijk.conftest import hold_against_schema
 
 ROOT = Path(__file__).parents[2]
 THREAD_LIMITS = ("POLARS_MAX_THREADS", "OPENBLAS_NUM_THREADS")
@@ -30,6 +31,7 @@ def test_a_fresh_process_with_one_thread_gives_the_tables_of_two(built: Workbenc
         check=False,
     )
     assert (run.returncode, run.stderr) == (0, "")
+    hold_against_schema(["rebuild", "--json"], run.stdout)
     report = json.loads(run.stdout)
     assert report["done"]["seasons"] == list(SMALL.seasons)
     assert report["simulated"] is True

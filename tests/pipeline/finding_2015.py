@@ -6,9 +6,17 @@ stand apart until their logs are corrected.
 
 from dataclasses import dataclass
 
+import numpy as np
 import polars as pl
 
-from herijk.pipeline.consistency import era_shifts, observe, repeat_pairs, type_consistency
+from herijk.pipeline.consistency import (
+    compared_tows,
+    era_shifts,
+    observe,
+    repeat_pairs,
+    type_lines,
+)
+from herijk.pipeline.consistency.eras import ERAS
 from herijk.pipeline.method.definition import shipped_method
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import World, WorldSettings, simulate_world
@@ -29,18 +37,32 @@ class Found:
     log_factors: pl.DataFrame
     lines: pl.DataFrame
     shifts: pl.DataFrame
+    compared: pl.DataFrame
 
-    def line(self, boat_type, quantity, explaining):
-        """The straight line of a quantity after correction."""
+    def line(self, boat_type, quantity, explaining, tows="newest", method=AFTER):
+        """The straight line of a quantity."""
         row = self.lines.filter(
-            method=AFTER, boat_type=boat_type, quantity=quantity, explaining=explaining
+            method=method,
+            boat_type=boat_type,
+            quantity=quantity,
+            explaining=explaining,
+            tows=tows,
         )
         return row.row(0, named=True)
 
-    def explained(self, letter, against):
+    def explained(self, letter, against, tows="newest", method=AFTER):
         """R2 of B, A or Cw, the mean of both types."""
-        lines = [self.line(t, LETTERS[letter], AGAINST[against]) for t in PAIR]
+        lines = [self.line(t, LETTERS[letter], AGAINST[against], tows, method) for t in PAIR]
         return sum(line["r2"] for line in lines) / len(lines)
+
+    def drawn(self, letter, against, tows, method=AFTER):
+        """R2 of a chart's dots as they lie there, crews and seasons mixed; mean of both types."""
+        rows = self.compared.filter(tows, method=method)
+        pairs = [
+            rows.filter(boat_type=t).select(LETTERS[letter], AGAINST[against]).drop_nulls()
+            for t in PAIR
+        ]
+        return sum(float(np.corrcoef(*pair)[0, 1] ** 2) for pair in pairs) / len(pairs)
 
     def shift(self, boat_type, method):
         """Next tow of the same boats against 2009-2011."""
@@ -59,6 +81,7 @@ def find(seed):
     )
     types = [{"fsn_no": b.fsn_no, "boat_type": b.boat_type.name or None} for b in world.boats]
     boats = pl.DataFrame(types, infer_schema_length=None)
-    lines = type_consistency(observe(curves, measured.tows, boats, run_points))
+    observed = observe(curves, measured.tows, boats, run_points)
+    lines, _ = type_lines(observed)
     shifts = era_shifts(repeat_pairs(curves, measured.tows), boats)
-    return Found(world, log_factors, lines, shifts)
+    return Found(world, log_factors, lines, shifts, compared_tows(observed, ERAS))

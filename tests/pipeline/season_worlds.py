@@ -1,7 +1,7 @@
 """Archives at the level of tows, with known truth: boats, schedule, log errors, repeat tows.
 
 Fast enough for hundreds of worlds; what a tow's samples look like is left to `herijk.simulate`.
-The set-ups are those of research, method.md 9.3 and 9.4.
+The set-ups are clean, and hard: logs that vary, boats that are altered and age.
 """
 
 from dataclasses import dataclass
@@ -189,7 +189,7 @@ def register(world):
 
 
 def run_noise(rng, runs, seconds):
-    """Relative noise of 1-s blocks: surge of the tow line, wander, fast noise (method.md 6.1)."""
+    """Relative noise of 1-s blocks: surge of the tow line, wander, fast noise."""
     steps_s = 10
     time_s = np.arange(seconds * steps_s) / steps_s
 

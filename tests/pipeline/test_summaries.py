@@ -49,6 +49,7 @@ def test_an_option_s_middle_holds_nine_tenths_of_the_tows():
     effects = pl.DataFrame(
         {
             "method": "a",
+            "study": "tool",
             "option": "wind.averaging_s",
             "cw_effect_ratio": [*(1.0 + k / 100 for k in range(101)), None],
         }

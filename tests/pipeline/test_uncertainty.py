@@ -97,8 +97,8 @@ def test_residuals_are_pooled_over_the_season_with_their_degrees_of_freedom():
     assert dof[0] == 0
 
 
-def test_budget_is_that_of_the_research_note():
-    """method.md 8.4, r = 0.3: the printed figures in per cent, to their last digit."""
+def test_the_budget_of_a_usual_tow():
+    """The project's note on uncertainties, r = 0.3: its figures in per cent, to the last digit."""
     held = budget(tows())
     assert held["component"].to_list() == list(COMPONENTS)
     printed = {

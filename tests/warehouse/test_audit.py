@@ -241,3 +241,38 @@ def test_set_aside_tows_of_a_boat_are_found_by_number_or_file_and_no_others(benc
     )
     found = [row["path"] for row in audit(bench.store, ["FSN101"])["set_aside"]]
     assert found == ["a.csv", "meetdata_2014/razende snol 8h 2014.csv"]
+
+
+def test_statistics_of_a_season_rest_on_its_tows_alone(built):
+    boat_type = types_of(built)[0]
+    numbers = built.table("boats").filter(boat_type=boat_type)["fsn_no"]
+    own = built.table("tows").filter(pl.col("fsn_no").is_in(numbers.to_list()), season=2014)
+    report = audit(built.store, [boat_type], "rebased-2015", tows="2014")
+    page = report["types"][0]
+    assert report["statistics_over"] == "2014"
+    assert page["n_tows"] == own.height < built.table("tows").height
+    figures = page["under"]["rebased-2015"]
+    assert all(line["n"] <= own.height for line in figures["lines"] + figures["all_tows"])
+    assert {row["season"] for row in figures["outside"]} <= {2014}
+    again = audit(built.store, [boat_type], "rebased-2015")
+    assert again["types"][0]["n_tows"] > own.height, "the database is as it was"
+
+
+def test_lines_over_all_tows_are_those_of_the_table(built):
+    boat_type = types_of(built)[0]
+    report = audit(built.store, [boat_type], "rebased-2015", tows="all")
+    lines = report["types"][0]["under"]["rebased-2015"]["lines"]
+    table = built.table("type_lines").filter(boat_type=boat_type, method="rebased-2015", tows="all")
+    assert [line["n"] for line in lines] == table.sort("quantity", "explaining")["n"].to_list()
+
+
+def test_a_boat_is_found_by_its_name_as_people_write_it(built):
+    boat = built.table("boats").row(0, named=True)
+    found = audit(built.store, [f" {boat['name'].upper()} "])
+    assert found["boat"]["fsn_no"] == boat["fsn_no"]
+
+
+@pytest.mark.parametrize("tows", ["last year", "1999"])
+def test_a_choice_of_tows_that_is_none_is_told(built, tows):
+    with pytest.raises(MissingKnowledgeError, match=tows):
+        audit(built.store, [types_of(built)[0]], tows=tows)

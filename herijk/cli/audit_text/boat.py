@@ -1,6 +1,7 @@
 """The page of a boat: its tows step by step, its place in its type, and its own history."""
 
 from collections.abc import Iterator
+from itertools import groupby
 from math import exp
 from typing import Final
 
@@ -20,6 +21,9 @@ from herijk.cli.text import table
 from herijk.pipeline.method.definition import COMPLETE
 
 RUNS_ALONE_MEANS: Final = "runs alone: spread of the runs alone: the log's error is not in it"
+LEAST_FELT: Final = 5e-4
+"""Change of Cw below which a step or choice does nothing that is worth a word."""
+
 LEAST_TOLD: Final = 5e-5
 """Part of Cw below which a cause of uncertainty is nothing in two decimals of a per cent."""
 
@@ -45,6 +49,10 @@ def boat_page(report: Report) -> list[str]:
         (
             "As predicted from weight, length, beam and type by the other boats:",
             [_predicted(row) for row in report["predicted"]] or ["  not predicted: n 0"],
+        ),
+        (
+            "What other choices do to Cw, the largest first (the tool of 2015 let one tick: tool):",
+            list(_options(report["options"])),
         ),
         ("In the registers:", [_register(row) for row in report["register"]] or ["  no line"]),
         (
@@ -126,6 +134,18 @@ def _predicted(row: Report) -> str:
     return f"  {row['method']}, {row['tow_id']}: {second_opinion(row)}; {verdict}"
 
 
+def _options(effects: list[Report]) -> Iterator[str]:
+    """A line per tow, method and study; choices that do nothing are left out."""
+    for key, group in groupby(effects, key=lambda e: (e["tow_id"], e["method"], e["study"])):
+        felt = [
+            f"{e['option']} {change(e['cw_effect_ratio'])} %"
+            for e in group
+            if abs(e["cw_effect_ratio"] - 1.0) > LEAST_FELT
+        ]
+        if felt:
+            yield f"  {', '.join(key)}: {', '.join(felt)}"
+
+
 def _register(row: Report) -> str:
     line = f"  {row['edition']}, {row['rowers']}{row['crew_class']}: {row['status']}"
     if row["cw_kg_m"] is None:
@@ -158,7 +178,9 @@ def _steps(steps: list[Report]) -> list[str]:
     lines = []
     for ends in dict.fromkeys((step["from_method"], step["to_method"]) for step in steps):
         own = [s for s in steps if (s["from_method"], s["to_method"]) == ends]
-        felt = [f"{s['step']} {change(s['factor'])} %" for s in own if abs(s["factor"] - 1) > 5e-4]
+        felt = [
+            f"{s['step']} {change(s['factor'])} %" for s in own if abs(s["factor"] - 1) > LEAST_FELT
+        ]
         total = change(own[-1]["cw_kg_m"] / own[0]["cw_kg_m"])
         lines.append(
             f"  {ends[0]} to {ends[1]}: Cw {total} %{' = ' if felt else ''}{', '.join(felt)}"

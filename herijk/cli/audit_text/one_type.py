@@ -7,7 +7,6 @@ from herijk.cli.audit_text.words import (
     AGAINST,
     LETTERS,
     LINES,
-    NOTE,
     QUANTITIES,
     REASONS,
     Report,
@@ -17,6 +16,7 @@ from herijk.cli.audit_text.words import (
     interval,
     line_of,
     listed,
+    note,
     nothing,
     outsider,
     second_opinion,
@@ -53,7 +53,7 @@ def one_type(report: Report) -> list[str]:
     ]
     opinion = [line for m in under for line in _prediction(m, under[m], fleet[m])]
     sections = [
-        ("In short, over all tows of all seasons", _each(under, _in_short)),
+        (_in_short_title(report["statistics_over"]), _each(under, _in_short)),
         (_first_title(under), _lines(under)),
         ("2. Can all boats have the same bend?", _each(under, _equal_bends)),
         (
@@ -70,8 +70,17 @@ def one_type(report: Report) -> list[str]:
         ("7. Do repeat tows of unaltered boats agree, before and after correction?", repeats),
         ("8. Second opinion without towing: Cw from weight, length, beam and type", opinion),
     ]
-    top = (f"{of_type['boat_type']}: are equal boats equal?", heading(of_type), NOTE)
+    top = (
+        f"{of_type['boat_type']}: are equal boats equal?",
+        heading(of_type),
+        note(report["statistics_over"]),
+    )
     return ["\n".join(wrapped(line, 0, 0) for line in top), *(section(*one) for one in sections)]
+
+
+def _in_short_title(tows: str) -> str:
+    whole = tows in ("all", "newest")
+    return f"In short, over all tows of {'all seasons' if whole else tows}"
 
 
 def _in_short(under: Report) -> list[str]:

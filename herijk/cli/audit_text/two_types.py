@@ -5,13 +5,13 @@ from typing import NamedTuple
 
 from herijk.cli.audit_text.words import (
     AGAINST,
-    NOTE,
     QUANTITIES,
     Report,
     apart,
     change,
     heading,
     line_of,
+    note,
     section,
     share,
     step_of,
@@ -134,8 +134,8 @@ def two_types(report: Report) -> list[str]:
                 differing.append(wrapped(f"{row.label}, {method}: {said}"))
     intro = [f"{one['boat_type']}: {heading(one)}" for one in types]
     intro.append(
-        f"{NOTE} Beside a verdict stand the slope, per 100 kg (q: 1000 kg) or 0.1 m/s, and the "
-        "share of the spread that the line explains."
+        f"{note(report['statistics_over'])} Beside a verdict stand the slope, per 100 kg (q: "
+        "1000 kg) or 0.1 m/s, and the share of the spread that the line explains."
     )
     title = "What differs: slopes and shifts by more than both intervals together, and verdicts"
     return [

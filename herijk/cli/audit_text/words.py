@@ -50,11 +50,24 @@ LINES: Final = (*((name, other) for name in QUANTITIES for other in AGAINST), ("
 MOST_LISTED: Final = 4
 WIDTH: Final = 100
 
-NOTE: Final = (
-    "n counts the newest tow of each boat and crew; two crews of one boat are not taken for two "
-    "boats. Intervals are 95 %; a trend or shift is named where its interval leaves out zero: "
-    "'none seen' is no proof that there is none."
+_NOTE: Final = (
+    "two crews of one boat are not taken for two boats. Intervals are 95 %; a trend or shift is "
+    "named where its interval leaves out zero: 'none seen' is no proof that there is none."
 )
+
+
+def note(tows: str) -> str:
+    """Over which tows the statistics are, and how to read them."""
+    counted = {
+        "newest": "n counts the newest tow of each boat and crew",
+        "all": "lines and outliers over all tows, repeats of a boat taken as such; the other "
+        "statistics over the newest tow of each boat and crew",
+    }.get(
+        tows,
+        f"only tows of {tows}, the newest of each boat and crew among them; eras and agreement of "
+        "all types over all seasons",
+    )
+    return f"{counted[0].upper()}{counted[1:]}; {_NOTE}"
 
 
 def step_of(quantity: str, explaining: str) -> tuple[float, str]:

@@ -20,9 +20,12 @@ from herijk.dashboards.figures import (
     quality,
     reproducibility,
     slides,
+    tool,
     types,
 )
 from herijk.dashboards.words import Say
+
+alt.data_transformers.disable_max_rows()  # an archive of 1,000 tows has more than 5,000 rows
 
 Figure = Callable[[pl.DataFrame, Say], alt.TopLevelMixin]
 
@@ -65,6 +68,9 @@ FIGURES: Final[dict[str, Figure]] = {
     "slide_towed_at": slides.towed_at,
     "slide_raced_beyond": slides.raced_beyond,
     "slide_boat_years": slides.boat_years,
+    "slide_ticks": tool.ticks,
+    "slide_tick_effects": tool.tick_effects,
+    "run_statistics": tool.run_statistics,
     **{
         f"slide_{quantity}_{explaining}": slides.against(quantity, explaining)
         for quantity in slides.QUANTITIES

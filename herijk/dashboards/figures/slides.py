@@ -1,12 +1,13 @@
 """The charts of the presentation of 24 January 2015, over all seasons and under every method.
 
-Methods stand side by side on equal axes; men and women differ in shape; a tow made too slowly for
-the common speed is open; a tow outside its type is named with its season and crew. Frames come from
-`dashboards.slides`.
+Methods stand side by side on equal axes, below each other where there is no room; men and women
+differ in shape; a tow made too slowly for the common speed is open; a tow outside its type is named
+with its season and crew. Frames come from `dashboards.slides`.
 """
 
+import json
 from collections.abc import Callable
-from typing import Final
+from typing import Any, Final
 
 import altair as alt
 import polars as pl
@@ -23,9 +24,24 @@ from herijk.dashboards.figures.style import (
 )
 from herijk.dashboards.words import Say
 from herijk.pipeline.consistency.compared import ROWED_RATIO
+from herijk.pipeline.studies.claims import CHANNELS
+from herijk.pipeline.studies.options import CHOICES
+from herijk.pipeline.studies.tool_options import SPEED_NAMES, SPEEDS, TICKS
 
-METHODS: Final = ["as-published", "corrected-2013", "rebased-2015", "rebased"]
-"""The four that are compared, in the order of history; others come after."""
+METHODS: Final = ("as-published", "corrected-2013", "rebased-2015", "rebased")
+"""The four that are compared, in the order of history."""
+
+OF_2014: Final = ("as-published-2014", "as-published", "rebased-2015", "rebased")
+"""What was done to the tows of 2014: the correction of 2013 did not touch them."""
+
+_ORDER: Final = ("as-published-2014", *METHODS)
+
+CODES: Final = (
+    *("unknown", *TICKS, *SPEEDS, *SPEED_NAMES),
+    *(choice.name for choice in CHOICES),
+    *(f"channel.{name}" for name in CHANNELS),
+)
+"""Codes that the charts of the slides show in words."""
 
 SIDE: Final = 190
 QUANTITIES: Final = {
@@ -48,8 +64,39 @@ TITLES: Final = {
 }
 
 
-def _by_method() -> alt.Column:
-    return alt.Column("method:N", title=None, sort=METHODS)
+def panels(chart: Any, say: Say, of: str = "", **look: Any) -> Drawing:
+    """A chart per method; with a column `of`, such as the type, all methods of each of its values.
+
+    Panels are wrapped, so that a page can put fewer in a row; their key sorts by that column, then
+    by the method's place in history. `look` are `columns`, `width` and `height` of a panel.
+    """
+    look = {"columns": len(METHODS), "width": SIDE, "height": SIDE} | look
+    place = f"indexof({json.dumps(_ORDER)}, datum.method)"
+    value = f"datum.{of}" if of else "''"
+    key = f"{value} + '|' + ({place} < 0 ? 9 : {place}) + '|' + datum.method"
+    names = json.dumps({name: say(f"method.{name}") for name in _ORDER})
+    first, method = (f"split(datum.value, '|')[{n}]" for n in (0, 2))
+    label = f"({names})[{method}] || {method}"
+    if of:
+        label = f"{in_words(first, say)} + ' · ' + ({label})"
+    header = alt.Header(labelExpr=label, labelLimit=260)
+    sized = chart.properties(width=look["width"], height=look["height"])
+    drawn: Drawing = sized.transform_calculate(panel=key).facet(
+        alt.Facet("panel:N", title=None, header=header), columns=look["columns"]
+    )
+    return drawn
+
+
+def small(field: str, title: str) -> alt.X:
+    """A quantity along a narrow panel: labels that keep apart."""
+    axis = alt.Axis(tickCount=5, labelOverlap=True)
+    return alt.X(f"{field}:Q", title=title, scale=alt.Scale(zero=False), axis=axis)
+
+
+def in_words(value: str, say: Say) -> str:
+    """A Vega expression that says what a code means; names stay as they are."""
+    texts = {code: say(f"code.{code}") for code in CODES}
+    return f"(({json.dumps(texts)})[{value}] || {value})"
 
 
 def _crew(say: Say) -> tuple[alt.Color, alt.Shape]:
@@ -80,14 +127,14 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Dra
         line = alt.Chart().transform_filter(
             f"datum.kind == 'line' && datum.quantity == '{y}' && datum.explaining == '{x}'"
         )
-        at, value = number(alt.X, x, x_title), number(alt.Y, y, y_title)
+        at, value = small(x, x_title), number(alt.Y, y, y_title)
         by_class = alt.Detail("crew_class:N")
         ink, form = _crew(say)
         band = line.mark_area(color=GREY, opacity=0.18, clip=True).encode(
-            number(alt.X, "x", x_title), alt.Y("lo:Q", title=y_title), alt.Y2("hi:Q"), by_class
+            small("x", x_title), alt.Y("lo:Q", title=y_title), alt.Y2("hi:Q"), by_class
         )
         drawn = line.mark_line(color=GREY, clip=True).encode(
-            number(alt.X, "x", x_title), number(alt.Y, "y", y_title), by_class
+            small("x", x_title), number(alt.Y, "y", y_title), by_class
         )
         bar = tow.transform_filter(f"isValid(datum.{hi})").mark_rule(opacity=0.35, clip=True)
         point = tow.mark_point(size=38, strokeWidth=1.2).encode(
@@ -106,7 +153,7 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Dra
         )
         name = (
             tow.transform_filter("datum.outside")
-            .mark_text(align="left", dx=5, dy=-4, fontSize=9, limit=110)
+            .mark_text(dy=-9, fontSize=9, limit=110)
             .encode(at, value, text="label:N")
         )
         bars = bar.encode(
@@ -116,11 +163,8 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Dra
             ink,
             strokeDash=interval_kind(),
         )
-        return (
-            alt.layer(band, bars, drawn, point, name, data=frame)
-            .properties(width=SIDE, height=SIDE)
-            .facet(row=alt.Row("boat_type:N", title=None), column=_by_method())
-        )
+        drawing = alt.layer(band, bars, drawn, point, name, data=frame)
+        return panels(drawing, say, "boat_type")
 
     return figure
 
@@ -128,7 +172,7 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Dra
 def b_and_hull_speed(frame: pl.DataFrame, say: Say) -> Drawing:
     """B of every tow against length, with the line on which B is hull speed."""
     tow = alt.Chart().transform_filter("datum.kind == 'tow'")
-    x = number(alt.X, "waterline_length_m", say("waterline_length"))
+    x = small("waterline_length_m", say("waterline_length"))
     ink = colour("boat_type", say("type"), legend=alt.Legend(orient="bottom"))
     points = (
         tow.transform_filter("isValid(datum.b_m_s)")
@@ -146,11 +190,7 @@ def b_and_hull_speed(frame: pl.DataFrame, say: Say) -> Drawing:
     hull = tow.mark_line(color="black", strokeDash=[5, 3]).encode(
         x, number(alt.Y, "hull_speed_m_s", say("b")), order="waterline_length_m:Q"
     )
-    return (
-        alt.layer(points, hull, data=frame)
-        .properties(width=SIDE, height=SIDE)
-        .facet(column=_by_method())
-    )
+    return panels(alt.layer(points, hull, data=frame), say)
 
 
 def towed_at(frame: pl.DataFrame, say: Say) -> Drawing:
@@ -201,11 +241,7 @@ def raced_beyond(frame: pl.DataFrame, say: Say) -> Drawing:
         ),
     )
     one = alt.Chart().mark_rule(color=GREY, strokeDash=[3, 3]).encode(x=alt.datum(1.0))
-    return (
-        alt.layer(one, bar, point, data=frame)
-        .properties(width=SIDE, height=alt.Step(16))
-        .facet(column=_by_method())
-    )
+    return panels(alt.layer(one, bar, point, data=frame), say, height=alt.Step(16))
 
 
 def boat_years(frame: pl.DataFrame, say: Say) -> Drawing:
@@ -220,7 +256,7 @@ def boat_years(frame: pl.DataFrame, say: Say) -> Drawing:
         legend=alt.Legend(orient="bottom"),
     )  # fmt: skip
     curve = base.mark_line(strokeWidth=2).encode(
-        number(alt.X, "speed_m_s", say("speed")),
+        small("speed_m_s", say("speed")),
         number(alt.Y, "cw_kg_m", say("cw")),
         ink,
         alt.StrokeDash("crew:N", title=say("crew"), legend=alt.Legend(orient="bottom")),
@@ -230,8 +266,4 @@ def boat_years(frame: pl.DataFrame, say: Say) -> Drawing:
     common = base.mark_rule(color=GREY, strokeDash=[3, 3]).encode(
         alt.X("mean(standard_speed_m_s):Q", title=say("speed"))
     )
-    return (
-        alt.layer(common, curve, data=frame)
-        .properties(width=SIDE, height=SIDE)
-        .facet(row=alt.Row("name:N", title=None), column=_by_method())
-    )
+    return panels(alt.layer(common, curve, data=frame), say, "name")

@@ -7,6 +7,7 @@ from typing import Any
 import polars as pl
 
 from herijk.dashboards.answer import Answer
+from herijk.dashboards.figures.slides import METHODS
 from herijk.dashboards.site.parts import (
     Chart,
     Page,
@@ -103,11 +104,36 @@ def _frames(views: Views, methods: Sequence[str]) -> dict[str, pl.DataFrame]:
         .select(*FOLLOWS, "component", "shared", "u_ratio", "dof")
         .join(boat_of, on="tow_id", maintain_order="left"),
     }
+    statistics = views.table("run_statistics").join(boat_of, on="tow_id", maintain_order="left")
+    frames |= {
+        "statistics": statistics,
+        "ticks": _ticks(views),
+        "choices": _choices(views, boat_of),
+    }
     for name in EXTRA:
         if views.has(name):
             rows = views.flagged() if name == "assessments" else views.table(name)
             frames[name] = rows.join(boat_of, on="tow_id", maintain_order="left")
     return frames
+
+
+def _ticks(views: Views) -> pl.DataFrame:
+    """Curves under the ticks of the tool of 2015, by the last method under which they are drawn."""
+    curves = views.option_curves()
+    last = [name for name in METHODS if name in curves["method"].unique()]
+    return curves.filter(pl.col("method") == (last or [""])[-1])
+
+
+def _choices(views: Views, boat_of: pl.DataFrame) -> pl.DataFrame:
+    """What each choice does to a tow, as the fleet's chart draws it, without a middle 90 %."""
+    effects = views.table("option_effects").drop_nulls("cw_effect_ratio")
+    none = pl.lit(None, pl.Float64)
+    return effects.select(
+        *("method", "tow_id", "option"),
+        median_ratio="cw_effect_ratio",
+        lo_ratio=none,
+        hi_ratio=none,
+    ).join(boat_of, on="tow_id", maintain_order="left")
 
 
 POINT = ["run", "direction", "speed_m_s", "cw_kg_m", "used"]
@@ -215,6 +241,9 @@ def _data(own: dict[str, pl.DataFrame]) -> dict[str, list[pl.DataFrame]]:
         "runs": [own["runs"].select(wind)],
         "curves": [own["curves"].select(history)],
         "budget": [own["budget"].drop("fsn_no")],
+        "statistics": [own["statistics"].drop("fsn_no")],
+        "ticks": [own["ticks"].drop("fsn_no", "method", "b_m_s")],
+        "choices": [own["choices"].drop("fsn_no")],
     }
 
 
@@ -228,6 +257,12 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
         Chart("out_and_back", "stages", "boat_out_back", OF_THE_CURVE),
         Chart("wind", "runs", "wind", OF_THE_CURVE),
     ]
+    of_tow = {"tow_id": "tow_id"}
+    ticks = [
+        Chart("slide_ticks", "ticks", "slide_ticks", of_tow),
+        Chart("slide_tick_effects", "choices", "slide_tick_effects", of_tow),
+    ]
+    statistics = Chart("run_statistics", "statistics", "run_statistics", of_tow)
     curves = Table("curves", own["curves"], CURVE_COLUMNS, "boat_history", exact=False)
     runs = Table("run_points", own["runs"], RUN_COLUMNS, "boat_runs", FOLLOWS, exact=False)
     lines = Table("register", own["register"], LINE_COLUMNS, "boat_lines")
@@ -239,6 +274,8 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
         Section("boat_traces", "boat_traces_note", [traces]),
         Section("boat_out_back", "boat_out_back_note", sides),
         Section("uncertainty_budget", "uncertainty_budget_note", [budget]),
+        Section("boat_ticks", "slides_ticks_note", ticks),
+        Section("boat_statistics", "boat_statistics_note", [statistics]),
     ]
     for name, columns in EXTRA.items():
         rows = own.get(name)

@@ -23,6 +23,7 @@ from herijk.dashboards.site.races import race_pages
 from herijk.dashboards.site.slides import slides_page
 from herijk.dashboards.site.start import methods_table, start_page, words_page
 from herijk.dashboards.site.types import type_pages, types_page
+from herijk.warehouse.build.studies import JUDGEMENT
 from herijk.warehouse.queries.answers import line_changes, newest_edition
 from herijk.warehouse.queries.views import Views
 
@@ -176,7 +177,7 @@ def _corrections(views: Views, methods: list[str]) -> Page:
         data["season_change"] = views.table("season_changes")
         sections += [_ladder(data["ladder"]), _season_change(data["season_change"])]
     if views.has("option_effects"):
-        data["options"] = views.table("option_summary")
+        data["options"] = views.table("option_summary").filter(study=JUDGEMENT)
         shown = ["option", "tows", "median_ratio", "lo_ratio", "hi_ratio"]
         table = Table("option_summary", data["options"], shown, "options")
         chart = Chart("options", "options", "options")

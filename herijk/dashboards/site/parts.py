@@ -61,12 +61,14 @@ class Chart:
         caption: key of its caption; also what a screen reader says.
         follows: selector, or several, by data column: only rows that hold what one of them says
             are drawn, and rows where the column is empty.
+        says: what it shows, in one sentence.
     """
 
     figure: str
     data: str
     caption: str
     follows: Mapping[str, str | Sequence[str]] = field(default_factory=dict)
+    says: Headline | None = None
 
 
 def _as_it_is(option: str, _: Speech) -> str:

@@ -37,6 +37,31 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     ),
     "tows": ("Proeven", "Tows"),
     "newest_only": ("nieuwste per ploeg", "newest per crew"),
+    "ticked": ("Aangevinkt", "Ticked"),
+    "log_speed": ("Snelheid", "Speed"),
+    "code.as_read": ("log zoals gelezen", "log as read"),
+    "code.dgps": ("geijkt op dGPS", "calibrated on dGPS"),
+    "code.multiply": ("log \u00d7 (1 + correctie)", "log \u00d7 (1 + correction)"),
+    "code.divide": ("log / (1 - correctie)", "log / (1 - correction)"),
+    "code.optimisation": ("optimalisatie", "optimisation"),
+    "code.trimming": ("afkappen", "trimming"),
+    "code.vane": ("windvaancorrectie", "wind-vane correction"),
+    "code.b_from_length": ("B uit sloeplengte", "B from length"),
+    "code.correction": ("snelheidscorrectie", "speed correction"),
+    "code.operation": ("delen i.p.v. vermenigvuldigen", "dividing, not multiplying"),
+    "code.estimate": ("geschatte logfactor", "estimated log factor"),
+    "sd_ratio": ("Spreiding / gemiddelde", "Spread / mean"),
+    "median_ratio": ("Mediaan / gemiddelde", "Median / mean"),
+    "log1_ratio": ("Snelheid / log 1", "Speed / log 1"),
+    "mean": ("Gemiddelde", "Mean"),
+    "sd": ("Spreiding", "Spread"),
+    "median": ("Mediaan", "Median"),
+    "code.channel.log1": ("log 1 [m/s]", "log 1 [m/s]"),
+    "code.channel.log2": ("log 2 [m/s]", "log 2 [m/s]"),
+    "code.channel.gps": ("GPS [m/s]", "GPS [m/s]"),
+    "code.channel.force": ("kracht [N]", "force [N]"),
+    "code.channel.wind": ("wind [m/s]", "wind [m/s]"),
+    "code.channel.cw": ("Cw gemeten [kg/m]", "Cw measured [kg/m]"),
     # Titles
     "slide.weight": ("{y} tegen gewicht: {types}", "{y} against weight: {types}"),
     "slide.speed": ("{y} tegen sleepsnelheid: {types}", "{y} against tow speed: {types}"),
@@ -61,36 +86,46 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     ),
     # Sentences
     "slide.line": (
-        "{type}: {verdict} onder {after}, R2 {r2_after} (onder {before} {r2_before}); {n} proeven "
-        "van {boats} sloepen.",
-        "{type}: {verdict} under {after}, R2 {r2_after} (under {before} {r2_before}); {n} tows of "
-        "{boats} boats.",
+        "{type}: {verdict}. R2 {r2_after} {after}, {r2_before} {before}; {counted}.",
+        "{type}: {verdict}. R2 {r2_after} {after}, {r2_before} {before}; {counted}.",
     ),
+    "slide.counted": ("{tows} van {boats}", "{tows} of {boats}"),
+    "slide.one_tow": ("1 proef", "1 tow"),
+    "slide.many_tow": ("{n} proeven", "{n} tows"),
+    "slide.one_boat": ("1 sloep", "1 boat"),
+    "slide.many_boat": ("{n} sloepen", "{n} boats"),
+    "slide.no_tow": ("geen proef", "no tow"),
     "slide.rises": ("{y} stijgt met {x}", "{y} rises with {x}"),
     "slide.falls": ("{y} daalt met {x}", "{y} falls with {x}"),
     "slide.none": ("geen verband van {y} met {x} gezien", "no link of {y} with {x} seen"),
+    "slide.unclear": (
+        "te weinig sloepen om te zeggen of {y} met {x} samenhangt",
+        "too few boats to tell whether {y} goes with {x}",
+    ),
     "slide.no_line": (
-        "{type}: te weinig sloepen voor een lijn ({n} proeven van {boats} sloepen).",
-        "{type}: too few boats for a line ({n} tows of {boats} boats).",
+        "{type}: te weinig sloepen voor een lijn ({counted}).",
+        "{type}: too few boats for a line ({counted}).",
     ),
     "slide.x.weight": ("gewicht", "weight"),
     "slide.x.speed": ("sleepsnelheid", "tow speed"),
     "slide.x.length": ("lengte", "length"),
     "slide.outside": (
-        "Uitschieters van hun type onder {after}: {names}.",
-        "Outliers of their type under {after}: {names}.",
+        "Uitschieters van hun type, {after}: {names}.",
+        "Outliers of their type, {after}: {names}.",
+    ),
+    "slide.none_outside": (
+        "Geen proef is een uitschieter van haar type, {after}.",
+        "No tow is an outlier of its type, {after}.",
     ),
     "slide.b_is_not": (
-        "Nee: onder {after} ligt B op {ratio} keer de rompsnelheid ({lo} tot {hi}; {boats} "
-        "sloepen); {share} ligt er binnen 5 % van.",
-        "No: under {after} B lies at {ratio} times hull speed ({lo} to {hi}; {boats} boats); "
-        "{share} lie within 5 % of it.",
+        "Nee: B ligt op {ratio} keer de rompsnelheid ({lo} tot {hi}; {boats}, {after}); {share} "
+        "ligt er binnen 5 % van.",
+        "No: B lies at {ratio} times hull speed ({lo} to {hi}; {boats}, {after}); {share} lie "
+        "within 5 % of it.",
     ),
     "slide.b_is": (
-        "Het kan: onder {after} ligt B op {ratio} keer de rompsnelheid ({lo} tot {hi}; {boats} "
-        "sloepen).",
-        "It may be: under {after} B lies at {ratio} times hull speed ({lo} to {hi}; {boats} "
-        "boats).",
+        "Het kan: B ligt op {ratio} keer de rompsnelheid ({lo} tot {hi}; {boats}, {after}).",
+        "It may be: B lies at {ratio} times hull speed ({lo} to {hi}; {boats}, {after}).",
     ),
     "slide.b_unknown": (
         "Te weinig sloepen met een B om het te zeggen ({boats}).",
@@ -103,27 +138,57 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
         "the presentation puts rowing.",
     ),
     "slide.raced": (
-        "{n} proeven zijn met weinig vermogen gesleept of in een wedstrijd buiten hun kromme "
-        "gebruikt; de eigen kromme geeft {up} te veel en {down} te weinig vermogen (interval "
-        "zonder 1). Gesleept onder 70 W (dames 40) en geroeid boven 100 W (dames 57): {both}.",
-        "{n} tows were made with little power or used off their curve in a race; their own curve "
-        "gives {up} too much and {down} too little power (interval without 1). Towed under 70 W "
+        "De eigen kromme geeft {up} keer te veel en {down} keer te weinig vermogen (interval "
+        "zonder 1), bij {n} die met weinig vermogen zijn gesleept of buiten hun kromme geroeid. "
+        "Gesleept onder 70 W (dames 40) en geroeid boven 100 W (dames 57): {both}.",
+        "A tow's own curve gives too much power {up} times and too little {down} times (interval "
+        "without 1), among {n} made with little power or raced off their curve. Towed under 70 W "
         "(women 40) and raced above 100 W (women 57): {both}.",
     ),
     "slide.years": (
-        "{crew}: Cw bij {speed} m/s loopt over {n} proeven {before_spread} uiteen onder {before}, "
-        "{after_spread} onder {after} (hoogste / laagste).",
-        "{crew}: Cw at {speed} m/s spreads over {n} tows by {before_spread} under {before}, "
-        "{after_spread} under {after} (highest / lowest).",
+        "{crew}: Cw bij {speed} m/s loopt {after_spread} uiteen {after}, {before_spread} {before} "
+        "(hoogste / laagste van {n}).",
+        "{crew}: Cw at {speed} m/s spreads by {after_spread} {after}, {before_spread} {before} "
+        "(highest / lowest of {n}).",
+    ),
+    "slide.one_tow_a_crew": (
+        "Elke ploeg is een keer gesleept: er is niets te vergelijken.",
+        "Every crew was towed once: there is nothing to compare.",
     ),
     "slide.apart": (
-        "Proeven van {era} lagen onder {before} {before_shift} hoger dan de volgende van dezelfde "
-        "sloep; onder {after} {after_shift}, {verdict}.",
-        "Tows of {era} lay {before_shift} higher under {before} than the next of the same boat; "
-        "under {after} {after_shift}, {verdict}.",
+        "Proeven van {era} tegen de volgende van dezelfde sloep: {before}; {after}.",
+        "Tows of {era} against the next of the same boat: {before}; {after}.",
     ),
-    "slide.is_apart": ("dat nog afwijkt", "which still differs"),
-    "slide.not_apart": ("geen afwijking meer gezien", "no difference seen any more"),
+    "slide.is_apart": (
+        "{method} wijken ze af, Cw {shift} ({lo} tot {hi})",
+        "{method} they stand apart, Cw {shift} ({lo} to {hi})",
+    ),
+    "slide.not_apart": (
+        "{method} is geen afwijking gezien, {shift} ({lo} tot {hi})",
+        "{method} no difference is seen, {shift} ({lo} to {hi})",
+    ),
+    "slide.ticks": (
+        "{tow}: alle combinaties van de vier opties van 2015",
+        "{tow}: all combinations of the four options of 2015",
+    ),
+    "slide.ticks_said": (
+        "{tow}: de hoogste van {n} krommen ligt {spread} boven de laagste (Cw bij de opgegeven "
+        "snelheid, "
+        "log zoals gelezen, {method}). Gemiddeld over de andere keuzen: {effects}.",
+        "{tow}: the highest of {n} curves lies {spread} above the lowest (Cw at the declared "
+        "speed, log "
+        "as read, {method}). On average over the other choices: {effects}.",
+    ),
+    "slide.tick_effects": (
+        "Wat de opties van 2015 met alle sloepen doen",
+        "What the options of 2015 do to all boats",
+    ),
+    "slide.tick_effects_said": (
+        "De mediane verandering van Cw over {tows}: {effects} ({method}). De streep omvat de "
+        "middelste 90 % van de proeven.",
+        "The median change of Cw over {tows}: {effects} ({method}). The bar holds the middle 90 % "
+        "of the tows.",
+    ),
     "decimal_mark": (",", "."),
     # Columns and codes
     "code.waterline_length_m": ("lengte waterlijn", "waterline length"),
@@ -140,6 +205,20 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     "column.cw_standard_lo_kg_m": ("Laagste [kg/m]", "Lowest [kg/m]"),
     "column.cw_standard_hi_kg_m": ("Hoogste [kg/m]", "Highest [kg/m]"),
     "column.hull_speed_m_s": ("Romp\u00adsnelheid [m/s]", "Hull speed [m/s]"),
+    "column.b_from_length": ("B uit sloep\u00adlengte", "B from length"),
+    "column.channel": ("Kanaal", "Channel"),
+    "column.log1_ratio": ("Snelheid / log 1", "Speed / log 1"),
+    "column.mean": ("Gemiddelde", "Mean"),
+    "column.median": ("Mediaan", "Median"),
+    "column.optimisation": ("Optimalisatie", "Optimisation"),
+    "column.sd": ("Spreiding", "Spread"),
+    "column.speed_case": (
+        "Sleep\u00adsnelheid t.o.v. romp\u00adsnelheid",
+        "Tow speed by hull speed",
+    ),
+    "column.speed": ("Snelheid", "Speed"),
+    "column.trimming": ("Afkappen", "Trimming"),
+    "column.vane": ("Windvaan\u00adcorrectie", "Wind-vane correction"),
     "column.label": ("Proef", "Tow"),
     "column.newest_method": ("Methode", "Method"),
     "column.outside": ("Uitschieter", "Outlier"),
@@ -157,6 +236,49 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     "slides_speed": ("Tegen sleepsnelheid", "Against tow speed"),
     "slides_length": ("Tegen lengte", "Against length"),
     "slides_hull_speed": ("Is B de rompsnelheid?", "Is B hull speed?"),
+    "slides_2014": ("2014 opnieuw berekend", "2014 recomputed"),
+    "slides_2014_note": (
+        "De proeven van 2014 zoals ze dat jaar uitkwamen, begin 2015 herrekend met afkappen en "
+        "dGPS, en na alle verbeteringen.",
+        "The tows of 2014 as they came out that year, recomputed early in 2015 with trimming and "
+        "dGPS, and after all improvements.",
+    ),
+    "slides_raced": (
+        "Traag gesleept, hard geroeid",
+        "Towed slowly, raced fast",
+    ),
+    "slide_raced_beyond": (
+        "Vermogen in een wedstrijd: eigen kromme tegen die van het type",
+        "Race power: own curve against that of the type",
+    ),
+    "slides_eras": (
+        "Wijken seizoenen met andere instrumenten af?",
+        "Do seasons with other instruments stand apart?",
+    ),
+    "slides_ticks": ("De vier opties van 2015", "The four options of 2015"),
+    "slides_ticks_note": (
+        "Optimalisatie, afkappen, windvaancorrectie en B uit sloeplengte: alle zestien combinaties "
+        "over elkaar, met de snelheid van de log en na correctie. Elk vak kleurt een optie.",
+        "Optimisation, trimming, wind-vane correction and B from length: all sixteen combinations "
+        "overlaid, with the log's speed and after correction. Each panel colours one option.",
+    ),
+    "slide_ticks": (
+        "Krommen onder alle combinaties van de opties",
+        "Curves under all combinations of the options",
+    ),
+    "slide_tick_effects": ("Wat elke optie met Cw doet", "What each option does to Cw"),
+    "boat_ticks": ("Wat andere keuzen met de kromme doen", "What other choices do to the curve"),
+    "run_statistics": (
+        "Spreiding binnen elke run; streepjeslijn: 10 %",
+        "Spread within each run; dashed: 10 %",
+    ),
+    "boat_statistics": ("De metingen per run", "The measurements per run"),
+    "boat_statistics_note": (
+        "Wat het programma van 2014 per run liet zien: gemiddelde, spreiding, mediaan en hun "
+        "verhoudingen, hier van secondegemiddelden. De getallen staan in de tabel eronder.",
+        "What the tool of 2014 showed of each run: mean, spread, median and their ratios, here of "
+        "means per second. The numbers are in the table below it.",
+    ),
     "slides_years": ("Een sloep door de jaren", "One boat through the years"),
     **{
         f"slide_{y}_{x}": (f"{name_nl} tegen {x_nl}", f"{name_en} against {x_en}")

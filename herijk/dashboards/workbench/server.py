@@ -1,8 +1,8 @@
 """The workbench on loopback: routes, and what keeps other programs and sites away.
 
 It listens on 127.0.0.1 only. A page of another site that reaches it by a name of its own (DNS
-rebinding) is refused by its Host header, one that sends a form or script by its Origin and type;
-nothing is fetched from elsewhere, and the page may not be framed.
+rebinding) is refused by its Host header, one that sends a form or script by its Origin and type.
+Nothing is fetched from elsewhere, and the page may not be framed.
 """
 
 import socket

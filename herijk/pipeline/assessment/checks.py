@@ -5,9 +5,9 @@ brackets is "inferred" where the texts ask for the check but give no number.
 
 Severity says what a check asks of people. `refuse`: the tow gives nothing to register. `look`:
 somebody must decide, as the curve may be wrong, or rest on a boat that is not what the papers say;
-of sound tows one in twenty at most gets there. `note`: worth knowing when someone looks, because
-most sound tows of some season exceed it (log 2, the scatter at 1000 Hz), because the method already
-acted on it (runs that do not count) or because it is a property of how the curve may be used.
+of sound tows one in twenty at most gets there. `note`: worth knowing when someone looks. Most sound
+tows of some season exceed it (log 2, the scatter at 1000 Hz), or the method already acted on it
+(runs that do not count), or it is a property of how the curve may be used.
 """
 
 from collections.abc import Mapping

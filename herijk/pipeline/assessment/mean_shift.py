@@ -1,7 +1,7 @@
 """Mean-shift outliers: groups of observations that all the others rule out.
 
 Observations are Gaussian with known variances: independent noise and random effects. The shift of a
-group in a given direction g is estimated from all the rest: with P the inverse of the covariance of
+group in a given direction g is estimated from all the rest. With P the inverse of the covariance of
 y, it is g'Py / g'Pg, with variance 1 / g'Pg (Cook & Weisberg 1982, Residuals and Influence in
 Regression, 2.2.2). The clearest shift is taken out, which makes it a fixed effect, and the rest is
 judged again. What is observed and what may shift is said elsewhere.

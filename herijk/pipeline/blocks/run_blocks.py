@@ -1,7 +1,7 @@
 """Blocks: sums over each second of a run, from which every method can be computed.
 
 Every formula of every method is linear in a few sums over samples, so a tow's samples are read
-once and added up per second (HOUSE, idea 1). Means over any window that starts on a second are
+once and added up per second (decision 1). Means over any window that starts on a second are
 then exactly those over the samples. What belongs here: which sums there are and how they are
 stacked. What does not: making them (`pipeline.blocks.sums`), nor any choice of a method (which log,
 which window, which coefficient).

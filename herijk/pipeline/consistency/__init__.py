@@ -17,6 +17,7 @@ from herijk.pipeline.consistency.eras import ERAS, Era, era_shifts
 from herijk.pipeline.consistency.homogeneity import pooled_curves, type_homogeneity
 from herijk.pipeline.consistency.lines import (
     newest_lines,
+    tow_outliers,
     type_consistency,
     type_lines,
     type_outliers,
@@ -42,6 +43,7 @@ __all__ = [
     "reproducibility",
     "slow_tows",
     "speed_trend",
+    "tow_outliers",
     "type_consistency",
     "type_homogeneity",
     "type_lines",

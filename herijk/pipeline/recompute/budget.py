@@ -38,7 +38,7 @@ MOST_BENT: Final = 0.9
 """r beyond which a curve tells nothing."""
 
 USUAL_BEND: Final = 0.4
-"""q where the archive is not asked for it (research, method.md 0.7: r of 0.3)."""
+"""q where the archive is not asked for it (inferred: r of 0.3)."""
 
 
 def scatter_of(o: Outcome, pooled: bool) -> curve.Scatter:

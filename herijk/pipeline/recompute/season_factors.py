@@ -215,10 +215,10 @@ def _gps_ratio(o: Outcome) -> tuple[FloatArray, FloatArray, np.ndarray]:
 def _with_kappa(rows: pl.DataFrame) -> pl.DataFrame:
     """Adds `kappa`, the elasticity of the line's true curve, from the bend of its anchored tows.
 
-    One tow's bend is uncertain, boats of a type differ: the mean of a line's own anchored tows is
-    drawn towards its type (the fleet, where that has few) as far as its uncertainty is large
-    against the spread between boats. Without this the difference between boats, times a log error
-    of 5 %, passes for scatter of the log between tows.
+    One tow's bend is uncertain, and boats of a type differ. So the mean of a line's own anchored
+    tows is drawn towards its type (the fleet, where that has few) as far as its uncertainty is
+    large against the spread between boats. Without this the difference between boats, times a log
+    error of 5 %, passes for scatter of the log between tows.
     """
     anchored = rows.filter("anchored")
     trusted = anchored if anchored.height else rows

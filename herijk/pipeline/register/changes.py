@@ -23,7 +23,7 @@ from herijk.tables.register import Register
 from herijk.tables.studies import CorrectionSteps
 
 SAME_RATIO: Final = 5e-4
-"""A difference up to 0.05 % counts as the same (research, method.md T21)."""
+"""A difference up to 0.05 % counts as the same (docs/method.md, 11; inferred)."""
 
 NO_FACTOR: Final = SAME_SHARE
 """A factor this near to 1 is rounding and is not listed as a cause."""
@@ -114,10 +114,10 @@ def side_by_side(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
 
     Returns:
         Per line with a curve in either: tow, A, B, Cw, declared speed and rank in both; the power
-        a rower at the old declared speed; the seconds that the new register gives in a two-hour
-        race (more time for the same power counts as gain); and whether the change is larger than
-        the 95 % intervals of both, null where an interval is not known. The rank is among all
-        boats of the class with a curve: 1 is the fastest at equal power per rower.
+        per rower at the old declared speed. Also the seconds that the new register gives in a
+        two-hour race (more time for the same power counts as gain), and whether the change is
+        larger than the 95 % intervals of both, null where an interval is not known. The rank is
+        among all boats of the class with a curve: 1 is the fastest at equal power per rower.
     """
     pairs = _pairs(_ranked(old), _ranked(new))
     cw_ratio, time_ratio = _ratios(pairs)

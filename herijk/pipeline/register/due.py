@@ -44,9 +44,9 @@ def due_list(
 ) -> pl.DataFrame:
     """Every boat and crew with the day its tow expires and the speed of its next tow.
 
-    The speed that the crew will declare is taken to be that of its last tow. It is kept where it
-    is realistic; brought down to the upper end where it takes more power; and where it takes less,
-    brought up to what the crew really rowed in the past year, if that was faster, but not beyond
+    The speed that the crew will declare is taken to be that of its last tow. It is kept where it is
+    realistic, and brought down to the upper end where it takes more power. Where it takes less it
+    is brought up to what the crew really rowed in the past year, if that was faster, but not beyond
     the upper end. A low speed that was really rowed stands, if the crew expects no more. Without a
     race nobody can tell: the lower end is proposed. A boat without a curve gets the middle of like
     boats. That a boat was altered since is a reason to depart from this, which no list knows.

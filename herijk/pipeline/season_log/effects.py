@@ -8,8 +8,8 @@ speed and its bend q = r / (1 - r) into
 
     ln Cw + 2 lambda - ln m,    q y^2 / m,    m = 1 - q (y^2 - 1)
 
-A load cell that reads exp(phi) times the force adds phi to ln Cw and leaves q; one whose zero is
-off by the share g of the force adds g to ln Cw and -(1 + q) g to the bend (method.md 8.2).
+A load cell that reads exp(phi) times the force adds phi to ln Cw and leaves q. One whose zero is
+off by the share g of the force adds g to ln Cw and -(1 + q) g to the bend (docs/method.md, 4).
 """
 
 from collections.abc import Iterator
@@ -184,13 +184,11 @@ def rectification(network: Network, settings: Settings) -> FloatArray:
 
 def ln_size(network: Network, column: str) -> FloatArray:
     """Ln of a size less its mean over the boat's tows, 0 for boats where a tow has none."""
-    size, boat = network.numbers(column), network.boat
+    size = network.numbers(column)
     known = size > 0
     ln = np.log(np.where(known, size, 1.0))
-    boats = int(boat.max(initial=-1)) + 1
-    count = np.maximum(np.bincount(boat, minlength=boats), 1)
-    usable = (np.bincount(boat, ~known, minlength=boats) == 0)[boat]
-    return np.where(usable, ln - (np.bincount(boat, ln, boats) / count)[boat], 0.0)
+    usable = network.boat_mean((~known).astype(np.float64)) == 0.0
+    return np.where(usable, ln - network.boat_mean(ln), 0.0)
 
 
 @dataclass(frozen=True)

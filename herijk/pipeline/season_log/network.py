@@ -86,6 +86,12 @@ class Network:
                 lost[cluster] = self.determined & (component != 0)
         return lost
 
+    def boat_mean(self, values: FloatArray) -> FloatArray:
+        """Mean over the boat's tows, for each tow."""
+        boats = int(self.boat.max(initial=-1)) + 1
+        count = np.maximum(np.bincount(self.boat, minlength=boats), 1)
+        return np.asarray((np.bincount(self.boat, values, boats) / count)[self.boat])
+
     def numbers(self, column: str) -> FloatArray:
         """A column as float64, NaN where null, shape (tows,)."""
         return self.tows[column].cast(pl.Float64).fill_null(np.nan).to_numpy()

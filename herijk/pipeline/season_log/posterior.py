@@ -2,8 +2,8 @@
 
 Given the alterations and faults the model is linear and Gaussian. The unknowns and the variances
 are searched by scoring (REML: Patterson & Thompson 1971; variances with log-normal priors), the
-posterior is Laplace's about the mode. A fault joins or leaves the model by its odds, one at a time;
-the answer is averaged over the best model and all that differ from it by one fault more, one less,
+posterior is Laplace's about the mode. A fault joins or leaves the model by its odds, one at a time.
+The answer is averaged over the best model and all that differ from it by one fault more, one less,
 or one for another (Bayesian model averaging in Occam's window: Madigan & Raftery 1994).
 """
 
@@ -16,7 +16,14 @@ import scipy
 from herijk.pipeline.arrays import FloatArray, IntArray
 from herijk.pipeline.choice import first_largest
 from herijk.pipeline.season_log.assumed import Settings
-from herijk.pipeline.season_log.effects import WAYS, Slopes, Unknown, slopes, unknowns_of
+from herijk.pipeline.season_log.effects import (
+    WAYS,
+    Slopes,
+    Unknown,
+    rectification,
+    slopes,
+    unknowns_of,
+)
 from herijk.pipeline.season_log.likelihood import GPS, Patterns, Told, patterns_of, tell
 from herijk.pipeline.season_log.network import Network
 
@@ -74,9 +81,8 @@ class Problem:
     def of(cls, network: Network, settings: Settings) -> "Problem":
         """The problem that a network poses."""
         level, gps = network.numbers("ln_cw"), network.numbers("gps_ln_ratio")
-        mean = _boat_mean(level, network.boat)
+        mean = network.boat_mean(level)
         has_gps = np.isfinite(gps) & (network.group >= 0)
-        excess = 0.25 * (settings.gps_noise_m_s / network.numbers("declared_speed_m_s")) ** 2
         cov = network.numbers("ln_cw_q_cov")
         given = np.zeros((len(level), 3, 3))
         given[:, 0, 0], given[:, 1, 1] = (network.numbers(n) ** 2 for n in ("ln_cw_sd", "q_sd"))
@@ -93,14 +99,14 @@ class Problem:
                 [
                     level - mean,
                     network.numbers("q"),
-                    np.where(has_gps, gps - excess, 0.0),
+                    np.where(has_gps, gps - rectification(network, settings), 0.0),
                 ],
                 axis=1,
             ),
             given,
             absent,
             mean,
-            _boat_mean(0.5 * network.numbers("kappa") - 1.0, network.boat),
+            network.boat_mean(0.5 * network.numbers("kappa") - 1.0),
             np.exp(level) * network.numbers("declared_speed_m_s") ** 2,
             unknowns,
             np.stack([u.share for u in unknowns], axis=1),
@@ -135,13 +141,6 @@ class Problem:
         """Slopes of the numbers by some unknowns, (n, 3, chosen)."""
         by = np.stack([tangent.ways[WAYS[self.unknowns[i].name]] for i in chosen], axis=2)
         return np.asarray(by * self.share[:, None, chosen])
-
-
-def _boat_mean(values: FloatArray, boat: IntArray) -> FloatArray:
-    """Mean over the boat's tows, for each tow."""
-    boats = int(boat.max(initial=-1)) + 1
-    count = np.maximum(np.bincount(boat, minlength=boats), 1)
-    return np.asarray((np.bincount(boat, values, boats) / count)[boat])
 
 
 @dataclass(frozen=True)

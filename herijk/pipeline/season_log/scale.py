@@ -14,9 +14,9 @@ LEAST_MARGIN: Final = 0.05
 def scale_effect(ln_factor: ArrayLike, r: ArrayLike) -> tuple[FloatArray, FloatArray]:
     """What a log that reads low does to ln Cw at a fixed speed, and its slope.
 
-    A log that must be multiplied by y = exp(ln factor) gives A y^2 and B / y, so that ln Cw at the
-    speed where (v/B)^2 = r is too high by 2 ln y - ln((1 - r y^2) / (1 - r)), about kappa ln y
-    with kappa = 2 / (1 - r) (research, method.md 0.1, 0.2).
+    A log that must be multiplied by y = exp(ln factor) gives A y^2 and B / y. So ln Cw at the speed
+    where (v/B)^2 = r is too high by 2 ln y - ln((1 - r y^2) / (1 - r)), about kappa ln y with kappa
+    = 2 / (1 - r).
     """
     y2 = np.exp(2.0 * np.asarray(ln_factor, dtype=np.float64))
     bend = np.asarray(r, dtype=np.float64)

@@ -1,7 +1,7 @@
 """The second estimate: season factors by what boats are, not by which they are.
 
 It shares no assumption with the joint estimate about boats that stay as they were, so that their
-agreement is a test of it (research, method.md 9.6).
+agreement is a test of it (docs/method.md, 4).
 """
 
 from dataclasses import dataclass

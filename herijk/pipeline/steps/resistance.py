@@ -145,7 +145,7 @@ def _inertia(
 ) -> FloatArray:
     """Part of F / v^2 that accelerates boat, crew and water: m_eff a / v^2.
 
-    m_eff = (boat + crew) (1 + added mass); source: research, method.md 6.5. 0 where no weight is
+    m_eff = (boat + crew) (1 + added mass); source: docs/method.md, 6. 0 where no weight is
     known.
     """
     if rule.inertia == "none":

@@ -1,7 +1,7 @@
 """The steady window of a run: which seconds count (the Dutch texts call it "knippen").
 
 Only the start and the end of a run may be cut, because speed rose or fell, the force shows an
-unexplained peak (steering) or a gust passed; what remains begins and ends at equal speed, equal
+unexplained peak (steering) or a gust passed. What remains begins and ends at equal speed, equal
 force and about equal wind and lasts at least 30 s (Sleepproef, R. Pot 2017, "Knippen"). With blocks
 of a second there are so few windows that all of them are tried, longest first: the rule, not a
 hand, decides. A window within the three limits goes before every other. Where there is none, speed
@@ -25,7 +25,7 @@ WORTH_DECIMALS: Final = 6
 summing cost the same."""
 
 END_SECONDS: Final = 5
-"""Length of the two ends that are compared, s (research, method.md 6.4)."""
+"""Length of the two ends that are compared, s (docs/method.md, 2)."""
 
 BLOCK_PRICE_S: Final = 10.0
 """What a peak or gust inside a window costs, in seconds of its length, for each block and each

@@ -1,11 +1,12 @@
 """The sensitivity study: how much do choices matter that are a matter of judgement.
 
-A full factorial over options that a careful person could choose either way, on top of a method, as
-the 2015 presentation did by hand for one boat. Options that are known to be wrong (searching wind
-coefficients run by run) are history, not a vote, and take no part.
+A full factorial over options that a careful person could choose either way, on top of a method.
+Options that are known to be wrong (searching wind coefficients run by run) are history, not a vote,
+and take no part: they belong to the options of the tool of 2015 (`tool_options`).
 """
 
 import itertools
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -34,6 +35,12 @@ class Choice:
         """As written in a method file."""
         return f"{self.step}.{self.option}"
 
+    def applies(self, steps: Steps) -> bool:
+        """Whether it can matter: multiply or divide asks for a percentage to do it with."""
+        return self.name != OPERATION or steps.speed.correction == "prescribed"
+
+
+OPERATION: Final = "speed.operation"
 
 CHOICES: Final = (
     Choice("window", "force_ends_ratio", (0.1, 0.05)),
@@ -58,29 +65,31 @@ def option_effects(
             `tow_instruments`.
 
     Returns:
-        Sorted rows per tow and option: `tow_id`, `option`, `cw_effect_ratio` and `b_effect_ratio`
-        (second value / first value, mean over all combinations of the others; null where no
-        combination gives the number), `cw_sd_ratio` and `b_sd_ratio` (standard deviation over all
-        combinations, relative; only in the row `all`).
+        Sorted rows per tow and option that can matter to it: `tow_id`, `option`, `cw_effect_ratio`
+        and `b_effect_ratio` (second value / first value, mean over all combinations of the others;
+        null where no combination gives the number), `cw_sd_ratio` and `b_sd_ratio` (standard
+        deviation over all combinations, relative; only in the row `all`).
     """
     pairs = batches([method], tows, blocks)
+    choices = [c for c in CHOICES if any(c.applies(steps) for _, (steps,) in pairs)]
     cache = RunCache()
     factors = links
     if factors is None:
         factors = log_factors([(batch, steps) for batch, (steps,) in pairs], cache)
-    cw, slope, corners = [], [], list(itertools.product((0, 1), repeat=len(CHOICES)))
+    cw, slope, corners = [], [], list(itertools.product((0, 1), repeat=len(choices)))
     for corner in corners:
-        outcomes = evaluate([(b, _chosen(steps, corner)) for b, (steps,) in pairs], cache, factors)
+        sides = {c: c.values[side] for c, side in zip(choices, corner, strict=True)}
+        outcomes = evaluate([(b, chosen(steps, sides)) for b, (steps,) in pairs], cache, factors)
         cw.append(np.concatenate([np.log(o.cw_at_declared) for o in outcomes]))
         slope.append(np.concatenate([_ln_b(o.curves.b_m_s) for o in outcomes]))
     tow_ids = pl.concat([batch.tows["tow_id"] for batch, _ in pairs])
     ln_cw, ln_b, signs = np.stack(cw), np.stack(slope), 2 * np.array(corners) - 1
-    frames = [
-        _frame(tow_ids, choice.name, _effect(ln_cw, signs[:, i]), _effect(ln_b, signs[:, i]))
-        for i, choice in enumerate(CHOICES)
-    ]
-    spread = _frame(tow_ids, ALL_OPTIONS, None, None, _spread(ln_cw), _spread(ln_b))
-    return pl.concat([*frames, spread]).sort("tow_id", "option")
+    frames = [_frame(tow_ids, ALL_OPTIONS, None, None, _spread(ln_cw), _spread(ln_b))]
+    for i, choice in enumerate(choices):
+        can = np.concatenate([np.full(b.size, choice.applies(steps)) for b, (steps,) in pairs])
+        effects = _effect(ln_cw, signs[:, i]), _effect(ln_b, signs[:, i])
+        frames.append(_frame(tow_ids, choice.name, *effects).filter(can))
+    return pl.concat(frames).sort("tow_id", "option")
 
 
 def beside_uncertainty(effects: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
@@ -104,9 +113,10 @@ def beside_uncertainty(effects: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFr
     return effects.join(curves.select("tow_id", **half), on="tow_id", how="left")
 
 
-def _chosen(steps: Steps, corner: tuple[int, ...]) -> Steps:
-    for choice, side in zip(CHOICES, corner, strict=True):
-        step = getattr(steps, choice.step).model_copy(update={choice.option: choice.values[side]})
+def chosen(steps: Steps, sides: Mapping[Choice, Any]) -> Steps:
+    """The steps of a season with a value for each choice."""
+    for choice, value in sides.items():
+        step = getattr(steps, choice.step).model_copy(update={choice.option: value})
         steps = steps.model_copy(update={choice.step: step})
     return steps
 

@@ -60,19 +60,19 @@ def season_ladder(steps: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
 
 
 def option_summary(effects: pl.DataFrame) -> pl.DataFrame:
-    """How much each option of judgement moves Cw: median and the middle 90 % of tows.
+    """How much each option moves Cw: median and the middle 90 % of tows.
 
     Args:
         effects: rows of `option_effects`.
 
     Returns:
-        `method, option, tows, median_ratio, lo_ratio, hi_ratio`.
+        `method, study, option, tows, median_ratio, lo_ratio, hi_ratio`.
     """
     ratio = pl.col("cw_effect_ratio")
     lo, hi = (ratio.quantile(q, "linear") for q in MIDDLE)
     return (
         effects.drop_nulls("cw_effect_ratio")
-        .group_by("method", "option")
+        .group_by("method", "study", "option")
         .agg(
             pl.len().alias("tows"),
             ratio.median().alias("median_ratio"),

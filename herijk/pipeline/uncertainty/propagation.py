@@ -59,7 +59,7 @@ def run_point_uncertainty(
     50,000 samples are not 50,000 measurements: the variance of a mean is that of the noise at
     frequency zero over its length. One run is too short for its own autocovariance, so that of
     its 1-s blocks is pooled over the season's runs, with the bias by each run's own mean taken
-    out (research, method.md 6.1, 6.2).
+    out (docs/method.md, 9).
 
     Args:
         blocks: the runs.
@@ -116,7 +116,7 @@ def residual_scatter(
 ) -> tuple[FloatArray, FloatArray]:
     """Relative scatter of run points about their curves, pooled over each season's tows.
 
-    Four degrees of freedom per tow are too few for its own (research, method.md 4.4). This is the
+    Four degrees of freedom per tow are too few for its own (docs/method.md, 9). This is the
     check on `run_point_uncertainty`: it also has in it what differs from run to run.
 
     Args:
@@ -142,7 +142,7 @@ def residual_scatter(
 
 @dataclass(frozen=True)
 class Assumed:
-    """Standard uncertainties that the archive itself cannot show (research, method.md 8.4).
+    """Standard uncertainties that the archive itself cannot show (docs/method.md, 9).
 
     Attributes:
         calibration_speed_ratio: dGPS calibration of the speed of a tow.

@@ -14,6 +14,7 @@ from typing import Any, Final
 
 import polars as pl
 
+from herijk.pipeline.channels import FEWEST_RUNS, MOST_RUNS
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import ListedTows
@@ -166,9 +167,8 @@ def _in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Iterator[Fa
         done.add(key)
         try:
             samples = read_tow_samples(root, tow, index.profiles.for_season(tow["season"]))
-            rate = _other_rate(samples, tow, index)
-            yield from [rate] if rate else judge_samples(samples, tow, index.runs).faults
-            yield from _not_planned(samples["run"].unique().to_list(), tow, index)
+            other = _other_rate(samples, tow, index) or _other_plan(samples, tow, index)
+            yield from [other] if other else judge_samples(samples, tow, index.runs).faults
         except DefectiveInputError as error:
             yield fault_from(error, tow["samples_path"], tow["tow_id"])
     for file in list_sample_files(root, index.profiles.wording.files):
@@ -214,18 +214,28 @@ def _other_rate(samples: pl.DataFrame, tow: Mapping[str, Any], index: ArchiveInd
     return Fault(tow["samples_path"], tow["tow_id"], None, "short_run", said)
 
 
-def _not_planned(
-    present: Sequence[int], tow: Mapping[str, Any], index: ArchiveIndex
-) -> Iterator[Fault]:
-    planned = index.runs.filter(tow_id=tow["tow_id"])["run"].to_list()
-    beyond = sorted(set(present) - set(planned))
-    if beyond:
-        said = say(
-            "Runs {runs} are in the file but not in the plan, so they are not used; give their "
-            "targets and directions under [[plan]] in archief.toml.",
-            runs=", ".join(map(str, beyond)),
-        )
-        yield Fault(tow["samples_path"], None, None, "run_not_planned", said)
+def _other_plan(samples: pl.DataFrame, tow: Mapping[str, Any], index: ArchiveIndex) -> Fault | None:
+    """Return that the file has other runs than are planned, with what their targets can be."""
+    found = samples.group_by("run").agg(pl.col("log1_m_s").mean()).sort("run")
+    runs = index.runs.filter(tow_id=tow["tow_id"])
+    present = found["run"].to_list()
+    lacking = set(runs.filter("selected")["run"]) - set(present)
+    if tow["second_path"] or not (lacking or set(present) - set(runs["run"])):
+        return None
+    ratios = found["log1_m_s"] / tow["declared_speed_m_s"]
+    said = say(
+        "Runs {present} are in the file and runs {planned} are planned. Give the targets and "
+        "directions of all runs under [[plan]] in archief.toml.",
+        present=", ".join(map(str, present)),
+        planned=", ".join(map(str, runs["run"])),
+        targets=tuple(round(20 * ratio) / 20 for ratio in ratios) if is_plan(present) else (),
+    )
+    return Fault(tow["samples_path"], None, None, "run_not_planned", said)
+
+
+def is_plan(runs: Sequence[int]) -> bool:
+    """Whether these can be all the runs of a plan: 1, 2, 3 and on."""
+    return FEWEST_RUNS <= len(runs) <= MOST_RUNS and list(runs) == list(range(1, len(runs) + 1))
 
 
 def _grouped(seen: Iterable[tuple[Fault, Sequence[Proposal]]]) -> tuple[Cause, ...]:

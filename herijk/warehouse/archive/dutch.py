@@ -221,10 +221,10 @@ DUTCH: Final[dict[str, str]] = {
         "Nergens staat van welke run een rij is: er is geen kolom 'run', de tijd begint niet "
         "opnieuw, en het bestand is niet een van meer die op een nummer eindigen."
     ),
-    "Runs {runs} are in the file but not in the plan, so they are not used; give their targets "
-    "and directions under [[plan]] in archief.toml.": (
-        "Runs {runs} staan in het bestand maar niet in het plan en tellen dus niet; geef hun "
-        "doelsnelheden en richtingen onder [[plan]] in archief.toml."
+    "Runs {present} are in the file and runs {planned} are planned. Give the targets and "
+    "directions of all runs under [[plan]] in archief.toml.": (
+        "In het bestand staan runs {present} en gepland zijn runs {planned}. Geef de doelen en "
+        "richtingen van alle runs onder [[plan]] in archief.toml."
     ),
     "No row says which run it belongs to.": "Geen rij zegt bij welke run hij hoort.",
     "There are no samples in the file.": "Er staan geen metingen in het bestand.",

@@ -184,6 +184,8 @@ class ListRow:
         """Return the number in a cell and its scale: its own unit goes before the header's."""
         column = self.columns[key]
         own = _WITH_UNIT.fullmatch(cell)
+        if own and not UNITS[column.dimension] and _is_own_unit(key, column.dimension, own[2]):
+            cell, own = own[1], None
         scale = find_scale(column.dimension, own[2]) if own and UNITS[column.dimension] else None
         try:
             return parse_number(own[1] if own and scale else cell), scale or column.scale
@@ -453,25 +455,39 @@ def _meanings(
     return meanings(cells, free, partial(_can_stand, table))
 
 
-def _can_stand(table: type[dy.Schema], key: str, cell: str) -> bool:
-    """Return whether a cell can stand in a column, whatever its unit."""
-    if key in _LOOKS:
-        return _LOOKS[key](cell)
-    schema = table.columns().get(key)
+def _can_stand(table: type[dy.Schema], column: Column, cell: str) -> bool:
+    """Return whether a cell can stand in a column, whatever its limits in another unit."""
+    if column.key in _LOOKS:
+        return _LOOKS[column.key](cell)
+    schema = table.columns().get(column.key)
     if isinstance(schema, dy.Date):
         return bool(_LIKE_A_DATE.search(cell))
     if isinstance(schema, dy.Bool):
         return fold_word(cell) in YES | NO
-    if isinstance(schema, dy.Float64):
-        return _LIKE_A_NUMBER.match(cell) is not None
-    if isinstance(schema, dy.Int8 | dy.Int16 | dy.Int32 | dy.Int64):
-        lowest, highest = limits(table, key)
-        return cell.isdigit() and lowest <= int(cell[:9]) <= highest
+    if isinstance(schema, dy.Float64 | dy.Int8 | dy.Int16 | dy.Int32 | dy.Int64):
+        return _can_be_number(table, column, cell)
     return True
 
 
+def _can_be_number(table: type[dy.Schema], column: Column, cell: str) -> bool:
+    """Return whether a cell is a number with a unit of the column, a whole one where it must."""
+    match = _LIKE_A_NUMBER.fullmatch(cell)
+    if match is None or not (not match[2] or _is_own_unit(column.key, column.dimension, match[2])):
+        return False
+    if isinstance(table.columns()[column.key], dy.Float64):
+        return True
+    lowest, highest = limits(table, column.key)
+    return match[1].isdigit() and lowest <= int(match[1][:9]) <= highest
+
+
+def _is_own_unit(key: str, dimension: str, text: str) -> bool:
+    """Return whether a text behind a number is a unit, or says what is counted: `8 roeiers`."""
+    names = HEADERS.get(key, ()) if dimension == "none" else ()
+    return find_scale(dimension, text) is not None or fold(text) in map(fold, names)
+
+
 _LIKE_A_DATE: Final = re.compile(r"[0-9]{1,4}[-/. ]+([0-9]{1,2}|[^\W\d]{3,9})[-/. ]+[0-9]{2,4}")
-_LIKE_A_NUMBER: Final = re.compile(r"(?:ca\.?|~|±)?\s*[+-]?[0-9]+([.,][0-9]+)?\s*[^0-9]{0,8}$")
+_LIKE_A_NUMBER: Final = re.compile(r"([+-]?[0-9]+(?:[.,][0-9]+)?)\s*([^0-9\s].*)?")
 _LIKE_A_TIME: Final = re.compile(r"[0-9]{1,2}\s*[:.uhUH]\s*[0-9]{2}.*")
 _LIKE_RUNS: Final = re.compile(
     r"b?[0-9]{1,2}(\s*([,;+&\s.-]|en|and|und|t/m|tm|bis|to)\s*b?[0-9]{1,2}){2,}"

@@ -7,7 +7,7 @@ import difflib
 import re
 import unicodedata
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from herijk.warehouse.archive.text import Column, split_header
@@ -24,6 +24,7 @@ FITS: Final = 0.8
 
 _STOP_WORDS: Final = frozenset(
     {"de", "het", "een", "van", "der", "den", "the", "of", "a", "an", "das", "die", "dem"}
+    | {"wel", "niet"}
 )
 _BY_CONTENT: Final = frozenset({"use_runs"})
 """Columns that need not be there, and that are known by what stands in them."""
@@ -31,8 +32,8 @@ _DISTINCT: Final = frozenset({"tow_id", "file"})
 _SHORTEST_START: Final = 3
 """Letters of an abbreviation: `opm.` is `opmerking`."""
 
-Fits = Callable[[str, str], bool]
-"""Whether a cell (the second) can stand in a column, by its key (the first)."""
+Fits = Callable[[Column, str], bool]
+"""Whether a cell can stand in a column."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +70,7 @@ def meanings(
         (_by_name, free),
         (_by_content, by_content),
         (_by_unit, free),
+        (_by_name_alone, free),
     ):
         taken = {meaning.column for meaning in found.values()}
         left = {header: cells for header, cells in strange.items() if header not in found}
@@ -93,6 +95,14 @@ def _by_name(
             found[header] = Meaning(header, column)
             taken.add(column.key)
     return found
+
+
+def _by_name_alone(
+    strange: Mapping[str, Sequence[str]], free: Sequence[Column], _: Fits
+) -> dict[str, Meaning]:
+    """Return the headers that are like a name, whatever stands under them: only a person knows."""
+    named = _by_name(dict.fromkeys(strange, ()), free, lambda *_: True)
+    return {header: replace(meaning, is_sure=False) for header, meaning in named.items()}
 
 
 def _by_content(
@@ -135,7 +145,7 @@ def _may_hold(column: Column, header: str) -> bool:
 def _share(column: Column, cells: Sequence[str], fits: Fits) -> float:
     """Return the share of the cells that can stand in a column; 1 where all are empty."""
     filled = [cell for cell in cells if cell]
-    return sum(fits(column.key, cell) for cell in filled) / len(filled) if filled else 1.0
+    return sum(fits(column, cell) for cell in filled) / len(filled) if filled else 1.0
 
 
 def likeness(header: str, column: Column) -> float:

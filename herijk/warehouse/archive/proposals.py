@@ -4,6 +4,7 @@ A proposal is for a person to look at. One that would be a guess (is 1/3 in Janu
 written as a comment, with its choices.
 """
 
+import json
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
@@ -28,7 +29,7 @@ class Proposal:
     """One line for `archief.toml`.
 
     Attributes:
-        section: `words`, `headers`, `ignore`, `dates`, `files`, or `columns`, `absent`,
+        section: `words`, `headers`, `ignore`, `dates`, `files`, `plan`, or `columns`, `absent`,
             `sample_rate_hz` of a season.
         key: its key there; empty for `ignore` and `absent`.
         value: its value.
@@ -54,6 +55,9 @@ class Proposal:
     @property
     def line(self) -> str:
         """The line as it is in the file, its section first."""
+        if self.section == "plan":
+            plan = f"targets = {self.key}, directions = {self.value}"
+            return f'[[plan]] seasons = "{self.season}": {plan}'
         if self.section in {"ignore", "absent"}:
             body = f'{self.section} = ["{self.value}"]'
         elif self.section == "sample_rate_hz":
@@ -144,6 +148,17 @@ def _of_times(_: str, values: Any, season: int) -> Iterator[Proposal]:
         yield Proposal("sample_rate_hz", "", rate, season, is_active="planned" not in values)
 
 
+def _of_plan(_: str, values: Any, season: int) -> Iterator[Proposal]:
+    """Runs of another plan; equal neighbours go out and back, otherwise the first half goes out."""
+    targets = values.get("targets", ())
+    if not season or not targets:
+        return
+    half = (len(targets) + 1) // 2
+    in_pairs = targets[::2] == targets[1::2]
+    ways = ["back" if (i % 2 if in_pairs else i >= half) else "out" for i in range(len(targets))]
+    yield Proposal("plan", json.dumps(list(targets)), json.dumps(ways), season, is_active=False)
+
+
 def _of_stranger(path: str, values: Any, _: int) -> Iterator[Proposal]:
     """A file or folder of another name: what it can be, else to be ignored."""
     for file, stands_for in values.get("can_be", ()):
@@ -193,6 +208,7 @@ _RULES: Final = {
     "ambiguous_date": _of_date,
     "bad_time": _of_times,
     "short_run": _of_times,
+    "run_not_planned": _of_plan,
     "unrecognised_file": _of_stranger,
     "bad_list_row": _of_value,
     "bad_boat_row": _of_value,
@@ -207,11 +223,27 @@ def merged(text: str, proposals: Iterable[Proposal]) -> str:
     for proposal in proposals:
         if proposal.section == "ignore":
             _add(document, "ignore", proposal.value)
+        elif proposal.section == "plan":
+            _add_plan(document, proposal)
         elif proposal.season:
             _in_profile(document, proposal)
         else:
             _in_section(document, proposal)
     return str(tomlkit.dumps(document))
+
+
+def _add_plan(document: Any, proposal: Proposal) -> None:
+    lines = (
+        "[[plan]]",
+        f'seasons = "{proposal.season}"',
+        f"targets = {proposal.key}",
+        f"directions = {proposal.value}",
+    )
+    if proposal.is_active:
+        document.setdefault("plan", tomlkit.aot()).append(tomlkit.parse("\n".join(lines[1:])))
+        return
+    for line in lines:
+        document.add(tomlkit.comment(line))
 
 
 def _in_section(document: Any, proposal: Proposal) -> None:

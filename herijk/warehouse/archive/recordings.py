@@ -117,7 +117,7 @@ def read_tdms(path: Path, max_bytes: int) -> pl.DataFrame:
     try:
         if path.stat().st_size > max_bytes:
             raise ValueError(f"larger than {max_bytes} bytes")
-        with nptdms.TdmsFile.open(path) as file:
+        with path.open("rb") as raw, nptdms.TdmsFile.open(raw) as file:
             groups = [group for group in file.groups() if group.channels()]
             frames = [_group(group, place) for place, group in enumerate(groups, start=1)]
     except DefectiveInputError:

@@ -166,16 +166,22 @@ def split_header(cell: str) -> tuple[str, str | None]:
     """
     cell = cell.strip()
     groups = list(_BRACKETS.finditer(cell))
-    units = [group for group in groups if is_any_unit(group[1] or group[2] or "")]
+    units = [group for group in groups if is_any_unit(_last_part(group)[1])]
     square = [group for group in groups if group[1] is not None]
     for group in units or square[-1:]:
-        name = cell[: group.start()] + cell[group.end() :]
-        return fold(name), (group[1] or group[2] or "").strip()
+        more, unit = _last_part(group)
+        return fold(cell[: group.start()] + more + cell[group.end() :]), unit
     behind = _UNIT_BEHIND.match(cell)
     unit = behind[2].replace("m_s", "m/s") if behind else ""
     if behind and is_unit(unit) and unit.casefold() not in _NO_UNIT_BEHIND:
         return fold(behind[1]), unit
     return fold(cell), None
+
+
+def _last_part(group: re.Match[str]) -> tuple[str, str]:
+    """Return what stands in brackets before the last comma, and behind it: `(richting, graden)`."""
+    more, _, unit = (group[1] or group[2] or "").rpartition(",")
+    return more, unit.strip()
 
 
 def with_units(header: Sequence[str], below: Sequence[str]) -> list[str] | None:

@@ -24,7 +24,7 @@ HEADERS: Final[Mapping[str, tuple[str, ...]]] = {
                   "weight", "weight before", "boat weight", "gewicht boot", "hull weight",
                   "massa", "mass", "hull mass", "bootsgewicht"),
     "rowers": ("aantal roeiers", "roeier", "riemen", "aantal riemen", "n roeiers", "rowers",
-               "crew size", "oars", "ruderer"),
+               "crew size", "oars", "ruderer", "roeiers", "personen", "pers", "man"),
     "crew_class": ("class", "crew class", "categorie", "category", "kategorie", "geslacht",
                    "gender", "sex", "geschlecht", "h/d", "m/v", "m/w"),
     "tow_id": ("sleep", "sleepnummer", "sleepnr", "sleep nummer", "proef", "proefnummer", "proefnr",
@@ -38,7 +38,8 @@ HEADERS: Final[Mapping[str, tuple[str, ...]]] = {
     "declared_speed_m_s": ("opgegeven snelheid", "snelheid", "opgegeven roeisnelheid", "v0",
                            "declared speed", "rowing speed", "rudergeschwindigkeit"),
     "weight_after_kg": ("gewicht na afloop", "gewicht achteraf", "weight after"),
-    "crew_weight_kg": ("gewicht bemanning", "bemanningsgewicht", "gewicht ploeg", "crew weight",
+    "crew_weight_kg": ("gewicht bemanning", "bemanningsgewicht", "gewicht ploeg", "ploeggewicht",
+                       "crew weight",
                        "crew", "mannschaft"),
     "water_temperature_c": ("temperatuur", "temperatuur water", "temp", "water temp", "watertemp",
                             "water temperature", "temperature", "wassertemperatur"),
@@ -96,6 +97,6 @@ CLASSES: Final[Mapping[str, str]] = {
     "damen": "D", "frauen": "D", "female": "D",
 }  # fmt: skip
 
-YES: Final = frozenset({"ja", "j", "yes", "y", "x", "✓", "✔", "waar", "true", "wahr", "1"})
-NO: Final = frozenset({"nee", "n", "neen", "no", "nein", "onwaar", "false", "falsch", "0"})
+YES: Final = frozenset({"ja", "wel", "j", "yes", "y", "x", "✓", "✔", "waar", "true", "wahr", "1"})
+NO: Final = frozenset({"nee", "niet", "n", "neen", "no", "nein", "onwaar", "false", "falsch", "0"})
 ALL_RUNS: Final = frozenset({"alle", "allemaal", "all", "alles"})

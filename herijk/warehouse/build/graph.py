@@ -53,7 +53,7 @@ STUDIES: Final = Step(
     name="studies",
     says="finding what each step changes, and how much choices matter",
     inputs=(*RUNS, "tow_instruments", "curves"),
-    outputs=("correction_steps", "option_effects"),
+    outputs=("correction_steps", "option_effects", "option_curves"),
     compute=study_tables,
     checks=(
         Check("steps_multiply_to_the_total", "correction_steps", ladders_that_do_not_multiply),

@@ -8,7 +8,8 @@ import polars as pl
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.studies.ladder import ladder
 from herijk.pipeline.studies.options import beside_uncertainty, option_effects
-from herijk.tables.studies import CorrectionSteps, OptionEffects
+from herijk.pipeline.studies.tool_options import option_curves, tick_effects
+from herijk.tables.studies import CorrectionSteps, OptionCurves, OptionEffects
 from herijk.warehouse.build.method_tables import blocks_of
 
 if TYPE_CHECKING:
@@ -18,14 +19,23 @@ FIRST_PUBLISHED: Final = "as-published-2014"
 """Numbers of 2014 before they were recomputed: a ladder leads from them to the first method."""
 
 STUDIED_METHOD: Final = "rebased"
-"""The method whose options of judgement are studied."""
+"""The method of today, which is shown first."""
+
+JUDGED: Final = ("corrected-2013", "rebased-2015", STUDIED_METHOD)
+"""Methods whose options of judgement are studied; the historical ones multiply or divide."""
+
+TICKED: Final = ("corrected-2013", "rebased-2015")
+"""Methods under which the ticks of the tool of 2015 are crossed: before its proposals, and after.
+Without a speed correction the first is `as-published`."""
+
+JUDGEMENT, TOOL = "judgement", "tool"
 
 MOST_APART: Final = 1e-10
 """Rounding may make the factors of a ladder and its total so different."""
 
 
 def study_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
-    """The ladder from the first method to each other, and the study of judgement options."""
+    """The ladder from the first method to each other, and the studies of options."""
     blocks, tows, (first, *others) = blocks_of(inputs), inputs["tows"], inputs.methods
     links = {m.name: _of(m, inputs["tow_instruments"]) for m in inputs.methods}
     ladders = [
@@ -34,17 +44,30 @@ def study_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
         )
         for old, new in (_in_order(first, other) for other in others)
     ]
-    studied = [
-        beside_uncertainty(
-            option_effects(method, tows, blocks, links[method.name]),
-            _of(method, inputs["curves"]),
-        ).with_columns(pl.lit(method.name).alias("method"))
-        for method in inputs.methods
-        if method.name == STUDIED_METHOD
+    ticked = {
+        m: option_curves(m, tows, blocks, links[m.name]) for m in inputs.methods if m.name in TICKED
+    }
+    effects = [
+        *((m, TOOL, tick_effects(curves)) for m, curves in ticked.items()),
+        *(
+            (m, JUDGEMENT, option_effects(m, tows, blocks, links[m.name]))
+            for m in inputs.methods
+            if m.name in JUDGED
+        ),
     ]
+    found = [
+        beside_uncertainty(frame, _of(m, inputs["curves"])).with_columns(
+            pl.lit(m.name).alias("method"), pl.lit(study).alias("study")
+        )
+        for m, study, frame in effects
+    ]
+    curves = [frame.with_columns(pl.lit(m.name).alias("method")) for m, frame in ticked.items()]
     return {
         "correction_steps": pl.concat(ladders) if ladders else CorrectionSteps.create_empty(),
-        "option_effects": pl.concat(studied) if studied else OptionEffects.create_empty(),
+        "option_effects": (
+            pl.concat(found, how="diagonal") if found else OptionEffects.create_empty()
+        ),
+        "option_curves": pl.concat(curves) if curves else OptionCurves.create_empty(),
     }
 
 

@@ -1,9 +1,9 @@
 """The lake: samples and blocks of every tow, written once and named by content.
 
-An archive file that did not change is not read again: a tow's samples are named by the hashes of
-its files, the way to read them and the code that reads; its blocks by the samples and the code
-that adds them up. A fault found in the samples is remembered the same way. What the files look
-like is known to `warehouse.archive`; which sums there are, to `pipeline.blocks.run_blocks`.
+An archive file that did not change is not read again. A tow's samples are named by the hashes of
+its files, the way to read them and the code that reads; its blocks by the samples and the code that
+adds them up. A fault found in the samples is remembered the same way. What the files look like is
+known to `warehouse.archive`; which sums there are, to `pipeline.blocks.run_blocks`.
 """
 
 import dataclasses

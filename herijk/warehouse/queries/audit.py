@@ -13,6 +13,8 @@ import duckdb
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.queries.audit_types import TYPE, type_facts, types_page
+from herijk.warehouse.queries.boats import boats_named, plain, the_boat
+from herijk.warehouse.queries.chosen_tows import NEWEST, choose
 from herijk.warehouse.store.database import is_simulated, open_results, rows
 from herijk.warehouse.store.store import Store
 
@@ -22,13 +24,17 @@ TYPE_METHODS: Final = ("as-published", "rebased-2015", "rebased")
 """Methods on a type's page when none is asked for: before, by the rules of 2015, and now."""
 
 
-def audit(store: Store, names: Sequence[str], method: str | None = None) -> Report:
+def audit(
+    store: Store, names: Sequence[str], method: str | None = None, tows: str = NEWEST
+) -> Report:
     """The page of a boat, or of one or two types.
 
     Args:
         store: where the database lies.
-        names: an FSN number, or one or two names of types; case and blanks do not matter.
+        names: an FSN number or name of a boat, or one or two names of types; case, blanks and
+            accents do not matter.
         method: show this method only.
+        tows: over which tows a type's statistics are: see `chosen_tows`.
 
     Returns:
         A boat page or a page of types, with `about`: boat or types.
@@ -38,14 +44,15 @@ def audit(store: Store, names: Sequence[str], method: str | None = None) -> Repo
     """
     with open_results(store.database) as db:
         methods = _methods(db, method)
-        boats = _boats_named(db, names[0]) if len(names) == 1 else []
-        if boats:
-            page = {"about": "boat"} | _boat_page(db, boats[0], methods)
+        chosen = methods if method else _usual(methods)
+        boat = _boat_named(db, names[0]) if len(names) == 1 else None
+        choose(db, tows, methods if boat else chosen)
+        if boat:
+            page = {"about": "boat"} | _boat_page(db, boat, methods)
         else:
             types = list(dict.fromkeys(_type_named(db, name) for name in names))
-            chosen = methods if method else _usual(methods)
             page = {"about": "types"} | types_page(db, types, chosen)
-        return {"simulated": is_simulated(db)} | page
+        return {"simulated": is_simulated(db), "statistics_over": tows} | page
 
 
 def _methods(db: duckdb.DuckDBPyConnection, method: str | None) -> list[str]:
@@ -63,22 +70,27 @@ def _usual(methods: list[str]) -> list[str]:
     return [name for name in TYPE_METHODS if name in methods] or methods
 
 
-def _plain(name: str) -> str:
-    return "".join(name.split()).casefold()
+def _boat_named(db: duckdb.DuckDBPyConnection, name: str) -> Report | None:
+    """The boat of that number or name; a type goes before a boat of the same name."""
+    boats = db.sql("SELECT * FROM boats").pl()
+    if not boats_named(boats, name) or _is_type(db, name):
+        return None
+    return rows(db, "SELECT * FROM boats WHERE fsn_no = ?", the_boat(boats, name))[0]
 
 
-def _boats_named(db: duckdb.DuckDBPyConnection, name: str) -> list[Report]:
-    boats = rows(db, "SELECT * FROM boats ORDER BY fsn_no")
-    return [boat for boat in boats if _plain(boat["fsn_no"]) == _plain(name)]
+def _is_type(db: duckdb.DuckDBPyConnection, name: str) -> bool:
+    types = rows(db, "SELECT DISTINCT boat_type FROM boats WHERE boat_type IS NOT NULL")
+    return any(plain(row["boat_type"]) == plain(name) for row in types)
 
 
 def _type_named(db: duckdb.DuckDBPyConnection, name: str) -> str:
     query = f"SELECT {TYPE} AS boat_type, count(*) AS n FROM boats AS b GROUP BY ALL ORDER BY ALL"  # noqa: S608
     types = rows(db, query)
     for row in types:
-        if _plain(row["boat_type"]) == _plain(name):
+        if plain(row["boat_type"]) == plain(name):
             return str(row["boat_type"])
-    for boat in _boats_named(db, name):
+    boat = _boat_named(db, name)
+    if boat:
         raise MissingKnowledgeError(
             f"{boat['fsn_no']} is a boat, not a type; a boat has a page of its own: "
             f"herijk audit {boat['fsn_no']}"
@@ -87,7 +99,7 @@ def _type_named(db: duckdb.DuckDBPyConnection, name: str) -> str:
     known = ", ".join(f"{row['boat_type']} ({row['n']} boats)" for row in types)
     raise MissingKnowledgeError(
         f"there is no boat and no type {name!r}; the types are {known}; boats are named by FSN "
-        f"number, for example {example}"
+        f"number or name, for example {example}"
     )
 
 
@@ -107,6 +119,7 @@ def _boat_page(db: duckdb.DuckDBPyConnection, boat: Report, methods: list[str]) 
         "slow_tows": _of_boat(db, "slow_tows", fsn_no, methods),
         "repeat_pairs": _of_boat(db, "repeat_pairs", fsn_no, methods),
         "predicted": _of_boat(db, "predicted_cw", fsn_no, methods),
+        "options": rows(db, _OPTIONS, fsn_no, methods),
         "register": _of_boat(db, "register", fsn_no, methods),
         "set_aside": rows(db, _SET_ASIDE, fsn_no, boat["name"]),
     }
@@ -141,6 +154,12 @@ _RUN_POINTS = "SELECT * FROM run_points WHERE tow_id = ? AND method = ? ORDER BY
 _BUDGET = """
 SELECT component, shared, u_ratio, dof FROM uncertainty_budget
 WHERE tow_id = ? AND method = ? ORDER BY u_ratio DESC, component
+"""
+
+_OPTIONS = """
+SELECT o.* FROM option_effects AS o JOIN tows AS t USING (tow_id)
+WHERE t.fsn_no = ? AND list_contains(?, method) AND cw_effect_ratio IS NOT NULL
+ORDER BY tow_id, method, study, abs(ln(cw_effect_ratio)) DESC, option
 """
 
 _STEPS = """

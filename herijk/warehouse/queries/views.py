@@ -122,6 +122,16 @@ class Views:
             ).pl()
         )
 
+    def option_curves(self, tow_id: str = "") -> pl.DataFrame:
+        """Curves under the tool's ticks, of one tow or of all, with boat and declared speed."""
+        return pl.DataFrame(
+            self._db.sql(
+                "SELECT o.*, t.fsn_no, t.declared_speed_m_s FROM option_curves AS o "
+                "JOIN tows AS t USING (tow_id) WHERE $1 IN ('', tow_id) ORDER BY ALL",
+                params=[tow_id],
+            ).pl()
+        )
+
     def shared_bends(self) -> pl.DataFrame:
         """B of every boat as it is, shared in part, and shared wholly with its type."""
         return self.frame(

@@ -97,7 +97,7 @@ def test_extra_runs_are_named_and_a_plan_takes_them(archive: Archive) -> None:
     archive.edit(FIRST, lambda t: t + "\n".join([*again, ""]))
     (cause,) = as_report(check_archive(archive.root), "en")["causes"]
     assert cause["reason_code"] == "run_not_planned"
-    assert "Runs 7, 8 " in cause["sentence"]
+    assert "Runs 1, 2, 3, 4, 5, 6, 7, 8 are in the file" in cause["sentence"]
     (archive.root / "archief.toml").write_text(
         '[[plan]]\ntows = ["2014-001"]\ntargets = [0.9, 1.0, 1.1, 0.9, 1.0, 1.1, 0.9, 0.9]\n'
         'directions = ["out", "out", "out", "back", "back", "back", "out", "back"]\n'

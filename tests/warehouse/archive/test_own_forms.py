@@ -129,7 +129,34 @@ def no_rate(archive: Archive) -> None:
     archive.edit(TOWS, lambda t: t.replace(";20;", ";;"))
 
 
-SETTLED = (other_names, other_headers, other_channels, no_rate)
+def cells_with_words(archive: Archive) -> None:
+    """What is counted or measured is behind the numbers, and headers are of few letters."""
+    for old, new in ((";roeiers;", ";Team;"), ("meetfrequentie [Hz]", "Meetfreq."),
+                     ("verbouwd", "Wel/niet verbouwd"), (";8;H;", ";8 roeiers;H;"),
+                     (";nee;20;", ";niet;20 Hz;"), (";ja;20;", ";wel;20;")):  # fmt: skip
+        archive.replace(TOWS, old, new)
+
+
+SETTLED = (other_names, other_headers, other_channels, no_rate, cells_with_words)
+
+
+def test_another_plan_is_proposed_and_asked(archive: Archive) -> None:
+    """90 out, 90 back, 100 out, 100 back."""
+    of = {"1": "1", "4": "2", "2": "3", "5": "4"}
+    for path in sorted((archive.root / "meetdata_2014").glob("*.csv")):
+        header, *lines = path.read_text("utf-8").splitlines()
+        kept = [f"{of[line[0]]}{line[1:]}" for line in lines if line[0] in of]
+        path.write_text("\n".join([header, *sorted(kept, key=lambda line: line[0]), ""]))
+    archive.edit(TOWS, lambda t: t.replace(";1,2,3,4,5,6;", ";;"))
+    checked = settled(archive)
+    (proposal,) = checked.causes[0].proposals
+    assert proposal.line == (
+        '[[plan]] seasons = "2014": targets = [0.9, 0.9, 1.0, 1.0], '
+        'directions = ["out", "back", "out", "back"]'
+    )
+    scan = archive.scan()
+    assert scan.faults == []
+    assert scan.index.runs.height == 12
 
 
 @pytest.mark.parametrize("form", SETTLED, ids=lambda form: form.__name__)
@@ -159,7 +186,10 @@ def test_faults_behind_a_fault_come_out_in_the_same_round(archive: Archive) -> N
         ("kracht_N", ("kracht", "N")), ("speed_m_s", ("speed", "m/s")),
         ("wind in kn", ("wind", "kn")),
         ("hull mass (lb)", ("hullmass", "lb")), ("meetfile b", ("meetfileb", None)),
-        ("log C", ("logc", None)), ("gewicht na kg", ("gewichtna", "kg")), ("h/d", ("hd", None)),
+        ("log C", ("logc", None)),
+        ("wind (richting, graden)", ("windrichting", "graden")),
+        ("gewicht na kg", ("gewichtna", "kg")),
+        ("h/d", ("hd", None)),
     ],
 )  # fmt: skip
 def test_a_unit_at_the_end_of_a_header(header: str, expected: tuple[str, str | None]) -> None:

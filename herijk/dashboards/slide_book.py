@@ -1,0 +1,389 @@
+"""The slide book: every chart of the presentation of 24 January 2015 over this archive.
+
+A slide is a figure with its rows, a title, and a sentence that says what it shows, made from the
+figures of the tables. Does not belong here: what a figure looks like (`dashboards.figures.slides`),
+the statistics behind a sentence (`pipeline.consistency`), and files (`dashboards.slides`).
+"""
+
+from collections.abc import Iterator, Sequence
+from typing import Any, Final, NamedTuple
+
+import polars as pl
+
+from herijk.dashboards.figures.slides import EXPLAINING, QUANTITIES
+from herijk.dashboards.slide_rows import (
+    RECOMPUTED_SEASON,
+    boats_of_slides,
+    by_tows,
+    compared_frame,
+    lines_frame,
+    methods_of,
+    pair_of_types,
+)
+from herijk.dashboards.words import Say
+from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.studies.tool_options import AS_READ, SPEEDS, TICKS
+from herijk.warehouse.queries.views import Views
+from herijk.warehouse.store.database import choice_of
+
+ALL_TOWS: Final = "all"
+
+CLEAR_R2: Final = 0.3
+"""From here on a line without a clear slope is not called "no link": too few boats tell."""
+
+
+class Slide(NamedTuple):
+    """A figure by name, its rows, and what is said above it."""
+
+    name: str
+    figure: str
+    rows: pl.DataFrame
+    title: str
+    sentence: str
+
+
+class Asked(NamedTuple):
+    """What the slides are about: types, those of the presentation when none; tows; boats."""
+
+    types: Sequence[str] = ()
+    tows: str = ALL_TOWS
+    boats: Sequence[str] = ()
+
+
+THE_PRESENTATION: Final = Asked()
+"""Its types, boats, and all tows."""
+
+
+def slides(views: Views, say: Say, asked: Asked = THE_PRESENTATION) -> Iterator[Slide]:
+    """Every slide of which the archive has something to show."""
+    about = Book(views, say)
+    types, tows = about.types(asked.types), about.tows(asked.tows)
+    for quantity in QUANTITIES:
+        for explaining in EXPLAINING:
+            yield about.against(quantity, explaining, types, tows)
+    if RECOMPUTED_SEASON in about.choices and tows == ALL_TOWS:
+        for explaining in ("weight", "speed"):
+            yield about.against("cw", explaining, types, RECOMPUTED_SEASON)
+    yield about.hull_speed()
+    yield about.towed_at()
+    yield from about.raced_beyond()
+    yield from about.eras()
+    for boat in boats_of_slides(views, about.compared, asked.boats):
+        yield from about.boat(boat)
+    yield from about.tick_effects()
+
+
+class Book:
+    """The slides of an archive in one language."""
+
+    def __init__(self, views: Views, say: Say) -> None:
+        self.views, self.say = views, say
+        self.compared = compared_frame(views)
+        self.lines = views.table("type_lines")
+        self.held = self.compared["method"].unique().to_list()
+        self.choices = self.lines["tows"].unique().to_list()
+
+    def types(self, wanted: Sequence[str]) -> list[str]:
+        """The types asked for, or those of the presentation."""
+        known = by_tows(self.compared)
+        found = []
+        for name in wanted:
+            like = [t for t in known if t.casefold().startswith(name.casefold())]
+            if not like:
+                raise MissingKnowledgeError(
+                    f"there is no type {name!r}; the types are {', '.join(sorted(known))}"
+                )
+            found.append(like[0])
+        return found or pair_of_types(self.compared)
+
+    def tows(self, wanted: str) -> str:
+        """The choice of tows, if there is such a one."""
+        if wanted not in self.choices:
+            raise MissingKnowledgeError(f"there are no tows {wanted!r}; {choice_of(self.choices)}")
+        return wanted
+
+    def ends(self, tows: str = ALL_TOWS) -> tuple[str, str]:
+        """The methods before and after all corrections."""
+        methods = methods_of(self.held, tows)
+        return methods[0], methods[-1]
+
+    def method(self, name: str) -> str:
+        """A method as people call it."""
+        return self.say(f"method.{name}")
+
+    def against(self, quantity: str, explaining: str, types: list[str], tows: str) -> Slide:
+        """A quantity against an explaining variable, of some types and tows."""
+        own = pl.col("boat_type").is_in(types)
+        own &= pl.col("method").is_in(methods_of(self.held, tows))
+        rows = pl.concat(
+            [
+                _of_choice(self.compared, tows).filter(own),
+                lines_frame(self.views).filter(own, tows=tows),
+            ],
+            how="diagonal_relaxed",
+        )
+        title = self.say(f"slide.{explaining}").format(
+            y=self.say(f"slide.{quantity}"), types=" / ".join(types)
+        )
+        if tows != ALL_TOWS:
+            words = self.say("newest_only") if tows == "newest" else tows
+            title += self.say("slide.of_season").format(tows=words)
+        said = [self._line(quantity, explaining, name, tows) for name in types]
+        name = f"{quantity} {explaining} {tows}"
+        sentence = " ".join(said) + self._outside(rows, tows)
+        return Slide(name, f"slide_{quantity}_{explaining}", rows, title, sentence)
+
+    def _line(self, quantity: str, explaining: str, boat_type: str, tows: str) -> str:
+        """What the line of a type says after all corrections, and its share before."""
+        own = self.lines.filter(
+            boat_type=boat_type,
+            tows=tows,
+            quantity=QUANTITIES[quantity][0],
+            explaining=EXPLAINING[explaining],
+        )
+        found = {row["method"]: row for row in own.iter_rows(named=True)}
+        before, after = (found.get(name) for name in self.ends(tows))
+        counted = self._counted(after)
+        if after is None or after["slope"] is None:
+            return self.say("slide.no_line").format(type=boat_type, counted=counted)
+        words = {
+            "y": self.say(f"slide.{quantity}"),
+            "x": self.say(f"slide.x.{explaining}"),
+        }
+        return self.say("slide.line").format(
+            type=boat_type,
+            verdict=self.say(f"slide.{_direction(after)}").format(**words),
+            before=self.method(self.ends(tows)[0]),
+            after=self.method(self.ends(tows)[1]),
+            r2_before=_share(before["r2"] if before else None),
+            r2_after=_share(after["r2"]),
+            counted=counted,
+        )
+
+    def _counted(self, line: dict[str, Any] | None) -> str:
+        """How many tows of how many boats."""
+        n, boats = (line["n"], line["n_boats"]) if line else (0, 0)
+        return self.say("slide.counted").format(
+            tows=self._number(n, "tow"), boats=self._number(boats, "boat")
+        )
+
+    def _number(self, n: int, what: str) -> str:
+        return self.say(f"slide.{'one' if n == 1 else 'many'}_{what}").format(n=n)
+
+    def _outside(self, rows: pl.DataFrame, tows: str) -> str:
+        """The tows outside their type after correction, by boat, crew and season."""
+        after = self.ends(tows)[1]
+        names = rows.filter(pl.col("outside"), method=after)["label"].to_list()
+        key = "slide.outside" if names else "slide.none_outside"
+        return " " + self.say(key).format(after=self.method(after), names=", ".join(names))
+
+    def hull_speed(self) -> Slide:
+        """B against length, and against hull speed."""
+        after = self.ends()[1]
+        row = self.views.table("hull_speed").filter(
+            method=self.ends()[1], tows=ALL_TOWS, boat_type=ALL_TOWS
+        )
+        found = row.row(0, named=True)
+        key = {None: "b_unknown", True: "b_is", False: "b_is_not"}[found["b_is_hull_speed"]]
+        sentence = self.say(f"slide.{key}").format(
+            after=self.method(after),
+            ratio=self._digits(found["b_ratio"]),
+            lo=self._digits(found["b_ratio_lo"]),
+            hi=self._digits(found["b_ratio_hi"]),
+            boats=self._number(found["n_boats"], "boat"),
+            share=_share(found["b_share_within_5pct"]),
+        )
+        known = self._compared_methods().filter(pl.col("boat_type") != UNKNOWN_TYPE)
+        return Slide(
+            "hull speed", "slide_hull_speed", known, self.say("slide.hull_speed"), sentence
+        )
+
+    def _compared_methods(self) -> pl.DataFrame:
+        return self.compared.filter(pl.col("method").is_in(methods_of(self.held)))
+
+    def towed_at(self) -> Slide:
+        """Tow speed as part of hull speed."""
+        row = self.views.table("hull_speed").filter(
+            method=self.ends()[1], tows=ALL_TOWS, boat_type=ALL_TOWS
+        )
+        found = row.row(0, named=True)
+        sentence = self.say("slide.towed").format(
+            ratio=_share(found["tow_ratio"]), share=_share(found["tow_share_60_70"])
+        )
+        rows = self.compared.filter(method=self.ends()[1]).with_columns(newest_method="method")
+        return Slide("towed at", "slide_towed_at", rows, self.say("slide.towed_at"), sentence)
+
+    def raced_beyond(self) -> Iterator[Slide]:
+        """Race power by curves that are used where they do not count."""
+        label = pl.format("{} {}{} {}", "name", "rowers", "crew_class", "season")
+        rows = self.views.slow_tows().with_columns(label.alias("label"))
+        rows = rows.filter(
+            pl.col("power_ratio_raced").is_not_null(),
+            pl.col("method").is_in(methods_of(self.held)),
+        )
+        after = rows.filter(method=self.ends()[1])
+        if after.is_empty():
+            return
+        both = after.filter(pl.col("raced_high") & (pl.col("power_w") < _low_power()))
+        sentence = self.say("slide.raced").format(
+            n=self._number(after.height, "tow"),
+            up=after.filter(pl.col("power_ratio_raced_lo") > 1).height,
+            down=after.filter(pl.col("power_ratio_raced_hi") < 1).height,
+            both=", ".join(both["label"]) or self.say("slide.no_tow"),
+        )
+        title = self.say("slide.raced_beyond")
+        yield Slide("raced beyond", "slide_raced_beyond", rows, title, sentence)
+
+    def eras(self) -> Iterator[Slide]:
+        """Seasons that stand apart, before and after."""
+        rows = self.views.table("era_shifts").filter(
+            pl.col("shift_ratio").is_not_null(),
+            pl.col("method").is_in(methods_of(self.held)),
+            boat_type=ALL_TOWS,
+        )
+        of = {(r["method"], r["era"]): r for r in rows.iter_rows(named=True)}
+        ends = self.ends()
+        said = [
+            self.say("slide.apart").format(
+                era=era, before=self._apart(of[ends[0], era]), after=self._apart(of[ends[1], era])
+            )
+            for era in rows["era"].unique().sort()
+            if all((name, era) in of for name in ends)
+        ]
+        if said:
+            yield Slide("eras", "eras", rows, self.say("slide.eras"), " ".join(said))
+
+    def _apart(self, row: dict[str, Any]) -> str:
+        """Whether an era's tows stand apart from the next of the same boats, and by how much."""
+        ends = sorted(1.0 / row[end] - 1.0 for end in ("shift_ratio", "lo", "hi"))
+        key = "slide.is_apart" if row["apart"] else "slide.not_apart"
+        return self.say(key).format(
+            method=self.method(row["method"]),
+            shift=_signed(1.0 / row["shift_ratio"] - 1.0),
+            lo=_signed(ends[0]),
+            hi=_signed(ends[-1]),
+        )
+
+    def boat(self, fsn_no: str) -> Iterator[Slide]:
+        """One boat over the years, and what the tool's ticks do to one of its tows."""
+        own = self._compared_methods().filter(fsn_no=fsn_no)
+        if own.is_empty():
+            return
+        name = own["name"][0]
+        common = own.select("method", "tow_id", "standard_speed_m_s")
+        rows = self.views.curve_points_of(fsn_no).join(common, on=["method", "tow_id"])
+        title = self.say("slide.boat_years").format(name=name)
+        yield Slide(f"years {name}", "slide_boat_years", rows, title, self._years(own))
+        yield from self._ticks(own.sort("season", "tow_id"))
+
+    def _ticks(self, own: pl.DataFrame) -> Iterator[Slide]:
+        """The tow of 2014, as on the slide, or the boat's newest."""
+        of_2014 = own.filter(season=int(RECOMPUTED_SEASON))
+        tow = (of_2014 if of_2014.height else own).row(-1, named=True)
+        rows = self.views.option_curves(tow["tow_id"]).filter(pl.col("method") == self._ticked())
+        if rows.is_empty():
+            return
+        effects = self.views.table("option_effects").filter(
+            method=self._ticked(), study="tool", tow_id=tow["tow_id"]
+        )
+        at_read = rows.filter(speed=AS_READ)["cw_kg_m"].to_numpy()
+        sentence = self.say("slide.ticks_said").format(
+            tow=tow["label"],
+            spread=_share(float(at_read.max() / at_read.min()) - 1.0),
+            n=len(at_read),
+            method=self.method(self._ticked()),
+            effects=self._effects(dict(effects.select("option", "cw_effect_ratio").rows())),
+        )
+        title = self.say("slide.ticks").format(tow=tow["label"])
+        yield Slide(f"ticks {tow['name']}", "slide_ticks", rows, title, sentence)
+
+    def _ticked(self) -> str:
+        """The method under which the ticks are shown: the last of those studied."""
+        held = self.views.table("option_summary").filter(study="tool")["method"].to_list()
+        return ([name for name in methods_of(self.held) if name in held] or [""])[-1]
+
+    def _effects(self, of: dict[str, float | None]) -> str:
+        """What ticks and speeds do to Cw, the largest first."""
+        known = {o: e - 1.0 for o, e in of.items() if e is not None and o in (*TICKS, *SPEEDS)}
+        largest = sorted(known, key=lambda option: -abs(known[option]))
+        return ", ".join(f"{self.say(f'code.{o}')} {self._signed_fine(known[o])}" for o in largest)
+
+    def tick_effects(self) -> Iterator[Slide]:
+        """What the ticks do to all boats."""
+        rows = self.views.table("option_summary").filter(study="tool")
+        own = rows.filter(method=self._ticked())
+        if own.is_empty():
+            return
+        sentence = self.say("slide.tick_effects_said").format(
+            method=self.method(self._ticked()),
+            tows=self._number(max(own["tows"].to_list()), "tow"),
+            effects=self._effects(dict(own.select("option", "median_ratio").rows())),
+        )
+        title = self.say("slide.tick_effects")
+        yield Slide("ticks fleet", "slide_tick_effects", rows, title, sentence)
+
+    def _years(self, own: pl.DataFrame) -> str:
+        """How far the tows of each crew lie apart at the common speed."""
+        before, after = self.ends()
+        cw = pl.col("cw_standard_kg_m")
+        crews = (
+            own.drop_nulls("cw_standard_kg_m")
+            .group_by("method", crew=pl.format("{}{}", "rowers", "crew_class"))
+            .agg(pl.len().alias("n"), (cw.max() / cw.min()).log().alias("spread"))
+            .filter(pl.col("n") > 1)
+        )
+        spread = {(m, c): (n, value) for m, c, n, value in crews.sort("crew").iter_rows()}
+        said = [
+            self.say("slide.years").format(
+                speed=self._digits(own["standard_speed_m_s"][0]),
+                crew=crew,
+                n=n,
+                before=self.method(before),
+                after=self.method(after),
+                before_spread=_share(spread.get((before, crew), (0, None))[1]),
+                after_spread=_share(value),
+            )
+            for (method, crew), (n, value) in spread.items()
+            if method == after
+        ]
+        return " ".join(said) or self.say("slide.one_tow_a_crew")
+
+    def _digits(self, value: float | None) -> str:
+        """A number with two decimals, as this language writes it."""
+        text = "-" if value is None else f"{value:.2f}"
+        return text.replace(".", self.say("decimal_mark"))
+
+    def _signed_fine(self, ratio: float) -> str:
+        """A change in per cent with one decimal, as this language writes it."""
+        return f"{100 * ratio:+z.1f} %".replace(".", self.say("decimal_mark"))
+
+
+def _of_choice(compared: pl.DataFrame, tows: str) -> pl.DataFrame:
+    """The tows of a choice: all, the newest of each boat and crew, or a season."""
+    if tows == ALL_TOWS:
+        return compared
+    if tows == "newest":
+        return compared.filter("newest")
+    return compared.filter(pl.col("season") == int(tows))
+
+
+def _low_power() -> pl.Expr:
+    return pl.col("crew_class").replace_strict({"H": 70.0, "D": 40.0}, return_dtype=pl.Float64)
+
+
+def _direction(line: dict[str, Any]) -> str:
+    """Whether a slope's interval leaves out zero, and on which side; else whether it could."""
+    if line["slope_lo"] > 0:
+        return "rises"
+    if line["slope_hi"] < 0:
+        return "falls"
+    return "unclear" if (line["r2"] or 0.0) >= CLEAR_R2 else "none"
+
+
+def _share(ratio: float | None) -> str:
+    return "-" if ratio is None else f"{100 * ratio:.0f} %"
+
+
+def _signed(ratio: float) -> str:
+    return f"{100 * ratio:+z.0f} %".replace("+0 %", "0 %")

@@ -1,0 +1,107 @@
+"""Statistics of types over other tows than the newest of each boat and crew.
+
+The tables hold the newest tow of each boat and crew, and for lines and outliers all tows too. Here
+those of a connection are replaced, for that connection alone, by what the same functions make of
+the tows that were chosen: all of them, or those of some seasons. What treats repeats of a boat as
+such does so over all tows (lines, outliers); the others keep to the newest tow, of those chosen.
+"""
+
+import re
+from collections.abc import Sequence
+from typing import Final
+
+import duckdb
+import numpy as np
+import polars as pl
+
+from herijk.pipeline import consistency
+from herijk.pipeline.consistency import ERAS, Observed
+from herijk.pipeline.errors import MissingKnowledgeError
+
+ALL, NEWEST = "all", "newest"
+
+BY_SEASON: Final = ("tows", "slow_tows")
+PAIRS: Final = ("season", "season_before")
+
+
+def choose(db: duckdb.DuckDBPyConnection, tows: str, methods: Sequence[str]) -> None:
+    """Lets a connection see the statistics of chosen tows instead of the newest.
+
+    Args:
+        db: a connection; the file itself is not changed.
+        tows: `newest`, which changes nothing, `all`, a season `2014` or a range `2012:2015`.
+        methods: those whose statistics will be asked for.
+
+    Raises:
+        MissingKnowledgeError: there is no such choice, or no tow of those seasons.
+    """
+    if tows == NEWEST:
+        return
+    observed = _observed(db, methods)
+    if tows == ALL:
+        made = _over_all(db, observed)
+    else:
+        seasons = _seasons(tows)
+        own = observed.table["season"].is_in(seasons).to_numpy()
+        if not own.any():
+            raise MissingKnowledgeError(f"no tow of {tows} has a curve that can be compared")
+        made = _over(observed.take(np.flatnonzero(own))) | _of_seasons(db, seasons)
+    for name, frame in made.items():
+        db.register(f"made_{name}", frame)
+        db.execute(f"CREATE TEMP TABLE {name} AS SELECT * FROM made_{name}")  # noqa: S608
+
+
+def _seasons(tows: str) -> list[int]:
+    match = re.fullmatch(r"(\d{4})(?::(\d{4}))?", tows)
+    if match is None:
+        raise MissingKnowledgeError(
+            f"there are no tows {tows!r}; write all, newest, a season 2014 or a range 2012:2015"
+        )
+    return list(range(int(match[1]), int(match[2] or match[1]) + 1))
+
+
+def _observed(db: duckdb.DuckDBPyConnection, methods: Sequence[str]) -> Observed:
+    curves, run_points, tows, boats = (
+        db.sql(f"SELECT * FROM {name}").pl()  # noqa: S608
+        for name in ("curves", "run_points", "tows", "boats")
+    )
+    trusted = tows.filter(pl.col("doubts").list.len() == 0)
+    own = [
+        frame.filter(pl.col("method").is_in(methods)).join(trusted, on="tow_id", how="semi")
+        for frame in (curves, run_points)
+    ]
+    return consistency.observe(own[0], tows, boats, own[1])
+
+
+def _over_all(db: duckdb.DuckDBPyConnection, observed: Observed) -> dict[str, pl.DataFrame]:
+    lines = db.sql("SELECT * EXCLUDE tows FROM type_lines WHERE tows = 'all'").pl()
+    return {"type_consistency": lines, "type_outliers": consistency.tow_outliers(observed, ERAS)}
+
+
+def _over(observed: Observed) -> dict[str, pl.DataFrame]:
+    """Every statistic of a type, of these tows alone."""
+    compared = consistency.compared_tows(observed, ERAS)
+    predicted = consistency.predicted_cw(observed)
+    return {
+        "type_lines": consistency.type_lines(observed)[0],
+        "compared_tows": compared,
+        "hull_speed": consistency.hull_speed_statistics(compared),
+        "type_consistency": consistency.type_consistency(observed),
+        "type_outliers": consistency.type_outliers(observed, ERAS),
+        "type_homogeneity": consistency.type_homogeneity(observed),
+        "pooled_curves": consistency.pooled_curves(observed),
+        "speed_trend": consistency.speed_trend(observed),
+        "predicted_cw": predicted,
+        "prediction_error": consistency.prediction_error(predicted),
+    }
+
+
+def _of_seasons(db: duckdb.DuckDBPyConnection, seasons: list[int]) -> dict[str, pl.DataFrame]:
+    """Tables of tows, and of pairs of tows, that need no new statistics."""
+    frames = {
+        name: db.sql(f"SELECT * FROM {name}").pl()  # noqa: S608
+        for name in (*BY_SEASON, "repeat_pairs")
+    }
+    kept = {name: frames[name].filter(pl.col("season").is_in(seasons)) for name in BY_SEASON}
+    both = pl.all_horizontal(pl.col(PAIRS).is_in(seasons))
+    return kept | {"repeat_pairs": frames["repeat_pairs"].filter(both)}
