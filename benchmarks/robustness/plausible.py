@@ -23,10 +23,14 @@ from herijk.pipeline.blocks.sums import block_sums
 from herijk.pipeline.method.definition import shipped_method
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import WorldSettings, simulate_tow, simulate_world
+from herijk.warehouse.build.plausible import with_doubts
 from tests.worlds import run_rows, tow_rows
 
 TRIED_A_WORLD = 6
 """Tows of a world that get a fault, one after the other."""
+
+SILENT = 0.02
+"""Error of Cw from which a tow that nobody has to look at is silently wrong."""
 
 FORCE, WIND, ANGLE = "force_n", "wind_speed_m_s", "wind_angle_deg"
 SPEEDS = ("log1_m_s", "log2_m_s", "gps_m_s")
@@ -110,23 +114,21 @@ class Ground:
         """Runs of the given tows."""
         return stack_blocks(pl.concat([blocks[t] for t in tows["tow_id"]]), run_rows(tows))
 
-    def cw(self, tow: str, blocks: RunBlocks) -> float:
-        """Cw of one tow by itself, under fixed coefficients; NaN without a curve."""
-        alone = self.tows.filter(pl.col("tow_id") == tow)
-        runs = blocks.take((blocks.runs["tow_id"] == tow).to_numpy())
-        found = recompute(shipped_method("rebased-2015"), alone, runs, with_bands=False)
-        value = found.curves["cw_kg_m"][0]
-        return float("nan") if value is None else value
+    def judged(self, blocks: RunBlocks) -> tuple[set[str], set[str], dict[str, float]]:
+        """Tows that are doubted, tows that need a look, and Cw by tow.
+
+        The checks of the curve are those of fixed coefficients; a doubted tow needs a look.
+        """
+        shifts = implausible(Batch.of(self.tows, blocks))
+        tows = with_doubts(self.tows, shifts)
+        curves = recompute(shipped_method("rebased-2015"), tows, blocks, with_bands=False).curves
+        doubts = set(tows.filter(pl.col("doubts").list.len() > 0)["tow_id"])
+        looks = curves.filter(pl.col("flags").list.len() > 0)["tow_id"]
+        return doubts, doubts | set(looks), dict(curves.select("tow_id", "cw_kg_m").rows())
 
 
 def _as_read(samples: Samples) -> Samples:
     return samples.with_columns(pl.col(pl.Float64).cast(pl.Float32))
-
-
-def doubted(ground: Ground, blocks: RunBlocks) -> set[str]:
-    """Tows that the archive rules out."""
-    found = implausible(Batch.of(ground.tows, blocks))
-    return {tow for shift in found for tow in shift.tows}
 
 
 def groups(ground: Ground, rng: np.random.Generator) -> Iterator[tuple[str, list[str]]]:
@@ -140,42 +142,52 @@ def groups(ground: Ground, rng: np.random.Generator) -> Iterator[tuple[str, list
             yield kind, parts[place]["tow_id"].to_list()
 
 
-def study(worlds: int, first_seed: int) -> tuple[pl.DataFrame, float, int]:
-    """One row a fault put in; the share of sound tows doubted, and how many there were."""
-    rows, doubts, sound = [], 0, 0
+def study(worlds: int, first_seed: int) -> tuple[pl.DataFrame, pl.DataFrame]:
+    """One row a fault put in, and one a sound world."""
+    rows, sound = [], []
     for seed in range(first_seed, first_seed + worlds):
         ground, rng = Ground.of(seed), np.random.default_rng(seed)
-        whole = ground.stacked(ground.blocks, ground.tows)
-        before = doubted(ground, whole)
-        doubts, sound = doubts + len(before), sound + ground.tows.height
+        doubts, looks, right = ground.judged(ground.stacked(ground.blocks, ground.tows))
+        sound.append((ground.tows.height, len(doubts), len(looks)))
         for group, tows in groups(ground, rng):
             for kind, sizes in KINDS.items():
                 for size, change in sizes:
-                    blocks = ground.with_fault(tows, change)
-                    found = len(doubted(ground, blocks) & set(tows)) / len(tows)
-                    wrong = ground.cw(tows[0], blocks) / ground.cw(tows[0], whole) - 1.0
-                    rows.append((group, kind, size, found, abs(wrong)))
-    names = ("group", "kind", "size", "found", "wrong")
-    return pl.DataFrame(rows, schema=names, orient="row"), doubts / sound, sound
+                    found, looked, cw = ground.judged(ground.with_fault(tows, change))
+                    shares = [len(which & set(tows)) / len(tows) for which in (found, looked)]
+                    wrong = [abs(cw[t] / right[t] - 1.0) if cw[t] and right[t] else 0 for t in tows]
+                    silent = [
+                        w > SILENT and t not in looked for w, t in zip(wrong, tows, strict=True)
+                    ]
+                    rows.append((group, kind, size, *shares, np.median(wrong), np.mean(silent)))
+    names = ("group", "kind", "size", "found", "look", "wrong", "silent")
+    return pl.DataFrame(rows, schema=names, orient="row"), pl.DataFrame(
+        sound, schema=("tows", "doubted", "look"), orient="row"
+    )
 
 
 def main() -> None:
     """Prints the table."""
     worlds = int(sys.argv[1]) if len(sys.argv) > 1 else 3
     first_seed = int(sys.argv[2]) if len(sys.argv) > 2 else 101
-    rows, share, sound = study(worlds, first_seed)
-    print(f"{share:.1%} of {sound} sound tows are doubted")
+    rows, sound = study(worlds, first_seed)
+    total = sound.sum().row(0, named=True)
+    print(
+        f"Of {total['tows']} sound tows {total['doubted']} are doubted, {total['look']} looked at"
+    )
+    means = (pl.col(name).mean() for name in ("found", "look", "silent"))
     told = (
         rows.group_by("kind", "size", "group", maintain_order=True)
-        .agg(pl.col("found").mean(), pl.len(), pl.col("wrong").fill_nan(None).median())
-        .pivot("group", index=["kind", "size"], values=["found", "wrong"])
+        .agg(*means, pl.col("wrong").median())
+        .pivot("group", index=["kind", "size"], values=["found", "look", "silent", "wrong"])
     )
     for row in told.iter_rows(named=True):
-        wrong = row["wrong_tow"]
-        print(
-            f"| {row['kind']} {row['size']} | {'-' if wrong is None else f'{wrong:.0%}'} "
-            f"| {row['found_tow']:.0%} | {row['found_day']:.0%} | {row['found_season']:.0%} |"
-        )
+        cells = [f"{row['kind']} {row['size']}".strip(), f"{row['wrong_tow']:.0%}"]
+        cells += [
+            f"{row[f'{what}_{group}']:.0%}"
+            for group in ("tow", "day", "season")
+            for what in ("found", "look", "silent")
+        ]
+        print(f"| {' | '.join(cells)} |")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,6 @@
 """Arguments that several commands share, and how a result is shown."""
 
+import datetime as dt
 import json
 from collections.abc import Callable, Iterable
 from dataclasses import asdict, is_dataclass
@@ -40,3 +41,25 @@ def show_files(files: Iterable[Path], as_json: bool, said: str | None = None) ->
 def _plain(value: object) -> object:
     """What JSON has no form for: a dataclass as its fields, anything else as text."""
     return asdict(value) if is_dataclass(value) and not isinstance(value, type) else str(value)
+
+
+def read_day(value: str | dt.date) -> dt.date:
+    """Returns a day that was written as 2026-05-08."""
+    if isinstance(value, dt.date):
+        return value
+    try:
+        return dt.date.fromisoformat(value)
+    except ValueError as error:
+        raise typer.BadParameter("write a day as 2026-05-08") from error
+
+
+AsOf = Annotated[
+    dt.date | None,
+    typer.Option(
+        "--as-of",
+        parser=read_day,
+        metavar="DATE",
+        help="Judge on this day, as if nothing of later were known; without: on the day of the "
+        "archive's last tow.",
+    ),
+]

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from herijk.cli.arguments import AsJson, DataFolder, show_files
+from herijk.cli.arguments import AsJson, AsOf, DataFolder, show_files
 
 if TYPE_CHECKING:
     from herijk.warehouse.store.store import Store
@@ -16,7 +16,7 @@ Target = Annotated[Path | None, typer.Option("--out", metavar="FILE", help="File
 
 def add_to(app: typer.Typer) -> None:
     """Adds these commands to the command line."""
-    for command in (certificate, proposal):
+    for command in (certificate, proposal, pages):
         app.command()(command)
 
 
@@ -44,6 +44,23 @@ def certificate(
         made = certificates(views, chosen, fsn_no, lang)
     name = "-".join(filter(None, ("certificate", chosen, fsn_no)))
     _write(made, out or _documents(store) / f"{name}.pdf", as_json)
+
+
+def pages(
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Folder for them, new or of pages.")],
+    data: DataFolder = Path("data"),
+    as_of: AsOf = None,
+) -> None:
+    """All pages of the site in a folder of their own, for instance as of an earlier day."""
+    from herijk.dashboards.site import build_pages
+    from herijk.dashboards.site.render import OWN_FILES
+    from herijk.pipeline.errors import MissingKnowledgeError
+    from herijk.warehouse.store.store import Store
+
+    if out.exists() and not (out / "static" / OWN_FILES[0]).is_file():
+        raise MissingKnowledgeError(f"{out} is there and holds no pages; give a new folder")
+    made = build_pages(Store(data), out, as_of)
+    typer.echo(f"{made['files']} files in {out}; begin with index.html")
 
 
 def proposal(

@@ -18,6 +18,7 @@ REASONS: Final = {
     "like_boats": "no curve yet: middle of boats of this type",
     "nothing_known": "no curve and no boats like it: the committee decides",
 }
+LAST_DAY: Final = ", the day of the last tow or race"
 URGENCIES: Final = {
     "expired": "Expired: does not count any more",
     "this_year": "Expires at the end of this year: tow before the next season",
@@ -31,7 +32,7 @@ def due(report: "DueReport") -> str:
     counts = Counter(line["urgency"] for line in report.lines)
     parts = [SIMULATED] if report.simulated else []
     parts.append(
-        f"Due list as of {report.as_of}, the day of the last tow or race; curves of method "
+        f"Due list as of {report.as_of}{'' if report.asked else LAST_DAY}; curves of method "
         f"{report.method}. {len(report.lines)} boats and crews: {counts['expired']} expired, "
         f"{counts['this_year']} expire this year, {counts['without_curve']} without a curve."
     )

@@ -12,23 +12,14 @@ import typer
 
 from herijk.cli import due_text
 from herijk.cli import editions_text as text
-from herijk.cli.arguments import AsJson, DataFolder, show
+from herijk.cli.arguments import AsJson, AsOf, DataFolder, read_day, show
 from herijk.cli.methods import known_methods
 
 
 def add_to(app: typer.Typer) -> None:
     """Adds these commands to the command line."""
-    for command in (publish, diff, verify, lineage, due):
+    for command in (register, publish, diff, verify, lineage, due):
         app.command()(command)
-
-
-def _day(value: str | dt.date) -> dt.date:
-    if isinstance(value, dt.date):
-        return value
-    try:
-        return dt.date.fromisoformat(value)
-    except ValueError as error:
-        raise typer.BadParameter("write a day as 2026-05-08") from error
 
 
 def _one_of(known: tuple[str, ...], value: str, option: str) -> str:
@@ -40,13 +31,28 @@ def _one_of(known: tuple[str, ...], value: str, option: str) -> str:
 EditionName = Annotated[str, typer.Argument(metavar="EDITION", help="Name of an edition.")]
 
 
+def register(
+    edition: Annotated[
+        str | None, typer.Argument(metavar="[EDITION]", help="Edition; the newest when left out.")
+    ] = None,
+    data: DataFolder = Path("data"),
+    as_of: AsOf = None,
+    as_json: AsJson = False,
+) -> None:
+    """The register: every line with its sizes, and whether it is valid on a day."""
+    from herijk.warehouse.queries.register import register_report
+    from herijk.warehouse.store.store import Store
+
+    show(register_report(Store(data), edition, as_of), text.register, as_json)
+
+
 def publish(
     edition: Annotated[
         str, typer.Argument(metavar="EDITION", help="Name of the new edition, for example 2026-1.")
     ],
     valid_from: Annotated[
         dt.date,
-        typer.Option(parser=_day, metavar="DATE", help="Day from which it counts: 2026-05-08."),
+        typer.Option(parser=read_day, metavar="DATE", help="Day from which it counts: 2026-05-08."),
     ],
     decision: Annotated[str, typer.Option(help="Who decided it, and where.")],
     method: Annotated[
@@ -65,7 +71,7 @@ def publish(
     ] = None,
     published_on: Annotated[
         dt.date | None,
-        typer.Option(parser=_day, metavar="DATE", help="Day of publication; today when left out."),
+        typer.Option(parser=read_day, metavar="DATE", help="Day of publication; else today."),
     ] = None,
     data: DataFolder = Path("data"),
     as_json: AsJson = False,
@@ -104,19 +110,15 @@ def diff(
         str,
         typer.Option(help="Fatigue correction of races: none, known (2 to 3 h only) or extend."),
     ] = "extend",
-    stream: Annotated[
-        str, typer.Option(help="Stream in races: distance_first or net_speed_over_legs.")
-    ] = "distance_first",
     as_json: AsJson = False,
 ) -> None:
     """Two editions side by side: who gains, who loses, why, and what it does to races."""
-    from herijk.pipeline.register.replay import FATIGUES, STREAMS, RaceRules
+    from herijk.pipeline.register.replay import FATIGUES, RaceRules
     from herijk.warehouse.editions import compare
     from herijk.warehouse.store.store import Store
 
     rules = RaceRules(
         fatigue=_one_of(FATIGUES, fatigue, "--fatigue"),  # type: ignore[arg-type]
-        stream=_one_of(STREAMS, stream, "--stream"),  # type: ignore[arg-type]
     )
     store = Store(data)
     comparison = compare.diff(store, old, new)
@@ -158,6 +160,7 @@ def due(
     method: Annotated[
         str, typer.Option(metavar="NAME", help="Method whose curves are asked for the speeds.")
     ] = "rebased",
+    as_of: AsOf = None,
     as_json: AsJson = False,
 ) -> None:
     """Whose tow expires when, at what speed to tow each next, and which boats to tow again."""
@@ -165,4 +168,4 @@ def due(
     from herijk.warehouse.store.store import Store
 
     known_methods(data).text(method)
-    show(due_report(Store(data), method), due_text.due, as_json)
+    show(due_report(Store(data), method, as_of), due_text.due, as_json)

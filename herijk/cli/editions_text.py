@@ -1,5 +1,6 @@
 """Results of the commands about editions as text for a person."""
 
+from collections import Counter
 from typing import Any
 
 from herijk.cli.text import SIMULATED, table
@@ -27,6 +28,36 @@ def _to_look_at(lines: list[Report]) -> list[str]:
         "herijk audit, and write what you decide in besluiten.toml:",
         *rows,
     ]
+
+
+def register(report: Report) -> str:
+    """The lines of an edition, and the day on which their validity was judged."""
+    head = (
+        *("boat", "name", "crew", "empty thwart", "status", "valid until", "tow", "v m/s"),
+        *("A kg/m", "B m/s", "Cw kg/m", "length m", "beam m", "bow m", "kg"),
+    )
+    parts = [SIMULATED] if report["simulated"] else []
+    counts = Counter(line["status"] for line in report["lines"])
+    statuses = ", ".join(f"{n} {ENGLISH.statuses.get(s, s)}" for s, n in counts.items())
+    parts += [
+        f"Register {report['edition']}, validity judged on {report['as_of']}: {statuses}.",
+        table(head, [_register_line(line) for line in report["lines"]]),
+    ]
+    return "\n\n".join(parts)
+
+
+def _register_line(line: Report) -> tuple[Any, ...]:
+    return (
+        line["fsn_no"],
+        line["name"] or "-",
+        f"{line['rowers']}{line['crew_class']}",
+        line["empty_thwart"] or "-",
+        ENGLISH.statuses.get(line["status"], line["status"]),
+        line["valid_until"],
+        line["tow_id"],
+        *(line[name] for name in ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m")),
+        *(line[name] for name in ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg")),
+    )
 
 
 def published(report: Report) -> str:

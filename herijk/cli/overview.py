@@ -21,7 +21,7 @@ FOLDERS: Final = ("archive", "data")
 
 SECTIONS: Final = {
     "Begin": ("init", "check", "rebuild", "simulate", "doctor"),
-    "Look": ("audit", "due", "log-error", "slides", "fit", "workbench"),
+    "Look": ("audit", "register", "due", "pages", "log-error", "slides", "fit", "workbench"),
     "Change the method": ("methods", "rebase", "proposal"),
     "Publish": ("publish", "diff", "verify", "lineage", "certificate"),
     "Run it as a service, use it in programs": ("serve", "schema"),

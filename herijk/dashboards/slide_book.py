@@ -99,6 +99,10 @@ class Book:
 
     def tows(self, wanted: str) -> str:
         """The choice of tows, if there is such a one."""
+        if not self.choices and not self.views.table("tows").is_empty():
+            raise MissingKnowledgeError(
+                "no type of boat has curves to compare: there are no slides"
+            )
         if wanted not in self.choices:
             raise MissingKnowledgeError(f"there are no tows {wanted!r}; {choice_of(self.choices)}")
         return wanted

@@ -67,6 +67,16 @@ class TowFacts(dy.Schema):
     freeboard_lowest_m = column.freeboard("freeboard at its lowest")
     freeboard_bow_m = column.freeboard("freeboard at the bow")
     freeboard_stern_m = column.freeboard("freeboard at the stern")
+    load_cell_ratio = column.number(
+        "1", "load cell / known weight, when it was last checked", nullable=True, min_exclusive=0
+    )
+    load_cell_sd = column.number("1", "its standard uncertainty", nullable=True, min=0)
+    lamp_ratio = column.number(
+        "1",
+        "largest part of a run in which a warning lamp burned; empty where nobody noted it",
+        nullable=True,
+        min=0,
+    )
     remark = column.text("remark in the tow list", nullable=True)
     wind_measured = dy.Bool(description="there was an anemometer whose wind can be used")
     log2_measured = dy.Bool(description="there was a second log that can be used")
@@ -86,6 +96,11 @@ class Tows(TowFacts):
         dy.String(),
         description="checks by which all other tows rule this one out: it needs a look, and takes "
         "no part in what tows share",
+    )
+    unusual = dy.List(
+        dy.String(),
+        description="checks by which it stands out among all other tows, though chance can do "
+        "that: it needs a look, and its numbers stand",
     )
 
 

@@ -59,6 +59,11 @@ def crew_class(**rules: Any) -> dy.String:
     return text("H men, D women", regex="^[HD]$", **rules)
 
 
+def empty_thwart(**rules: Any) -> dy.String:
+    """Which thwart nobody sits on."""
+    return text("thwart that must be left free; empty text where all are manned", **rules)
+
+
 def declared_speed(**rules: Any) -> dy.Float64:
     """The speed for which a crew is towed."""
     return number("m/s", "speed v0 the crew declared", min=0.5, max=6.0, **rules)

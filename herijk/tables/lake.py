@@ -76,11 +76,35 @@ class ListedRaces(dy.Schema):
     fsn_no = column.fsn_no()
     rowers = column.rowers()
     crew_class = column.crew_class()
+    empty_thwart = column.text("thwart left free, where it is given", nullable=True)
     rowing_time_s = column.number("s", "time rowed", min_exclusive=0)
     stream_m = column.number(
         "m", "distance that the stream carried the boat", nullable=True, min=-500_000, max=500_000
     )
     penalty_w = column.number("W", "penalty", nullable=True, min=-1000, max=1000)
+    path = column.text("file, relative to the archive")
+    line = dy.Int32(description="line in it", min=2)
+
+
+class ListedForceChecks(dy.Schema):
+    """Readings of the load cell while a known weight hung on it."""
+
+    season = column.season()
+    day = dy.Date(description="day of the reading")
+    weight_kg = column.number("kg", "known weight", min=1, max=2000)
+    reading_n = column.number("N", "what the load cell read", min=1, max=30_000)
+    path = column.text("file, relative to the archive")
+    line = dy.Int32(description="line in it", min=2)
+
+
+class ListedLamps(dy.Schema):
+    """When a warning lamp burned: the tow line was not square."""
+
+    season = column.season()
+    tow_id = column.tow_id()
+    run = column.run()
+    start_s = column.number("s", "from the start of the run", min=0, max=600)
+    end_s = column.number("s", "the same, when it went out", min=0, max=600)
     path = column.text("file, relative to the archive")
     line = dy.Int32(description="line in it", min=2)
 
@@ -92,6 +116,7 @@ class PrintedLines(dy.Schema):
     fsn_no = column.fsn_no()
     rowers = column.rowers()
     crew_class = column.crew_class()
+    empty_thwart = column.empty_thwart()
     has_valid_curve = dy.Bool(description="A, B and Cw are of a measured curve")
     a_kg_m = column.number("kg/m", "A", nullable=True, min=0, max=1000)
     b_m_s = column.number("m/s", "B", nullable=True, min=0.1, max=1000)

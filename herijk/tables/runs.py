@@ -46,3 +46,7 @@ class RunPoints(dy.Schema):
     gps_ratio = column.number("1", "GPS / log 1; empty without GPS", nullable=True)
     used = dy.Bool(description="the curve is fitted through it")
     reason = column.text("why it is not used; empty when it is")
+    choice = column.text(
+        "of more runs at one target and direction: most_reliable, or why it is less so",
+        nullable=True,
+    )

@@ -44,6 +44,7 @@ TABLES: Final[dict[str, type[dy.Schema]]] = {
     "register": register.Register,
     "due_list": register.DueList,
     "editions": editions.Editions,
+    "register_history": register.RegisterHistory,
     "register_changes": register.RegisterChanges,
     "race_changes": register.RaceChanges,
     "correction_steps": studies.CorrectionSteps,

@@ -78,7 +78,7 @@ ORDER BY method, boat_type, crew_class""",
     "changes_by_cause": View(
         "One row per changed line and cause; the factors of a line multiply to its cw_ratio.",
         """
-SELECT from_edition, to_edition, fsn_no, rowers, crew_class, change, cw_ratio,
+SELECT from_edition, to_edition, fsn_no, rowers, crew_class, empty_thwart, change, cw_ratio,
     part ->> '$.cause' AS cause, part ->> '$.step' AS step,
     CAST(part ->> '$.factor' AS DOUBLE) AS factor
 FROM (SELECT *, unnest(CAST(causes AS JSON[])) AS part FROM register_changes)""",

@@ -67,13 +67,6 @@ def test_diff_names_gain_loss_causes_and_races(herijk, bench):
     assert {"cw_ratio", "old_rank", "new_rank", "old_power_w", "causes"} <= set(report["rows"][0])
 
 
-def test_diff_refuses_the_rule_over_legs_in_one_sentence(herijk, bench):
-    call = ("diff", "2014-1", "2014-2", "--stream", "net_speed_over_legs", "--data", bench.data)
-    status, out, err = herijk(*call)
-    assert (status, out) == (1, "")
-    assert "needs distance, time and stream of each leg" in err
-
-
 def test_verify_is_0_when_all_is_well_and_1_when_not(herijk, bench, tmp_path):
     status, out, err = herijk("verify", "--data", bench.data)
     assert (status, err) == (0, "")

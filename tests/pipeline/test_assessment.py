@@ -12,7 +12,7 @@ import polars as pl
 import pytest
 
 from herijk.pipeline.assessment.assess import assess, with_status
-from herijk.pipeline.assessment.checks import CHECKS, CODES, DOUBTS
+from herijk.pipeline.assessment.checks import CHECKS, CODES, DOUBTS, UNUSUAL
 from herijk.pipeline.method.definition import MethodFileError, parse_method, shipped_method
 
 METHOD = "some-method"
@@ -71,6 +71,10 @@ def _tow(boat: int, season: int) -> dict[str, Any]:
         "freeboard_bow_m": 0.80,
         "freeboard_stern_m": 0.60,
         "doubts": [],
+        "unusual": [],
+        "lamp_ratio": 0.1,
+        "load_cell_ratio": 1.002,
+        "speed_correction_ratio": 0.02,
     }
 
 
@@ -114,12 +118,13 @@ def _run_points(tow_id: str) -> list[dict[str, Any]]:
 def sound() -> World:
     tows = [_tow(boat, season) for boat in BOATS for season in (2012, 2014)]
     points = [point for tow in tows for point in _run_points(tow["tow_id"])]
+    names = pl.List(pl.String)
     integers = {"season": pl.Int32, "rowers": pl.Int32, "run": pl.Int8, "direction": pl.Int8}
     curves = pl.DataFrame([_curve(tow) for tow in tows], schema_overrides=integers)
     return World(
         curves.cast({"runs_used": pl.Int8}),
         pl.DataFrame(points, schema_overrides=integers),
-        pl.DataFrame(tows, schema_overrides=integers | {"doubts": pl.List(pl.String)}),
+        pl.DataFrame(tows, schema_overrides=integers | dict.fromkeys(("doubts", "unusual"), names)),
     )
 
 
@@ -140,6 +145,18 @@ heavier = {"a_kg_m": 1.08 * A, "cw_kg_m": 1.08 * CW}
 # check: (table, tow, changes, observed, limit, what fires as well)
 CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
     **{code: ("tows", SUBJECT, {"doubts": [code]}, 1, 0, set()) for code in DOUBTS},
+    **{code: ("tows", SUBJECT, {"unusual": [code]}, 1, 0, set()) for code in UNUSUAL},
+    "correction_not_used": ("run_points", SUBJECT, {"speed_factor": 1.0}, 0.02, 0, set()),
+    "lamps_burned": ("tows", SUBJECT, {"lamp_ratio": 0.3}, 0.3, 0.2, set()),
+    "load_cell_off": ("tows", SUBJECT, {"load_cell_ratio": 0.985}, -0.015, -0.01, set()),
+    "weight_by_freeboard": (
+        "tows", LATER, {"freeboard_bow_m": 0.78, "freeboard_stern_m": 0.58},
+        1000 * 0.65 * 8 * 2.2 * 0.02 / 1005, 0.2, set(),
+    ),
+    "balance_changed": (
+        "tows", LATER, {"freeboard_bow_m": 0.778, "freeboard_stern_m": 0.622},
+        1000 * 0.65 * 8 * 2.2 * 0.045 * 8 * 0.044 / (1005 * 8), 0.02, set(),
+    ),
     "no_curve": ("curves", SUBJECT, no_curve | gone, 0, 1, set()),
     "few_runs": ("curves", SUBJECT, {"runs_used": 5}, 5, 6, set()),
     "runs_set_aside": ("tows", SUBJECT, {"runs_set_aside": 1}, 1, 0, set()),
@@ -182,7 +199,9 @@ CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
     "length_changed": ("tows", LATER, {"waterline_length_m": 8.1}, 0.0125, 0.01, set()),
     "beam_changed": ("tows", LATER, {"beam_m": 2.1}, 2.1 / 2.2 - 1, -0.02, set()),
     "bow_height_changed": ("tows", LATER, {"bow_height_m": 0.96}, 0.96 / 0.9 - 1, 0.05, set()),
-    "freeboard_changed": ("tows", LATER, {"freeboard_stern_m": 0.56}, 0.04, 0.03, set()),
+    "freeboard_changed": (
+        "tows", LATER, {"freeboard_lowest_m": 0.36}, 0.04, 0.03, set(),
+    ),
     "curve_changed": (
         "curves", LATER, heavier, 0.08, 0.05, {"curve_change_unexplained"},
     ),
@@ -228,10 +247,11 @@ def test_what_is_not_known_is_not_checked(sound: World) -> None:
         "tows", LATER, weight_after_kg=None, freeboard_lowest_m=None, freeboard_bow_m=None,
         freeboard_stern_m=None,
     ).changed("curves", LATER, calibration_factor=None)  # fmt: skip
-    missing = {"heavier_after", "freeboard_changed", "unusual_calibration", "pulled_askew"}
+    afloat = {"freeboard_changed", "weight_by_freeboard", "balance_changed"}
+    missing = afloat | {"heavier_after", "unusual_calibration", "pulled_askew"}
     assert checks_of(unknown, LATER) == set(CODES) - missing
     first = {"weight_changed", "length_changed", "beam_changed", "bow_height_changed"}
-    first |= {"freeboard_changed", "curve_changed", "curve_change_unexplained"}
+    first |= {"curve_changed", "curve_change_unexplained", *afloat}
     assert checks_of(sound, SUBJECT) == set(CODES) - first
 
 
@@ -245,7 +265,7 @@ def test_more_weight_explains_more_resistance(sound: World) -> None:
     load = 1.08**2 * (1005.0 + 760.0) - 760.0
     later = sound.changed("tows", LATER, weight_kg=load, weight_after_kg=load)
     found = later.changed("curves", LATER, **heavier)
-    assert found.flagged(LATER) == {"curve_changed", "weight_changed"}
+    assert found.flagged(LATER) == {"curve_changed", "weight_changed", "weight_by_freeboard"}
 
 
 def test_the_curve_is_compared_at_the_earlier_declared_speed(sound: World) -> None:

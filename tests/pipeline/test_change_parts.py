@@ -15,7 +15,7 @@ from herijk.pipeline.register.changes import (
     steps_of_lines,
 )
 
-LINE = ("FSN1", 8, "H")
+LINE = ("FSN1", 8, "H", "")
 NUMBERS = ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
 
 
@@ -30,6 +30,7 @@ def edition(name, *lines):
                 "fsn_no": boat,
                 "rowers": 8,
                 "crew_class": crew,
+                "empty_thwart": "",
                 "tow_id": "t",
                 "declared_speed_m_s": 2.5,
                 "a_kg_m": a,
@@ -54,7 +55,9 @@ OLD, NEW = (
 
 def causes(found, *rest):
     grounds = pl.DataFrame(
-        [(*LINE, "code")], schema=["fsn_no", "rowers", "crew_class", "ground"], orient="row"
+        [(*LINE, "code")],
+        schema=["fsn_no", "rowers", "crew_class", "empty_thwart", "ground"],
+        orient="row",
     )
     return json.loads(register_changes(OLD, NEW, found, grounds)["causes"].item())
 

@@ -19,6 +19,7 @@ def edition(name, lines):
             "fsn_no": boat,
             "rowers": 8,
             "crew_class": "H",
+            "empty_thwart": "",
             "tow_id": tow,
             "declared_speed_m_s": v0,
             "a_kg_m": a,

@@ -43,6 +43,7 @@ def line(fsn_no, declared, crew_class="H", a=A, b=B):
         "fsn_no": fsn_no,
         "rowers": ROWERS,
         "crew_class": crew_class,
+        "empty_thwart": "",
         "status": "valid" if known else "never_towed",
         "tow_id": f"2014-{fsn_no}" if known else None,
         "tow_date": dt.date(2014, 3, 1) if known else None,

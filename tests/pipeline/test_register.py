@@ -6,23 +6,25 @@ import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
 
-from herijk.pipeline.register.register import draft_register
+from herijk.pipeline.register.register import draft_register, lines_of_all_days
 
 ON = dt.date(2016, 6, 1)
 NUMBERS = ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
 
 
 def frames(rows):
-    """Curves and tows from (tow_id, day, boat, rowers, class, status)."""
+    """Curves and tows from (tow_id, day, boat, rowers, class, status), thwart left free if any."""
     curves = pl.DataFrame(
         [
             {"tow_id": t, "fsn_no": b, "rowers": r, "crew_class": c, "status": s, "flags": []}
             | {n: None if s == "rejected" else float(i + 1) for i, n in enumerate(NUMBERS)}
-            for t, _, b, r, c, s in rows
+            for t, _, b, r, c, s, *_ in rows
         ],
         schema_overrides=dict.fromkeys(NUMBERS, pl.Float64),
     )
-    return curves, pl.DataFrame({"tow_id": [r[0] for r in rows], "tow_date": [r[1] for r in rows]})
+    tows = [(r[0], r[1], r[6] if len(r) > 6 else None) for r in rows]
+    schema = {"tow_id": pl.String, "tow_date": pl.Date, "empty_thwart": pl.String}
+    return curves, pl.DataFrame(tows, schema=schema, orient="row")
 
 
 ROWS = [
@@ -69,3 +71,21 @@ def test_a_line_without_a_curve_has_no_numbers():
 
 def test_the_order_of_tows_does_not_matter():
     assert_frame_equal(register(ROWS[::-1]), register())
+
+
+def test_a_tow_with_a_thwart_left_free_is_a_line_of_its_own():
+    """Sleepproef 2017, "Bemanning": its curve holds only with that thwart free."""
+    rows = [*ROWS[:2], ("t7", dt.date(2015, 3, 1), "FSN1", 8, "H", "accepted", "3")]
+    found = register(rows).filter(fsn_no="FSN1").select("empty_thwart", "tow_id", "as_of").rows()
+    assert found == [("", "t2", ON), ("3", "t7", ON)]
+
+
+def test_on_each_day_the_same_line_counts_in_the_history_as_in_the_register():
+    history = lines_of_all_days(*frames(ROWS))
+    for day in (dt.date(2009, 1, 1), dt.date(2012, 6, 1), dt.date(2014, 6, 1), ON):
+        begun = history.filter(pl.col("tow_date") <= day)
+        newest = begun.group_by("fsn_no", "rowers", "crew_class", maintain_order=True).last()
+        lines = register(on=day).drop_nulls("tow_id")
+        assert sorted(newest["tow_id"]) == sorted(lines["tow_id"])
+        valid = newest.filter(pl.col("valid_until") >= day)
+        assert sorted(valid["tow_id"]) == sorted(lines.filter(status="valid")["tow_id"])

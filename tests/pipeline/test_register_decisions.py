@@ -19,6 +19,7 @@ TOWS = pl.DataFrame(
     {
         "tow_id": ["old", "middle", "new", "later"],
         "tow_date": [dt.date(year, 3, 1) for year in (2012, 2013, 2014, 2016)],
+        "empty_thwart": pl.Series([None] * 4, dtype=pl.String),
     }
 )
 CURVES = TOWS.select(

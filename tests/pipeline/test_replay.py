@@ -15,12 +15,25 @@ PLAIN = RaceRules(fatigue="none")
 
 
 def register(*lines):
-    """Lines of (boat, A, B), eight men."""
+    """Lines of (boat, A, B), eight men, that counted on the day, towed for 2.35 m/s."""
     rows = [
-        {"fsn_no": boat, "rowers": 8, "crew_class": "H", "a_kg_m": a, "b_m_s": b}
+        {
+            "fsn_no": boat,
+            "rowers": 8,
+            "crew_class": "H",
+            "empty_thwart": "",
+            "tow_id": None,
+            "tow_date": dt.date(2013, 3, 1),
+            "valid_until": dt.date(2018, 12, 31),
+            "declared_speed_m_s": 2.35,
+            "a_kg_m": a,
+            "b_m_s": b,
+            "cw_kg_m": None if a is None else a if b is None else float(cw(a, s_of_b(b), 2.35)),
+        }
         for boat, a, b in lines
     ]
-    return pl.DataFrame(rows, schema_overrides={"a_kg_m": pl.Float64, "b_m_s": pl.Float64})
+    numbers = dict.fromkeys(("a_kg_m", "b_m_s", "cw_kg_m"), pl.Float64)
+    return pl.DataFrame(rows, schema_overrides={**numbers, "tow_id": pl.String})
 
 
 def results(*rows):
@@ -33,6 +46,7 @@ def results(*rows):
                 "fsn_no": boat,
                 "rowers": 8,
                 "crew_class": "H",
+                "empty_thwart": None,
                 "distance_m": 18400.0,
                 "rowing_time_s": float(time),
                 "stream_m": more[0] if more else None,
@@ -40,7 +54,11 @@ def results(*rows):
             }
             for boat, time, *more in rows
         ],
-        schema_overrides={"stream_m": pl.Float64, "penalty_w": pl.Float64},
+        schema_overrides={
+            "stream_m": pl.Float64,
+            "penalty_w": pl.Float64,
+            "empty_thwart": pl.String,
+        },
     )
 
 
@@ -86,42 +104,6 @@ def test_the_stream_comes_off_the_distance():
     assert found["power_w"].item() == pytest.approx(power(30.0, 5.0, 18000 / 8000))
 
 
-def legs(boat, *rows):
-    return pl.DataFrame(
-        [
-            {
-                "race": "HT",
-                "race_date": DAY,
-                "fsn_no": boat,
-                "rowers": 8,
-                "crew_class": "H",
-                "distance_m": distance,
-                "time_s": time,
-                "stream_m": stream,
-            }
-            for distance, time, stream in rows
-        ]
-    )
-
-
-def test_net_speed_is_averaged_over_legs_before_the_power():
-    rules = RaceRules(fatigue="none", stream="net_speed_over_legs")
-    parts = legs("X", (10000.0, 4000.0, 1000.0), (8400.0, 4000.0, -600.0))
-    found = replay(register(("X", 30.0, 5.0)), results(("X", 8000)), rules, parts)
-    speed = np.mean([9000 / 4000, 9000 / 4000])
-    assert found["power_w"].item() == pytest.approx(power(30.0, 5.0, speed))
-    uneven = legs("X", (10000.0, 5000.0, 0.0), (8400.0, 3000.0, 0.0))
-    found = replay(register(("X", 30.0, 5.0)), results(("X", 8000)), rules, uneven)
-    assert found["speed_m_s"].item() == pytest.approx((2.0 + 2.8) / 2)
-
-
-@pytest.mark.parametrize("parts", [None, legs("Y", (1.0, 1.0, 0.0))])
-def test_the_rule_over_legs_is_refused_where_there_are_none(parts):
-    rules = RaceRules(stream="net_speed_over_legs")
-    with pytest.raises(MissingKnowledgeError, match=r"HT of 2015-06-06 has none for X.*distance_f"):
-        replay(register(("X", 30.0, 5.0)), results(("X", 8000)), rules, parts)
-
-
 def test_a_penalty_in_watt_comes_off_the_power():
     one = register(("X", 30.0, 5.0))
     free, fined = (
@@ -138,8 +120,8 @@ def test_a_boat_without_a_curve_has_no_power_and_no_rank():
     rows = results(("X", 8000), ("FLAT", 8000), ("LOW", 8000), ("NONE", 8000), ("OUT", 8000))
     found = {r["fsn_no"]: r for r in replay(held, rows, PLAIN).iter_rows(named=True)}
     assert found["FLAT"]["power_w"] == pytest.approx(30.0 * 2.3**3 / 8)
-    assert found["LOW"]["reason"] == "speed_not_below_b"
-    assert found["NONE"]["reason"] == found["OUT"]["reason"] == "not_in_register"
+    assert found["LOW"]["remark"] == "speed_not_below_b"
+    assert found["NONE"]["remark"] == found["OUT"]["remark"] == "not_in_register"
     assert [found[b]["rank"] for b in ("X", "FLAT", "LOW", "NONE", "OUT")] == [
         1,
         2,
@@ -163,6 +145,80 @@ def test_another_register_changes_rank_and_podium():
     assert by_boat["B0"]["new_power_w"] == by_boat["B0"]["old_power_w"]
 
 
+# Which line counts
+
+
+def dated(boat, a, day, thwart=""):
+    """A line of a tow on a day, with its five years."""
+    return register((boat, a, 5.0)).with_columns(
+        pl.lit(day).alias("tow_date"),
+        pl.lit(dt.date(day.year + 5, 12, 31)).alias("valid_until"),
+        pl.lit(thwart).alias("empty_thwart"),
+    )
+
+
+def test_a_race_is_computed_with_the_line_that_counted_on_its_day():
+    """Towed in 2012 and, after the race of June 2015, again in 2016; Y only then; Z long ago."""
+    history = pl.concat(
+        [
+            dated("X", 30.0, dt.date(2012, 3, 1)),
+            dated("X", 40.0, dt.date(2016, 3, 1)),
+            dated("Y", 30.0, dt.date(2016, 3, 1)),
+            dated("Z", 30.0, dt.date(2009, 3, 1)),
+        ]
+    )
+    found = replay(history, results(("X", 8000), ("Y", 8000), ("Z", 8000)), PLAIN)
+    assert found["power_w"].to_list() == [pytest.approx(power(30.0, 5.0, 2.3)), None, None]
+    assert found["remark"].to_list() == ["", "no_line_that_day", "no_line_that_day"]
+    later = results(("X", 8000)).with_columns(race_date=dt.date(2016, 6, 4))
+    assert replay(history, later, PLAIN)["power_w"].item() == pytest.approx(power(40.0, 5.0, 2.3))
+
+
+@pytest.mark.parametrize(
+    ("speed", "remark"),
+    [(0.849, "beyond_curve"), (0.851, ""), (1.149, ""), (1.151, "beyond_curve")],
+)
+def test_a_speed_where_the_curve_does_not_hold_is_marked(speed, remark):
+    """Cw-kromme 2015: from 85 to 115 % of the declared speed, here 2.35 m/s."""
+    found = replay(register(("X", 30.0, 5.0)), results(("X", 18400.0 / (speed * 2.35))), PLAIN)
+    assert found["remark"].item() == remark
+    assert found["power_w"].item() == pytest.approx(power(30.0, 5.0, speed * 2.35))
+
+
+def test_a_line_without_b_is_no_constant():
+    """Where B is not determined Cw falls from A to Cw at the declared speed, and goes on so."""
+    falling = register(("X", 30.0, None)).with_columns(cw_kg_m=27.0)
+    at_declared = replay(falling, results(("X", 18400.0 / 2.35)), PLAIN)
+    assert at_declared["cw_kg_m"].item() == pytest.approx(27.0)
+    faster = replay(falling, results(("X", 18400.0 / 2.5)), PLAIN)["cw_kg_m"].item()
+    assert faster == pytest.approx(30.0 / (1.0 + (30.0 / 27.0 - 1.0) * (2.5 / 2.35) ** 2))
+
+
+@pytest.mark.parametrize(
+    ("thwarts", "given", "chosen"),
+    [
+        (("", "3"), None, 30.0),
+        (("", "3"), "3", 40.0),
+        (("3",), None, 30.0),
+        (("3", "5"), None, "thwart_not_given"),
+        (("3", "5"), "5", 40.0),
+        (("3",), "4", "no_line_that_day"),
+    ],
+)
+def test_a_curve_counts_only_with_its_thwart_free(thwarts, given, chosen):
+    """Sleepproef 2017, "Bemanning"."""
+    history = pl.concat(
+        dated("X", a, dt.date(2013, 3, 1), thwart)
+        for a, thwart in zip((30.0, 40.0), thwarts, strict=False)
+    )
+    rows = results(("X", 8000)).with_columns(empty_thwart=pl.lit(given, pl.String))
+    found = replay(history, rows, PLAIN).row(0, named=True)
+    if isinstance(chosen, str):
+        assert (found["power_w"], found["remark"]) == (None, chosen)
+    else:
+        assert found["power_w"] == pytest.approx(power(chosen, 5.0, 2.3))
+
+
 # Who wins
 
 
@@ -179,17 +235,13 @@ def ensemble(**of_tow):
 
 
 def lines_with_tows(*lines):
-    """Lines of (boat, A, B, tow), with Cw at 2.5 m/s."""
-    held = register(*(line[:3] for line in lines))
-    values = [float(cw(a, s_of_b(b), 2.5)) for _, a, b, _ in lines]
+    """Lines of (boat, A, B, tow)."""
     tows = [line[3] for line in lines]
-    return held.with_columns(
-        pl.Series("tow_id", tows, pl.String), pl.Series("cw_kg_m", values, pl.Float64)
-    )
+    return register(*(line[:3] for line in lines)).with_columns(pl.Series("tow_id", tows))
 
 
 def winners_of(old, new, members, rows):
-    found = winner_changes(replay(old, rows, PLAIN), replay(new, rows, PLAIN), new, members)
+    found = winner_changes(replay(old, rows, PLAIN), replay(new, rows, PLAIN), members)
     return found.row(0, named=True)
 
 

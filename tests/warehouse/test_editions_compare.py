@@ -10,7 +10,6 @@ import pytest
 
 import herijk.pipeline.recompute.recompute
 import herijk.pipeline.studies.ladder
-from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import parse_method, shipped_method
 from herijk.pipeline.register.replay import RaceRules
 from herijk.tables.column import LINE
@@ -228,8 +227,6 @@ def test_races_are_replayed_under_both(bench_of_editions):
     assert found.results.height == 6
     assert found.results["old_power_w"].null_count() == 0
     assert found.winners["change_probability"].is_between(0, 1).all()
-    with pytest.raises(MissingKnowledgeError, match="needs distance, time and stream of each leg"):
-        race_effects(bench.store, old, new, RaceRules(stream="net_speed_over_legs"))
 
 
 def test_without_races_there_is_no_effect(published_copy):

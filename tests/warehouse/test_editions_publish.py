@@ -8,6 +8,7 @@ import io
 import json
 import os
 import signal
+import string
 import subprocess
 import sys
 from pathlib import Path
@@ -18,7 +19,7 @@ import pytest
 
 from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import parse_method, shipped_method
-from herijk.tables.column import LINE
+from herijk.pipeline.register.register import LINE
 from herijk.tables.schemas import conform
 from herijk.warehouse.build.published import published_made_from, published_tables
 from herijk.warehouse.editions import sheets
@@ -83,7 +84,8 @@ def test_an_edition_keeps_what_changed_since_the_one_before(published):
 
 def test_all_editions_as_rows_of_the_warehouse(published):
     tables = published_tables(published.store)
-    assert tables.keys() == {"editions", "register", "register_changes", "lineage"}
+    register = {"register", "register_history", "register_changes"}
+    assert tables.keys() == {"editions", "lineage"} | register
     editions = tables["editions"].select("edition", "kind", "previous").rows()
     assert editions == [("2014-1", "recomputed", None), ("2014-2", "recomputed", "2014-1")]
     heights = [edition_of(published, name).register.height for name in ("2014-1", "2014-2")]
@@ -208,7 +210,7 @@ def test_numbers_in_the_xlsx_are_numbers_and_days_are_days(published):
     cells = sheets.read_xlsx_cells((folder(published) / "register.xlsx").read_bytes())
     register = edition_of(published).register
     letter = dict(
-        zip((f.header for f in sheets.REGISTER_FIELDS), "ABCDEFGHIJKLMNOPQRSTUVWX", strict=True)
+        zip((f.header for f in sheets.REGISTER_FIELDS), string.ascii_uppercase, strict=True)
     )
     for row, line in enumerate(register.iter_rows(named=True), 2):
         assert cells[f"{letter['fsn_nr']}{row}"] == line["fsn_no"]

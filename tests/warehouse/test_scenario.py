@@ -6,7 +6,7 @@ from polars.testing import assert_frame_equal
 
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import parse_method, shipped_method
-from herijk.tables.column import LINE
+from herijk.pipeline.register.register import LINE
 from herijk.warehouse.queries.history import History
 from herijk.warehouse.queries.scenario import Scenario
 from herijk.warehouse.store.store import Store

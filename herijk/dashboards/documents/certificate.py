@@ -108,7 +108,6 @@ def _fact(line: Row, column: str, digits: int, speech: Speech) -> tuple[str, str
 
 def _terms(line: Row, speech: Speech) -> list[tuple[str, str]]:
     say = speech.say
-    thwart = {None: "unknown_word", True: "yes", False: "no"}[line["empty_thwart"]]
     rows = [
         ("certificate_tow", line["tow_date"]),
         ("certificate_from", line["valid_from"]),
@@ -116,6 +115,6 @@ def _terms(line: Row, speech: Speech) -> list[tuple[str, str]]:
         ("certificate_edition", speech.edition(line["edition"])),
         ("certificate_method", say(f"method.{line['method']}") if line["method"] else None),
         ("certificate_decision", line["decision"]),
-        ("certificate_thwart", say(thwart)),
+        ("certificate_thwart", line["empty_thwart"] or say("no_empty_thwart")),
     ]
     return [(say(key), "\u2013" if value is None else str(value)) for key, value in rows]

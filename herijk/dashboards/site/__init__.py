@@ -4,6 +4,6 @@
 `dashboards.words`, charts in `dashboards.figures`, numbers in the warehouse.
 """
 
-from herijk.dashboards.site.render import build_site
+from herijk.dashboards.site.render import build_pages, build_site
 
-__all__ = ["build_site"]
+__all__ = ["build_pages", "build_site"]

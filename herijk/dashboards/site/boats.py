@@ -177,7 +177,16 @@ CURVE_COLUMNS = (
     *("weight_kg", "altered", "runs_used", "status", "flags"),
 )
 RUN_COLUMNS = (
-    *("run", "direction", "window_start_s", "window_end_s", "cut_reason", "used", "reason"),
+    *(
+        "run",
+        "direction",
+        "window_start_s",
+        "window_end_s",
+        "cut_reason",
+        "used",
+        "reason",
+        "choice",
+    ),
     *("speed_m_s", "gross_cw_kg_m", "inertia_cw_kg_m", "air_cw_kg_m", "still_air_cw_kg_m"),
     *("temperature_cw_kg_m", "cw_kg_m", "cw_sd"),
     *("wind_m_s", "wind_angle_deg"),

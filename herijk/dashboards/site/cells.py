@@ -27,6 +27,7 @@ KEPT: Final = 7
 CODES: Final = {
     *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "code"),
     *("quantity", "explaining", "candidates", "severity", "check", "shared", "kind", "scope"),
+    *("old_remark", "new_remark", "choice"),
     *("option", "speed_reason", "cause", "log", "flag", "what", "outcome", "reason_code", "lost"),
     *("instrument", "verdict", "confused_with"),
 }
@@ -34,7 +35,7 @@ CODES: Final = {
 
 LONG: Final = {
     *("flags", "cut_reason", "reason", "speed_reason", "causes", "message", "meaning", "decision"),
-    *("candidates", "name", "confused_with"),
+    *("candidates", "name", "confused_with", "old_remark", "new_remark"),
 }
 """Columns of texts that may take several lines."""
 

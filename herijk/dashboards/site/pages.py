@@ -68,8 +68,10 @@ def _whole(views: Views, name: str, title: str, columns: Sequence[str] = ()) -> 
 
 
 REGISTER_COLUMNS = (
-    *("name", "fsn_no", "boat_type", "rowers", "crew_class", "tow_date", "valid_until", "status"),
+    *("name", "fsn_no", "boat_type", "rowers", "crew_class", "empty_thwart", "tow_date"),
+    *("valid_until", "status", "as_of"),
     *("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),
+    *("waterline_length_m", "beam_m", "bow_height_m", "weight_kg"),
     *("verification_code", "method"),
 )
 REGISTER_CARDS = (
@@ -111,7 +113,8 @@ def _downloads(views: Views) -> list[Section]:
 
 
 DUE_COLUMNS = (
-    *("valid_until", "name", "fsn_no", "boat_type", "rowers", "crew_class", "status"),
+    *("valid_until", "name", "fsn_no", "boat_type", "rowers", "crew_class", "empty_thwart"),
+    "status",
     *("tow_speed_m_s", "speed_reason", "beyond_curve", "declared_speed_m_s", "power_w"),
     *("raced_speed_m_s", "lowest_speed_m_s", "highest_speed_m_s", "tow_id", "as_of"),
 )

@@ -25,7 +25,7 @@ Chances: TypeAlias = dict[tuple[str, str], float | None]
 
 COLUMNS = (
     *("crew_class", "name", "fsn_no", "rowers", "rowing_time_s", "old_power_w", "new_power_w"),
-    *("old_rank", "new_rank", "podium_changed"),
+    *("old_rank", "new_rank", "podium_changed", "old_remark", "new_remark"),
 )
 CARDS = ("name", "fsn_no", "rowing_time_s", "old_rank", "new_rank")
 

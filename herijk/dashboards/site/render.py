@@ -4,6 +4,7 @@ Every page is made once per language, in Dutch at the root and in English under 
 its charts once, as a script beside them.
 """
 
+import datetime as dt
 import json
 import shutil
 import tempfile
@@ -64,10 +65,15 @@ def build_site(store: Store) -> dict[str, int]:
     Returns:
         Files and bytes of the site.
     """
-    target = store.root / "site"
-    beside = Path(tempfile.mkdtemp(prefix=TEMPORARY_PREFIX, dir=store.root))
+    return build_pages(store, store.root / "site")
+
+
+def build_pages(store: Store, target: Path, as_of: dt.date | None = None) -> dict[str, int]:
+    """The same in another folder, and as of a day; what stood in the folder is replaced."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    beside = Path(tempfile.mkdtemp(prefix=TEMPORARY_PREFIX, dir=target.parent))
     try:
-        with Views(store) as views:
+        with Views(store, as_of) as views:
             _write(views, beside)
         copy_sheets(store, beside)
         written = [f for f in beside.rglob("*") if f.is_file()]

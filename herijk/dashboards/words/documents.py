@@ -22,6 +22,7 @@ DOCUMENTS: Final[dict[str, tuple[str, str]]] = {
     "certificate_method": ("Methode", "Method"),
     "certificate_decision": ("Besluit", "Decision"),
     "certificate_thwart": ("Lege doft", "Empty thwart"),
+    "no_empty_thwart": ("geen", "none"),
     "unknown_word": ("niet bekend", "not known"),
     "certificate_reading": ("Zo leest u deze meetbrief", "How to read this certificate"),
     "certificate_read_cw": (

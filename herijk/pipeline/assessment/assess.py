@@ -12,7 +12,8 @@ from typing import Final
 
 import polars as pl
 
-from herijk.pipeline.assessment.checks import CHECKS, CODES, DOUBTS
+from herijk.pipeline.assessment.checks import CHECKS, CODES, DOUBTS, UNUSUAL
+from herijk.pipeline.assessment.freeboard import by_freeboard
 from herijk.pipeline.channels import TARGET_SPEED_RATIOS
 from herijk.pipeline.choice import SAME_SHARE
 from herijk.tables.column import LINE
@@ -48,7 +49,9 @@ def assess(curves: pl.DataFrame, run_points: pl.DataFrame, tows: pl.DataFrame) -
         _of_curves(curves),
         _of_runs(curves, run_points),
         _of_doubts(tows),
+        _of_correction(run_points, tows),
         _of_sizes(tows),
+        _of_freeboards(tows),
         _of_previous_curve(curves, tows),
         _of_like_boats(curves, tows),
     ]
@@ -186,11 +189,28 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
 
 
 def _of_doubts(tows: pl.DataFrame) -> pl.DataFrame:
-    """By which checks the rest of the archive rules a tow out, judged before any method."""
-    if "doubts" not in tows.columns:
-        return pl.DataFrame(schema={"tow_id": pl.String()})
+    """What the rest of the archive says of a tow, judged before any method."""
+    judged = {"doubts": DOUBTS, "unusual": UNUSUAL}
     return tows.select(
-        "tow_id", *(pl.col("doubts").list.contains(code).alias(code) for code in DOUBTS)
+        "tow_id",
+        *(
+            pl.col(column).list.contains(code).alias(code)
+            for column, codes in judged.items()
+            if column in tows.columns
+            for code in codes
+        ),
+    )
+
+
+def _of_correction(run_points: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+    """The tow list's speed correction, where the speeds are as the log read them; else 0."""
+    if "speed_correction_ratio" not in tows.columns:
+        return pl.DataFrame(schema={"tow_id": pl.String()})
+    as_read = (pl.col("speed_factor") - 1.0).abs().max() < SAME_SHARE
+    speeds = run_points.filter("used").group_by("tow_id").agg(as_read.alias("as_read"))
+    listed = pl.col("speed_correction_ratio")
+    return tows.join(speeds, on="tow_id").select(
+        "tow_id", correction_not_used=pl.when("as_read").then(listed).otherwise(listed * 0.0)
     )
 
 
@@ -205,10 +225,15 @@ def _of_sizes(tows: pl.DataFrame) -> pl.DataFrame:
     """Weight after, and measurements against those of the boat's previous tow with any crew."""
     same = ~pl.col("altered")
     freeboards = [(pl.col(c) - _before(c, ["fsn_no"])).abs() for c in FREEBOARDS]
-    lost = [c for c in ("runs_set_aside",) if c in tows.columns]
+    noted = {
+        "runs_set_aside": pl.col("runs_set_aside"),
+        "lamps_burned": pl.col("lamp_ratio").alias("lamps_burned"),
+        "load_cell_off": (pl.col("load_cell_ratio") - 1).alias("load_cell_off"),
+    }
+    known = [e for e in noted.values() if set(e.meta.root_names()) <= set(tows.columns)]
     return tows.sort("tow_date", "tow_id").select(
         "tow_id",
-        *lost,
+        *known,
         (pl.col("crew_weight_kg") / pl.col("rowers")).alias("crew_weight"),
         (pl.col("weight_after_kg") / pl.col("weight_kg") - 1).alias("heavier_after"),
         pl.when(same).then(pl.max_horizontal(freeboards)).alias("freeboard_changed"),
@@ -217,6 +242,12 @@ def _of_sizes(tows: pl.DataFrame) -> pl.DataFrame:
             for code, column in SIZES.items()
         ),
     )
+
+
+def _of_freeboards(tows: pl.DataFrame) -> pl.DataFrame:
+    if "freeboard_bow_m" not in tows.columns:
+        return pl.DataFrame(schema={"tow_id": pl.String()})
+    return by_freeboard(tows)
 
 
 def _with_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:

@@ -150,6 +150,29 @@ CHECKS: Final = (
         "inferred, as force_not_plausible",
         highest=0.0,
     ),
+    Check(
+        "force_unusual",
+        "whether the force stands out (1) or not (0) beside size, boat, day, season and type, less "
+        "clearly than force_not_plausible: a small gain or zero looks so, and so does chance",
+        "1",
+        "inferred: 3 standard deviations from what all other tows let expect",
+        highest=0.0,
+    ),
+    Check(
+        "wind_unusual",
+        "whether the wind out and back stands out (1) or not (0), less clearly than "
+        "wind_not_plausible",
+        "1",
+        "inferred, as force_unusual",
+        highest=0.0,
+    ),
+    Check(
+        "speed_unusual",
+        "whether the runs' speeds stand out (1) or not (0), less clearly than speed_not_plausible",
+        "1",
+        "inferred, as force_unusual",
+        highest=0.0,
+    ),
     # The runs
     Check(
         "log2_differs",
@@ -195,7 +218,32 @@ CHECKS: Final = (
         highest=0.05,
         severity="note",
     ),
-    # The declared speed
+    # Instruments, and the declared speed
+    Check(
+        "correction_not_used",
+        "speed correction in the tow list that the method does not use in this season",
+        "1",
+        "presentation 24-01-2015, 'Correctie [%]': entered by hand; a method that corrects no log "
+        "leaves it out, and one that estimates the log's error has no need of it",
+        lowest=0.0,
+        highest=0.0,
+        severity="note",
+    ),
+    Check(
+        "lamps_burned",
+        "largest part of a run in which a warning lamp burned: the tow line was not square",
+        "1",
+        "inferred: Sleepproef 2017, 'Recht sturen' tows again when lamps burn too often or long",
+        highest=0.2,
+    ),
+    Check(
+        "load_cell_off",
+        "load cell / known weight when it was last checked, less 1; the force is not corrected",
+        "1",
+        "Sleepproef 2017, 'Krachtopnemer': calibrated daily or more often; inferred: 1 %",
+        lowest=-0.01,
+        highest=0.01,
+    ),
     Check(
         "power_outside_range",
         "power per rower at the declared speed",
@@ -269,6 +317,27 @@ CHECKS: Final = (
         "inferred, as weight_changed",
         highest=0.03,
     ),
+    Check(
+        "weight_by_freeboard",
+        "change of weight by freeboards since the previous tow, less that on the scale / weight",
+        "1",
+        "Sleepproef 2017, 'Opmetingen en keuring': freeboards check the weight; inferred: readings "
+        "to 1 cm tell 10 %, so a note beyond twice that",
+        lowest=-0.2,
+        highest=0.2,
+        severity="note",
+    ),
+    Check(
+        "balance_changed",
+        "how far freeboards say that the centre of gravity moved forward since the previous tow / "
+        "waterline length",
+        "1",
+        "Sleepproef 2017, 'Opmetingen en keuring': freeboards check how weight lies over the "
+        "length; inferred: readings to 1 cm tell 1 %, so a note beyond twice that",
+        lowest=-0.02,
+        highest=0.02,
+        severity="note",
+    ),
     # The curve against others
     Check(
         "curve_changed",
@@ -301,5 +370,8 @@ CHECKS: Final = (
 
 DOUBTS: Final = ("force_not_plausible", "wind_not_plausible", "speed_not_plausible")
 """Checks by which the rest of the archive rules a tow out."""
+
+UNUSUAL: Final = ("force_unusual", "wind_unusual", "speed_unusual")
+"""Checks by which a tow stands out among the others, though chance may do that."""
 
 CODES: Final = tuple(check.code for check in CHECKS)

@@ -58,22 +58,38 @@ class Candidates:
     least: FloatArray
 
 
-def find_shifts(
-    seen: Observations, may: Candidates, limit: float
-) -> list[tuple[int, float, float]]:
+@dataclass(frozen=True)
+class Found:
+    """A shift: place of the candidate, its size, and the standard deviation of that.
+
+    Attributes:
+        clear: it is beyond the limit from which chance is ruled out.
+    """
+
+    place: int
+    size: float
+    sd: float
+    clear: bool
+
+
+def find_shifts(seen: Observations, may: Candidates, limit: float, look: float) -> list[Found]:
     """Shifts beyond so many standard deviations, the clearest first.
 
-    Where tows scatter more or less than is assumed, the limit moves with them.
+    Where tows scatter more or less than is assumed, the limits move with them.
 
-    Returns:
-        Place of the candidate, its size, and the standard deviation of that.
+    Args:
+        seen: what is seen.
+        may: what may have shifted.
+        limit: from which chance is ruled out.
+        look: from which a single tow is unusual, judged when all clear shifts are taken out.
     """
     precision = _Precision.of(seen)
     score = np.asarray(may.directions.T @ precision.times(seen.values))
     at_first = precision.weights(may.directions)
     weight = at_first.copy()
-    limits = limit * _scales(score, weight, may.single)
-    shifts: list[tuple[int, float, float]] = []
+    scales = _scales(score, weight, may.single)
+    limits, clear = limit * scales, True
+    shifts: list[Found] = []
     while True:
         told = weight > SAME_DIRECTION * at_first
         sd = 1.0 / np.sqrt(np.where(told, weight, 1.0))
@@ -82,8 +98,11 @@ def find_shifts(
         beyond[~told | (np.abs(size) < may.least)] = 0.0
         best = int(first_largest(beyond))
         if beyond[best] < 1.0:
-            return shifts
-        shifts.append((best, float(size[best]), float(sd[best])))
+            if not clear:
+                return shifts
+            limits, clear = np.where(may.single, look * scales, np.inf), False
+            continue
+        shifts.append(Found(best, float(size[best]), float(sd[best]), clear))
         moved = precision.take_out(may.directions[:, [best]].toarray()[:, 0])
         share = np.asarray(may.directions.T @ moved)
         score = score - share * size[best]

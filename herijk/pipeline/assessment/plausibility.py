@@ -29,6 +29,10 @@ from herijk.tables.column import LINE
 LIMIT: Final = 4.5
 """Standard deviations from which a shift is no chance: one in 300,000, as thousands are tried."""
 
+LOOK: Final = 3.0
+"""Standard deviations from which a single tow is unusual: somebody has to look, and its numbers
+stand. One sound tow in 400, were all as Gaussian as the model."""
+
 FEWEST: Final = 3
 """Tows that a day, a season or an archive needs before it is judged as a whole."""
 
@@ -80,6 +84,7 @@ class Shift:
         sd: its standard deviation; 0 where the samples themselves leave no doubt.
         tows: the tows in it, sorted.
         cause: what would do this; empty where nothing known does.
+        clear: chance is ruled out; else the tow is only unusual.
     """
 
     kind: str
@@ -89,10 +94,13 @@ class Shift:
     sd: float
     tows: tuple[str, ...]
     cause: str
+    clear: bool = True
 
     @property
     def is_gross(self) -> bool:
         """Whether nothing but a wrong unit, column or file does this."""
+        if not self.clear:
+            return False
         if self.quantity == "vane":
             return self.cause != ""
         if self.quantity == "wind":
@@ -102,6 +110,8 @@ class Shift:
 
 def implausible(batch: Batch) -> list[Shift]:
     """Shifts of force, wind and speed that the other tows rule out, the clearest first.
+
+    After these, single tows that are only unusual.
 
     Args:
         batch: all tows of the archive with their runs, in one batch.
@@ -242,11 +252,11 @@ def _named(
         np.array([LEAST[quantity] for quantity, _, _ in columns]),
     )
     shifts = []
-    for place, size, sd in find_shifts(observed, may, LIMIT):
-        quantity, (kind, key, places), _ = columns[place]
+    for one in find_shifts(observed, may, LIMIT, LOOK):
+        quantity, (kind, key, places), _ = columns[one.place]
         ids = tuple(tows["tow_id"].gather(np.sort(places)))
-        cause = likely_cause(quantity, _ln_ratio(quantity, size), sd)
-        shifts.append(Shift(kind, key, quantity, size, sd, ids, cause))
+        cause = likely_cause(quantity, _ln_ratio(quantity, one.size), one.sd)
+        shifts.append(Shift(kind, key, quantity, one.size, one.sd, ids, cause, one.clear))
     return shifts
 
 

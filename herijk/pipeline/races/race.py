@@ -36,20 +36,6 @@ def power_per_rower_w(cw_kg_m: ArrayLike, speed_m_s: ArrayLike, rowers: ArrayLik
     return cw * speed**3 / number
 
 
-def net_speed_over_legs_m_s(
-    distance_m: ArrayLike, time_s: ArrayLike, stream_m: ArrayLike
-) -> FloatArray:
-    """Mean over the legs (last axis) of the net speed of each [m/s], every leg weighing the same.
-
-    The rule for tidal races since 2016 (results of the HKS 2018): the speed through the water is
-    taken leg by leg, averaged, and only then made power.
-    """
-    distance, time, stream = (
-        np.asarray(x, dtype=np.float64) for x in (distance_m, time_s, stream_m)
-    )
-    return np.asarray(((distance - stream) / time).mean(axis=-1), dtype=np.float64)
-
-
 def reference_power_share(time_s: ArrayLike, outside: Outside = "refuse") -> FloatArray:
     """Share of the reference power that a crew keeps up on average over a race of that length.
 

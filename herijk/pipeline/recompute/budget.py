@@ -253,7 +253,19 @@ def _terms_of_tows(o: Outcome, found: SeasonFactors | None, scatter: curve.Scatt
         pl.Series("wind_measured", batch.measured("wind")),
         pl.Series("still_air_kg_m", batch.mean(o.still_air_kg_m, o.used)),
         pl.Series("temperature_known", o.temperature_known),
+        force_uncertainty(batch.tows).alias("force_sd"),
     )
+
+
+def force_uncertainty(tows: pl.DataFrame) -> pl.Expr:
+    """Standard uncertainty of a tow's force by the record of its load cell; null without one.
+
+    The force is not corrected by the record, so what the cell was off is part of it (GUM F.2.4.5).
+    """
+    if "load_cell_ratio" not in tows.columns:
+        return pl.lit(None, pl.Float64)
+    off = pl.col("load_cell_ratio") - 1.0
+    return (off**2 + pl.col("load_cell_sd") ** 2).sqrt()
 
 
 def _median_bend(o: Outcome) -> float:

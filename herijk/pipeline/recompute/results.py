@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from herijk.pipeline import curve
 from herijk.pipeline.arrays import BoolArray
 from herijk.pipeline.assessment.assess import assess, with_status
+from herijk.pipeline.assessment.run_choice import with_run_choice
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.quantiles import t_quantile
 from herijk.pipeline.races.race import power_per_rower_w
@@ -78,7 +79,7 @@ def as_tables(
         return pl.concat(frames).select(name, pl.all())
 
     pooled, at_declared = estimated is not None, pl.col("speed_ratio") == DECLARED
-    run_points = together([_run_points(o, pooled) for o in outcomes])
+    run_points = with_run_choice(together([_run_points(o, pooled) for o in outcomes]))
     budget = budget_of(outcomes, estimated, CURVE_SPEED_RATIOS if with_bands else (DECLARED,))
     bounds = cw_bounds(budget)
     curves = together([_curves(o, bounds.filter(at_declared), pooled) for o in outcomes])

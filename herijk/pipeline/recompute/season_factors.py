@@ -16,7 +16,7 @@ from herijk.pipeline import curve
 from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.method.definition import Steps, Wind
-from herijk.pipeline.recompute.budget import pooled_scatter
+from herijk.pipeline.recompute.budget import force_uncertainty, pooled_scatter
 from herijk.pipeline.recompute.outcome import Outcome, TowFactor
 from herijk.pipeline.season_log import (
     GROUP,
@@ -160,6 +160,7 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
         log_part(OTHER_LOG.get(steps.speed.source, "mean")).alias("other_part"),
         pl.lit(calibrated).alias("anchored"),
         pl.Series("temperature_known", o.temperature_known),
+        force_uncertainty(batch.tows).alias("force_sd"),
         pl.Series("reference_ratio", batch.of_tow("declared_speed_m_s") / speed),
         *(pl.Series(name, values).fill_nan(None) for name, values in numbers.items()),
     )

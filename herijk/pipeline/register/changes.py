@@ -17,7 +17,7 @@ from herijk.pipeline.choice import SAME_SHARE
 from herijk.pipeline.curve import cw
 from herijk.pipeline.races.power import curve_of_lines, speed_at_power
 from herijk.pipeline.races.race import power_per_rower_w
-from herijk.tables.column import LINE
+from herijk.pipeline.register.register import LINE
 from herijk.tables.frames import dtypes
 from herijk.tables.register import Register
 from herijk.tables.studies import CorrectionSteps

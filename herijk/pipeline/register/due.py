@@ -15,7 +15,10 @@ from herijk.pipeline.assessment.checks import CHECKS
 from herijk.pipeline.curve import VALID_RATIO
 from herijk.pipeline.races.power import curve_of_lines, speed_at_power
 from herijk.pipeline.races.race import mean_speed_m_s, power_per_rower_w
-from herijk.tables.column import LINE
+from herijk.pipeline.register.register import LINE
+
+CREW: Final = LINE[:-1]
+"""A boat's crew, whichever thwart it leaves free: results of races seldom say."""
 
 _IN_RANGE: Final = next(check for check in CHECKS if check.code == "power_outside_range")
 LOWEST_W: Final = {c: _IN_RANGE.limits(c)[0] for c in ("H", "D")}
@@ -63,7 +66,7 @@ def due_list(
     """
     lines = (
         register.join(boats.select("fsn_no", "boat_type"), on="fsn_no", how="left")
-        .join(_raced(results, as_of), on=LINE, how="left")
+        .join(_raced(results, as_of), on=CREW, how="left")
         .sort(LINE)
     )
     own = lines.filter(pl.col("a_kg_m").is_not_null())
@@ -85,13 +88,13 @@ def due_list(
 
 
 def _raced(results: pl.DataFrame, as_of: dt.date) -> pl.DataFrame:
-    """The fastest mean speed through the water of each line in the year up to a day."""
+    """The fastest mean speed through the water of each crew in the year up to a day."""
     day = pl.col("race_date")
     lately = results.filter(day > pl.lit(as_of).dt.offset_by("-1y"), day <= as_of)
     through_water = lately["distance_m"] - lately["stream_m"].fill_null(0.0)
     speed = mean_speed_m_s(through_water, lately["rowing_time_s"])
     raced = lately.with_columns(pl.Series("raced_speed_m_s", speed))
-    return raced.group_by(LINE).agg(pl.col("raced_speed_m_s").max())
+    return raced.group_by(CREW).agg(pl.col("raced_speed_m_s").max())
 
 
 def _powers(lines: pl.DataFrame) -> list[pl.Series]:

@@ -11,8 +11,13 @@ from typing import Final
 import polars as pl
 
 from herijk.pipeline.method.definition import RegisterRule
-from herijk.tables.column import LINE
+from herijk.tables.column import LINE as CREW
 
+LINE: Final = (*CREW, "empty_thwart")
+"""What a line is for. A curve measured with a thwart left free holds only with that thwart free
+(Sleepproef, R. Pot 2017, "Bemanning"); `NO_EMPTY_THWART` where all are manned."""
+
+NO_EMPTY_THWART: Final = ""
 CURVE_COLUMNS: Final = (
     "tow_id",
     "tow_date",
@@ -35,6 +40,13 @@ DOUBTED: Final = "doubted"
 EXCLUDE, PREFER = "exclude", "prefer"
 DECISION_SCHEMA: Final = {"tow_id": pl.String(), "verdict": pl.String()}
 NO_DECISIONS: Final = pl.DataFrame(schema=DECISION_SCHEMA)
+
+
+def with_empty_thwart(lines: pl.DataFrame) -> pl.DataFrame:
+    """Lines that were made before they said which thwart was left free."""
+    if "empty_thwart" in lines.columns:
+        return lines
+    return lines.with_columns(pl.lit(NO_EMPTY_THWART).alias("empty_thwart"))
 
 
 def draft_name(method: str) -> str:
@@ -70,22 +82,18 @@ def draft_register(
         decisions: `tow_id` and `verdict`: a tow to `exclude`, or to `prefer` over newer ones.
 
     Returns:
-        Rows of the table `register`, with status `valid`, `expired`, `rejected` (towed, but no tow
-        gives a curve), `doubted` (the rest of the archive rules its tows out; a person may look and
-        prefer one), `excluded` (by decision, and there is no other tow) or `never_towed`.
+        Rows of the table `register`, `as_of` that day, with status `valid`, `expired`, `rejected`
+        (towed, but no tow gives a curve), `doubted` (the rest of the archive rules its tows out; a
+        person may look and prefer one), `excluded` (by decision, and there is no other tow) or
+        `never_towed`.
     """
-    towed = _as_ruled(curves, rule).join(
-        tows.filter(pl.col("tow_date") <= on_date).select("tow_id", "tow_date"), on="tow_id"
-    )
+    towed = _towed(_as_ruled(curves, rule), tows.filter(pl.col("tow_date") <= on_date))
     curved = towed.filter(pl.col("status") != "rejected")
     sound = curved.join(_doubted(tows, decisions), on="tow_id", how="anti")
-    allowed = sound.join(_with_verdict(decisions, EXCLUDE), on="tow_id", how="anti")
-    preferred = pl.col("tow_id").is_in(_with_verdict(decisions, PREFER)["tow_id"].implode())
     chosen = (
-        allowed.sort(preferred, "tow_date", "tow_id")
+        _in_order(sound, rule, decisions)
         .group_by(LINE, maintain_order=True)
         .last()
-        .with_columns(valid_until(pl.col("tow_date"), rule).alias("valid_until"))
         .with_columns(
             pl.when(pl.col("valid_until") >= on_date)
             .then(pl.lit("valid"))
@@ -94,7 +102,9 @@ def draft_register(
         )
         .select(*LINE, *CURVE_COLUMNS, "status")
     )
-    crews = boats.drop_nulls(["rowers", "crew_class"]).select(LINE)
+    crews = boats.drop_nulls(["rowers", "crew_class"]).select(
+        *LINE[:-1], pl.lit(NO_EMPTY_THWART).alias("empty_thwart")
+    )
     without = [
         (sound.join(chosen, on=LINE, how="anti"), "excluded"),
         (curved.join(sound, on=LINE, how="anti"), DOUBTED),
@@ -105,7 +115,44 @@ def draft_register(
         frame.select(LINE).unique().with_columns(pl.lit(status).alias("status"))
         for frame, status in without
     ]
-    return pl.concat([chosen, *lines], how="diagonal").sort(LINE)
+    both = pl.concat([chosen, *lines], how="diagonal")
+    return both.with_columns(pl.lit(on_date).alias("as_of")).sort(LINE)
+
+
+def lines_of_all_days(
+    curves: pl.DataFrame,
+    tows: pl.DataFrame,
+    rule: RegisterRule = FIVE_YEARS,
+    decisions: pl.DataFrame = NO_DECISIONS,
+) -> pl.DataFrame:
+    """Every line that a register of one method had at some time, the one that goes before last.
+
+    On a day counts the last whose `tow_date` is not after it, as in `draft_register`.
+
+    Args:
+        curves, tows, rule, decisions: as for `draft_register`.
+
+    Returns:
+        `LINE` and `CURVE_COLUMNS` of every tow that can count.
+    """
+    curved = _towed(_as_ruled(curves, rule), tows).filter(pl.col("status") != "rejected")
+    sound = curved.join(_doubted(tows, decisions), on="tow_id", how="anti")
+    return _in_order(sound, rule, decisions).select(*LINE, *CURVE_COLUMNS)
+
+
+def _towed(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+    """Curves with the day of their tow and the thwart that was left free."""
+    thwart = pl.col("empty_thwart").fill_null(NO_EMPTY_THWART)
+    return curves.join(tows.select("tow_id", "tow_date", thwart), on="tow_id")
+
+
+def _in_order(sound: pl.DataFrame, rule: RegisterRule, decisions: pl.DataFrame) -> pl.DataFrame:
+    """Tows that may count with their last day, the one that goes before the others last."""
+    allowed = sound.join(_with_verdict(decisions, EXCLUDE), on="tow_id", how="anti")
+    preferred = pl.col("tow_id").is_in(_with_verdict(decisions, PREFER)["tow_id"].implode())
+    return allowed.sort(preferred, "tow_date", "tow_id").with_columns(
+        valid_until(pl.col("tow_date"), rule).alias("valid_until")
+    )
 
 
 def _doubted(tows: pl.DataFrame, decisions: pl.DataFrame) -> pl.DataFrame:

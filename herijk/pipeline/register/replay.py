@@ -12,23 +12,16 @@ import numpy as np
 import polars as pl
 
 from herijk.pipeline.arrays import FloatArray
-from herijk.pipeline.curve import cw, s_of_b
-from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.pipeline.races.race import (
-    fatigue_factor,
-    mean_speed_m_s,
-    net_speed_over_legs_m_s,
-    power_per_rower_w,
-)
+from herijk.pipeline.curve import VALID_RATIO, cw
+from herijk.pipeline.races.power import curve_of_lines
+from herijk.pipeline.races.race import fatigue_factor, mean_speed_m_s, power_per_rower_w
+from herijk.pipeline.register.register import LINE, NO_EMPTY_THWART
 from herijk.pipeline.uncertainty.ensemble import share_first
-from herijk.tables.column import LINE
 from herijk.tables.frames import dtypes
 from herijk.tables.register import RaceChanges
 
 Fatigue = Literal["none", "known", "extend"]
-Stream = Literal["distance_first", "net_speed_over_legs"]
 FATIGUES: Final = get_args(Fatigue)
-STREAMS: Final = get_args(Stream)
 
 RACE: Final = ("race", "race_date")
 CLASSIFICATION: Final = (*RACE, "crew_class")
@@ -42,76 +35,127 @@ WINNER_SCHEMA: Final = {
     "change_probability": pl.Float64(),
 }
 
+CURVE: Final = ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m")
+
 NOT_IN_REGISTER = "not_in_register"
+NO_LINE_THAT_DAY = "no_line_that_day"
+THWART_NOT_GIVEN = "thwart_not_given"
 ABOVE_B = "speed_not_below_b"
+BEYOND_CURVE = "beyond_curve"
 
 
 @dataclass(frozen=True)
 class RaceRules:
-    """How results are computed.
+    """How results are computed; the distance that the stream carried a boat comes off first.
 
     Attributes:
         fatigue: `none`; `known`: between the two published points, refused outside; `extend`: the
             power law between them, for every time.
-        stream: `distance_first`: the distance the stream carried the boat is taken off the
-            distance; `net_speed_over_legs`: the mean of each leg's net speed, which needs legs.
         speed_decimals: decimals to which the speed is rounded first, as the federation's example
             does; None for none.
     """
 
     fatigue: Fatigue = "extend"
-    stream: Stream = "distance_first"
     speed_decimals: int | None = None
 
 
-def replay(
-    register: pl.DataFrame,
-    results: pl.DataFrame,
-    rules: RaceRules,
-    legs: pl.DataFrame | None = None,
-) -> pl.DataFrame:
-    """Power and rank of every result under one register.
+def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.DataFrame:
+    """Power and rank of every result under the lines that counted on its day.
 
     Args:
-        register: lines with `fsn_no`, `rowers`, `crew_class`, `a_kg_m`, `b_m_s`; of one edition.
-        results: `race`, `race_date`, `fsn_no`, `rowers`, `crew_class`, `distance_m`,
+        lines: `LINE`, `tow_id`, `tow_date`, `valid_until`, `declared_speed_m_s`, `a_kg_m`, `b_m_s`,
+            `cw_kg_m`; of all days, the one that goes before others last (`lines_of_all_days`).
+        results: `race`, `race_date`, `LINE` (the thwart null where it is not given), `distance_m`,
             `rowing_time_s`, `stream_m`, `penalty_w` (watt per rower, taken off).
         rules: how they are computed.
-        legs: `race`, `race_date`, `fsn_no`, `rowers`, `crew_class`, `distance_m`, `time_s`,
-            `stream_m`, one row per leg; for the rule over legs.
 
     Returns:
-        The results with `speed_m_s`, `cw_kg_m`, `fatigue_factor`, `power_w` (a rower, corrected,
-        less the penalty), `rank` within the race and class, and `reason` why there is no power
-        (`not_in_register`, `speed_not_below_b`), else empty. Sorted by race, class and rank.
+        The results with `tow_id` and `declared_cw_kg_m` (Cw at the declared speed) of the line that
+        counted, `speed_m_s`, `cw_kg_m`, `fatigue_factor`, `power_w` (a rower, corrected,
+        less the penalty), `rank` within the race and class, and `remark`: why there is no power
+        (`not_in_register`, `no_line_that_day`, `thwart_not_given`, `speed_not_below_b`), or that
+        the speed lies outside 85-115 % of the declared one, where the curve does not hold
+        (`beyond_curve`); else empty. Sorted by race, class and rank.
 
     Raises:
-        MissingKnowledgeError: the rule over legs without legs, or a race time outside what is
-            known of fatigue.
+        MissingKnowledgeError: a race time outside what is known of fatigue.
     """
-    results = results.sort(*RACE, *LINE)
-    speed = _speed_m_s(results, rules, legs)
-    lines = register.filter(pl.col("a_kg_m").is_not_null()).select(*LINE, "a_kg_m", "b_m_s")
-    rowed = results.join(lines, on=LINE, how="left", maintain_order="left")
-    a = rowed["a_kg_m"].to_numpy()
-    b = rowed["b_m_s"].fill_null(float("inf")).to_numpy()
-    resistance = cw(np.nan_to_num(a), s_of_b(b), speed)
-    sound = np.isfinite(a) & np.isfinite(resistance)
-    fatigue = _fatigue(results, rules)
+    rowed = _with_lines(results.sort(*RACE, *LINE), lines.drop_nulls("a_kg_m"))
+    through_water = rowed["distance_m"] - rowed["stream_m"].fill_null(0.0)
+    speed = mean_speed_m_s(through_water, rowed["rowing_time_s"])
+    if rules.speed_decimals is not None:
+        speed = np.round(speed, rules.speed_decimals)
+    a, s = curve_of_lines(rowed)
+    resistance = cw(np.nan_to_num(a), np.nan_to_num(s), speed)
+    has_line = np.isfinite(a)
+    sound = has_line & np.isfinite(resistance)
+    fatigue = _fatigue(rowed, rules)
     power = power_per_rower_w(np.where(sound, resistance, 0.0), speed, rowed["rowers"]) * fatigue
     penalty = rowed["penalty_w"].fill_null(0.0).to_numpy()
-    reason = np.select([~np.isfinite(a), ~sound], [NOT_IN_REGISTER, ABOVE_B], "")
+    low, high = (ratio * rowed["declared_speed_m_s"].to_numpy() for ratio in VALID_RATIO)
+    beyond = (speed < low) | (speed > high)
+    without = rowed["without"].to_numpy()
+    remark = np.select([~has_line, ~sound, beyond], [without, ABOVE_B, BEYOND_CURVE], "")
     rank = pl.col("power_w").rank("min", descending=True).over(CLASSIFICATION).cast(pl.Int32)
     return (
-        rowed.with_columns(
+        rowed.drop("without", "tow_date", "valid_until", "declared_speed_m_s")
+        .rename({"cw_kg_m": "declared_cw_kg_m"})
+        .with_columns(
             pl.Series("speed_m_s", speed),
             pl.Series("fatigue_factor", fatigue),
             _where(sound, "cw_kg_m", resistance),
             _where(sound, "power_w", power - penalty),
-            pl.Series("reason", reason, pl.String),
+            pl.Series("remark", remark, pl.String),
         )
         .with_columns(rank.alias("rank"))
         .sort(*CLASSIFICATION, "rank", *LINE, nulls_last=True)
+    )
+
+
+def _with_lines(results: pl.DataFrame, lines: pl.DataFrame) -> pl.DataFrame:
+    """Results with the line that counted on their day, or `without`: why there is none.
+
+    A result that names no empty thwart was rowed with all manned, where the boat has such a line;
+    else with the one thwart free that its line asks for.
+    """
+    crew = LINE[:-1]
+    facts = (*("tow_id", "tow_date", "valid_until"), *CURVE)
+    numbered = results.with_row_index("result").rename({"empty_thwart": "given"})
+    pairs = numbered.select("result", "race_date", *crew, "given").join(
+        lines.select(*LINE, *facts), on=crew, maintain_order="left_right"
+    )
+    fits = pl.col("given").is_null() | (pl.col("given") == pl.col("empty_thwart"))
+    begun = pl.col("tow_date").is_null() | (pl.col("tow_date") <= pl.col("race_date"))
+    counts = pl.col("valid_until").is_null() | (pl.col("valid_until") >= pl.col("race_date"))
+    newest = (
+        pairs.filter(fits & begun)
+        .group_by("result", "empty_thwart", maintain_order=True)
+        .last()
+        .filter(counts)
+    )
+    all_manned = (pl.col("empty_thwart") == NO_EMPTY_THWART).any().over("result")
+    chosen = newest.filter(~all_manned | (pl.col("empty_thwart") == NO_EMPTY_THWART))
+    told = chosen.filter(pl.len().over("result") == 1)
+    known, several = pairs["result"].unique().implode(), chosen["result"].unique().implode()
+    without = (
+        pl.when(pl.col("result").is_in(several))
+        .then(pl.lit(THWART_NOT_GIVEN))
+        .when(pl.col("result").is_in(known))
+        .then(pl.lit(NO_LINE_THAT_DAY))
+        .otherwise(pl.lit(NOT_IN_REGISTER))
+    )
+    return (
+        numbered.join(
+            told.select("result", "empty_thwart", *facts),
+            on="result",
+            how="left",
+            maintain_order="left",
+        )
+        .with_columns(
+            without.alias("without"),
+            pl.coalesce("empty_thwart", "given", pl.lit(NO_EMPTY_THWART)).alias("empty_thwart"),
+        )
+        .drop("result", "given")
     )
 
 
@@ -122,32 +166,31 @@ def race_changes(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
         old, new: `replay` of the same results under two registers.
 
     Returns:
-        One row a result: `old_power_w`, `new_power_w`, `old_rank`, `new_rank`, and whether it is
-        on the podium in one of the two only (`podium_changed`).
+        One row a result: `old_power_w`, `new_power_w`, `old_remark`, `new_remark`, `old_rank`,
+        `new_rank`, and whether it is on the podium in one of the two only (`podium_changed`).
     """
-    key = [*RACE, *LINE]
-    columns = [*key, "rowing_time_s", "power_w", "rank"]
-    pairs = old.select(columns).join(
-        new.select(*key, "rowing_time_s", "power_w", "rank"),
-        on=[*key, "rowing_time_s"],
-        suffix="_new",
+    key = [*RACE, *LINE[:-1], "rowing_time_s"]
+    columns = ["power_w", "rank", "remark"]
+    pairs = old.select(*key, *columns).join(
+        new.select(*key, "empty_thwart", *columns), on=key, suffix="_new"
     )
     on_podium = (pl.col(name).fill_null(PODIUM + 1) <= PODIUM for name in ("rank", "rank_new"))
     before, after = on_podium
     return pairs.select(
-        *key,
+        *RACE,
+        *LINE,
         "rowing_time_s",
         pl.col("power_w").alias("old_power_w"),
         pl.col("power_w_new").alias("new_power_w"),
+        pl.col("remark").alias("old_remark"),
+        pl.col("remark_new").alias("new_remark"),
         pl.col("rank").alias("old_rank"),
         pl.col("rank_new").alias("new_rank"),
         (before != after).alias("podium_changed"),
     ).sort(*CLASSIFICATION, "new_rank", "fsn_no", nulls_last=True)
 
 
-def winner_changes(
-    old: pl.DataFrame, new: pl.DataFrame, register: pl.DataFrame, members: pl.DataFrame
-) -> pl.DataFrame:
+def winner_changes(old: pl.DataFrame, new: pl.DataFrame, members: pl.DataFrame) -> pl.DataFrame:
     """Who wins each race and class under two registers, and how likely it is not the old winner.
 
     How likely is the share of equally likely new registers in which another crew has the highest
@@ -155,8 +198,8 @@ def winner_changes(
 
     Args:
         old, new: `replay` of the same results under two registers.
-        register: lines of the new one, with `tow_id` and `cw_kg_m`.
-        members: rows of the table `ensemble` for its tows; may be empty, then nothing is known.
+        members: rows of the table `ensemble` for tows of the new one; may be empty, then nothing is
+            known.
 
     Returns:
         One row a race and class: `old_winner`, `new_winner` (boat; null where nobody has a power),
@@ -172,7 +215,7 @@ def winner_changes(
                 "old_winner": None if winners[0] is None else winners[0][0],
                 "new_winner": None if winners[1] is None else winners[1][0],
                 "winner_changed": winners[0] != winners[1],
-                "change_probability": _change_probability(results, winners[0], register, members),
+                "change_probability": _change_probability(results, winners[0], members),
             }
         )
     return pl.DataFrame(rows, schema=WINNER_SCHEMA).sort(CLASSIFICATION)
@@ -184,18 +227,14 @@ def _winner(results: pl.DataFrame) -> tuple[object, ...] | None:
 
 
 def _change_probability(
-    results: pl.DataFrame,
-    old_winner: tuple[object, ...] | None,
-    register: pl.DataFrame,
-    members: pl.DataFrame,
+    results: pl.DataFrame, old_winner: tuple[object, ...] | None, members: pl.DataFrame
 ) -> float | None:
-    crews = results.drop_nulls("power_w").select(*LINE, "power_w")
+    named = pl.col("tow_id").fill_null(pl.concat_str(LINE, separator=" "))
+    crews = results.drop_nulls("power_w").select(
+        *LINE, "power_w", named, pl.col("declared_cw_kg_m").alias("cw_kg_m")
+    )
     if members.is_empty() or old_winner is None or old_winner not in crews.select(LINE).rows():
         return None
-    lines = register.select(*LINE, "tow_id", "cw_kg_m").with_columns(
-        pl.col("tow_id").fill_null(pl.concat_str(LINE, separator=" "))
-    )
-    crews = crews.join(lines, on=LINE)
     certain = crews.join(members, on="tow_id", how="anti").join(
         members.select("member").unique(), how="cross"
     )
@@ -204,36 +243,6 @@ def _change_probability(
     shares = share_first(drawn, crews)
     mine = pl.all_horizontal(pl.col(n) == w for n, w in zip(LINE, old_winner, strict=True))
     return 1.0 - float(shares.filter(mine)["share"][0])
-
-
-def _speed_m_s(results: pl.DataFrame, rules: RaceRules, legs: pl.DataFrame | None) -> FloatArray:
-    if rules.stream == "net_speed_over_legs":
-        speed = _over_legs(results, legs)
-    else:
-        distance = results["distance_m"] - results["stream_m"].fill_null(0.0)
-        speed = mean_speed_m_s(distance, results["rowing_time_s"])
-    return speed if rules.speed_decimals is None else np.round(speed, rules.speed_decimals)
-
-
-def _over_legs(results: pl.DataFrame, legs: pl.DataFrame | None) -> FloatArray:
-    key = [*RACE, *LINE]
-    lacking = results if legs is None else results.join(legs, on=key, how="anti")
-    if legs is None or lacking.height:
-        first = lacking.row(0, named=True)
-        raise MissingKnowledgeError(
-            f"the stream rule net_speed_over_legs needs distance, time and stream of each leg; "
-            f"{first['race']} of {first['race_date']} has none for {first['fsn_no']} (race files "
-            "of the archive hold no legs). Use the rule distance_first"
-        )
-    columns = ("distance_m", "time_s", "stream_m")
-    grouped = legs.group_by(key, maintain_order=True).agg(columns)
-    own = results.select(key).join(grouped, on=key, how="left", maintain_order="left")
-    return np.array(
-        [
-            float(net_speed_over_legs_m_s(*(np.array(values) for values in row)))
-            for row in own.select(columns).rows()
-        ]
-    )
 
 
 def _fatigue(results: pl.DataFrame, rules: RaceRules) -> FloatArray:

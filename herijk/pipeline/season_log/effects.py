@@ -105,7 +105,9 @@ def _always(network: Network, settings: Settings) -> Iterator[Unknown]:
             sd = float(np.hypot(settings.gps_season_sd, excess[with_gps].mean() / np.sqrt(3.0)))
             yield Unknown(GPS_SCALE, year, number, None, mine * 1.0, sd)
     for year in np.unique(season).astype(int).tolist():
-        yield Unknown(FORCE, year, None, None, (season == year) * 1.0, settings.force_sd)
+        yield Unknown(
+            FORCE, year, None, None, (season == year) * 1.0, _force_sd(network, year, settings)
+        )
         unrecorded = (season == year) & ~network.tows["temperature_known"].to_numpy()
         if unrecorded.any():
             yield Unknown(WATER, year, None, None, unrecorded * 1.0, settings.water_sd)
@@ -119,6 +121,14 @@ def _always(network: Network, settings: Settings) -> Iterator[Unknown]:
     for kind in kinds.unique().sort():
         mine = (kinds == kind).to_numpy()
         yield Unknown(TYPE_BEND, None, None, None, mine * 1.0, settings.type_bend_sd)
+
+
+def _force_sd(network: Network, year: int, settings: Settings) -> float:
+    """What is held of a season's load cell: by its records where there are any."""
+    if "force_sd" not in network.tows.columns:
+        return settings.force_sd
+    recorded = network.tows.filter(season=year)["force_sd"].drop_nulls()
+    return settings.force_sd if recorded.is_empty() else float(np.median(recorded.to_numpy()))
 
 
 def _faults(network: Network, settings: Settings) -> Iterator[Unknown]:

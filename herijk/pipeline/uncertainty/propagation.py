@@ -218,7 +218,8 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
             correction / Cw, and `air_per_coefficient`, change of ln Cw per unit of drag coefficient
             (both signed); `wind_ln_sd`, of the anemometer's ln scale, null where it is taken as it
             reads; `wind_measured`, and where it was not `still_air_ratio`, still-air part / Cw;
-            `temperature_known`.
+            `temperature_known`; `force_sd`, of the load cell by its record, null or absent without
+            one.
         assumed: what the archive cannot show; give `wind_coefficient` what the archive-wide search
             came to where that was used.
 
@@ -246,7 +247,7 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
         "calibration": kappa * speed_ratio,
         "stream_drift": kappa * drift_ratio,
         "between_tows": pl.lit(assumed.between_tows_ratio),
-        "force": pl.lit(assumed.force_ratio),
+        "force": _by_record(tows, assumed),
         "wind": pl.when("wind_measured").then(coefficient).otherwise(no_wind),
         "anemometer": 2.0 * wind_speed * pl.col("air_ratio"),
         "mass": pl.lit(assumed.mass_ratio),
@@ -279,6 +280,13 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
         for name in COMPONENTS
     ]
     return pl.concat(parts)
+
+
+def _by_record(tows: pl.DataFrame, assumed: Assumed) -> pl.Expr:
+    """The load cell's uncertainty: by its record where there is one."""
+    if "force_sd" not in tows.columns:
+        return pl.lit(assumed.force_ratio)
+    return pl.coalesce("force_sd", pl.lit(assumed.force_ratio))
 
 
 def _key(component: str, shared: pl.Expr) -> pl.Expr:

@@ -107,6 +107,19 @@ DUTCH: Final[dict[str, str]] = {
         "'roeitijd' is '{cell}', geen tijd zoals 2:10:25."
     ),
     "'roeitijd' is 0.": "'roeitijd' is 0.",
+    "'roeitijd' is {cell} for {km:g} km through the water: {speed:.3g} m/s; {low:g} to {high:g} "
+    "can be right.": (
+        "'roeitijd' is {cell} voor {km:g} km door het water: {speed:.3g} m/s; {low:g} tot {high:g} "
+        "kan kloppen."
+    ),
+    "B is {b_m_s} m/s and the speed {declared_speed_m_s}; B must be higher.": (
+        "B is {b_m_s} m/s en de roeisnelheid {declared_speed_m_s}; B moet hoger zijn."
+    ),
+    "Cw is {cw_kg_m}, but A {a_kg_m} and B {b_m_s} give {given:.2f} at {declared_speed_m_s} m/s; "
+    "one of them is wrong, or two are exchanged.": (
+        "Cw is {cw_kg_m}, maar A {a_kg_m} en B {b_m_s} geven {given:.2f} bij {declared_speed_m_s} "
+        "m/s; een ervan klopt niet, of er zijn er twee verwisseld."
+    ),
     # Rows compared with each other
     "boat {boat} is in the list twice and the rows differ in {key} ({one} and {other}).": (
         "sloep {boat} staat twee keer in de lijst en de rijen verschillen in {key} ({one} en "

@@ -145,6 +145,10 @@ REASONS: Final[dict[str, Reason]] = {
         "Different rows: neither counts, as nobody can know which is right.",
         "Remove one row, or give it its own `sleep_id`.",
     ),
+    "bad_instrument_row": Reason(
+        "A row of readings of the load cell, or of warning lamps, cannot be read.",
+        "Mend the row in `krachtijkingen_<jaar>.csv` or `lampjes_<jaar>.csv`.",
+    ),
     "bad_window_row": Reason(
         "A row of windows given by hand lacks a value, holds one that cannot be right, or ends "
         "before it begins; the rule chooses the window of that run.",

@@ -41,9 +41,14 @@ class ListKind:
 BOAT_LIST: Final = ListKind("sloepregister", r"sloependata()", "sloependata")
 TOW_LISTS: Final = ListKind("sleeplijsten", r"sleeplijst(?:[ _-]*([0-9]{4}))?", "sleeplijst")
 WINDOWS: Final = ListKind("sleeplijsten", r"vensters[ _-]*([0-9]{4})", "vensters")
+FORCE_CHECKS: Final = ListKind("sleeplijsten", r"krachtijkingen[ _-]*([0-9]{4})", "krachtijkingen")
+LAMPS: Final = ListKind("sleeplijsten", r"lampjes[ _-]*([0-9]{4})", "lampjes")
 REGISTERS: Final = ListKind("sloepregister", r"sloepregister[ _-]*([0-9]{4})", "sloepregister")
 RACES: Final = ListKind("wedstrijden", r".+?(?:[ _-]*([0-9]{4}))?", "wedstrijden")
-LIST_KINDS: Final = (BOAT_LIST, TOW_LISTS, WINDOWS, REGISTERS, RACES)
+LIST_KINDS: Final = (
+    *(BOAT_LIST, TOW_LISTS, WINDOWS, FORCE_CHECKS, LAMPS),
+    *(REGISTERS, RACES),
+)
 SAMPLES: Final = "meetdata"
 STANDS_FOR: Final = re.compile(
     rf"({'|'.join(kind.stands_for for kind in LIST_KINDS)}|{SAMPLES})(?:_([0-9]{{4}}))?"

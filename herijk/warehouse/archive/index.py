@@ -23,6 +23,8 @@ from herijk.warehouse.archive.boats import Boats
 from herijk.warehouse.archive.faults import DefectiveFileError, Fault, fault_from
 from herijk.warehouse.archive.files import (
     BOATS_FILE,
+    FORCE_CHECKS,
+    LAMPS,
     PARTS,
     PROFILE_FILE,
     RACES,
@@ -41,6 +43,12 @@ from herijk.warehouse.archive.files import (
     outside_archive,
     path_inside,
     read_bytes,
+)
+from herijk.warehouse.archive.instruments import (
+    lamp_seconds,
+    load_cell_of,
+    read_force_checks,
+    read_lamps,
 )
 from herijk.warehouse.archive.limits import LIST_MAX_BYTES
 from herijk.warehouse.archive.lists import ListRow, read_list
@@ -198,6 +206,7 @@ def index_archive(
     good = _keep(lambda entry: _join_boat(entry, boats), good, faults)
     good = _keep(lambda entry: _place_day(entry, profiles), good, faults)
     good = _keep(_fits_table(good), good, faults)
+    _add_instruments(root, profiles, entries, good, faults)
     runs = [run for entry in good for run in _runs(entry)]
     windows = _read_windows(root, profiles, hashes, entries, runs, faults)
     return ArchiveIndex(
@@ -345,18 +354,36 @@ def _read_windows(
     return windows
 
 
+def _add_instruments(
+    root: Path,
+    profiles: Profiles,
+    entries: list[_Entry],
+    good: list[_Entry],
+    faults: list[Fault],
+) -> None:
+    """Put what is known of the load cell and the warning lamps into the tows."""
+    tow_ids = {entry.tow_id for entry in entries if entry.tow_id is not None}
+    checks, unread = read_force_checks(root, profiles.wording)
+    lamps, unread_lamps = read_lamps(root, profiles.wording, tow_ids)
+    faults += [*unread, *unread_lamps]
+    burned = lamp_seconds(lamps)
+    for entry in good:
+        seconds = burned.get(entry.tow["tow_id"])
+        entry.tow |= load_cell_of(entry.tow, checks)
+        entry.tow["lamp_ratio"] = None if seconds is None else seconds / entry.plan.seconds
+
+
 # Files
 
 
 def _hash_others(
     root: Path, named: Mapping[str, str], hashes: _Hashes, faults: list[Fault]
 ) -> None:
-    """Hash what is read from elsewhere: the profile, published registers, race results."""
+    """Hash what is read from elsewhere: profile, published registers, races, instruments."""
     if (root / PROFILE_FILE).is_file():
         hashes.add(PROFILE_FILE, root / PROFILE_FILE)
-    published = list_files(root, REGISTERS, named)
-    races = list_files(root, RACES, named)
-    _hash_files([*published, *races], hashes, faults)
+    others = (REGISTERS, RACES, FORCE_CHECKS, LAMPS)
+    _hash_files((f for kind in others for f in list_files(root, kind, named)), hashes, faults)
 
 
 def _hash_files(files: Iterable[ArchiveFile], hashes: _Hashes, faults: list[Fault]) -> None:

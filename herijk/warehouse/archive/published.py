@@ -12,7 +12,9 @@ import dataframely as dy
 import polars as pl
 
 from herijk.pipeline.errors import DefectiveInputError
-from herijk.tables.frames import frame_of
+from herijk.pipeline.register.register import NO_EMPTY_THWART
+from herijk.tables.archive import TowFacts
+from herijk.tables.frames import frame_of, limits
 from herijk.tables.lake import ListedRaces, PrintedLines
 from herijk.warehouse.archive.faults import Fault, fault_from
 from herijk.warehouse.archive.files import (
@@ -33,6 +35,11 @@ from herijk.warehouse.archive.text import Column, shorten
 NEVER_TOWED_CW: Final = (0.995, 1.005)
 """Published Cw of boats without a valid tow: 1, as printed in two decimals. No hull comes near."""
 
+CW_AS_PRINTED: Final = 0.01
+"""By how much a printed Cw may differ from its A and B, beside what rounding does: an intermediate
+result was sometimes rounded too."""
+_BELOW_ONE: Final = 0.999
+
 REGISTER_COLUMNS: Final = (
     Column("fsn_no", "fsn_nr"),
     Column("rowers", "roeiers"),
@@ -42,6 +49,7 @@ REGISTER_COLUMNS: Final = (
     Column("cw_kg_m", "Cw"),
     Column("declared_speed_m_s", "roeisnelheid", "speed", "m/s"),
     Column("tow_date", "sleepdatum"),
+    Column("empty_thwart", "lege doft", required=False),
 )
 RACE_COLUMNS: Final = (
     Column("race", "wedstrijd"),
@@ -53,6 +61,7 @@ RACE_COLUMNS: Final = (
     Column("rowing_time_s", "roeitijd"),
     Column("stream_m", "stroom", "length", "km", required=False),
     Column("penalty_w", "straf", "power", "W", required=False),
+    Column("empty_thwart", "lege doft", required=False),
 )
 _ROWING_TIME: Final = re.compile(
     r"([0-9]{1,2})(?::|\.|[uh]\s*)([0-5]?[0-9])(?::|\.|['m]\s*)([0-5]?[0-9])(?:[.,]0*|[\"s])?"
@@ -72,8 +81,8 @@ def read_published_registers(
     """
     wording = wording or read_profiles(root).wording
     files = list_files(root, REGISTERS, wording.files)
-    return _read_all(
-        root, files, REGISTER_COLUMNS, "bad_register_row", PrintedLines, _register_line, wording
+    return read_lists(
+        root, files, REGISTER_COLUMNS, "bad_register_row", PrintedLines, _fitting_line, wording
     )
 
 
@@ -88,8 +97,8 @@ def read_races(
     """
     wording = wording or read_profiles(root).wording
     files = list_files(root, RACES, wording.files)
-    found, faults = _read_all(
-        root, files, RACE_COLUMNS, "bad_race_row", ListedRaces, _race_result, wording
+    found, faults = read_lists(
+        root, files, RACE_COLUMNS, "bad_race_row", ListedRaces, _possible_result, wording
     )
     kept, twice = _once(found)
     return kept, (*faults, *twice)
@@ -128,7 +137,7 @@ def _again(row: Mapping[str, Any], message: str) -> Fault:
     return Fault(row["path"], None, row["line"], "bad_race_row", said)
 
 
-def _read_all(
+def read_lists(
     root: Path,
     files: Sequence[ArchiveFile],
     columns: Sequence[Column],
@@ -137,6 +146,17 @@ def _read_all(
     read_row: _ReadRow,
     wording: Wording,
 ) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
+    """Read lists of one kind: rows of `table`, and a fault for each that cannot be read.
+
+    Args:
+        root: folder of the archive.
+        files: the lists.
+        columns: of their rows.
+        reason_code: of a row that cannot be read.
+        table: declares the limits of each value; has `path` and `line` too.
+        read_row: from a row and the year in the file's name to the other values.
+        wording: how the lists are worded.
+    """
     good: list[dict[str, Any]] = []
     faults: list[Fault] = []
     for file in files:
@@ -175,7 +195,50 @@ def _register_line(row: ListRow, season: int) -> dict[str, Any]:
         "cw_kg_m": cw if valid else None,
         "declared_speed_m_s": row.optional_number("declared_speed_m_s"),
         "tow_date": row.optional_date("tow_date"),
+        "empty_thwart": row.optional_text("empty_thwart") or NO_EMPTY_THWART,
     }
+
+
+def _fitting_line(row: ListRow, season: int) -> dict[str, Any]:
+    """A line of a register that is its own curve."""
+    line = _register_line(row, season)
+    if line["has_valid_curve"]:
+        _check_curve(row)
+    return line
+
+
+def _check_curve(row: ListRow) -> None:
+    """Holds a printed Cw against A, B and the speed beside it: two exchanged, or one mistyped.
+
+    Raises:
+        DefectiveInputError: Cw = A / (1 - (v/B)^2) does not hold, however the numbers were rounded.
+    """
+    keys = ("a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s")
+    if row.optional_number("declared_speed_m_s") is None:
+        return
+    a, b, cw, speed = (row.number(key) for key in keys)
+    printed = {key: row.text(key) for key in keys}
+    if b <= speed:
+        message = "B is {b_m_s} m/s and the speed {declared_speed_m_s}; B must be higher."
+        raise row.fault(say(message, **printed))
+    half_a, half_b, half_cw, half_v = (_half_unit(printed[key]) for key in keys)
+    slowest = (speed - half_v) / (b + half_b)
+    fastest = min((speed + half_v) / (b - half_b), _BELOW_ONE)
+    lowest = (a - half_a) / (1.0 - slowest**2) - half_cw
+    highest = (a + half_a) / (1.0 - fastest**2) + half_cw
+    if not lowest * (1.0 - CW_AS_PRINTED) <= cw <= highest * (1.0 + CW_AS_PRINTED):
+        message = (
+            "Cw is {cw_kg_m}, but A {a_kg_m} and B {b_m_s} give {given:.2f} at "
+            "{declared_speed_m_s} m/s; one of them is wrong, or two are exchanged."
+        )
+        given = a / (1.0 - (speed / b) ** 2)
+        raise row.fault(say(message, **printed, given=given))
+
+
+def _half_unit(cell: str) -> float:
+    """Half a unit of the last digit that is printed."""
+    decimals = re.search(r"[.,]([0-9]+)", cell)
+    return 0.5 * 10.0 ** -(len(decimals[1]) if decimals else 0)
 
 
 def _race_result(row: ListRow, season: int) -> dict[str, Any]:
@@ -194,7 +257,24 @@ def _race_result(row: ListRow, season: int) -> dict[str, Any]:
         "rowing_time_s": _rowing_time(row),
         "stream_m": row.optional_number("stream_m"),
         "penalty_w": row.optional_number("penalty_w"),
+        "empty_thwart": row.optional_text("empty_thwart"),
     }
+
+
+def _possible_result(row: ListRow, season: int) -> dict[str, Any]:
+    """A result whose speed through the water a boat can have."""
+    result = _race_result(row, season)
+    through_water_m = result["distance_m"] - (result["stream_m"] or 0.0)
+    speed = through_water_m / result["rowing_time_s"]
+    lowest, highest = limits(TowFacts, "declared_speed_m_s")
+    if not lowest <= speed <= highest:
+        message = (
+            "'roeitijd' is {cell} for {km:g} km through the water: {speed:.3g} m/s; {low:g} to "
+            "{high:g} can be right."
+        )
+        values = {"cell": row.text("rowing_time_s"), "km": through_water_m / 1000, "speed": speed}
+        raise row.fault(say(message, **values, low=lowest, high=highest))
+    return result
 
 
 def _rowing_time(row: ListRow) -> float:

@@ -324,9 +324,11 @@ def _check_nothing_misspelt(
 def _read_fast(body: _Body) -> pl.DataFrame | None:
     """Return the columns, or None where the careful way has to judge.
 
-    That is also where a carriage return stands within a line: Polars takes it for a blank.
+    That is also where a carriage return stands within a line: Polars takes it for a blank. And
+    where there are commas and points: Polars takes either for the decimal mark.
     """
-    if _has_stray_return(body.data):
+    mixed = all(body.data.find(mark, body.start) >= 0 for mark in (b",", b"."))
+    if _has_stray_return(body.data) or (mixed and body.delimiter != ","):
         return None
     quoted = body.data.find(b'"', body.start) >= 0
     wanted = {found.index: key for key, found in body.columns.items()}
@@ -402,9 +404,17 @@ def _read_carefully(body: _Body) -> pl.DataFrame:
     return pl.DataFrame(columns)
 
 
+_THOUSAND: Final = r"^[+-]?[0-9]{1,3}[.,][0-9]{3}$"
+
+
 def _to_numbers(cells: pl.Series, whole: pl.Series) -> pl.Series:
-    """Return text as numbers, NaN where it is none or the row is not whole."""
+    """Return text as numbers, NaN where it is none or the row is not whole.
+
+    In a column with commas and points 1.012 can be a thousand and twelve: it is no number either.
+    """
     spelled = cells.str.contains(NUMBER_PATTERN)
+    if all(cells.str.contains(mark, literal=True).any() for mark in ",."):
+        spelled &= ~cells.str.contains(_THOUSAND)
     numbers = cells.str.replace(",", ".", literal=True).cast(pl.Float64(), strict=False)
     good = (spelled & whole & numbers.is_finite()).fill_null(value=False)
     return pl.select(pl.when(good).then(numbers).otherwise(float("nan"))).to_series()

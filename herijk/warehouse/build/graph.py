@@ -90,7 +90,10 @@ REGISTERS: Final = Step(
         *("curves", "tows", "boats", "listed_boats", "listed_races", "decisions"),
         *PUBLISHED,
     ),
-    outputs=("register", "due_list", "editions", "register_changes", "lineage", "methods"),
+    outputs=(
+        *("register", "register_history", "due_list", "editions", "register_changes"),
+        *("lineage", "methods"),
+    ),
     compute=register_tables,
     of_method=_register_rules,
 )
@@ -99,7 +102,7 @@ SUMMARIES: Final = Step(
     says="summing up",
     inputs=(
         *("tows", "blocks", "curves", "run_points", "assessments", "listed_races"),
-        *("register", "register_changes", "correction_steps", "option_effects"),
+        *("register_history", "register_changes", "correction_steps", "option_effects"),
         *("repeat_pairs", "printed_registers"),
     ),
     outputs=(

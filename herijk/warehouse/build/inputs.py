@@ -38,7 +38,8 @@ LISTED: Final = (
 """Tables of intake that every rebuild makes again, so that their content is what counts."""
 
 PUBLISHED: Final = tuple(
-    f"published_{name}" for name in ("editions", "register", "register_changes", "lineage")
+    f"published_{name}"
+    for name in ("editions", "register", "register_history", "register_changes", "lineage")
 )
 """Tables of all published editions together."""
 

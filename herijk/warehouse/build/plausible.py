@@ -7,7 +7,7 @@ and takes no part in what tows share.
 
 import dataclasses
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 import polars as pl
@@ -18,6 +18,15 @@ from herijk.pipeline.blocks.run_blocks import stack_blocks
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import Faults
 from herijk.warehouse.archive.faults import Fault
+
+_UNUSUAL: Final = {
+    "force": "force_unusual",
+    "zero": "force_unusual",
+    "wind": "wind_unusual",
+    "vane": "wind_unusual",
+    "speed": "speed_unusual",
+}
+"""Check of a tow that is only unusual."""
 
 _CODES: Final = {
     "force": "force_not_plausible",
@@ -59,11 +68,18 @@ def gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> pl.DataFrame:
 
 
 def with_doubts(tows: pl.DataFrame, shifts: Sequence[Shift]) -> pl.DataFrame:
-    """The tows with `doubts`: the checks by which the rest of the archive rules them out."""
-    codes = {
-        tow: sorted({_CODES[s.quantity] for s in shifts if tow in s.tows}) for tow in tows["tow_id"]
-    }
-    return tows.with_columns(pl.Series("doubts", list(codes.values()), pl.List(pl.String)))
+    """The tows with `doubts` and `unusual`: checks that the rest of the archive makes of them."""
+
+    def named(codes: Mapping[str, str], clear: bool) -> pl.Series:
+        found = [
+            sorted({codes[s.quantity] for s in shifts if s.clear is clear and tow in s.tows})
+            for tow in tows["tow_id"]
+        ]
+        return pl.Series(found, dtype=pl.List(pl.String))
+
+    return tows.with_columns(
+        named(_CODES, clear=True).alias("doubts"), named(_UNUSUAL, clear=False).alias("unusual")
+    )
 
 
 def _sentence(shift: Shift) -> str:

@@ -4,15 +4,19 @@ Editions are read as they lie; nothing is compared or computed again.
 """
 
 import polars as pl
+from pydantic import TypeAdapter
 
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.recompute.facts import samples_files
-from herijk.tables.column import LINE
+from herijk.pipeline.register.register import CURVE_COLUMNS, LINE, lines_of_all_days
 from herijk.tables.schemas import TABLES, conform
+from herijk.warehouse.store import decisions as decided
 from herijk.warehouse.store.editions import (
     CHANGES,
+    DECISIONS,
     Edition,
     edition_names,
+    edition_path,
     read_about,
     read_edition,
 )
@@ -25,18 +29,19 @@ def published_made_from(store: Store) -> dict[str, str]:
 
 
 def published_tables(store: Store) -> dict[str, pl.DataFrame]:
-    """Rows of `editions`, and of `register`, `register_changes` and `lineage` of every edition.
+    """Rows of `editions`, and of the register's tables and `lineage` of every edition.
 
     Raises:
         BrokenPromiseError: a file of an edition is missing or damaged.
     """
     rows: dict[str, list[pl.DataFrame]] = {
-        name: [] for name in ("editions", "register", CHANGES, "lineage")
+        name: [] for name in ("editions", "register", "register_history", CHANGES, "lineage")
     }
     for name in edition_names(store):
         edition = read_edition(store, name)
         rows["editions"].append(_edition_row(edition))
         rows["register"].append(_with_later_columns(edition.register))
+        rows["register_history"].append(lines_in_time(store, edition))
         if CHANGES in edition.tables:
             rows[CHANGES].append(edition.tables[CHANGES])
         if edition.about.kind == "recomputed":
@@ -45,6 +50,41 @@ def published_tables(store: Store) -> dict[str, pl.DataFrame]:
         table: pl.concat([TABLES[table].create_empty(), *(conform(table, f) for f in frames)])
         for table, frames in rows.items()
     }
+
+
+def decisions_of(store: Store, edition: Edition) -> pl.DataFrame:
+    """The decisions about tows with which an edition was made."""
+    text = (edition_path(store, edition.about.edition) / DECISIONS).read_text(encoding="utf-8")
+    return decided.decision_table(TypeAdapter(tuple[decided.Decision, ...]).validate_json(text))
+
+
+def lines_in_time(store: Store, edition: Edition) -> pl.DataFrame:
+    """Rows of `register_history` of an edition: before its lines those that its tows gave earlier.
+
+    So a race of before the edition is computed with the tow that counted then.
+    """
+    lines = _with_later_columns(edition.register.drop_nulls("cw_kg_m"))
+    if edition.method is None:
+        return history_rows(
+            lines, edition.about.edition, lines["method"][0] if lines.height else ""
+        )
+    tows = edition.tables["tows"].filter(pl.col("tow_date") <= edition.about.valid_from)
+    earlier = lines_of_all_days(
+        edition.tables["curves"], tows, edition.method.validity, decisions_of(store, edition)
+    ).join(lines, on=[*LINE, "tow_id"], how="anti")
+    both = pl.concat([earlier, lines.select(earlier.columns)])
+    return history_rows(both, edition.about.edition, edition.method.name)
+
+
+def history_rows(lines: pl.DataFrame, edition: str, method: str) -> pl.DataFrame:
+    """Rows of `register_history`: lines in the order in which one goes before another."""
+    return lines.select(
+        pl.lit(edition).alias("edition"),
+        pl.lit(method).alias("method"),
+        *LINE,
+        pl.int_range(1, pl.len() + 1, dtype=pl.Int32).over(LINE).alias("position"),
+        *CURVE_COLUMNS,
+    ).sort(*LINE, "position")
 
 
 def _with_later_columns(register: pl.DataFrame) -> pl.DataFrame:

@@ -1,7 +1,7 @@
 """Registers: a draft per method, what changes between them, and the published editions."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import polars as pl
 
@@ -9,12 +9,20 @@ from herijk.pipeline.method.definition import Method
 from herijk.pipeline.recompute.facts import samples_files
 from herijk.pipeline.register.changes import register_changes
 from herijk.pipeline.register.due import due_list
-from herijk.pipeline.register.register import draft_name, draft_register
-from herijk.tables.column import LINE
+from herijk.pipeline.register.register import (
+    LINE,
+    draft_name,
+    draft_register,
+    lines_of_all_days,
+)
 from herijk.tables.editions import Editions
 from herijk.tables.register import RegisterChanges
 from herijk.tables.schemas import conform
+from herijk.warehouse.build.published import history_rows
 from herijk.warehouse.build.version import code_version
+
+SIZES: Final = ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg")
+"""What the register says of a boat on the day of its tow (Sleepproef 2017, "Opmetingen")."""
 
 if TYPE_CHECKING:
     from herijk.warehouse.build.inputs import Inputs
@@ -29,10 +37,12 @@ def register_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     """
     methods = inputs.methods
     drafts = [_draft(method, inputs) for method in methods]
+    histories = [_history(method, inputs) for method in methods]
     register = pl.concat(drafts)
     changes = [register_changes(drafts[0], draft) for draft in drafts[1:]]
     made = {
         "register": register,
+        "register_history": pl.concat(histories),
         "register_changes": pl.concat(changes) if changes else RegisterChanges.create_empty(),
         "lineage": _lineage(register, inputs["tows"], methods),
         "editions": Editions.create_empty(),
@@ -51,7 +61,14 @@ def _draft(method: Method, inputs: "Inputs") -> pl.DataFrame:
     lines = draft_register(curves, tows, inputs["listed_boats"], on_date, method.validity)
     edition, name = pl.lit(draft_name(method.name)), pl.lit(method.name)
     code = pl.lit(None, pl.String).alias("verification_code")
-    return lines.select(edition.alias("edition"), name.alias("method"), pl.all(), code)
+    measured = lines.join(tows.select("tow_id", *SIZES), on="tow_id", how="left")
+    return measured.select(edition.alias("edition"), name.alias("method"), pl.all(), code)
+
+
+def _history(method: Method, inputs: "Inputs") -> pl.DataFrame:
+    curves = inputs["curves"].filter(pl.col("method") == method.name)
+    lines = lines_of_all_days(curves, inputs["tows"], method.validity)
+    return history_rows(lines, draft_name(method.name), method.name)
 
 
 def _lineage(register: pl.DataFrame, tows: pl.DataFrame, methods: Sequence[Method]) -> pl.DataFrame:

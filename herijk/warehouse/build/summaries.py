@@ -43,10 +43,10 @@ def summary_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
 def _race_changes(inputs: "Inputs") -> pl.DataFrame:
     """All races in the archive under both editions of every pair that is compared."""
     pairs = inputs["register_changes"].select(EDITIONS).unique().sort(EDITIONS)
-    register = inputs["register"]
+    history = inputs["register_history"]
     replayed = {
         edition: replay(
-            register.filter(pl.col("edition") == edition), inputs["listed_races"], RaceRules()
+            history.filter(pl.col("edition") == edition), inputs["listed_races"], RaceRules()
         )
         for edition in pairs.unpivot()["value"].unique()
     }

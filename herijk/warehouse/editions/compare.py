@@ -23,11 +23,12 @@ from herijk.pipeline.register.changes import (
     side_by_side,
     steps_of_lines,
 )
+from herijk.pipeline.register.register import LINE, NO_EMPTY_THWART
 from herijk.pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
 from herijk.pipeline.studies.ladder import ladder
-from herijk.tables.column import LINE
 from herijk.tables.studies import CorrectionSteps
 from herijk.warehouse.archive import read_races
+from herijk.warehouse.build.published import lines_in_time
 from herijk.warehouse.build.version import code_version
 from herijk.warehouse.editions.inputs import INPUTS_HASH, same_tows, tows_of_today, unchanged_tows
 from herijk.warehouse.editions.lines import MEASURED, made_again
@@ -124,11 +125,11 @@ def race_effects(store: Store, old: Edition, new: Edition, rules: RaceRules) -> 
     results = None if root is None else read_races(root)[0]
     if results is None or results.is_empty():
         return None
-    before, after = (replay(edition.register, results, rules) for edition in (old, new))
-    members = new.tables.get("ensemble", pl.DataFrame())
-    return RaceEffects(
-        race_changes(before, after), winner_changes(before, after, new.register, members)
+    before, after = (
+        replay(lines_in_time(store, edition), results, rules) for edition in (old, new)
     )
+    members = new.tables.get("ensemble", pl.DataFrame())
+    return RaceEffects(race_changes(before, after), winner_changes(before, after, members))
 
 
 def _code_parts(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
@@ -158,7 +159,8 @@ def _printed_parts(old: Edition, new: Edition) -> pl.DataFrame:
     """
     if old.method is not None or "curves" not in new.tables:
         return NO_PARTS
-    tows = new.tables["tows"].select("tow_id", "tow_date")
+    thwart = pl.col("empty_thwart").fill_null(NO_EMPTY_THWART)
+    tows = new.tables["tows"].select("tow_id", "tow_date", thwart)
     curves = new.tables["curves"].join(tows, on="tow_id").with_columns(edition=pl.lit("printed"))
     day = [*LINE, "tow_date"]
     same_tow = curves.join(old.register, on=day, how="semi").unique(day, keep="none")

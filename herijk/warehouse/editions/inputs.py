@@ -15,7 +15,7 @@ from herijk.warehouse.store.editions import Edition
 from herijk.warehouse.store.store import Store, fingerprint, table_digest
 
 NOT_INPUT: Final = (
-    *("samples_path", "second_path", "remark", "inputs_sha256", "doubts"),
+    *("samples_path", "second_path", "remark", "inputs_sha256", "doubts", "unusual"),
     *("hand_reason", "list_path", "list_line"),
 )
 """What a tow is called or said to be does not change its numbers; its doubts follow from others."""

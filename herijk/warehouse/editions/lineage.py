@@ -8,7 +8,7 @@ from typing import Any
 import polars as pl
 
 from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.tables.column import LINE
+from herijk.pipeline.register.register import LINE
 from herijk.warehouse.editions.sheets import CODE_FIELD, REGISTER_FIELDS, printed_cells
 from herijk.warehouse.store.editions import Edition, edition_path, read_edition
 from herijk.warehouse.store.store import Store

@@ -9,21 +9,19 @@ from dataclasses import dataclass
 from typing import Final
 
 import polars as pl
-from pydantic import TypeAdapter
 
 from herijk.pipeline.blocks.run_blocks import stack_blocks
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import RegisterRule
 from herijk.pipeline.recompute.recompute import recompute
-from herijk.pipeline.register.register import draft_register
+from herijk.pipeline.register.register import LINE, draft_register
 from herijk.pipeline.uncertainty.ensemble import tow_ensemble
-from herijk.tables.column import LINE
+from herijk.warehouse.build.published import decisions_of
 from herijk.warehouse.editions import sheets
 from herijk.warehouse.editions.inputs import INPUTS_HASH, tows_of_today
 from herijk.warehouse.editions.printed import printed_lines, with_carried
 from herijk.warehouse.intake import seasons as intake
-from herijk.warehouse.store import decisions as decided
-from herijk.warehouse.store.editions import DECISIONS, INPUTS, Edition, edition_path, read_edition
+from herijk.warehouse.store.editions import INPUTS, Edition, edition_path, read_edition
 from herijk.warehouse.store.store import Store
 
 SAME_NUMBER: Final = 1e-9
@@ -90,15 +88,13 @@ def made_again(store: Store, edition: Edition) -> Again:
     blocks = stack_blocks(intake.all_blocks(store), runs)
     recomputed = recompute(edition.method, tows, blocks)
     nobody = pl.DataFrame(schema={name: edition.register.schema[name] for name in LINE})
-    text = (edition_path(store, edition.about.edition) / DECISIONS).read_text(encoding="utf-8")
-    decisions = TypeAdapter(tuple[decided.Decision, ...]).validate_json(text)
     about = edition.about
     lines = method_lines(
         {"curves": recomputed.curves, "tows": tows},
         nobody,
         about.valid_from,
         edition.method.validity,
-        decided.decision_table(decisions),
+        decisions_of(store, edition),
     )
     if about.carried_from is not None:
         printed = read_edition(store, about.carried_from)

@@ -13,9 +13,8 @@ import polars as pl
 from herijk.pipeline.curve import cw, rebase, s_of_b
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
-from herijk.pipeline.register.register import valid_until
+from herijk.pipeline.register.register import LINE, valid_until
 from herijk.pipeline.steps.speed import log_factor
-from herijk.tables.column import LINE
 from herijk.warehouse.archive import Fault, read_published_registers
 from herijk.warehouse.editions.inputs import INPUTS_HASH
 from herijk.warehouse.intake import seasons as intake

@@ -19,9 +19,8 @@ from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.method.writing import method_text
 from herijk.pipeline.recompute.recompute import recompute
-from herijk.pipeline.register.register import DOUBTED
-from herijk.tables.archive import Boats, Tows
-from herijk.tables.column import LINE
+from herijk.pipeline.register.register import DOUBTED, LINE
+from herijk.tables.archive import Boats
 from herijk.tables.frames import dtypes
 from herijk.tables.register import Register
 from herijk.tables.schemas import conform
@@ -41,7 +40,6 @@ from herijk.warehouse.editions.lines import (
     BOAT_FACTS,
     NUMBERS,
     SAME_NUMBER,
-    TOW_FACTS,
     method_lines,
 )
 from herijk.warehouse.editions.printed import printed_lines, printed_path, with_carried
@@ -79,7 +77,6 @@ PRINTED_METHOD: Final = "as-printed"
 LINE_SCHEMA: Final = {
     **{n: column.dtype for n, column in Register.columns().items() if n != CODE_FIELD.column},
     **{name: dtypes(Boats)[name] for name in BOAT_FACTS},
-    **{name: dtypes(Tows)[name] for name in TOW_FACTS if name != INPUTS_HASH},
     INPUTS_HASH: pl.String(),
     "basis": pl.String(),
 }
@@ -144,7 +141,7 @@ def publish_printed(store: Store, season: int, terms: Terms) -> Place:
     path = printed_path(store, season)
     files = store.read("listed_files").filter(pl.col("path") == path)
     files = files.select("path", "sha256", pl.lit(REGISTER).alias("kind"))
-    register = _complete(store, printed_lines(store, path), terms.edition, PRINTED_METHOD, None)
+    register = _complete(store, printed_lines(store, path), terms, PRINTED_METHOD, None)
     about = _about(store, terms, None, inputs_digest="")
     return _write(store, Edition(about, {"register": register}, None), files, {})
 
@@ -176,7 +173,7 @@ def recomputed_edition(
     tables["ensemble"] = read_ensemble(store, method.name).join(
         lines.drop_nulls("cw_kg_m"), on="tow_id", how="semi"
     )
-    tables["register"] = _complete(store, lines, terms.edition, method.name, method.content_hash)
+    tables["register"] = _complete(store, lines, terms, method.name, method.content_hash)
     about = _about(store, terms, method, inputs_digest(tows), carry)
     return Edition(about, tables, method)
 
@@ -262,12 +259,16 @@ def _about(
 
 
 def _complete(
-    store: Store, lines: pl.DataFrame, edition: str, method: str, method_hash: str | None
+    store: Store, lines: pl.DataFrame, terms: Terms, method: str, method_hash: str | None
 ) -> pl.DataFrame:
     """Lines with the facts of their boats and their verification codes, checked and sorted."""
     named = lines.join(
         store.read("boats").select("fsn_no", *BOAT_FACTS), on="fsn_no", how="left"
-    ).with_columns(pl.lit(edition).alias("edition"), pl.lit(method).alias("method"))
+    ).with_columns(
+        pl.lit(terms.edition).alias("edition"),
+        pl.lit(method).alias("method"),
+        pl.lit(terms.valid_from).alias("as_of"),
+    )
     missing = [pl.lit(None).alias(name) for name in LINE_SCHEMA if name not in named.columns]
     full = (
         named.with_columns(missing)

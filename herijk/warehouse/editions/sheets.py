@@ -20,6 +20,7 @@ from xml.etree import ElementTree
 import polars as pl
 import xlsxwriter  # type: ignore[import-untyped,unused-ignore]
 
+from herijk.pipeline.register.register import NO_EMPTY_THWART
 from herijk.warehouse.editions.words import DUTCH
 from herijk.warehouse.store.editions import CSV, INPUTS, About
 from herijk.warehouse.store.package import Rights
@@ -63,12 +64,22 @@ REGISTER_FIELDS: Final = (
     Field("type", "boat_type", "string", "type sloep"),
     Field("roeiers", "rowers", "integer", "aantal roeiers waarvoor de regel geldt"),
     Field("klasse", "crew_class", "string", "H heren, D dames"),
+    Field(
+        "lege doft",
+        "empty_thwart",
+        "string",
+        "doft waarop geen roeiers zitten: de kromme is alleen geldig als die leeg is",
+    ),
     Field("status", "status", "string", "geldig, of waarom er geen geldige kromme is"),
     Field("nakijken", "flags", "string", "ja: de commissie moet nog naar deze sleep kijken"),
     Field("roeisnelheid [m/s]", "declared_speed_m_s", "number", "opgegeven snelheid", 2),
     Field("A", "a_kg_m", "number", "A in kg/m: de weerstand bij snelheid 0"),
     Field(
-        "B", "b_m_s", "number", "B in m/s; leeg waar hij niet bepaald is: dan is Cw gelijk aan A"
+        "B",
+        "b_m_s",
+        "number",
+        "B in m/s; leeg waar hij niet bepaald is: Cw stijgt daar niet met de snelheid, en A en Cw "
+        "bij de roeisnelheid bepalen samen de kromme",
     ),
     Field("Cw", "cw_kg_m", "number", "Cw in kg/m bij de roeisnelheid"),
     Field("Cw laagst", "cw_lo_kg_m", "number", LOWER_END),
@@ -76,6 +87,7 @@ REGISTER_FIELDS: Final = (
     Field("sleep_id", "tow_id", "string", "sleep die telt"),
     Field("sleepdatum", "tow_date", "date", "dag van die sleep"),
     Field("geldig tot en met", "valid_until", "date", "laatste dag waarop de regel telt"),
+    Field("beoordeeld op", "as_of", "date", "dag waarop de geldigheid is bekeken"),
     Field("lengte [m]", "waterline_length_m", "number", "lengte op de waterlijn die dag", 2),
     Field("breedte [m]", "beam_m", "number", "breedte die dag", 2),
     Field("hoogte [m]", "bow_height_m", "number", "boeghoogte die dag", 2),
@@ -84,6 +96,7 @@ REGISTER_FIELDS: Final = (
     Field("editie", "edition", "string", "uitgave van het register"),
     Field("methode", "method", "string", "rekenmethode"),
 )
+LINE_KEY: Final = ["fsn_nr", "roeiers", "klasse", "lege doft"]
 CODE_FIELD: Final = Field(
     CODE_HEADER, "verification_code", "string", "hash van invoer, methode en getallen van de regel"
 )
@@ -163,7 +176,13 @@ def package_bytes(about: About, contents: dict[str, bytes], notes: str, rights: 
         "created": f"{about.published_on}T00:00:00Z",
         **rights.described,
         "resources": [
-            _resource("register", CSV, contents[CSV], register, ["fsn_nr", "roeiers", "klasse"]),
+            _resource(
+                "register",
+                CSV,
+                contents[CSV],
+                register,
+                ["fsn_nr", "roeiers", "klasse", "lege doft"],
+            ),
             _resource("inputs", INPUTS, contents[INPUTS], INPUT_FIELDS, ["bestand"]),
         ],
     }
@@ -200,7 +219,11 @@ def _field(field: Field) -> dict[str, Any]:
 
 def _in_words(frame: pl.DataFrame) -> pl.DataFrame:
     """Codes in the words that people read."""
-    words = {"status": DUTCH.statuses, "basis": BASIS_WORDS}
+    words = {
+        "status": DUTCH.statuses,
+        "basis": BASIS_WORDS,
+        "empty_thwart": {NO_EMPTY_THWART: "geen"},
+    }
     if "flags" in frame.columns:
         to_look_at = pl.col("flags").list.len() > 0
         frame = frame.with_columns(pl.when(to_look_at).then(pl.lit("ja")).alias("flags"))

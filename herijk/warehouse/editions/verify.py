@@ -16,7 +16,7 @@ from pydantic import ValidationError
 
 from herijk.pipeline.errors import BrokenPromiseError, HerijkError
 from herijk.pipeline.recompute.facts import with_hand_windows
-from herijk.tables.column import LINE
+from herijk.pipeline.register.register import LINE
 from herijk.warehouse.archive import FileHashes, index_archive
 from herijk.warehouse.archive.files import BOATS_FILE
 from herijk.warehouse.build.version import code_version

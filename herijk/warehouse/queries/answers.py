@@ -9,9 +9,8 @@ import polars as pl
 
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.register.changes import register_changes, side_by_side, steps_of_lines
-from herijk.pipeline.register.register import draft_name
+from herijk.pipeline.register.register import LINE, draft_name
 from herijk.pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
-from herijk.tables.column import LINE
 from herijk.warehouse.build.studies import STUDIED_METHOD
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.database import choice_of
@@ -104,17 +103,14 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
     lines = views.register().filter(edition=edition)
     compared = changes.drop("name", "boat_type", "to_edition")
     known = views.table("methods").select("method", log_known=pl.col("interval") == "complete")
-    tows = views.table("tows")
     methods = dict(views.table("register").select("edition", "method").unique().rows())
     due = views.table("due_list").select(
         "method", *LINE, "tow_speed_m_s", "speed_reason", "as_of",
         next_before="valid_until",
     )  # fmt: skip
-    sizes = ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg", "empty_thwart")
     found = (
         lines.join(compared, on=LINE, how="left", maintain_order="left")
         .with_columns(old_method=pl.col("from_edition").replace(methods))
-        .join(tows.select("tow_id", *sizes), on="tow_id", how="left", maintain_order="left")
         .join(due, on=["method", *LINE], how="left", maintain_order="left")
     )
     for side, method in (("old", "old_method"), ("new", "method")):
@@ -167,14 +163,14 @@ def replayed(views: Views, old: str, new: str) -> tuple[pl.DataFrame, tuple[int,
     Returns:
         Rows of `pipeline.register.replay.winner_changes`; results that change place, and all.
     """
-    register, results = views.table("register"), views.store.read("listed_races")
-    lines = register.filter(edition=new)
+    history, results = views.table("register_history"), views.store.read("listed_races")
     before, after = (
-        replay(register.filter(edition=edition), results, RaceRules()) for edition in (old, new)
+        replay(history.filter(edition=edition), results, RaceRules()) for edition in (old, new)
     )
     moved = race_changes(before, after).filter(pl.col("old_rank").ne_missing(pl.col("new_rank")))
-    members = _members(views, new, lines["method"][0])
-    return winner_changes(before, after, lines, members), (moved.height, results.height)
+    method = history.filter(edition=new)["method"].first()
+    members = _members(views, new, str(method))
+    return winner_changes(before, after, members), (moved.height, results.height)
 
 
 def _members(views: Views, edition: str, method: str) -> pl.DataFrame:

@@ -17,7 +17,7 @@ import polars as pl
 from herijk.pipeline.errors import UnavailableError
 from herijk.pipeline.recompute.facts import with_boat_types, with_hand_windows
 from herijk.pipeline.register.changes import NO_PARTS, register_changes, side_by_side
-from herijk.tables.column import LINE
+from herijk.pipeline.register.register import LINE, with_empty_thwart
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.editions.compare import (
     CODE,
@@ -127,7 +127,8 @@ def _reported(store: Store) -> Tables | None:
     if not path.exists():
         return None
     try:
-        return _tables(path)
+        tables = _tables(path)
+        return tables | {"register": with_empty_thwart(tables["register"])}
     except (UnavailableError, duckdb.Error):
         return None
 

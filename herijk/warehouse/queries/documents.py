@@ -5,13 +5,15 @@ from typing import Any, Final
 import numpy as np
 import polars as pl
 
-from herijk.pipeline.curve import cw, s_of_b
+from herijk.pipeline.curve import cw
 from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.races.power import curve_of_lines
 from herijk.pipeline.races.race import power_per_rower_w
 from herijk.warehouse.queries.answers import answers
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.database import choice_of
 
+CURVE: Final = dict.fromkeys(("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m"), pl.Float64())
 SPEEDS: Final = (0.85, 0.90, 0.95, 1.0, 1.05, 1.10, 1.15)
 """Speeds of the power table, as parts of the declared speed: where the curve holds."""
 
@@ -62,7 +64,7 @@ def _of_tow(rows: pl.DataFrame, line: dict[str, Any]) -> pl.DataFrame:
 def _powers(line: dict[str, Any]) -> list[tuple[float, float, float]]:
     """Speed, Cw and power per rower, from the A and B that are printed."""
     speed = np.array(SPEEDS) * line["declared_speed_m_s"]
-    b = np.inf if line["b_m_s"] is None else line["b_m_s"]
-    resistance = cw(line["a_kg_m"], s_of_b(b), speed)
+    a, s = curve_of_lines(pl.DataFrame([{name: line[name] for name in CURVE}], schema=CURVE))
+    resistance = cw(a, s, speed)
     power = power_per_rower_w(resistance, speed, np.full(speed.shape, line["rowers"]))
     return list(zip(speed.tolist(), resistance.tolist(), power.tolist(), strict=True))

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.warehouse.queries.as_of import lay_over
 from herijk.warehouse.store.database import Row, is_simulated, open_results, rows
 from herijk.warehouse.store.store import Store
 
@@ -23,6 +24,7 @@ class DueReport:
         method: whose curves are used.
         simulated: whether the archive is.
         as_of: day on which validity is judged.
+        asked: whether that day was asked for; else it is that of the last tow or race.
         lines: rows of `due_list` with `name`, `boat_type` and `urgency`.
         retow_choice: rows of that table with `name`, `valid_until` and `tow_speed_m_s`.
     """
@@ -30,19 +32,27 @@ class DueReport:
     method: str
     simulated: bool
     as_of: dt.date
+    asked: bool
     lines: list[Row]
     retow_choice: list[Row]
 
 
-def due_report(store: Store, method: str) -> DueReport:
+def due_report(store: Store, method: str, as_of: dt.date | None = None) -> DueReport:
     """Who is due under a method, at what speed, and which boats to tow again.
+
+    Args:
+        store: the data folder.
+        method: whose curves are asked for the speeds.
+        as_of: the day on which is looked; that of the last tow or race when left out.
 
     Raises:
         MissingKnowledgeError: the method was not applied by the last rebuild.
     """
     with open_results(store.database) as db:
+        if as_of is not None:
+            lay_over(db, store, as_of)
         lines = rows(db, _LINES, method)
-        choice = rows(db, _CHOICE, method)
+        choice = [row for row in rows(db, RETOW_CHOICE) if row["method"] == method]
         simulated = is_simulated(db)
     if not lines:
         raise MissingKnowledgeError(
@@ -50,7 +60,8 @@ def due_report(store: Store, method: str) -> DueReport:
             f"--data {store.root} --method {method}"
         )
     urgent = [line | {"urgency": _urgency(line)} for line in lines]
-    return DueReport(method, simulated, lines[0]["as_of"], urgent, choice)
+    asked = as_of is not None
+    return DueReport(method, simulated, lines[0]["as_of"], asked, urgent, choice)
 
 
 def _urgency(line: Row) -> str:
@@ -66,9 +77,14 @@ SELECT d.*, b.name, b.boat_type FROM due_list AS d LEFT JOIN boats AS b USING (f
 WHERE d.method = ? ORDER BY d.valid_until NULLS LAST, d.fsn_no, d.rowers, d.crew_class
 """
 
-_CHOICE = """
+RETOW_CHOICE: Final = """
 SELECT c.*, b.name, d.valid_until, d.tow_speed_m_s
 FROM retow_choice AS c LEFT JOIN boats AS b USING (fsn_no)
-LEFT JOIN due_list AS d USING (method, fsn_no, rowers, crew_class)
-WHERE c.method = ? ORDER BY c.position
+LEFT JOIN (
+    SELECT method, fsn_no, rowers, crew_class, max(valid_until) AS valid_until,
+           arg_max(tow_speed_m_s, valid_until) AS tow_speed_m_s
+    FROM due_list GROUP BY method, fsn_no, rowers, crew_class
+) AS d USING (method, fsn_no, rowers, crew_class)
+ORDER BY c.method, c.position
 """
+"""Boats to tow again, with last day and next speed of the line that lasts longest."""

@@ -10,8 +10,8 @@ import polars as pl
 
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.register.changes import register_changes
+from herijk.pipeline.register.register import LINE
 from herijk.pipeline.studies.ladder import START, ladder
-from herijk.tables.column import LINE
 from herijk.warehouse.queries.history import History
 from herijk.warehouse.store.database import Row
 from herijk.warehouse.store.store import Store
@@ -83,7 +83,7 @@ def _most_affected(
     largest = (
         changes.drop_nulls("cw_ratio")
         .with_columns(pl.col("cw_ratio").log().abs().alias("size"))
-        .sort("size", *LINE, descending=[True, False, False, False])
+        .sort("size", *LINE, descending=[True, *(False for _ in LINE)])
         .head(MOST_AFFECTED)
     )
     factors = rungs.pivot("step", index="tow_id", values="factor")

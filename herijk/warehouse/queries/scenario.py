@@ -15,7 +15,7 @@ from herijk.pipeline import curve
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE, bend_of_curve, newest
 from herijk.pipeline.curve import VALID_RATIO
 from herijk.pipeline.register.changes import register_changes, side_by_side
-from herijk.tables.column import LINE
+from herijk.pipeline.register.register import LINE
 from herijk.warehouse.queries.history import Draft
 
 LINE_RATIOS: Final = np.linspace(*VALID_RATIO, 13)

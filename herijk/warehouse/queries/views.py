@@ -9,18 +9,22 @@ from typing import Self
 
 import polars as pl
 
+from herijk.warehouse.queries.as_of import lay_over
+from herijk.warehouse.queries.due import RETOW_CHOICE
 from herijk.warehouse.store.database import open_database
 from herijk.warehouse.store.store import Store
 
 
 class Views:
-    """The open database, with the questions pages ask."""
+    """The open database, with the questions pages ask; as of a day, if one is given."""
 
-    def __init__(self, store: Store) -> None:
+    def __init__(self, store: Store, as_of: dt.date | None = None) -> None:
         self.store = store
         self._contents: dict[str, int] = {}
         self._db = open_database(store.database)
         self._db.execute("SET threads = 1")  # rows in one order: same tables, same bytes
+        if as_of is not None:
+            lay_over(self._db, store, as_of)
 
     def __enter__(self) -> Self:
         return self
@@ -181,12 +185,7 @@ class Views:
 
     def retow_choice(self) -> pl.DataFrame:
         """Boats that would make the season factors surest, with name and next speed."""
-        return self.frame(
-            "SELECT c.*, b.name, d.valid_until, d.tow_speed_m_s FROM retow_choice AS c "
-            "LEFT JOIN boats AS b USING (fsn_no) "
-            "LEFT JOIN due_list AS d USING (method, fsn_no, rowers, crew_class) "
-            "ORDER BY c.method, c.position"
-        )
+        return self.frame(RETOW_CHOICE)
 
     def flagged_boats(self) -> pl.DataFrame:
         """Every flag of every curve with the boat it is about: `method, flag, name, tow_date`."""
@@ -211,9 +210,10 @@ class Views:
 
 
 _REGISTER = """
-SELECT r.edition, r.fsn_no, b.name, b.boat_type, r.rowers, r.crew_class, r.tow_date, r.valid_until,
-       r.status, r.declared_speed_m_s, r.a_kg_m, r.b_m_s, r.cw_kg_m, r.cw_lo_kg_m, r.cw_hi_kg_m,
-       r.tow_id, r.method, r.verification_code
+SELECT r.edition, r.fsn_no, b.name, b.boat_type, r.rowers, r.crew_class, r.empty_thwart,
+       r.waterline_length_m, r.beam_m, r.bow_height_m, r.weight_kg, r.tow_date, r.valid_until,
+       r.as_of, r.status, r.declared_speed_m_s, r.a_kg_m, r.b_m_s, r.cw_kg_m, r.cw_lo_kg_m,
+       r.cw_hi_kg_m, r.tow_id, r.method, r.verification_code
 FROM register AS r LEFT JOIN boats AS b USING (fsn_no)
 ORDER BY edition, lower(b.name), fsn_no, rowers, crew_class
 """

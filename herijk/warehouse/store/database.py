@@ -147,7 +147,7 @@ def open_results(path: Path) -> duckdb.DuckDBPyConnection:
         UnavailableError: as `open_database`.
     """
     connection = open_database(path)
-    if connection.execute("SELECT 1 FROM tows LIMIT 1").fetchone() is None:
+    if not connection.execute("SELECT 1 FROM tows LIMIT 1").fetchall():
         connection.close()
         raise MissingKnowledgeError(f"{path} has no tow: {NO_TOW}")
     return connection

@@ -23,6 +23,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import Method, parse_method
+from herijk.pipeline.register.register import with_empty_thwart
 from herijk.warehouse.store.files import TEMPORARY_PREFIX, sync
 from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import Store
@@ -205,6 +206,9 @@ def read_edition(store: Store, edition: str) -> Edition:
     path = edition_path(store, edition)
     about = read_about(path)
     tables = {name: read_table(path, name) for name in about.tables}
+    tables |= {
+        name: with_empty_thwart(tables[name]) for name in ("register", CHANGES) if name in tables
+    }
     method = None
     if about.kind == "recomputed":
         method = parse_method((path / METHOD).read_text(encoding="utf-8"), f"{edition}/{METHOD}")

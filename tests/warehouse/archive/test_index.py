@@ -200,3 +200,77 @@ def test_faulty_rows_of_registers_and_races(archive: Archive) -> None:
     races, faults = read_races(archive.root)
     assert [(f.reason_code, f.line) for f in faults] == [("bad_race_row", 2)]
     assert len(races) == 1
+
+
+@pytest.mark.parametrize(
+    ("cells", "why"),
+    [
+        ("43,89;4,44;31,60;2,35", "Cw is 31,60, but A 43,89 and B 4,44 give 60.97 at 2,35 m/s"),
+        ("31,60;2,35;43,89;2,35", "B must be higher"),
+        ("31,60;2,10;43,89;2,35", "B must be higher"),
+        ("31,60;4,44;48,39;2,35", "give 43.90"),
+    ],
+)
+def test_a_printed_line_must_fit_its_own_curve(archive: Archive, cells: str, why: str) -> None:
+    """The printed examples (presentation 2015) hold; A and Cw exchanged, or digits, do not."""
+    (archive.root / "sloepregister/sloepregister_2014.csv").write_text(
+        "fsn_nr;roeiers;klasse;A;B;Cw;roeisnelheid [m/s];sleepdatum\n"
+        f"FSN1;8;H;{cells};2012-03-10\nFSN2;12;H;32,62;5,59;41,63;2,60;2012-03-10\n"
+        "FSN3;8;D;14,93;3,90;25,36;2,50;2012-03-10\nFSN4;8;H;32;6;39;2,6;2012-03-10\n"
+    )
+    register, faults = read_published_registers(archive.root)
+    assert [(f.reason_code, f.line) for f in faults] == [("bad_register_row", 2)]
+    assert why in faults[0].message
+    assert register["fsn_no"].to_list() == ["FSN2", "FSN3", "FSN4"]
+
+
+@pytest.mark.parametrize(("time", "stream"), [("0:02:10", ""), ("21:30:25", ""), ("2:10:25", "20")])
+def test_a_race_at_no_boats_speed_is_set_aside(archive: Archive, time: str, stream: str) -> None:
+    (archive.root / "wedstrijden/race_2016.csv").write_text(
+        "wedstrijd;datum;afstand [km];fsn_nr;roeiers;klasse;roeitijd;stroom [km];straf [W]\n"
+        f"Race;2016-06-04;18,4;FSN1;8;H;{time};{stream};\n"
+    )
+    races, faults = read_races(archive.root)
+    assert races.is_empty()
+    assert [(f.reason_code, f.line) for f in faults] == [("bad_race_row", 2)]
+    assert "m/s; 0.5 to 6 can be right" in faults[0].message
+
+
+def test_readings_of_the_load_cell_and_lamps_go_to_their_tows(archive: Archive) -> None:
+    """A known weight of 50 kg pulls 490.65 N; each tow takes the last day up to its own."""
+    day = archive.scan().index.tows["tow_date"].min()
+    (archive.root / "sleeplijsten/krachtijkingen_2014.csv").write_text(
+        f"datum;gewicht [kg];aflezing [N]\n{day};50;493,1\n{day};50;492,1\n{day};50;494,1\n"
+        f"{day};50;0\n2014-12-31;50;400\n"
+    )
+    (archive.root / "sleeplijsten/lampjes_2014.csv").write_text(
+        "sleep_id;run;van [s];tot [s]\n2014-001;2;5;10\n2014-001;2;20;30\n2014-001;3;1;2\n"
+        "2014-099;1;1;2\n2014-001;1;3;3\n"
+    )
+    index = archive.scan().index
+    tow = index.tows.row(by_predicate=pl.col("tow_id") == "2014-001", named=True)
+    assert tow["load_cell_ratio"] == pytest.approx(493.1 / 490.65)
+    scatter = 1.0 / 490.65 / 3**0.5
+    assert tow["load_cell_sd"] == pytest.approx((scatter**2 + 0.001**2) ** 0.5)
+    assert tow["lamp_ratio"] == pytest.approx(15.0 / 50.0)
+    others = index.tows.filter(pl.col("tow_id") != "2014-001")
+    assert others["lamp_ratio"].null_count() == others.height
+    faults = [(f.path.split("/")[-1], f.line, f.reason_code) for f in index.faults]
+    assert faults == [
+        ("krachtijkingen_2014.csv", 5, "bad_instrument_row"),
+        ("lampjes_2014.csv", 5, "bad_instrument_row"),
+        ("lampjes_2014.csv", 6, "bad_instrument_row"),
+    ]
+
+
+def test_a_thousand_with_a_point_beside_decimal_commas_is_no_number(archive: Archive) -> None:
+    """1.012 beside 998,5 may be a thousand and twelve: never 1.012 N."""
+    archive.cells(
+        4, lambda cell, _: f"{float(cell.replace(',', '.')):.1f}".replace(".", ","), 2, 1 + 6 * ROWS
+    )
+    archive.cells(4, lambda _, __: "1.012", line_of(2, 7), line_of(2, 9))
+    scan = archive.scan()
+    force = scan.good["2014-001"].filter(run=2)["force_n"]
+    assert force[7:10].is_nan().all()
+    assert not force[:7].is_nan().any()
+    assert [(f.reason_code, f.lost, f.run) for f in scan.faults] == [("bad_number", "seconds", 2)]

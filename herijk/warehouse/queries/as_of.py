@@ -1,0 +1,104 @@
+"""The tables as of a day: registers, who is due and races as they stood then, by the same rules.
+
+The database judges on the day of the archive's last tow or race. Here the tables that depend on the
+day are made again for another one, and laid over those of the open database.
+"""
+
+import datetime as dt
+from typing import Final
+
+import duckdb
+import polars as pl
+
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.register.due import due_list
+from herijk.pipeline.register.register import LINE, draft_name
+from herijk.tables.schemas import TABLES
+from herijk.warehouse.store.store import Store
+
+NUMBERED: Final = (
+    *("tow_id", "tow_date", "valid_until", "declared_speed_m_s"),
+    *("a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", "flags"),
+)
+SIZES: Final = ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg")
+NOT_YET: Final = "never_towed"
+
+
+def lay_over(db: duckdb.DuckDBPyConnection, store: Store, day: dt.date) -> None:
+    """Makes a connection answer as of a day: tables `register`, `due_list` and `race_changes`.
+
+    Args:
+        db: the open database, read-only.
+        store: the data folder, for the results of races.
+        day: tows and races of later days do not exist yet.
+
+    Raises:
+        MissingKnowledgeError: there was no tow by then.
+    """
+    read = {
+        name: pl.DataFrame(db.table(f"main.{name}").pl())
+        for name in ("register", "register_history", "boats", "tows", "methods", "race_changes")
+    }
+    if not (read["tows"]["tow_date"] <= day).any():
+        raise MissingKnowledgeError(f"the archive has no tow of {day} or before")
+    register = register_on(read["register"], read["register_history"], read["tows"], day)
+    made = {
+        "register": register,
+        "due_list": _due(register, read["methods"], read["boats"], store, day),
+        "race_changes": read["race_changes"].filter(pl.col("race_date") <= day),
+    }
+    for name, frame in made.items():
+        held = frame.select(TABLES[name].column_names()).to_arrow()
+        db.register("held", held)
+        db.execute(f'CREATE TEMP TABLE "{name}" AS SELECT * FROM held')  # noqa: S608
+        db.unregister("held")
+
+
+def register_on(
+    register: pl.DataFrame, history: pl.DataFrame, tows: pl.DataFrame, day: dt.date
+) -> pl.DataFrame:
+    """Rows of `register` as they stood on a day, of every edition.
+
+    A line whose tow was made later is listed as never towed. The verification code is of the
+    published line, and stands only where that line is the one that counted.
+    """
+    key = ["edition", *LINE]
+    begun = pl.col("tow_date").is_null() | (pl.col("tow_date") <= day)
+    over = pl.col("valid_until") < day
+    codes = register.select(*key, "tow_id", "verification_code")
+    counted = (
+        history.filter(begun)
+        .sort(*key, "position")
+        .group_by(key, maintain_order=True)
+        .last()
+        .with_columns(
+            pl.when(over).then(pl.lit("expired")).otherwise(pl.lit("valid")).alias("status")
+        )
+        .join(tows.select("tow_id", *SIZES), on="tow_id", how="left")
+        .join(codes, on=[*key, "tow_id"], how="left", nulls_equal=True)
+    )
+    later = pl.col("tow_date").is_not_null()
+    rest = register.join(counted, on=key, how="anti").with_columns(
+        pl.when(later).then(pl.lit(NOT_YET)).otherwise("status").alias("status"),
+        *(pl.lit(None, register.schema[name]).alias(name) for name in (*NUMBERED, *SIZES)),
+        pl.lit(None, pl.String).alias("verification_code"),
+    )
+    both = pl.concat([counted, rest], how="diagonal_relaxed")
+    return both.with_columns(pl.lit(day).alias("as_of")).select(register.columns).sort(key)
+
+
+def _due(
+    register: pl.DataFrame,
+    methods: pl.DataFrame,
+    boats: pl.DataFrame,
+    store: Store,
+    day: dt.date,
+) -> pl.DataFrame:
+    """Rows of `due_list` of every method, as of a day."""
+    results = store.read("listed_races")
+    found = []
+    for name in methods["method"]:
+        lines = register.filter(pl.col("edition") == draft_name(name))
+        due = due_list(lines, boats, results, day)
+        found.append(due.select(pl.lit(name).alias("method"), pl.all()))
+    return pl.concat(found)

@@ -1,0 +1,38 @@
+"""The register of an edition as the command prints it, on the day on which it is judged."""
+
+import datetime as dt
+from typing import Any
+
+from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.warehouse.queries.answers import current_edition
+from herijk.warehouse.queries.views import Views
+from herijk.warehouse.store.store import Store
+
+
+def register_report(
+    store: Store, edition: str | None = None, as_of: dt.date | None = None
+) -> dict[str, Any]:
+    """The lines of an edition or draft, with the boat's name.
+
+    Args:
+        store: the data folder.
+        edition: its name; the newest, or the best draft, when left out.
+        as_of: the day on which validity is judged; that of the edition or draft when left out.
+
+    Raises:
+        MissingKnowledgeError: there is no such edition, or no tow by that day.
+    """
+    with Views(store, as_of) as views:
+        chosen = edition or current_edition(views)
+        lines = views.register()
+        simulated = views.about().get("simulated") == "true"
+    of_edition = lines.filter(edition=chosen)
+    if of_edition.is_empty():
+        known = ", ".join(lines["edition"].unique().sort())
+        raise MissingKnowledgeError(f"there is no edition {chosen}; there are {known}")
+    return {
+        "edition": chosen,
+        "simulated": simulated,
+        "as_of": of_edition["as_of"][0],
+        "lines": of_edition.to_dicts(),
+    }
