@@ -1,7 +1,8 @@
 """What a rebuild leaves to be read: a page, JSON, and a message to who wants one.
 
-They stand under `report/` in the data folder: `latest.json` about the last rebuild, `latest.html`
-about the last that changed something, and a dated JSON for each of those.
+They stand under `report/` in the data folder: `latest.json` about the last rebuild; `latest.html`
+about the last that changed something, with the day of the last one after it that changed nothing;
+and a dated JSON for each that changed something.
 """
 
 import datetime as dt
@@ -13,7 +14,13 @@ from typing import Any
 import dagster as dg
 
 from herijk.assets.notify import Message, Notifier
-from herijk.dashboards.report import found_in_words, headlines, mail
+from herijk.dashboards.report import (
+    PAGES,
+    found_in_words,
+    headlines,
+    mail,
+    with_later_rebuild,
+)
 from herijk.dashboards.words import speaker
 from herijk.warehouse.build.version import code_version
 from herijk.warehouse.queries.journal import as_plain, news, remember
@@ -28,7 +35,7 @@ def write_report(
 ) -> Report:
     """Finds out what changed, writes page and JSON, and returns the JSON as plain data.
 
-    Where nothing changed, the page about the last change stays.
+    Where nothing changed, the page about the last change stays, and says so.
     """
     found = news(store)
     about = store.read("about_archive")
@@ -50,6 +57,11 @@ def write_report(
         for name, page in report_pages(store, found, report).items():
             _write(folder / name, page)
         _write(folder / f"{now:%Y-%m-%dT%H%M%S}.json", text)
+    else:
+        for language, name in PAGES.items():
+            if (page := folder / name).exists():
+                shown = page.read_text(encoding="utf-8")
+                _write(page, with_later_rebuild(shown, report["made_at"], speaker(language)))
     _write(folder / "latest.json", text)
     remember(store)
     return report

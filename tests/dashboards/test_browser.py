@@ -11,9 +11,10 @@ import re
 import shutil
 
 import pytest
+from axe_playwright_python.sync_playwright import Axe
 
 from herijk.dashboards.site.pages import MENU
-from herijk.dashboards.site.parts import boat_path, race_path
+from herijk.dashboards.site.parts import boat_path, race_path, type_path
 from herijk.warehouse.queries.views import Views
 from tests.architecture.repository import ROOT
 from tests.dashboards.conftest import ATTACK, EDITIONS, FORMULA
@@ -107,20 +108,45 @@ def scrolled(page, boxes):
     )
 
 
+SERIOUS = {"serious", "critical"}
+
+
+def barriers(page):
+    """What axe-core finds that keeps people out: rule and the first element."""
+    found = Axe().run(page, options={"resultTypes": ["violations"]}).response["violations"]
+    return [
+        f"{rule['id']}: {rule['nodes'][0]['html']} {rule['nodes'][0]['failureSummary']}"
+        for rule in found
+        if rule["impact"] in SERIOUS
+    ]
+
+
 def shown(page, table):
     return page.locator(f"[data-table={table}] tbody tr:visible")
 
 
+def path_of(name, store, attacked):
+    """The page of a kind of which there are many, or of the menu."""
+    if name == "boat":
+        return boat_path(attacked)
+    with Views(store) as views:
+        if name == "type":
+            return type_path(views.type_names()[0])
+        if name == "race":
+            return race_path(*views.race_days()[0])
+    return f"{name}.html"
+
+
 @pytest.mark.parametrize("width", WIDTHS)
-@pytest.mark.parametrize("name", [*(f"{name}.html" for name in MENU), "boat"])
-def test_every_page_opens_and_draws(visitor, attacked, name, width):
+@pytest.mark.parametrize("name", [*MENU, "boat", "type", "race"])
+def test_every_page_opens_and_draws(visitor, store, attacked, name, width):
     columns, rows = WIDTHS[width]
     visitor.page.set_viewport_size({"width": columns, "height": rows})
-    path = boat_path(attacked) if name == "boat" else name
+    path = path_of(name, store, attacked)
     SHOTS.mkdir(exist_ok=True)
     for folder, language in (("", "nl"), ("en/", "en")):
         page = visitor.open(folder + path)
-        shot = f"{name.removesuffix('.html')}-{language}"
+        shot = f"{name}-{language}"
         if width == "desktop":
             page.pdf(path=SHOTS / f"{shot}.pdf", print_background=True)
         page.screenshot(path=SHOTS / f"{shot}-{width}-first.png")
@@ -130,6 +156,7 @@ def test_every_page_opens_and_draws(visitor, attacked, name, width):
         assert scrolled(page, ".chart, .scroll" if width == "desktop" else ".chart") == []
         assert page.locator(".broken").count() == 0
         page.screenshot(path=SHOTS / f"{shot}-{width}.png", full_page=True)
+    assert barriers(page) == []
 
 
 def test_an_attack_is_shown_as_a_name(visitor, attacked):

@@ -15,10 +15,11 @@ from herijk.dashboards.site.pages import MENU, all_pages
 from herijk.dashboards.site.parts import boat_path, default_method, race_path, type_path
 from herijk.dashboards.site.render import DRAWN
 from herijk.dashboards.words import WORDS
-from herijk.warehouse.queries.answers import line_changes
+from herijk.warehouse.queries.answers import answers, line_changes
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.store import Store
 from tests.dashboards.conftest import ATTACK, EDITIONS
+from tests.dashboards.test_answer import LINE
 
 
 def pages(site):
@@ -63,6 +64,12 @@ def test_json_cannot_close_its_element(text):
     made = as_json([text])
     assert not re.search("<|\u2028|\u2029", made)
     assert json.loads(made) == [text]
+
+
+def test_an_answer_is_told_all_that_it_says(site):
+    with Views(Store(site.parent)) as views:
+        columns = answers(views, EDITIONS[-1]).columns
+    assert LINE.keys() <= set(columns)
 
 
 def test_no_file_names_an_address(site):

@@ -1,8 +1,8 @@
 """One page per boat: the owner's answer, and folded below it how each number was made."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeAlias
 
 import polars as pl
 
@@ -17,8 +17,17 @@ from herijk.dashboards.site.parts import (
     draft_of,
     methods_select,
 )
-from herijk.warehouse.queries.answers import DRAFT, answers, newest_edition, own_races
+from herijk.warehouse.queries.answers import (
+    DRAFT,
+    answers,
+    newest_edition,
+    own_races,
+    season_faults,
+)
 from herijk.warehouse.queries.views import Views
+
+Faults: TypeAlias = Mapping[tuple[str, int], Sequence[dict[str, Any]]]
+"""What is wrong with the instruments, by method and season."""
 
 OF_THE_CURVE = {"tow_id": "tow_id", "method": "method"}
 FOLLOWS = ["tow_id", "method"]
@@ -33,12 +42,13 @@ def boat_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
     """The page of every boat that the archive lists."""
     frames = _frames(views, methods)
     by_boat = {name: _by_boat(frame) for name, frame in frames.items()}
+    faults = season_faults(views)
     for fsn_no in frames["boats"]["fsn_no"]:
         own = {name: by_boat[name].get(fsn_no, frame.head(0)) for name, frame in frames.items()}
-        yield _page(fsn_no, own, methods)
+        yield _page(fsn_no, own, methods, _answers(own, faults))
 
 
-def _answers(own: dict[str, pl.DataFrame]) -> list[Answer]:
+def _answers(own: dict[str, pl.DataFrame], faults: Faults) -> list[Answer]:
     """What there is to say of each crew."""
     return [
         Answer(
@@ -48,6 +58,7 @@ def _answers(own: dict[str, pl.DataFrame]) -> list[Answer]:
             .to_dicts(),
             curve=_of_line(own["line"], line),
             points=_of_line(own["point"], line),
+            faults=faults.get((line["method"], line["season"]), ()),
         )
         for line in own["answers"].iter_rows(named=True)
     ]
@@ -163,12 +174,16 @@ FACT_COLUMNS = (
 LINEAGE_COLUMNS = ("edition", "crew", "tow_id", "path", "sha256", "method_hash", "code_version")
 
 
-def _page(fsn_no: str, own: dict[str, pl.DataFrame], methods: Sequence[str]) -> Page:
+def _page(
+    fsn_no: str, own: dict[str, pl.DataFrame], methods: Sequence[str], told: Sequence[Answer]
+) -> Page:
     facts = Section("facts", tables=[Table("boats", own["boats"], FACT_COLUMNS, "facts")])
-    name = own["boats"]["name"][0]
+    boat = own["boats"].row(0, named=True)
+    name = boat["name"]
+    subtitle = " · ".join(filter(None, (fsn_no, boat["ht_no"], boat["boat_type"])))
     curves = own["curves"].unique("tow_id", maintain_order=True)
     if curves.is_empty():
-        return Page(boat_path(fsn_no), "boat", [facts], name=name)
+        return Page(boat_path(fsn_no), "boat", [facts], name=name, subtitle=subtitle)
     tows = curves["tow_id"].to_list()
     named = dict(curves.select("tow_id", "tow").rows())
     selects = [
@@ -182,7 +197,8 @@ def _page(fsn_no: str, own: dict[str, pl.DataFrame], methods: Sequence[str]) -> 
         name=name,
         selects=selects,
         data=_data(own),
-        answers=_answers(own),
+        answers=told,
+        subtitle=subtitle,
     )
 
 

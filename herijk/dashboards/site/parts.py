@@ -127,6 +127,7 @@ class Page:
         title: key of its title.
         sections: in order.
         name: of a boat, type or race, data rather than a text; empty elsewhere.
+        subtitle: what tells a boat from one of the same name: its numbers and type.
         selects: selectors.
         data: frames that charts draw, by name; of several, the rows come one below the other.
         site: the way to the site, of a page that lies outside it.
@@ -143,6 +144,7 @@ class Page:
     site: str = ""
     answers: Sequence[Answer] = ()
     others: Mapping[str, str] = field(default_factory=dict)
+    subtitle: str = ""
 
     @property
     def chosen(self) -> dict[str, str]:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import polars as pl
 
+from herijk.dashboards.report import in_short
 from herijk.dashboards.site import headlines
 from herijk.dashboards.site.parts import (
     Chart,
@@ -16,6 +17,7 @@ from herijk.dashboards.site.parts import (
 )
 from herijk.dashboards.speech import Speech
 from herijk.warehouse.queries.answers import newest_edition
+from herijk.warehouse.queries.journal import last_news
 from herijk.warehouse.queries.views import Views
 
 CARDS = ("register", "due", "types", "compare", "races", "corrections", "reproducibility",
@@ -37,6 +39,7 @@ def start_page(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> P
             key_figures=_figures(views),
             headline=headlines.changes(changes.filter(to_edition=chosen)) if editions else None,
         ),
+        *_last_rebuild(views),
         Section("index_pages", links=links),
     ]
     if years.height:
@@ -50,6 +53,16 @@ def start_page(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> P
         selects=[methods_select(methods)] if years.height else [],
         data={"years": [years]} if years.height else {},
     )
+
+
+def _last_rebuild(views: Views) -> list[Section]:
+    """What the rebuild that last changed something changed."""
+    report = last_news(views.store)
+    if report is None:
+        return []
+
+    changes = report | {"checks": []}
+    return [Section("last_rebuild", headline=lambda speech: in_short(changes, speech.say))]
 
 
 def methods_table(views: Views) -> Table:

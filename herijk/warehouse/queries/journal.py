@@ -4,6 +4,7 @@ The database that was last reported on is kept beside the reports, so a rebuild 
 before its report is reported on by the next. Where and how a report is shown is not decided here.
 """
 
+import json
 import os
 import shutil
 from collections.abc import Sequence
@@ -277,6 +278,15 @@ def _ground(tow: bool, own: bool, others: bool, method: bool, code: bool) -> str
 
 
 # As plain data
+
+
+def last_news(store: Store) -> dict[str, Any] | None:
+    """The news since the last report; where there is none, those of the last report with news."""
+    found = news(store)
+    if not found.nothing:
+        return as_plain(found)
+    told = sorted((store.root / "report").glob("2*.json"))
+    return json.loads(told[-1].read_text(encoding="utf-8")) if told else None
 
 
 def as_plain(found: News) -> dict[str, Any]:
