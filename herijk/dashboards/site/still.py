@@ -30,17 +30,18 @@ def still_pictures(page: Page, speech: Speech) -> dict[str, Markup]:
     rows = _shown(page, charts[0])
     if rows.is_empty():
         return {}
-    return {charts[0].figure: still(charts[0].figure, rows, speech)}
+    return {charts[0].figure: still(charts[0].figure, rows, speech, speech.say(charts[0].caption))}
 
 
-def still(figure: str, rows: pl.DataFrame, speech: Speech) -> Markup:
-    """A figure as SVG."""
+def still(figure: str, rows: pl.DataFrame, speech: Speech, caption: str) -> Markup:
+    """A figure as SVG; a screen reader says its caption."""
     spec = FIGURES[figure](rows, speech.say).to_dict(validate=False)
     drop_links(spec)
     svg = vl_convert.vegalite_to_svg(
         spec, vl_version=VEGA_LITE, config=CONFIG, format_locale=LOCALES[speech.language]
     )
-    return Markup(_renumbered(svg))  # noqa: S704 - Vega escapes texts
+    named = Markup('<svg role="img" aria-label="{}" ').format(caption)
+    return Markup(_renumbered(svg).replace("<svg ", named, 1))  # noqa: S704 - Vega escapes texts
 
 
 def _renumbered(svg: str) -> str:
@@ -50,7 +51,8 @@ def _renumbered(svg: str) -> str:
     return re.sub(r"\bclip\d+\b", lambda found: places[found[0]], svg)
 
 
-CONFIG: Final = {"font": fonts.FAMILY}
+CONFIG: Final = {"font": fonts.FAMILY, "aria": False}
+"""A picture is described as a whole, so its marks need no description of their own."""
 
 
 def _shown(page: Page, chart: Chart) -> pl.DataFrame:

@@ -138,8 +138,9 @@
     const words = plain(table.querySelector(".search")?.value ?? "").split(/\s+/).filter(Boolean);
     const linked = table.querySelector("table.linked");
     const follows = JSON.parse(table.dataset.follows);
+    const chosen = JSON.parse(table.dataset.keys).map((key) => key.every((value, i) => matches(follows[i], value)));
     const fits = (row) =>
-      follows.every((name) => matches(name, row.getAttribute(`data-f-${name}`))) &&
+      (chosen[row.dataset.k] ?? true) &&
       words.every((word) => plain(row.textContent).includes(word)) &&
       (!linked || selected === null || selected.has(row.dataset.boat));
     const shown = rowsOfTable.get(table).filter(fits);
@@ -159,9 +160,6 @@
     return wanted.length === 0 || wanted.includes(String(value));
   }
 
-  // What a cell holds: its text, unless it says otherwise.
-  const valueOf = (cell) => cell.dataset.v ?? cell.textContent;
-
   // The number in a cell, or "" where there is none.
   function numberOf(cell) {
     if (cell.dataset.v !== undefined) return Number(cell.dataset.v);
@@ -169,7 +167,7 @@
     return text === "" ? "" : Number(text);
   }
 
-  const isNumeric = (cell) => !cell.classList.contains("t");
+  const isNumeric = (cell) => cell.className === "";
 
   function sort(table, header, down = header.getAttribute("aria-sort") === "ascending") {
     const place = [...header.parentElement.children].indexOf(header);
@@ -177,7 +175,7 @@
     header.setAttribute("aria-sort", down ? "descending" : "ascending");
     const numeric = header.classList.contains("n");
     const compare = new Intl.Collator("nl", { numeric: true }).compare;
-    const key = (cell) => (numeric ? numberOf(cell) : valueOf(cell));
+    const key = (cell) => (numeric ? numberOf(cell) : cell.textContent);
     const rows = rowsOfTable.get(table).map((row) => [key(row.cells[place]), row]);
     rows.sort(([a], [b]) => {
       if (a === "" || b === "") return (a === "") - (b === "");
@@ -274,6 +272,7 @@
         formatLocale: LOCALES[language],
         loader: { target: "_self" },
         config: {
+          aria: false, // the picture is described as a whole
           font: "Open Sans",
           axis: { labelFontSize: 12, titleFontSize: 12, labelLimit: 200 },
           legend: { labelFontSize: 12, titleFontSize: 12, labelLimit: 220 },
