@@ -17,8 +17,9 @@ from pathlib import Path
 
 import polars as pl
 
+from herijk.dashboards.guard import listen
 from herijk.dashboards.workbench.bench import Base, Bench, Question
-from herijk.dashboards.workbench.server import address, listen, serving
+from herijk.dashboards.workbench.server import LOOPBACK, address, serving
 from herijk.pipeline.method.definition import Steps
 from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.simulate import WorldSettings, simulate_world
@@ -107,7 +108,7 @@ def main():
         chromium = shutil.which("chromium")
         if chromium:
             fresh = Bench(Store(Path(folder)), dataclasses.replace(held, cache=RunCache()))
-            socket, server = listen(0), serving(fresh)
+            socket, server = listen(LOOPBACK, 0), serving(fresh)
             thread = threading.Thread(target=server.run, kwargs={"sockets": [socket]})
             thread.start()
             report("drawn", drawn(address(socket), chromium))

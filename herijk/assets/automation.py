@@ -3,7 +3,6 @@
 The job runs the same rebuild as the command. It makes drafts; publishing is not among the jobs.
 """
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -106,7 +105,7 @@ def rebuild_job() -> None:
 def schedules(settings: Settings) -> list[dg.ScheduleDefinition]:
     """Everything, every night; and in the months of towing, the season of that year."""
 
-    def of_the_year(context: dg.ScheduleEvaluationContext) -> Mapping[str, Any]:
+    def of_the_year(context: dg.ScheduleEvaluationContext) -> dict[str, Any]:
         season = context.scheduled_execution_time.year
         return {"ops": {"rebuild_archive": {"config": {"seasons": [season]}}}}
 

@@ -46,9 +46,9 @@ def _log(
     )
     for check in result.check_results or ():
         context.log_event(
-            dg.AssetCheckEvaluation(
+            dg.AssetCheckEvaluation(  # type: ignore[arg-type]  # it takes this too
                 asset_key=asset.key,
-                check_name=check.check_name,
+                check_name=check.check_name or "",
                 passed=check.passed,
                 severity=check.severity,
                 metadata=check.metadata,
@@ -108,7 +108,8 @@ def read_seasons(
     # Dask knows a step by the names of job and step: two rebuilds on one cluster must differ.
     name = f"read_seasons_{secrets.token_hex(4)}"
     instance.add_dynamic_partitions("season", [str(season) for season in seasons])
-    job = dg.build_reconstructable_job(__name__, seasons_job.__name__, (name, tuple(seasons)))
+    arguments: Any = (name, tuple(seasons))  # Dagster's annotation allows one argument only
+    job = dg.build_reconstructable_job(__name__, seasons_job.__name__, arguments)
     config: dict[str, Any] = {
         "ops": {
             _step(season): {"config": {"archive": archive_root, "data": data, "season": season}}

@@ -21,7 +21,7 @@ QUIET_LOG = {"loggers": {"console": {"config": {"log_level": "CRITICAL"}}}}
 """Nothing on the terminal: what Dagster says stands in its records."""
 
 
-class Setup(dg.ConfigurableResource):
+class Setup(dg.ConfigurableResource["Setup"]):
     """The archive that comes in, the data folder that goes out, and the methods to apply.
 
     While a step runs, nobody else writes in the data folder: another waits for its turn.

@@ -1,6 +1,7 @@
 """The steps of a build as assets: what `warehouse.build.graph` declares, as Dagster sees it."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
+from typing import Any
 
 import dagster as dg
 import dataframely as dy
@@ -28,7 +29,7 @@ def step_asset(step: Step) -> dg.AssetsDefinition:
         partitions_def=methods if step.per_method else None,
         check_specs=[dg.AssetCheckSpec(check.name, asset=check.table) for check in step.checks],
     )
-    def asset(context: dg.AssetExecutionContext, setup: Setup):
+    def asset(context: dg.AssetExecutionContext, setup: Setup):  # type: ignore[no-untyped-def]
         chosen = setup.chosen_methods
         if step.per_method:
             chosen = [setup.known_methods.get(context.partition_key)]
@@ -78,8 +79,8 @@ def _columns(schema: type[dy.Schema]) -> dg.TableSchema:
     )
 
 
-def _metadata(frame: pl.DataFrame) -> Mapping[str, object]:
-    metadata: dict[str, object] = {"dagster/row_count": frame.height}
+def _metadata(frame: pl.DataFrame) -> dict[str, Any]:
+    metadata: dict[str, Any] = {"dagster/row_count": frame.height}
     if "status" in frame.columns:
         counts = frame["status"].value_counts().sort("status").rows()
         metadata["statuses"] = dg.MetadataValue.json(dict(counts))

@@ -7,9 +7,9 @@ and the command.
 """
 
 import sys
+from importlib.metadata import version
 
 import dagster as dg
-import dagster_webserver
 from dagster._core.workspace.context import WorkspaceProcessContext
 from dagster._core.workspace.load_target import ModuleTarget
 from dagster_webserver.app import create_app_from_workspace_process_context
@@ -28,7 +28,7 @@ def main(host: str, port: str, rights: str) -> None:
         WorkspaceProcessContext(
             instance,
             DEFINITIONS,
-            version=dagster_webserver.__version__,
+            version=version("dagster-webserver"),
             read_only=rights == READ_ONLY,
         ) as context,
     ):

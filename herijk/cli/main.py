@@ -308,16 +308,17 @@ def workbench(
     ] = 8765,
 ) -> None:
     """Change a method's options in a browser and see at once what happens to all boats."""
+    from herijk.dashboards.guard import listen
     from herijk.dashboards.workbench.bench import Bench
-    from herijk.dashboards.workbench.server import address, listen, serving
+    from herijk.dashboards.workbench.server import LOOPBACK, address, serving
     from herijk.warehouse.queries.history import History
     from herijk.warehouse.store.store import Store
 
-    held, store = listen(port), Store(data)
+    listening, store = listen(LOOPBACK, port), Store(data)
     bench = Bench(store, History.of(store))
-    typer.echo(f"The workbench is at {address(held)} (on this machine only); Ctrl-C stops it.")
+    typer.echo(f"The workbench is at {address(listening)} (on this machine only); Ctrl-C stops it.")
     with suppress(KeyboardInterrupt):
-        serving(bench).run(sockets=[held])
+        serving(bench).run(sockets=[listening])
 
 
 @app.command("log-error")

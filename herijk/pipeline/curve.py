@@ -550,36 +550,6 @@ def b_interval(points: Points, curves: Curves, scatter: Scatter, level: float = 
     return Interval(b_lo, np.where(known, _b_of_s(s_lo), np.inf))
 
 
-def b_interval_fieller(
-    points: Points, curves: Curves, scatter: Scatter, level: float = 0.95
-) -> Interval:
-    """Fieller's interval of B [m/s] from the line 1/Cw = a - b v^2; a check on the profile.
-
-    The set {s: (b - s a)^2 <= t^2 (v_bb - 2 s v_ab + s^2 v_aa)}; the line is weighted with the
-    fitted Cw^4, so that it is the linearised fit in Cw. From 0 to infinity where the intercept
-    itself is not significant.
-    """
-    weight = np.where(points.used, _cw_of_points(points, curves) ** 4, 0.0)
-    u = np.where(points.used, points.speed_m_s, 0.0) ** 2
-    y = 1.0 / np.where(points.used, points.cw_kg_m, 1.0)
-    w0, w1, w2 = (weight.sum(axis=1), (weight * u).sum(axis=1), (weight * u * u).sum(axis=1))
-    y0, y1 = (weight * y).sum(axis=1), (weight * u * y).sum(axis=1)
-    determinant = w0 * w2 - w1 * w1
-    known = curves.converged & (scatter.dof > 0) & (determinant > 0)
-    safe = np.where(known, determinant, 1.0)
-    intercept, slope = (w2 * y0 - w1 * y1) / safe, -(w0 * y1 - w1 * y0) / safe
-    t2 = _t_quantile(scatter.dof, level) ** 2 * scatter.variance_kg2_m2 / safe
-    # Var(a) = w2, Var(b) = w0, and Cov(a, b) = w1 since b is minus the slope; all times t2.
-    second = intercept * intercept - t2 * w2
-    first = intercept * slope - t2 * w1
-    zeroth = slope * slope - t2 * w0
-    bounded = known & (second > 0)
-    root = np.sqrt(np.maximum(first * first - second * zeroth, 0.0))
-    safe_second = np.where(bounded, second, 1.0)
-    s_lo, s_hi = (first - root) / safe_second, (first + root) / safe_second
-    return Interval(np.where(bounded, _b_of_s(s_hi), 0.0), np.where(bounded, _b_of_s(s_lo), np.inf))
-
-
 def _b_of_s(s: FloatArray) -> FloatArray:
     positive = s > 0
     return np.where(positive, 1.0 / np.sqrt(np.where(positive, s, 1.0)), np.inf)

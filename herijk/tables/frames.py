@@ -1,6 +1,6 @@
 """Frames made with the dtypes that a table declares."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
 import dataframely as dy
@@ -9,9 +9,10 @@ import polars as pl
 S = TypeVar("S", bound=dy.Schema)
 
 
-def dtypes(schema: type[dy.Schema]) -> pl.Schema:
+def dtypes(schema: type[dy.Schema], without: Collection[str] = ()) -> pl.Schema:
     """The declared dtypes, by column."""
-    return pl.Schema({name: column.dtype for name, column in schema.columns().items()})
+    columns = schema.columns().items()
+    return pl.Schema({name: column.dtype for name, column in columns if name not in without})
 
 
 def limits(schema: type[dy.Schema], name: str) -> tuple[Any, Any]:

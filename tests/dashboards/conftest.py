@@ -8,8 +8,9 @@ import threading
 import duckdb
 import pytest
 
+from herijk.dashboards.guard import listen
 from herijk.dashboards.site import build_site
-from herijk.dashboards.workbench.server import address, listen, serving
+from herijk.dashboards.workbench.server import LOOPBACK, address, serving
 from herijk.pipeline.method.definition import shipped_method
 from herijk.warehouse.editions.publish import Terms, publish
 from herijk.warehouse.store.store import Store
@@ -75,7 +76,7 @@ def attacked(built):
 @contextlib.contextmanager
 def served(bench):
     """The address of a workbench that runs meanwhile."""
-    held = listen(0)
+    held = listen(LOOPBACK, 0)
     server = serving(bench)
     thread = threading.Thread(target=server.run, kwargs={"sockets": [held]})
     thread.start()

@@ -10,14 +10,15 @@ import urllib.request
 import pytest
 from polars.testing import assert_frame_equal
 
+from herijk.dashboards.guard import listen
 from herijk.dashboards.site.cells import KEPT
 from herijk.dashboards.words import LANGUAGES, both
 from herijk.dashboards.workbench import texts
 from herijk.dashboards.workbench.bench import TRIAL, Base, Bench, Named, Question
-from herijk.dashboards.workbench.form import _kind, controls, option_names
-from herijk.dashboards.workbench.server import listen
+from herijk.dashboards.workbench.form import _kind, controls
+from herijk.dashboards.workbench.server import LOOPBACK
 from herijk.pipeline.assessment.checks import CODES
-from herijk.pipeline.errors import HerijkError, MissingKnowledgeError
+from herijk.pipeline.errors import HerijkError, MissingKnowledgeError, UnavailableError
 from herijk.pipeline.method.definition import MethodFileError, Steps, parse_method
 from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.warehouse.queries.history import History
@@ -70,7 +71,7 @@ def test_every_option_of_the_model_has_a_control():
         for step, field in Steps.model_fields.items()
         for option in field.annotation.model_fields
     }
-    assert set(option_names()) == model
+    assert set(CONTROLS) == model
     assert "fixed" not in {control["kind"] for control in CONTROLS.values()}
 
 
@@ -255,10 +256,10 @@ def ask(url, path="", body=None, **headers):
 
 def test_it_listens_on_loopback_only(url):
     assert url.startswith("http://127.0.0.1:")
-    held = listen(0)
+    held = listen(LOOPBACK, 0)
     assert held.getsockname()[0] == "127.0.0.1"
-    with pytest.raises(MissingKnowledgeError, match="--port"):
-        listen(int(url.rsplit(":", 1)[1].rstrip("/")))
+    with pytest.raises(UnavailableError, match="--port"):
+        listen(LOOPBACK, int(url.rsplit(":", 1)[1].rstrip("/")))
     held.close()
 
 

@@ -5,6 +5,7 @@ import pytest
 
 from herijk.pipeline import curve
 from tests.golden.sources import read_table
+from tests.pipeline.fieller import b_interval_fieller
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +28,7 @@ def test_b_is_not_determined(points):
     assert fitted.b_m_s[0] == np.inf
 
 
-@pytest.mark.parametrize("interval_of", [curve.b_interval, curve.b_interval_fieller])
+@pytest.mark.parametrize("interval_of", [curve.b_interval, b_interval_fieller])
 def test_b_has_no_upper_bound(points, interval_of):
     fitted = curve.fit(points)
     interval = interval_of(points, fitted, curve.own_scatter(fitted))

@@ -6,6 +6,7 @@ from scipy.optimize import least_squares
 
 from herijk.pipeline import curve
 from herijk.pipeline.errors import BrokenPromiseError
+from tests.pipeline.fieller import b_interval_fieller
 
 RUN_RATIOS = np.array([0.9, 1.0, 1.1, 0.9, 1.0, 1.1])
 
@@ -117,7 +118,7 @@ def test_two_points_are_interpolated_and_have_unbounded_intervals():
     assert curve.cw(fitted.a_kg_m, fitted.s_s2_m2, [2.0, 3.0]) == pytest.approx([20.0, 30.0])
     scatter = curve.own_scatter(fitted)
     assert curve.b_interval(points, fitted, scatter) == (pytest.approx(3.0), np.inf)
-    assert curve.b_interval_fieller(points, fitted, scatter) == (0.0, np.inf)
+    assert b_interval_fieller(points, fitted, scatter) == (0.0, np.inf)
     errors = curve.covariance(points, fitted, scatter, 2.5)
     assert curve.cw_interval(fitted, errors, scatter.dof, 2.5) == (0.0, np.inf)
 
@@ -220,7 +221,7 @@ def test_fieller_agrees_with_the_profile():
     fitted = curve.fit(points)
     scatter = curve.own_scatter(fitted)
     profile = curve.b_interval(points, fitted, scatter)
-    fieller = curve.b_interval_fieller(points, fitted, scatter)
+    fieller = b_interval_fieller(points, fitted, scatter)
     unbounded = [np.mean(np.isinf(x.hi)) for x in (profile, fieller)]
     assert abs(unbounded[0] - unbounded[1]) < 0.01  # asked: within one percentage point
     assert np.median(np.abs(profile.lo / fieller.lo - 1)) < 0.01

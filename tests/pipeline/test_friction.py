@@ -54,9 +54,3 @@ def test_friction_cw_is_the_force_on_a_plate_over_speed_squared():
     force = 0.5 * friction.water_density_kg_m3(10.0) * surface * speed**2 * coefficient
     cw = friction.friction_cw_kg_m(speed, length, surface, 10.0)
     assert cw * speed**2 == pytest.approx(force)
-
-
-def test_delft_wetted_surface_by_hand():
-    # (1.97 + 0.171 x 4) sqrt(2 x 8) = 2.654 x 4; a fuller midship (0.65 x 8) halves it.
-    assert friction.delft_wetted_surface_m2(8.0, 2.0, 4.0, 0.65) == pytest.approx(10.616)
-    assert friction.delft_wetted_surface_m2(8.0, 2.0, 4.0, 8 * 0.65) == pytest.approx(5.308)

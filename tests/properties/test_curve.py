@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from herijk.pipeline import curve
+from tests.pipeline.fieller import b_interval_fieller
 
 RUN_RATIOS = np.array([0.9, 1.0, 1.1, 0.9, 1.0, 1.1])
 
@@ -39,7 +40,7 @@ def bounds_of_everything(points, fitted, scatter, v0):
         curve.cw_interval(fitted, reach, scatter.dof, v0),
         curve.cw_interval(fitted, reach, scatter.dof, 1.15 * v0),
         in_s(curve.b_interval(points, fitted, scatter)),
-        in_s(curve.b_interval_fieller(points, fitted, scatter)),
+        in_s(b_interval_fieller(points, fitted, scatter)),
     ]
 
 

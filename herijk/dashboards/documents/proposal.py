@@ -78,9 +78,7 @@ def _ballot(lines: dict[str, pl.DataFrame], speech: Speech) -> Part:
                 speech.say(f"method.{method}"),
                 str(changes.filter(change="changed").height),
                 str(_beyond(changes)),
-                speech.per_cent(known["cw_ratio"].median()),
-                speech.per_cent(known["cw_ratio"].min()),
-                speech.per_cent(known["cw_ratio"].max()),
+                *(speech.per_cent(ratio) for ratio in _middle_and_ends(known)),
             ]
         )
     heads = ("method", "code.changed", "column.exceeds_interval", "middle", "lowest", "highest")
@@ -90,6 +88,14 @@ def _ballot(lines: dict[str, pl.DataFrame], speech: Speech) -> Part:
         "head": [_plain(speech.say(key)) for key in heads],
         "rows": rows,
     }
+
+
+def _middle_and_ends(changes: pl.DataFrame) -> tuple[float, float, float]:
+    ratio = pl.col("cw_ratio")
+    middle, low, high = changes.select(
+        ratio.median().alias("middle"), ratio.min().alias("low"), ratio.max().alias("high")
+    ).row(0)
+    return middle, low, high
 
 
 def _beyond(changes: pl.DataFrame) -> int:

@@ -13,6 +13,7 @@ from herijk.dashboards.figures.style import (
     OKABE_ITO,
     OUT,
     WIDTH,
+    Drawing,
     by_method,
     interval_dash,
     named,
@@ -53,7 +54,7 @@ def _direction_shape(say: Say) -> alt.Shape:
     )
 
 
-def resistance_curve(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+def resistance_curve(frame: pl.DataFrame, say: Say) -> Drawing:
     """The curve with its run points, band, and interval at the declared speed.
 
     Args:
@@ -95,7 +96,7 @@ def resistance_curve(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     ).properties(width=WIDTH, height=HEIGHT)
 
 
-def history(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+def history(frame: pl.DataFrame, say: Say) -> Drawing:
     """Cw at the declared speed of every tow under every method, with intervals.
 
     Args:
@@ -172,7 +173,7 @@ def _trace_row(
     fields: tuple[tuple[str, str, list[int]], ...],
     title: str,
     above: Sequence[alt.Chart] = (),
-) -> alt.FacetChart:
+) -> Drawing:
     x = alt.X("second:Q", title=say("time"))
     height = 110 + (REASONS_PX if above else 0)
     scale = alt.Scale(zero=False, range=[height, REASONS_PX if above else 0])
@@ -192,7 +193,7 @@ def _trace_row(
     )
 
 
-def out_and_back(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+def out_and_back(frame: pl.DataFrame, say: Say) -> Drawing:
     """Cw of the runs before and after the air correction, out and back.
 
     Args:

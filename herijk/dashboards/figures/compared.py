@@ -1,5 +1,7 @@
 """Figures of two methods laid over each other."""
 
+from typing import Any
+
 import altair as alt
 import polars as pl
 
@@ -8,6 +10,7 @@ from herijk.dashboards.figures.style import (
     OKABE_ITO,
     SHAPES,
     WIDTH,
+    Drawing,
     colour,
     methods_named,
     number,
@@ -17,7 +20,7 @@ from herijk.dashboards.words import Say
 from herijk.pipeline.method.definition import COMPLETE
 
 
-def curves_compared(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+def curves_compared(frame: pl.DataFrame, say: Say) -> Drawing:
     """A tow's curve and run points under two methods, with the interval at the declared speed.
 
     Args:
@@ -35,7 +38,7 @@ def curves_compared(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     colour = alt.Color("method:N", scale=ink, sort=None, legend=None)
     dash = alt.StrokeDash("method:N", scale=dashes, sort=None, legend=None)
     names = alt.Legend(labelExpr=methods_named(say))
-    look = {"title": say("method"), "sort": None, "legend": names}
+    look: dict[str, Any] = {"title": say("method"), "sort": None, "legend": names}
     base = alt.Chart(frame)
     line = base.transform_filter("datum.kind == 'line'")
     point = base.transform_filter("datum.kind == 'point'")
@@ -64,7 +67,7 @@ def curves_compared(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     ).properties(width=WIDTH, height=HEIGHT)
 
 
-def boats_compared(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+def boats_compared(frame: pl.DataFrame, say: Say) -> Drawing:
     """The curves of two boats with their bands; `frame` holds `curve_points` with their `crew`."""
     x = number(alt.X, "speed_m_s", say("speed"))
     low, high = alt.Y("cw_lo_kg_m:Q", title=say("cw")), alt.Y2("cw_hi_kg_m:Q")

@@ -8,6 +8,7 @@ from herijk.dashboards.figures.style import (
     HEIGHT,
     OKABE_ITO,
     WIDTH,
+    Drawing,
     by_method,
     named,
     number,
@@ -23,13 +24,13 @@ def _at_one(frame: pl.DataFrame, channel: str) -> alt.Chart:
     return line.encode(**{channel: alt.datum(1.0)})
 
 
-def log_factors(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+def log_factors(frame: pl.DataFrame, say: Say) -> Drawing:
     """True speed / log speed per season and method, with 95 % intervals; `frame` is the table."""
     more = (("season:O", say("season")), ("source:N", say("source")))
     return _per_season(frame, say, ("factor", say("factor")), ("lo", "hi"), more)
 
 
-def season_change(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+def season_change(frame: pl.DataFrame, say: Say) -> Drawing:
     """Cw re-based / as published: median and range per season; `frame` is `season_changes`."""
     value, ends = ("median_ratio", say("ratio_cw")), ("lowest_ratio", "highest_ratio")
     return _per_season(
@@ -43,13 +44,13 @@ def _per_season(
     value: tuple[str, str],
     ends: tuple[str, str],
     more: tuple[tuple[str, str], ...],
-) -> alt.LayerChart:
+) -> Drawing:
     base = alt.Chart(frame).encode(alt.X("season:O", title=say("season")))
     layers = by_method(base, say, value, ends, more)
     return alt.layer(_at_one(frame, "y"), *layers).properties(width=WIDTH, height=HEIGHT)
 
 
-def season_ladder(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+def season_ladder(frame: pl.DataFrame, say: Say) -> Drawing:
     """Factor on Cw of each step in each season, as a coloured table with its numbers.
 
     Args:
@@ -84,7 +85,7 @@ def season_ladder(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     ).properties(width=WIDTH, height=HEIGHT)
 
 
-def option_study(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+def option_study(frame: pl.DataFrame, say: Say) -> Drawing:
     """What other choices of judgement do to Cw; `frame` is `option_summary`."""
     label = named([c.name for c in CHOICES], say)
     base = alt.Chart(frame).encode(

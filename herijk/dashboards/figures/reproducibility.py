@@ -7,6 +7,7 @@ from herijk.dashboards.figures.style import (
     GREY,
     HEIGHT,
     WIDTH,
+    Drawing,
     by_method,
     colour,
     method_colour,
@@ -20,7 +21,7 @@ from herijk.dashboards.figures.style import (
 from herijk.dashboards.words import Say
 
 
-def spread(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+def spread(frame: pl.DataFrame, say: Say) -> Drawing:
     """Standard deviation of one tow per era and method; `frame` is `reproducibility`."""
     base = alt.Chart(frame).encode(
         alt.X(
@@ -37,7 +38,7 @@ def spread(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     return alt.layer(*layers).properties(width=WIDTH, height=HEIGHT)
 
 
-def era_shifts(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+def era_shifts(frame: pl.DataFrame, say: Say) -> Drawing:
     """Next tow of the same boats against the tows of an era; `frame` is `era_shifts`."""
     base = alt.Chart(frame).encode(alt.X("era:N", title=say("scope"), axis=alt.Axis(labelAngle=0)))
     same = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3]).encode(y=alt.datum(1.0))
@@ -46,7 +47,7 @@ def era_shifts(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     return alt.layer(same, *layers).properties(width=WIDTH, height=HEIGHT)
 
 
-def repeat_pairs(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+def repeat_pairs(frame: pl.DataFrame, say: Say) -> Drawing:
     """Every pair of repeat tows, by the season of the newer; `frame` has `page`."""
     zero = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3]).encode(y=alt.datum(0.0))
     points = (
@@ -71,7 +72,7 @@ def repeat_pairs(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     return alt.layer(zero, points).properties(width=WIDTH, height=HEIGHT)
 
 
-def components(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+def components(frame: pl.DataFrame, say: Say) -> Drawing:
     """Spread by cause; `frame` is `variance_components`."""
     base = alt.Chart().encode(
         alt.X(
@@ -91,7 +92,7 @@ def components(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
     )
 
 
-def predicted(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+def predicted(frame: pl.DataFrame, say: Say) -> Drawing:
     """Cw of the tow against Cw predicted without towing; `frame` has `page`."""
     equal = (
         alt.Chart(frame)
@@ -118,7 +119,7 @@ def predicted(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     return alt.layer(equal, points).properties(width=480, height=360)
 
 
-def register_changes(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+def register_changes(frame: pl.DataFrame, say: Say) -> Drawing:
     """Time and Cw of every changed register line, new / old; `frame` has `page`."""
     one = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3])
     points = (
@@ -143,7 +144,7 @@ def register_changes(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     )
 
 
-def race_ranks(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+def race_ranks(frame: pl.DataFrame, say: Say) -> Drawing:
     """Place of every result under the old and the new edition; `frame` is `race_changes`."""
     same = (
         alt.Chart(frame)

@@ -14,6 +14,7 @@ import polars as pl
 from herijk.dashboards.figures.style import (
     GREY,
     OKABE_ITO,
+    Drawing,
     colour,
     interval_kind,
     named,
@@ -54,16 +55,16 @@ def _by_method() -> alt.Column:
 def _crew(say: Say) -> tuple[alt.Color, alt.Shape]:
     """Men and women apart by colour and shape, in one legend."""
     people = f"{{'H': '{say('men')}', 'D': '{say('women')}'}}[datum.value]"
-    looks = {"title": say("crew_class"), "legend": alt.Legend(labelExpr=people, orient="bottom")}
+    title, legend = say("crew_class"), alt.Legend(labelExpr=people, orient="bottom")
     shapes = alt.Scale(domain=["H", "D"], range=["circle", "triangle-up"])
     inks = alt.Scale(domain=["H", "D"], range=[OKABE_ITO[0], OKABE_ITO[1]])
     return (
-        alt.Color("crew_class:N", scale=inks, **looks),
-        alt.Shape("crew_class:N", scale=shapes, **looks),
+        alt.Color("crew_class:N", scale=inks, title=title, legend=legend),
+        alt.Shape("crew_class:N", scale=shapes, title=title, legend=legend),
     )
 
 
-def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], alt.FacetChart]:
+def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Drawing]:
     """The figure of a quantity against what may explain it, types below each other.
 
     It draws rows of `kind` tow (of `compared_tows`, with `label`) and line (of `type_line_points`).
@@ -71,7 +72,7 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], alt
     y, lo, hi = QUANTITIES[quantity]
     x = EXPLAINING[explaining]
 
-    def figure(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+    def figure(frame: pl.DataFrame, say: Say) -> Drawing:
         x_title, y_title = say(TITLES[x]), say(TITLES[y])
         tow = alt.Chart().transform_filter(
             f"datum.kind == 'tow' && isValid(datum.{x}) && isValid(datum.{y})"
@@ -124,7 +125,7 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], alt
     return figure
 
 
-def b_and_hull_speed(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+def b_and_hull_speed(frame: pl.DataFrame, say: Say) -> Drawing:
     """B of every tow against length, with the line on which B is hull speed."""
     tow = alt.Chart().transform_filter("datum.kind == 'tow'")
     x = number(alt.X, "waterline_length_m", say("waterline_length"))
@@ -152,7 +153,7 @@ def b_and_hull_speed(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
     )
 
 
-def towed_at(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+def towed_at(frame: pl.DataFrame, say: Say) -> Drawing:
     """Tow speed as part of hull speed, of every tow; grey is the 60-70 % of the presentation."""
     low, high = ROWED_RATIO
     zone = (
@@ -179,7 +180,7 @@ def towed_at(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
     return alt.layer(zone, points).properties(width=620, height=alt.Step(34))
 
 
-def raced_beyond(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+def raced_beyond(frame: pl.DataFrame, say: Say) -> Drawing:
     """Power by a tow's own curve / by its type's bend, at the fastest speed that it raced."""
     base = alt.Chart().transform_filter("isValid(datum.power_ratio_raced)")
     y = alt.Y("label:N", title=say("tow"))
@@ -207,7 +208,7 @@ def raced_beyond(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
     )
 
 
-def boat_years(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+def boat_years(frame: pl.DataFrame, say: Say) -> Drawing:
     """Curves of all seasons of a boat on one pair of axes, before and after.
 
     `frame` holds `curve_points` with `season, crew, name` and `standard_speed_m_s`, the common

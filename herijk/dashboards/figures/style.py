@@ -19,6 +19,9 @@ GREY: Final = "#666666"
 WIDTH: Final = 620
 HEIGHT: Final = 320
 
+Drawing = alt.Chart | alt.LayerChart | alt.FacetChart
+"""What a figure returns; Altair itself does not say which of them."""
+
 OUT: Final = OKABE_ITO[0]
 BACK: Final = OKABE_ITO[1]
 
@@ -76,7 +79,7 @@ def type_legend(say: Say, **more: Any) -> alt.Legend:
 def tips(*pairs: tuple[str, str]) -> list[alt.Tooltip]:
     """Tooltips of `field:type` with their titles; numbers with five digits."""
     return [
-        alt.Tooltip(field, title=title, **({"format": ".5~g"} if field.endswith(":Q") else {}))
+        alt.Tooltip(field, title=title, format=".5~g" if field.endswith(":Q") else alt.Undefined)
         for field, title in pairs
     ]
 
@@ -119,10 +122,10 @@ def by_method(
     return [bar, point]
 
 
-def interval_kind() -> dict[str, Any]:
+def interval_kind() -> Any:
     """Full or dashed as `interval_dash`, for rows that have their `method` alone."""
-    held = json.dumps([n for n in shipped_methods() if shipped_method(n).interval == RUNS_ALONE])
-    runs_alone = alt.when(f"indexof({held}, datum.method) >= 0")
+    names = json.dumps([n for n in shipped_methods() if shipped_method(n).interval == RUNS_ALONE])
+    runs_alone = alt.when(f"indexof({names}, datum.method) >= 0")
     return runs_alone.then(alt.value([3, 2])).otherwise(alt.value([1, 0]))
 
 

@@ -12,6 +12,7 @@ import polars as pl
 
 from herijk.dashboards.figures.style import (
     OKABE_ITO,
+    Drawing,
     colour,
     methods_named,
     number,
@@ -47,7 +48,7 @@ def _points(frame: pl.DataFrame, say: Say, axes: Axes, more: dict[str, Any]) -> 
     )
 
 
-def _scatter(frame: pl.DataFrame, say: Say, axes: Axes) -> alt.FacetChart:
+def _scatter(frame: pl.DataFrame, say: Say, axes: Axes) -> Drawing:
     """All types; methods side by side on the same axes, so that they can be compared."""
     brush = alt.selection_interval(name="brush")
     chosen = alt.param(name="chosen", value="")
@@ -64,7 +65,7 @@ def _scatter(frame: pl.DataFrame, say: Say, axes: Axes) -> alt.FacetChart:
     )
 
 
-def _pair(frame: pl.DataFrame, say: Say, axes: Axes) -> alt.FacetChart:
+def _pair(frame: pl.DataFrame, say: Say, axes: Axes) -> Drawing:
     """Two types side by side and methods one above the other, all on the same axes."""
     points = _points(frame, say, axes, {"color": alt.value(OKABE_ITO[0])})
     return points.properties(width=220, height=220).facet(
@@ -77,7 +78,7 @@ def _methods(say: Say) -> alt.Header:
     return alt.Header(labelExpr=methods_named(say))
 
 
-def _one_type(frame: pl.DataFrame, say: Say, axes: Axes, ends: tuple[str, str]) -> alt.LayerChart:
+def _one_type(frame: pl.DataFrame, say: Say, axes: Axes, ends: tuple[str, str]) -> Drawing:
     """The boats of a type with their intervals, the fitted line, men and women apart."""
     (x, x_title), (y, y_title) = axes
     base = alt.Chart(frame)
@@ -106,12 +107,12 @@ def _one_type(frame: pl.DataFrame, say: Say, axes: Axes, ends: tuple[str, str]) 
     return alt.layer(*layers).properties(width=420, height=300)
 
 
-def type_cw_against_weight(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+def type_cw_against_weight(frame: pl.DataFrame, say: Say) -> Drawing:
     """Cw at the standard speed against weight, of one type."""
     return _one_type(frame, say, (_weight(say), _cw_standard(say)), ("", ""))
 
 
-def type_cw_declared_against_speed(frame: pl.DataFrame, say: Say) -> alt.LayerChart:
+def type_cw_declared_against_speed(frame: pl.DataFrame, say: Say) -> Drawing:
     """Cw at the declared speed against that speed with its interval, of one type."""
     return _one_type(frame, say, (_speed(say), _cw(say)), ("cw_lo_kg_m", "cw_hi_kg_m"))
 
@@ -136,27 +137,27 @@ def _cw_standard(say: Say) -> tuple[str, str]:
     return "cw_standard_kg_m", say("cw_standard")
 
 
-def b_against_weight(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+def b_against_weight(frame: pl.DataFrame, say: Say) -> Drawing:
     """B against weight; `frame` is `Views.type_boats` with `page`."""
     return _scatter(frame, say, (_weight(say), _b(say)))
 
 
-def b_against_speed(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+def b_against_speed(frame: pl.DataFrame, say: Say) -> Drawing:
     """B against tow speed."""
     return _scatter(frame, say, (_speed(say), _b(say)))
 
 
-def a_against_weight(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+def a_against_weight(frame: pl.DataFrame, say: Say) -> Drawing:
     """A against weight."""
     return _scatter(frame, say, (_weight(say), ("a_kg_m", say("a"))))
 
 
-def cw_standard_against_weight(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+def cw_standard_against_weight(frame: pl.DataFrame, say: Say) -> Drawing:
     """Cw at the type's standard speed against weight."""
     return _scatter(frame, say, (_weight(say), _cw_standard(say)))
 
 
-def cw_standard_against_speed(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+def cw_standard_against_speed(frame: pl.DataFrame, say: Say) -> Drawing:
     """Cw at the type's standard speed against tow speed."""
     return _scatter(frame, say, (_speed(say), _cw_standard(say)))
 
@@ -179,31 +180,31 @@ def shared_bend(frame: pl.DataFrame, say: Say) -> alt.Chart:
     )
 
 
-def cw_against_weight(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+def cw_against_weight(frame: pl.DataFrame, say: Say) -> Drawing:
     """Cw at the declared speed against weight."""
     return _scatter(frame, say, (_weight(say), _cw(say)))
 
 
-def cw_against_speed(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+def cw_against_speed(frame: pl.DataFrame, say: Say) -> Drawing:
     """Cw at the declared speed against that speed."""
     return _scatter(frame, say, (_speed(say), _cw(say)))
 
 
-def pair_b_against_weight(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+def pair_b_against_weight(frame: pl.DataFrame, say: Say) -> Drawing:
     """B against weight, two types side by side; `frame` holds boats of two types."""
     return _pair(frame, say, (_weight(say), _b(say)))
 
 
-def pair_b_against_speed(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+def pair_b_against_speed(frame: pl.DataFrame, say: Say) -> Drawing:
     """B against tow speed, two types side by side."""
     return _pair(frame, say, (_speed(say), _b(say)))
 
 
-def pair_cw_against_weight(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+def pair_cw_against_weight(frame: pl.DataFrame, say: Say) -> Drawing:
     """Cw at the declared speed against weight, two types side by side."""
     return _pair(frame, say, (_weight(say), _cw(say)))
 
 
-def pair_cw_against_speed(frame: pl.DataFrame, say: Say) -> alt.FacetChart:
+def pair_cw_against_speed(frame: pl.DataFrame, say: Say) -> Drawing:
     """Cw at the declared speed against that speed, two types side by side."""
     return _pair(frame, say, (_speed(say), _cw(say)))

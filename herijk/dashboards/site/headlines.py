@@ -51,7 +51,7 @@ def _largest(causes: str) -> str | None:
 
 def due(lines: pl.DataFrame) -> Headline:
     """How many have to tow within a year."""
-    as_of = lines["as_of"].max()
+    as_of = lines.select(pl.col("as_of").max()).item()
     soon = lines.filter(pl.col("valid_until").is_between(as_of, as_of + MONTHS_AHEAD)).height
     over = lines.filter(pl.col("valid_until") < as_of).height
     return lambda speech: speech.say("head_due").format(soon=soon, over=over, day=as_of)
@@ -59,7 +59,8 @@ def due(lines: pl.DataFrame) -> Headline:
 
 def retow(choice: pl.DataFrame) -> Headline:
     """Whether the most informative tows are worth it."""
-    before, after = choice["factor_sd_before_ratio"].max(), choice["factor_sd_after_ratio"].min()
+    ends = pl.col("factor_sd_before_ratio").max(), pl.col("factor_sd_after_ratio").min()
+    before, after = choice.select(ends).row(0)
 
     def sentence(speech: Speech) -> str:
         key = "head_retow" if after < WORTH * before else "head_retow_not"

@@ -1,6 +1,6 @@
 """Which page shows what. A section is there only if its table is, and holds rows."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import polars as pl
 
@@ -174,8 +174,8 @@ def _corrections(views: Views, methods: list[str]) -> Page:
         sections += [_ladder(data["ladder"]), _season_change(data["season_change"])]
     if views.has("option_effects"):
         data["options"] = views.table("option_summary")
-        columns = ["option", "tows", "median_ratio", "lo_ratio", "hi_ratio"]
-        table = Table("option_summary", data["options"], columns, "options")
+        shown = ["option", "tows", "median_ratio", "lo_ratio", "hi_ratio"]
+        table = Table("option_summary", data["options"], shown, "options")
         chart = Chart("options", "options", "options")
         sections.append(Section("options", "options_note", [chart], [table]))
     return Page(
@@ -203,7 +203,7 @@ def _season_change(frame: pl.DataFrame) -> Section:
 
 
 def _reproducibility(views: Views, methods: list[str]) -> Page:
-    parts = {
+    parts: dict[str, tuple[str, str, Callable[[], pl.DataFrame], str]] = {
         "reproducibility": (
             "repro",
             "repro_note",

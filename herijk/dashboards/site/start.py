@@ -74,12 +74,13 @@ def methods_table(views: Views) -> Table:
 def _figures(views: Views) -> list[tuple[str, str | Headline]]:
     """Which edition counts, and how much there is."""
     editions = views.table("editions").sort("valid_from")
-    tows, seasons = views.table("tows"), views.table("seasons")["season"]
+    tows, season = views.table("tows"), pl.col("season")
+    first, last = views.table("seasons").select(first=season.min(), last=season.max()).row(0)
     return [
         ("edition_in_force", _in_force(editions)),
         ("as_of", str(views.table("due_list")["as_of"].max())),
         ("boats_number", str(views.table("boats").height)),
-        ("tows_number", f"{tows.height} ({seasons.min()}\u2013{seasons.max()})"),
+        ("tows_number", f"{tows.height} ({first}\u2013{last})"),
     ]
 
 

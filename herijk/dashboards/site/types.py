@@ -131,12 +131,14 @@ def _type_tables(views: Views) -> list[Section]:
     found = []
     outliers = views.outliers() if views.has("type_outliers") else pl.DataFrame()
     if outliers.height:
-        columns = (
+        shown_columns = (
             *("name", "fsn_no", "boat_type", "rowers", "crew_class", "season", "quantity", "value"),
             *("expected", "deviation_sd", "candidates"),
         )
         shown = outliers.with_columns(after="method")
-        table = Table("type_outliers", shown, columns, "types_outliers", ["after", "boat_type"])
+        table = Table(
+            "type_outliers", shown, shown_columns, "types_outliers", ["after", "boat_type"]
+        )
         found.append(Section("types_outliers", "types_outliers_note", tables=[table]))
     wanted = {
         "type_consistency": (

@@ -6,7 +6,6 @@ appears by itself: as a choice, a number between bounds, or a list of codes. An 
 kind is shown and cannot be changed here. Texts are in `dashboards.workbench.texts`.
 """
 
-from collections.abc import Iterator
 from math import floor, log10
 from typing import Any, Final
 
@@ -40,12 +39,6 @@ def controls() -> list[Control]:
         ]
         found.append({"step": step, "meaning": rules["description"], "options": options})
     return found
-
-
-def option_names() -> Iterator[tuple[str, str]]:
-    """Every step and option."""
-    for step in controls():
-        yield from ((step["step"], control["option"]) for control in step["options"])
 
 
 def _kind(rule: Schema) -> Control:

@@ -29,7 +29,7 @@ from herijk.dashboards.site.render import chart_specifications, vega_bundle
 from herijk.dashboards.words import LANGUAGES, both
 from herijk.dashboards.workbench.bench import Base, Bench, Named, Question
 from herijk.dashboards.workbench.texts import TEXTS
-from herijk.pipeline.errors import HerijkError, MissingKnowledgeError
+from herijk.pipeline.errors import HerijkError
 
 LOOPBACK: Final = "127.0.0.1"
 HOSTS: Final = (LOOPBACK, "localhost")
@@ -148,32 +148,12 @@ def _text(key: str) -> Markup:
     return in_both(both(key, TEXTS))
 
 
-def listen(port: int) -> socket.socket:
-    """A socket on loopback; port 0 takes any that is free.
-
-    Raises:
-        MissingKnowledgeError: another program has that port.
-    """
-    held = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
-    held.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-    try:
-        held.bind((LOOPBACK, port))
-        held.listen()
-    except OSError as error:
-        held.close()
-        raise MissingKnowledgeError(
-            f"port {port} cannot be used ({error.strerror}); choose another with --port, or 0 for "
-            "any that is free"
-        ) from error
-    return held
-
-
 def address(held: socket.socket) -> str:
     """Where a browser finds the workbench."""
     return f"http://{LOOPBACK}:{held.getsockname()[1]}/"
 
 
 def serving(bench: Bench) -> uvicorn.Server:
-    """The server, to be run on a socket of `listen`."""
+    """The server, to be run on a socket of `guard.listen`."""
     config = uvicorn.Config(application(bench), ws="none", log_level="warning", access_log=False)
     return uvicorn.Server(config)

@@ -21,7 +21,7 @@ from herijk.pipeline.consistency.lines import (
 )
 from herijk.pipeline.consistency.observed import (
     NORMAL_95,
-    TOW_SCHEMA,
+    TOW,
     UNKNOWN_TYPE,
     Observed,
     counts_at,
@@ -31,6 +31,8 @@ from herijk.pipeline.consistency.observed import (
 )
 from herijk.pipeline.consistency.tow_speed import is_slow, speed_case
 from herijk.pipeline.steps.hull import hull_speed_m_s
+from herijk.tables.consistency import ComparedTows, HullSpeed
+from herijk.tables.frames import frame_of
 
 ROWED_RATIO: Final = (0.60, 0.70)
 """Presentation 2015: "We roeien op ca. 60-70% van de rompsnelheid"."""
@@ -57,9 +59,11 @@ def compared_tows(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
         "outside",
         "candidates",
     )
-    found = pl.concat([_empty(), *parts])
+    others = ("newest", "expected_cw_kg_m", "deviation_sd", "outside", "candidates")
+    empty = ComparedTows.create_empty().drop(others)
     return (
-        found.join(last, on=["method", "tow_id"], how="left")
+        pl.concat([empty, *parts], how="diagonal")
+        .join(last, on=["method", "tow_id"], how="left")
         .join(outliers, on=["method", "tow_id"], how="left")
         .with_columns(pl.col("newest").fill_null(value=False))
         .sort("method", "tow_id")
@@ -70,20 +74,6 @@ _FROM_CURVES: Final = (
     *("declared_speed_m_s", "weight_kg", "displacement_kg", "waterline_length_m"),
     *("a_kg_m", "b_m_s", "b_lo_m_s", "b_hi_m_s", "power_w"),
 )
-_NUMBERS: Final = (
-    *("a_lo_kg_m", "a_hi_kg_m", "hull_speed_m_s", "tow_hull_ratio", "b_hull_ratio"),
-    *("standard_speed_m_s", "cw_standard_kg_m", "cw_standard_lo_kg_m", "cw_standard_hi_kg_m"),
-)
-
-
-def _empty() -> pl.DataFrame:
-    schema = (
-        TOW_SCHEMA
-        | {"season": pl.Int32()}
-        | dict.fromkeys((*_FROM_CURVES, *_NUMBERS), pl.Float64())
-        | {"speed_case": pl.String(), "beyond_curve": pl.Boolean(), "slow": pl.Boolean()}
-    )
-    return pl.DataFrame(schema=schema)
 
 
 def _of_type(tows: Observed) -> pl.DataFrame:
@@ -106,7 +96,7 @@ def _of_type(tows: Observed) -> pl.DataFrame:
         "cw_standard_hi_kg_m": cw * np.exp(half),
     }
     return tows.table.select(
-        *TOW_SCHEMA,
+        *TOW,
         "season",
         *(pl.col(name).cast(pl.Float64) for name in _FROM_CURVES),
     ).with_columns(
@@ -152,18 +142,7 @@ def hull_speed_statistics(compared: pl.DataFrame) -> pl.DataFrame:
             {"method": m, "tows": choice.tows, "boat_type": t} | _hull_row(group, t)
             for (m, t), group in groups
         ]
-    numbers = (
-        *("tow_ratio", "tow_ratio_lo", "tow_ratio_hi", "tow_share_60_70"),
-        *("b_ratio", "b_ratio_lo", "b_ratio_hi", "b_share_within_5pct"),
-        *("length_slope", "length_slope_lo", "length_slope_hi", "length_r2"),
-    )
-    schema = (
-        dict.fromkeys(("method", "tows", "boat_type"), pl.String())
-        | dict.fromkeys(("n", "n_boats", "n_with_b"), pl.Int32())
-        | dict.fromkeys(numbers, pl.Float64())
-        | {"b_is_hull_speed": pl.Boolean()}
-    )
-    return pl.DataFrame(rows, schema=schema).sort("method", "tows", "boat_type")
+    return frame_of(HullSpeed, rows).sort("method", "tows", "boat_type")
 
 
 def _hull_row(tows: pl.DataFrame, boat_type: str) -> dict[str, object]:

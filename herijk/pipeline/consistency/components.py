@@ -19,6 +19,8 @@ from herijk.pipeline.consistency.observed import (
     ln_cw_unit_variance,
 )
 from herijk.pipeline.consistency.reml import Problem
+from herijk.tables.consistency import VarianceComponents
+from herijk.tables.frames import frame_of
 
 FLEET, WITHIN_TYPE = "fleet", "within_type"
 SCOPES: Final = (FLEET, WITHIN_TYPE)
@@ -48,11 +50,7 @@ def variance_components(observed: Observed) -> pl.DataFrame:
         for scope in SCOPES
         for row in _components(tows, scope)
     ]
-    text = ("method", "scope", "component", "reason")
-    counts = ("n", "n_boats", "n_seasons", "n_repeated")
-    numbers = ("sd_ratio", "lo", "hi", "share", "distinct_categories")
-    schema = dict.fromkeys(text, pl.String()) | dict.fromkeys(counts, pl.Int32())
-    return pl.DataFrame(rows, schema=schema | dict.fromkeys(numbers, pl.Float64()))
+    return frame_of(VarianceComponents, rows)
 
 
 def _components(tows: Observed, scope: str) -> list[dict[str, Any]]:

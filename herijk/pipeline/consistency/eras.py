@@ -14,6 +14,8 @@ import polars as pl
 
 from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
+from herijk.tables.consistency import EraShifts
+from herijk.tables.frames import frame_of
 
 ALL_TYPES: Final = "all"
 
@@ -75,16 +77,7 @@ def era_shifts(
             for boat_type, group in groups.items()
             for era in eras[:-1]
         ]
-    text = dict.fromkeys(("method", "boat_type", "era"), pl.String())
-    ageing_numbers = ("ageing_per_year", "ageing_lo", "ageing_hi")
-    numbers = ("shift_ratio", "lo", "hi", *ageing_numbers)
-    schema = (
-        text
-        | {"n": pl.Int32(), "n_ageing": pl.Int32(), "apart": pl.Boolean()}
-        | dict.fromkeys(numbers, pl.Float64())
-        | {"reason": pl.String()}
-    )
-    return pl.DataFrame(rows, schema=schema)
+    return frame_of(EraShifts, rows)
 
 
 @dataclass(frozen=True)

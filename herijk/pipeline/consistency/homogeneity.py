@@ -17,13 +17,14 @@ from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.consistency import mixed
 from herijk.pipeline.consistency.observed import (
     LINE,
-    TOW_SCHEMA,
     UNKNOWN_TYPE,
     Observed,
     newest,
     q_at,
 )
 from herijk.pipeline.consistency.reml import Problem
+from herijk.tables.consistency import PooledCurves, TypeHomogeneity
+from herijk.tables.frames import frame_of
 
 LEVEL: Final = 0.05
 FEWEST_BOATS: Final = 3
@@ -140,30 +141,7 @@ def type_homogeneity(observed: Observed) -> pl.DataFrame:
         {"method": method, "boat_type": boat_type} | _tested(boats, boat_type)
         for (method, boat_type), boats in newest(observed).groups("method", "boat_type")
     ]
-    numbers = (
-        "standard_speed_m_s",
-        "run_sd_ratio",
-        "f_value",
-        "p_value",
-        "power_at_5pct",
-        "power_at_10pct",
-        "noise_share",
-        "between_b_sd_ratio",
-        "b_sd_ratio",
-        "b_noise_sd_ratio",
-        "cw_noise_sd_ratio",
-        "ab_correlation",
-        "ab_noise_correlation",
-        "shared_q",
-        "shared_b_m_s",
-    )
-    schema = (
-        {"method": pl.String(), "boat_type": pl.String()}
-        | dict.fromkeys(("n", "n_boats", "dof_between", "dof_within"), pl.Int32())
-        | dict.fromkeys(numbers, pl.Float64())
-        | {"reason": pl.String()}
-    )
-    return pl.DataFrame(rows, schema=schema)
+    return frame_of(TypeHomogeneity, rows)
 
 
 def _tested(boats: Observed, boat_type: str) -> dict[str, Any]:
@@ -287,12 +265,7 @@ def pooled_curves(observed: Observed) -> pl.DataFrame:
         for (_, boat_type), boats in newest(observed).groups("method", "boat_type")
         for frame in _poolings(boats, boat_type)
     ]
-    schema = TOW_SCHEMA | {
-        "pooling": pl.String(),
-        "standard_speed_m_s": pl.Float64(),
-    }
-    numbers = ("q", "a_kg_m", "b_m_s", *SPEED_RATIOS)
-    return pl.concat([pl.DataFrame(schema=schema | dict.fromkeys(numbers, pl.Float64())), *parts])
+    return pl.concat([PooledCurves.create_empty(), *parts])
 
 
 def _poolings(boats: Observed, boat_type: str) -> list[pl.DataFrame]:

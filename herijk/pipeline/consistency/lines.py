@@ -20,7 +20,6 @@ from herijk.pipeline.consistency import mixed
 from herijk.pipeline.consistency.eras import Era
 from herijk.pipeline.consistency.observed import (
     LINE,
-    TOW_SCHEMA,
     UNKNOWN_TYPE,
     Observed,
     bend_at,
@@ -31,6 +30,8 @@ from herijk.pipeline.consistency.observed import (
 )
 from herijk.pipeline.consistency.reml import Problem
 from herijk.pipeline.consistency.tow_speed import is_slow
+from herijk.tables.consistency import TypeLinePoints, TypeLines, TypeOutliers
+from herijk.tables.frames import frame_of
 
 LN_CW, BEND = "ln_cw_standard", "bend"
 """What tells an outlier: height and bend (v/B)^2 of the curve, both at the standard speed. Of the
@@ -173,29 +174,7 @@ def _lines(tows: Observed, choice: Choice) -> tuple[pl.DataFrame, pl.DataFrame]:
             row, drawn = _line(boats, choice, (quantity, explaining), measured)
             rows.append(row)
             points += drawn if (quantity, explaining) in SLIDE_PAIRS else []
-    return pl.DataFrame(rows, schema=_LINE_SCHEMA), pl.DataFrame(points, schema=_POINT_SCHEMA)
-
-
-_LINE_SCHEMA: Final = (
-    dict.fromkeys(("method", "tows", "boat_type", "quantity", "explaining", "reason"), pl.String())
-    | {"n": pl.Int32(), "n_boats": pl.Int32()}
-    | dict.fromkeys(
-        (
-            "standard_speed_m_s",
-            "slope",
-            "slope_lo",
-            "slope_hi",
-            "r2",
-            "residual_sd_ratio",
-            "between_sd_ratio",
-            "noise_sd_ratio",
-        ),
-        pl.Float64(),
-    )
-)
-_POINT_SCHEMA: Final = dict.fromkeys(
-    ("method", "tows", "boat_type", "quantity", "explaining", "crew_class"), pl.String()
-) | dict.fromkeys(("x", "y", "lo", "hi"), pl.Float64())
+    return frame_of(TypeLines, rows), frame_of(TypeLinePoints, points)
 
 
 def _pairs(boats: Observed, choice: Choice) -> Iterator[tuple[str, str, Measured]]:
@@ -364,17 +343,8 @@ def _outliers(
         if boat_type != UNKNOWN_TYPE
         for quantity in names
     ]
-    schema = TOW_SCHEMA | {
-        "season": pl.Int32(),
-        "quantity": pl.String(),
-        "standard_speed_m_s": pl.Float64(),
-        "value": pl.Float64(),
-        "expected": pl.Float64(),
-        "deviation_sd": pl.Float64(),
-        "outside": pl.Boolean(),
-        "candidates": pl.List(pl.String()),
-    }
-    everything = pl.concat([pl.DataFrame(schema=schema), *(p for p in parts if p is not None)])
+    known = (part for part in parts if part is not None)
+    everything = pl.concat([TypeOutliers.create_empty(), *known])
     return _with_season(everything)
 
 

@@ -24,15 +24,7 @@ VALID_RATIO: Final = (0.85, 1.15)
 FEWEST_POINTS: Final = 3
 NORMAL_95: Final = 1.959963984540054
 
-
-TOW_SCHEMA: Final = {
-    "method": pl.String(),
-    "tow_id": pl.String(),
-    "fsn_no": pl.String(),
-    "rowers": pl.Int32(),
-    "crew_class": pl.String(),
-    "boat_type": pl.String(),
-}
+TOW: Final = ("method", "tow_id", *LINE, "boat_type")
 """What names a tow, and with it a boat and crew, in the tables of this package."""
 
 

@@ -4,7 +4,7 @@ ln Cw of boats at a standard speed against ln displacement, length, beam and tha
 random effect of the type; every boat is predicted from the other boats alone.
 """
 
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import polars as pl
@@ -15,7 +15,6 @@ from herijk.pipeline.consistency import mixed
 from herijk.pipeline.consistency.observed import (
     LINE,
     NORMAL_95,
-    TOW_SCHEMA,
     UNKNOWN_TYPE,
     Observed,
     curve_at,
@@ -23,6 +22,8 @@ from herijk.pipeline.consistency.observed import (
     newest,
 )
 from herijk.pipeline.consistency.reml import Problem
+from herijk.tables.consistency import PredictedCw, PredictionError
+from herijk.tables.frames import frame_of
 
 LEVEL: Final = 0.95
 FEWEST_BOATS_PER_COLUMN: Final = 3
@@ -46,19 +47,7 @@ def predicted_cw(observed: Observed) -> pl.DataFrame:
     speed = pl.col("declared_speed_m_s").median().over("method", "boat_type", "crew_class")
     boats = Observed(boats.table.with_columns(speed.alias("standard_speed_m_s")), boats.points)
     parts = [_predicted(fleet) for _, fleet in boats.groups("method")]
-    schema = TOW_SCHEMA | {
-        "standard_speed_m_s": pl.Float64(),
-        "cw_kg_m": pl.Float64(),
-        "cw_sd_ratio": pl.Float64(),
-        "predicted_cw_kg_m": pl.Float64(),
-        "predicted_lo_kg_m": pl.Float64(),
-        "predicted_hi_kg_m": pl.Float64(),
-        "predicted_sd_ratio": pl.Float64(),
-        "ln_ratio": pl.Float64(),
-        "disagrees": pl.Boolean(),
-        "reason": pl.String(),
-    }
-    return pl.concat([pl.DataFrame(schema=schema), *parts])
+    return pl.concat([PredictedCw.create_empty(), *parts])
 
 
 def _predicted(fleet: Observed) -> pl.DataFrame:
@@ -143,7 +132,7 @@ def prediction_error(predicted: pl.DataFrame) -> pl.DataFrame:
         Rows of the table `prediction_error`.
     """
     known = predicted.drop_nulls("ln_ratio")
-    rows: list[dict[str, Any]] = [
+    rows = [
         {
             "method": method,
             "n": group.height,
@@ -154,7 +143,4 @@ def prediction_error(predicted: pl.DataFrame) -> pl.DataFrame:
         }
         for (method,), group in known.sort("method").group_by("method", maintain_order=True)
     ]
-    counts = {"n": pl.Int32(), "n_boats": pl.Int32()}
-    numbers = ("rmse_ratio", "tow_sd_ratio", "share_disagreeing")
-    schema = {"method": pl.String()} | counts | dict.fromkeys(numbers, pl.Float64())
-    return pl.DataFrame(rows, schema=schema)
+    return frame_of(PredictionError, rows)

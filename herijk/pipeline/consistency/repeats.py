@@ -14,6 +14,8 @@ from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.consistency.components import DISTINCT, WITHIN_TYPE
 from herijk.pipeline.consistency.eras import ERAS, Era
 from herijk.pipeline.consistency.observed import LINE, Observed, bend_of_curve
+from herijk.tables.consistency import Reproducibility
+from herijk.tables.frames import frame_of
 
 LEVEL: Final = 0.95
 ALL_PAIRS: Final = "all"
@@ -95,19 +97,7 @@ def reproducibility(
             | _scatter(runs.filter(pl.col("season").is_between(first, last)))
             for name, first, last in scopes
         ]
-    numbers = (
-        "sd_ratio",
-        "lo",
-        "hi",
-        "share_within_1pct",
-        "share_within_2pct",
-        "share_e_n_above_1",
-        "run_sd_ratio",
-        "within_sd_ratio",
-    )
-    counts = {"n_pairs": pl.Int32(), "n_tows": pl.Int32()}
-    schema = {"method": pl.String(), "scope": pl.String()} | counts
-    return pl.DataFrame(rows, schema=schema | dict.fromkeys(numbers, pl.Float64()))
+    return frame_of(Reproducibility, rows).drop("distinct_categories")
 
 
 def told_apart(reproducibility: pl.DataFrame, components: pl.DataFrame) -> pl.DataFrame:

@@ -15,7 +15,6 @@ from herijk.pipeline.consistency import mixed
 from herijk.pipeline.consistency.homogeneity import height_given_bend, shared_bend
 from herijk.pipeline.consistency.observed import (
     LINE,
-    TOW_SCHEMA,
     UNKNOWN_TYPE,
     VALID_RATIO,
     Observed,
@@ -27,6 +26,8 @@ from herijk.pipeline.consistency.observed import (
 from herijk.pipeline.consistency.reml import Problem
 from herijk.pipeline.races.race import mean_speed_m_s, power_per_rower_w
 from herijk.pipeline.steps.hull import hull_speed_m_s
+from herijk.tables.consistency import SlowTows, SpeedTrend
+from herijk.tables.frames import frame_of
 
 SLOW_POWER_W: Final = {"H": 60.0, "D": 34.0}
 """Power a rower below which a tow is too slow. Men: "minder dan 60-70 Watt" (Cw-kromme, R. Pot
@@ -86,14 +87,7 @@ def speed_trend(observed: Observed) -> pl.DataFrame:
             {"method": method, "boat_type": name} | _trend(some)
             for name, some in [*named, (ALL_TYPES, parts)]
         ]
-    numbers = ("slope", "slope_lo", "slope_hi")
-    schema = (
-        {"method": pl.String(), "boat_type": pl.String()}
-        | {"n": pl.Int32(), "n_boats": pl.Int32()}
-        | dict.fromkeys(numbers, pl.Float64())
-        | {"reason": pl.String()}
-    )
-    return pl.DataFrame(rows, schema=schema)
+    return frame_of(SpeedTrend, rows)
 
 
 def _trend(parts: list[Observed]) -> dict[str, Any]:
@@ -174,22 +168,7 @@ def slow_tows(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
         _slow_of_type(group, boat_type)
         for (_, boat_type), group in tows.groups("method", "boat_type")
     ]
-    schema = TOW_SCHEMA | {
-        "season": pl.Int32(),
-        "declared_speed_m_s": pl.Float64(),
-        "power_w": pl.Float64(),
-        "races": pl.Int32(),
-        "raced_speed_m_s": pl.Float64(),
-        "slow": pl.Boolean(),
-        "tow_hull_ratio": pl.Float64(),
-        "speed_case": pl.String(),
-        "rowed_speed_m_s": pl.Float64(),
-        "raced_power_w": pl.Float64(),
-        "raced_high": pl.Boolean(),
-        "text_says": pl.String(),
-    }
-    ratios = (f"power_ratio_{at}{end}" for at in COMPARED_AT for end in ENDS)
-    empty = pl.DataFrame(schema=schema | dict.fromkeys(ratios, pl.Float64()))
+    empty = SlowTows.create_empty()
     return pl.concat([empty, *(part.select(empty.columns) for part in parts)]).sort(
         "method", "tow_id"
     )

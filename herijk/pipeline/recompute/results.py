@@ -35,6 +35,8 @@ from herijk.pipeline.season_log.diagnosis import DIAGNOSIS_SCHEMA, STEP_SCHEMA
 from herijk.pipeline.season_log.ties import TIE_SCHEMA
 from herijk.pipeline.steps.speed import log_factor
 from herijk.pipeline.steps.wind import mean_wind_angle_deg
+from herijk.tables.frames import dtypes
+from herijk.tables.season_log import BestEstimateWeights, LogFactors, SeasonLinks, TowInstruments
 
 LEVEL = 0.95
 
@@ -201,8 +203,8 @@ def _log_factors(o: Outcome, found: SeasonFactors | None) -> pl.DataFrame:
         rows = [_mean_factor(o, season) for season in seasons]
     else:
         rows = [_factor_row(o, season, found) for season in seasons]
-    schema = {"season": pl.Int32(), "factor": pl.Float64(), "lo": pl.Float64(), "hi": pl.Float64()}
-    return pl.DataFrame(rows, schema=schema | {"source": pl.String()}, orient="row")
+    schema = dtypes(LogFactors, without=["method"])
+    return pl.DataFrame(rows, schema=schema, orient="row")
 
 
 FactorRow = tuple[int, float, float | None, float | None, str]
@@ -268,10 +270,8 @@ def _weights(found: SeasonFactors | None) -> pl.DataFrame:
     return pl.DataFrame(schema=WEIGHT_SCHEMA) if found is None else found.weights
 
 
-INSTRUMENT_SCHEMA = {"tow_id": pl.String(), "log": pl.String()} | dict.fromkeys(
-    ("factor", "force_factor", "force_zero_n", "bend", "ln_sd", "dof"), pl.Float64()
-)
-WEIGHT_SCHEMA = {"tow_id": pl.String(), "rests_on": pl.String(), "weight": pl.Float64()}
+INSTRUMENT_SCHEMA = dtypes(TowInstruments, without=["method"])
+WEIGHT_SCHEMA = dtypes(BestEstimateWeights, without=["method"])
 
 
 def _retow_choice(found: SeasonFactors | None) -> pl.DataFrame:
@@ -279,16 +279,7 @@ def _retow_choice(found: SeasonFactors | None) -> pl.DataFrame:
     return pl.DataFrame(schema=TIE_SCHEMA) if found is None else retow_choice(found)
 
 
-LINK_SCHEMA = (
-    {"season": pl.Int32(), "part": pl.Int32(), "log": pl.String(), "source": pl.String()}
-    | dict.fromkeys(("n_tows", "n_links", "component", "critical_boats"), pl.Int32())
-    | dict.fromkeys(("factor", "lo", "hi", "ln_sd", "dof", "influence"), pl.Float64())
-    | {"influence_boat": pl.String()}
-    | dict.fromkeys(
-        ("weakest_mode", "factor_no_boats", "lo_no_boats", "hi_no_boats", "agreement"),
-        pl.Float64(),
-    )
-)
+LINK_SCHEMA = dtypes(SeasonLinks, without=["method"])
 
 
 def _column(name: str, values: ArrayLike, known: BoolArray) -> pl.Series:

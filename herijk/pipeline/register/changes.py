@@ -18,6 +18,9 @@ from herijk.pipeline.curve import cw
 from herijk.pipeline.races.power import curve_of_lines, speed_at_power
 from herijk.pipeline.races.race import power_per_rower_w
 from herijk.pipeline.register.register import LINE
+from herijk.tables.frames import dtypes
+from herijk.tables.register import Register
+from herijk.tables.studies import CorrectionSteps
 
 SAME_RATIO: Final = 5e-4
 """A difference up to 0.05 % counts as the same (research, method.md T21)."""
@@ -32,12 +35,9 @@ RANKING_POWER_W: Final = {"H": 80.0, "D": 47.5}
 """Power a rower at which boats are ranked: the middle of 70-90 W and 40-55 W (Sleepproef 2017)."""
 
 PART_SCHEMA: Final = {
-    "fsn_no": pl.String(),
-    "rowers": pl.Int32(),
-    "crew_class": pl.String(),
+    **{name: dtypes(Register)[name] for name in LINE},
     "cause": pl.String(),
-    "step": pl.String(),
-    "factor": pl.Float64(),
+    **{name: dtypes(CorrectionSteps)[name] for name in ("step", "factor")},
 }
 NO_PARTS: Final = pl.DataFrame(schema=PART_SCHEMA)
 """Parts of changes whose cause is known: per line and cause a factor on Cw; `step` where the cause

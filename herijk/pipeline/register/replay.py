@@ -22,6 +22,8 @@ from herijk.pipeline.races.race import (
 )
 from herijk.pipeline.register.register import LINE
 from herijk.pipeline.uncertainty.ensemble import share_first
+from herijk.tables.frames import dtypes
+from herijk.tables.register import RaceChanges
 
 Fatigue = Literal["none", "known", "extend"]
 Stream = Literal["distance_first", "net_speed_over_legs"]
@@ -33,9 +35,7 @@ CLASSIFICATION: Final = (*RACE, "crew_class")
 PODIUM: Final = 3
 
 WINNER_SCHEMA: Final = {
-    "race": pl.String(),
-    "race_date": pl.Date(),
-    "crew_class": pl.String(),
+    **{name: dtypes(RaceChanges)[name] for name in CLASSIFICATION},
     "old_winner": pl.String(),
     "new_winner": pl.String(),
     "winner_changed": pl.Boolean(),

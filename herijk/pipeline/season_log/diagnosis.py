@@ -15,6 +15,8 @@ from herijk.pipeline.season_log.effects import CHANGE, FORCE, LOG, OF_BOATS, ZER
 from herijk.pipeline.season_log.likelihood import LEVEL as LEVEL_NUMBER
 from herijk.pipeline.season_log.network import GROUP, Network
 from herijk.pipeline.season_log.posterior import Posterior, Problem
+from herijk.tables.frames import dtypes
+from herijk.tables.season_log import SeasonDiagnosis, SeasonSteps
 
 LEVEL: Final = 0.95
 FOUND: Final = 0.5
@@ -29,28 +31,8 @@ NOT_DETERMINED: Final = "not determined"
 FORCES: Final = (FORCE, ZERO, ZERO_DRIFT)
 _VERDICT: Final = ("season", "part", "instrument", "verdict")
 
-STEP_SCHEMA: Final = (
-    {"season": pl.Int32(), "part": pl.Int32(), "log": pl.String(), "n_boats": pl.Int32()}
-    | dict.fromkeys(("level_step", "level_step_sd", "force_step", "force_step_sd"), pl.Float64())
-    | {"cause": pl.String()}
-)
-
-DIAGNOSIS_SCHEMA: Final = {
-    "season": pl.Int32(),
-    "part": pl.Int32(),
-    "instrument": pl.String(),
-    "unit": pl.String(),
-    "estimate": pl.Float64(),
-    "lo": pl.Float64(),
-    "hi": pl.Float64(),
-    "p_fault": pl.Float64(),
-    "distance_sd": pl.Float64(),
-    "verdict": pl.String(),
-    "alarm": pl.Boolean(),
-    "first_tow": pl.String(),
-    "rests_on": pl.String(),
-    "confused_with": pl.String(),
-}
+STEP_SCHEMA: Final = dtypes(SeasonSteps, without=["method"])
+DIAGNOSIS_SCHEMA: Final = dtypes(SeasonDiagnosis, without=["method"])
 
 
 def season_diagnosis(problem: Problem, posterior: Posterior, network: Network) -> pl.DataFrame:

@@ -16,21 +16,15 @@ from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.choice import first_largest
 from herijk.pipeline.season_log.estimate import SeasonFactors
 from herijk.pipeline.season_log.network import LINE, Network
+from herijk.tables.frames import dtypes
+from herijk.tables.season_log import RetowChoice
 
 UNKNOWN_SD: Final = 0.06
 """Of ln factor of a season that nothing ties to the anchor: the worst log was 6 % wrong."""
 
 MOST_BOATS: Final = 10
 
-TIE_SCHEMA: Final = {
-    "position": pl.Int32(),
-    "fsn_no": pl.String(),
-    "rowers": pl.Int32(),
-    "crew_class": pl.String(),
-    "seasons": pl.String(),
-    "factor_sd_before_ratio": pl.Float64(),
-    "factor_sd_after_ratio": pl.Float64(),
-}
+TIE_SCHEMA: Final = dtypes(RetowChoice, without=["method"])
 
 
 def retow_choice(found: SeasonFactors, most: int = MOST_BOATS) -> pl.DataFrame:

@@ -77,24 +77,6 @@ def friction_cw_kg_m(
     return 0.5 * water_density_kg_m3(temperature_c) * surface * coefficient
 
 
-def delft_wetted_surface_m2(
-    waterline_length_m: ArrayLike,
-    displacement_m3: ArrayLike,
-    beam_draught_ratio: ArrayLike,
-    midship_coefficient: ArrayLike,
-) -> FloatArray:
-    """Wetted surface [m2] of a canoe body: (1.97 + 0.171 B/T) (0.65/Cm)^(1/3) sqrt(V L).
-
-    Gerritsma, Onnink & Versluis 1981, as used with the Delft Systematic Yacht Hull Series.
-    """
-    length, volume, beam_draught, midship = (
-        np.asarray(x, dtype=np.float64)
-        for x in (waterline_length_m, displacement_m3, beam_draught_ratio, midship_coefficient)
-    )
-    form = (1.97 + 0.171 * beam_draught) * np.cbrt(0.65 / midship)
-    return form * np.sqrt(volume * length)
-
-
 def _liquid(temperature_c: ArrayLike) -> FloatArray:
     t = np.asarray(temperature_c, dtype=np.float64)
     lowest, highest = LIQUID_RANGE_C

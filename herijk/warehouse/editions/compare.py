@@ -18,6 +18,7 @@ from herijk.pipeline.method.definition import RUNS_ALONE
 from herijk.pipeline.register.changes import (
     NO_FACTOR,
     NO_PARTS,
+    PART_SCHEMA,
     register_changes,
     side_by_side,
     steps_of_lines,
@@ -25,6 +26,7 @@ from herijk.pipeline.register.changes import (
 from herijk.pipeline.register.register import LINE
 from herijk.pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
 from herijk.pipeline.studies.ladder import ladder
+from herijk.tables.studies import CorrectionSteps
 from herijk.warehouse.archive import read_races
 from herijk.warehouse.build.version import code_version
 from herijk.warehouse.editions.inputs import INPUTS_HASH, same_tows, tows_of_today, unchanged_tows
@@ -46,9 +48,7 @@ METHOD: Final = "method"
 UNSEPARATED: Final = "unseparated"
 UNEXPLAINED: Final = "unexplained"
 
-NO_LADDER: Final = pl.DataFrame(
-    schema={"tow_id": pl.String, "position": pl.Int8, "step": pl.String, "factor": pl.Float64}
-)
+NO_LADDER: Final = CorrectionSteps.create_empty().select("tow_id", "position", "step", "factor")
 
 
 @dataclass(frozen=True)
@@ -312,7 +312,7 @@ def _causes(lines: pl.DataFrame) -> list[Report]:
         for text in lines["causes"]
         for one in _moved(text)
     ]
-    schema = {"cause": pl.String, "step": pl.String, "factor": pl.Float64}
+    schema = {name: PART_SCHEMA[name] for name in ("cause", "step", "factor")}
     return (
         pl.DataFrame(found, schema=schema)
         .group_by("cause", "step")

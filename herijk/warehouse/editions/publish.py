@@ -20,6 +20,8 @@ from herijk.pipeline.method.definition import Method
 from herijk.pipeline.method.writing import method_text
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.pipeline.register.register import DOUBTED, LINE
+from herijk.tables.archive import Boats, Tows
+from herijk.tables.frames import dtypes
 from herijk.tables.register import Register
 from herijk.tables.schemas import conform
 from herijk.warehouse.build.graph import METHOD as METHOD_STEP
@@ -74,8 +76,8 @@ MADE: Final = ("curves", "run_points", "log_factors", "season_links", "tow_instr
 PRINTED_METHOD: Final = "as-printed"
 LINE_SCHEMA: Final = {
     **{n: column.dtype for n, column in Register.columns().items() if n != CODE_FIELD.column},
-    **dict.fromkeys(BOAT_FACTS, pl.String()),
-    **dict.fromkeys(TOW_FACTS[:-1], pl.Float64()),
+    **{name: dtypes(Boats)[name] for name in BOAT_FACTS},
+    **{name: dtypes(Tows)[name] for name in TOW_FACTS if name != INPUTS_HASH},
     INPUTS_HASH: pl.String(),
     "basis": pl.String(),
 }
