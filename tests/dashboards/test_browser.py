@@ -14,7 +14,8 @@ import pytest
 from axe_playwright_python.sync_playwright import Axe
 
 from herijk.dashboards.site.pages import MENU
-from herijk.dashboards.site.parts import boat_path, race_path, type_path
+from herijk.dashboards.site.parts import boat_path, edition_page, race_path, type_path
+from herijk.dashboards.site.prose import GUIDES
 from herijk.warehouse.queries.views import Views
 from tests.architecture.repository import ROOT
 from tests.dashboards.conftest import ATTACK, EDITIONS, FORMULA
@@ -120,7 +121,11 @@ def barriers(page):
         "document.querySelectorAll('tbody').forEach(body =>"
         " body.replaceChildren(...[...body.rows].slice(0, 3)))"
     )
-    found = Axe().run(page, options={"resultTypes": ["violations"]}).response["violations"]
+    found = (
+        Axe()
+        .run(page, options={"resultTypes": ["violations"], "preload": False})
+        .response["violations"]
+    )
     return [
         f"{rule['id']}: {rule['nodes'][0]['html']} {rule['nodes'][0]['failureSummary']}"
         for rule in found
@@ -144,6 +149,8 @@ def path_of(name, store, attacked):
     """The page of a kind of which there are many, or of the menu."""
     if name == "boat":
         return boat_path(attacked)
+    if name == "edition":
+        return edition_page(EDITIONS[-1])
     with Views(store) as views:
         if name == "type":
             return type_path(views.type_names()[0])
@@ -153,7 +160,7 @@ def path_of(name, store, attacked):
 
 
 @pytest.mark.parametrize("width", WIDTHS)
-@pytest.mark.parametrize("name", [*MENU, "boat", "type", "race"])
+@pytest.mark.parametrize("name", [*MENU, *GUIDES, "boat", "type", "race", "edition"])
 def test_every_page_opens_and_draws(visitor, store, attacked, name, width):
     columns, rows = WIDTHS[width]
     visitor.page.set_viewport_size({"width": columns, "height": rows})

@@ -4,6 +4,7 @@ import hashlib
 import html
 import json
 import re
+from itertools import accumulate
 
 import polars as pl
 import pytest
@@ -13,7 +14,14 @@ from herijk.dashboards.site import build_site
 from herijk.dashboards.site.cells import CODES, KEPT
 from herijk.dashboards.site.downloads import SHEETS
 from herijk.dashboards.site.pages import MENU, all_pages
-from herijk.dashboards.site.parts import boat_path, default_method, race_path, type_path
+from herijk.dashboards.site.parts import (
+    boat_path,
+    default_method,
+    edition_page,
+    race_path,
+    type_path,
+)
+from herijk.dashboards.site.prose import GUIDES
 from herijk.dashboards.site.render import DRAWN
 from herijk.dashboards.words import WORDS
 from herijk.warehouse.queries.answers import answers, line_changes
@@ -38,7 +46,8 @@ def hashes(site):
 def test_every_page_is_there(site, built):
     names = {str(f.relative_to(site)) for f in pages(site)}
     boats = {boat_path(fsn_no) for fsn_no in built.table("boats")["fsn_no"]}
-    paths = boats | {f"{name}.html" for name in MENU}
+    paths = boats | {f"{name}.html" for name in (*MENU, *GUIDES)}
+    paths |= {edition_page(edition) for edition in EDITIONS}
     with Views(Store(site.parent)) as views:
         paths |= {type_path(name) for name in views.type_names()}
         paths |= {race_path(race, day) for race, day in views.race_days()}
@@ -237,6 +246,16 @@ def drawn(file):
     return json.loads(text.removeprefix("window.HERIJK_DATA = ").removesuffix(";\n"))
 
 
+def values_of(column):
+    """The values of a column of a chart's data, as `site.js` reads it."""
+    if isinstance(column, list):
+        return column
+    if "steps" in column:
+        return [total / 100 for total in accumulate(column["steps"])]
+    places, numbers = column["runs"][::2], column["runs"][1::2]
+    return [column["values"][p] for p, n in zip(places, numbers, strict=True) for _ in range(n)]
+
+
 def test_every_number_in_a_chart_stands_in_the_warehouse(store, site):
     known = warehouse_numbers(store, DRAWN)
     shown = set()
@@ -244,8 +263,7 @@ def test_every_number_in_a_chart_stands_in_the_warehouse(store, site):
         for name, frames in drawn(file).items():
             columns = [v for f in frames for v in f.values() if name != "traces"]
             for values in columns:
-                if isinstance(values, list):
-                    shown |= {f"{v:.{DRAWN}g}" for v in values if isinstance(v, float)}
+                shown |= {f"{v:.{DRAWN}g}" for v in values_of(values) if isinstance(v, float)}
     assert len(shown) > 1000
     assert shown - known == set()
 
@@ -257,7 +275,7 @@ def test_traces_are_those_of_the_warehouse_to_the_digits_of_a_chart(store, site,
     mine = seconds.join(tows, on="tow_id", how="semi", maintain_order="left")
     traces = drawn(site / "data" / boat_path(attacked).replace(".html", ".js"))["traces"][0]
     assert traces["force_n"] == mine["force_n"].round(0).to_list()
-    assert traces["speed_m_s"] == mine["speed_m_s"].round(2).to_list()
+    assert values_of(traces["speed_m_s"]) == mine["speed_m_s"].round(2).to_list()
 
 
 def test_every_page_forbids_the_network_and_eval(site):

@@ -59,6 +59,11 @@ class Cells:
     def __init__(self, speech: Speech) -> None:
         self.speech = speech
         self.text = speech.text
+        self._text = cache(self._made)
+
+    def _made(self, name: str, root: str, value: Any) -> Markup:
+        """The cell of a text in a column of this name; the same value comes often."""
+        return (_LONG if name in LONG else _SHORT).format(self._shower(name, root)(value))
 
     def rows(self, page: Page, table: Table) -> tuple[Markup, Markup, list[Key]]:
         """The rows that the selectors show at first, and all others.
@@ -72,7 +77,7 @@ class Cells:
             *(self._cells(frame[c], page.root, table.exact) for c in table.columns), strict=True
         )
         boats = [_BOAT.format(n) for n in frame["fsn_no"]] if table.linked else repeat("")
-        keys = frame.select(follows).rows() if follows else repeat(())
+        keys = zip(*(frame[name].to_list() for name in follows), strict=True)
         places: dict[Key, int] = {}
 
         @cache
@@ -85,38 +90,30 @@ class Cells:
 
         first: list[str] = []
         others: list[str] = []
-        for row, boat, key in zip(cells, boats, keys, strict=False):
+        for row, boat, key in zip(cells, boats, keys if follows else repeat(()), strict=False):
             place, marks = marked(key)
             place.append(f"<tr{boat}{marks}>{''.join(row)}")
         return Markup("\n".join(first)), Markup("\n".join(others)), list(places)  # noqa: S704 - escaped parts
 
-    def _cells(self, column: pl.Series, root: str, exact: bool) -> Sequence[Markup]:
+    def _cells(self, column: pl.Series, root: str, exact: bool) -> Sequence[str]:
         name = column.name
         if name == "rowing_time_s":
             return [_EMPTY if v is None else _SHORT.format(duration(v)) for v in column]
         if column.dtype.is_float():
             digits = next((d for ending, d in DIGITS if name.endswith(ending)), 4)
-            return [self._number(value, digits, exact) for value in column.to_list()]
+            return self._numbers(column.to_list(), digits, exact)
         if column.dtype.is_integer() and name != "direction":
-            return [_integer(value) for value in column.to_list()]
-        show = self._shower(name, root)
-        cell = _LONG if name in LONG else _SHORT
-
-        def made(value: Any) -> Markup:
-            return _EMPTY if value is None else cell.format(show(value))
-
-        if isinstance(column.dtype, pl.List):
-            return [made(value) for value in column]
+            return ["<td>" if v is None else f"<td>{v}" for v in column.to_list()]
         values = column.to_list()
-        of = {value: made(value) for value in set(values)}
-        return [of[value] for value in values]
+        if isinstance(column.dtype, pl.List):
+            values = [None if v is None else tuple(v) for v in values]
+        return [_EMPTY if v is None else self._text(name, root, v) for v in values]
 
-    def _number(self, value: float | None, digits: int, exact: bool) -> Markup:
-        if value is None:
-            return Markup("<td>")
-        shown, held = self.speech.number(value, digits), f"{value:.{KEPT}g}"
-        mark = f" data-v={held}" if exact and shown != held else ""
-        return Markup(f"<td{mark}>{shown}")  # noqa: S704 - a number
+    def _numbers(self, values: Sequence[float | None], digits: int, exact: bool) -> list[str]:
+        number = self.speech.number
+        if not exact:
+            return ["<td>" if v is None else f"<td>{number(v, digits)}" for v in values]
+        return ["<td>" if v is None else _exact(v, number(v, digits)) for v in values]
 
     def _shower(self, name: str, root: str) -> Show:
         """How values of a column are shown."""
@@ -174,9 +171,10 @@ class Cells:
         return Markup("{}").format(value[LANGUAGES.index(self.speech.language)])
 
 
-def _integer(value: int | None) -> Markup:
-    text = "" if value is None else str(value)
-    return Markup(f"<td>{text}")  # noqa: S704 - a number
+def _exact(value: float, shown: str) -> str:
+    """A number that shows fewer digits than it holds, with both."""
+    held = f"{value:.{KEPT}g}"
+    return f"<td>{shown}" if shown == held else f"<td data-v={held}>{shown}"
 
 
 def _hash(value: str) -> Markup:

@@ -15,6 +15,7 @@ from herijk.dashboards.site.parts import (
     draft_of,
     methods_select,
 )
+from herijk.dashboards.site.prose import guide_links
 from herijk.dashboards.speech import Speech
 from herijk.warehouse.queries.answers import newest_edition
 from herijk.warehouse.queries.journal import last_news
@@ -30,7 +31,7 @@ def start_page(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> P
     """The edition in force, key figures, what changes, the years, and where to go."""
     editions = changes["to_edition"].unique().sort().to_list() if changes.height else []
     chosen = newest_edition(editions, draft_of(methods))
-    links = [(f"{name}.html", name, f"about_{name}") for name in CARDS]
+    links = [(f"{name}.html", name, f"about_{name}") for name in CARDS] + guide_links()
     years = views.table("season_changes")
     sections = [
         Section(

@@ -25,7 +25,8 @@ from starlette.routing import Route
 
 from herijk.dashboards import fonts
 from herijk.dashboards.html import as_json, environment, in_both
-from herijk.dashboards.site.render import chart_specifications, vega_bundle
+from herijk.dashboards.site.render import vega_bundle
+from herijk.dashboards.site.specifications import chart_specifications
 from herijk.dashboards.words import LANGUAGES, both
 from herijk.dashboards.workbench.bench import Base, Bench, Named, Question
 from herijk.dashboards.workbench.texts import TEXTS

@@ -216,9 +216,14 @@
       Object.fromEntries(names.map((name, j) => [name, values[j][i]])));
   }
 
-  // A column may hold its values once, with the place of each and for how many rows it holds.
+  // A column may hold differences in hundredths, or its values once, with the place of each and for
+  // how many rows it holds.
   function valuesOf(column) {
     if (Array.isArray(column)) return column;
+    if (column.steps) {
+      let sum = 0;
+      return column.steps.map((step) => (sum += step) / 100);
+    }
     const found = [];
     for (let i = 0; i < column.runs.length; i += 2) {
       for (let n = column.runs[i + 1]; n > 0; n -= 1) found.push(column.values[column.runs[i]]);
@@ -273,6 +278,7 @@
         loader: { target: "_self" },
         config: {
           aria: false, // the picture is described as a whole
+          mark: { aria: false },
           font: "Open Sans",
           axis: { labelFontSize: 12, titleFontSize: 12, labelLimit: 200 },
           legend: { labelFontSize: 12, titleFontSize: 12, labelLimit: 220 },
@@ -358,6 +364,7 @@
   function describe(figure, place) {
     const picture = place.querySelector("svg");
     if (!picture) return;
+    all("[role]", picture).forEach((part) => part.removeAttribute("role")); // of a brush
     picture.setAttribute("role", "img");
     picture.setAttribute("aria-label", `${figure.dataset.caption} ${picked(figure)}`.trim());
   }
