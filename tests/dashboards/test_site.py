@@ -24,6 +24,7 @@ from herijk.dashboards.site.parts import (
 from herijk.dashboards.site.prose import GUIDES
 from herijk.dashboards.site.render import DRAWN
 from herijk.dashboards.words import WORDS
+from herijk.dashboards.words.tables import TABLES_IN_DUTCH
 from herijk.warehouse.queries.answers import answers, line_changes
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.store import Store
@@ -173,6 +174,11 @@ def test_a_column_and_a_code_on_a_page_have_a_text(store):
     assert "accepted" in codes
     words = {code for code in codes if re.fullmatch(r"[a-z_]+", code)}
     assert words - {key.removeprefix("code.") for key in WORDS} == set()
+
+
+def test_every_table_has_a_meaning_in_dutch(store):
+    with Views(store) as views:
+        assert set(views.table("contents")["table"]) == TABLES_IN_DUTCH.keys()
 
 
 def test_nothing_half_made_is_left(store):

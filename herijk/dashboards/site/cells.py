@@ -32,8 +32,8 @@ CODES: Final = {
 """Columns that hold codes of the warehouse, shown as words."""
 
 LONG: Final = {
-    *("flags", "cut_reason", "reason", "speed_reason", "causes", "message", "meaning", "decision"),
-    *("candidates", "name"),
+    *("flags", "cut_reason", "reason", "speed_reason", "causes", "message", "decision"),
+    *("candidates", "name", "meanings"),
 }
 """Columns of texts that may take several lines."""
 
@@ -124,7 +124,7 @@ class Cells:
         if name == "boat_type":
             return lambda value: self._type(value, root)
         named = {
-            "titles": self._titles,
+            **dict.fromkeys(("titles", "meanings"), self._titles),
             "direction": lambda value: self.text("out" if value == 1 else "back"),
             "causes": self._causes,
             "unit": lambda value: self._plain("" if value == "1" else value),

@@ -25,6 +25,7 @@ from herijk.dashboards.site.races import race_pages
 from herijk.dashboards.site.slides import slides_page
 from herijk.dashboards.site.start import methods_table, start_page, words_page
 from herijk.dashboards.site.types import type_pages, types_page
+from herijk.dashboards.words.tables import TABLES_IN_DUTCH
 from herijk.warehouse.queries.answers import line_changes, newest_edition
 from herijk.warehouse.queries.views import Views
 
@@ -396,12 +397,14 @@ def _set_aside(views: Views) -> Section:
 def _rebuilt(views: Views) -> Section:
     """What the rebuild read, applied and made."""
     seasons, tables = views.table("seasons"), views.table("contents")
+    dutch = pl.col("table").replace(TABLES_IN_DUTCH)
+    tables = tables.with_columns(meanings=pl.concat_list(dutch, "meaning"))
     return Section(
         "rebuilt",
         "rebuilt_note",
         tables=[
             Table("seasons", seasons, seasons.columns, "seasons"),
             methods_table(views),
-            Table("contents", tables, ("table", "rows", "meaning"), "tables"),
+            Table("contents", tables, ("table", "rows", "meanings"), "tables"),
         ],
     )
