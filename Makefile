@@ -13,12 +13,14 @@ unexport PYTHONDONTWRITEBYTECODE
 export DAGSTER_DISABLE_TELEMETRY = 1
 export DAGSTER_DG_UPDATE_CHECK_ENABLED = 0
 
-.PHONY: help env demo test lint bench scale accuracy accuracy-parts survive fuzz full-scale clean
+.PHONY: help env demo test lint wheel docs bench scale accuracy accuracy-parts survive fuzz full-scale clean
 
 help:
 	@echo "make demo   simulate an archive of ten seasons and rebuild its history"
 	@echo "make test   run all tests"
 	@echo "make lint   check style, types, imports and the Dagster definitions"
+	@echo "make wheel  build the wheel and try it in a clean environment"
+	@echo "make docs   make the documents and the reference as pages, in docs/_build"
 	@echo "make bench  measure speed and memory"
 	@echo "make scale  measure one Dask worker against two, with an S3 server on this machine"
 	@echo "make accuracy  how near the truth the rebased history comes in every simulated world; it can be stopped"
@@ -74,6 +76,13 @@ lint: $(DEVELOP)
 	@$(BIN)/lint-imports --no-logo
 	@VIRTUAL_ENV="$(CURDIR)/.venv" $(BIN)/dg check defs --no-check-yaml
 
+wheel: $(DEVELOP)
+	@.ci/wheel
+
+# Warnings are errors: a link or a reference that leads nowhere.
+docs: $(DEVELOP)
+	@$(BIN)/python -m sphinx -q -W -b html docs docs/_build
+
 # A thousand tows: half an hour to simulate, once. A minute: make bench TOWS=1 REPEATS=1
 TOWS ?= 60
 REPEATS ?= 5
@@ -108,4 +117,4 @@ full-scale: $(DEVELOP)
 	@PYTHONPATH=. $(BIN)/python benchmarks/robustness/full_scale.py
 
 clean:
-	rm -rf .venv $(DEMO) .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis
+	rm -rf .venv $(DEMO) dist docs/_build .mypy_cache .ruff_cache .pytest_cache .import_linter_cache .hypothesis

@@ -1,6 +1,6 @@
 """Publishing, comparing and verifying editions of 300 boats, from blocks.
 
-    PYTHONPATH=. python -m benchmarks.editions [tows a season]
+    PYTHONPATH=. python -m benchmarks.editions [tows per season]
 
 The samples are simulated at 5 Hz: the number of samples in a block does not matter here. Making the
 archive and reading it is not counted.

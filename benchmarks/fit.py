@@ -28,7 +28,7 @@ RUN_RATIOS = np.array([0.9, 1.0, 1.1, 0.9, 1.0, 1.1])
 
 
 def cases(n, seed=20260101):
-    """Six run points a boat: r of 0.1-0.45, 1-3 % noise, speeds within 0.5 % of the intended."""
+    """Six run points per boat: r of 0.1-0.45, 1-3 % noise, speeds within 0.5 % of the intended."""
     rng = np.random.default_rng(seed)
     v0, c0, r = rng.uniform(2, 3, n), rng.uniform(15, 60, n), rng.uniform(0.1, 0.45, n)
     a, s = curve.from_c0_q(c0, r / (1 - r), v0)

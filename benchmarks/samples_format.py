@@ -135,7 +135,7 @@ def as_from_csv(frame: pl.DataFrame) -> pl.DataFrame:
 
 
 def measure(how: Format, frames: list[pl.DataFrame], folder: Path) -> tuple[float, ...]:
-    """MB, write ms and read ms a tow (best round), and the largest error."""
+    """MB, write ms and read ms per tow (best round), and the largest error."""
     write_s, read_s, size, error = [], [], 0, 0.0
     path = folder / "tow.parquet"
     for i in range(ROUNDS):

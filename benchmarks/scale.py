@@ -86,7 +86,8 @@ def compare(archive: Path, root: Path, seasons: Sequence[int], repeats: int) -> 
         f"{dt.date.today()}; load {os.getloadavg()[0]:.1f}"
     )
     print(
-        "MB a tow: " + ", ".join(f"{n} {mb / tows:.2f}" for n, mb in sizes(archive, here, seasons))
+        "MB per tow: "
+        + ", ".join(f"{n} {mb / tows:.2f}" for n, mb in sizes(archive, here, seasons))
     )
     rounds: dict[int, list[Round]] = {1: [], 2: []}
     for repeat in range(repeats):
@@ -94,7 +95,7 @@ def compare(archive: Path, root: Path, seasons: Sequence[int], repeats: int) -> 
             found.append(read_there(archive, here, root / f"{workers}-{repeat}", workers, seasons))
             shares = ", ".join(f"{n} {s / tows:.3f}" for n, s in found[-1].processor_s.items())
             print(
-                f"  {workers} worker(s): {found[-1].seconds:.1f} s; processor s a tow: {shares}; "
+                f"  {workers} worker(s): {found[-1].seconds:.1f} s; processor s per tow: {shares}; "
                 f"load {os.getloadavg()[0]:.1f}",
                 flush=True,
             )

@@ -228,7 +228,7 @@ def summary(report: dict[str, Any], command: str) -> str:
         "least a script can do for the same curves: five columns, one method, nothing kept; so "
         "the others also do it for a changed method. Load is that of the machine when the run "
         "ended: above the number of cores, other work was going on "
-        "and the column *processor* is the surer one.",
+        "and the column *processor* is the more reliable one.",
         "",
         "## Asked and found",
         "",

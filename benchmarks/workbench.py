@@ -1,6 +1,6 @@
 """A change at the workbench: from the question to the answer, and to the drawn page.
 
-    PYTHONPATH=. python benchmarks/workbench.py [tows a season]
+    PYTHONPATH=. python benchmarks/workbench.py [tows per season]
 
 Ten simulated seasons at 20 Hz, in memory; the page is opened in Chromium where there is one.
 """

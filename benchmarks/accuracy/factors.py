@@ -1,10 +1,10 @@
-"""How near the season log factors of whole archives come to the truth, and how sure they say to be.
+"""How near season log factors come to the truth, and how often their intervals hold.
 
     PYTHONPATH=. python benchmarks/accuracy/factors.py [worlds]
 
 Each world has ten seasons of 24 tows at 20 Hz and goes from samples to `log_factors` and
 `season_steps`, as an archive does. "clean" and "history" worlds are those of `methods.py`. 64
-worlds give 320 factors a line. Many more worlds, without samples, are in `season.py`.
+worlds give 320 factors per line. Many more worlds, without samples, are in `season.py`.
 """
 
 import os

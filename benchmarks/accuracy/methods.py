@@ -50,7 +50,7 @@ def main() -> None:
     lines = [*cw_lines(history, clean), *b_lines(history, clean), *end_lines(clean)]
     lines += [*window_lines(history), *exact_lines(history[0])]
     lines += [*coefficient_lines(), *history_lines(history)]
-    print(f"Simulated worlds: {worlds} history, {worlds} clean, {TOWS_PER_SEASON} tows a season")
+    print(f"Simulated worlds: {worlds} history, {worlds} clean, {TOWS_PER_SEASON} tows per season")
     width = max(len(line.what) for line in lines)
     asked = max(len(line.asked) for line in lines)
     for line in lines:

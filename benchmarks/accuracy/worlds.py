@@ -2,7 +2,7 @@
 
     PYTHONPATH=. python -m benchmarks.accuracy.worlds [--seeds 20] [--processes 2] [--world NAME]
 
-An archive has ten seasons of 24 tows. It is simulated at 10 samples a second, added up to blocks
+An archive has ten seasons of 24 tows. It is simulated at 10 samples per second, added up to blocks
 and recomputed, without files; `--files` writes it, lets `herijk rebuild` read it and takes the
 tables from there, which is ten times slower. Results are kept as lines of JSON under the version
 of the code, so that a run that was stopped goes on. The blocks are kept too, so that another

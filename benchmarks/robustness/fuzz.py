@@ -1,4 +1,4 @@
-"""Throws damaged files at every reader: no crash, no hang, no number that does not stand there.
+"""Throws damaged files at every reader: no crash, no hang, no number that is not there.
 
     python benchmarks/robustness/fuzz.py [inputs] [seed]
 
@@ -189,7 +189,7 @@ def samples_reader(profiles: Profiles, header: bytes) -> Callable[[Path, bytes],
 
 
 def _assert_as_they_stand(expected: np.ndarray, read: np.ndarray) -> None:
-    """What is read is what stands there; nothing is read where no number can be."""
+    """What is read is what is there; nothing is read where no number can be."""
     assert np.array_equal(expected, read, equal_nan=True)
 
 

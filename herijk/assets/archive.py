@@ -8,6 +8,7 @@ import polars as pl
 from herijk.assets.partitions import seasons
 from herijk.assets.resources import Progress, Setup
 from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.store.code import ADDERS, READERS, code_hash
 
 LOOKED_AT = dg.FreshnessPolicy.time_window(
     warn_window=dt.timedelta(hours=26), fail_window=dt.timedelta(hours=50)
@@ -15,7 +16,18 @@ LOOKED_AT = dg.FreshnessPolicy.time_window(
 """Every rebuild looks through the archive, also when it finds no change."""
 
 
-@dg.asset(group_name="archive", kinds={"parquet"}, code_version="1", freshness_policy=LOOKED_AT)
+OWNERS = ["team:archive"]
+SUBJECT = {"herijk/subject": "archive"}
+
+
+@dg.asset(
+    code_version=code_hash("herijk.warehouse.archive.index"),
+    freshness_policy=LOOKED_AT,
+    group_name="archive",
+    kinds={"parquet"},
+    owners=OWNERS,
+    tags=SUBJECT,
+)
 def archive_index(setup: Setup) -> dg.MaterializeResult:
     """Boats, tow lists and files of the archive, with what is wrong in the lists."""
     found = intake.index(setup.store, setup.archive_root)
@@ -33,9 +45,11 @@ def archive_index(setup: Setup) -> dg.MaterializeResult:
 @dg.asset(
     deps=[archive_index],
     partitions_def=seasons,
+    code_version=code_hash(*READERS),
     group_name="archive",
     kinds={"parquet"},
-    code_version="1",
+    owners=OWNERS,
+    tags=SUBJECT,
     check_specs=[dg.AssetCheckSpec("most_tows_sound", asset="samples")],
 )
 def samples(
@@ -70,9 +84,11 @@ def read(setup: Setup, season: int, progress: Progress) -> dg.MaterializeResult:
 @dg.asset(
     deps=[samples],
     partitions_def=seasons,
+    code_version=code_hash(*ADDERS),
     group_name="archive",
     kinds={"parquet"},
-    code_version="1",
+    owners=OWNERS,
+    tags=SUBJECT,
 )
 def blocks(context: dg.AssetExecutionContext, setup: Setup) -> dg.MaterializeResult:
     """Sums over each second of each run of one season."""

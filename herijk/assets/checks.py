@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import dagster as dg
 
 from herijk.assets.resources import Setup
-from herijk.warehouse.build.soundness import count_faults, schema_faults, set_aside_tows
+from herijk.warehouse.build.integrity import count_faults, schema_faults, set_aside_tows
 from herijk.warehouse.editions.verify import verify
-from herijk.warehouse.queries.journal import news
+from herijk.warehouse.queries.change_report import change_report
 
 
 def _result(
@@ -58,7 +58,7 @@ def few_tows_set_aside(setup: Setup) -> dg.AssetCheckResult:
 @dg.asset_check(asset="log_factors")
 def log_factors_stayed(setup: Setup) -> dg.AssetCheckResult:
     """No season's log factor jumped since the last report."""
-    moved = news(setup.store).factors
+    moved = change_report(setup.store).factors
     jumps = moved.filter((moved["ratio"] - 1.0).abs() > setup.factor_jump)
     return _result(jumps.rows(), dg.AssetCheckSeverity.WARN)
 
@@ -66,7 +66,7 @@ def log_factors_stayed(setup: Setup) -> dg.AssetCheckResult:
 @dg.asset_check(asset="register")
 def boats_stayed_within_their_intervals(setup: Setup) -> dg.AssetCheckResult:
     """No line of a draft moved by more than its intervals since the last report."""
-    lines = news(setup.store).lines
+    lines = change_report(setup.store).lines
     beyond = lines.filter(lines["exceeds_interval"].fill_null(value=False))
     columns = ["to_edition", "fsn_no", "rowers", "crew_class"]
     return _result(beyond.select(columns).rows(), dg.AssetCheckSeverity.WARN)

@@ -26,10 +26,10 @@ from herijk.warehouse.build.graph import DATABASE
 from herijk.warehouse.build.step import Step
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.intake.lake import ArchiveChangedError
-from herijk.warehouse.queries.journal import is_reported
+from herijk.warehouse.queries.change_report import is_reported
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.lock import nobody_writes, only_writer
-from herijk.warehouse.store.obstacles import obstacles_explained
+from herijk.warehouse.store.machine_faults import machine_faults_explained
 from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import DamagedFileError, Store
 
@@ -86,7 +86,7 @@ def rebuild(
             machine is in the way.
     """
     check_apart(archive, data)
-    with obstacles_explained(data):
+    with machine_faults_explained(data):
         settings = read_settings(data)
     setup = Setup(
         archive=str(archive),
@@ -95,7 +95,7 @@ def rebuild(
         set_aside_share=settings.set_aside_share,
         factor_jump=settings.factor_jump,
     )
-    with obstacles_explained(data), only_writer(data), _instance(setup.store) as instance:
+    with machine_faults_explained(data), only_writer(data), _instance(setup.store) as instance:
         _bury_the_dead(instance)
         work = _Rebuild(_Jobs(job_defs(setup, progress), instance), setup, progress, settings.dask)
         _mending(lambda: work.do(archive, seasons))
@@ -238,7 +238,7 @@ def taking_over(store: Store) -> Iterator[str]:
     """Ends the runs of a server that was stopped or killed: later ones would wait for them.
 
     Returns:
-        A sentence for who starts the new server, about each kind of run that was found.
+        A sentence for anyone who starts the new server, about each kind of run that was found.
     """
     if not nobody_writes(store.root):
         yield "A rebuild is at work; scheduled ones wait for it."

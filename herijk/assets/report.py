@@ -1,6 +1,6 @@
 """What a rebuild leaves to be read: a page, JSON, and a message to who wants one.
 
-They stand under `report/` in the data folder: `latest.json` about the last rebuild; `latest.html`
+They are under `report/` in the data folder: `latest.json` about the last rebuild; `latest.html`
 about the last that changed something, with the day of the last one after it that changed nothing;
 and a dated JSON for each that changed something.
 """
@@ -23,7 +23,7 @@ from herijk.dashboards.report import (
 )
 from herijk.dashboards.words import speaker
 from herijk.warehouse.build.version import code_version
-from herijk.warehouse.queries.journal import as_plain, news, remember
+from herijk.warehouse.queries.change_report import as_plain, change_report, remember
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.store import Store
 
@@ -37,7 +37,7 @@ def write_report(
 
     Where nothing changed, the page about the last change stays, and says so.
     """
-    found = news(store)
+    found = change_report(store)
     about = store.read("about_archive")
     report = {
         "made_at": now.isoformat(timespec="seconds"),

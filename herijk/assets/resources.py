@@ -18,7 +18,7 @@ from herijk.warehouse.store.methods import KnownMethods
 from herijk.warehouse.store.store import Store
 
 QUIET_LOG = {"loggers": {"console": {"config": {"log_level": "CRITICAL"}}}}
-"""Nothing on the terminal: what Dagster says stands in its records."""
+"""Nothing on the terminal: what Dagster says is in its records."""
 
 
 class Setup(dg.ConfigurableResource["Setup"]):

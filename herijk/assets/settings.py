@@ -25,7 +25,12 @@ class Settings(BaseModel):
         nightly: when everything is looked at; a cron line.
         campaign: when the season of that year is looked at, while it is towed.
         timezone: of both.
-        mail_to, mail_from: with `mail_to`, a mail about each report is put into `outbox/`.
+        mail_to, mail_from: with `mail_to`, a mail about each report: sent by `smtp`, or put into
+            `outbox/` without it.
+        smtp: mail server: `smtp://user@host:587`, encrypted by STARTTLS but on this machine, or
+            `smtps://user@host:465`; an @ in the user is written %40.
+        smtp_password_file: a file with its password; `HERIJK_SMTP_PASSWORD` in the environment goes
+            before it.
         webhook: an address to which each report is posted as JSON; `HERIJK_WEBHOOK` in the
             environment goes before it. It may hold a secret and is shown nowhere.
         set_aside_share: more of the tows set aside gives a warning.
@@ -42,6 +47,8 @@ class Settings(BaseModel):
     timezone: str = "Europe/Amsterdam"
     mail_to: str | None = None
     mail_from: str = "herijk@localhost"
+    smtp: str | None = Field(default=None, pattern=r"^smtps?://([^:@/\s]+@)?[^:@/\s]+(:\d+)?$")
+    smtp_password_file: Path | None = None
     webhook: str | None = Field(default=None, pattern=r"^https?://")
     set_aside_share: float = Field(default=0.1, ge=0, le=1)
     factor_jump: float = Field(default=0.01, gt=0)

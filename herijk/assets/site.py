@@ -13,6 +13,7 @@ from herijk.warehouse.store.code import code_hash
 from herijk.warehouse.store.files import file_sha256
 from herijk.warehouse.store.store import Store, fingerprint
 
+SITE_CODE = "herijk.dashboards.site"
 SITE_TABLE = "site"
 """An empty table that remembers what the site was made from."""
 
@@ -23,7 +24,7 @@ def site_made_from(store: Store) -> str:
     files = [f for f in folder.rglob("*.*") if f.parent.name in {"static", "templates"}]
     return fingerprint(
         store.made_from(DATABASE_TABLE),
-        code_hash("herijk.dashboards.site"),
+        code_hash(SITE_CODE),
         [file_sha256(file) for file in sorted(files)],
     )
 
@@ -34,7 +35,14 @@ def site_is_stale(store: Store) -> bool:
     return not there or store.made_from(SITE_TABLE) != site_made_from(store)
 
 
-@dg.asset(deps=[DATABASE_TABLE], group_name="site", kinds={"html"})
+@dg.asset(
+    deps=[DATABASE_TABLE],
+    group_name="site",
+    kinds={"html"},
+    owners=["team:register"],
+    tags={"herijk/subject": "site"},
+    code_version=code_hash(SITE_CODE),
+)
 def site(setup: Setup) -> dg.MaterializeResult:
     """Pages people can look at, swapped in whole."""
     from herijk.dashboards.site import build_site  # noqa: PLC0415 - Altair takes a second to import

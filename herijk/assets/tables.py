@@ -1,6 +1,6 @@
 """The steps of a build as assets: what `warehouse.build.graph` declares, as Dagster sees it."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import Any
 
 import dagster as dg
@@ -19,9 +19,18 @@ from herijk.warehouse.build.step import Made, Step
 KINDS = {"warehouse_database": "duckdb"}
 """What an asset is stored as, where that is not Parquet."""
 
+OWNERS = {
+    "archive": "team:archive",
+    "method": "team:method",
+    "studies": "team:method",
+    "consistency": "team:method",
+}
+"""Who answers for the tables of a step, where it is not who publishes the register."""
+PUBLISHER = "team:register"
+
 
 def step_asset(step: Step) -> dg.AssetsDefinition:
-    """The assets of a step: one per table."""
+    """The assets of a step: one per table, any of which can be made alone."""
 
     @dg.multi_asset(
         name=step.compute.__name__,
@@ -29,15 +38,17 @@ def step_asset(step: Step) -> dg.AssetsDefinition:
         specs=[_spec(step, table) for table in step.outputs],
         partitions_def=methods if step.per_method else None,
         check_specs=[dg.AssetCheckSpec(check.name, asset=check.table) for check in step.checks],
+        can_subset=True,
     )
     def asset(context: dg.AssetExecutionContext, setup: Setup):  # type: ignore[no-untyped-def]
         chosen = setup.chosen_methods
         if step.per_method:
             chosen = [setup.known_methods.get(context.partition_key)]
-        made = step.make(setup.store, chosen)
+        asked = {key.to_user_string() for key in context.selected_asset_keys}
+        made = step.make(setup.store, chosen, asked)
         for table, frame in made.tables.items():
             yield dg.MaterializeResult(asset_key=table, metadata=_metadata(table, frame))
-        yield from _check_results(made)
+        yield from _check_results(made, context.selected_asset_check_keys)
 
     return asset
 
@@ -51,7 +62,10 @@ def _spec(step: Step, table: str) -> dg.AssetSpec:
         description=(schema or step.compute).__doc__,
         metadata=None if schema is None else {"dagster/column_schema": _columns(schema)},
         group_name=step.name,
-        kinds={KINDS.get(table, "parquet")},
+        kinds={KINDS.get(table, "parquet"), "polars"},
+        owners=[OWNERS.get(step.name, PUBLISHER)],
+        tags={} if schema is None else {"herijk/subject": schema.__module__.rpartition(".")[2]},
+        code_version=step.code,
     )
 
 
@@ -88,14 +102,17 @@ def _metadata(table: str, frame: pl.DataFrame) -> dict[str, Any]:
     return metadata | preview(table, frame)
 
 
-def _check_results(made: Made) -> Iterator[dg.AssetCheckResult]:
+def _check_results(
+    made: Made, asked: Collection[dg.AssetCheckKey]
+) -> Iterator[dg.AssetCheckResult]:
     for check, faults in made.faults.items():
-        yield dg.AssetCheckResult(
-            check_name=check.name,
-            asset_key=check.table,
-            passed=not faults,
-            metadata={"lost": dg.MetadataValue.json(list(faults))},
-        )
+        if dg.AssetCheckKey(dg.AssetKey(check.table), check.name) in asked:
+            yield dg.AssetCheckResult(
+                check_name=check.name,
+                asset_key=check.table,
+                passed=not faults,
+                metadata={"lost": dg.MetadataValue.json(list(faults))},
+            )
 
 
 STEP_ASSETS = {step.name: step_asset(step) for step in STEPS}

@@ -29,9 +29,9 @@ TEXTS: Final = {
     "write": ("Schrijf het voorstel met: herijk check {archive} --write-profile",
               "Write what is proposed with: herijk check {archive} --write-profile"),
     "written": ("Het voorstel staat in {path}; lees het na, ook de regels achter een #.",
-                "What is proposed stands in {path}; read it, also the lines behind a #."),
+                "What is proposed is in {path}; read it, also the lines behind a #."),
     "made": ("Een leeg archief staat in {path}; begin met LEESMIJ.md.",
-             "An empty archive stands in {path}; begin with LEESMIJ.md."),
+             "An empty archive is in {path}; begin with LEESMIJ.md."),
 }  # fmt: skip
 """Dutch and English."""
 

@@ -57,7 +57,7 @@ def proposal(
     out: Target = None,
     lang: Language = "nl",
 ) -> None:
-    """What a board sends its members before they vote: what changes, for whom, and how sure."""
+    """What a board sends its members before they vote: what changes, for whom, how uncertain."""
     from herijk.dashboards.documents.proposal import proposal as make_proposal
     from herijk.pipeline.method.definition import shipped_text
     from herijk.warehouse.queries.views import Views
@@ -79,9 +79,9 @@ def _documents(store: "Store") -> Path:
 def _write(content: bytes, path: Path) -> None:
     """Writes the file whole, and says where."""
     from herijk.warehouse.store.files import written_beside
-    from herijk.warehouse.store.obstacles import obstacles_explained
+    from herijk.warehouse.store.machine_faults import machine_faults_explained
 
-    with obstacles_explained(path.parent):
+    with machine_faults_explained(path.parent):
         path.parent.mkdir(parents=True, exist_ok=True)
         with written_beside(path) as beside:
             beside.write_bytes(content)

@@ -39,8 +39,8 @@ def due(report: Report) -> str:
         if counts[urgency]
     ]
     parts.append(
-        "The speed takes 70-90 W a rower (men) or 40-55 W (women) on the known curve. A boat that "
-        "was altered\nsince may be towed at another one. * lies outside 85-115 % of the last "
+        "The speed takes 70-90 W per rower (men) or 40-55 W (women) on the known curve. A boat "
+        "that was altered\nsince may be towed at another one. * lies outside 85-115 % of the last "
         "declared speed, where its curve does not hold."
     )
     parts.append(_choice(report["retow_choice"]))
@@ -76,7 +76,7 @@ def _line(line: Report) -> tuple[Any, ...]:
 def _choice(choice: list[Report]) -> str:
     title = "To tie the seasons together best, tow these again, in this order"
     if not choice:
-        return f"{title}: nobody, this method estimates no log error that a tow would make surer."
+        return f"{title}: nobody, this method estimates no log error, so no tow would narrow it."
     rows = [
         (
             c["position"],

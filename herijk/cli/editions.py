@@ -1,6 +1,6 @@
 """The commands about editions, and about who has to tow before the next one.
 
-What they do stands in `warehouse.editions` and `warehouse.queries.due`; how a result looks as text,
+What they do is in `warehouse.editions` and `warehouse.queries.due`; how a result looks as text,
 in `cli.editions_text` and `cli.due_text`.
 """
 

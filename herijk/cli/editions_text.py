@@ -84,9 +84,9 @@ def diff(report: Report) -> str:
         head = ("cause", "lines", "median", "lowest", "highest")
         parts.append("Causes, with their factor on Cw:\n" + table(head, rows))
     parts.append(
-        "Every line: A and Cw in kg/m, B in m/s, W a rower at the old declared speed, seconds that "
-        "the new register gives in\na two-hour race, rank at equal power among all boats of the "
-        "class:\n" + _lines(report["rows"])
+        "Every line: A and Cw in kg/m, B in m/s, W per rower at the old declared speed, seconds "
+        "that the new register gives in\na two-hour race, rank at equal power among all boats of "
+        "the class:\n" + _lines(report["rows"])
     )
     parts.append(_races(report))
     return "\n\n".join(parts)

@@ -1,7 +1,7 @@
 """The command `herijk`: arguments in, results out. Messages go to stderr, results to stdout.
 
 Exit status: 0 done (also with tows set aside: they are listed), 1 could not do it, 2 wrong
-arguments. What a command does stands in `assets`, `warehouse` and `pipeline`; how a result looks
+arguments. What a command does is in `assets`, `warehouse` and `pipeline`; how a result looks
 as text, in `cli.text`.
 
 A command imports what it needs when it runs: Polars, SciPy, Altair and Dagster take seconds
@@ -72,7 +72,7 @@ def _written_down(error: BaseException) -> str:
     ) as file:
         file.write("".join(traceback.format_exception(error)))
     return (
-        f"{unexpected(error)}. Nothing was published. Details stand in {file.name}; please send it "
+        f"{unexpected(error)}. Nothing was published. Details are in {file.name}; please send it "
         "to who keeps Herijk"
     )
 
@@ -183,7 +183,7 @@ def serve(
     from herijk.assets.settings import read_settings
     from herijk.cli.serving import Served, serve_until_stopped
     from herijk.warehouse.store.lock import only_server
-    from herijk.warehouse.store.obstacles import obstacles_explained
+    from herijk.warehouse.store.machine_faults import machine_faults_explained
     from herijk.warehouse.store.store import Store
 
     def tell(line: str) -> None:
@@ -192,7 +192,7 @@ def serve(
     check_apart(archive, data)
     read_settings(data)
     store = Store(data)
-    with obstacles_explained(data), only_server(data):
+    with machine_faults_explained(data), only_server(data):
         for line in taking_over(store):
             tell(line)
         served = Served(archive, data, host, port, may_start)
@@ -327,7 +327,7 @@ def log_error(
     method: Annotated[str, typer.Option(help="Method whose factors are shown.")] = "rebased",
     as_json: AsJson = False,
 ) -> None:
-    """How wrong the speed log was in each season, how sure that is, and what it rests on."""
+    """How wrong the speed log was in each season, with its uncertainty and what it rests on."""
     from herijk.warehouse.queries import reports
     from herijk.warehouse.store.store import Store
 

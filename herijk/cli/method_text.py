@@ -110,6 +110,8 @@ def _wind(step: Wind) -> str:
         "archive": "one coefficient found for the whole archive",
     }[step.coefficients]
     taken = f"wind averaged over {step.averaging_s} s" if step.averaging_s else "sample by sample"
+    if step.anemometer == "estimated":
+        taken += ", scaled per season by runs out and back"
     reading = {
         "as_felt": "",
         "cw_vac_2014": "; 'Cw vac' read as on the screens of 2014",

@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from starlette.applications import Starlette
 from starlette.responses import RedirectResponse
@@ -25,6 +25,7 @@ from starlette.staticfiles import StaticFiles
 from herijk.assets.webserver import MAY_START, READ_ONLY
 from herijk.dashboards.guard import LOOPBACK, guarded, listen
 from herijk.pipeline.errors import UnavailableError
+from herijk.warehouse.store.files import WINDOWS
 
 SHOWN: Final = ("site", "report")
 """What of the data folder the site's address shows."""
@@ -135,8 +136,7 @@ def _dagster(what: Served, home: Path) -> Iterator[dict[str, subprocess.Popen[by
             children[name] = subprocess.Popen(  # noqa: S603 - our own arguments
                 [sys.executable, "-m", module, *arguments],
                 env=environment,
-                start_new_session=True,
-                preexec_fn=_die_with_parent,  # noqa: PLW1509 - no threads share its locks
+                **_TIED_TO_US,
             )
         yield children
     finally:
@@ -150,16 +150,38 @@ def _die_with_parent() -> None:
         library.prctl(_DIE_WITH_PARENT, signal.SIGTERM)
 
 
+_TIED_TO_US: Final[dict[str, Any]] = (
+    {} if WINDOWS else {"start_new_session": True, "preexec_fn": _die_with_parent}
+)
+"""How a child is started so that it, and what it starts, can be ended with us."""
+
+
+def _ask_to_end(child: subprocess.Popen[bytes]) -> None:
+    """As Ctrl-C would, where one process can send that to another."""
+    if WINDOWS:
+        child.terminate()
+    else:
+        child.send_signal(signal.SIGINT)
+
+
+def _make_end(child: subprocess.Popen[bytes]) -> None:
+    """Ends a process, and what it started."""
+    if WINDOWS:
+        child.kill()
+    else:
+        os.killpg(child.pid, signal.SIGKILL)
+
+
 def _end(children: Iterable[subprocess.Popen[bytes]]) -> None:
     """Asks the processes to end; after a while, makes them."""
     held = list(children)
     for child in held:
         if child.poll() is None:
-            child.send_signal(signal.SIGINT)
+            _ask_to_end(child)
     last = time.monotonic() + PATIENCE_S
     for child in held:
         with suppress(subprocess.TimeoutExpired):
             child.wait(max(0.1, last - time.monotonic()))
         with suppress(ProcessLookupError):
-            os.killpg(child.pid, signal.SIGKILL)
+            _make_end(child)
         child.wait()

@@ -1,4 +1,4 @@
-"""The owner's answer in sentences: what changes for a boat, why, how sure that is, what follows.
+"""The owner's answer in sentences: what changes for a boat, why, how certainly, what follows.
 
 The numbers come from `warehouse.queries.answers`, the texts from `dashboards.words.answers`.
 """

@@ -33,6 +33,6 @@ def in_both(pair: tuple[str, str]) -> Markup:
 
 
 def as_json(value: Any) -> str:
-    """JSON that may stand inside a script element: no text in it can close the element."""
+    """JSON that may be put inside a script element: no text in it can close the element."""
     text = json.dumps(value, separators=(",", ":"), ensure_ascii=False, default=str)
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")

@@ -19,7 +19,7 @@ from herijk.dashboards.report import (
 from herijk.dashboards.site.parts import Page, Section, Table
 from herijk.dashboards.site.render import Edition
 from herijk.dashboards.words import LANGUAGES, speaker
-from herijk.warehouse.queries.journal import News
+from herijk.warehouse.queries.change_report import ChangeReport
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.store import Store
 
@@ -40,7 +40,7 @@ _COLUMNS: Final = {
 }
 
 
-def report_pages(store: Store, found: News, report: dict[str, Any]) -> dict[str, str]:
+def report_pages(store: Store, found: ChangeReport, report: dict[str, Any]) -> dict[str, str]:
     """The page by its file name, in each language, with the moment it was made.
 
     It has what came in, what was set aside, what changed and why, and what the checks say.

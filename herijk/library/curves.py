@@ -3,6 +3,8 @@
 The formulas are those of the register (`pipeline.curve`); here they take plain lists and arrays.
 """
 
+from __future__ import annotations  # the reference shows types by their names
+
 from dataclasses import dataclass
 from typing import NamedTuple, Self
 

@@ -7,14 +7,15 @@ import polars as pl
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.register.changes import register_changes
 from herijk.warehouse.store.database import open_database
-from herijk.warehouse.store.store import Store
+from herijk.warehouse.store.store import Store, read_parquet
 
 
 class DataFolder:
     """The tables of a data folder. Each call opens the database anew and sees the last rebuild."""
 
     def __init__(self, root: Path) -> None:
-        self._database = Store(root).database
+        self._store = Store(root)
+        self._database = self._store.database
         self.tables  # noqa: B018 - says at once when there is no database
 
     @property
@@ -47,6 +48,20 @@ class DataFolder:
             known = ", ".join(lines["edition"].unique().sort())
             raise MissingKnowledgeError(f"there is no edition {edition!r}; there are {known}")
         return found
+
+    def samples(self, tow_id: str) -> pl.DataFrame:
+        """The samples of one tow as `apply_method` takes them, calibrated by nothing yet.
+
+        Raises:
+            MissingKnowledgeError: there is no such tow.
+        """
+        tow = self.sql("SELECT tow_id, season FROM tows").filter(pl.col("tow_id") == tow_id)
+        if tow.is_empty():
+            raise MissingKnowledgeError(f"there is no tow {tow_id!r} in the table tows")
+        season = int(tow["season"][0])
+        index = self._store.read("season_index", str(season))
+        key = str(index.filter(pl.col("tow_id") == tow_id)["samples_key"][0])
+        return read_parquet(self._store.samples_path(season, key))
 
     def sql(self, query: str) -> pl.DataFrame:
         """The result of an SQL query; nothing can be written."""

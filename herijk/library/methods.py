@@ -86,7 +86,7 @@ def apply_method(
             out and 4-6 back, at 90, 100 and 110 % of the declared speed.
         tow: columns of the table `tows`; at least the tow's date, declared speed, waterline length,
             beam and bow height.
-        sample_rate_hz: samples a second.
+        sample_rate_hz: samples per second.
 
     Raises:
         HerijkError: a column is missing, or the method says nothing about the season.

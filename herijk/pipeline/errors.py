@@ -15,7 +15,7 @@ class DefectiveInputError(HerijkError):
     """One tow or file cannot be used. It is set aside, counted, and the others go on.
 
     Args:
-        reason_code: short stable code, e.g. `bad_number`; stands in the quarantine table.
+        reason_code: short stable code, e.g. `bad_number`, as in the quarantine table.
         message: a sentence that a volunteer understands.
         line: line in the file (header is line 1), where there is one.
     """

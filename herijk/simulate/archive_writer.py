@@ -347,6 +347,9 @@ def _profile(seasons: Sequence[int]) -> str:
     lines = [
         "# Made by a simulator: these are not the federation's measurements.",
         "simulated = true",
+        "",
+        "[publication]",
+        'licence = "CC0-1.0"',
     ]
     for season in seasons:
         spelling = spelling_of(season)

@@ -1,6 +1,6 @@
 """The simulated fleet: boat types as a table, and boats drawn from it.
 
-Every number of a type stands in `BOAT_TYPES` with its source in `docs/simulator.md`. What a
+Every number of a type is in `BOAT_TYPES` with its source in `docs/simulator.md`. What a
 boat does in the water is in `hull`; when it is towed in `world`.
 """
 
@@ -16,9 +16,9 @@ from herijk.simulate.hull import AirCoefficients, Hull, true_cw_kg_m
 MEN: Final = "H"
 WOMEN: Final = "D"
 ROWER_KG: Final = {MEN: 95.0, WOMEN: 75.0}
-"""Crew weight a rower, in clothes (Sleepproef, R. Pot 2017)."""
+"""Crew weight per rower, in clothes (Sleepproef, R. Pot 2017)."""
 POWER_W: Final = {MEN: (71.0, 89.0), WOMEN: (41.0, 54.0)}
-"""Power a rower at the declared speed, inside the 70-90 and 40-55 W that the text asks for."""
+"""Power per rower at the declared speed, inside the 70-90 and 40-55 W that the text asks for."""
 CREWS: Final = (((MEN,), 0.62), ((WOMEN,), 0.23), ((MEN, WOMEN), 0.15))
 """Which crews tow a boat, and the share of boats (stated assumption)."""
 
@@ -101,7 +101,7 @@ class Boat:
         return f"{(1_308_179 * (self.index + 1)) % 9_999_991:07d}"
 
     def target_power_w(self, crew_class: str) -> float:
-        """Power a rower at which this boat is towed."""
+        """Power per rower at which this boat is towed."""
         low, high = POWER_W[crew_class]
         return low + self.power_share * (high - low)
 

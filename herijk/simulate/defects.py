@@ -1,7 +1,7 @@
 """What can go wrong in a simulated tow, each by name and size, and what went wrong when.
 
 `Defects` has one field a defect; zero (or one, for a factor) switches it off. `SEASONS` says as
-data which instruments and defects each season had; sources stand in `docs/simulator.md`.
+data which instruments and defects each season had; sources are in `docs/simulator.md`.
 How a defect works on a channel is in `motion` and `instruments`.
 """
 

@@ -1,6 +1,6 @@
 """The true motion of a boat in its runs, and the stream and wind around it.
 
-Drawn on a grid of 20 points a second, the same at every sampling rate, so that a tow at 20 Hz
+Drawn on a grid of 20 points per second, the same at every sampling rate, so that a tow at 20 Hz
 and at 1000 Hz is the same tow. What instruments make of it is in `instruments`.
 """
 

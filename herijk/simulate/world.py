@@ -51,7 +51,7 @@ class WorldSettings:
     Args:
         seasons: seasons to simulate, ascending.
         tows_per_season: tows in each.
-        rate_hz: samples a second.
+        rate_hz: samples per second.
         seed: decides everything that is drawn.
         defects: sizes of the defects in a season.
         air: the air coefficients that are true in this world.

@@ -106,7 +106,7 @@ class TowRuns(RunList):
 
 
 class HandWindows(dy.Schema):
-    """Windows that a person gave, one row a run; a method may use them (`by_hand`)."""
+    """Windows that a person gave, one row per run; a method may use them (`by_hand`)."""
 
     tow_id = column.tow_id(primary_key=True)
     run = column.run(primary_key=True)
@@ -140,3 +140,22 @@ class Quarantine(dy.Schema):
     run = column.run(nullable=True)
     lost_s = column.number("s", "time that is lost", nullable=True, min=0)
     first_seen = dy.Date(description="day on which this fault was first found")
+
+
+class About(dy.Schema):
+    """What the database says of itself."""
+
+    key = column.text(
+        "simulated: made by a simulator, or measured; code_version: of the code that made it; "
+        "publisher, licence: as the archive declares them",
+        primary_key=True,
+    )
+    value = column.text("its value")
+
+
+class Contents(dy.Schema):
+    """The tables of the database."""
+
+    table = column.text("name of the table", primary_key=True)
+    rows = dy.Int64(description="rows in it", min=0)
+    meaning = column.text("what the table is")

@@ -79,7 +79,7 @@ class ComparedTows(dy.Schema):
     displacement_kg = column.number("kg", "boat and crew", nullable=True)
     waterline_length_m = column.number("m", "length on the waterline that day")
     declared_speed_m_s = column.speed("speed v0 the crew declared")
-    power_w = column.number("W", "power a rower at that speed", nullable=True)
+    power_w = column.number("W", "power per rower at that speed", nullable=True)
     hull_speed_m_s = column.speed(
         "1.25 sqrt(waterline length); also 'B from length' of the tool of 2014"
     )
@@ -237,13 +237,13 @@ class SlowTows(dy.Schema):
     boat_type = column.text("type of boat, or unknown")
     declared_speed_m_s = column.speed("speed v0 the crew declared")
     season = column.season()
-    power_w = column.number("W", "power a rower at the declared speed", nullable=True)
+    power_w = column.number("W", "power per rower at the declared speed", nullable=True)
     slow = dy.Bool(description="under 60 W (women 34 W); else under 70 W, or raced off its curve")
     tow_hull_ratio = column.number("1", "declared speed / hull speed")
     speed_case = column.text("low (under 0.67 of hull speed), middle or high (from 0.80)")
     races = dy.Int32(description="races until its next tow; empty: none", nullable=True)
     raced_speed_m_s = column.speed("fastest of them, through the water", nullable=True)
-    raced_power_w = column.number("W", "power a rower there by its own curve", nullable=True)
+    raced_power_w = column.number("W", "power per rower there by its own curve", nullable=True)
     raced_high = dy.Bool(description="over 100 W (women 57 W)", nullable=True)
     text_says = column.text(
         "whom Cw-kromme (2015) expects wronged at that speed: advantaged, disadvantaged; empty "

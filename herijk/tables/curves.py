@@ -31,9 +31,14 @@ class Curves(dy.Schema):
     )
     cw_best_lo_kg_m = column.number("kg/m", "lower end of its 95 % interval", nullable=True)
     cw_best_hi_kg_m = column.number("kg/m", "upper end", nullable=True)
+    cw_others_kg_m = column.number(
+        "kg/m",
+        "Cw with log and load cell as all other boats show them; empty: nothing is estimated",
+        nullable=True,
+    )
     b_lo_m_s = column.number("m/s", f"{column.LOWER_END}; empty: cannot be told", nullable=True)
     b_hi_m_s = column.number("m/s", "upper end; empty: no upper bound", nullable=True)
-    power_w = column.number("W", "power a rower at the declared speed", nullable=True)
+    power_w = column.number("W", "power per rower at the declared speed", nullable=True)
     residual_sd_ratio = column.number("1", "sd of the points about the curve / Cw", nullable=True)
     calibration_factor = column.number("1", "GPS speed / log speed", nullable=True)
     runs_used = dy.Int8(description="points the curve is fitted through", min=0)

@@ -9,6 +9,15 @@ from herijk.tables import column
 from herijk.tables.archive import LOST, Boats, HandWindows, RunList, TowFacts
 
 
+class AboutArchive(dy.Schema):
+    """What the archive says of itself, and where it lies; one row."""
+
+    simulated = dy.Bool(description="made by a simulator")
+    publisher = column.text("who publishes what is made from it", nullable=True)
+    licence = column.text("its licence: an SPDX name or a web address", nullable=True)
+    root = column.text("the folder")
+
+
 class Faults(dy.Schema):
     """What cannot be used, and why."""
 

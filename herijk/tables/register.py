@@ -45,11 +45,11 @@ class DueList(dy.Schema):
     tow_date = dy.Date(description="day of the tow", nullable=True)
     valid_until = dy.Date(description="last day it counts", nullable=True)
     declared_speed_m_s = column.speed("speed that was declared for it", nullable=True)
-    power_w = column.number("W", "power a rower at that speed", nullable=True)
+    power_w = column.number("W", "power per rower at that speed", nullable=True)
     raced_speed_m_s = column.speed(
         "fastest race of the past year, through the water", nullable=True
     )
-    lowest_speed_m_s = column.speed("speed at 70 W a rower (men) or 40 W (women)", nullable=True)
+    lowest_speed_m_s = column.speed("speed at 70 W per rower (men) or 40 W (women)", nullable=True)
     highest_speed_m_s = column.speed("speed at 90 W or 55 W", nullable=True)
     tow_speed_m_s = column.speed("speed proposed for the next tow", nullable=True)
     speed_reason = column.text("why that speed")
@@ -84,7 +84,7 @@ class RaceChanges(dy.Schema):
     rowers = column.rowers(primary_key=True)
     crew_class = column.crew_class(primary_key=True)
     rowing_time_s = column.number("s", "time rowed", min_exclusive=0)
-    old_power_w = column.number("W", "power a rower by the old edition", nullable=True)
+    old_power_w = column.number("W", "power per rower by the old edition", nullable=True)
     new_power_w = column.number("W", "the same by the new one", nullable=True)
     old_rank = dy.Int32(description="place in race and class by the old edition", nullable=True)
     new_rank = dy.Int32(description="the same by the new one", nullable=True)

@@ -1,7 +1,7 @@
 """The tables of the warehouse, each declared once: names, dtypes, units, ranges and meaning.
 
 Other programs rely on these names; a column may be added, none is renamed or dropped without a
-line in the changelog. Units stand in the names (SI); ratios are ratios. What a number means
+line in the changelog. Units are in the names (SI); ratios are ratios. What a number means
 physically is explained in the module that computes it; how tables are stored is in
 `warehouse.store.store`.
 """
@@ -78,6 +78,9 @@ TABLES: Final[dict[str, type[dy.Schema]]] = {
     "methods": editions.Methods,
     "lineage": editions.Lineage,
 }
+
+ABOUT: Final[dict[str, type[dy.Schema]]] = {"about": archive.About, "contents": archive.Contents}
+"""Tables of the database about itself."""
 
 
 def conform(name: str, frame: pl.DataFrame) -> pl.DataFrame:

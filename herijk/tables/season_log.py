@@ -72,8 +72,10 @@ class SeasonDiagnosis(dy.Schema):
     part = dy.Int32(primary_key=True, description="part of the season, until a log was replaced")
     instrument = column.text(
         "log_scale, log_trend (end of the season against its middle), log_change (from a tow on), "
-        "gps_scale (plain GPS), force_scale, force_zero, force_zero_drift (end against middle), or "
-        "fleet_step (all boats changed with this season)",
+        "gps_scale (plain GPS), force_scale, force_zero, force_zero_drift (end against middle), "
+        "anemometer_scale (wind read / wind), season_bend (the bend of all boats as this season's "
+        "logs show it), water_temperature (not recorded), or fleet_step (all boats changed with "
+        "this season)",
         primary_key=True,
     )
     unit = column.text("1 for the logarithm of a factor, N for a force")

@@ -38,7 +38,7 @@ class SeasonChanges(dy.Schema):
     """Cw of each method / Cw of the first method, of the same tows, per season."""
 
     method = column.method(primary_key=True)
-    from_method = column.text("first method, held against")
+    from_method = column.text("first method, which the others are compared with")
     season = column.season(primary_key=True)
     tows = dy.Int32(description="tows with a curve under both", min=1)
     median_ratio = column.number("1", "median of the ratio", min_exclusive=0)

@@ -4,14 +4,24 @@ SQL that any DuckDB since 1.0 understands. A view computes nothing that a table 
 hold, but for Cw of a curve at another speed.
 """
 
+from collections.abc import Mapping
 from typing import Final, NamedTuple
 
 
 class View(NamedTuple):
-    """What a row of a view is, and its query."""
+    """A named question.
+
+    Attributes:
+        meaning: what a row is.
+        query: the question in SQL.
+        tables: where its columns come from; these say what a column means.
+        own: meaning of the columns that no table has.
+    """
 
     meaning: str
     query: str
+    tables: tuple[str, ...]
+    own: Mapping[str, str] = {}
 
 
 VIEWS: Final = {
@@ -24,6 +34,7 @@ WHERE r.edition = (
     SELECT edition FROM editions WHERE valid_from <= current_date
     ORDER BY valid_from DESC, published_on DESC, edition DESC LIMIT 1
 )""",
+        ("register", "boats"),
     ),
     "curves_at_standard_speed": View(
         "Every curve at the common speed of its type and class, where boats can be compared.",
@@ -41,6 +52,11 @@ SELECT method, boat_type, crew_class, rowers, fsn_no, name, tow_id, season, stat
         THEN a_kg_m / (1 - bend_s2_m2 * standard_speed_m_s ^ 2) END AS cw_standard_kg_m
 FROM typed
 ORDER BY method, tow_id""",
+        ("curves", "boats"),
+        {
+            "standard_speed_m_s": "median declared speed of the type and class [m/s]",
+            "cw_standard_kg_m": "Cw at that speed; empty where the curve has none there [kg/m]",
+        },
     ),
     "boats_by_type": View(
         "Per method, type and class: boats, tows, and the middle of A, B and Cw.",
@@ -50,6 +66,14 @@ SELECT method, boat_type, crew_class, count(DISTINCT fsn_no) AS boats, count(*) 
 FROM curves_at_standard_speed
 GROUP BY method, boat_type, crew_class
 ORDER BY method, boat_type, crew_class""",
+        ("curves", "boats"),
+        {
+            "boats": "boats of the type with a curve",
+            "tows": "their tows with a curve",
+            "a_kg_m": "median of A [kg/m]",
+            "b_m_s": "median of B, over the tows that have one [m/s]",
+            "cw_standard_kg_m": "median of Cw at the common speed of the type and class [kg/m]",
+        },
     ),
     "changes_by_cause": View(
         "One row per changed line and cause; the factors of a line multiply to its cw_ratio.",
@@ -58,5 +82,11 @@ SELECT from_edition, to_edition, fsn_no, rowers, crew_class, change, cw_ratio,
     part ->> '$.cause' AS cause, part ->> '$.step' AS step,
     CAST(part ->> '$.factor' AS DOUBLE) AS factor
 FROM (SELECT *, unnest(CAST(causes AS JSON[])) AS part FROM register_changes)""",
+        ("register_changes",),
+        {
+            "cause": "why the line changed",
+            "step": "step of the method, where a method is the cause",
+            "factor": "what it does to Cw: new / old [1]",
+        },
     ),
 }

@@ -5,7 +5,11 @@ import polars as pl
 
 from herijk.assets.definitions import defs
 from herijk.assets.jobs import ASSETS as ASSETS_HELD
+from herijk.assets.jobs import job_defs
+from herijk.assets.resources import Quiet, Setup
 from herijk.assets.shown import PAGES, preview, with_site
+from herijk.tables.schemas import TABLES
+from tests.conftest import METHODS
 
 ASSETS = [
     "archive_index",
@@ -97,10 +101,32 @@ def test_checks_are_those_listed():
     assert sorted(f"{key.asset_key.to_user_string()}: {key.name}" for key in keys) == CHECKS
 
 
-def test_every_asset_is_described_and_grouped():
+def test_every_asset_says_what_it_is_and_whose():
     graph = defs.resolve_asset_graph()
-    for key in graph.get_all_asset_keys():
-        assert graph.get(key).group_name != "default", key
+    for node in map(graph.get, graph.get_all_asset_keys()):
+        assert node.group_name != "default", node.key
+        assert node.kinds, node.key
+        assert node.owners, node.key
+        assert node.code_version, node.key
+        assert node.description, node.key
+        known = node.key.to_user_string() not in TABLES
+        assert known or "dagster/column_schema" in node.metadata, node.key
+
+
+def test_one_table_can_be_made_alone(bench):
+    before = {f.name: f.stat().st_mtime_ns for f in _tables(bench)}
+    setup = Setup(archive=str(bench.archive), data=str(bench.data), methods=list(METHODS))
+    alone = dg.AssetSelection.assets("season_ladder")
+    job = dg.define_asset_job("alone", alone - alone.checks())
+    found = dg.Definitions.merge(job_defs(setup, Quiet()), dg.Definitions(jobs=[job]))
+    assert found.resolve_job_def("alone").execute_in_process().success
+    changed = {f.name for f in _tables(bench) if f.stat().st_mtime_ns != before[f.name]}
+    assert changed == {"season_ladder.parquet"}
+    assert not bench.rebuild().database  # what was made alone is what a rebuild makes
+
+
+def _tables(bench):
+    return (bench.data / "lake" / "tables").glob("*.parquet")
 
 
 def test_assets_link_to_their_page_where_the_site_is_served():

@@ -1,24 +1,27 @@
 """The report of a rebuild: what changed and why, and who is told."""
 
+import base64
 import datetime as dt
 import email
 import email.policy
 import json
 import shutil
+import socketserver
 import threading
 from http.server import BaseHTTPRequestHandler, HTTPServer
+from typing import ClassVar
 
 import dagster as dg
 import duckdb
 import polars as pl
 import pytest
 
-from herijk.assets.notify import Message, Notifier
+from herijk.assets.notify import Message, Notifier, notifier_of
 from herijk.assets.report import failed_checks, tell
 from herijk.assets.settings import read_settings
 from herijk.dashboards.words import both
 from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.warehouse.queries.journal import news, reported_database
+from herijk.warehouse.queries.change_report import change_report, reported_database
 from tests.assets.test_rebuild import samples_files, spoil, tow_of
 from tests.conftest import METHODS
 from tests.warehouse.test_faults import Archive, cells, line_of, times
@@ -80,7 +83,7 @@ def test_a_log_factor_that_shows_the_same_did_not_move(bench):
     with duckdb.connect(reported_database(bench.store)) as db:
         db.execute("UPDATE log_factors SET factor = factor * 1.00004 WHERE season = 2009")
         db.execute("UPDATE log_factors SET factor = factor * 1.00006 WHERE season = 2014")
-    assert news(bench.store).factors["season"].unique().to_list() == [2014]
+    assert change_report(bench.store).factors["season"].unique().to_list() == [2014]
 
 
 def test_a_second_rebuild_reports_that_nothing_changed(bench):
@@ -197,11 +200,57 @@ def test_a_message_that_cannot_be_sent_is_reported_and_stops_nothing(tmp_path, w
     assert not list(tmp_path.rglob("*.eml"))
 
 
+class MailServer(socketserver.StreamRequestHandler):
+    """Takes mail as SMTP says, from who logs in with the right password."""
+
+    PASSWORD: ClassVar[bytes] = base64.b64encode(b"\0tc@x.org\0secret")
+    taken: ClassVar[list[str]] = []
+
+    def handle(self):
+        self.wfile.write(b"220 here\r\n")
+        while line := self.rfile.readline().strip():
+            self.wfile.write(self.answer(line.split()) + b"\r\n")
+
+    def answer(self, words):
+        match words[0].upper():
+            case b"EHLO":
+                return b"250-here\r\n250 AUTH PLAIN"
+            case b"AUTH":
+                return b"235 yes" if words[-1] == self.PASSWORD else b"535 no"
+            case b"QUIT":
+                return b"221 bye"
+            case b"DATA":
+                self.wfile.write(b"354 go on\r\n")
+                lines = iter(self.rfile.readline, b".\r\n")
+                self.taken.append(b"".join(lines).decode())
+        return b"250 ok"
+
+
+@pytest.mark.parametrize(("password", "taken"), [("secret", 1), ("wrong", 0)])
+def test_mail_goes_by_the_mail_server_or_into_the_outbox(tmp_path, monkeypatch, password, taken):
+    monkeypatch.setattr(MailServer, "taken", [])
+    (tmp_path / "password").write_text(f"{password}\n")
+    with socketserver.TCPServer(("127.0.0.1", 0), MailServer) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        (tmp_path / "beheer.toml").write_text(
+            f'mail_to = "tc@example.org"\nsmtp = "smtp://tc%40x.org@127.0.0.1:{server.server_address[1]}"\n'
+            f'smtp_password_file = "{tmp_path}/password"'
+        )
+        notifier = notifier_of(str(tmp_path), read_settings(tmp_path))
+        problems = notifier.send(Message("onderwerp", "tekst", {}, NOW))
+        server.shutdown()
+    assert len(MailServer.taken) == taken
+    assert all("Subject: onderwerp" in mail for mail in MailServer.taken)
+    assert len(problems) == len(list((tmp_path / "outbox").glob("*.eml"))) == 1 - taken
+    assert password not in repr(notifier) + "".join(problems)
+
+
 def test_settings_that_are_not_understood_say_which(tmp_path):
     assert read_settings(tmp_path).nightly == "0 3 * * *"
     for text, word in (
         ("nightly = 3", "nightly"),
         ('webhook = "file:///etc/passwd"', "webhook"),
+        ('smtp = "smtp://me:secret@host"', "smtp"),
         ("night = 1", "night"),
         ("=", "TOML"),
     ):

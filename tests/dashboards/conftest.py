@@ -19,7 +19,7 @@ from tests.conftest import METHODS, Workbench
 ATTACK = "</script><script>alert(1)</script>"
 ACCENT = "Tréwes"
 FORMULA = "Foo;=1+1;bar"
-"""A formula to a spreadsheet that separates by semicolons, wherever it stands in the name."""
+"""A formula to a spreadsheet that separates by semicolons, wherever it is in the name."""
 EDITIONS = ("2015-1", "2026-1")
 LINKS = [("log1", 0, "estimated"), ("log1", 1, "estimated"), ("log2", 0, "other log")]
 """Log, part and source of season factors: the methods of the small archive estimate none."""

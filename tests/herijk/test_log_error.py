@@ -1,7 +1,7 @@
 """`herijk log-error` on archives that are hard: few boats, a season without repeats, one set aside.
 
-The archive has five tows a season, about twenty boats. Those of 2009 got other numbers, so that no
-boat of that season was ever towed again; every day of 2010 is set aside; a log was replaced in
+The archive has five tows per season, about twenty boats. Those of 2009 got other numbers, so that
+no boat of that season was ever towed again; every day of 2010 is set aside; a log was replaced in
 2011; one boat was made 15 % heavier to tow after 2011, and nobody said so.
 """
 
@@ -101,7 +101,7 @@ def test_few_boats_give_wide_intervals_that_hold_the_truth(hard):
     truth = [factor for tow, factor in tows.items() if tow[:4] == "2011" and tow in used]
     row = seasons(hard)[2011]
     assert row["lo"] < sum(truth) / len(truth) < row["hi"]
-    assert row["hi"] - row["lo"] > 0.02  # 24 tows a season give about 0.014
+    assert row["hi"] - row["lo"] > 0.02  # 24 tows per season give about 0.014
 
 
 def test_each_part_of_a_season_has_its_factor_and_its_tows_use_it(hard):

@@ -1,4 +1,4 @@
-"""A fleet of one type with known truth, as tables; repetitions stand in the column `method`."""
+"""A fleet of one type with known truth, as tables; repetitions are in the column `method`."""
 
 import datetime as dt
 
@@ -108,6 +108,7 @@ def _fitted(speed, cw, v0):
     yield pl.Series("cw_kg_m", at)
     yield pl.Series("cw_lo_kg_m", interval.lo)
     yield pl.Series("cw_hi_kg_m", interval.hi)
+    yield pl.lit(None, pl.Float64).alias("cw_others_kg_m")
     yield pl.Series("power_w", at * v0**3 / 8)
     yield pl.Series("b_capped", np.zeros(len(v0), bool))
     yield pl.Series("status", ["accepted"] * len(v0))

@@ -165,15 +165,17 @@ def register(world):
     found = season_log.estimate_season_factors(world.tows)
     logs = found.factors.select("season", "part", "log", log_sd="ln_sd", log_dof="dof")
     era = pl.when(pl.col("season") < 2012).then(2009).otherwise(2012)
-    wander = era.replace_strict(found.wander_sd, return_dtype=pl.Float64)
+    wander = era.replace_strict(found.tow_log_sd, return_dtype=pl.Float64)
     anchored = pl.col("anchored")
     tows = world.tows.join(logs, on=["season", "part", "log"], how="left").with_columns(
         pl.col("log_sd").fill_null(0.0),
         pl.col("log_dof").fill_null(np.inf),
-        pl.when(anchored).then(0.0).otherwise(wander).alias("wander_sd"),
+        pl.when(anchored).then(0.0).otherwise(wander).alias("tow_log_sd"),
         anchored.alias("calibrated"),
         pl.col("ln_cw_sd").alias("random_ratio"),
         pl.lit(200.0).alias("random_dof"),
+        pl.lit(0.0).alias("misfit_ratio"),
+        pl.lit(None, pl.Float64).alias("wind_ln_sd"),
         pl.lit(1.0).alias("speed_ratio"),
         pl.lit(0.025).alias("air_ratio"),
         pl.lit(0.05).alias("air_per_coefficient"),

@@ -440,7 +440,7 @@ def test_every_choice_of_tows_has_its_line_with_its_own_count(three_seasons):
     assert (drawn["lo"] < drawn["y"]).all()
 
 
-def test_repeats_of_few_boats_do_not_make_a_line_surer():
+def test_repeats_of_few_boats_do_not_narrow_a_line():
     tables = fleet(7, boats=6, seasons=tuple(range(2009, 2019)), noise=0.005, height_sd=0.05)
     lines, _ = type_lines(observe(*tables))
     width = lines.filter(quantity="cw_standard_kg_m", explaining="weight_kg").select(
@@ -506,6 +506,17 @@ def test_e_n_is_the_difference_in_both_intervals():
     half = [0.5 * np.log(c["cw_hi_kg_m"] / c["cw_lo_kg_m"]) for c in (old, new)]
     difference = np.log(new["cw_kg_m"] / old["cw_kg_m"])
     assert pair["e_n"] == pytest.approx(difference / np.hypot(*half))
+
+
+def test_a_pair_is_compared_by_the_instruments_of_other_boats():
+    curves, tows, *_ = fleet(21, boats=1, seasons=(2014, 2016), speeds_m_s=[2.5])
+    by_others = curves.with_columns(
+        (pl.col("cw_kg_m") * pl.col("season").replace_strict({2014: 1.01, 2016: 1.0})).alias(
+            "cw_others_kg_m"
+        )
+    )
+    own, others = (repeat_pairs(c, tows)["ln_ratio"][0] for c in (curves, by_others))
+    assert others == pytest.approx(own - np.log(1.01))
 
 
 def test_no_pair_across_an_alteration():

@@ -20,7 +20,7 @@ from herijk.pipeline.register.due import IN_RANGE as REALISTIC
 
 AS_OF = dt.date(2018, 6, 1)
 A, B, ROWERS = 31.6, 4.44, 8
-"""The worked example of the presentation: 71.2 W a rower at 2.35 m/s."""
+"""The worked example of the presentation: 71.2 W per rower at 2.35 m/s."""
 
 RACES = {
     "fsn_no": pl.String(),

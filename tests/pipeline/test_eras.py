@@ -53,7 +53,7 @@ def test_an_outlier_does_not_move_a_shift():
 
 
 def test_boats_that_only_age_do_not_stand_apart():
-    # 0.5 % a year over six years is more than the scatter of the pairs.
+    # 0.5 % per year over six years is more than the scatter of the pairs.
     within = (2014, 2018, 4 * 0.005 + 0.1 * SCATTER)
     aged = early((2009, 2015, 6 * 0.005 + SCATTER), within)
     assert not aged["apart"]

@@ -1,4 +1,4 @@
-"""The ladder and the option study: factors multiply, and each change shows where it was made."""
+"""The ladder and the sensitivity study: factors multiply, each change shows where it was made."""
 
 import numpy as np
 import polars as pl

@@ -45,6 +45,28 @@ def moved(tows, expression, by):
     )
 
 
+def test_a_boat_left_out_moves_its_own_tows_as_leaving_it_out_does():
+    """E_n of a boat is by the factors that the other boats give."""
+    world = simulate(replace(CLEAN, boats=20, tows_a_season=8), 3)
+    found = estimate_season_factors(world.tows)
+    boats = world.tows.filter(pl.col("season") == 2010)["fsn_no"].unique()
+    said, true = [], []
+    for boat in boats.sort()[:4]:
+        others = estimate_season_factors(world.tows.filter(pl.col("fsn_no") != boat)).factors
+        rows = (
+            found.instruments.join(
+                world.tows.filter(pl.col("fsn_no") == boat).select("tow_id", "season"), on="tow_id"
+            )
+            .join(others.select("season", others="factor"), on="season")
+            .drop_nulls()
+        )
+        said += rows["others_ln_ratio"].to_list()
+        true += (-(2 + 2 * rows["bend"]) * (rows["others"] / rows["factor"]).log()).to_list()
+    assert len(said) > 4
+    assert np.corrcoef(said, true)[0, 1] > 0.9
+    assert np.std(np.subtract(said, true)) < 0.4 * np.std(true)
+
+
 @pytest.mark.parametrize("factor", [0.94, 1.0, 1.06])
 def test_scale_effect_is_that_of_refitting_the_hyperbola(factor):
     a, b, v0 = 31.6, 4.44, 2.35
@@ -89,7 +111,7 @@ def test_ageing_is_told_from_log_errors():
 def test_wander_within_the_season_is_found_and_widens_the_interval():
     found = estimate_season_factors(simulate(replace(CLEAN, wander=0.015), 2).tows)
     calm = estimate_season_factors(simulate(CLEAN, 2).tows)
-    assert found.wander_sd[2009] == pytest.approx(0.015, abs=0.006)
+    assert found.tow_log_sd[2009] == pytest.approx(0.015, abs=0.006)
     assert (found.factors["ln_sd"] > 1.3 * calm.factors["ln_sd"]).all()
 
 
@@ -243,7 +265,7 @@ def test_the_last_bits_of_the_tows_do_not_reach_the_factors(seed):
     found, other = (estimate_season_factors(t) for t in (tows, jittered(tows, seed)))
     assert unequal({"factors": found.factors}, {"factors": other.factors}) == []
     assert found.tow_sd == pytest.approx(other.tow_sd, rel=SAME)
-    assert found.wander_sd == pytest.approx(other.wander_sd, rel=SAME)
+    assert found.tow_log_sd == pytest.approx(other.tow_log_sd, rel=SAME)
     chosen, others = (retow_choice(one) for one in (found, other))
     assert unequal({"choice": chosen}, {"choice": others}) == []
 

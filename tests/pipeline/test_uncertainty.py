@@ -20,8 +20,9 @@ def tows(**changed):
     usual = {
         "tow_id": "2014-001", "speed_ratio": 1.0, "season": 2014, "part": 0, "log": "log1",
         "kappa": 2.86,
+        "misfit_ratio": 0.0, "wind_ln_sd": None,
         "random_ratio": 0.0061, "random_dof": 96.0, "calibrated": True, "log_sd": 0.0,
-        "log_dof": np.inf, "wander_sd": 0.0, "air_ratio": 0.025, "air_per_coefficient": 0.05,
+        "log_dof": np.inf, "tow_log_sd": 0.0, "air_ratio": 0.025, "air_per_coefficient": 0.05,
         "wind_measured": True, "still_air_ratio": 0.025, "temperature_known": False,
     }  # fmt: skip
     return pl.DataFrame([usual | changed])
@@ -110,8 +111,10 @@ def test_budget_is_that_of_the_research_note():
     assert 100 * combine(held)["u_ratio"][0] == pytest.approx(1.6, abs=0.06)
 
 
-def test_a_tow_without_dgps_has_wander_and_the_season_in_place_of_calibration():
-    held = budget(tows(calibrated=False, log_sd=0.0035, log_dof=25.0, wander_sd=0.012, season=2010))
+def test_a_tow_without_dgps_has_the_log_and_the_season_in_place_of_calibration():
+    held = budget(
+        tows(calibrated=False, log_sd=0.0035, log_dof=25.0, tow_log_sd=0.012, season=2010)
+    )
     assert u_of(held, "stream_drift") == 0
     assert u_of(held, "calibration") == pytest.approx(2.86 * 0.012)
     assert u_of(held, "season_log") == pytest.approx(2.86 * 0.0035)
@@ -125,7 +128,15 @@ def test_keys_say_what_tows_have_in_common():
     rows = [tows(), tows(tow_id="2014-002"), tows(tow_id="2015-001", season=2015)]
     held = budget(pl.concat(rows))
     keys = dict(held.group_by("component").agg(pl.col("key").n_unique()).iter_rows())
-    one_each = {"between_tows", "random", "calibration", "stream_drift", "mass", "straightness"}
+    one_each = {
+        "between_tows",
+        "misfit",
+        "random",
+        "calibration",
+        "stream_drift",
+        "mass",
+        "straightness",
+    }
     assert {name for name, count in keys.items() if count == 3} == one_each
     assert {name for name, count in keys.items() if count == 1} == {"wind"}
     season = {"force", "anemometer", "temperature", "season_log"}

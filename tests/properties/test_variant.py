@@ -1,4 +1,4 @@
-"""Whatever is changed at the controls, the saved file reads back as the method on trial."""
+"""Whatever is changed at the controls, the saved file reads back as the scenario."""
 
 import tomllib
 

@@ -7,7 +7,7 @@ import duckdb
 import polars as pl
 import pytest
 
-from herijk.tables.schemas import TABLES
+from herijk.tables.schemas import ABOUT, TABLES
 from herijk.tables.views import VIEWS
 from herijk.warehouse.build.graph import LAKE_ONLY
 from herijk.warehouse.store.database import build_database
@@ -69,8 +69,9 @@ def test_every_table_and_column_says_what_it_means(built: Workbench):
             "SELECT table_name, column_name, comment FROM duckdb_columns() WHERE NOT internal"
         ).fetchall()
         tables = db.execute("SELECT table_name, comment FROM duckdb_tables()").fetchall()
-    assert {name for name, comment in tables if comment} == set(TABLES) - set(LAKE_ONLY)
-    silent = [(t, c) for t, c, comment in columns if not comment and t in TABLES]
+    named = {*TABLES, *ABOUT} - {*LAKE_ONLY}
+    assert {name for name, comment in tables if comment} == {name for name, _ in tables} == named
+    silent = [(t, c) for t, c, comment in columns if not comment]
     assert silent == []
     comments = {(t, c): comment for t, c, comment in columns}
     assert comments["curves", "cw_kg_m"] == "Cw at the declared speed [kg/m]"

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from herijk.pipeline.errors import UnavailableError
-from herijk.warehouse.store.lock import LOCK_FILE, only_writer
+from herijk.warehouse.store.lock import LOCK_FILE, OWNER_SUFFIX, only_writer
 
 HOLD = """
 import sys, time
@@ -39,6 +39,10 @@ def holder(tmp_path):
     process.communicate()
 
 
+def _owner(folder: Path) -> Path:
+    return (folder / LOCK_FILE).with_suffix(OWNER_SUFFIX)
+
+
 def test_the_second_says_who_holds_the_lock_and_touches_nothing(holder, tmp_path):
     with pytest.raises(UnavailableError) as told, only_writer(tmp_path):
         pass
@@ -52,8 +56,8 @@ def test_the_lock_dies_with_its_owner_and_the_next_clears_up(holder, tmp_path):
     holder.wait()
     with only_writer(tmp_path):
         assert not (tmp_path / "lake" / ".herijk-half.parquet").exists()
-        assert json.loads((tmp_path / LOCK_FILE).read_text())["pid"] == os.getpid()
-    assert (tmp_path / LOCK_FILE).read_text() == ""
+        assert json.loads(_owner(tmp_path).read_text())["pid"] == os.getpid()
+    assert not _owner(tmp_path).exists()
 
 
 def test_a_step_inside_a_rebuild_needs_no_lock_of_its_own(tmp_path):

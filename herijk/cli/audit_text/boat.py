@@ -225,7 +225,7 @@ def _result(curve: Report) -> str:
     return (
         f"A {curve['a_kg_m']:.2f} kg/m, {b} ({_interval_of_b(curve)}), Cw "
         f"{curve['cw_kg_m']:.2f} kg/m ({_named(curve)}: {curve['cw_lo_kg_m']:.2f} to "
-        f"{curve['cw_hi_kg_m']:.2f}), {curve['power_w']:.1f} W a rower, {curve['status']}{flags}"
+        f"{curve['cw_hi_kg_m']:.2f}), {curve['power_w']:.1f} W per rower, {curve['status']}{flags}"
         + ("" if curve["interval"] == COMPLETE else f"; {RUNS_ALONE_MEANS}")
     )
 

@@ -1,7 +1,7 @@
 """Words and figures that the pages of `herijk audit` share.
 
 Belongs here: how a number, an interval, a verdict, a boat or a reason is said. Does not belong
-here: what stands on which page.
+here: what is on which page.
 """
 
 import re
@@ -164,7 +164,7 @@ def distance(row: Report) -> str:
 
 def slow_tow(row: Report) -> str:
     """A slow tow, and what its own curve asks at the speed that like crews row."""
-    towed = f"{row['declared_speed_m_s']:.2f} m/s, {row['power_w']:.0f} W a rower"
+    towed = f"{row['declared_speed_m_s']:.2f} m/s, {row['power_w']:.0f} W per rower"
     ratios = [row[f"power_ratio_rowed{end}"] for end in ("", "_lo", "_hi")]
     if None in ratios:
         return f"{who(row)}, {row['tow_id']}: {towed}; no like crews to compare with"

@@ -1,4 +1,4 @@
-"""The document of a meeting: what a method would change, for whom, and how sure that is."""
+"""The document of a meeting: what a method would change, for whom, and how uncertain that is."""
 
 import json
 from collections import defaultdict

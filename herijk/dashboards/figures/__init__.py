@@ -52,7 +52,7 @@ FIGURES: Final[dict[str, Figure]] = {
     "log_factors": corrections.log_factors,
     "ladder": corrections.season_ladder,
     "season_change": corrections.season_change,
-    "options": corrections.option_study,
+    "options": corrections.sensitivity_study,
     "reproducibility": reproducibility.spread,
     "eras": reproducibility.era_shifts,
     "repeats": reproducibility.repeat_pairs,

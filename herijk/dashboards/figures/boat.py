@@ -23,12 +23,8 @@ from herijk.dashboards.figures.style import (
 from herijk.dashboards.words import Say
 from herijk.pipeline.method.definition import COMPLETE
 from herijk.pipeline.steps.window import CUT_REASONS
+from herijk.pipeline.uncertainty.propagation import COMPONENTS
 
-COMPONENTS = (
-    *("anemometer", "calibration", "force", "mass", "random", "season_log", "straightness"),
-    "between_tows",
-    *("stream_drift", "temperature", "wind"),
-)
 DIRECTION = "datum.value == 1 ? '{out}' : '{back}'"
 
 

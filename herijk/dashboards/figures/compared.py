@@ -25,13 +25,13 @@ def curves_compared(frame: pl.DataFrame, say: Say) -> Drawing:
 
     Args:
         frame: rows of `kind` line, point and declared
-            (`warehouse.queries.trial.Trial.boat_figure`).
+            (`warehouse.queries.scenario.Scenario.boat_figure`).
         say: gives texts.
     """
     x = number(alt.X, "speed_m_s", say("speed"))
     y = number(alt.Y, "cw_kg_m", say("cw"))
     low, high = alt.Y("cw_lo_kg_m:Q", title=say("cw")), alt.Y2("cw_hi_kg_m:Q")
-    # What as-published and a method on trial look like in the figures of all methods.
+    # What as-published and a scenario look like in the figures of all methods.
     ink, marks = (alt.Scale(range=[looks[0], looks[4]]) for looks in (OKABE_ITO, SHAPES))
     dashes = alt.Scale(range=[[5, 4], [1, 0]])
     # One legend, that of the points: colour and dash of the lines would each have their own.

@@ -1,6 +1,6 @@
 """The site of plain files: every page made from the tables, written beside and swapped in whole.
 
-`pages` says what stands on which page, `render` turns that into files; texts stand in
+`pages` says what is on which page, `render` turns that into files; texts are in
 `dashboards.words`, charts in `dashboards.figures`, numbers in the warehouse.
 """
 

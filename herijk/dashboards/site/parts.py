@@ -92,7 +92,7 @@ class Select:
 
 @dataclass(frozen=True)
 class Section:
-    """A heading, a note, and what stands under them.
+    """A heading, a note, and what is under them.
 
     Attributes:
         links: path of a page, key of its name and key of a sentence about it.

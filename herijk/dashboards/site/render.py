@@ -52,7 +52,7 @@ POLICY: Final = "; ".join(
 )
 """What a browser lets a page load: the site's own files and nothing else; no eval, no connection.
 `file:` because to some browsers a page from disk is no `'self'`; inline styles are Vega's; the font
-stands in the style sheet, because some browsers keep fonts of another folder from such a page."""
+is in the style sheet, because some browsers keep fonts of another folder from such a page."""
 
 
 def build_site(store: Store) -> dict[str, int]:

@@ -97,6 +97,7 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.between_tows": ("van proef tot proef", "from tow to tow"),
     "code.stream_drift": ("stroom", "stream"),
     "code.anemometer": ("windmeter", "anemometer"),
+    "code.misfit": ("romp is geen hyperbool", "hull is no hyperbola"),
     "code.mass": ("massa", "mass"),
     "code.random": ("spreiding van de runs", "scatter of the runs"),
     "code.season_log": ("log van het seizoen", "log of the season"),

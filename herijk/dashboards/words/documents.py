@@ -7,7 +7,7 @@ DOCUMENTS: Final[dict[str, tuple[str, str]]] = {
     "certificate_headline": ("Cw {cw} kg/m bij {speed} m/s", "Cw {cw} kg/m at {speed} m/s"),
     "certificate_no_interval": (
         "Hoe zeker dit getal is, is niet bekend.",
-        "How sure this number is, is not known.",
+        "The uncertainty of this number is not known.",
     ),
     "certificate_draft": (
         "Concept: niet vastgesteld, en dus geen geldige meetbrief.",
@@ -45,7 +45,7 @@ DOCUMENTS: Final[dict[str, tuple[str, str]]] = {
         "staan, bij dezelfde getallen. De QR-code bevat editie, nummer, ploeg en controlecode. "
         "Klopt er iets niet, meld het de commissie.",
         "Look {fsn_no} up in the register of edition {edition}: the same verification code {code} "
-        "must stand there, with the same numbers. The QR code holds edition, number, crew and "
+        "must be there, with the same numbers. The QR code holds edition, number, crew and "
         "code. If something is wrong, tell the committee.",
     ),
     "certificate_uncheckable": (

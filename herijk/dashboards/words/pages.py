@@ -114,15 +114,15 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "tables": ("Tabellen in de database", "Tables in the database"),
     "tables_note": (
         "Alles op deze bladen staat in warehouse.duckdb.",
-        "Everything on these pages stands in warehouse.duckdb.",
+        "Everything on these pages is in warehouse.duckdb.",
     ),
     "about_compare": (
         "Twee sloepen over elkaar: wie loopt lichter, bij welke snelheid?",
         "Two boats over each other: which runs easier, at what speed?",
     ),
     "about_races": (
-        "Elke wedstrijd opnieuw gerekend: wint een ander, en hoe zeker is dat?",
-        "Every race computed again: does another win, and how sure is that?",
+        "Elke wedstrijd opnieuw gerekend: wint een ander, en hoe waarschijnlijk is dat?",
+        "Every race computed again: is there another winner, and how likely is that?",
     ),
     "about_words": ("Wat de woorden en tekens betekenen.", "What the words and signs mean."),
     "now": ("Waar het staat", "Where it stands"),
@@ -362,7 +362,7 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "tot 55 W (dames) op de bekende kromme (Laagste en Hoogste). Buiten de kromme: verder dan "
         "85 tot 115 % van de opgegeven snelheid.",
         "Until when each tow counts, as judged on the day of the last tow or race (As of), and the "
-        "speed of the next one: with 70 to 90 W a rower (men) or 40 to 55 W (women) on the known "
+        "speed of the next one: with 70 to 90 W per rower (men) or 40 to 55 W (women) on the known "
         "curve (Lowest and Highest). Beyond the curve: outside 85 to 115 % of the declared speed.",
     ),
     "retow_choice": ("Welke proeven het meest leren", "Which tows would tell most"),
@@ -630,11 +630,11 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "assessments": ("Controles", "Checks"),
     "assessments_note": (
         "Alleen wat buiten zijn grens ligt; alle controles staan in de tabel assessments.",
-        "Only what lies beyond its limit; all checks stand in the table assessments.",
+        "Only what lies beyond its limit; all checks are in the table assessments.",
     ),
     "uncertainty_budget_note": (
         "Relatieve standaardonzekerheid van Cw door elke oorzaak; de tabel zegt wie haar delen.",
-        "Relative standard uncertainty of Cw by each cause; who share it stands in the table.",
+        "Relative standard uncertainty of Cw by each cause; who share it is in the table.",
     ),
     "hand_windows_note": (
         "Vensters die iemand zelf heeft gekozen, met de reden.",

@@ -2,5 +2,5 @@
 
 `form` makes controls of the model of a method, `bench` answers questions as plain data, `server`
 listens on loopback; the page itself is `templates/` and `static/`. Numbers come from `pipeline` by
-way of `warehouse.queries.trial`, charts from `dashboards.figures`.
+way of `warehouse.queries.scenario`, charts from `dashboards.figures`.
 """

@@ -24,7 +24,7 @@ from herijk.pipeline.method.definition import (
 )
 from herijk.pipeline.method.variant import cut_at, differences, variant, variant_text
 from herijk.warehouse.queries.history import History
-from herijk.warehouse.queries.trial import CURVE_COLUMNS, Trial
+from herijk.warehouse.queries.scenario import CURVE_COLUMNS, Scenario
 from herijk.warehouse.store.editions import edition_names, method_of_edition, read_edition
 from herijk.warehouse.store.files import write_new
 from herijk.warehouse.store.methods import KnownMethods
@@ -32,8 +32,8 @@ from herijk.warehouse.store.store import Store
 
 Answer = dict[str, Any]
 
-TRIAL: Final = "werkbank"
-"""Name of the method on trial, as long as it has none of its own."""
+SCENARIO: Final = "werkbank"
+"""Name of the scenario, as long as it has none of its own."""
 
 DEFAULT_BASE: Final = "rebased"
 DEFAULT_AGAINST: Final = "as-published"
@@ -130,7 +130,7 @@ class Bench:
             "long": sorted(LONG),
             "base": DEFAULT_BASE,
             "against": DEFAULT_AGAINST,
-            "trial": TRIAL,
+            "scenario": SCENARIO,
             "columns": {
                 "register": REGISTER_COLUMNS[:-2],
                 "homogeneity": HOMOGENEITY_COLUMNS,
@@ -159,26 +159,26 @@ class Bench:
             HerijkError: the method does not cover a season, or cannot be.
         """
         base = self._method(question.base)
-        method = self._wished(question, TRIAL, base.title, "")
-        trial = Trial(self._draft(self._against(question.against)), self._draft(method))
-        lines = trial.register_lines
+        method = self._wished(question, SCENARIO, base.title, "")
+        scenario = Scenario(self._draft(self._against(question.against)), self._draft(method))
+        lines = scenario.register_lines
         return {
-            "before": trial.before.method.name,
-            "summary": trial.summary(),
+            "before": scenario.before.method.name,
+            "summary": scenario.summary(),
             "changed_options": [vars(d) for d in differences(method, base)],
             "register": _rows(lines.select(REGISTER_COLUMNS)),
-            "season_change": _rows(trial.season_change()),
-            "log_factors": _rows(trial.log_factors()),
-            "types": _rows(trial.type_boats()),
-            "homogeneity": _rows(trial.type_homogeneity().select(HOMOGENEITY_COLUMNS)),
-            "reproducibility": _rows(trial.reproducibility()),
-            "boat_curves": _rows(trial.boat_curves(question.boat)),
-            "boat_figure": _rows(trial.boat_figure(question.boat)),
+            "season_change": _rows(scenario.season_change()),
+            "log_factors": _rows(scenario.log_factors()),
+            "types": _rows(scenario.type_boats()),
+            "homogeneity": _rows(scenario.type_homogeneity().select(HOMOGENEITY_COLUMNS)),
+            "reproducibility": _rows(scenario.reproducibility()),
+            "boat_curves": _rows(scenario.boat_curves(question.boat)),
+            "boat_figure": _rows(scenario.boat_figure(question.boat)),
         }
 
     def register(self, question: Question) -> pl.DataFrame:
         """The register that a question's answer shows."""
-        return self._draft(self._wished(question, TRIAL, "", "")).register
+        return self._draft(self._wished(question, SCENARIO, "", "")).register
 
     def method_file(self, wish: Named) -> str:
         """The text of the method file of a wish.
@@ -186,7 +186,7 @@ class Bench:
         Raises:
             HerijkError: another method has that name.
         """
-        if wish.name in (*shipped_methods(), TRIAL):
+        if wish.name in (*shipped_methods(), SCENARIO):
             raise HerijkError(f"{wish.name} is the name of another method; choose another")
         return variant_text(self._wished(wish, wish.name, wish.title, wish.reason))
 

@@ -3,7 +3,7 @@
 Here each check's number is observed, from the finished curves and run points of all tows of a
 method at once, since a tow is also compared with earlier ones and with like boats. The checks are
 those of the federation's first assessment (Sleepproef, R. Pot 2017, "Eerste beoordeling" and
-"Opmetingen en keuring"); their limits are data and stand in `pipeline.assessment.checks`. Which of
+"Opmetingen en keuring"); their limits are data, in `pipeline.assessment.checks`. Which of
 them reject a tow, the method says.
 """
 
@@ -33,7 +33,7 @@ _LAST_SEASON: Final = {check.code: check.last_season for check in CHECKS}
 
 
 def assess(curves: pl.DataFrame, run_points: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
-    """Every check of every tow with what was observed and what it is held against.
+    """Every check of every tow with what was observed and what it is compared with.
 
     Args:
         curves, run_points: the tables of one method, curves without `status` and `flags`.
@@ -265,7 +265,7 @@ def _of_like_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
 
     Cw at the type's common speed, over its size, against the type's median; less the season's
     median, which holds the error of its log. Medians, so that a tow pulled askew does not move
-    what it is held against.
+    what it is compared with.
     """
     boats = _with_boats(curves, tows)
     if "boat_type" not in boats.columns:

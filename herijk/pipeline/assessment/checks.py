@@ -1,6 +1,6 @@
 """The checks of the assessment as data: code, meaning, limits, unit, severity, source.
 
-One table, `CHECKS`; how each number is observed stands in `pipeline.assessment.assess`. A source in
+One table, `CHECKS`; how each number is observed is in `pipeline.assessment.assess`. A source in
 brackets is "inferred" where the texts ask for the check but give no number.
 
 Severity says what a check asks of people. `refuse`: the tow gives nothing to register. `look`:
@@ -22,10 +22,10 @@ Limit: TypeAlias = float | Mapping[str, float] | None
 
 @dataclass(frozen=True)
 class Check:
-    """A check and what it is held against.
+    """A check and what it is compared with.
 
     Attributes:
-        code: stable name; stands in `curves.flags` and `assessments.check`.
+        code: stable name, as in `curves.flags` and `assessments.check`.
         meaning: one line for people: what the observed number is and why it matters.
         unit: of the observed number and its limits.
         source: where the limit comes from, or "inferred" and why.
@@ -198,7 +198,7 @@ CHECKS: Final = (
     # The declared speed
     Check(
         "power_outside_range",
-        "power a rower at the declared speed",
+        "power per rower at the declared speed",
         "W",
         "Sleepproef 2017, 'Sleepsnelheid'",
         lowest={"H": 70.0, "D": 40.0},
@@ -207,7 +207,7 @@ CHECKS: Final = (
     ),
     Check(
         "slow_tow",
-        "power a rower at the declared speed: so slow that a race at full power lies off the curve",
+        "power per rower at the declared speed: so slow that a race at full power is off the curve",
         "W",
         "Cw-kromme 2015, 'Effect van verkeerde snelheid kiezen': under 60-70 W; women inferred, "
         "in proportion to the lower ends 40 and 70 W",

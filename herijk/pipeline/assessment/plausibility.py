@@ -1,7 +1,7 @@
 """Plausibility: can the samples of a tow be true, beside size, type, boat, day, season and archive?
 
 A force in kgf under a header of newtons is a sound number of a boat that does not exist. No tow
-shows that by itself; the others do. What each tow shows is held against what all the others let
+shows that by itself; the others do. What each tow shows is compared with what all the others let
 expect, and a shift of a tow, a day, a season or the whole archive that they rule out is found and
 named. Nothing here depends on a method, and nothing here changes a number: whoever computes leaves
 these tows out of what others share.

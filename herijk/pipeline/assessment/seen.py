@@ -1,7 +1,8 @@
 """What a tow shows of itself, before any method: resistance, bend, wind and speed.
 
 Means over whole runs, plain enough to hold a tow against others; the numbers of the register come
-from the steps of a method. What is held against what stands in `pipeline.assessment.plausibility`.
+from the steps of a method. Which numbers are compared is
+decided in `pipeline.assessment.plausibility`.
 """
 
 from dataclasses import dataclass

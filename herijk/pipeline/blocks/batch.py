@@ -115,7 +115,7 @@ class Batch:
         return np.asarray(np.arange(len(self.tow)) - first, dtype=np.int64)
 
     def by_tow(self, values: FloatArray | BoolArray) -> FloatArray:
-        """A run quantity as one row a tow, shape (tows, most runs of a tow); 0 where no run is."""
+        """A run quantity per tow, shape (tows, most runs of a tow); 0 where there is no run."""
         place = self.place
         rows = np.zeros((self.size, int(place.max(initial=0)) + 1))
         rows[self.tow, place] = values

@@ -45,7 +45,7 @@ class RunBlocks:
     """The blocks of many runs as arrays of shape (runs, seconds).
 
     Attributes:
-        runs: one row a run, sorted by `tow_id` and `run`; row i belongs to row i of the arrays.
+        runs: one row per run, sorted by `tow_id` and `run`; row i belongs to row i of the arrays.
         n: samples in each block, 0 where the run has none.
         sums: the sums of `SUM_NAMES`, 0 where the run has no block.
     """
@@ -113,11 +113,11 @@ def _masked_sum(values: FloatArray, window: BoolArray) -> FloatArray:
 
 
 def stack_blocks(blocks: pl.DataFrame, runs: pl.DataFrame) -> RunBlocks:
-    """Arranges blocks of many tows as arrays of one row a run.
+    """Arranges blocks of many tows as arrays of one row per run.
 
     Args:
         blocks: `tow_id`, and the columns that `block_sums` gives.
-        runs: one row a run with at least `tow_id` and `run`.
+        runs: one row per run with at least `tow_id` and `run`.
 
     Raises:
         BrokenPromiseError: a run without blocks.

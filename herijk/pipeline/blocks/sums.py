@@ -1,6 +1,6 @@
 """Adding up a tow's samples: one compiled loop makes the sums of every second.
 
-What the sums are stands in `pipeline.blocks.run_blocks`. The loop is compiled by Numba, and written
+What the sums are is in `pipeline.blocks.run_blocks`. The loop is compiled by Numba, and written
 so that
 its result follows from the samples alone, to the last bit and on every processor: only additions,
 multiplications and divisions, in a fixed order, and no function of a mathematical library
@@ -54,7 +54,7 @@ def block_sums(samples: pl.DataFrame, sample_rate_hz: int) -> pl.DataFrame:
             Where no wind was measured the air is taken to be still; where there is no log 2, in the
             tow or in a run, it reads as log 1. A sample that is not a number in any channel but the
             GPS is left out of its block.
-        sample_rate_hz: samples a second.
+        sample_rate_hz: samples per second.
 
     Returns:
         One row per run and second: `run`, `second` (0 is the first), `n` (samples; the last

@@ -2,7 +2,7 @@
 
 All tows of all seasons, each marked: the newest of its boat and crew, towed too slowly, outside its
 type. Also what hull speed says: `v0 / hull speed`, `B / hull speed`, and which of the three cases
-of Cw-kromme (R. Pot 2015) a tow is. Lines and outliers themselves stand in `lines`.
+of Cw-kromme (R. Pot 2015) a tow is. Lines and outliers themselves are in `lines`.
 """
 
 from typing import Final

@@ -25,7 +25,7 @@ class Era:
     """Seasons with like instruments.
 
     Attributes:
-        name: as it stands in tables.
+        name: as it is in tables.
         first, last: seasons, both included.
         steering_checked: whether a tow pulled askew would have been seen.
     """

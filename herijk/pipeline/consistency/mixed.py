@@ -5,7 +5,7 @@
 The boat's effect has one value for all rows of a boat, `other` (a season, a type) one for all rows
 of that; a cell is the single row. The error's variance is known per row, the other three are
 estimated. With a single row per boat this is the random-effects model of meta-analysis. The
-likelihood and its maximum stand in `reml`; what y and X are, and what a result means, is decided
+likelihood and its maximum are in `reml`; what y and X are, and what a result means, is decided
 elsewhere.
 """
 

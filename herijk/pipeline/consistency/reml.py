@@ -3,7 +3,7 @@
     y = X beta + boat + other + cell + error
 
 Here the data, the likelihood with its slope, and the search for the variances of boat, other and
-cell. What a fitted model says about anything stands in `mixed`.
+cell. What a fitted model says about anything is in `mixed`.
 """
 
 from dataclasses import dataclass, replace

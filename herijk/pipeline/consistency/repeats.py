@@ -24,8 +24,10 @@ ALL_PAIRS: Final = "all"
 def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     """Consecutive tows of one boat and crew without an alteration between them.
 
-    The two are compared at the older tow's declared speed, where the older curve was measured. E_n
-    is their difference in units of both 95 % intervals (ISO 13528): above 1 they disagree.
+    The two are compared at the older tow's declared speed, where the older curve was measured, each
+    with its log and load cell as the other boats show them: a boat that has part in its own
+    correction agrees with itself too well. E_n is their difference in units of both 95 % intervals
+    (ISO 13528): above 1 they disagree.
 
     Returns:
         Rows of the table `repeat_pairs`.
@@ -34,12 +36,15 @@ def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     dated = (
         curves.filter((pl.col("status") != "rejected") & pl.col("cw_kg_m").is_not_null())
         .join(tows.select("tow_id", "tow_date", "altered"), on="tow_id")
-        .with_columns((0.5 * (pl.col("cw_hi_kg_m") / pl.col("cw_lo_kg_m")).log()).alias("half"))
+        .with_columns(
+            (0.5 * (pl.col("cw_hi_kg_m") / pl.col("cw_lo_kg_m")).log()).alias("half"),
+            (pl.col("cw_others_kg_m") / pl.col("cw_kg_m")).log().fill_null(0.0).alias("by_others"),
+        )
         .sort(*line, "tow_date", "tow_id")
     )
     before = [
         pl.col(name).shift(1).over(line).alias(f"{name}_before")
-        for name in ("tow_id", "season", "cw_kg_m", "declared_speed_m_s", "half")
+        for name in ("tow_id", "season", "cw_kg_m", "declared_speed_m_s", "half", "by_others")
     ]
     pairs = dated.with_columns(before).filter(
         pl.col("tow_id_before").is_not_null() & ~pl.col("altered")
@@ -47,7 +52,11 @@ def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     return (
         pairs.with_columns(pl.Series("at_old_speed", _cw_at_old_speed(pairs)))
         .filter(pl.col("at_old_speed") > 0)
-        .with_columns((pl.col("at_old_speed") / pl.col("cw_kg_m_before")).log().alias("ln_ratio"))
+        .with_columns(
+            ln_ratio=(pl.col("at_old_speed") / pl.col("cw_kg_m_before")).log()
+            + pl.col("by_others")
+            - pl.col("by_others_before")
+        )
         .with_columns(_e_n())
         .select(*line, "tow_id", "tow_id_before", "season", "season_before", "ln_ratio", "e_n")
     )

@@ -30,7 +30,7 @@ from herijk.tables.consistency import SlowTows, SpeedTrend
 from herijk.tables.frames import frame_of
 
 SLOW_POWER_W: Final = {"H": 60.0, "D": 34.0}
-"""Power a rower below which a tow is too slow. Men: "minder dan 60-70 Watt" (Cw-kromme, R. Pot
+"""Power per rower below which a tow is too slow. Men: "minder dan 60-70 Watt" (Cw-kromme, R. Pot
 2015). Women tow at 40-55 W instead of 70-90 W: the same share of their range (inferred)."""
 
 BORDERLINE_POWER_W: Final = {"H": 70.0, "D": 40.0}
@@ -61,7 +61,7 @@ COMPARED_AT: Final = ("110", "120", "rowed", "raced")
 
 
 def is_slow(table: pl.DataFrame, limits: Mapping[str, float] = SLOW_POWER_W) -> BoolArray:
-    """Whether a tow was made with less power a rower than its class's limit, shape (rows,)."""
+    """Whether a tow was made with less power per rower than its class's limit, shape (rows,)."""
     limit = pl.col("crew_class").replace_strict(limits, return_dtype=pl.Float64)
     slow = table.select((pl.col("power_w") < limit).fill_null(value=False)).to_series()
     return slow.to_numpy()
@@ -220,7 +220,7 @@ def _text_says(case: list[str], raced_ratio: FloatArray) -> list[str | None]:
 
 
 def _raced_power(tows: Observed, speed_m_s: FloatArray) -> FloatArray:
-    """Power a rower by the register's curve at a speed, shape (rows,)."""
+    """Power per rower by the register's curve at a speed, shape (rows,)."""
     cw = curve_anywhere(tows, speed_m_s)
     return np.asarray(power_per_rower_w(cw, speed_m_s, tows.column("rowers")), dtype=np.float64)
 

@@ -3,7 +3,7 @@
 A method file is TOML that a committee member can read (`herijk/pipeline/methods/`).
 `[steps.<step>]` gives options for every season; each `[[overrides]]` block replaces some of them
 for a range; a method may `extend` another. Here such a text becomes a frozen, validated `Method`;
-nothing is computed with a method that has an error. What a step does with its options stands in the
+nothing is computed with a method that has an error. What a step does with its options is in the
 step's own module.
 """
 
@@ -78,6 +78,7 @@ class Wind(_Options):
     behind: float = Field(default=0.5, ge=0.0, le=2.0)
     side: float = Field(default=0.2, ge=0.0, le=2.0)
     averaging_s: int = Field(default=0, ge=0, le=15)
+    anemometer: Literal["as_read", "estimated"] = "as_read"
     reading: Literal["as_felt", "cw_vac_2014", "cw_opt_2014"] = "as_felt"
 
 
@@ -357,7 +358,7 @@ class _Reader:
         return ""
 
     def _keys_of_lines(self) -> list[tuple[int, set[str]]]:
-        """The keys named on each line, with those of the table it stands in."""
+        """The keys named on each line, with those of the table it is in."""
         table: set[str] = set()
         found = []
         for number, line in enumerate(self.text.splitlines(), 1):

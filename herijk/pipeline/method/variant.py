@@ -1,7 +1,7 @@
 """A variant: a method made from another by changing options, and its text as a method file.
 
 Here options of some seasons are replaced, the differences from the method it extends are found,
-and a file is written that names only those. Reading a file stands in `pipeline.method.definition`.
+and a file is written that names only those. Reading a file is in `pipeline.method.definition`.
 """
 
 from collections.abc import Iterable, Iterator, Sequence

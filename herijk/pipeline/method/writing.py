@@ -1,4 +1,4 @@
-"""A method as the text of a method file; reading one stands in `pipeline.method.definition`."""
+"""A method as the text of a method file; reading one is in `pipeline.method.definition`."""
 
 import json
 from collections.abc import Mapping

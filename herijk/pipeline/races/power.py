@@ -1,6 +1,6 @@
 """From a power to a speed: how fast a boat goes by its curve when every rower gives so much.
 
-The other way round stands in `pipeline.races.race`. Belongs here: reading a curve back from a line
+The other way round is in `pipeline.races.race`. Belongs here: reading a curve back from a line
 of a register, where B may not be known. Does not: what the speed is asked for.
 """
 

@@ -1,7 +1,8 @@
 """The best estimate of each tow's Cw, beside what was measured.
 
 All tows together know a boat at one speed; what they change there, as a ratio, is taken for the
-declared speed. What all tows share, and repeats can therefore not show, is added to the interval
+declared speed, and how far their points show the hull to lie from its hyperbola is added. What
+all tows share, and repeats can therefore not show, is added to the interval
 (ISO 5725-1: precision is not trueness). A tow of a season that is not determined stays as measured:
 the bend of its curves alone would say what its log was, and no hull is an exact hyperbola.
 """
@@ -17,37 +18,46 @@ BEST: Final = ("cw_best_kg_m", "cw_best_lo_kg_m", "cw_best_hi_kg_m")
 NOT_SEEN_BY_REPEATS: Final = ("force", "wind", "anemometer", "mass", "temperature")
 """Components of the budget that repeat tows share."""
 
+OTHERS: Final = "cw_others_kg_m"
+
 QUANTILE: Final = 1.959964
 """Of a normal distribution, for intervals of 95 %."""
 
 
 def with_best(
-    curves: pl.DataFrame, found: SeasonFactors | None, budget: pl.DataFrame
+    curves: pl.DataFrame,
+    found: SeasonFactors | None,
+    budget: pl.DataFrame,
+    misfit: pl.DataFrame,
 ) -> pl.DataFrame:
     """Curves with `BEST`: Cw at the declared speed by all tows together, with its 95 % interval.
+
+    And with `OTHERS`: Cw as measured, with the instruments as all other boats show them.
 
     Args:
         curves: rows of the table.
         found: what all tows say; None where the method does not ask it: the columns are null.
         budget: rows of the budget at the declared speed.
+        misfit: how far each hull lies from its curve there.
     """
     if found is None:
-        return curves.with_columns(pl.lit(None, pl.Float64).alias(name) for name in BEST)
+        return curves.with_columns(pl.lit(None, pl.Float64).alias(n) for n in (*BEST, OTHERS))
     shared = (
         budget.filter(pl.col("component").is_in(NOT_SEEN_BY_REPEATS))
         .group_by("tow_id")
         .agg((pl.col("u_ratio") ** 2).sum().alias("shared"))
     )
-    determined = found.instruments.drop_nulls("factor").select("tow_id")
-    known = found.best.join(determined, on="tow_id", how="semi")
+    determined = found.instruments.drop_nulls("factor").select("tow_id", "others_ln_ratio")
+    known = found.best.join(determined, on="tow_id")
     held = curves.join(known, on="tow_id", how="left", maintain_order="left").join(
-        shared, on="tow_id", how="left", maintain_order="left"
+        shared.join(misfit, on="tow_id"), on="tow_id", how="left", maintain_order="left"
     )
-    best = pl.col("cw_kg_m") * (pl.col("ln_cw") - pl.col("as_measured")).exp()
+    moved = pl.col("ln_cw") - pl.col("as_measured") + pl.col("misfit").log1p()
+    best = pl.col("cw_kg_m") * moved.exp()
 
     def half(end: str) -> pl.Expr:
         own = pl.col(end) - pl.col("ln_cw")
-        return (own**2 + QUANTILE**2 * pl.col("shared")).sqrt()
+        return (own**2 + QUANTILE**2 * (pl.col("shared") + pl.col("misfit_variance"))).sqrt()
 
     by_all = (best, best * (-half("lo")).exp(), best * half("hi").exp())
     measured = ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
@@ -57,4 +67,5 @@ def with_best(
             pl.coalesce(values, alone).alias(name)
             for name, values, alone in zip(BEST, by_all, measured, strict=True)
         ),
+        (pl.col("cw_kg_m") * pl.col("others_ln_ratio").fill_null(0.0).exp()).alias(OTHERS),
     )

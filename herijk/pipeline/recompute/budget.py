@@ -1,4 +1,4 @@
-"""How sure a curve is: the random part from its points, and the budget of every component.
+"""The uncertainty of a curve: the random part from its points, and the budget of every component.
 
 Here outcomes are given to `pipeline.uncertainty.propagation`, which has the formulas, and the
 interval of Cw at the declared speed comes back. A method with estimated season factors knows the
@@ -14,10 +14,11 @@ import numpy as np
 import polars as pl
 
 from herijk.pipeline import curve
-from herijk.pipeline.arrays import FloatArray
+from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.recompute.outcome import Outcome
 from herijk.pipeline.season_log import SeasonFactors
 from herijk.pipeline.steps.speed import log_part
+from herijk.pipeline.uncertainty.misfit import Departure, departure_of_boats
 from herijk.pipeline.uncertainty.propagation import (
     Assumed,
     budget,
@@ -25,9 +26,6 @@ from herijk.pipeline.uncertainty.propagation import (
     residual_scatter,
     run_point_uncertainty,
 )
-
-ARCHIVE_COEFFICIENT_SD: Final = 0.01
-"""Of the one coefficient found for the whole archive (research, method.md 0.9; measured here)."""
 
 DECLARED: Final = 1.0
 """The declared speed among speed ratios."""
@@ -50,6 +48,17 @@ def scatter_of(o: Outcome, pooled: bool) -> curve.Scatter:
 
 def pooled_scatter(o: Outcome) -> curve.Scatter:
     """Scatter of single run points about their curve, pooled over the tows of a season."""
+    ratio, used, on_curve = _residuals(o)
+    season = o.batch.of_tow("season").astype(np.int64)
+    residual, dof = residual_scatter(ratio, used, season)
+    known = np.isfinite(residual)
+    relative = np.where(known, residual, 0.0)
+    height = np.where(used, on_curve, 0.0).sum(axis=1) / np.maximum(used.sum(axis=1), 1)
+    return curve.Scatter((relative * height) ** 2, np.where(known, dof, 0.0))
+
+
+def _residuals(o: Outcome) -> tuple[FloatArray, BoolArray, FloatArray]:
+    """(point - curve) / curve, which points count, and the curve there, (tows, points) each."""
     on_curve = curve.cw(
         o.free.a_kg_m[:, None],
         o.free.s_s2_m2[:, None],
@@ -57,12 +66,21 @@ def pooled_scatter(o: Outcome) -> curve.Scatter:
     )
     used = o.points.used & np.isfinite(on_curve) & o.free.converged[:, None]
     ratio = np.where(used, o.points.cw_kg_m / np.where(used, on_curve, 1.0) - 1.0, 0.0)
-    season = o.batch.of_tow("season").astype(np.int64)
-    residual, dof = residual_scatter(ratio, used, season)
-    known = np.isfinite(residual)
-    relative = np.where(known, residual, 0.0)
-    height = np.where(used, on_curve, 0.0).sum(axis=1) / np.maximum(used.sum(axis=1), 1)
-    return curve.Scatter((relative * height) ** 2, np.where(known, dof, 0.0))
+    return ratio, used, on_curve
+
+
+def _departure(o: Outcome, speed_ratios: Sequence[float]) -> Departure:
+    """How far the hulls of a batch lie from their curves."""
+    ratio, used, _ = _residuals(o)
+    batch = o.batch
+    return Departure.of(
+        ratio,
+        used & batch.trusted[:, None],
+        o.points.speed_m_s / batch.of_tow("declared_speed_m_s")[:, None],
+        batch.by_tow(batch.direction.astype(np.float64)),
+        batch.by_tow(batch.target_speed_ratio),
+        np.array(speed_ratios),
+    )
 
 
 def run_point_ratio(o: Outcome) -> FloatArray:
@@ -87,7 +105,38 @@ def budget_of(
     Returns:
         Rows as `pipeline.uncertainty.propagation.budget` gives them.
     """
-    return pl.concat([_budget_of_batch(o, found, speed_ratios) for o in outcomes])
+    misfit = misfit_of(outcomes, found, speed_ratios)
+    return pl.concat([_budget_of_batch(o, found, speed_ratios, misfit) for o in outcomes])
+
+
+def misfit_of(
+    outcomes: Sequence[Outcome], found: SeasonFactors | None, speed_ratios: Sequence[float]
+) -> pl.DataFrame:
+    """How far the hull of each tow lies from its curve, by all tows of the boat.
+
+    Returns:
+        `tow_id, speed_ratio, misfit` (as a ratio, hull over curve less 1) and `misfit_variance`; 0
+        where no season factors are estimated: such a method is taken at its word.
+    """
+    each = [_departure(o, speed_ratios) for o in outcomes]
+    tows = pl.concat([o.batch.tows.select("tow_id", "fsn_no") for o in outcomes])
+    boat = tows["fsn_no"].rank("dense").to_numpy().astype(np.int64) - 1
+    value, variance = departure_of_boats(
+        Departure(*(np.concatenate([getattr(d, n) for d in each]) for n in ("ratio", "variance"))),
+        boat,
+    )
+    asked = 0.0 if found is None else 1.0
+    return pl.concat(
+        [
+            tows.select(
+                "tow_id",
+                pl.lit(ratio).alias("speed_ratio"),
+                pl.Series("misfit", asked * value[:, place]),
+                pl.Series("misfit_variance", asked * variance[:, place]),
+            )
+            for place, ratio in enumerate(speed_ratios)
+        ]
+    )
 
 
 def curve_points(outcomes: Sequence[Outcome], bounds: pl.DataFrame) -> pl.DataFrame:
@@ -122,7 +171,10 @@ def cw_bounds(held: pl.DataFrame) -> pl.DataFrame:
 
 
 def _budget_of_batch(
-    o: Outcome, found: SeasonFactors | None, speed_ratios: Sequence[float]
+    o: Outcome,
+    found: SeasonFactors | None,
+    speed_ratios: Sequence[float],
+    misfit: pl.DataFrame,
 ) -> pl.DataFrame:
     scatter = scatter_of(o, found is not None)
     terms = _terms_of_tows(o, found, scatter)
@@ -134,8 +186,10 @@ def _budget_of_batch(
         .with_columns(pl.Series("random_ratio", random))
         .filter(cw.is_finite())
         .join(terms, on="tow_id", maintain_order="left")
+        .join(misfit, on=["tow_id", "speed_ratio"], maintain_order="left")
         .with_columns(
             (2.0 / (1.0 - r)).alias("kappa"),
+            (pl.col("misfit") ** 2 + pl.col("misfit_variance")).sqrt().alias("misfit_ratio"),
             (pl.col("net_air_kg_m") / cw).alias("air_ratio"),
             (pl.col("air_per_coefficient_kg_m") / cw).alias("air_per_coefficient"),
             (pl.col("still_air_kg_m") / cw).alias("still_air_ratio"),
@@ -192,8 +246,9 @@ def _terms_of_tows(o: Outcome, found: SeasonFactors | None, scatter: curve.Scatt
         pl.Series("calibrated", o.calibrated),
         pl.Series("log_sd", np.where(estimated, o.estimated.ln_sd, 0.0)),
         pl.Series("log_dof", np.where(estimated, o.estimated.dof, np.inf)),
-        pl.Series("wander_sd", np.where(o.calibrated, 0.0, _wander(o, found))),
+        pl.Series("tow_log_sd", np.where(o.calibrated, 0.0, _tow_log_sd(o, found))),
         pl.Series("net_air_kg_m", net_air),
+        pl.Series("wind_ln_sd", o.wind_ln_sd).fill_nan(None),
         pl.Series("air_per_coefficient_kg_m", per_coefficient),
         pl.Series("wind_measured", batch.measured("wind")),
         pl.Series("still_air_kg_m", batch.mean(o.still_air_kg_m, o.used)),
@@ -209,20 +264,20 @@ def _median_bend(o: Outcome) -> float:
     return float(np.median(r[known] / (1.0 - r[known]))) if known.any() else USUAL_BEND
 
 
-def _wander(o: Outcome, found: SeasonFactors | None) -> FloatArray:
+def _tow_log_sd(o: Outcome, found: SeasonFactors | None) -> FloatArray:
     """Standard deviation of ln of the log factor from tow to tow, by era."""
     if found is None:
         return np.zeros(o.batch.size)
     season = o.batch.of_tow("season")
-    wander = np.zeros(o.batch.size)
-    for first, sd in sorted(found.wander_sd.items()):
-        wander = np.where(season >= first, sd, wander)
-    return wander
+    log_sd = np.zeros(o.batch.size)
+    for first, sd in sorted(found.tow_log_sd.items()):
+        log_sd = np.where(season >= first, sd, log_sd)
+    return log_sd
 
 
 def _assumed(o: Outcome, found: SeasonFactors | None) -> Assumed:
     """What is assumed, or shown by repeat tows: of Cw at the declared speed, whatever is asked."""
     assumed = Assumed() if found is None else Assumed().beside_repeats(found.tow_sd)
     if o.steps.wind.coefficients == "archive":
-        assumed = replace(assumed, wind_coefficient=ARCHIVE_COEFFICIENT_SD)
+        assumed = replace(assumed, wind_coefficient=o.coefficient_sd)
     return assumed

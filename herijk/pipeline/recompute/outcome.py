@@ -53,6 +53,8 @@ class Prepared:
         still_unit_kg_m: still-air coefficient for a drag coefficient of 1, shape (runs,).
         temperature_kg_m: change to the reference temperature, shape (runs,).
         temperature_known: shape (tows,).
+        wind_ln_scale: ln of the anemometer's scale, taken out of `means`, shape (tows,), and
+        wind_ln_sd: its standard deviation; NaN where the wind is taken as it reads.
     """
 
     batch: Batch
@@ -67,6 +69,8 @@ class Prepared:
     still_unit_kg_m: FloatArray
     temperature_kg_m: FloatArray
     temperature_known: BoolArray
+    wind_ln_scale: FloatArray
+    wind_ln_sd: FloatArray
 
     @cached_property
     def speed_factor(self) -> FloatArray:
@@ -154,6 +158,7 @@ class Outcome(Prepared):
 
     Attributes:
         ahead, behind, still_air_coefficient: drag coefficients of each run, shape (runs,).
+        coefficient_sd: standard deviation of the archive's coefficient; NaN where none was found.
         cw_kg_m: corrected coefficient, shape (runs,).
         points, free, curves: the fit's input, the free hyperbola and the one that the method
             chose, shape (tows,).
@@ -162,6 +167,7 @@ class Outcome(Prepared):
     ahead: FloatArray
     behind: FloatArray
     still_air_coefficient: FloatArray
+    coefficient_sd: float
     cw_kg_m: FloatArray
     points: curve.Points
     free: curve.Curves

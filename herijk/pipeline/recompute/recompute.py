@@ -1,6 +1,6 @@
 """Recompute: every tow under one method, from blocks to curves.
 
-Here the steps are put in their order; each step's formulas stand in its own module and the tables
+Here the steps are put in their order; each step's formulas are in its own module and the tables
 are filled in `pipeline.recompute.outcome`. The order is: steady window, means, speed correction,
 runs that count, calibration, corrections of the coefficient, wind coefficients, curve. What is
 searched over the whole archive is found first and applied after. Nothing here knows a season: the
@@ -8,6 +8,7 @@ method says what holds when.
 """
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import polars as pl
@@ -18,6 +19,7 @@ from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.pipeline.choice import first_largest
 from herijk.pipeline.method.definition import Method, Steps
+from herijk.pipeline.recompute.anemometer import with_anemometer
 from herijk.pipeline.recompute.outcome import Outcome, Prepared, Texts, TowFactor
 from herijk.pipeline.recompute.results import Recomputed, as_tables
 from herijk.pipeline.recompute.run_cache import RunCache
@@ -36,6 +38,7 @@ from herijk.pipeline.steps.speed import log_factor
 from herijk.pipeline.steps.target import above_target
 from herijk.pipeline.steps.wind import PER_TOW_BOUNDS, nearest_coefficients
 from herijk.pipeline.steps.window import Windows
+from herijk.pipeline.uncertainty.propagation import Assumed
 
 NOT_SELECTED = "not_selected"
 NO_STEADY_WINDOW = "no_steady_window"
@@ -44,6 +47,14 @@ NOT_CALIBRATED = "not_calibrated"
 
 PER_RUN_ITERATIONS = 4
 """The old tool printed "4 iteraties" (presentation 2015, screens of Razende Snol)."""
+
+
+class ArchiveCoefficient(NamedTuple):
+    """The drag coefficient of the whole archive, with its standard deviation."""
+
+    value: float
+    sd: float
+
 
 PER_TOW_GRID = np.linspace(*PER_TOW_BOUNDS, 41)
 ARCHIVE_GRID = np.linspace(0.0, 1.2, 13)
@@ -126,10 +137,12 @@ def evaluate(
         cache: what was found before of the same tows; added to.
         factors: rows of the table `tow_instruments`, for steps that ask for estimated log factors.
     """
-    prepared = [
-        _prepare(batch, steps, cache, factor_of_tows(batch, steps, factors))
-        for batch, steps in plans
-    ]
+    prepared = with_anemometer(
+        [
+            _prepare(batch, steps, cache, factor_of_tows(batch, steps, factors))
+            for batch, steps in plans
+        ]
+    )
     shared = _archive_coefficient([p for p in prepared if p.steps.wind.coefficients == "archive"])
     return [_finish(p, shared) for p in prepared]
 
@@ -160,6 +173,8 @@ def _prepare(batch: Batch, steps: Steps, cache: RunCache, estimated: TowFactor) 
         still_unit_kg_m=still_air_coefficient_kg_m(front, has_wind),
         temperature_kg_m=temperature,
         temperature_known=temperature_known,
+        wind_ln_scale=np.zeros(batch.size),
+        wind_ln_sd=np.full(batch.size, np.nan),
     )
 
 
@@ -215,8 +230,8 @@ def _mean_of_season(
     return np.repeat(y[:, None], 2, axis=1), np.repeat(determined[:, None], 2, axis=1)
 
 
-def _finish(prepared: Prepared, archive_coefficient: float | None) -> Outcome:
-    ahead, behind, still = _coefficients(prepared, archive_coefficient)
+def _finish(prepared: Prepared, shared: ArchiveCoefficient | None) -> Outcome:
+    ahead, behind, still = _coefficients(prepared, shared)
     cw = prepared.cw_of(ahead, behind, still)
     points = prepared.points_of(cw)
     free = curve.fit(points)
@@ -225,6 +240,7 @@ def _finish(prepared: Prepared, archive_coefficient: float | None) -> Outcome:
         ahead=ahead,
         behind=behind,
         still_air_coefficient=still,
+        coefficient_sd=np.nan if shared is None else shared.sd,
         cw_kg_m=cw,
         points=points,
         free=free,
@@ -243,14 +259,14 @@ def _choose_curve(prepared: Prepared, points: curve.Points, free: curve.Curves) 
 
 
 def _coefficients(
-    prepared: Prepared, archive_coefficient: float | None
+    prepared: Prepared, shared: ArchiveCoefficient | None
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Drag coefficients ahead, behind and in still air, each of shape (runs,)."""
     wind = prepared.steps.wind
     runs = len(prepared.batch.tow)
     fixed = np.full(runs, wind.ahead), np.full(runs, wind.behind)
-    if wind.coefficients == "archive" and archive_coefficient is not None:
-        one = np.full(runs, archive_coefficient)
+    if wind.coefficients == "archive" and shared is not None:
+        one = np.full(runs, shared.value)
         return one, one, one
     if wind.coefficients == "per_tow":
         one = _best_per_tow(prepared)[prepared.batch.tow]
@@ -299,21 +315,26 @@ def _best_per_tow(prepared: Prepared) -> FloatArray:
     return np.asarray(PER_TOW_GRID[best], dtype=np.float64)
 
 
-def _archive_coefficient(prepared: list[Prepared]) -> float | None:
+def _archive_coefficient(prepared: list[Prepared]) -> ArchiveCoefficient | None:
     """One coefficient for the whole archive: the least misfit of all tows together.
 
     Out and back feel different wind, so a wrong coefficient drives their points apart. The misfit
-    is a parabola in the coefficient, near its minimum; None without tows.
+    is a parabola in the coefficient, near its minimum; None without tows. The standard deviation
+    is the sandwich over tows (Huber 1967): what is odd about one tow is shared by its runs.
     """
     if not prepared:
         return None
-    total = np.sum(
-        [np.where(p.batch.trusted, _misfits(p, ARCHIVE_GRID), 0.0).sum(axis=1) for p in prepared],
-        axis=0,
+    each = np.concatenate(
+        [np.where(p.batch.trusted, _misfits(p, ARCHIVE_GRID), 0.0) for p in prepared], axis=1
     )
-    best = int(np.clip(total.argmin(), 1, len(ARCHIVE_GRID) - 2))
-    below, here, above = total[best - 1 : best + 2]
-    bend = below - 2.0 * here + above
+    best = int(np.clip(each.sum(axis=1).argmin(), 1, len(ARCHIVE_GRID) - 2))
+    below, here, above = each[best - 1 : best + 2]
+    bends = below - 2.0 * here + above
+    bend = bends.sum()
+    if bend <= 0:
+        return ArchiveCoefficient(float(ARCHIVE_GRID[best]), Assumed().wind_coefficient)
     step = ARCHIVE_GRID[1] - ARCHIVE_GRID[0]
-    shift = 0.5 * (below - above) / bend if bend > 0 else 0.0
-    return float(np.clip(ARCHIVE_GRID[best] + step * shift, ARCHIVE_GRID[0], ARCHIVE_GRID[-1]))
+    shift = 0.5 * (below - above).sum() / bend
+    slopes = 0.5 * (above - below) + bends * shift
+    value = np.clip(ARCHIVE_GRID[best] + step * shift, ARCHIVE_GRID[0], ARCHIVE_GRID[-1])
+    return ArchiveCoefficient(float(value), float(step * np.sqrt((slopes**2).sum()) / bend))

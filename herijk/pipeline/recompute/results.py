@@ -1,7 +1,7 @@
 """The results of a method as tables of the warehouse.
 
 Arrays in, frames out; a number that is not known becomes null here, never NaN. What is computed
-stands in `pipeline.recompute.recompute`; how sure it is, in `pipeline.recompute.budget`; what a
+is in `pipeline.recompute.recompute`; its uncertainty, in `pipeline.recompute.budget`; what a
 person should look at, in `pipeline.assessment.assess`.
 """
 
@@ -18,6 +18,7 @@ from herijk.pipeline.arrays import BoolArray
 from herijk.pipeline.assessment.assess import assess, with_status
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.races.race import power_per_rower_w
+from herijk.pipeline.recompute.anemometer import anemometer_diagnosis
 from herijk.pipeline.recompute.best import with_best
 from herijk.pipeline.recompute.budget import (
     CURVE_SPEED_RATIOS,
@@ -25,6 +26,7 @@ from herijk.pipeline.recompute.budget import (
     budget_of,
     curve_points,
     cw_bounds,
+    misfit_of,
     run_point_ratio,
     scatter_of,
 )
@@ -32,7 +34,7 @@ from herijk.pipeline.recompute.outcome import Outcome
 from herijk.pipeline.recompute.season_factors import tow_instruments
 from herijk.pipeline.season_log import SeasonFactors, other_log_factors, retow_choice
 from herijk.pipeline.season_log.diagnosis import DIAGNOSIS_SCHEMA, STEP_SCHEMA
-from herijk.pipeline.season_log.ties import TIE_SCHEMA
+from herijk.pipeline.season_log.retow_design import RETOW_SCHEMA
 from herijk.pipeline.steps.speed import log_factor
 from herijk.pipeline.steps.wind import mean_wind_angle_deg
 from herijk.tables.frames import dtypes
@@ -82,7 +84,8 @@ def as_tables(
     budget = budget_of(outcomes, found, CURVE_SPEED_RATIOS if with_bands else (DECLARED,))
     bounds = cw_bounds(budget)
     curves = together([_curves(o, bounds.filter(at_declared), pooled) for o in outcomes])
-    curves = with_best(curves, found, budget.filter(at_declared))
+    misfit = misfit_of(outcomes, found, (DECLARED,))
+    curves = with_best(curves, found, budget.filter(at_declared), misfit)
     assessments = assess(curves, run_points, tows)
     rejecting = [
         (season, check)
@@ -105,7 +108,7 @@ def as_tables(
         season_links=_season_links(found).select(name, pl.all()),
         retow_choice=_retow_choice(found).select(name, pl.all()),
         season_steps=_season_steps(found).select(name, pl.all()),
-        season_diagnosis=_diagnosis(found).select(name, pl.all()),
+        season_diagnosis=_diagnosis(found, outcomes).select(name, pl.all()),
         tow_instruments=_instruments(found).select(name, pl.all()),
         best_estimate_weights=_weights(found).select(name, pl.all()),
         factors=found,
@@ -196,7 +199,7 @@ def _log_factors(o: Outcome, found: SeasonFactors | None) -> pl.DataFrame:
     """The factor of each season: from GPS, estimated, prescribed or none, in this order.
 
     With a calibration per tow it is the mean of the tows' factors, with a t interval of that mean.
-    A tow's own factor stands in `run_points.speed_factor`.
+    A tow's own factor is in `run_points.speed_factor`.
     """
     seasons = o.batch.tows["season"].unique().sort()
     if o.steps.calibration.rule != "none":
@@ -255,9 +258,11 @@ def _season_steps(found: SeasonFactors | None) -> pl.DataFrame:
     return found.steps
 
 
-def _diagnosis(found: SeasonFactors | None) -> pl.DataFrame:
+def _diagnosis(found: SeasonFactors | None, outcomes: Sequence[Outcome]) -> pl.DataFrame:
     """What is wrong with the instruments of each season; no rows without an estimate."""
-    return pl.DataFrame(schema=DIAGNOSIS_SCHEMA) if found is None else found.diagnosis
+    joint = pl.DataFrame(schema=DIAGNOSIS_SCHEMA) if found is None else found.diagnosis
+    both = pl.concat([joint, anemometer_diagnosis(outcomes)])
+    return both.sort("season", "part", "instrument")
 
 
 def _instruments(found: SeasonFactors | None) -> pl.DataFrame:
@@ -275,8 +280,8 @@ WEIGHT_SCHEMA = dtypes(BestEstimateWeights, without=["method"])
 
 
 def _retow_choice(found: SeasonFactors | None) -> pl.DataFrame:
-    """The boats that would make estimated factors surer; no rows where nothing was estimated."""
-    return pl.DataFrame(schema=TIE_SCHEMA) if found is None else retow_choice(found)
+    """The boats whose next tow would narrow the factors most; no rows without an estimate."""
+    return pl.DataFrame(schema=RETOW_SCHEMA) if found is None else retow_choice(found)
 
 
 LINK_SCHEMA = dtypes(SeasonLinks, without=["method"])

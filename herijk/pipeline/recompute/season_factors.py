@@ -2,7 +2,7 @@
 
 Every tow is first computed without any factor for the seasons whose factor is estimated; from
 those curves the factors follow, once, and are applied after (never tuned in a loop). The statistics
-stand in `pipeline.season_log`.
+are in `pipeline.season_log`.
 """
 
 from collections.abc import Sequence
@@ -111,7 +111,10 @@ def tow_instruments(found: SeasonFactors) -> pl.DataFrame:
     )
     shared = found.instruments.select("tow_id", "force_factor", "force_zero_n", "bend")
     return pl.concat(
-        [found.instruments, other.drop("season", "part").join(shared, on="tow_id")],
+        [
+            found.instruments.drop("others_ln_ratio"),
+            other.drop("season", "part").join(shared, on="tow_id"),
+        ],
         how="diagonal",
     ).sort("tow_id", "log")
 
@@ -123,7 +126,7 @@ def log_group(steps: Steps) -> tuple[pl.Expr, pl.Expr, pl.Expr]:
 
 
 def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
-    """One row a tow: its curve at its line's `speed`, how sure it is, and its GPS ratio."""
+    """Per tow its curve at its line's `speed`, with uncertainty, and its GPS ratio."""
     batch, steps = o.batch, o.steps
     held = batch.tows.select(LINE).join(reference, on=LINE, how="left", maintain_order="left")
     speed = held["speed"].to_numpy()
@@ -213,7 +216,7 @@ def _with_kappa(rows: pl.DataFrame) -> pl.DataFrame:
     One tow's bend is uncertain, boats of a type differ: the mean of a line's own anchored tows is
     drawn towards its type (the fleet, where that has few) as far as its uncertainty is large
     against the spread between boats. Without this the difference between boats, times a log error
-    of 5 %, passes for wander of the log.
+    of 5 %, passes for scatter of the log between tows.
     """
     anchored = rows.filter("anchored")
     trusted = anchored if anchored.height else rows

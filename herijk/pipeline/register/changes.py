@@ -32,7 +32,7 @@ RACE_S: Final = 7200.0
 """The race in which a change is expressed in seconds."""
 
 RANKING_POWER_W: Final = {"H": 80.0, "D": 47.5}
-"""Power a rower at which boats are ranked: the middle of 70-90 W and 40-55 W (Sleepproef 2017)."""
+"""Power per rower at which boats are ranked: the middle of 70-90 and 40-55 W (Sleepproef 2017)."""
 
 PART_SCHEMA: Final = {
     **{name: dtypes(Register)[name] for name in LINE},
@@ -117,7 +117,7 @@ def side_by_side(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
         a rower at the old declared speed; the seconds that the new register gives in a two-hour
         race (more time for the same power counts as gain); and whether the change is larger than
         the 95 % intervals of both, null where an interval is not known. The rank is among all
-        boats of the class with a curve: 1 is the fastest at equal power a rower.
+        boats of the class with a curve: 1 is the fastest at equal power per rower.
     """
     pairs = _pairs(_ranked(old), _ranked(new))
     cw_ratio, time_ratio = _ratios(pairs)

@@ -1,9 +1,9 @@
 """The due list: until when each boat's tow counts, and at what speed to tow it next.
 
 The rule for the speed is the federation's (Sleepproef, R. Pot 2017, "Sleepsnelheid"): on the known
-curve it takes 70-90 W a rower (men) or 40-55 W (women). Belongs here: that rule with its
+curve it takes 70-90 W per rower (men) or 40-55 W (women). Belongs here: that rule with its
 exceptions. Does not: which tow counts (`pipeline.register.register`) and which boats would tie the
-seasons together (`pipeline.season_log.ties`).
+seasons together (`pipeline.season_log.retow_design`).
 """
 
 import datetime as dt
@@ -19,7 +19,7 @@ from herijk.pipeline.register.register import LINE
 _IN_RANGE: Final = next(check for check in CHECKS if check.code == "power_outside_range")
 LOWEST_W: Final = {c: _IN_RANGE.limits(c)[0] for c in ("H", "D")}
 HIGHEST_W: Final = {c: _IN_RANGE.limits(c)[1] for c in ("H", "D")}
-"""Power a rower at a realistic tow speed."""
+"""Power per rower at a realistic tow speed."""
 
 VALID_RATIOS: Final = (0.85, 1.15)
 """A curve holds between these shares of its declared speed (Cw-kromme, R. Pot 2015)."""

@@ -1,6 +1,6 @@
 """Races replayed under a register: power, rank and podium, and what another register changes.
 
-The formulas stand in `pipeline.races.race` and `pipeline.curve`; here they are put together for a
+The formulas are in `pipeline.races.race` and `pipeline.curve`; here they are put together for a
 whole race file. Which rules a race was rowed under is data: `RaceRules`. Wind, waves and depth are
 no part of the handicap (presentation R. Pot, 24 January 2015).
 """
@@ -75,10 +75,10 @@ def replay(
     Args:
         register: lines with `fsn_no`, `rowers`, `crew_class`, `a_kg_m`, `b_m_s`; of one edition.
         results: `race`, `race_date`, `fsn_no`, `rowers`, `crew_class`, `distance_m`,
-            `rowing_time_s`, `stream_m`, `penalty_w` (watt a rower, taken off).
+            `rowing_time_s`, `stream_m`, `penalty_w` (watt per rower, taken off).
         rules: how they are computed.
         legs: `race`, `race_date`, `fsn_no`, `rowers`, `crew_class`, `distance_m`, `time_s`,
-            `stream_m`, one row a leg; for the rule over legs.
+            `stream_m`, one row per leg; for the rule over legs.
 
     Returns:
         The results with `speed_m_s`, `cw_kg_m`, `fatigue_factor`, `power_w` (a rower, corrected,

@@ -8,7 +8,7 @@ boats are the stars, seasons the nights, tows calibrated on dGPS the absolute an
 Belongs here: what is assumed (`assumed`), the unknowns and their effects (`effects`), the density
 of a boat's tows (`likelihood`), the posterior of everything (`posterior`), what it says of tows
 (`tows`), seasons (`diagnosis`) and factors (`estimate`); what it all rests on (`network`); which
-boats would tie the seasons together better (`ties`); the second estimate without boat identity
+boats to tow again (`retow_design`); the second estimate without boat identity
 (`without_boats`); the factor of the log that is not in use (`other_log`). Does not: how Cw of a tow
 is computed, prescribed corrections (never data here) and what is done with the factors.
 
@@ -20,7 +20,8 @@ The model, for tow k of boat i in season j, with lambda = ln(true speed / log sp
 
 h and g are what a scale error of the log does to a hyperbola exactly (`effects`). theta and q of a
 boat are random, q about its type, and step where it was altered; lambda_k = lambda_j + trend +
-change + wander. phi is the load cell's scale, z its zero. Faults are rare and large: each is there
+change + between-tow scatter. phi is the scale of the load cell, z its zero. Faults are rare and
+large: each is there
 or not, and what cannot be told apart is averaged over.
 """
 
@@ -28,8 +29,8 @@ from herijk.pipeline.season_log.assumed import Prior, Settings
 from herijk.pipeline.season_log.estimate import SeasonFactors, estimate_season_factors
 from herijk.pipeline.season_log.network import GROUP, LINE
 from herijk.pipeline.season_log.other_log import other_log_factors
+from herijk.pipeline.season_log.retow_design import retow_choice
 from herijk.pipeline.season_log.scale import scale_effect
-from herijk.pipeline.season_log.ties import retow_choice
 
 __all__ = [
     "GROUP",

@@ -17,11 +17,11 @@ class Settings:
     """What is assumed before looking at the data. Standard deviations, unless it says otherwise.
 
     Attributes:
-        era_starts: first season of each era of logs; an era has one wander (DOMAIN, history).
+        era_starts: first season of each era of logs; an era has one between-tow log variance.
         log_sd: ln factor of a log of which nothing is known: the worst log was 6 % wrong.
         ageing_per_year: change of ln Cw per year; half a per cent has been seen.
         weight_elasticity, length_elasticity: dlnCw / dln of the empty boat's weight, of its length.
-        tow_sd, bend_sd_tow, gps_sd, wander_sd: between tows, each with `spread`: ln Cw beyond its
+        tow_sd, bend_sd_tow, gps_sd, tow_log_sd: between tows, each with `spread`: ln Cw beyond its
             random part, the same of the bend, ln(GPS / log) beyond its given uncertainty, and the
             ln factor of the log. `spread` is of the logarithm of a variance.
         season_spread: of the logarithm of a season's variances, against those of the archive.
@@ -57,14 +57,14 @@ class Settings:
     tow_sd: float = 0.008
     bend_sd_tow: float = 0.01
     gps_sd: float = 0.008
-    wander_sd: float = 0.004
+    tow_log_sd: float = 0.004
     spread: float = 1.2
     season_spread: float = 0.3
     bend_sd: float = 0.08
     type_bend_sd: float = 0.15
     season_bend_sd: float = 0.06
-    changed_sd: float = 0.08
-    changed_bend_sd: float = 0.05
+    changed_sd: float = 0.05
+    changed_bend_sd: float = 0.02
     changed_share: float = 0.08
     changed_gaps: float = 20.0
     gps_season_sd: float = 0.003

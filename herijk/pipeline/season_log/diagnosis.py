@@ -26,6 +26,7 @@ POSSIBLE: Final = 0.1
 ALARM_SD: Final = 4.0
 FAULT: Final = "fault"
 ALARM: Final = "alarm"
+SOUND: Final = "sound"
 CANNOT_BE_TOLD: Final = "cannot be told"
 NOT_DETERMINED: Final = "not determined"
 FORCES: Final = (FORCE, ZERO, ZERO_DRIFT)
@@ -172,7 +173,7 @@ def _verdict(
         return FAULT
     if distance is not None and abs(distance) >= ALARM_SD:
         return ALARM
-    return CANNOT_BE_TOLD if chance is not None and chance >= POSSIBLE else "sound"
+    return CANNOT_BE_TOLD if chance is not None and chance >= POSSIBLE else SOUND
 
 
 def _first_tow(

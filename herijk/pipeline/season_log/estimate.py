@@ -35,7 +35,7 @@ class SeasonFactors:
             lo_no_boats, hi_no_boats, agreement`. See `estimate_season_factors`.
         covariance: covariance of ln factor between the rows of `factors` that are determined, in
             their order.
-        wander_sd: standard deviation of ln factor from tow to tow, by first season of the era.
+        tow_log_sd: standard deviation of ln factor from tow to tow, by first season of the era.
         tow_sd: standard deviation of ln Cw of a tow beyond its random part and its log.
         ageing_per_year: change of ln Cw per year, with `ageing_sd`.
         weakest_mode_sd: standard deviation of the combination of ln factors that is known worst.
@@ -48,7 +48,7 @@ class SeasonFactors:
 
     factors: pl.DataFrame
     covariance: FloatArray
-    wander_sd: dict[int, float]
+    tow_log_sd: dict[int, float]
     tow_sd: float
     ageing_per_year: float
     ageing_sd: float
@@ -121,21 +121,23 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
     along = _group_means(problem, posterior, network)
     covariance = along @ posterior.covariance @ along.T
     mode_sd, mode = _weakest_mode(covariance)
-    best, weights = best_estimates(problem, posterior, network)
+    change = _without_each_boat(network, posterior)
+    instruments = instrument_errors(problem, posterior, network, change)
+    best, weights = best_estimates(problem, posterior, network, instruments)
     eras = len(settings.era_starts)
-    wander_sd = np.exp(0.5 * fit.state.ln_variance[3 : 3 + eras]).tolist()
+    tow_log_sd = np.exp(0.5 * fit.state.ln_variance[3 : 3 + eras]).tolist()
     diagnosis = season_diagnosis(problem, posterior, network)
-    numbers = _numbers(network, posterior, along, mode)
+    numbers = _numbers(network, posterior, along, mode, change)
     return SeasonFactors(
         factors=_described(numbers, network, second),
         covariance=covariance,
-        wander_sd=dict(zip(settings.era_starts, wander_sd, strict=True)),
+        tow_log_sd=dict(zip(settings.era_starts, tow_log_sd, strict=True)),
         tow_sd=float(np.exp(0.5 * fit.state.ln_variance[0])),
         ageing_per_year=ageing_per_year,
         ageing_sd=ageing_sd,
         weakest_mode_sd=mode_sd,
         tows=tows,
-        instruments=instrument_errors(problem, posterior, network),
+        instruments=instruments,
         best=best,
         weights=weights,
         diagnosis=diagnosis,
@@ -189,15 +191,19 @@ def _without_each_boat(network: Network, posterior: Posterior) -> FloatArray:
 
 
 def _numbers(
-    network: Network, posterior: Posterior, along: FloatArray, weakest_mode: FloatArray
+    network: Network,
+    posterior: Posterior,
+    along: FloatArray,
+    weakest_mode: FloatArray,
+    change: FloatArray,
 ) -> pl.DataFrame:
     """What the joint estimate says about each group; null where it is not determined."""
     known = np.flatnonzero(network.determined)
     k = len(posterior.fit.active)
     ln_factor = along @ posterior.mean
     lost = network.critical[:, known]
-    change = _without_each_boat(network, posterior) @ along[:, :k].T
-    move = np.where(lost, np.inf, np.abs(np.expm1(change)) * np.exp(ln_factor))
+    moved = np.expm1(change @ along[:, :k].T)
+    move = np.where(lost, np.inf, np.abs(moved) * np.exp(ln_factor))
     influence = move.max(axis=0, initial=0.0) if len(known) else np.zeros(0)
     placed = {
         "ln_factor": ln_factor,

@@ -1,4 +1,4 @@
-"""How sure a least-squares solution is: each boat is left out in turn (jackknife).
+"""The cluster jackknife of a least-squares solution: each boat is left out in turn.
 
 Boats, not tows, are the independent things: the tows of one boat share what is odd about it.
 """

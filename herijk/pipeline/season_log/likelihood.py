@@ -82,7 +82,7 @@ def _steps(tows: int, settings: Settings) -> tuple[IntArray, FloatArray, FloatAr
 
 @dataclass(frozen=True)
 class Told:
-    """What boats with the same number of tows say, at given unknowns; n = 3 x tows numbers a boat.
+    """What boats with the same number of tows say, at given unknowns; 3 x tows numbers per boat.
 
     Attributes:
         weight: (boats, patterns) posterior of each pattern.

@@ -165,7 +165,7 @@ class Fit:
 
     Attributes:
         active: (k,) unknowns in the model.
-        state: their values, the ln variances (between tows, of bend, of GPS, wander of each era,
+        state: their values, the ln variances (between tows, of bend, of GPS, of the log per era,
             then the factor of each season) and the share of gaps between tows with an alteration
             that was not reported.
         covariance: (k, k) of those.
@@ -294,7 +294,7 @@ def _positive(seen: FloatArray, full: FloatArray, precision: FloatArray) -> Floa
 def _variance_prior(problem: Problem) -> tuple[FloatArray, FloatArray]:
     """Mean and precision of every ln variance."""
     s = problem.settings
-    eras = [s.wander_sd] * len(s.era_starts)
+    eras = [s.tow_log_sd] * len(s.era_starts)
     seasons = int(problem.season.max()) + 1
     mean = np.concatenate(
         [2.0 * np.log([s.tow_sd, s.bend_sd_tow, s.gps_sd, *eras]), np.zeros(seasons)]
@@ -313,8 +313,8 @@ def _own(problem: Problem, held: Slopes, ln_variance: FloatArray) -> tuple[Float
         parts[place, :, place, place] = variance[place]
     by_speed = held.ways["speed"]
     for era in range(eras):
-        wander = (problem.era == era)[:, None] * by_speed
-        parts[3 + era] = variance[3 + era] * wander[:, :, None] * wander[:, None, :]
+        of_log = (problem.era == era)[:, None] * by_speed
+        parts[3 + era] = variance[3 + era] * of_log[:, :, None] * of_log[:, None, :]
     parts[: 3 + eras] *= own_factor[:, None, None]
     own = problem.given * own_factor[:, None, None] + parts[: 3 + eras].sum(axis=0)
     for season in range(len(ln_variance) - 3 - eras):

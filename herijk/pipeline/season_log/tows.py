@@ -24,17 +24,24 @@ LEAST_WEIGHT: Final = 0.005
 """A smaller share of what an estimate rests on is left out of the list."""
 
 
-def instrument_errors(problem: Problem, posterior: Posterior, network: Network) -> pl.DataFrame:
+def instrument_errors(
+    problem: Problem, posterior: Posterior, network: Network, change: FloatArray
+) -> pl.DataFrame:
     """What the instruments did to each tow.
 
     A fault of the load cell counts from where it is likelier than not; what is less likely is in
     the uncertainty alone.
 
+    Args:
+        problem, posterior, network: the archive and what is known of it.
+        change: of every unknown of the fit without each boat, (boats, unknowns).
+
     Returns:
         `tow_id, log`, `factor` of the log (null where the season is not determined; 1 with dGPS),
         `force_factor` and `force_zero_n` of the load cell: read = true x factor + zero; `bend`, q
         of the boat; `ln_sd` and `dof` of what all of them do to ln Cw, per unit of the elasticity
-        2 + 2 q. In the order of the network.
+        2 + 2 q; `others_ln_ratio`, change of ln Cw with the instruments as the other boats alone
+        show them. In the order of the network.
     """
     design, of_boats, speed = _design(problem, posterior)
     level = np.where(of_boats, 0.0, design[:, LEVEL])
@@ -51,6 +58,8 @@ def instrument_errors(problem: Problem, posterior: Posterior, network: Network) 
     determined = ~loose
     determined[loose] = network.determined[network.group[loose]]
     known = np.sqrt(variance) / (2.0 + 2.0 * problem.q)
+    applied = np.where(speed | force | zero, level, 0.0)[:, :k]
+    others = -(applied * change[network.cluster]).sum(axis=1)
     return network.tows.select(
         "tow_id",
         "log",
@@ -60,6 +69,7 @@ def instrument_errors(problem: Problem, posterior: Posterior, network: Network) 
         pl.Series("bend", problem.q),
         pl.Series("ln_sd", np.where(determined, known, problem.settings.log_sd)),
         pl.Series("dof", posterior.fit.dof(level[:, :k])),
+        _where(determined, "others_ln_ratio", others),
     )
 
 
@@ -69,9 +79,13 @@ def _where(known: BoolArray, name: str, values: FloatArray) -> pl.Series:
 
 
 def best_estimates(
-    problem: Problem, posterior: Posterior, network: Network
+    problem: Problem, posterior: Posterior, network: Network, instruments: pl.DataFrame
 ) -> tuple[pl.DataFrame, pl.DataFrame]:
     """What all tows of a boat, and all boats, say of ln Cw at each tow.
+
+    Args:
+        problem, posterior, network: the archive and what is known of it.
+        instruments: as `instrument_errors` gives them.
 
     Returns:
         `tow_id, as_measured, ln_cw, sd, lo, hi` (95 %), in the order of the network: ln Cw by the
@@ -125,7 +139,7 @@ def best_estimates(
     return (
         network.tows.select(
             "tow_id",
-            pl.Series("as_measured", _as_measured(problem, posterior, network)),
+            pl.Series("as_measured", _as_measured(problem, network, instruments)),
             pl.Series("ln_cw", base + ln_cw),
             pl.Series("sd", sd),
             pl.Series("lo", base + lo),
@@ -139,9 +153,8 @@ def best_estimates(
     )
 
 
-def _as_measured(problem: Problem, posterior: Posterior, network: Network) -> FloatArray:
+def _as_measured(problem: Problem, network: Network, found: pl.DataFrame) -> FloatArray:
     """Ln Cw of each tow alone, with its instruments corrected as `instrument_errors` says."""
-    found = instrument_errors(problem, posterior, network)
     factor, scale, zero = (
         found[name].fill_null(1.0).to_numpy() for name in ("factor", "force_factor", "force_zero_n")
     )

@@ -21,7 +21,7 @@ def mean_over_both_ways(
     lets a constant stream drop out.
 
     Args:
-        values: one number a run, shape (runs,).
+        values: one number per run, shape (runs,).
         direction: 1 out, -1 back, shape (runs,).
         tow: index of the run's tow, shape (runs,).
         used: runs that count, shape (runs,).

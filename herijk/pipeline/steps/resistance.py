@@ -53,6 +53,10 @@ class RunMeans:
         zero = zero_n / _or_one(self.speed_m_s) ** 2
         return replace(self, gross_kg_m=(self.gross_kg_m - zero) / factor)
 
+    def with_wind(self, scale: FloatArray) -> "RunMeans":
+        """These means for an anemometer that reads the wind x scale, shape (runs,)."""
+        return replace(self, air=self.air.times(scale**-2.0))
+
     def where(self, chosen: BoolArray, other: "RunMeans") -> "RunMeans":
         """These means for the chosen runs, shape (runs,), those of the other elsewhere."""
         return RunMeans(

@@ -3,7 +3,7 @@
 In 2009-2011 the propeller logs were worn and read low; the correction found in 2013 was up to
 6 % (presentation 2015, "Meten van de sleepsnelheid"). Whether one multiplies by 1.06 or divides
 by 0.94 is written nowhere: both are options. A percentage in the tow list goes before the
-season's prescribed one. How a season's factor is estimated instead stands in `pipeline.season_log`.
+season's prescribed one. How a season's factor is estimated instead is in `pipeline.season_log`.
 """
 
 import numpy as np

@@ -3,7 +3,7 @@
 The air force is taken away as the wind was felt on the moving boom, and the force in still air
 at boat speed is added (Sleepproef, R. Pot 2017, "Wind"; the same structure as ITTC 7.5-04-01-01.1
 eq. 9). Divided by boat speed squared, the still-air part is a constant of the boat. Here: the two
-formulas and the coefficients that are searched. Areas stand in `pipeline.steps.hull`.
+formulas and the coefficients that are searched. Areas are in `pipeline.steps.hull`.
 """
 
 from dataclasses import dataclass
@@ -42,6 +42,10 @@ class AirParts:
     def total(self, ahead: FloatArray, behind: FloatArray, side: float) -> FloatArray:
         """The air part for given coefficients, shape (runs,), kg/m."""
         return ahead * self.ahead + behind * self.behind + side * self.side
+
+    def times(self, factor: FloatArray) -> "AirParts":
+        """These parts times a factor of each run, shape (runs,)."""
+        return AirParts(self.ahead * factor, self.behind * factor, self.side * factor)
 
     def where(self, chosen: BoolArray, other: "AirParts") -> "AirParts":
         """These parts for the chosen runs, shape (runs,), those of the other elsewhere."""

@@ -1,4 +1,4 @@
-"""What the texts claim or print, held against the archive: the promise, print, the tool's figures.
+"""What the texts claim or print, compared with the archive: the promise, print, the tool's figures.
 
 Frames of the warehouse in, frames out. Does not belong here: how a number is made, and what
 two methods do to it (`summaries`, `ladder`).

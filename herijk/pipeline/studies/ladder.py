@@ -2,7 +2,7 @@
 
 From one method to another the options of one step after the other are exchanged, in a fixed order,
 and everything is recomputed: so the factor of a step is what it does on top of those before it.
-What a step does stands in its own module.
+What a step does is in its own module.
 """
 
 from typing import Final

@@ -1,4 +1,4 @@
-"""The option study: how much do choices matter that are a matter of judgement.
+"""The sensitivity study: how much do choices matter that are a matter of judgement.
 
 A full factorial over options that a careful person could choose either way, on top of a method, as
 the 2015 presentation did by hand for one boat. Options that are known to be wrong (searching wind
@@ -84,7 +84,7 @@ def option_effects(
 
 
 def beside_uncertainty(effects: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
-    """Adds how sure each tow is, to hold the spread over options against.
+    """Adds the uncertainty of each tow, to compare the spread over options with.
 
     Args:
         effects: rows of `option_effects`.

@@ -1,7 +1,7 @@
 """What many tows have in common, one row per season, step or code: medians, means and counts.
 
 Frames of the warehouse in, frames out. What pages and commands say about a season or an archive
-stands here once, so that it is the same number everywhere. Statistics with an interval stand in
+is here once, so that it is the same number everywhere. Statistics with an interval are in
 `pipeline.consistency`.
 """
 
@@ -19,7 +19,7 @@ def season_changes(curves: pl.DataFrame, first: str) -> pl.DataFrame:
 
     Args:
         curves: rows of the table `curves` of several methods.
-        first: name of the method that the others are held against.
+        first: name of the method that the others are compared with.
 
     Returns:
         `method, from_method, season, tows, median_ratio, lowest_ratio, highest_ratio`.

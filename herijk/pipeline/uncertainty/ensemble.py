@@ -33,7 +33,7 @@ def register_ensemble(
     key: a line keeps its members when others come or go.
 
     Args:
-        lines: one row a line with `tow_id` (may occur more than once) and `cw_kg_m`.
+        lines: one row per line with `tow_id` (may occur more than once) and `cw_kg_m`.
         budget: rows of `uncertainty.budget`, at least of those tows.
         found: the season factors, whose errors are drawn with their correlation; None where the
             method estimates none.
@@ -109,7 +109,7 @@ def share_first(members: pl.DataFrame, results: pl.DataFrame) -> pl.DataFrame:
 
     Args:
         members: rows of the table `ensemble` of one method.
-        results: one row a crew: `tow_id` of its boat's curve, `cw_kg_m` of that curve at the
+        results: one row per crew: `tow_id` of its boat's curve, `cw_kg_m` of that curve at the
             declared speed, and `power_w` by it.
 
     Returns:

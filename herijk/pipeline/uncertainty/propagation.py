@@ -1,4 +1,4 @@
-"""How sure a run point and a tow's Cw are, component by component.
+"""The uncertainty of a run point and of Cw of a tow, component by component.
 
 Belongs here: what the unrest of force and speed within runs says about a run mean, the budget of a
 tow with what its components share with other tows, and the interval that follows. Does not: the
@@ -34,6 +34,7 @@ ARCHIVE: Final = "archive"
 
 COMPONENTS: Final = (
     "random",
+    "misfit",
     "calibration",
     "stream_drift",
     "between_tows",
@@ -115,7 +116,7 @@ def residual_scatter(
 ) -> tuple[FloatArray, FloatArray]:
     """Relative scatter of run points about their curves, pooled over each season's tows.
 
-    Four degrees of freedom a tow are too few for its own (research, method.md 4.4). This is the
+    Four degrees of freedom per tow are too few for its own (research, method.md 4.4). This is the
     check on `run_point_uncertainty`: it also has in it what differs from run to run.
 
     Args:
@@ -151,7 +152,7 @@ class Assumed:
         wind_coefficient: of a prescribed air drag coefficient: 0.2 either way, all equally likely.
         unmeasured_wind: where there was no anemometer, net wind correction / still-air part: wind
             as fast as the boat, from ahead out and from behind back, makes it 1.
-        anemometer_ratio: wind speed.
+        anemometer_ratio: wind speed by an anemometer that is taken as it reads.
         mass_ratio: crew and gear, on Cw.
         temperature_known_c, temperature_unknown_c: water temperature with and without a record.
         temperature_ratio_per_c: change of Cw with water temperature.
@@ -209,13 +210,15 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
     of its log in place of calibration and stream drift: a log feels the water, not the stream.
 
     Args:
-        tows: one row a tow and speed: `tow_id`, `speed_ratio` (that speed / the declared one),
+        tows: one row per tow and speed: `tow_id`, `speed_ratio` (that speed / the declared one),
             `season, part, log`; `kappa`; `random_ratio` (of C0, from the scatter of the run
-            points) with `random_dof`; `calibrated` (on dGPS); `log_sd` and `log_dof` of the
-            season's ln factor (0 and any where calibrated), `wander_sd` of the log (0 where
-            calibrated); `air_ratio`, net wind correction / Cw, and `air_per_coefficient`, change of
-            ln Cw per unit of drag coefficient (both signed); `wind_measured`, and where it was not
-            `still_air_ratio`, still-air part / Cw; `temperature_known`.
+            points) with `random_dof`; `misfit_ratio`, of the hull about its hyperbola;
+            `calibrated` (on dGPS); `log_sd` and `log_dof` of the season's ln factor (0 and any
+            where calibrated), `tow_log_sd` of the log (0 where calibrated); `air_ratio`, net wind
+            correction / Cw, and `air_per_coefficient`, change of ln Cw per unit of drag coefficient
+            (both signed); `wind_ln_sd`, of the anemometer's ln scale, null where it is taken as it
+            reads; `wind_measured`, and where it was not `still_air_ratio`, still-air part / Cw;
+            `temperature_known`.
         assumed: what the archive cannot show; give `wind_coefficient` what the archive-wide search
             came to where that was used.
 
@@ -231,19 +234,21 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
         pl.when(known).then(assumed.temperature_known_c).otherwise(assumed.temperature_unknown_c)
     )
     speed_ratio = (
-        pl.when(calibrated).then(assumed.calibration_speed_ratio).otherwise(pl.col("wander_sd"))
+        pl.when(calibrated).then(assumed.calibration_speed_ratio).otherwise(pl.col("tow_log_sd"))
     )
     drift_ratio = pl.when(calibrated).then(assumed.stream_drift_speed_ratio).otherwise(0.0)
     coefficient = pl.col("air_per_coefficient") * assumed.wind_coefficient
+    wind_speed = pl.col("wind_ln_sd").fill_null(assumed.anemometer_ratio)
     no_wind = pl.col("still_air_ratio") * assumed.unmeasured_wind
     effects = {
         "random": pl.col("random_ratio"),
+        "misfit": pl.col("misfit_ratio"),
         "calibration": kappa * speed_ratio,
         "stream_drift": kappa * drift_ratio,
         "between_tows": pl.lit(assumed.between_tows_ratio),
         "force": pl.lit(assumed.force_ratio),
         "wind": pl.when("wind_measured").then(coefficient).otherwise(no_wind),
-        "anemometer": 2.0 * assumed.anemometer_ratio * pl.col("air_ratio"),
+        "anemometer": 2.0 * wind_speed * pl.col("air_ratio"),
         "mass": pl.lit(assumed.mass_ratio),
         "temperature": (
             (assumed.temperature_ratio_per_c * temperature_c) ** 2

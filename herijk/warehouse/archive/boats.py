@@ -124,7 +124,7 @@ def _merged(
     for key in OF_THE_BOAT:
         if None not in (boat[key], before[key]) and boat[key] != before[key]:
             message = say(
-                "boat {boat} stands in the list twice and the rows differ in {key} ({one} and "
+                "boat {boat} is in the list twice and the rows differ in {key} ({one} and "
                 "{other}).",
                 boat=boat["fsn_no"],
                 key=row.named(key),

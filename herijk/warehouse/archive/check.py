@@ -12,16 +12,27 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
+import polars as pl
+
 from herijk.pipeline.errors import DefectiveInputError
+from herijk.tables.frames import frame_of
+from herijk.tables.lake import ListedTows
 from herijk.warehouse.archive.faults import Fault, fault_from
-from herijk.warehouse.archive.files import PARTS, kind_of, path_inside
-from herijk.warehouse.archive.index import ArchiveIndex, index_archive
+from herijk.warehouse.archive.files import (
+    PARTS,
+    ArchiveFile,
+    as_one_run,
+    kind_of,
+    list_sample_files,
+    path_inside,
+)
+from herijk.warehouse.archive.index import ArchiveIndex, index_archive, missing_lists, strangers
 from herijk.warehouse.archive.messages import Sentence, innermost, say, spoken
 from herijk.warehouse.archive.plausibility import judge_samples
-from herijk.warehouse.archive.profile import Profiles, parse_profiles, profile_text
+from herijk.warehouse.archive.profile import Profiles, SeasonProfile, parse_profiles, profile_text
 from herijk.warehouse.archive.proposals import Proposal, merged, propose
 from herijk.warehouse.archive.published import read_published_registers, read_races
-from herijk.warehouse.archive.samples import check_header, read_tow_samples
+from herijk.warehouse.archive.samples import check_header, read_samples, read_tow_samples
 
 ROUNDS: Final = 8
 """So often what was proposed is tried, at most."""
@@ -77,7 +88,7 @@ def check_archive(root: Path) -> Checked:
         index, faults = _faults(root, profiles)
         new: dict[Proposal, None] = {}
         for fault in faults:
-            offered = propose(fault)
+            offered = propose(fault, profiles.wording.files)
             key = (fault.path, fault.line, fault.tow_id, fault.reason_code, fault.message)
             seen.setdefault(key, (fault, offered))
             new |= dict.fromkeys(p for p in offered if p not in proposals)
@@ -85,25 +96,35 @@ def check_archive(root: Path) -> Checked:
             break
         proposals |= new
         text = merged(written, (replace(p, is_active=True) for p in proposals))
-    profile = merged(written, _doubted(proposals, seen.values(), index)) if proposals else None
-    return Checked(index.tows.height, _grouped(seen.values()), profile)
+    tows = index.tows if index else frame_of(ListedTows, [])
+    profile = merged(written, _doubted(proposals, seen.values(), tows)) if proposals else None
+    return Checked(tows.height, _grouped(seen.values()), profile)
 
 
 def _doubted(
     proposals: Iterable[Proposal],
     seen: Iterable[tuple[Fault, Sequence[Proposal]]],
-    index: ArchiveIndex,
+    listed: pl.DataFrame,
 ) -> Iterator[Proposal]:
     """Give the proposals; what only some files of a season lack is not to be declared absent."""
     lacking = Counter(p for _, offered in seen for p in offered if p.section == "absent")
     for proposal in proposals:
-        tows = index.tows.filter(season=proposal.season).height
+        tows = listed.filter(season=proposal.season).height
         is_sure = proposal.section != "absent" or lacking[proposal] >= tows
         yield replace(proposal, is_active=proposal.is_active and is_sure)
 
 
-def _faults(root: Path, profiles: Profiles) -> tuple[ArchiveIndex, list[Fault]]:
-    """Return the lists, and what is wrong in them, in headers and in a tow of each season."""
+def _faults(root: Path, profiles: Profiles) -> tuple[ArchiveIndex | None, list[Fault]]:
+    """Return the lists, and what is wrong in them, in headers and in a tow of each season.
+
+    Files that nobody reads come first, and alone: they can be the lists.
+    """
+    unread = strangers(root, profiles)
+    if unread:
+        return None, unread
+    lacking = missing_lists(root, profiles)
+    if lacking:
+        return None, lacking
     index = index_archive(root, quick_hash, profiles)
     _, in_races = read_races(root, profiles.wording)
     _, in_registers = read_published_registers(root, profiles.wording)
@@ -123,18 +144,19 @@ def quick_hash(path: Path) -> str:
 
 
 def _in_headers(root: Path, index: ArchiveIndex) -> Iterator[Fault]:
-    paths = index.tows.select("season", "samples_path").rows()
-    paths += index.tows.select("season", "second_path").drop_nulls().rows()
-    for season, several in paths:
-        for path in several.split(PARTS):
-            try:
-                check_header(path_inside(root, path), index.profiles.for_season(season))
-            except DefectiveInputError as error:
-                yield fault_from(error, path)
+    """Read the header of every samples file, whatever is wrong with the row that names it."""
+    for file in list_sample_files(root, index.profiles.wording.files):
+        try:
+            check_header(path_inside(root, file.path), index.profiles.for_season(file.season))
+        except DefectiveInputError as error:
+            yield fault_from(error, file.path)
 
 
 def _in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Iterator[Fault]:
-    """Read the first tow of each season and kind of file whose header is good."""
+    """Read the first tow of each season and kind of file whose header is good.
+
+    Where no tow of a season can be read, a file of it is read without judging its content.
+    """
     done = set()
     for tow in index.tows.iter_rows(named=True):
         paths = tow["samples_path"].split(PARTS)
@@ -144,10 +166,52 @@ def _in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Iterator[Fa
         done.add(key)
         try:
             samples = read_tow_samples(root, tow, index.profiles.for_season(tow["season"]))
-            yield from judge_samples(samples, tow, index.runs).faults
+            rate = _other_rate(samples, tow, index)
+            yield from [rate] if rate else judge_samples(samples, tow, index.runs).faults
             yield from _not_planned(samples["run"].unique().to_list(), tow, index)
         except DefectiveInputError as error:
             yield fault_from(error, tow["samples_path"], tow["tow_id"])
+    for file in list_sample_files(root, index.profiles.wording.files):
+        key = (file.season, kind_of(file.full_path))
+        if key not in done and file.path not in wrong:
+            done.add(key)
+            yield from _in_form(root, file, index.profiles.for_season(file.season))
+
+
+def _in_form(root: Path, file: ArchiveFile, profile: SeasonProfile) -> Iterator[Fault]:
+    """Read a samples file that no sound row names."""
+    named = as_one_run(file.full_path.name)
+    try:
+        read_samples(
+            path_inside(root, file.path),
+            profile,
+            sample_rate_hz=profile.sample_rate_hz,
+            run=named[1] if named else None,
+        )
+    except DefectiveInputError as error:
+        yield fault_from(error, file.path)
+
+
+def _other_rate(samples: pl.DataFrame, tow: Mapping[str, Any], index: ArchiveIndex) -> Fault | None:
+    """Return that the rate cannot be right: at it all runs last half as long as planned, or less.
+
+    Files with times say their rate themselves.
+    """
+    planned = index.runs.filter(tow_id=tow["tow_id"])["planned_s"].max()
+    assert isinstance(planned, float)  # noqa: S101 - a tow has runs
+    rate = tow["sample_rate_hz"]
+    lasts = float(samples.group_by("run").len()["len"].max() or 0) / rate  # type: ignore[arg-type]
+    if lasts > planned / 2:
+        return None
+    said = say(
+        "No run lasts longer than {lasts:.1f} s at {rate} samples a second, and {planned:.0f} s is "
+        "planned: is the rate {observed:.0f}?",
+        lasts=lasts,
+        rate=rate,
+        planned=planned,
+        observed=float(f"{rate * lasts / planned:.1g}"),
+    )
+    return Fault(tow["samples_path"], tow["tow_id"], None, "short_run", said)
 
 
 def _not_planned(
@@ -185,7 +249,7 @@ def _cause_of(fault: Fault) -> tuple[object, ...]:
     what = innermost(fault.message)
     if not isinstance(what, Sentence):
         return (fault.reason_code,)
-    same = (what.values.get(name) for name in ("column", "names", "unit"))
+    same = (what.values.get(name) for name in ("column", "names", "unit", "found"))
     return (fault.reason_code, what.template, *same)
 
 

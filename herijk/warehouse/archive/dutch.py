@@ -7,6 +7,23 @@ DUTCH: Final[dict[str, str]] = {
     "Line {line}: {what}": "Regel {line}: {what}",
     "Row {row}: {what}": "Rij {row}: {what}",
     "line {line} of {path}": "regel {line} van {path}",
+    "sheet '{sheet}': {what}": "blad '{sheet}': {what}",
+    "there is no list of boats: {path} is expected.": (
+        "er is geen lijst van sloepen: {path} wordt verwacht."
+    ),
+    "there is no list of tows: {path} is expected.": (
+        "er is geen lijst van sleepproeven: {path} wordt verwacht."
+    ),
+    "'{path}' is not read: it has another name than the archive's files. It can be {kinds}; say "
+    "so under [files] in archief.toml.": (
+        "'{path}' wordt niet gelezen: de naam is anders dan die van bestanden van het archief. Het "
+        "kan {kinds} zijn; zet dat onder [files] in archief.toml."
+    ),
+    "No run lasts longer than {lasts:.1f} s at {rate} samples a second, and {planned:.0f} s is "
+    "planned: is the rate {observed:.0f}?": (
+        "Geen run duurt langer dan {lasts:.1f} s bij {rate} metingen per seconde, en {planned:.0f} "
+        "s is gepland: is de frequentie {observed:.0f}?"
+    ),
     "column '{column}' is empty.": "kolom '{column}' is leeg.",
     "column '{column}' is empty, here and in the boat list.": (
         "kolom '{column}' is leeg, hier en in de lijst van sloepen."
@@ -40,7 +57,7 @@ DUTCH: Final[dict[str, str]] = {
     "column '{column}' is '{cell}', not ja, nee or empty.": (
         "kolom '{column}' is '{cell}', niet ja, nee of leeg."
     ),
-    "column '{column}' is '{cell}'; one run stands in it twice.": (
+    "column '{column}' is '{cell}'; it names one run twice.": (
         "kolom '{column}' is '{cell}'; er staat een run twee keer in."
     ),
     "column '{column}' is '{cell}', but there is no meetfile2.": (
@@ -81,8 +98,8 @@ DUTCH: Final[dict[str, str]] = {
         "'roeitijd' is '{cell}', geen tijd zoals 2:10:25."
     ),
     "'roeitijd' is 0.": "'roeitijd' is 0.",
-    # Rows held against each other
-    "boat {boat} stands in the list twice and the rows differ in {key} ({one} and {other}).": (
+    # Rows compared with each other
+    "boat {boat} is in the list twice and the rows differ in {key} ({one} and {other}).": (
         "sloep {boat} staat twee keer in de lijst en de rijen verschillen in {key} ({one} en "
         "{other})."
     ),
@@ -197,7 +214,7 @@ DUTCH: Final[dict[str, str]] = {
         "run {run} begint opnieuw; zijn rijen moeten bij elkaar staan."
     ),
     "the time does not increase within the run.": "de tijd loopt niet op binnen de run.",
-    "Run {run}: by its times it has {observed:.4g} samples a second, by the list or the profile "
+    "Run {run}: by its times it has {observed:.4g} samples per second, by the list or the profile "
     "{rate}; they may differ by {most:.0%}.": (
         "Run {run}: volgens de tijden heeft hij {observed:.4g} metingen per seconde, volgens de "
         "lijst of het profiel {rate}; dat mag {most:.0%} verschillen."

@@ -1,6 +1,6 @@
 """What can be wrong with the archive: one table of reason codes, and the record of one fault.
 
-A reason code is stable: it stands in the quarantine table and in `docs/archive.md`. Detecting a
+A reason code is stable: it is in the quarantine table and in `docs/archive.md`. Detecting a
 fault belongs to the module that reads the thing; this one only says what the codes mean.
 """
 
@@ -86,6 +86,10 @@ REASONS: Final[dict[str, Reason]] = {
         "A file in a folder of lists has a name that is not one of the lists.",
         "Rename it, e.g. `sleeplijst_2014.csv`, or move it out of the folder.",
     ),
+    "missing_list": Reason(
+        "The list of boats, or every list of tows, is not there.",
+        "Put it into its folder, or name it under `[files]` in `archief.toml`.",
+    ),
     "missing_column": Reason(
         "A column that is needed is not in the header.",
         "Correct the header, or name the column in `archief.toml`.",
@@ -96,7 +100,7 @@ REASONS: Final[dict[str, Reason]] = {
         "Correct the header, or name it in `archief.toml` under `[headers]` or `ignore`.",
     ),
     "duplicate_column": Reason(
-        "A column stands in the header twice.",
+        "A column is in the header twice.",
         "Remove or rename one of the two.",
     ),
     "unknown_unit": Reason(
@@ -109,7 +113,7 @@ REASONS: Final[dict[str, Reason]] = {
         "Mend the row in `sloependata.csv`.",
     ),
     "duplicate_boat": Reason(
-        "One `fsn_nr` stands in the boat list twice, with different content.",
+        "One `fsn_nr` is in the boat list twice, with different content.",
         "Keep one row of the two.",
     ),
     "bad_list_row": Reason(
@@ -137,7 +141,7 @@ REASONS: Final[dict[str, Reason]] = {
         "Add the boat, or correct the `fsn_nr`.",
     ),
     "duplicate_tow_id": Reason(
-        "One `sleep_id` stands in the lists twice. Equal rows: the first counts. "
+        "One `sleep_id` is in the lists twice. Equal rows: the first counts. "
         "Different rows: neither counts, as nobody can know which is right.",
         "Remove one row, or give it its own `sleep_id`.",
     ),

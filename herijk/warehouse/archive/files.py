@@ -1,12 +1,12 @@
 """Where the archive's files are, and reading their bytes within bounds.
 
-Knows folder names, safe paths and compression; not what stands in a file.
+Knows folder names, safe paths and compression; not what is in a file.
 """
 
 import hashlib
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import IO, Final
@@ -20,12 +20,35 @@ from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.text import fold_name
 
 BOATS_FILE: Final = "sloepregister/sloependata.csv"
-_LIST: Final = r"\.(?:csv|txt|tsv|xlsx|xlsm|xls|ods)"
-BOATS_PATTERN: Final = r"sloependata" + _LIST
-TOW_LIST_PATTERN: Final = r"sleeplijst[ _-]*([0-9]{4})" + _LIST
-WINDOWS_PATTERN: Final = r"vensters[ _-]*([0-9]{4})" + _LIST
-REGISTER_PATTERN: Final = r"sloepregister[ _-]*([0-9]{4})" + _LIST
-RACES_PATTERN: Final = r".+?[ _-]*([0-9]{4})" + _LIST
+LIST_SUFFIXES: Final = (".csv", ".txt", ".tsv", ".xlsx", ".xlsm", ".xls", ".ods")
+
+
+@dataclass(frozen=True)
+class ListKind:
+    """A kind of list: where it lies, and what its name is without suffix.
+
+    Attributes:
+        folder: its folder.
+        pattern: its name there; group 1 is the season, where the name tells it.
+        stands_for: its name under `[files]` of `archief.toml`, without the year.
+    """
+
+    folder: str
+    pattern: str
+    stands_for: str
+
+
+BOAT_LIST: Final = ListKind("sloepregister", r"sloependata()", "sloependata")
+TOW_LISTS: Final = ListKind("sleeplijsten", r"sleeplijst(?:[ _-]*([0-9]{4}))?", "sleeplijst")
+WINDOWS: Final = ListKind("sleeplijsten", r"vensters[ _-]*([0-9]{4})", "vensters")
+REGISTERS: Final = ListKind("sloepregister", r"sloepregister[ _-]*([0-9]{4})", "sloepregister")
+RACES: Final = ListKind("wedstrijden", r".+?(?:[ _-]*([0-9]{4}))?", "wedstrijden")
+LIST_KINDS: Final = (BOAT_LIST, TOW_LISTS, WINDOWS, REGISTERS, RACES)
+SAMPLES: Final = "meetdata"
+STANDS_FOR: Final = re.compile(
+    rf"({'|'.join(kind.stands_for for kind in LIST_KINDS)}|{SAMPLES})(?:_([0-9]{{4}}))?"
+)
+"""What a file or folder can be said to be under `[files]`: `sleeplijst_2014`, `meetdata_2014`."""
 TEXT_SUFFIXES: Final = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm")
 SAMPLE_SUFFIXES: Final = (
     *(text + packed for packed in (".gz", ".zst") for text in TEXT_SUFFIXES),
@@ -39,6 +62,7 @@ _NOT_OURS: Final = re.compile(
 _ONE_RUN: Final = re.compile(
     r"(.*?[^0-9])[ _.-]*(?:run|vaart|lauf|r)?[ _.-]*([0-9]{1,2})", re.IGNORECASE
 )
+_RUN_ALONE: Final = re.compile(r"(?:run|vaart|lauf|r|no|nr)?[ _.-]*([0-9]{1,2})", re.IGNORECASE)
 PROFILE_FILE: Final = "archief.toml"
 
 _CHUNK_BYTES: Final = 1 << 20
@@ -62,73 +86,104 @@ class ArchiveFile:
     inside: bool
 
 
-def list_files(root: Path, folder: str, name_pattern: str) -> list[ArchiveFile]:
-    """Return the files of a folder whose name matches; group 1 of the pattern is the season.
+def list_files(root: Path, kind: ListKind, named: Mapping[str, str]) -> list[ArchiveFile]:
+    """Return the lists of a kind; season 0 where the name does not tell it.
 
     Hidden files are left out. The order is that of the names.
+
+    Args:
+        root: the archive.
+        kind: which lists.
+        named: what other files and folders stand for, by their path (`[files]`).
     """
-    pattern = re.compile(name_pattern, re.IGNORECASE)
-    matches = ((entry, pattern.fullmatch(entry.name)) for entry in _entries_of(root, folder))
-    return [
-        _archive_file(root, entry, int(match[1]))
+    matches = ((e, _match_list(kind, e.name)) for e in _entries_of(root, kind.folder))
+    found = [
+        _archive_file(root, entry, int(match[1] or 0))
         for entry, match in matches
         if match is not None and (entry.is_file() or entry.is_symlink())
     ]
+    for path, name, season in _named(named):
+        if name == kind.stands_for and (root / path).is_file():
+            found.append(_archive_file(root, root / path, season))
+    return sorted(found, key=lambda file: file.path)
 
 
-def list_sample_files(root: Path) -> list[ArchiveFile]:
+def _match_list(kind: ListKind, name: str) -> re.Match[str] | None:
+    stem, dot, suffix = name.rpartition(".")
+    is_list = (dot + suffix).casefold() in LIST_SUFFIXES
+    return re.fullmatch(kind.pattern, stem, re.IGNORECASE) if is_list else None
+
+
+def _named(named: Mapping[str, str]) -> Iterator[tuple[str, str, int]]:
+    """Give path, kind and season (0 for none) of what `[files]` names."""
+    for path, stands_for in sorted(named.items()):
+        if match := STANDS_FOR.fullmatch(stands_for):
+            yield path, match[1], int(match[2] or 0)
+
+
+def list_sample_files(root: Path, named: Mapping[str, str]) -> list[ArchiveFile]:
     """Return all samples files: `meetdata_<jaar>/<meetfile>` with a suffix of samples.
 
-    Those in a folder of their own, `meetdata_<jaar>/<meetfile>/`, come too.
+    Those in a folder of their own, `meetdata_<jaar>/<meetfile>/`, come too. Season 0 are those of
+    a folder without a year.
     """
     return [
         _archive_file(root, entry, season)
-        for season, folder in _sample_folders(root)
+        for season, folder in _sample_folders(root, named)
         for entry in _files_of_tows(folder)
-        if sample_suffix(entry.name)
+        if sample_suffix(entry.name) and _path_in(root, entry) not in named
     ]
 
 
-def list_strangers(root: Path) -> list[str]:
-    """Return the files of an archive that nobody reads, relative to it."""
-    lists = {
-        "sleeplijsten": f"{TOW_LIST_PATTERN}|{WINDOWS_PATTERN}",
-        "sloepregister": f"{BOATS_PATTERN}|{REGISTER_PATTERN}",
-        "wedstrijden": RACES_PATTERN,
-    }
+def list_strangers(root: Path, named: Mapping[str, str]) -> list[str]:
+    """Return the files and folders of an archive that nobody reads, relative to it."""
+    folders = {kind.folder: _find_folder(root, kind.folder) for kind in LIST_KINDS}
     found = [
         entry
-        for folder, known in lists.items()
-        for entry in _entries_of(root, folder)
-        if not re.fullmatch(known, entry.name, re.IGNORECASE)
+        for name, folder in folders.items()
+        for entry in _entries(folder)
+        if not any(_match_list(k, entry.name) for k in LIST_KINDS if k.folder == name)
     ]
-    for _, folder in _sample_folders(root):
+    sample_folders = {folder for _, folder in _sample_folders(root, named)}
+    for folder in sample_folders:
         found += [entry for entry in _files_of_tows(folder) if not sample_suffix(entry.name)]
-    known_folders = {*(_find_folder(root, name) for name in lists)}
-    known_folders |= {folder for _, folder in _sample_folders(root)}
+    known = {*folders.values(), *sample_folders, *(root / path for path in named)}
     found += [
         entry
         for entry in _entries(root)
-        if entry not in known_folders and entry.name.casefold() != PROFILE_FILE
+        if entry not in known and entry.name.casefold() != PROFILE_FILE
     ]
-    return [e.relative_to(root).as_posix() for e in found if not _NOT_OURS.fullmatch(e.name)]
+    opened = [inner for entry in found for inner in _opened(entry, known)]
+    return [_path_in(root, e) for e in opened if not _NOT_OURS.fullmatch(e.name)]
 
 
-def find_boats_file(root: Path) -> str | None:
+def _opened(entry: Path, known: set[Path]) -> list[Path]:
+    """Return an entry, or what is in it where something in it is known under `[files]`."""
+    if entry in known:
+        return []
+    if not any(path.is_relative_to(entry) for path in known):
+        return [entry]
+    return [inner for child in _entries(entry) for inner in _opened(child, known)]
+
+
+def _path_in(root: Path, entry: Path) -> str:
+    return entry.relative_to(root).as_posix()
+
+
+def find_boats_file(root: Path, named: Mapping[str, str]) -> str | None:
     """Return the path of the boat list, whatever kind of file it is; None when there is none."""
-    found = [
-        entry.relative_to(root).as_posix()
-        for entry in _entries_of(root, "sloepregister")
-        if re.fullmatch(BOATS_PATTERN, entry.name, re.IGNORECASE)
-    ]
-    return found[0] if found else None
+    found = list_files(root, BOAT_LIST, named)
+    return found[0].path if found else None
 
 
-def _sample_folders(root: Path) -> Iterator[tuple[int, Path]]:
+def _sample_folders(root: Path, named: Mapping[str, str]) -> Iterator[tuple[int, Path]]:
     for entry in _entries(root):
-        match = re.fullmatch(r"meetdata[ _-]*([0-9]{4})", entry.name, re.IGNORECASE)
+        match = re.fullmatch(rf"{SAMPLES}(?:[ _-]*([0-9]{{4}}))?", entry.name, re.IGNORECASE)
         if match and entry.is_dir():
-            yield int(match[1]), entry
+            yield int(match[1] or 0), entry
+    for path, name, season in _named(named):
+        if name == SAMPLES and (root / path).is_dir():
+            yield season, root / path
 
 
 def _files_of_tows(folder: Path) -> Iterator[Path]:
@@ -179,11 +234,11 @@ def as_one_run(name: str) -> tuple[str, int] | None:
     `snol 8h 2014`.
     """
     key = match_key(name)
+    number = _RUN_ALONE.fullmatch(key)
+    if number:
+        return "", int(number[1])
     match = _ONE_RUN.fullmatch(key)
-    if match:
-        return match[1].strip(" _.-"), int(match[2])
-    number = re.fullmatch(r"(?:run|vaart|lauf|r)?[ _.-]*([0-9]{1,2})", key)
-    return ("", int(number[1])) if number else None
+    return (match[1].strip(" _.-"), int(match[2])) if match else None
 
 
 def path_inside(root: Path, relative: str) -> Path:

@@ -1,7 +1,7 @@
 """What is in an archive: its boats, its tows with their files, and what is set aside.
 
 Reads the lists and hashes the files; reading samples belongs to `samples`. Rows, boats and files
-are held against each other here, one question after the other; a tow falls out at the first.
+are compared with each other here, one question after the other; a tow falls out at the first.
 """
 
 from collections import defaultdict
@@ -25,10 +25,10 @@ from herijk.warehouse.archive.files import (
     BOATS_FILE,
     PARTS,
     PROFILE_FILE,
-    RACES_PATTERN,
-    REGISTER_PATTERN,
-    TOW_LIST_PATTERN,
-    WINDOWS_PATTERN,
+    RACES,
+    REGISTERS,
+    TOW_LISTS,
+    WINDOWS,
     ArchiveFile,
     as_one_run,
     find_boats_file,
@@ -46,7 +46,8 @@ from herijk.warehouse.archive.lists import ListRow, read_list
 from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.misfits import misfits
 from herijk.warehouse.archive.profile import Plan, Profiles, read_profiles
-from herijk.warehouse.archive.text import fold_name, shorten
+from herijk.warehouse.archive.recognise import recognised
+from herijk.warehouse.archive.text import fold, fold_name, shorten
 
 _FilesByName = dict[tuple[int, str], list["SamplesFile"]]
 """Samples files by season and the name they answer to."""
@@ -57,9 +58,9 @@ class ArchiveIndex:
     """Everything an archive says, but for the samples themselves.
 
     Attributes:
-        boats: one row a boat (`ListedBoats`).
-        tows: one row a tow that can be read (`ListedTows`).
-        runs: one row a run of those tows (`ListedRuns`); runs of a second file are 21 and on.
+        boats: one row per boat (`ListedBoats`).
+        tows: one row per tow that can be read (`ListedTows`).
+        runs: one row per run of those tows (`ListedRuns`); runs of a second file are 21 and on.
         windows: windows given by hand for those runs (`ListedWindows`), of which nobody knows yet
             whether they lie in their run.
         faults: what is set aside, and why.
@@ -176,15 +177,16 @@ def index_archive(
     Raises:
         MissingKnowledgeError: there is no archive, or `archief.toml` cannot be understood.
     """
-    _check_present(root)
     profiles = profiles or read_profiles(root)
+    _check_present(root, profiles)
+    named = profiles.wording.files
     hashes = _Hashes(hash_file)
     faults: list[Fault] = []
-    _hash_others(root, hashes, faults)
-    faults += [_stranger(path) for path in list_strangers(root)]
+    _hash_others(root, named, hashes, faults)
+    faults += strangers(root, profiles)
     boats = _read_boats(root, profiles, hashes, faults)
     entries, unread_seasons = _read_tow_lists(root, profiles, hashes, faults)
-    sample_files = list_sample_files(root)
+    sample_files = list_sample_files(root, named)
     _hash_files(sample_files, hashes, faults)
     by_name = _by_name(sample_files, entries)
     faults += _not_listed(entries, sample_files, unread_seasons, by_name)
@@ -212,21 +214,33 @@ def _fault_order(fault: Fault) -> tuple[str, int, str]:
     return fault.path, fault.line or 0, fault.tow_id or ""
 
 
-def _check_present(root: Path) -> None:
+def _check_present(root: Path, profiles: Profiles) -> None:
+    lacking = missing_lists(root, profiles)
+    if lacking:
+        raise MissingKnowledgeError(f"The archive at {root} cannot be read: {lacking[0].message}")
+
+
+def missing_lists(root: Path, profiles: Profiles) -> list[Fault]:
+    """Return what is not there of that without which nothing can be read.
+
+    Raises:
+        MissingKnowledgeError: there is no archive.
+    """
     if not root.is_dir():
         raise MissingKnowledgeError(
             f"There is no archive at {root}: expected a folder with {BOATS_FILE}, "
             "sleeplijsten/ and meetdata_<jaar>/."
         )
-    if find_boats_file(root) is None:
-        raise MissingKnowledgeError(
-            f"The archive at {root} has no {BOATS_FILE}: expected the list of boats there."
+    named = profiles.wording.files
+    lacking = []
+    if find_boats_file(root, named) is None:
+        lacking.append(
+            (BOATS_FILE, say("there is no list of boats: {path} is expected.", path=BOATS_FILE))
         )
-    if not list_files(root, "sleeplijsten", TOW_LIST_PATTERN):
-        raise MissingKnowledgeError(
-            f"The archive at {root} has no tow lists: expected at least one "
-            "sleeplijsten/sleeplijst_<jaar>.csv."
-        )
+    if not list_files(root, TOW_LISTS, named):
+        path = "sleeplijsten/sleeplijst_<jaar>.csv"
+        lacking.append((path, say("there is no list of tows: {path} is expected.", path=path)))
+    return [Fault(path, None, None, "missing_list", said) for path, said in lacking]
 
 
 # Lists
@@ -239,7 +253,7 @@ def _read_list(root: Path, path: str, hashes: _Hashes) -> bytes:
 
 
 def _read_boats(root: Path, profiles: Profiles, hashes: _Hashes, faults: list[Fault]) -> Boats:
-    path = find_boats_file(root) or BOATS_FILE
+    path = find_boats_file(root, profiles.wording.files) or BOATS_FILE
     try:
         boats = boat_list.read_boats(_read_list(root, path, hashes), path, profiles.wording)
     except DefectiveInputError as error:
@@ -248,9 +262,26 @@ def _read_boats(root: Path, profiles: Profiles, hashes: _Hashes, faults: list[Fa
     return boats
 
 
-def _stranger(path: str) -> Fault:
-    message = say("'{path}' is not read, as nobody knows what it is.", path=path)
-    return Fault(path, None, None, "unrecognised_file", message)
+def strangers(root: Path, profiles: Profiles) -> list[Fault]:
+    """Return what lies in the archive and is not read; what it can be, where that can be told."""
+    return [
+        Fault(path, None, None, "unrecognised_file", _about_stranger(root, path))
+        for path in list_strangers(root, profiles.wording.files)
+        if fold(path) not in profiles.wording.ignore
+    ]
+
+
+def _about_stranger(root: Path, path: str) -> str:
+    can_be = dict(recognised(root, path))
+    if not can_be:
+        return say("'{path}' is not read, as nobody knows what it is.", path=path)
+    return say(
+        "'{path}' is not read: it has another name than the archive's files. It can be {kinds}; "
+        "say so under [files] in archief.toml.",
+        path=path,
+        kinds=", ".join(sorted(set(can_be.values()))),
+        can_be=tuple(sorted(can_be.items())),
+    )
 
 
 def _read_tow_lists(
@@ -259,7 +290,7 @@ def _read_tow_lists(
     """Return the rows of all tow lists, and the seasons of lists that cannot be read."""
     entries: list[_Entry] = []
     unread_seasons: set[int] = set()
-    for file in list_files(root, "sleeplijsten", TOW_LIST_PATTERN):
+    for file in list_files(root, TOW_LISTS, profiles.wording.files):
         try:
             data = _read_list(root, file.path, hashes)
             rows = read_list(
@@ -269,8 +300,16 @@ def _read_tow_lists(
             faults.append(fault_from(error, file.path))
             unread_seasons.add(file.season)
             continue
-        entries += [_Entry(row, file.path, file.season, profiles) for row in rows]
+        entries += [_Entry(row, file.path, file.season or _year_of(row), profiles) for row in rows]
     return entries, unread_seasons
+
+
+def _year_of(row: ListRow) -> int:
+    """Return the season of a row in a list of all years; 0 where its date cannot be read."""
+    try:
+        return row.date("tow_date").year
+    except DefectiveInputError:
+        return 0
 
 
 def _read_windows(
@@ -286,7 +325,7 @@ def _read_windows(
     runs_of: dict[str, set[int]] = defaultdict(set)
     for run in runs:
         runs_of[run["tow_id"]].add(run["run"])
-    for file in list_files(root, "sleeplijsten", WINDOWS_PATTERN):
+    for file in list_files(root, WINDOWS, profiles.wording.files):
         tow_ids = {e.tow_id for e in entries if e.season == file.season and e.tow_id is not None}
         listed = window_list.Listed(tow_ids, runs_of)
         try:
@@ -303,12 +342,14 @@ def _read_windows(
 # Files
 
 
-def _hash_others(root: Path, hashes: _Hashes, faults: list[Fault]) -> None:
+def _hash_others(
+    root: Path, named: Mapping[str, str], hashes: _Hashes, faults: list[Fault]
+) -> None:
     """Hash what is read from elsewhere: the profile, published registers, race results."""
     if (root / PROFILE_FILE).is_file():
         hashes.add(PROFILE_FILE, root / PROFILE_FILE)
-    published = list_files(root, "sloepregister", REGISTER_PATTERN)
-    races = list_files(root, "wedstrijden", RACES_PATTERN)
+    published = list_files(root, REGISTERS, named)
+    races = list_files(root, RACES, named)
     _hash_files([*published, *races], hashes, faults)
 
 
@@ -351,7 +392,8 @@ def _by_name(sample_files: Iterable[ArchiveFile], entries: Iterable[_Entry]) -> 
 
 def _candidates(name: str, season: int, by_name: _FilesByName) -> list[SamplesFile]:
     """Return the files a name in a list can mean; a name with its extension is more precise."""
-    alike = by_name.get((season, match_key(name)), [])
+    key = match_key(name)
+    alike = by_name.get((season, key)) or by_name.get((0, key), [])
     exact = [file for file in alike if fold_name(file.parts[0].full_path.name) == fold_name(name)]
     return exact if len(exact) == 1 else alike
 
@@ -370,7 +412,8 @@ def _not_listed(
         part.path
         for entry in entries
         for name in _names(entry.row)
-        for file in by_name.get((entry.season, match_key(name)), [])
+        for season in (entry.season, 0)
+        for file in by_name.get((season, match_key(name)), [])
         for part in file.parts
     }
     faults = []
@@ -379,13 +422,13 @@ def _not_listed(
             continue
         if not file.inside:
             faults.append(fault_from(outside_archive(file.path), file.path))
-        elif file.season not in unread_seasons:
+        elif not unread_seasons & {file.season, 0} and (file.season or not unread_seasons):
             message = say("No row of the tow list of {season} names this file.", season=file.season)
             faults.append(Fault(file.path, None, None, "samples_not_listed", message))
     return faults
 
 
-# Rows, boats and files held against each other
+# Rows, boats and files compared with each other
 
 
 def _keep(

@@ -1,6 +1,6 @@
 """Reading a list: a small table of text with one header, and the values in its rows.
 
-What the columns of the tow list, the boat list, a register or race results mean stands in the
+What the columns of the tow list, the boat list, a register or race results mean is in the
 modules that read those.
 """
 
@@ -16,24 +16,25 @@ import dataframely as dy
 
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.frames import limits
+from herijk.warehouse.archive.meaning import Meaning, meanings
 from herijk.warehouse.archive.messages import say
-from herijk.warehouse.archive.sheets import Sheet, read_sheet
+from herijk.warehouse.archive.sheets import Sheet, read_sheets
 from herijk.warehouse.archive.text import (
     Column,
     FoundColumn,
     find_columns,
     fold,
-    nearest_column,
     parse_number,
     shorten,
     unknown_headers,
 )
 from herijk.warehouse.archive.units import UNITS, Scale, find_scale
-from herijk.warehouse.archive.words import CLASSES, HEADERS, NO, NOTHING, YES
+from herijk.warehouse.archive.words import ALL_RUNS, CLASSES, HEADERS, NO, NOTHING, YES
 
 _ISO_DATE: Final = re.compile(r"([0-9]{4})[-/.]([0-9]{1,2})[-/.]([0-9]{1,2})")
 _DAY_FIRST: Final = re.compile(r"([0-9]{1,2})([-./ ])([0-9]{1,2})\2([0-9]{4}|[0-9]{2})")
 _MONTH_NAMED: Final = re.compile(r"([0-9]{1,2})[. -]+([a-zäé]{3,9})[. -]+([0-9]{4})")
+_WEEKDAY: Final = re.compile(r"^[a-z]{2,10}[.,]*\s+(?=[0-9])")
 _TIME_OF_DAY: Final = re.compile(r"[ T]+[0-9]{1,2}:[0-9]{2}(:[0-9]{2}([.,][0-9]+)?)?$")
 _MONTHS: Final = {
     name: number
@@ -63,12 +64,14 @@ class Wording:
         headers: the project's name of a column by a folded other one.
         ignore: folded names of columns that are known and not used.
         dates: `dmy` or `mdy` by the path of a list, or `*` for all: how 1/3/2015 is meant.
+        files: what a file or folder stands for, by its path in the archive: `sleeplijst_2014`.
     """
 
     words: Mapping[str, str] = field(default_factory=dict)
     headers: Mapping[str, str] = field(default_factory=dict)
     ignore: tuple[str, ...] = ()
     dates: Mapping[str, str] = field(default_factory=dict)
+    files: Mapping[str, str] = field(default_factory=dict)
 
     def with_names(self, columns: Iterable[Column]) -> tuple[Column, ...]:
         """Return the columns with the other names that they answer to."""
@@ -94,6 +97,7 @@ class Reading:
         date_order: `dmy` or `mdy` where dates with slashes are settled, else empty.
         decimal: the decimal marks that this list surely uses, comma, point, or both.
         limits: the lowest and highest value of a column that can be right.
+        sheet: the sheet, where a workbook has several.
     """
 
     columns: Mapping[str, FoundColumn]
@@ -102,6 +106,7 @@ class Reading:
     date_order: str
     decimal: str
     limits: Limits
+    sheet: str = ""
 
 
 @dataclass(frozen=True)
@@ -130,6 +135,8 @@ class ListRow:
 
     def fault(self, message: str, reason_code: str | None = None) -> DefectiveInputError:
         """Return the error for this row."""
+        if self.reading.sheet:
+            message = say("sheet '{sheet}': {what}", sheet=self.reading.sheet, what=message)
         said = say("Line {line}: {what}", line=self.line, what=message)
         return DefectiveInputError(reason_code or self.reading.reason_code, said, self.line)
 
@@ -312,14 +319,14 @@ def parse_date(text: str, order: str = "") -> dt.date:
     """Return the date in a text, the year first or the day first; a time of day is left out.
 
     Args:
-        text: `2014-03-01`, `1-3-2014`, `01.03.14`, `1/3/2014`, `1 maart 2014`.
+        text: `2014-03-01`, `1-3-2014`, `01.03.14`, `1/3/2014`, `za 1 maart 2014`.
         order: `dmy` or `mdy` for dates with slashes; without, only one meaning may be possible.
 
     Raises:
         AmbiguousDateError: day and month can be exchanged.
         ValueError: it is no date.
     """
-    text = _TIME_OF_DAY.sub("", text.strip().casefold())
+    text = _WEEKDAY.sub("", _TIME_OF_DAY.sub("", text.strip().casefold()))
     iso, day_first = _ISO_DATE.fullmatch(text), _DAY_FIRST.fullmatch(text)
     named = _MONTH_NAMED.fullmatch(text)
     if iso:
@@ -365,7 +372,7 @@ def read_rows(
     Raises:
         DefectiveInputError: the table as a whole cannot be read.
     """
-    sheet = read_sheet(data, columns, suffix)
+    sheet = read_sheets(data, columns, suffix)[0]
     found = find_columns(sheet.header, columns, sheet.line)
     return _rows(sheet, Reading(found, reason_code, {}, "", "", limits))
 
@@ -393,38 +400,110 @@ def read_list(
             it can be a misspelt one, and left out in silence would change numbers.
     """
     wanted = wording.with_names(columns)
-    sheet = read_sheet(data, wanted, path[path.rfind(".") :].casefold())
+    sheets = read_sheets(data, wanted, path[path.rfind(".") :].casefold())
+    cells = [cell.strip() for sheet in sheets for row in sheet.rows for cell in row.fields]
+    order = wording.dates.get(path, wording.dates.get("*", "")) or date_order(cells)
+    return [
+        row
+        for sheet in sheets
+        for row in _rows(
+            sheet,
+            Reading(
+                _columns_of(sheet, wanted, wording, table),
+                reason_code,
+                wording.words,
+                order,
+                _decimal_mark(cells),
+                partial(limits, table),
+                sheet.name,
+            ),
+        )
+    ]
+
+
+def _columns_of(
+    sheet: Sheet, wanted: Sequence[Column], wording: Wording, table: type[dy.Schema]
+) -> dict[str, FoundColumn]:
+    """Return the columns of a list; one that nobody knows is a fault."""
     optional = [replace(column, required=False) for column in wanted]
     found = find_columns(sheet.header, optional, sheet.line)
     strange = [h for h in unknown_headers(sheet.header, found) if fold(h) not in wording.ignore]
     free = [column for column in wanted if column.key not in found]
     if strange:
-        raise DefectiveInputError("unknown_column", _strange(strange, free), sheet.line)
-    find_columns(sheet.header, wanted, sheet.line)
-    cells = [cell.strip() for row in sheet.rows for cell in row.fields]
-    order = wording.dates.get(path, wording.dates.get("*", "")) or date_order(cells)
-    reading = Reading(
-        found,
-        reason_code,
-        wording.words,
-        order,
-        _decimal_mark(cells),
-        partial(limits, table),
-    )
-    return _rows(sheet, reading)
+        raise DefectiveInputError(
+            "unknown_column", _strange(_meanings(strange, free, sheet, table)), sheet.line
+        )
+    return find_columns(sheet.header, wanted, sheet.line)
 
 
-def _strange(headers: Sequence[str], columns: Sequence[Column]) -> str:
-    """Return the sentence about columns that nobody knows, with the nearest known ones."""
-    meant = {header: nearest_column(header, columns) for header in headers}
+def _meanings(
+    headers: Sequence[str], free: Sequence[Column], sheet: Sheet, table: type[dy.Schema]
+) -> tuple[Meaning, ...]:
+    """Return what headers that nobody knows can mean, by their names and by their cells."""
+    places = {cell.strip(): place for place, cell in enumerate(sheet.header)}
+    cells = {
+        header: [
+            cell
+            for row in sheet.rows
+            if places[header] < len(row.fields)
+            and fold_word(cell := row.fields[places[header]].strip()) not in NOTHING
+        ]
+        for header in headers
+    }
+    return meanings(cells, free, partial(_can_stand, table))
+
+
+def _can_stand(table: type[dy.Schema], key: str, cell: str) -> bool:
+    """Return whether a cell can stand in a column, whatever its unit."""
+    if key in _LOOKS:
+        return _LOOKS[key](cell)
+    schema = table.columns().get(key)
+    if isinstance(schema, dy.Date):
+        return bool(_LIKE_A_DATE.search(cell))
+    if isinstance(schema, dy.Bool):
+        return fold_word(cell) in YES | NO
+    if isinstance(schema, dy.Float64):
+        return _LIKE_A_NUMBER.match(cell) is not None
+    if isinstance(schema, dy.Int8 | dy.Int16 | dy.Int32 | dy.Int64):
+        lowest, highest = limits(table, key)
+        return cell.isdigit() and lowest <= int(cell[:9]) <= highest
+    return True
+
+
+_LIKE_A_DATE: Final = re.compile(r"[0-9]{1,4}[-/. ]+([0-9]{1,2}|[^\W\d]{3,9})[-/. ]+[0-9]{2,4}")
+_LIKE_A_NUMBER: Final = re.compile(r"(?:ca\.?|~|±)?\s*[+-]?[0-9]+([.,][0-9]+)?\s*[^0-9]{0,8}$")
+_LIKE_A_TIME: Final = re.compile(r"[0-9]{1,2}\s*[:.uhUH]\s*[0-9]{2}.*")
+_LIKE_RUNS: Final = re.compile(
+    r"b?[0-9]{1,2}(\s*([,;+&\s.-]|en|and|und|t/m|tm|bis|to)\s*b?[0-9]{1,2}){2,}"
+    r"|[0-9]{1,2}\s*(-|t/m|tm|bis|to)\s*[0-9]{1,2}"
+)
+_LOOKS: Final[Mapping[str, Callable[[str], bool]]] = {
+    "crew_class": lambda cell: fold_word(cell) in {*CLASSES, *"mvwf"},
+    "tow_id": lambda cell: _LIKE_A_DATE.fullmatch(cell) is None,
+    "fsn_no": lambda cell: _BOAT.fullmatch(cell) is not None,
+    "use_runs": lambda cell: (
+        fold_word(cell) in ALL_RUNS or _LIKE_RUNS.fullmatch(fold_word(cell)) is not None
+    ),
+    "rowing_time_s": lambda cell: _LIKE_A_TIME.fullmatch(cell) is not None,
+    "file": lambda cell: any(map(str.isalpha, cell)) and len(cell) > 3,
+    "second_file": lambda cell: any(map(str.isalpha, cell)) and len(cell) > 3,
+    "name": lambda cell: any(map(str.isalpha, cell)),
+    "boat_type": lambda cell: any(map(str.isalpha, cell)),
+}
+"""What cells of text look like, of columns that not every text can stand in."""
+
+
+def _strange(found: Sequence[Meaning]) -> str:
+    """Return the sentence about columns that nobody knows, with the likely known ones."""
     return say(
         "Nobody knows column {names}. Correct it, name it under [headers] in archief.toml, or put "
         "it there under ignore.",
         names=", ".join(
-            f"'{shorten(header)}'" + (f" ({column.named}?)" if column else "")
-            for header, column in meant.items()
+            f"'{shorten(meaning.header)}'"
+            + (f" ({meaning.column.named}?)" if meaning.column else "")
+            for meaning in found
         ),
-        meant=tuple((h, column.header if column else "") for h, column in meant.items()),
+        meant=tuple((m.header, m.column.header if m.column else "", m.is_sure) for m in found),
     )
 
 

@@ -15,7 +15,7 @@ class Sentence(str):
 
     Attributes:
         template: the English text with names in braces.
-        values: what stands in their place; may be sentences themselves.
+        values: what is in their place; may be sentences themselves.
     """
 
     __slots__ = ("template", "values")

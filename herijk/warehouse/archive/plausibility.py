@@ -70,7 +70,7 @@ _WORDS: Final = {
 
 @dataclass(frozen=True)
 class _Run:
-    """One selected run: its channels, and where its first row stands in the file."""
+    """One selected run: its channels, and where its first row is in the file."""
 
     number: int
     first_line: int
@@ -261,7 +261,7 @@ def _short(run: _Run, tow: Mapping[str, Any]) -> list[Fault]:
     missing_s = run.planned_s - run.seconds
     lost: Lost = "run" if missing_s > LEFT_OUT_S else "seconds"
     message = (
-        f"{run.name} lasts {run.seconds:.2f} s at {run.rate_hz} samples a second, "
+        f"{run.name} lasts {run.seconds:.2f} s at {run.rate_hz} samples per second, "
         f"{missing_s:.2f} s too short; {_what_then(lost)}."
     )
     return [_cost("short_run", message, run, tow, 0, lost, missing_s)]

@@ -23,7 +23,7 @@ from herijk.pipeline.channels import (
     TARGET_SPEED_RATIOS,
 )
 from herijk.pipeline.errors import DefectiveInputError, MissingKnowledgeError
-from herijk.warehouse.archive.files import PROFILE_FILE, path_inside
+from herijk.warehouse.archive.files import PROFILE_FILE, STANDS_FOR, path_inside
 from herijk.warehouse.archive.lists import Wording, fold_word
 from herijk.warehouse.archive.text import Column, fold, split_header
 from herijk.warehouse.archive.units import UNITS, find_scale
@@ -161,7 +161,9 @@ class _PlanTable(_Strict):
         if (self.seasons is None) == (not self.tows):
             raise ValueError("a plan is for seasons or for tows: give one of the two")
         if len(self.targets) != len(self.directions):
-            raise ValueError("targets and directions must have one entry a run, so as many of both")
+            raise ValueError(
+                "targets and directions must have one entry per run, so as many of both"
+            )
         return self
 
     @property
@@ -169,14 +171,23 @@ class _PlanTable(_Strict):
         return Plan(tuple(self.targets), _ways(self.directions), self.seconds)
 
 
+class Publication(_Strict):
+    """Who publishes what is made from the archive, and what others may do with it."""
+
+    publisher: Annotated[str, Field(min_length=1)] | None = None
+    licence: Annotated[str, Field(pattern=r"^([A-Za-z0-9.+-]+|https?://\S+)$")] | None = None
+
+
 class _File(_Strict):
     simulated: bool = False
+    publication: Publication = Publication()
     profile: list[_ProfileTable] = []
     plan: list[_PlanTable] = []
     words: dict[str, str] = {}
     headers: dict[str, str] = {}
     ignore: list[str] = []
     dates: dict[str, Literal["dmy", "mdy"]] = {}
+    files: dict[str, Annotated[str, Field(pattern=f"^{STANDS_FOR.pattern}$")]] = {}
     set_aside: list[SetAside] = []
     log_replaced: list[LogReplaced] = []
 
@@ -196,7 +207,7 @@ class SeasonProfile:
     Attributes:
         season: the year.
         columns: the columns to look for, with name and default unit of that season.
-        sample_rate_hz: samples a second where the tow list does not say.
+        sample_rate_hz: samples per second where the tow list does not say.
         absent: what was not on board, or is not to be used: `wind`, `log2`, `gps`.
         header: the names of the columns of files that have none.
         ignore: names of columns that are known and not used.
@@ -216,6 +227,7 @@ class Profiles:
 
     Attributes:
         simulated: the archive says of itself that it was made by a simulator.
+        publication: publisher and licence of what is made from it.
         tables: the season ranges that differ.
         set_aside: days whose tows are not used.
         log_replaced: days from which another log was on board.
@@ -224,6 +236,7 @@ class Profiles:
     """
 
     simulated: bool = False
+    publication: Publication = field(default_factory=Publication)
     tables: tuple[_ProfileTable, ...] = ()
     plans: tuple[_PlanTable, ...] = ()
     wording: Wording = field(default_factory=Wording)
@@ -326,6 +339,7 @@ def parse_profiles(text: str) -> Profiles:
         raise MissingKnowledgeError(f"{PROFILE_FILE} is not valid TOML: {error}") from error
     return Profiles(
         simulated=parsed.simulated,
+        publication=parsed.publication,
         tables=tuple(parsed.profile),
         set_aside=tuple(parsed.set_aside),
         log_replaced=tuple(parsed.log_replaced),
@@ -335,6 +349,7 @@ def parse_profiles(text: str) -> Profiles:
             headers={split_header(name)[0]: key for name, key in parsed.headers.items()},
             ignore=tuple(fold(name) for name in parsed.ignore),
             dates=dict(parsed.dates),
+            files=dict(parsed.files),
         ),
     )
 
@@ -349,7 +364,7 @@ def _profile_path(root: Path) -> Path | None:
         return None
     found = sorted(p.name for p in root.iterdir() if p.name.casefold() == PROFILE_FILE)
     if len(found) > 1:
-        raise MissingKnowledgeError(f"{' and '.join(found)} both stand in {root}; keep one")
+        raise MissingKnowledgeError(f"{' and '.join(found)} both are in {root}; keep one")
     path = path_inside(root, found[0]) if found else None
     return path if path is not None and path.is_file() else None
 

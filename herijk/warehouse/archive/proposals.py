@@ -4,12 +4,12 @@ A proposal is for a person to look at. One that would be a guess (is 1/3 in Janu
 written as a comment, with its choices.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
 import tomlkit
-from tomlkit.items import Table
+from tomlkit.items import InlineTable, Table
 
 from herijk.warehouse.archive.faults import Fault
 from herijk.warehouse.archive.lists import fold_word
@@ -28,7 +28,8 @@ class Proposal:
     """One line for `archief.toml`.
 
     Attributes:
-        section: `words`, `headers`, `ignore`, `dates`, or `columns`, `absent` of a season.
+        section: `words`, `headers`, `ignore`, `dates`, `files`, or `columns`, `absent`,
+            `sample_rate_hz` of a season.
         key: its key there; empty for `ignore` and `absent`.
         value: its value.
         season: the season of a profile, else 0.
@@ -42,10 +43,21 @@ class Proposal:
     is_active: bool = True
 
     @property
+    def question(self) -> str:
+        """The line of a profile that a person has to choose."""
+        if self.section == "sample_rate_hz":
+            return f"sample_rate_hz = {self.value}"
+        key = f"columns.{self.key}" if self.section == "columns" else self.section
+        value = f'["{self.value}"]' if self.section == "absent" else f'"{self.value}"'
+        return f"{key} = {value}"
+
+    @property
     def line(self) -> str:
-        """The line as it stands in the file, its section first."""
+        """The line as it is in the file, its section first."""
         if self.section in {"ignore", "absent"}:
             body = f'{self.section} = ["{self.value}"]'
+        elif self.section == "sample_rate_hz":
+            body = f"sample_rate_hz = {self.value}"
         elif self.section == "columns":
             body = f'columns = {{ {self.key} = "{self.value}" }}'
         else:
@@ -53,25 +65,31 @@ class Proposal:
         return f'[[profile]] seasons = "{self.season}": {body}' if self.season else body
 
 
-def propose(fault: Fault) -> tuple[Proposal, ...]:
-    """Return what would settle a fault; nothing where only a person can."""
+def propose(fault: Fault, named: Mapping[str, str]) -> tuple[Proposal, ...]:
+    """Return what would settle a fault; nothing where only a person can.
+
+    Args:
+        fault: what is wrong.
+        named: what files and folders stand for, by their path (`[files]`).
+    """
     what = innermost(fault.message)
     if not isinstance(what, Sentence):
         return ()
     rule = _RULES.get(fault.reason_code)
-    return () if rule is None else tuple(rule(fault, what.values))
+    season = _season(fault.path, named)
+    return () if rule is None else tuple(rule(fault.path, what.values, season))
 
 
-def _of_headers(_: Fault, values: Any) -> Iterator[Proposal]:
+def _of_headers(_: str, values: Any, __: int) -> Iterator[Proposal]:
     """A header that nobody knows: the nearest that is not there yet, else to be ignored."""
-    for header, nearest in values.get("meant", ()):
+    for header, nearest, is_sure in values.get("meant", ()):
         if nearest:
-            yield Proposal("headers", _without_unit(header), nearest)
+            yield Proposal("headers", _without_unit(header), nearest, is_active=is_sure)
         else:
             yield Proposal("ignore", "", header)
 
 
-def _of_value(_: Fault, values: Any) -> Iterator[Proposal]:
+def _of_value(_: str, values: Any, __: int) -> Iterator[Proposal]:
     """A word where a number, a class or a choice belongs."""
     cell = str(values.get("cell", ""))
     if not cell or len(cell) > _ONE_WORD or any(letter.isdigit() for letter in cell):
@@ -81,7 +99,7 @@ def _of_value(_: Fault, values: Any) -> Iterator[Proposal]:
         meant = next(
             (
                 v
-                for k, v in {"h": "H", "m": "H", "d": "D", "v": "D", "w": "D"}.items()
+                for k, v in {"h": "H", "m": "H", "d": "D", "v": "D", "w": "D", "f": "D"}.items()
                 if word.startswith(k)
             ),
             "",
@@ -92,17 +110,16 @@ def _of_value(_: Fault, values: Any) -> Iterator[Proposal]:
         yield Proposal("words", word, "")
 
 
-def _of_date(fault: Fault, _: Any) -> Iterator[Proposal]:
-    yield Proposal("dates", fault.path, "dmy", is_active=False)
+def _of_date(path: str, _: Any, __: int) -> Iterator[Proposal]:
+    yield Proposal("dates", path, "dmy", is_active=False)
 
 
-def _of_samples(fault: Fault, values: Any) -> Iterator[Proposal]:
+def _of_samples(_: str, values: Any, season: int) -> Iterator[Proposal]:
     """Columns that a samples file lacks: the one column that can be it, or declared absent."""
     keys, header = values.get("keys", ()), values.get("header", ())
-    season = _season(fault.path)
     if not season or not set(keys) <= set(_SAMPLES):
         return
-    free = list(header)
+    free, unmatched = list(header), list[str]()
     for key in keys:
         column = _SAMPLES[key]
         fitting = [cell for cell in header if _can_be(cell, column)]
@@ -115,12 +132,33 @@ def _of_samples(fault: Fault, values: Any) -> Iterator[Proposal]:
         elif not near:
             absent = [name for name, channels in MAY_BE_ABSENT.items() if key in channels]
             yield from (Proposal("absent", "", name, season) for name in absent)
+            unmatched += [] if absent else [key]
+    if len(unmatched) == len(free) == 1:
+        yield Proposal("columns", unmatched[0], _without_unit(free[0]), season, is_active=False)
 
 
-def _of_unknown_samples(fault: Fault, values: Any) -> Iterator[Proposal]:
-    season = _season(fault.path)
+def _of_times(_: str, values: Any, season: int) -> Iterator[Proposal]:
+    """Times that say another rate than the profile does."""
+    if season and "observed" in values:
+        rate = f"{values['observed']:.0f}"
+        yield Proposal("sample_rate_hz", "", rate, season, is_active="planned" not in values)
+
+
+def _of_stranger(path: str, values: Any, _: int) -> Iterator[Proposal]:
+    """A file or folder of another name: what it can be, else to be ignored."""
+    for file, stands_for in values.get("can_be", ()):
+        yield Proposal("files", file, stands_for)
+    if not values.get("can_be"):
+        yield Proposal("ignore", "", path)
+
+
+def _of_unknown_samples(_: str, values: Any, season: int) -> Iterator[Proposal]:
     if "name" in values and season:
         yield Proposal("columns", "gps", _without_unit(str(values["name"])), season)
+
+
+def _of_strange_headers(path: str, values: Any, season: int) -> Iterator[Proposal]:
+    return (_of_headers if "meant" in values else _of_unknown_samples)(path, values, season)
 
 
 def _can_be(cell: str, column: Any) -> bool:
@@ -136,21 +174,26 @@ def _can_be(cell: str, column: Any) -> bool:
 def _without_unit(cell: str) -> str:
     """Return the name in a header cell as it is written."""
     name = split_header(cell)[0]
-    for end in range(len(cell), 0, -1):
-        if fold(cell[:end]) == name:
-            return cell[:end].rstrip(" [(,")
-    return cell
+    return next((cell[:end] for end in range(1, len(cell)) if fold(cell[:end]) == name), cell)
 
 
-def _season(path: str) -> int:
-    digits = "".join(letter for letter in path.partition("/")[0] if letter.isdigit())
+def _season(path: str, named: Mapping[str, str]) -> int:
+    """Return the season of a samples file, 0 where its folder does not tell it."""
+    own = (name for folder, name in named.items() if path.startswith(f"{folder}/"))
+    name = next(own, path.partition("/")[0])
+    digits = "".join(letter for letter in name if letter.isdigit())
     return int(digits) if len(digits) == 4 else 0
 
 
 _RULES: Final = {
-    "unknown_column": lambda f, v: (_of_headers if "meant" in v else _of_unknown_samples)(f, v),
-    "missing_column": lambda f, v: (_of_headers if "meant" in v else _of_samples)(f, v),
+    "unknown_column": lambda p, v, s: (_of_headers if "meant" in v else _of_unknown_samples)(
+        p, v, s
+    ),
+    "missing_column": _of_samples,
     "ambiguous_date": _of_date,
+    "bad_time": _of_times,
+    "short_run": _of_times,
+    "unrecognised_file": _of_stranger,
     "bad_list_row": _of_value,
     "bad_boat_row": _of_value,
     "bad_race_row": _of_value,
@@ -159,7 +202,7 @@ _RULES: Final = {
 
 
 def merged(text: str, proposals: Iterable[Proposal]) -> str:
-    """Return `archief.toml` with proposals written in; what stands there stays."""
+    """Return `archief.toml` with proposals written in; what is there stays."""
     document = tomlkit.parse(text)
     for proposal in proposals:
         if proposal.section == "ignore":
@@ -206,13 +249,24 @@ def _in_profile(document: Any, proposal: Proposal) -> None:
         profiles.append(mine)
         mine = profiles[-1]
     if not proposal.is_active:
-        key = "absent" if proposal.section == "absent" else f"columns.{proposal.key}"
-        mine.add(tomlkit.comment(f'{key} = "{proposal.value}"'))
+        _loosen(mine)
+        mine.add(tomlkit.comment(proposal.question))
     elif proposal.section == "absent":
         _add(mine, "absent", proposal.value)
-    else:
-        columns = mine.setdefault("columns", tomlkit.inline_table())
-        columns.setdefault(proposal.key, proposal.value)
+    elif proposal.section == "sample_rate_hz":
+        mine.setdefault("sample_rate_hz", int(proposal.value))
+    elif proposal.key not in mine.get("columns", {}):
+        _loosen(mine)
+        mine.add(tomlkit.key(["columns", proposal.key]), proposal.value)
+
+
+def _loosen(profile: Any) -> None:
+    """Write `columns = { force = "trek" }` as a line for each, so that more can stand beside it."""
+    columns = profile.get("columns")
+    if isinstance(columns, InlineTable):
+        profile.remove("columns")
+        for name, value in columns.items():
+            profile.add(tomlkit.key(["columns", name]), value)
 
 
 def _covers(seasons: str, season: int) -> bool:

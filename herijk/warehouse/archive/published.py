@@ -1,4 +1,4 @@
-"""Registers as they were published, and race results: what the recomputed history is held against.
+"""Registers as they were published, and race results: what the recomputed history is compared with.
 
 Both are optional in an archive. Computing with them belongs elsewhere.
 """
@@ -16,8 +16,8 @@ from herijk.tables.frames import frame_of
 from herijk.tables.lake import ListedRaces, PrintedLines
 from herijk.warehouse.archive.faults import Fault, fault_from
 from herijk.warehouse.archive.files import (
-    RACES_PATTERN,
-    REGISTER_PATTERN,
+    RACES,
+    REGISTERS,
     ArchiveFile,
     list_files,
     path_inside,
@@ -54,7 +54,9 @@ RACE_COLUMNS: Final = (
     Column("stream_m", "stroom", "length", "km", required=False),
     Column("penalty_w", "straf", "power", "W", required=False),
 )
-_ROWING_TIME: Final = re.compile(r"([0-9]{1,2}):([0-5][0-9]):([0-5][0-9])(?:[.,]0*)?")
+_ROWING_TIME: Final = re.compile(
+    r"([0-9]{1,2})(?::|\.|[uh]\s*)([0-5]?[0-9])(?::|\.|['m]\s*)([0-5]?[0-9])(?:[.,]0*|[\"s])?"
+)
 
 _ReadRow = Callable[[ListRow, int], dict[str, Any]]
 
@@ -68,7 +70,8 @@ def read_published_registers(
         One row a line of a register (`PrintedLines`), and the lines that cannot be read. A boat
         without a valid curve (published as Cw = 1) has `has_valid_curve` false and no A, B and Cw.
     """
-    files = list_files(root, "sloepregister", REGISTER_PATTERN)
+    wording = wording or read_profiles(root).wording
+    files = list_files(root, REGISTERS, wording.files)
     return _read_all(
         root, files, REGISTER_COLUMNS, "bad_register_row", PrintedLines, _register_line, wording
     )
@@ -83,7 +86,8 @@ def read_races(
         One row a result (`ListedRaces`; distances in m, times in s, penalties in W), and the lines
         that cannot be read.
     """
-    files = list_files(root, "wedstrijden", RACES_PATTERN)
+    wording = wording or read_profiles(root).wording
+    files = list_files(root, RACES, wording.files)
     return _read_all(root, files, RACE_COLUMNS, "bad_race_row", ListedRaces, _race_result, wording)
 
 
@@ -94,9 +98,8 @@ def _read_all(
     reason_code: str,
     table: type[dy.Schema],
     read_row: _ReadRow,
-    wording: Wording | None,
+    wording: Wording,
 ) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
-    wording = wording or read_profiles(root).wording
     good: list[dict[str, Any]] = []
     faults: list[Fault] = []
     for file in files:
@@ -140,11 +143,11 @@ def _register_line(row: ListRow, season: int) -> dict[str, Any]:
 
 def _race_result(row: ListRow, season: int) -> dict[str, Any]:
     day = row.date("race_date")
-    if day.year != season:
+    if season and day.year != season:
         message = "the date {day} is not in {season}, the year of the file."
         raise row.fault(say(message, day=day, season=season))
     return {
-        "season": season,
+        "season": day.year,
         "race": row.text("race"),
         "race_date": day,
         "distance_m": row.number("distance_m"),

@@ -139,6 +139,9 @@ def _group(group: Any, place: int) -> pl.DataFrame:
             values if values.dtype != object else values.astype(str)
         )
     frame = pl.DataFrame(columns)
+    step = next((channel.properties.get("wf_increment", 0.0) for channel in group.channels()), 0.0)
+    if step > 0 and not any(name.startswith("tijd") for name in map(str.casefold, columns)):
+        frame = frame.with_columns((pl.int_range(pl.len()) * step).alias("tijd [s]"))
     if any(name.casefold().strip() == "run" for name in columns):
         return frame
     number = _NUMBER_IN_NAME.search(group.name)

@@ -48,6 +48,7 @@ from herijk.warehouse.archive.text import (
     split_header,
     split_line,
     unknown_headers,
+    with_units,
 )
 from herijk.warehouse.archive.units import find_scale
 
@@ -63,10 +64,12 @@ OUTPUT_NAMES: Final = {
 TIME_TOLERANCE: Final = 0.01
 _BLANKS: Final = " \t"
 _ROW: Final = re.compile(rb"[^\r\n]")
-_BLANKS_WITHIN: Final = re.compile(
-    rb"(?<=[^ \t\r\n])[ \t]+(?=[^ \t\r\n])|^[ \t]+|[ \t]+(?=\r?$)", re.MULTILINE
+_BLANKS_OUTSIDE: Final = re.compile(rb"^[ \t]+|[ \t]+(?=\r?$)", re.MULTILINE)
+_BLANKS_WITHIN: Final = re.compile(rb"[ \t]+")
+_CLOCK: Final = (
+    r"^(?:.*[ T])?(?<h>[0-9]{1,2}):(?<m>[0-9]{2})(?::(?<s>[0-9]{2}(?:[.,][0-9]+)?))"
+    r"(?:Z|[+-][0-9:]{2,6})?$"
 )
-_CLOCK: Final = r"^(?:.*[ T])?(?<h>[0-9]{1,2}):(?<m>[0-9]{2})(?::(?<s>[0-9]{2}(?:[.,][0-9]+)?))$"
 _HEAD_BYTES: Final = 65_536
 """The header is looked for in so much of a file."""
 _QUOTED_DECIMAL_COMMA: Final = r'"([ \t]*[+-]?[0-9]*),([0-9][0-9eE+ \t-]*)"'
@@ -115,7 +118,7 @@ def read_samples(
         run: the run that the file is, where it is one of several.
 
     Returns:
-        A frame with the columns of `SAMPLE_SCHEMA`, one row a sample in the order of the file.
+        A frame with the columns of `SAMPLE_SCHEMA`, one row per sample in the order of the file.
         What was not measured is null throughout: a GPS that is absent or empty, and what the
         profile declares absent. Wind angles are brought to [0, 360); one outside -180..360 cannot
         be an angle and is left as it is, for `judge_samples` to find.
@@ -247,6 +250,8 @@ def _split_header(data: bytes, profile: SeasonProfile) -> _Body:
         header_line, below = profile.header, place
     delimiter = find_delimiter(lines[place])
     header = split_line(header_line, find_delimiter(header_line))
+    if units := with_units(header, _cells_of_line(lines, below, delimiter)):
+        header, below = units, below + 1
     columns = find_columns(header, profile.columns, places[0] if places else place + 1)
     _check_nothing_misspelt(header, columns, profile)
     above, start = below, _start_of_line(data, below)
@@ -254,7 +259,7 @@ def _split_header(data: bytes, profile: SeasonProfile) -> _Body:
         said = say("There are no samples below the header.")
         raise DefectiveInputError("unreadable_file", said)
     if delimiter == " ":
-        data, delimiter = _BLANKS_WITHIN.sub(b"\t", data[start:]), "\t"
+        data, delimiter = _tabs_for_blanks(data[start:]), "\t"
         above = start = 0
     return _Body(
         data,
@@ -267,6 +272,18 @@ def _split_header(data: bytes, profile: SeasonProfile) -> _Body:
         places[1:],
         _is_clock(data, start, delimiter, columns.get("time")),
     )
+
+
+def _tabs_for_blanks(data: bytes) -> bytes:
+    """Return text in columns of blanks with a tab between the columns."""
+    return _BLANKS_WITHIN.sub(b"\t", _BLANKS_OUTSIDE.sub(b"", data))
+
+
+def _cells_of_line(lines: Sequence[str], number: int, delimiter: str) -> list[str]:
+    """Return the cells of a line that may be no row of samples; none where there is no line."""
+    if number >= len(lines) or any(map(str.isdigit, lines[number])):
+        return []
+    return lines[number].split(None if delimiter == " " else delimiter)
 
 
 def _start_of_line(data: bytes, number: int) -> int:
@@ -568,7 +585,7 @@ def _check_time(run: pl.Series, time_s: NDArray[np.float64], rate_hz: int | None
         observed = 1.0 / float(np.nanmedian(step[start : end - 1]))
         if abs(observed / rate_hz - 1) > TIME_TOLERANCE:
             said = say(
-                "Run {run}: by its times it has {observed:.4g} samples a second, by the list or "
+                "Run {run}: by its times it has {observed:.4g} samples per second, by the list or "
                 "the profile {rate}; they may differ by {most:.0%}.",
                 run=run[int(start)],
                 observed=observed,

@@ -1,13 +1,14 @@
 """The rows of a table of text or of a spreadsheet, as fields of text with their line.
 
-Titles, blank lines and Excel's `sep=;` above the header are passed over. What the columns mean
-stands in `lists`; samples are read faster, in `samples`.
+Titles, blank lines and Excel's `sep=;` above the header are passed over, and so are totals and
+notes below the rows. A header may take two rows, the second for units or the rest of the names.
+What the columns mean is in `lists`; samples are read faster, in `samples`.
 """
 
 import datetime as dt
 import io
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from herijk.pipeline.errors import DefectiveInputError
@@ -17,15 +18,23 @@ from herijk.warehouse.archive.text import (
     Column,
     decode,
     find_delimiter,
+    fold,
+    is_rest_of_header,
     is_separator_line,
     score_of,
     split_line,
+    with_units,
 )
 
 SPREADSHEETS: Final = (".xlsx", ".xlsm", ".xls", ".ods")
 MOST_ROWS: Final = 100_000
 MOST_COLUMNS: Final = 500
 """Of a list; a spreadsheet that says to have more is not one."""
+_TOTALS: Final = frozenset(
+    {"totaal", "totalen", "subtotaal", "total", "som", "sum", "summe", "gesamt", "aantal",
+     "gemiddelde", "gemiddeld", "average", "mean", "mittelwert"}
+)  # fmt: skip
+"""What the first cell of a row below a table begins with where it is no row of it."""
 
 
 @dataclass(frozen=True)
@@ -39,15 +48,19 @@ class Row:
 
 @dataclass(frozen=True)
 class Sheet:
-    """A table: the cells of its header, the header's line, and the rows below it."""
+    """A table: the cells of its header, the header's line, the rows below it, and its name."""
 
     header: list[str]
     line: int
     rows: list[Row]
+    name: str = ""
 
 
-def read_sheet(data: bytes, columns: Sequence[Column], suffix: str = ".csv") -> Sheet:
-    """Return the table in a file.
+def read_sheets(data: bytes, columns: Sequence[Column], suffix: str = ".csv") -> list[Sheet]:
+    """Return the tables in a file: of a workbook the sheets that name the columns.
+
+    A sheet that names less than half as many columns as the best is about something else. Only
+    where there are several tables has each its name.
 
     Args:
         data: content of the file.
@@ -58,34 +71,107 @@ def read_sheet(data: bytes, columns: Sequence[Column], suffix: str = ".csv") -> 
         DefectiveInputError: the file cannot be read, or a quotation mark in its header is open.
     """
     if suffix in SPREADSHEETS:
-        return max(_spreadsheet(data, columns), key=lambda sheet: score_of(sheet.header, columns))
+        return _alike(list(_spreadsheet(data, columns)), columns)
     lines = decode(data).removeprefix("\ufeff").split("\n")
     lines = [line.rstrip("\r") for line in lines]
     place = find_header(lines, columns)
     delimiter = find_delimiter(lines[place])
-    header = split_line(lines[place], delimiter)
+    above = [_split_or_nothing(line, delimiter) for line in lines[: place + 3]]
+    header, place = _whole_header(above, place, columns)
     rows = [
         _text_row(number, line, delimiter, len(header))
         for number, line in enumerate(lines[place + 1 :], start=place + 2)
     ]
-    return Sheet(header, place + 1, [row for row in rows if any(map(str.strip, row.fields))])
+    return [Sheet(header, place + 1, _without_totals(rows))]
+
+
+def _alike(sheets: Sequence[Sheet], columns: Sequence[Column]) -> list[Sheet]:
+    scores = [score_of(sheet.header, columns) for sheet in sheets]
+    most = max(scores)
+    kept = [s for s, score in zip(sheets, scores, strict=True) if 2 * score >= max(most, 1)]
+    return kept if len(kept) > 1 else [replace(s, name="") for s in kept or sheets[:1]]
+
+
+def _split_or_nothing(line: str, delimiter: str = "") -> list[str]:
+    try:
+        return split_line(line, delimiter or find_delimiter(line))
+    except DefectiveInputError:
+        return []
+
+
+def _whole_header(
+    rows: Sequence[list[str]], place: int, columns: Sequence[Column]
+) -> tuple[list[str], int]:
+    """Return the header with what stands of it in the rows beside it, and its last row.
+
+    Args:
+        rows: the first rows of the table.
+        place: the row that names most columns.
+        columns: the columns that are looked for.
+    """
+    header = rows[place]
+    if place > 0 and (upper := _joined_rows(rows[place - 1], header)):
+        header = max((header, upper), key=lambda cells: score_of(cells, columns))
+    if place + 1 < len(rows):
+        below = rows[place + 1]
+        if units := with_units(header, below):
+            return units, place + 1
+        lower = _joined_rows(header, below)
+        if lower and (is_rest_of_header(header, below) or _names_more(lower, header, columns)):
+            return lower, place + 1
+    return header, place
+
+
+def _names_more(one: Sequence[str], other: Sequence[str], columns: Sequence[Column]) -> bool:
+    return score_of(one, columns) > score_of(other, columns)
+
+
+def _joined_rows(upper: Sequence[str], lower: Sequence[str]) -> list[str] | None:
+    """Return two rows of one header as one: `Gewicht` over `voor` and `na` goes for both."""
+    if len(lower) > len(upper) or not any(map(str.strip, upper)):
+        return None
+    joined, last = [], ""
+    for above, below in zip(upper, [*lower, *[""] * (len(upper) - len(lower))], strict=True):
+        last = above.strip() or last
+        name = last if below.strip() else above.strip()
+        joined.append(f"{name} {below.strip()}".strip())
+    return joined
+
+
+def _without_totals(rows: Iterable[Row]) -> list[Row]:
+    """Return the rows that hold something, without totals and without notes below the last."""
+    filled = [(row, [cell.strip() for cell in row.fields if cell.strip()]) for row in rows]
+    kept = [(row, cells) for row, cells in filled if cells and not _is_total(cells[0])]
+    while len(kept) > 1 and len(kept[-1][1]) == 1 and " " in kept[-1][1][0]:
+        kept.pop()
+    return [row for row, _ in kept]
+
+
+def _is_total(cell: str) -> bool:
+    return fold(cell.partition(" ")[0]) in _TOTALS
 
 
 def find_header(lines: Sequence[str], columns: Sequence[Column]) -> int:
-    """Return which of the first lines is the header; the first with text where none names any."""
-    first = 0
-    best, most = -1, 0
-    for place, line in enumerate(lines[:HEADER_WITHIN]):
-        if not line.strip() or is_separator_line(line):
-            first = place + 1 if first == place else first
-            continue
-        try:
-            score = score_of(split_line(line, find_delimiter(line)), columns)
-        except DefectiveInputError:
-            continue
-        if score > most:
-            best, most = place, score
-    return best if best >= 0 else min(first, len(lines) - 1)
+    """Return which of the first lines is the header."""
+    rows = [
+        [] if is_separator_line(line) else _split_or_nothing(line) for line in lines[:HEADER_WITHIN]
+    ]
+    return _header_among(rows, columns)
+
+
+def _header_among(rows: Sequence[Sequence[str]], columns: Sequence[Column]) -> int:
+    """Return which row names most columns; where none names two, the first with most names."""
+    scores = [score_of(row, columns) for row in rows]
+    if max(scores, default=0) < 2:
+        scores = [score + _texts(row) for score, row in zip(scores, rows, strict=True)]
+    return scores.index(max(scores)) if scores else 0
+
+
+def _texts(row: Sequence[str]) -> int:
+    """Return how many cells of a row are text, 0 where one is a number."""
+    cells = [cell.strip() for cell in row if cell.strip()]
+    is_data = any(cell[0].isdigit() or cell[0] in "+-" for cell in cells)
+    return 0 if is_data else len(cells)
 
 
 def _text_row(number: int, line: str, delimiter: str, width: int) -> Row:
@@ -120,22 +206,36 @@ def _spreadsheet(data: bytes, columns: Sequence[Column]) -> Iterator[Sheet]:
             said = say("Sheet '{name}' has too many rows or columns for a list.", name=grid.name)
             raise DefectiveInputError("too_large", said)
     for grid in grids:
-        yield _sheet([[_as_text(c) for c in row] for row in grid.iter_rows()], columns, grid.start)
+        yield replace(_sheet(_cells_of(grid), columns, grid.start), name=grid.name)
+
+
+def _cells_of(grid: Any) -> list[list[str]]:
+    """Return the cells of a sheet as text; what stands in merged cells stands in each of them."""
+    rows = [[_as_text(cell) for cell in row] for row in grid.iter_rows()]
+    top, left = grid.start or (0, 0)
+    for (first_row, first), (last_row, last) in grid.merged_cell_ranges or ():
+        if first_row == last_row and last - first + 1 >= len(rows[0]) - 1:
+            continue  # a title over the table
+        for row in rows[first_row - top : last_row - top + 1]:
+            row[first - left : last - left + 1] = [rows[first_row - top][first - left]] * (
+                last - first + 1
+            )
+    return rows
 
 
 def _sheet(
     rows: list[list[str]], columns: Sequence[Column], start: tuple[int, int] | None
 ) -> Sheet:
     above = start[0] if start else 0
-    scores = [score_of(row, columns) for row in rows[:HEADER_WITHIN]]
-    place = scores.index(max(scores)) if scores else 0
-    header = rows[place] if rows else []
+    if not rows:
+        return Sheet([], above + 1, [])
+    header, place = _whole_header(rows, _header_among(rows[:HEADER_WITHIN], columns), columns)
     below = (Row(above + i + 1, row) for i, row in enumerate(rows) if i > place)
-    return Sheet(header, above + place + 1, [r for r in below if any(map(str.strip, r.fields))])
+    return Sheet(header, above + place + 1, _without_totals(below))
 
 
 def _as_text(cell: Any) -> str:
-    """Return a cell as it would stand in a table of text."""
+    """Return a cell as it would be in a table of text."""
     if isinstance(cell, bool):
         return "ja" if cell else "nee"
     if isinstance(cell, float):

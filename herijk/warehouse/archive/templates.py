@@ -40,6 +40,10 @@ PROFILE: Final = """\
 
 # ignore = ["Weer"]                    # kolommen die niet gebruikt worden
 
+# [publication]
+# publisher = "Federatie ..."          # wie de uitkomsten uitgeeft
+# licence = "CC-BY-4.0"                # wat anderen ermee mogen: een SPDX-naam of een webadres
+
 # [words]
 # hrn = "H"                            # wat in een lijst staat = wat het betekent
 

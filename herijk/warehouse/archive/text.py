@@ -1,7 +1,7 @@
 """How the federation's text is spelled: bytes, delimiters, headers, units and numbers.
 
 Nothing here knows which file or column it is about, and nothing is guessed from the size of a
-number: a unit stands in the header or is the declared default.
+number: a unit is in the header or is the declared default.
 """
 
 import codecs
@@ -19,7 +19,7 @@ from typing import Final
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.limits import check_header
 from herijk.warehouse.archive.messages import say
-from herijk.warehouse.archive.units import UNITS, Scale, find_scale, is_unit
+from herijk.warehouse.archive.units import UNITS, Scale, find_scale, is_any_unit, is_unit
 
 DELIMITERS: Final = (";", "\t", ",", "|")
 HEADER_WITHIN: Final = 60
@@ -30,7 +30,9 @@ NUMBER_PATTERN: Final = r"^[+-]?([0-9]+([.,][0-9]*)?|[.,][0-9]+)([eE][+-]?[0-9]+
 
 _NUMBER: Final = re.compile(NUMBER_PATTERN)
 _BRACKETS: Final = re.compile(r"\[([^\[\]]*)\]|\(([^()]*)\)")
-_UNIT_BEHIND: Final = re.compile(r"^(.*\S)(?:\s*,|\s+in)\s+(\S+)$")
+_UNIT_BEHIND: Final = re.compile(r"^(.*?[^\s_,])(?:\s*,\s+|\s+in\s+|[\s_]+)(m_s|[^\s_]+)$")
+_NO_UNIT_BEHIND: Final = frozenset("cgsw")
+"""Single letters that mean something else behind a name: `log C`, `meetfile s`."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +57,7 @@ class Column:
 
     @property
     def named(self) -> str:
-        """Name and unit as they stand in a header."""
+        """Name and unit as they are in a header."""
         return f"{self.header} [{self.unit}]" if self.unit else self.header
 
     def answers_to(self, name: str) -> bool:
@@ -65,7 +67,7 @@ class Column:
 
 @dataclass(frozen=True)
 class FoundColumn:
-    """Where a column stands in a file: its index, the header as written, and the unit's scale."""
+    """Where a column is in a file: its index, the header as written, and the unit's scale."""
 
     index: int
     header: str
@@ -158,19 +160,49 @@ def fold_name(text: str) -> str:
 def split_header(cell: str) -> tuple[str, str | None]:
     """Return the folded name in a header cell, and its unit as written where it has one.
 
-    A unit stands in brackets, or behind a comma or `in`; other brackets belong to the name.
+    A unit is in brackets, or last (`kracht, N`, `snelheid in kn`, `breedte_cm`); other brackets
+    belong to the name.
     """
     cell = cell.strip()
     groups = list(_BRACKETS.finditer(cell))
-    units = [group for group in groups if is_unit(group[1] or group[2] or "")]
+    units = [group for group in groups if is_any_unit(group[1] or group[2] or "")]
     square = [group for group in groups if group[1] is not None]
     for group in units or square[-1:]:
         name = cell[: group.start()] + cell[group.end() :]
         return fold(name), (group[1] or group[2] or "").strip()
     behind = _UNIT_BEHIND.match(cell)
-    if behind and is_unit(behind[2]):
-        return fold(behind[1]), behind[2]
+    unit = behind[2].replace("m_s", "m/s") if behind else ""
+    if behind and is_unit(unit) and unit.casefold() not in _NO_UNIT_BEHIND:
+        return fold(behind[1]), unit
     return fold(cell), None
+
+
+def with_units(header: Sequence[str], below: Sequence[str]) -> list[str] | None:
+    """Return a header with the units of the row below it; None where that row is no row of units.
+
+    Args:
+        header: the cells of the header.
+        below: the cells of the next row: `m/s`, `[N]`, or nothing.
+    """
+    units = [cell.strip().strip("[]()").strip() for cell in below]
+    if len(units) > len(header) or not any(units):
+        return None
+    if not any(map(is_unit, units)):
+        return None
+    if not all(is_any_unit(unit) for unit in units if fold(unit) or unit in {"%", "°"}):
+        return None
+    units += [""] * (len(header) - len(units))
+    pairs = zip(header, units, strict=True)
+    return [f"{name} [{unit}]" if is_any_unit(unit) else name for name, unit in pairs]
+
+
+def is_rest_of_header(header: Sequence[str], below: Sequence[str]) -> bool:
+    """Whether a row goes on with the header above it: not a digit, and units or names it lacks."""
+    if any(map(str.isdigit, "".join(below))) or not any(map(str.strip, below)):
+        return False
+    names = [cell.strip() for cell in header if cell.strip()]
+    has_units = any(is_unit(cell.strip("[]() ")) or split_header(cell)[1] for cell in below)
+    return has_units or len(set(names)) < len(names)
 
 
 def find_columns(
@@ -180,7 +212,7 @@ def find_columns(
 
     Two columns may share a name when their dimensions differ (`wind [m/s]`, `wind [gra]`). A
     column's own name goes before its other names: where it stands they are left alone. A header
-    without a unit is the one column of that name that no header with a unit took.
+    without a unit is the one column of that name that no other header took.
 
     Args:
         header: the cells of the header.
@@ -194,20 +226,19 @@ def find_columns(
     found: dict[str, FoundColumn] = {}
     cells = [split_header(cell) for cell in header]
     own_names = {fold(column.header) for column in wanted}
-    own_first = sorted(
-        range(len(cells)), key=lambda i: (cells[i][0] not in own_names, cells[i][1] is None)
-    )
-    for index in own_first:
-        name, unit = cells[index]
-        namesakes = [column for column in wanted if name and column.answers_to(name)]
-        if name not in own_names:
-            taken = {c.key for c in namesakes if _is_own(c, found)}
-            namesakes = [column for column in namesakes if column.key not in taken]
-        if not namesakes:
-            continue
-        column = _choose(namesakes, unit, header[index], found, line)
-        scale = find_scale(column.dimension, unit or column.unit) or (1, 1)
-        found[column.key] = FoundColumn(index, header[index].strip(), scale, column.dimension)
+    own_first = sorted(range(len(cells)), key=lambda i: cells[i][0] not in own_names)
+    for is_clear in (True, False):
+        for index in own_first:
+            name, unit = cells[index]
+            namesakes = [column for column in wanted if name and column.answers_to(name)]
+            if name not in own_names:
+                taken = {c.key for c in namesakes if _is_own(c, found)}
+                namesakes = [column for column in namesakes if column.key not in taken]
+            if not namesakes or (unit is not None or len(namesakes) == 1) != is_clear:
+                continue
+            column = _choose(namesakes, unit, header[index], found, line)
+            scale = find_scale(column.dimension, unit or column.unit) or (1, 1)
+            found[column.key] = FoundColumn(index, header[index].strip(), scale, column.dimension)
     missing = [column for column in wanted if column.required and column.key not in found]
     if missing:
         raise DefectiveInputError("missing_column", _missing_message(missing, header, found), line)

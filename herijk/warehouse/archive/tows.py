@@ -18,6 +18,7 @@ COLUMNS: Final = (
     Column("tow_id", "sleep_id"),
     Column("tow_date", "datum"),
     Column("fsn_no", "fsn_nr"),
+    Column("name", "sloep", required=False),
     Column("file", "meetfile"),
     Column("second_file", "meetfile2", required=False),
     Column("rowers", "roeiers"),
@@ -117,7 +118,7 @@ def read_selection(row: ListRow, planned: Collection[int]) -> frozenset[int]:
     runs = [run_number(part, row, row.named("use_runs"), planned) for part in parts]
     values = {"column": row.named("use_runs"), "cell": shorten(cell)}
     if len(set(runs)) < len(runs):
-        raise row.fault(say("column '{column}' is '{cell}'; one run stands in it twice.", **values))
+        raise row.fault(say("column '{column}' is '{cell}'; it names one run twice.", **values))
     if max(runs) > SECOND_FILE_OFFSET and row.optional_text("second_file") is None:
         raise row.fault(say("column '{column}' is '{cell}', but there is no meetfile2.", **values))
     return frozenset(runs)

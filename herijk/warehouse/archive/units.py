@@ -18,7 +18,7 @@ UNITS: Final[dict[str, dict[str, Scale]]] = {
     "speed": {"m/s": (1, 1), "km/h": (1, 3.6), "kn": (1852, 3600)},
     "force": {"n": (1, 1), "kn": (1000, 1), "kgf": (9.80665, 1)},
     "angle": {"gra": (1, 1), "deg": (1, 1), "rad": (180, math.pi)},
-    "length": {"m": (1, 1), "cm": (1, 100), "mm": (1, 1000), "km": (1000, 1)},
+    "length": {"m": (1, 1), "cm": (1, 100), "mm": (1, 1000), "km": (1000, 1), "nmi": (1852, 1)},
     "mass": {"kg": (1, 1), "g": (1, 1000)},
     "temperature": {"c": (1, 1)},
     "ratio": {"%": (1, 100)},
@@ -40,9 +40,12 @@ SPELLINGS: Final[dict[str, dict[str, str]]] = {
         "°": "gra", "º": "gra", "graden": "gra", "graad": "gra", "grad": "gra", "degree": "gra",
         "degrees": "gra", "radialen": "rad", "radians": "rad",
     },
-    "length": {"meter": "m", "mtr": "m", "centimeter": "cm", "millimeter": "mm", "kilometer": "km"},
+    "length": {"meter": "m", "mtr": "m", "centimeter": "cm", "millimeter": "mm", "kilometer": "km",
+               "nm": "nmi", "zm": "nmi", "sm": "nmi", "zeemijl": "nmi", "zeemijlen": "nmi",
+               "seemeile": "nmi", "seemeilen": "nmi"},
     "mass": {"kilo": "kg", "kilogram": "kg", "kgs": "kg", "gram": "g"},
-    "temperature": {"°c": "c", "ºc": "c", "gradenc": "c", "celsius": "c", "degc": "c"},
+    "temperature": {"°c": "c", "ºc": "c", "gradenc": "c", "celsius": "c", "degc": "c",
+                    "gr": "c", "graden": "c", "°": "c", "º": "c", "grad": "c"},
     "ratio": {"procent": "%", "percent": "%", "pct": "%", "prozent": "%"},
     "rate": {"hertz": "hz", "1/s": "hz", "s/s": "hz", "samples/s": "hz"},
     "power": {"watt": "w"},
@@ -88,9 +91,14 @@ def is_unit(text: str) -> bool:
     )
 
 
+def is_any_unit(text: str) -> bool:
+    """Whether a text is a unit of any dimension, also one that only Pint knows."""
+    return is_unit(text) or any(_looked_up(name, text.strip()) for name in _PINT)
+
+
 @cache
 def _looked_up(dimension: str, unit: str) -> Scale | None:
-    if dimension not in _PINT or not unit or len(unit) > 20:
+    if dimension not in _PINT or not 1 < len(unit) <= 20:
         return None
     import pint  # noqa: PLC0415 - takes a second, and is seldom needed
 

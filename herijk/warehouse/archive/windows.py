@@ -1,6 +1,6 @@
-"""The windows given by hand: `vensters_<jaar>.csv`, one row a run of which a person chose the part.
+"""The windows given by hand: `vensters_<jaar>.csv`, one row per run that a person cut.
 
-Rows are read, and held against the tows of that year, here. How long a run is, is only known when
+Rows are read, and compared with the tows of that year, here. How long a run is, is only known when
 its samples are read; `outside_run` is asked then.
 """
 
@@ -32,7 +32,7 @@ Window = dict[str, Any]
 
 @dataclass(frozen=True)
 class Listed:
-    """What a year's tow list says that a window is held against.
+    """What a year's tow list says that a window is compared with.
 
     Attributes:
         tow_ids: every `sleep_id` in the list, also of tows that are set aside.

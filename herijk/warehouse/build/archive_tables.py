@@ -134,7 +134,7 @@ def _why_nothing(set_aside: pl.DataFrame) -> str:
     first = set_aside.row(0, named=True)
     return (
         f"no tow can be used: {set_aside.height} rows or files are set aside ({counted}). "
-        f"All stand in the table quarantine. See them by cause with: herijk check ARCHIVE. "
+        f"All are in the table quarantine. See them by cause with: herijk check ARCHIVE. "
         f"The first: {first['path']}: {first['message']}"
     )
 

@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING, Final
 import dataframely as dy
 import polars as pl
 
-from herijk.tables.schemas import TABLES, conform
+from herijk.tables.schemas import ABOUT, TABLES, conform
 from herijk.tables.views import VIEWS
 from herijk.warehouse.build.version import code_version
 from herijk.warehouse.store.database import build_database, left_wal
 from herijk.warehouse.store.files import file_sha256
-from herijk.warehouse.store.store import Store
+from herijk.warehouse.store.package import Origin, package_is_whole, write_package
+from herijk.warehouse.store.store import Store, fingerprint
 
 if TYPE_CHECKING:
     from herijk.warehouse.build.inputs import Inputs
@@ -25,17 +26,19 @@ DATABASE_TABLE: Final = "warehouse_database"
 """The tables in the file, and its hash."""
 
 MEANINGS: Final = str(
-    {name: [schema.__doc__, *_meanings(schema)] for name, schema in TABLES.items()} | VIEWS
+    {name: [schema.__doc__, *_meanings(schema)] for name, schema in (TABLES | ABOUT).items()}
+    | VIEWS
 )
 """What the file says of its tables, and its views."""
 
 
 def warehouse_database(inputs: "Inputs") -> dict[str, pl.DataFrame]:
-    """All tables in one DuckDB file, swapped in whole."""
+    """All tables in one DuckDB file, and each as Parquet; both swapped in whole."""
     found = {name: conform(name, inputs[name]) for name in inputs.names if name in TABLES}
     found["about"] = _about(inputs.store)
     found["contents"] = _contents(found)
     build_database(inputs.store.database, found)
+    write_package(inputs.store.root, found, TABLES | ABOUT, _origin(found))
     sha256 = pl.lit(file_sha256(inputs.store.database)).alias("sha256")
     return {DATABASE_TABLE: found["contents"].select("table", "rows", sha256)}
 
@@ -49,11 +52,30 @@ def database_without_tows(store: Store, found: Mapping[str, pl.DataFrame]) -> No
 
 
 def _about(store: Store) -> pl.DataFrame:
+    archive = store.read("about_archive").row(0, named=True)
     about = {
-        "simulated": str(store.read("about_archive")["simulated"][0]).lower(),
+        "simulated": str(archive["simulated"]).lower(),
         "code_version": code_version(),
+        **{key: archive[key] for key in ("publisher", "licence") if archive[key]},
     }
     return pl.DataFrame({"key": list(about), "value": list(about.values())})
+
+
+def _origin(found: Mapping[str, pl.DataFrame]) -> Origin:
+    """Where the tables come from: the archive's files, and the methods."""
+    about = dict(found["about"].rows())
+    tows = found["tows"]
+    hashes = sorted({*tows["samples_sha256"], *tows["second_sha256"].drop_nulls()})
+    seasons = tows["season"].to_list()
+    archive = f"samples of {tows.height} tows, {min(seasons)} to {max(seasons)}"
+    methods = found["methods"].select(pl.format("method {}", "method"), "content_hash").rows()
+    return Origin(
+        version=about["code_version"],
+        simulated=about["simulated"] == "true",
+        publisher=about.get("publisher"),
+        licence=about.get("licence"),
+        sources=((archive, fingerprint(hashes)), *methods),
+    )
 
 
 def _contents(found: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
@@ -69,7 +91,8 @@ def _contents(found: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
 
 
 def is_whole(store: Store) -> bool:
-    """Whether the file is there as it was made; it may have been damaged since."""
+    """Whether the files are there as they were made; they may have been damaged since."""
     made = store.read(DATABASE_TABLE)["sha256"][0]
     left = left_wal(store.database).exists()  # a reader would replay it
-    return store.database.exists() and not left and made == file_sha256(store.database)
+    whole = store.database.exists() and not left and made == file_sha256(store.database)
+    return whole and package_is_whole(store.root)

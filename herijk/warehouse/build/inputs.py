@@ -1,6 +1,6 @@
 """What a step may read: the tables of the lake, published editions and decisions of people.
 
-Of each kind of input two things are said: how it is read, and what of it stands in the fingerprint
+Of each kind of input two things are said: how it is read, and what of it is in the fingerprint
 of what is made from it.
 """
 
@@ -106,7 +106,7 @@ class Inputs:
 
 
 def made_from(store: Store, name: str, methods: Sequence[Method]) -> Any:
-    """What of an input stands in a fingerprint."""
+    """What of an input is in a fingerprint."""
     return _kind(name).made_from(store, name, methods)
 
 

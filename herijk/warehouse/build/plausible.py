@@ -1,6 +1,6 @@
 """Tows that the rest of the archive rules out: set aside, or doubted.
 
-What is judged, and how, stands in `pipeline.assessment.plausibility`. A wrong unit costs the tow,
+What is judged, and how, is in `pipeline.assessment.plausibility`. A wrong unit costs the tow,
 or the season, as any fault of a file does. A smaller shift keeps its tow, which then needs a look
 and takes no part in what tows share.
 """

@@ -1,4 +1,4 @@
-"""Samples that were measured once and stand in the archive twice.
+"""Samples that were measured once and are in the archive twice.
 
 A file that was packed again, saved with other line ends or in another format has another hash and
 the same content: a run whose sums are equal to the last bit was measured once. Whose it is nobody

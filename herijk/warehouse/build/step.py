@@ -6,7 +6,7 @@ that its step declares, so a declaration cannot leave one out.
 """
 
 import datetime as dt
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -101,12 +101,19 @@ class Step:
         kept = (store.made_from(name, partition) == made_from for name in self.outputs)
         return not all(kept) or not self.is_whole(store)
 
-    def make(self, store: Store, methods: Sequence[Method], today: dt.date | None = None) -> "Made":
+    def make(
+        self,
+        store: Store,
+        methods: Sequence[Method],
+        wanted: Collection[str] | None = None,
+        today: dt.date | None = None,
+    ) -> "Made":
         """Makes the outputs and writes them.
 
         Args:
             store: the data folder.
             methods: those to apply, or the one where the step is made per method.
+            wanted: the outputs to write; None for all. Others stay as they are, and stale.
             today: the day that is noted where something is seen for the first time.
         """
         made_from = self.made_from(store, methods)
@@ -121,10 +128,15 @@ class Step:
         found = {
             name: conform(name, made[name]) if name in TABLES else made[name]
             for name in self.outputs
+            if wanted is None or name in wanted
         }
         for name, frame in found.items():
             store.write(name, frame, made_from, partition)
-        faults = {check: list(check.faults(inputs, found)) for check in self.checks}
+        faults = {
+            check: list(check.faults(inputs, found))
+            for check in self.checks
+            if check.table in found
+        }
         return Made(found, faults)
 
     def _partition(self, methods: Sequence[Method]) -> str | None:

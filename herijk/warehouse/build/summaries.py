@@ -1,6 +1,6 @@
 """Tables that sum up other tables: per season, per code, per second, and races replayed.
 
-What a page or command says of many tows together stands in a table too. The sums are
+What a page or command says of many tows together is in a table too. The sums are
 `pipeline.studies.summaries`, `pipeline.studies.claims` and `pipeline.register.replay`.
 """
 

@@ -1,7 +1,7 @@
 """The texts that go with an edition: a notice of one page and release notes, in Dutch and English.
 
 Filled in from the edition and its comparison with the one before; no number is computed here. What
-the texts say stands in the templates beside this module, the words in `warehouse.editions.words`.
+the texts say is in the templates beside this module, the words in `warehouse.editions.words`.
 """
 
 from pathlib import Path

@@ -1,7 +1,7 @@
 """Printed registers: their lines as an edition, and re-based in closed form to carry them over.
 
 A printed register says nothing about its method; its A, B and speed are all there is. The formula
-of the closed form stands in `pipeline.curve.rebase`.
+of the closed form is in `pipeline.curve.rebase`.
 """
 
 import datetime as dt
@@ -30,7 +30,7 @@ def printed_path(store: Store, season: int) -> str:
 
     Raises:
         MissingKnowledgeError: the archive holds no such register, or one with a line that cannot be
-            read: an edition stands for ever and must not lack it.
+            read: an edition is kept for ever and must not lack it.
     """
     found, faults = _registers(store)
     paths = found.filter(pl.col("season") == season)["path"].unique()
@@ -105,7 +105,7 @@ def _refuse_doubles(printed: pl.DataFrame) -> None:
     if double.height:
         row = double.row(0, named=True)
         raise MissingKnowledgeError(
-            f"{row['path']}, line {row['line']}: {row['fsn_no']} stands there twice for "
+            f"{row['path']}, line {row['line']}: {row['fsn_no']} is listed twice for "
             f"{row['rowers']}{row['crew_class']}; take one of the lines out"
         )
 

@@ -19,7 +19,7 @@ from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.recompute.facts import with_boat_types, with_hand_windows
 from herijk.tables.archive import TraceSeconds
 from herijk.tables.frames import frame_of
-from herijk.tables.lake import Faults
+from herijk.tables.lake import AboutArchive, Faults
 from herijk.warehouse.archive import (
     ArchiveIndex,
     FileHashes,
@@ -52,8 +52,10 @@ def index(store: Store, root: Path) -> ArchiveIndex:
     _, register_faults = read_published_registers(root)
     faults = [dataclasses.asdict(f) for f in (*found.faults, *race_faults, *register_faults)]
     store.write("list_faults", frame_of(Faults, faults), made_from="")
-    about = {"simulated": [found.profiles.simulated], "root": [str(root.resolve())]}
-    store.write("about_archive", pl.DataFrame(about), made_from="")
+    about = {"simulated": found.profiles.simulated, "root": str(root.resolve())}
+    about |= found.profiles.publication.model_dump()
+    about_archive = frame_of(AboutArchive, [about])
+    store.write("about_archive", about_archive, made_from="")
     store.write("listed_files", found.files, made_from="")
     store.write("listed_races", races, made_from="")
     return found

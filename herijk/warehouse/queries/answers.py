@@ -1,4 +1,4 @@
-"""What an owner asks of a line: old and new number, why, how sure, and where that leaves the boat.
+"""What an owner asks of a line: old and new number, why, how certain, and the boat's new place.
 
 Joins the tables and `pipeline.register.changes`; computes nothing else. Words are in `dashboards`.
 """

@@ -20,8 +20,8 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[di
 
     Returns:
         Rows of `answers` with `decision`, `valid_from` and `published_on` of the edition, `powers`
-        (speed [m/s], Cw [kg/m] and power a rower [W] over the range of the curve), and the rows of
-        `curve_points` and `run_points` of the tow (`curve`, `points`).
+        (speed [m/s], Cw [kg/m] and power per rower [W] over the range of the curve), and the rows
+        of `curve_points` and `run_points` of the tow (`curve`, `points`).
 
     Raises:
         MissingKnowledgeError: there is no such edition, or no valid line of that boat in it.
@@ -59,7 +59,7 @@ def _of_tow(rows: pl.DataFrame, line: dict[str, Any]) -> pl.DataFrame:
 
 
 def _powers(line: dict[str, Any]) -> list[tuple[float, float, float]]:
-    """Speed, Cw and power a rower, from the A and B that are printed."""
+    """Speed, Cw and power per rower, from the A and B that are printed."""
     speed = np.array(SPEEDS) * line["declared_speed_m_s"]
     b = np.inf if line["b_m_s"] is None else line["b_m_s"]
     resistance = cw(line["a_kg_m"], s_of_b(b), speed)

@@ -1,7 +1,7 @@
 """Re-base: all of history under a method that may not have been used before, against another.
 
 Reads the lake, writes nothing: a committee looks at the result before anyone publishes. What the
-steps compute stands in `pipeline`.
+steps compute is in `pipeline`.
 """
 
 from typing import Any

@@ -1,6 +1,6 @@
 """What people look at, as frames: tables of the database, joined and sorted for a page or chart.
 
-Reads the database; writes and computes nothing: every number here stands in a table.
+Reads the database; writes and computes nothing: every number here is in a table.
 """
 
 import datetime as dt

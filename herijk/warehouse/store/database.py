@@ -63,16 +63,24 @@ def build_database(path: Path, tables: Mapping[str, pl.DataFrame]) -> None:
 
 def _describe(connection: duckdb.DuckDBPyConnection, name: str) -> None:
     """What a table and its columns mean."""
-    from herijk.tables.schemas import TABLES  # noqa: PLC0415 - half a second that readers need not wait
+    from herijk.tables.schemas import ABOUT, TABLES  # noqa: PLC0415 - half a second that readers need not wait
 
-    schema = TABLES.get(name)
+    schema = (TABLES | ABOUT).get(name)
     if schema is None:
         return
     connection.execute(f'COMMENT ON TABLE "{name}" IS {_quoted(_meaning(schema))}')
-    for column, definition in schema.columns().items():
-        unit = (definition.metadata or {}).get("unit")
-        text = f"{definition.description} [{unit}]" if unit else definition.description
+    for column, text in _column_meanings(schema).items():
         connection.execute(f'COMMENT ON COLUMN "{name}"."{column}" IS {_quoted(text)}')
+
+
+def _column_meanings(schema: "type[dy.Schema]") -> dict[str, str]:
+    """What the columns of a table mean, each with its unit."""
+    return {
+        name: f"{column.description} [{unit}]"
+        if (unit := (column.metadata or {}).get("unit"))
+        else str(column.description)
+        for name, column in schema.columns().items()
+    }
 
 
 def _meaning(schema: "type[dy.Schema]") -> str:
@@ -83,11 +91,19 @@ def _meaning(schema: "type[dy.Schema]") -> str:
 
 def _add_views(connection: duckdb.DuckDBPyConnection, tables: Mapping[str, pl.DataFrame]) -> None:
     """The views, where the tables are those of a rebuild."""
+    from herijk.tables.schemas import TABLES  # noqa: PLC0415 - as above
+
     if "register" not in tables:
         return
     for name, view in VIEWS.items():
         connection.execute(f'CREATE VIEW "{name}" AS {view.query}')
         connection.execute(f'COMMENT ON VIEW "{name}" IS {_quoted(view.meaning)}')
+        known: dict[str, str] = {}
+        for table in reversed(view.tables):
+            known |= _column_meanings(TABLES[table])
+        known |= view.own
+        for column in connection.table(name).columns:
+            connection.execute(f'COMMENT ON COLUMN "{name}"."{column}" IS {_quoted(known[column])}')
 
 
 def _quoted(text: str | None) -> str:

@@ -2,7 +2,7 @@
 
 `besluiten.toml` lies in the data folder. It says which tow is not to count, or counts although a
 newer one exists, with reason, who decided and when. A published edition keeps its own copy. What a
-verdict does to a register stands in `pipeline.register.register`.
+verdict does to a register is in `pipeline.register.register`.
 """
 
 import datetime as dt
@@ -22,7 +22,7 @@ VERDICTS: Final = {"uitsluiten": EXCLUDE, "voorkeur": PREFER}
 
 
 class Decision(BaseModel):
-    """One decision, as it stands in the file."""
+    """One decision, as it is in the file."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 

@@ -6,10 +6,8 @@ files, and whether they are still what they were, is `warehouse.editions`'s.
 """
 
 import datetime as dt
-import fcntl
 import hashlib
 import json
-import os
 import re
 import shutil
 import tempfile
@@ -20,11 +18,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, Literal
 
 import polars as pl
+from filelock import FileLock
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import Method, parse_method
-from herijk.warehouse.store.files import TEMPORARY_PREFIX
+from herijk.warehouse.store.files import TEMPORARY_PREFIX, sync
 from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import Store
 
@@ -288,11 +287,11 @@ def _write_beside(path: Path, contents: Mapping[str, bytes]) -> None:
     try:
         for name, content in contents.items():
             (beside / name).write_bytes(content)
-            _sync(beside / name)
+            sync(beside / name)
         beside.chmod(0o755)
-        _sync(beside)
+        sync(beside)
         beside.rename(path)
-        _sync(path.parent)
+        sync(path.parent)
     finally:
         shutil.rmtree(beside, ignore_errors=True)
 
@@ -300,17 +299,8 @@ def _write_beside(path: Path, contents: Mapping[str, bytes]) -> None:
 @contextmanager
 def _one_at_a_time(root: Path) -> Iterator[None]:
     """Keeps other publications out, so that anything half-written is a dead one's."""
-    with (root / _LOCK).open("w", encoding="utf-8") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
+    with FileLock(root / _LOCK):
         for left in root.glob(f"{TEMPORARY_PREFIX}*"):
             if left.is_dir():
                 shutil.rmtree(left)
         yield
-
-
-def _sync(path: Path) -> None:
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)

@@ -1,6 +1,6 @@
 """The members of a method's ensemble, read back from the lake.
 
-What they are and what can be counted in them stands in `pipeline.uncertainty.ensemble`; they are
+What they are and what can be counted in them is in `pipeline.uncertainty.ensemble`; they are
 written with the other tables of a method (`warehouse.build.method_tables`).
 """
 

@@ -11,6 +11,7 @@ from pathlib import Path
 TEMPORARY_PREFIX = ".herijk-"
 """Begins the name of every file that is still being written."""
 
+WINDOWS = os.name == "nt"
 
 AT_FDCWD, RENAME_EXCHANGE = -100, 2
 """Of `renameat2(2)`: paths are relative to where we are; exchange the two."""
@@ -29,10 +30,10 @@ def written_beside(path: Path) -> Iterator[Path]:
     beside = Path(name)
     try:
         yield beside
-        _sync(beside)
+        sync(beside)
         beside.chmod(0o644)
         beside.replace(path)
-        _sync(path.parent)
+        sync(path.parent)
     finally:
         beside.unlink(missing_ok=True)
 
@@ -50,13 +51,17 @@ def write_new(path: Path, text: str) -> None:
         FileExistsError: there is one already; it is left as it is.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.NamedTemporaryFile("wb", prefix=TEMPORARY_PREFIX, dir=path.parent) as beside:
-        beside.write(text.encode())
-        beside.flush()
-        os.fsync(beside.fileno())
-        Path(beside.name).chmod(0o644)
-        path.hardlink_to(beside.name)
-    _sync(path.parent)
+    handle, name = tempfile.mkstemp(prefix=TEMPORARY_PREFIX, dir=path.parent)
+    beside = Path(name)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(text.encode())
+        sync(beside)
+        beside.chmod(0o644)
+        path.hardlink_to(beside)
+    finally:
+        beside.unlink(missing_ok=True)
+    sync(path.parent)
 
 
 def put_in_place(beside: Path, target: Path) -> None:
@@ -67,7 +72,7 @@ def put_in_place(beside: Path, target: Path) -> None:
     first, and for a moment there is none.
     """
     for file in beside.rglob("*"):
-        _sync(file)
+        sync(file)
     if not target.exists():
         beside.rename(target)
     elif not _exchange(beside, target):
@@ -75,11 +80,13 @@ def put_in_place(beside: Path, target: Path) -> None:
         target.rename(old)
         beside.rename(target)
         old.rename(beside)
-    _sync(target.parent)
+    sync(target.parent)
 
 
 def _exchange(one: Path, other: Path) -> bool:
     """Exchanges two names in one step; False where system or file system cannot."""
+    if WINDOWS:
+        return False
     renameat2 = getattr(ctypes.CDLL(None, use_errno=True), "renameat2", None)
     if renameat2 is None:
         return False
@@ -87,8 +94,14 @@ def _exchange(one: Path, other: Path) -> bool:
     return not failed
 
 
-def _sync(path: Path) -> None:
-    handle = os.open(path, os.O_RDONLY)
+def sync(path: Path) -> None:
+    """Has the system write a file, or the names in a folder, to disk.
+
+    Windows knows no such thing for folders, and wants the right to write for a file.
+    """
+    if WINDOWS and path.is_dir():
+        return
+    handle = os.open(path, os.O_RDWR if WINDOWS else os.O_RDONLY)
     try:
         os.fsync(handle)
     finally:

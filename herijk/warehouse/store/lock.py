@@ -1,11 +1,11 @@
 """One writer at a time in a data folder, and clearing up after writers that were killed.
 
-The lock is the operating system's and dies with its owner, however that ends. Readers need none:
-what they read is replaced whole. Publishing an edition has a lock of its own, in `editions`.
+The lock is the operating system's and dies with its owner, however that ends. Who holds it stands
+in a file beside it, as Windows lets nobody read a locked file. Readers need no lock: what they read
+is replaced whole. Publishing an edition has a lock of its own, in `editions`.
 """
 
 import datetime as dt
-import fcntl
 import json
 import os
 import shutil
@@ -15,11 +15,15 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
+from filelock import FileLock, Timeout
+
 from herijk.pipeline.errors import UnavailableError
 from herijk.warehouse.store.files import TEMPORARY_PREFIX
 
 LOCK_FILE: Final = "rebuild.lock"
 SERVER_LOCK_FILE: Final = "serve.lock"
+OWNER_SUFFIX: Final = ".owner.json"
+WAIT: Final = "Wait until that is done, or stop that process; its lock goes with it"
 _NOT_OURS: Final = {"audit", "dagster", "editions", "outbox"}
 """Folders of the data folder in which others write, without the lock."""
 
@@ -43,16 +47,13 @@ def only_writer(root: Path, wait: bool = False) -> Iterator[None]:
     if folder in _held:
         yield
         return
-    with (folder / LOCK_FILE).open("a+", encoding="utf-8") as lock:
-        _take(lock.fileno(), folder, wait)
+    with _locked(folder / LOCK_FILE, wait, f"{folder} is being rebuilt already", WAIT):
         _held.add(folder)
         try:
-            _sign(lock.fileno())
             remove_leftovers(folder)
             yield
         finally:
             _held.discard(folder)
-            os.ftruncate(lock.fileno(), 0)
 
 
 @contextmanager
@@ -63,14 +64,10 @@ def only_server(root: Path) -> Iterator[None]:
         UnavailableError: there is one already; the message says which.
     """
     root.mkdir(parents=True, exist_ok=True)
-    with (root.resolve() / SERVER_LOCK_FILE).open("a+", encoding="utf-8") as lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError as error:
-            raise UnavailableError(
-                f"{root} is served already, by {_owner(lock.fileno())}. Stop that one first"
-            ) from error
-        _sign(lock.fileno())
+    file = root.resolve() / SERVER_LOCK_FILE
+    with _locked(
+        file, wait=False, taken=f"{root} is served already", way_out="Stop that one first"
+    ):
         yield
 
 
@@ -83,35 +80,39 @@ def nobody_writes(root: Path) -> bool:
         return False
 
 
-def _take(handle: int, folder: Path, wait: bool) -> None:
+@contextmanager
+def _locked(file: Path, wait: bool, taken: str, way_out: str) -> Iterator[None]:
+    """Holds a lock, signed with who holds it.
+
+    Raises:
+        UnavailableError: another process holds it; `taken` says what is, `way_out` what to do.
+    """
+    lock, signature = FileLock(file), file.with_suffix(OWNER_SUFFIX)
     try:
-        fcntl.flock(handle, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
-    except BlockingIOError as error:
-        raise UnavailableError(
-            f"{folder} is being rebuilt already, by {_owner(handle)}. Wait until that is done, or "
-            "stop that process; its lock goes with it"
-        ) from error
+        lock.acquire(blocking=wait)
+    except Timeout as error:
+        raise UnavailableError(f"{taken}, by {_owner(signature)}. {way_out}") from error
+    try:
+        since = dt.datetime.now().astimezone().isoformat(timespec="seconds")
+        owner = {"pid": os.getpid(), "host": socket.gethostname(), "since": since}
+        signature.write_text(json.dumps(owner), encoding="utf-8")
+        yield
+    finally:
+        signature.unlink(missing_ok=True)
+        lock.release()
 
 
-def _sign(handle: int) -> None:
-    """Says who holds the lock."""
-    since = dt.datetime.now().astimezone().isoformat(timespec="seconds")
-    owner = {"pid": os.getpid(), "host": socket.gethostname(), "since": since}
-    os.ftruncate(handle, 0)
-    os.write(handle, json.dumps(owner).encode())
-
-
-def _owner(handle: int) -> str:
+def _owner(signature: Path) -> str:
     """Who holds the lock, in words; it may have just begun and not have signed yet."""
     try:
-        owner: dict[str, Any] = json.loads(os.pread(handle, 1000, 0))
+        owner: dict[str, Any] = json.loads(signature.read_text(encoding="utf-8"))
         return f"process {owner['pid']} on {owner['host']} since {owner['since']}"
-    except (ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError):
         return "a process that has just begun"
 
 
 def remove_leftovers(root: Path) -> None:
-    """Removes what was still being written. Only for who holds the lock: nobody else writes."""
+    """Removes what was still being written; the caller holds the lock, so nobody else writes."""
     for folder in (root, *(f for f in root.iterdir() if f.is_dir() and f.name not in _NOT_OURS)):
         pattern = f"{TEMPORARY_PREFIX}*"
         for left in list(folder.glob(pattern) if folder == root else folder.rglob(pattern)):

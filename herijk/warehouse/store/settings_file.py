@@ -19,7 +19,7 @@ def read_settings_file(path: Path, model: type[Model], may_hold: str) -> Model:
     Args:
         path: the file.
         model: what it can say.
-        may_hold: the same in words, for who made a mistake.
+        may_hold: the same in words, for anyone who made a mistake.
 
     Raises:
         MissingKnowledgeError: the file cannot be understood.

@@ -1,7 +1,7 @@
 """Where the lake and the editions lie: in folders of this machine, or in a bucket of S3 storage.
 
 `opslag.toml` in the data folder says so; without it both lie in the data folder. How a bucket is
-spoken to stands in `warehouse.store.bucket`, which needs the extra `s3`.
+spoken to is in `warehouse.store.bucket`, which needs the extra `s3`.
 """
 
 import io

@@ -4,7 +4,7 @@ The lake holds Parquet: the samples and the blocks of each tow, written once and
 and the tables, one file per table or per partition of it (a season, a method). Each table file
 carries the fingerprint of what it was made from, so that a rebuild does only what changed. Lake and
 editions may lie in a bucket instead of the data folder (`warehouse.store.storage`). What a table
-means stands in `tables.schemas`; the database that readers use is `warehouse.store.database`.
+means is in `tables.schemas`; the database that readers use is `warehouse.store.database`.
 """
 
 import hashlib
@@ -21,7 +21,7 @@ import pyarrow as pa  # type: ignore[import-untyped]
 import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
 from herijk.pipeline.errors import BrokenPromiseError
-from herijk.warehouse.store.obstacles import is_obstacle
+from herijk.warehouse.store.machine_faults import is_machine_fault
 from herijk.warehouse.store.storage import Locations, Place, place, read_locations, written_whole
 
 FINGERPRINT_KEY: Final = "herijk.fingerprint"
@@ -124,7 +124,7 @@ class Store:
             held = (_footer(path).metadata or {}).get(FINGERPRINT_KEY.encode())
             return None if held is None else bytes(held).decode()
         except _UNREADABLE as error:
-            if is_obstacle(error):
+            if is_machine_fault(error):
                 raise
             return None
 
@@ -195,7 +195,7 @@ def _damage_named(path: Place) -> Iterator[None]:
     except FileNotFoundError:
         raise
     except _UNREADABLE as error:
-        if is_obstacle(error):
+        if is_machine_fault(error):
             raise
         raise DamagedFileError(path) from error
 

@@ -123,7 +123,7 @@ SAMPLES: dict[str, Callable[[Archive], None]] = {
     ),
     "lvm": lvm,
     "tdms": tdms,
-    "a file a run": a_file_a_run,
+    "a file per run": a_file_a_run,
     "decomposed name": lambda a: (a.root / FIRST).rename(
         a.root / unicodedata.normalize("NFD", FIRST)
     ),

@@ -310,7 +310,7 @@ MANY_CASES: dict[str, tuple[Spoil, list[tuple[str, str, str | None, int | None]]
         [("unreadable_file", TOWS, None, None)], ALL,
     ),
     "tow list without boats": (
-        text("fsn_nr", "boot"), [("unknown_column", TOWS, None, 1)], ALL,
+        text("fsn_nr", "boot"), [("missing_column", TOWS, None, 1)], ALL,
     ),
     "copy of a list": (
         copy(TOWS, "sleeplijsten/sleeplijst_2014 (2).csv"),

@@ -1,4 +1,4 @@
-// The workbench: a method on trial, questions about it to the server, and what the answers show.
+// The workbench: a scenario, questions about it to the server, and what the answers show.
 // One question at a time is on its way; of those that come meanwhile only the last is asked.
 import { outdateCharts, redrawCharts } from "./charts.js";
 import { buildForm, markWrong } from "./controls.js";
@@ -146,7 +146,7 @@ function valueOf(value) {
 
 function showSummary() {
   const s = state.answer.summary;
-  const [before, after] = [state.answer.before, start.trial].map((method) =>
+  const [before, after] = [state.answer.before, start.scenario].map((method) =>
     state.answer.reproducibility.find((row) => row.method === method && row.scope === "all"));
   const per_cent = (v) => (v === null ? "-" : `${number(100 * v, 1)} %`);
   const tiles = [

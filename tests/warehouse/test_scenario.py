@@ -8,7 +8,7 @@ from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import parse_method, shipped_method
 from herijk.pipeline.register.register import LINE
 from herijk.warehouse.queries.history import History
-from herijk.warehouse.queries.trial import Trial
+from herijk.warehouse.queries.scenario import Scenario
 from herijk.warehouse.store.store import Store
 from tests.conftest import METHODS
 
@@ -27,8 +27,8 @@ def history(built):
 
 
 @pytest.fixture(scope="module")
-def trial(history):
-    return Trial(*(history.under(shipped_method(name)) for name in METHODS))
+def scenario(history):
+    return Scenario(*(history.under(shipped_method(name)) for name in METHODS))
 
 
 def test_an_empty_data_folder_says_how_to_fill_it(tmp_path):
@@ -36,8 +36,8 @@ def test_an_empty_data_folder_says_how_to_fill_it(tmp_path):
         History.of(Store(tmp_path))
 
 
-def test_a_draft_is_the_register_of_the_warehouse(trial, built):
-    for draft in (trial.before, trial.after):
+def test_a_draft_is_the_register_of_the_warehouse(scenario, built):
+    for draft in (scenario.before, scenario.after):
         stored = built.table("register").filter(method=draft.method.name)
         columns = [c for c in draft.register.columns if c in stored.columns]
         assert_frame_equal(
@@ -46,8 +46,8 @@ def test_a_draft_is_the_register_of_the_warehouse(trial, built):
 
 
 @pytest.mark.parametrize("table", ["reproducibility", "type_homogeneity"])
-def test_statistics_are_those_of_the_warehouse(trial, built, table):
-    found = getattr(trial, table)()
+def test_statistics_are_those_of_the_warehouse(scenario, built, table):
+    found = getattr(scenario, table)()
     assert_frame_equal(found, built.table(table).select(found.columns), check_row_order=False)
 
 
@@ -61,8 +61,8 @@ def test_remembered_windows_change_nothing(history):
         assert_frame_equal(draft.made.curves, fresh.made.curves)
 
 
-def test_changes_are_counted_and_the_largest_stands_above(trial, built):
-    lines, summary = trial.register_lines, trial.summary()
+def test_changes_are_counted_and_the_largest_stands_above(scenario, built):
+    lines, summary = scenario.register_lines, scenario.summary()
     stored = built.table("register_changes")
     counts = dict(stored["change"].value_counts().iter_rows())
     assert {name: summary[name] for name in ("same", "changed", "added", "removed")} == {
@@ -77,16 +77,16 @@ def test_changes_are_counted_and_the_largest_stands_above(trial, built):
     )
 
 
-def test_a_method_against_itself_changes_nothing(trial):
-    same = Trial(trial.before, trial.before).summary()
+def test_a_method_against_itself_changes_nothing(scenario):
+    same = Scenario(scenario.before, scenario.before).summary()
     assert same["same"] == same["lines"] > 0
     assert (same["median_ratio"], same["gains"], same["loses"]) == (1.0, 0, 0)
 
 
-def test_a_boat_has_its_curves_under_both_methods(trial, built):
+def test_a_boat_has_its_curves_under_both_methods(scenario, built):
     curves = built.table("curves").drop_nulls("cw_kg_m")
     fsn_no, tow_id = curves.row(0, named=True)["fsn_no"], curves["tow_id"][0]
-    drawn = trial.boat_figure(fsn_no).filter(tow_id=tow_id)
+    drawn = scenario.boat_figure(fsn_no).filter(tow_id=tow_id)
     assert set(drawn["method"]) == set(METHODS)
     for method in METHODS:
         own = drawn.filter(method=method)
@@ -99,14 +99,14 @@ def test_a_boat_has_its_curves_under_both_methods(trial, built):
 
 
 @pytest.mark.parametrize("base", ["rebased-2015", "rebased"])
-def test_a_method_that_no_tow_survives_is_shown_too(history, trial, base):
+def test_a_method_that_no_tow_survives_is_shown_too(history, scenario, base):
     nothing = history.under(parse_method(UNTOWABLE.format(base=base), "none.toml"))
-    both = Trial(trial.before, nothing)
+    both = Scenario(scenario.before, nothing)
     summary = both.summary()
     assert summary["removed"] == summary["lines"] > 0
     assert summary["median_ratio"] is None
     for frame in (both.season_change(), both.type_homogeneity(), both.reproducibility()):
         assert isinstance(frame, pl.DataFrame)
     fsn_no = history.tows["fsn_no"][0]
-    assert set(both.boat_figure(fsn_no)["method"]) == {trial.before.method.name}
+    assert set(both.boat_figure(fsn_no)["method"]) == {scenario.before.method.name}
     assert both.type_boats().filter(method="none").is_empty()

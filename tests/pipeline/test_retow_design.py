@@ -8,7 +8,7 @@ import pytest
 
 from herijk.pipeline.season_log import estimate_season_factors, retow_choice
 from herijk.pipeline.season_log.network import with_state
-from herijk.pipeline.season_log.ties import TIE_SCHEMA
+from herijk.pipeline.season_log.retow_design import RETOW_SCHEMA
 from tests.pipeline.season_worlds import CLEAN, simulate
 
 LINE = ["fsn_no", "rowers", "crew_class"]
@@ -16,7 +16,7 @@ LINE = ["fsn_no", "rowers", "crew_class"]
 
 @pytest.fixture(scope="module")
 def tows():
-    """A sparse archive: nine tows a season of forty boats."""
+    """A sparse archive: nine tows per season of forty boats."""
     return simulate(dataclasses.replace(CLEAN, tows_a_season=9, boats=40), 7).tows
 
 
@@ -44,7 +44,7 @@ def with_boats_as_unknowns(found, new=None):
         wander = 0.0
         if not tow["anchored"]:
             design[groups.index(tow["season"])] = tow["kappa"]
-            wander = found.wander_sd[2009 if tow["season"] < 2012 else 2012]
+            wander = found.tow_log_sd[2009 if tow["season"] < 2012 else 2012]
         rows.append(design)
         own = tow["ln_cw_sd"] ** 2 + found.tow_sd**2 + (tow["kappa"] * wander) ** 2
         weights.append(1.0 / own)
@@ -60,7 +60,7 @@ def with_boats_as_unknowns(found, new=None):
 
 def test_each_boat_is_chosen_once_and_tells_less_than_the_one_before(found):
     choice = retow_choice(found)
-    assert choice.schema == TIE_SCHEMA
+    assert choice.schema == RETOW_SCHEMA
     assert choice["position"].to_list() == list(range(1, 11))
     assert choice.select(LINE).n_unique() == 10
     before, after = (choice[f"factor_sd_{when}_ratio"].to_numpy() for when in ("before", "after"))

@@ -74,7 +74,7 @@ REASSURANCE: Final = "What was there before is whole, and what was finished is k
 
 
 @contextmanager
-def obstacles_explained(root: Path) -> Iterator[None]:
+def machine_faults_explained(root: Path) -> Iterator[None]:
     """Turns an error of the machine into a sentence with the way out; others pass as they are.
 
     Raises:
@@ -85,18 +85,18 @@ def obstacles_explained(root: Path) -> Iterator[None]:
     except (HerijkError, KeyboardInterrupt, SystemExit):
         raise
     except BaseException as error:  # a panic of a library in Rust is no Exception
-        found = _obstacle(error)
+        found = _machine_fault(error)
         if found is None:
             raise
         raise UnavailableError(f"{found.format(root=root)}. {REASSURANCE}") from error
 
 
-def is_obstacle(error: BaseException) -> bool:
+def is_machine_fault(error: BaseException) -> bool:
     """Whether an error is the machine's, and says nothing about the file it concerns."""
-    return _obstacle(error) is not None
+    return _machine_fault(error) is not None
 
 
-def _obstacle(error: BaseException) -> str | None:
+def _machine_fault(error: BaseException) -> str | None:
     for one in _causes(error):
         if isinstance(one, OSError) and one.errno in _BY_NUMBER:
             return _BY_NUMBER[one.errno]

@@ -24,7 +24,7 @@ UNKNOWN_SD: Final = 0.06
 
 MOST_BOATS: Final = 10
 
-TIE_SCHEMA: Final = dtypes(RetowChoice, without=["method"])
+RETOW_SCHEMA: Final = dtypes(RetowChoice, without=["method"])
 
 
 def retow_choice(found: SeasonFactors, most: int = MOST_BOATS) -> pl.DataFrame:
@@ -40,12 +40,12 @@ def retow_choice(found: SeasonFactors, most: int = MOST_BOATS) -> pl.DataFrame:
         most: no more boats than this; fewer where another one would tell nothing.
 
     Returns:
-        Rows of `TIE_SCHEMA`: `seasons` are those without dGPS in which the boat was towed;
+        Rows of `RETOW_SCHEMA`: `seasons` are those without dGPS in which the boat was towed;
         `factor_sd_*_ratio` the root of the mean variance of all ln factors before and after.
     """
     network = Network.of(found.tows)
     if not network.groups.height:
-        return pl.DataFrame(schema=TIE_SCHEMA)
+        return pl.DataFrame(schema=RETOW_SCHEMA)
     covariance = _covariance(found)
     tie, variance, current = _candidates(network, found)
     season = network.groups["season"].to_numpy()
@@ -72,7 +72,7 @@ def retow_choice(found: SeasonFactors, most: int = MOST_BOATS) -> pl.DataFrame:
                 "factor_sd_after_ratio": _typical_sd(covariance),
             }
         )
-    return pl.DataFrame(rows, schema=TIE_SCHEMA)
+    return pl.DataFrame(rows, schema=RETOW_SCHEMA)
 
 
 def _covariance(found: SeasonFactors) -> FloatArray:
@@ -93,10 +93,10 @@ def _candidates(network: Network, found: SeasonFactors) -> tuple[FloatArray, Flo
     """
     kappa, random_sd, season = (network.numbers(n) for n in ("kappa", "ln_cw_sd", "season"))
     loose = network.group >= 0
-    wander = np.zeros(len(season))
-    for first, sd in sorted(found.wander_sd.items()):
-        wander = np.where(season >= first, sd, wander)
-    own = random_sd**2 + found.tow_sd**2 + np.where(loose, kappa * wander, 0.0) ** 2
+    log_sd = np.zeros(len(season))
+    for first, sd in sorted(found.tow_log_sd.items()):
+        log_sd = np.where(season >= first, sd, log_sd)
+    own = random_sd**2 + found.tow_sd**2 + np.where(loose, kappa * log_sd, 0.0) ** 2
     boats = int(network.boat.max()) + 1
     weight = np.bincount(network.boat, 1.0 / own, boats)
     tie = np.zeros((boats, network.groups.height))

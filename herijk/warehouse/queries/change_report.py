@@ -49,7 +49,7 @@ Tables = dict[str, pl.DataFrame]
 
 
 @dataclass(frozen=True)
-class News:
+class ChangeReport:
     """What is otherwise than at the last report.
 
     Attributes:
@@ -80,14 +80,14 @@ def reported_database(store: Store) -> Path:
     return store.root / "report" / "reported.duckdb"
 
 
-def news(store: Store) -> News:
+def change_report(store: Store) -> ChangeReport:
     """What changed in the database since the last report."""
     if is_reported(store):
         return _nothing()
     now = _tables(store.database)
     was = _reported(store)
     before = was or {name: frame.clear() for name, frame in now.items()}
-    return News(
+    return ChangeReport(
         first=was is None,
         tows=_tows(before, now),
         set_aside=_faults(before["quarantine"], now["quarantine"]),
@@ -96,12 +96,12 @@ def news(store: Store) -> News:
     )
 
 
-def _nothing() -> News:
-    """No news."""
+def _nothing() -> ChangeReport:
+    """No changes."""
     keys = {name: TABLES[name].create_empty() for name in ("tows", "quarantine", "log_factors")}
     what = pl.lit(None, pl.String).alias("what")
     tows, faults = (keys[name].with_columns(what) for name in ("tows", "quarantine"))
-    return News(False, tows, faults, keys["log_factors"], _no_lines())
+    return ChangeReport(False, tows, faults, keys["log_factors"], _no_lines())
 
 
 def is_reported(store: Store) -> bool:
@@ -280,17 +280,17 @@ def _ground(tow: bool, own: bool, others: bool, method: bool, code: bool) -> str
 # As plain data
 
 
-def last_news(store: Store) -> dict[str, Any] | None:
-    """The news since the last report; where there is none, those of the last report with news."""
-    found = news(store)
+def last_report_with_changes(store: Store) -> dict[str, Any] | None:
+    """What changed since the last report; where nothing did, the last report of a change."""
+    found = change_report(store)
     if not found.nothing:
         return as_plain(found)
     told = sorted((store.root / "report").glob("2*.json"))
     return json.loads(told[-1].read_text(encoding="utf-8")) if told else None
 
 
-def as_plain(found: News) -> dict[str, Any]:
-    """The news as plain data, for a page, a mail or a program."""
+def as_plain(found: ChangeReport) -> dict[str, Any]:
+    """The report as plain data, for a page, a mail or a program."""
     return {
         "first": found.first,
         "nothing_changed": found.nothing,

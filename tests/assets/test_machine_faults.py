@@ -13,7 +13,7 @@ import pytest
 import herijk.warehouse.intake.lake
 from herijk.pipeline.errors import UnavailableError
 from herijk.warehouse.intake.lake import ArchiveChangedError
-from herijk.warehouse.store.obstacles import obstacles_explained
+from herijk.warehouse.store.machine_faults import machine_faults_explained
 from tests.assets.test_rebuild import assert_same_tables, samples_files, spoil
 from tests.conftest import METHODS
 
@@ -65,15 +65,15 @@ def test_a_full_disk_leaves_the_old_tables_and_the_next_run_goes_on(bench, built
         (errno.EIO, "the disk under"),
     ],
 )
-def test_each_obstacle_is_a_sentence_with_a_way_out(number, words, tmp_path):
-    with pytest.raises(UnavailableError) as told, obstacles_explained(tmp_path):
+def test_each_machine_fault_is_a_sentence_with_a_way_out(number, words, tmp_path):
+    with pytest.raises(UnavailableError) as told, machine_faults_explained(tmp_path):
         raise RuntimeError("wrapped") from OSError(number, os.strerror(number))
     assert words in str(told.value)
     assert "What was there before is whole" in str(told.value)
 
 
-def test_an_error_of_our_own_is_not_called_an_obstacle(tmp_path):
-    with pytest.raises(ZeroDivisionError), obstacles_explained(tmp_path):
+def test_an_error_of_our_own_is_not_called_a_machine_fault(tmp_path):
+    with pytest.raises(ZeroDivisionError), machine_faults_explained(tmp_path):
         raise ZeroDivisionError
 
 
@@ -117,9 +117,9 @@ def test_without_file_handles_it_stops_with_the_way_out_and_goes_on_with_more(be
 def test_a_panic_in_a_library_is_explained_too(tmp_path):
     """Rust's panics come as BaseException."""
     panic = type("PanicException", (BaseException,), {})
-    with pytest.raises(UnavailableError, match="more files"), obstacles_explained(tmp_path):
+    with pytest.raises(UnavailableError, match="more files"), machine_faults_explained(tmp_path):
         raise panic('Os { code: 24, message: "Too many open files" }')
-    with pytest.raises(UnavailableError, match="figure"), obstacles_explained(tmp_path):
+    with pytest.raises(UnavailableError, match="figure"), machine_faults_explained(tmp_path):
         raise ValueError("Failed to send SVG conversion request: receiver is gone")
 
 
@@ -249,6 +249,6 @@ def test_a_clock_that_jumps_changes_no_table(bench, built, year):
 def test_damaged_records_of_dagster_say_what_to_remove(tmp_path):
     with (
         pytest.raises(UnavailableError, match=r"Remove that folder"),
-        obstacles_explained(tmp_path),
+        machine_faults_explained(tmp_path),
     ):
         raise duckdb.IOException("file is not a database")

@@ -1,4 +1,4 @@
-"""A method on trial: what it does to register, types, agreement of repeats and a boat.
+"""A scenario: what it does to register, types, agreement of repeats and a boat.
 
 Two drafts side by side as frames, for a page that shows them. Every number comes from `pipeline`;
 here rows are joined with names, put in order and counted. Nothing is stored.
@@ -31,7 +31,7 @@ CURVE_COLUMNS: Final = (
 
 
 @dataclass(frozen=True)
-class Trial:
+class Scenario:
     """Two drafts of one history, compared."""
 
     before: Draft

@@ -1,0 +1,177 @@
+"""What a column that nobody knows can mean: by its name, by its unit, and by what stands in it.
+
+A guess for a person to look at: `check` proposes it, and nothing is read by it.
+"""
+
+import difflib
+import re
+import unicodedata
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from herijk.warehouse.archive.text import Column, split_header
+from herijk.warehouse.archive.units import find_scale
+
+ALIKE: Final = 0.6
+"""So large a share of their words must two names have in common."""
+
+ALIKE_IN_LETTERS: Final = 0.75
+"""So large a share of their letters, where the words differ: a misspelling."""
+
+FITS: Final = 0.8
+"""So large a share of the cells must be what the column holds; the rest can be faults."""
+
+_STOP_WORDS: Final = frozenset(
+    {"de", "het", "een", "van", "der", "den", "the", "of", "a", "an", "das", "die", "dem"}
+)
+_BY_CONTENT: Final = frozenset({"use_runs"})
+"""Columns that need not be there, and that are known by what stands in them."""
+_DISTINCT: Final = frozenset({"tow_id", "file"})
+_SHORTEST_START: Final = 3
+"""Letters of an abbreviation: `opm.` is `opmerking`."""
+
+Fits = Callable[[str, str], bool]
+"""Whether a cell (the second) can stand in a column, by its key (the first)."""
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """What a header can mean.
+
+    Attributes:
+        header: the header as written.
+        column: the column that it can be; None where it is like none.
+        is_sure: name and content agree; otherwise only the content says so.
+    """
+
+    header: str
+    column: Column | None
+    is_sure: bool = True
+
+
+def meanings(
+    strange: Mapping[str, Sequence[str]], free: Sequence[Column], fits: Fits
+) -> tuple[Meaning, ...]:
+    """Return what each of the headers can mean, every column at most once.
+
+    Args:
+        strange: the cells under each header that nobody knows.
+        free: the columns that were not found.
+        fits: whether a cell can stand in a column.
+    """
+    found: dict[str, Meaning] = {}
+    needed = [column for column in free if column.required]
+    by_content = [column for column in free if column.key in _BY_CONTENT]
+    for guess, columns in (
+        (_by_name, needed),
+        (_by_content, needed),
+        (_by_name, free),
+        (_by_content, by_content),
+        (_by_unit, free),
+    ):
+        taken = {meaning.column for meaning in found.values()}
+        left = {header: cells for header, cells in strange.items() if header not in found}
+        found |= guess(left, [column for column in columns if column not in taken], fits)
+    return tuple(found.get(header, Meaning(header, None)) for header in strange)
+
+
+def _by_name(
+    strange: Mapping[str, Sequence[str]], free: Sequence[Column], fits: Fits
+) -> dict[str, Meaning]:
+    """Return the headers that are like the name of a column that can hold their cells."""
+    pairs = [
+        (likeness(header, column), header, column)
+        for header, cells in strange.items()
+        for column in free
+        if _may_hold(column, header) and _share(column, cells, fits) >= FITS
+    ]
+    found: dict[str, Meaning] = {}
+    taken: set[str] = set()
+    for like, header, column in sorted(pairs, key=lambda pair: -pair[0]):
+        if like > 0 and header not in found and column.key not in taken:
+            found[header] = Meaning(header, column)
+            taken.add(column.key)
+    return found
+
+
+def _by_content(
+    strange: Mapping[str, Sequence[str]], free: Sequence[Column], fits: Fits
+) -> dict[str, Meaning]:
+    """Return the headers whose cells are what a column holds."""
+    found: dict[str, Meaning] = {}
+    for column in free:
+        for header, cells in strange.items():
+            is_it = any(cells) and _share(column, cells, fits) == 1 and _may_hold(column, header)
+            if is_it and header not in found and (column.key not in _DISTINCT or _differ(cells)):
+                found[header] = Meaning(header, column, is_sure=False)
+                break
+    return found
+
+
+def _by_unit(
+    strange: Mapping[str, Sequence[str]], free: Sequence[Column], fits: Fits
+) -> dict[str, Meaning]:
+    """Return the headers with a unit that only one column can have."""
+    found: dict[str, Meaning] = {}
+    for header, cells in strange.items():
+        if split_header(header)[1] is None:
+            continue
+        can_be = [c for c in free if _may_hold(c, header) and _share(c, cells, fits) >= FITS]
+        if len(can_be) == 1:
+            found[header] = Meaning(header, can_be[0], is_sure=False)
+    return found
+
+
+def _differ(cells: Sequence[str]) -> bool:
+    return len(set(cells)) == len(cells)
+
+
+def _may_hold(column: Column, header: str) -> bool:
+    unit = split_header(header)[1]
+    return unit is None or find_scale(column.dimension, unit) is not None
+
+
+def _share(column: Column, cells: Sequence[str], fits: Fits) -> float:
+    """Return the share of the cells that can stand in a column; 1 where all are empty."""
+    filled = [cell for cell in cells if cell]
+    return sum(fits(column.key, cell) for cell in filled) / len(filled) if filled else 1.0
+
+
+def likeness(header: str, column: Column) -> float:
+    """Return how much a header is like the names of a column, from 0, not at all, to 1."""
+    words = _words(header)
+    others = [_words(other) for other in (column.header, *column.also)]
+    by_words = max(_of_words(words, other) for other in others)
+    by_letters = max(_of_letters(words, other) for other in others)
+    return max(
+        by_words if by_words >= ALIKE else 0.0,
+        by_letters if by_letters >= ALIKE_IN_LETTERS else 0.0,
+    )
+
+
+def _words(name: str) -> list[str]:
+    plain = unicodedata.normalize("NFKD", re.sub(r"\[[^\]]*\]|\([^)]*\)", " ", name)).casefold()
+    words = re.findall(r"[a-z]+|[0-9]+", "".join(c for c in plain if not unicodedata.combining(c)))
+    return [word for word in words if word not in _STOP_WORDS] or words
+
+
+def _of_words(ones: Sequence[str], others: Sequence[str]) -> float:
+    left = list(others)
+    for one in ones:
+        same = next((other for other in left if _same_word(one, other)), None)
+        if same is not None:
+            left.remove(same)
+    matched = len(others) - len(left)
+    return 2 * matched / (len(ones) + len(others)) if ones and others else 0.0
+
+
+def _same_word(one: str, other: str) -> bool:
+    short, long = sorted((one, other), key=len)
+    if len(short) >= _SHORTEST_START and long.startswith(short):
+        return True
+    return difflib.SequenceMatcher(None, one, other).ratio() >= 0.8
+
+
+def _of_letters(ones: Sequence[str], others: Sequence[str]) -> float:
+    return difflib.SequenceMatcher(None, "".join(ones), "".join(others)).ratio()

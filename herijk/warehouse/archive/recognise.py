@@ -1,0 +1,135 @@
+"""What a file or folder of another name can be: by the columns of its header.
+
+A guess for a person to look at: `check` proposes it under `[files]`, and nothing is read by it.
+"""
+
+import re
+from collections.abc import Iterator, Sequence
+from itertools import islice
+from pathlib import Path
+from typing import Final
+
+from herijk.pipeline.errors import DefectiveInputError
+from herijk.warehouse.archive import boats, published, tows, windows
+from herijk.warehouse.archive.files import (
+    BOAT_LIST,
+    LIST_SUFFIXES,
+    RACES,
+    REGISTERS,
+    SAMPLES,
+    TOW_LISTS,
+    WINDOWS,
+    ListKind,
+    kind_of,
+    read_bytes,
+    read_start,
+    sample_suffix,
+)
+from herijk.warehouse.archive.limits import LIST_MAX_BYTES
+from herijk.warehouse.archive.lists import Wording
+from herijk.warehouse.archive.meaning import likeness
+from herijk.warehouse.archive.profile import SAMPLE_COLUMNS
+from herijk.warehouse.archive.recordings import is_labview
+from herijk.warehouse.archive.sheets import SPREADSHEETS, read_sheets
+from herijk.warehouse.archive.text import Column
+
+MOST_FILES: Final = 2000
+"""Of a folder of another name; photographs can be many."""
+
+FEWEST_COLUMNS: Final = 3
+"""So many columns must have names that are known."""
+
+_KINDS: Final[tuple[tuple[ListKind, Sequence[Column]], ...]] = (
+    (TOW_LISTS, tows.COLUMNS),
+    (BOAT_LIST, boats.COLUMNS),
+    (WINDOWS, windows.COLUMNS),
+    (REGISTERS, published.REGISTER_COLUMNS),
+    (RACES, published.RACE_COLUMNS),
+)
+_YEAR: Final = re.compile(r"(?<![0-9])((?:19|20)[0-9]{2})(?![0-9])")
+
+
+def recognised(root: Path, path: str) -> Iterator[tuple[str, str]]:
+    """Give what a file, or what lies in a folder, can stand for, by path.
+
+    Args:
+        root: the archive.
+        path: a file or folder in it.
+    """
+    full = root / path
+    if full.is_symlink():
+        return
+    if full.is_file():
+        files = [full]
+    else:
+        inner = (file for file in sorted(full.rglob("*")) if file.is_file())
+        files = [file for file in islice(inner, MOST_FILES) if not file.is_symlink()]
+    folders: set[Path] = set()
+    for file in files:
+        if any(folder in file.parents for folder in folders):
+            continue
+        what = _kind(file)
+        if what == SAMPLES and full != file:
+            folder = _folder_of_season(full, file)
+            folders.add(folder)
+            yield folder.relative_to(root).as_posix(), _with_year(SAMPLES, folder.name)
+        elif what and what != SAMPLES:
+            relative = file.relative_to(root).as_posix()
+            yield relative, _with_year(what, file.stem) if what != BOAT_LIST.stands_for else what
+
+
+def _folder_of_season(top: Path, file: Path) -> Path:
+    """Return the outermost folder of a samples file whose name has a year, else the top."""
+    inside = [parent for parent in file.parents if parent.is_relative_to(top)]
+    dated = [folder for folder in inside if _YEAR.search(folder.name)]
+    return dated[-1] if dated else inside[-1]
+
+
+def _with_year(kind: str, name: str) -> str:
+    years = set(_YEAR.findall(name))
+    return f"{kind}_{years.pop()}" if len(years) == 1 else kind
+
+
+def _kind(file: Path) -> str | None:
+    """Return what a file can be: a kind of list, samples, or nothing known."""
+    if kind_of(file) in {".tdms", ".lvm", ".parquet"}:
+        return SAMPLES
+    suffix = file.suffix.casefold()
+    try:
+        if suffix in LIST_SUFFIXES and (list_kind := _list_kind(file, suffix)):
+            return list_kind
+        if sample_suffix(file.name) and _is_samples(read_start(file, 1 << 14)):
+            return SAMPLES
+    except DefectiveInputError:
+        return None
+    return None
+
+
+def _is_samples(start: bytes) -> bool:
+    if is_labview(start[:200].decode(errors="replace")):
+        return True
+    sheet = read_sheets(start, SAMPLE_COLUMNS)[0]
+    return _named(sheet.header, Wording().with_names(SAMPLE_COLUMNS)) > 0
+
+
+def _list_kind(file: Path, suffix: str) -> str | None:
+    """Return the kind of list whose columns a file has most of, if it has enough."""
+    data = read_bytes(file, LIST_MAX_BYTES) if suffix in SPREADSHEETS else read_start(file, 1 << 14)
+    scores = {}
+    for kind, columns in _KINDS:
+        wanted = Wording().with_names(columns)
+        found = [_named(sheet.header, wanted) for sheet in read_sheets(data, wanted, suffix)]
+        scores[kind.stands_for] = max(found, default=0)
+    samples = Wording().with_names(SAMPLE_COLUMNS)
+    if suffix not in SPREADSHEETS:
+        scores[SAMPLES] = _named(read_sheets(data, samples)[0].header, samples)
+    best = max(scores, key=lambda name: scores[name])
+    return best if scores[best] > 0 else None
+
+
+def _named(header: Sequence[str], columns: Sequence[Column]) -> int:
+    """Return how many cells of a header are names of columns, less the columns it lacks."""
+    cells = [cell for cell in header if cell.strip()]
+    named = sum(any(likeness(cell, column) > 0 for column in columns) for cell in cells)
+    lacking = [c for c in columns if c.required and not any(likeness(x, c) > 0 for x in cells)]
+    return named - len(lacking) if named >= FEWEST_COLUMNS else 0

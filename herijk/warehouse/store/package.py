@@ -1,0 +1,233 @@
+"""The tables as files that any program opens: Parquet, described as a data package and for DCAT.
+
+`tables/` in the data folder can be copied and handed on as it is: one Parquet file per table, a
+`datapackage.json` (Frictionless Data Package, version 2) with columns, keys, licence, sources and
+hashes, and the same for catalogues as `dcat.jsonld` (DCAT 3). The folder is swapped in whole.
+"""
+
+import hashlib
+import io
+import json
+import shutil
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import polars as pl
+
+from herijk.warehouse.store.files import TEMPORARY_PREFIX, file_sha256, put_in_place
+
+if TYPE_CHECKING:
+    import dataframely as dy
+
+FOLDER: Final = "tables"
+DESCRIPTOR: Final = "datapackage.json"
+CATALOGUE: Final = "dcat.jsonld"
+_PARQUET: Final = "application/vnd.apache.parquet"
+_NO_LICENCE: Final = "The archive declares no licence. Ask its owner before passing this on."
+_SIMULATED: Final = "Simulated: these are not the federation's measurements."
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where the tables come from.
+
+    Attributes:
+        version: of the code that made them.
+        simulated: the archive was made by a simulator.
+        publisher: who publishes them, if the archive says so.
+        licence: SPDX name or web address of the licence, if the archive says so.
+        sources: title and hash of all that they were made from.
+    """
+
+    version: str
+    simulated: bool
+    publisher: str | None
+    licence: str | None
+    sources: tuple[tuple[str, str], ...]
+
+
+def write_package(
+    root: Path,
+    tables: Mapping[str, pl.DataFrame],
+    schemas: "Mapping[str, type[dy.Schema]]",
+    origin: Origin,
+) -> None:
+    """Writes the tables and their description; a file that did not change stays the same file.
+
+    Args:
+        root: the data folder.
+        tables: frames by table name.
+        schemas: what each of them was declared to be.
+        origin: where they come from.
+    """
+    target = root / FOLDER
+    beside = Path(tempfile.mkdtemp(prefix=TEMPORARY_PREFIX, dir=root))
+    try:
+        beside.chmod(0o755)
+        resources = [
+            _resource(beside, target, name, frame, schemas[name])
+            for name, frame in sorted(tables.items())
+        ]
+        package = _package(resources, origin)
+        for name, text in ((DESCRIPTOR, package), (CATALOGUE, _catalogue(package, origin))):
+            json_text = json.dumps(text, indent=1, ensure_ascii=False)
+            (beside / name).write_text(json_text, encoding="utf-8")
+        put_in_place(beside, target)
+    finally:
+        shutil.rmtree(beside, ignore_errors=True)
+
+
+def package_is_whole(root: Path) -> bool:
+    """Whether every file is there as it was described."""
+    folder = root / FOLDER
+    try:
+        package = json.loads((folder / DESCRIPTOR).read_text(encoding="utf-8"))
+        described = {resource["path"]: resource["hash"] for resource in package["resources"]}
+        return (folder / CATALOGUE).exists() and all(
+            f"sha256:{file_sha256(folder / path)}" == hashed for path, hashed in described.items()
+        )
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
+
+
+def _resource(
+    beside: Path, older: Path, name: str, frame: pl.DataFrame, schema: "type[dy.Schema]"
+) -> dict[str, Any]:
+    """Writes one table, and describes it."""
+    content = io.BytesIO()
+    frame.write_parquet(content, compression="zstd")
+    data = content.getvalue()
+    sha256 = hashlib.sha256(data).hexdigest()
+    _put(beside / f"{name}.parquet", older / f"{name}.parquet", data, sha256)
+    return {
+        "name": name,
+        "type": "table",
+        "path": f"{name}.parquet",
+        "format": "parquet",
+        "mediatype": _PARQUET,
+        "description": schema.__doc__,
+        "bytes": len(data),
+        "hash": f"sha256:{sha256}",
+        "rowcount": frame.height,
+        "schema": {
+            "fields": [_field(*column) for column in schema.columns().items()],
+            "primaryKey": schema.primary_key(),
+        },
+    }
+
+
+def _put(path: Path, older: Path, data: bytes, sha256: str) -> None:
+    """A file with this content: the older one under a second name, where it is the same."""
+    if older.exists() and file_sha256(older) == sha256:
+        try:
+            path.hardlink_to(older)
+        except OSError:  # a file system without such names
+            path.unlink(missing_ok=True)
+        else:
+            return
+    path.write_bytes(data)
+
+
+def _field(name: str, column: "dy.Column") -> dict[str, Any]:
+    unit = (column.metadata or {}).get("unit")
+    limits = {
+        key: getattr(column, limit, None)
+        for key, limit in (("minimum", "min"), ("maximum", "max"), ("pattern", "regex"))
+    }
+    constraints = {"required": not column.nullable, **limits}
+    return {
+        "name": name,
+        "type": _field_type(column.dtype),
+        "description": column.description,
+        **({"unit": unit} if unit else {}),
+        "constraints": {key: value for key, value in constraints.items() if value is not None},
+    }
+
+
+def _field_type(dtype: pl.DataType) -> str:
+    """The name of a type in a data package.
+
+    Raises:
+        KeyError: a table has a column of a type that has no name here yet.
+    """
+    if dtype.is_integer():
+        return "integer"
+    names = {pl.Float64: "number", pl.String: "string", pl.Boolean: "boolean", pl.Date: "date"}
+    return "array" if isinstance(dtype, pl.List) else names[dtype.base_type()]
+
+
+def _package(resources: list[dict[str, Any]], origin: Origin) -> dict[str, Any]:
+    """The descriptor; its `id` is a hash of all tables, so equal tables have equal ids."""
+    hashes = "".join(resource["hash"] for resource in resources)
+    said = [_SIMULATED] if origin.simulated else []
+    said += [] if origin.licence else [_NO_LICENCE]
+    package = {
+        "$schema": "https://datapackage.org/profiles/2.0/datapackage.json",
+        "name": "herijk",
+        "id": f"urn:sha256:{hashlib.sha256(hashes.encode()).hexdigest()}",
+        "title": "Tow tests, curves and registers of Dutch rowing sloops, recomputed by Herijk",
+        "description": " ".join([*said, "One file per table; SI units, named in each field."]),
+        "version": origin.version,
+        "sources": [{"title": title, "sha256": sha256} for title, sha256 in origin.sources],
+        "resources": resources,
+    }
+    if origin.publisher:
+        package["contributors"] = [{"title": origin.publisher, "roles": ["publisher"]}]
+    if origin.licence:
+        key = "path" if "://" in origin.licence else "name"
+        package["licenses"] = [{key: origin.licence}]
+    return package
+
+
+def _catalogue(package: Mapping[str, Any], origin: Origin) -> dict[str, Any]:
+    """The same for catalogues of open data."""
+    described: dict[str, Any] = {
+        "@context": {
+            "dcat": "http://www.w3.org/ns/dcat#",
+            "dct": "http://purl.org/dc/terms/",
+            "foaf": "http://xmlns.com/foaf/0.1/",
+            "prov": "http://www.w3.org/ns/prov#",
+            "spdx": "http://spdx.org/rdf/terms#",
+        },
+        "@id": package["id"],
+        "@type": "dcat:Dataset",
+        "dct:title": package["title"],
+        "dct:description": package["description"],
+        "dct:identifier": package["id"],
+        "dcat:version": package["version"],
+        "dct:conformsTo": {"@id": package["$schema"]},
+        "prov:wasDerivedFrom": [
+            {"dct:title": title, "dct:identifier": f"urn:sha256:{sha256}"}
+            for title, sha256 in origin.sources
+        ],
+        "dcat:distribution": [_distribution(resource) for resource in package["resources"]],
+    }
+    if origin.publisher:
+        described["dct:publisher"] = {"@type": "foaf:Agent", "foaf:name": origin.publisher}
+    if origin.licence:
+        described["dct:license"] = {"@id": _address(origin.licence)}
+    else:
+        described["dct:accessRights"] = _NO_LICENCE
+    return described
+
+
+def _address(licence: str) -> str:
+    return licence if "://" in licence else f"https://spdx.org/licenses/{licence}"
+
+
+def _distribution(resource: Mapping[str, Any]) -> dict[str, Any]:
+    return {
+        "@type": "dcat:Distribution",
+        "dct:title": resource["name"],
+        "dct:description": resource["description"],
+        "dcat:downloadURL": {"@id": resource["path"]},
+        "dcat:mediaType": f"https://www.iana.org/assignments/media-types/{_PARQUET}",
+        "dcat:byteSize": resource["bytes"],
+        "spdx:checksum": {
+            "spdx:algorithm": {"@id": "spdx:checksumAlgorithm_sha256"},
+            "spdx:checksumValue": resource["hash"].removeprefix("sha256:"),
+        },
+    }

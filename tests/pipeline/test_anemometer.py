@@ -1,0 +1,88 @@
+"""The scale of anemometers by the wind out and back."""
+
+from dataclasses import replace
+
+import numpy as np
+import polars as pl
+import pytest
+
+from herijk.pipeline.blocks.run_blocks import AIR_SUMS, SPEED_SOURCES
+from herijk.pipeline.method.definition import shipped_method
+from herijk.pipeline.recompute.recompute import recompute
+from herijk.pipeline.steps.anemometer import WindRatio, anemometer_of_seasons
+from herijk.simulate import Defects, WorldSettings
+from tests.worlds import measure
+
+SEASONS = np.repeat([2010.0, 2012.0, 2014.0, 2016.0], 25)
+
+
+def ratios(scale, vane_deg=0.0, shared_sd=0.0, seed=1):
+    """Tows whose wind changes by 6 % of their speed between out and back."""
+    rng = np.random.default_rng(seed)
+    of_tow = np.asarray(scale)[np.unique(SEASONS, return_inverse=True)[1]]
+    vane = np.radians(vane_deg)
+    ahead, abeam = (
+        of_tow * (mean + 0.06 * rng.standard_normal(len(SEASONS)))
+        for mean in (np.cos(vane), np.sin(vane))
+    )
+    return WindRatio(SEASONS, ahead, abeam, np.full(len(SEASONS), shared_sd))
+
+
+@pytest.mark.parametrize("vane_deg", [0.0, 20.0])
+def test_one_season_off_stands_alone(vane_deg):
+    true = np.log([1.0, 0.7, 1.0, 1.0])
+    found = anemometer_of_seasons(ratios(np.exp(true), vane_deg))
+    assert found.ln_scale == pytest.approx(true, abs=0.04)
+    assert (np.abs(found.ln_scale - true) < 3 * found.sd).all()
+    assert found.sd.max() < 0.02
+
+
+def test_one_anemometer_for_all_seasons_is_known_from_all():
+    errors, sds = [], []
+    for seed in range(40):
+        found = anemometer_of_seasons(ratios(np.full(4, 0.8), seed=seed))
+        errors.append(found.ln_scale - np.log(0.8))
+        sds.append(found.sd)
+    assert np.mean(sds) < 0.06 / np.sqrt(25)
+    assert np.abs(np.mean(errors)) < 0.005
+    assert (np.abs(errors) < 1.96 * np.array(sds)).mean() > 0.85
+
+
+def test_a_season_without_wind_has_what_the_others_let_expect():
+    seen = ratios(np.full(4, 0.8))
+    nothing = np.where(SEASONS == 2012, np.nan, seen.ahead)
+    found = anemometer_of_seasons(replace(seen, ahead=nothing))
+    assert found.tows.tolist() == [25, 0, 25, 25]
+    assert found.ln_scale[1] == pytest.approx(np.log(0.8), abs=0.02)
+    assert found.sd[1] > found.sd[0]
+
+
+def test_a_log_that_is_not_known_says_little_of_the_wind():
+    seen = ratios([0.94, 1.0, 1.0, 1.0])
+    by_log = replace(seen, shared_sd=np.where(SEASONS == 2010, 0.06, 0.0))
+    sure, doubted = (anemometer_of_seasons(r) for r in (seen, by_log))
+    assert abs(doubted.ln_scale[0]) < 0.5 * abs(sure.ln_scale[0])
+
+
+def test_an_anemometer_that_reads_too_little_moves_no_curve():
+    """What it reads is found, named and taken out: every curve is nearly the same.
+
+    Not quite, as limits on gusts are in m/s and some windows differ. As it reads it would be 4 %.
+    """
+    measured = measure(WorldSettings((2014, 2016), 10, 10, 3, Defects.clean))
+    power = {"wind_v": 1.0, "wind_x": 1.0, "wind_y": 1.0} | dict.fromkeys(AIR_SUMS, 2.0)
+    power |= {f"{log}_{name}": 2.0 for log in SPEED_SOURCES for name in AIR_SUMS}
+    sums = {
+        name: values * 0.7 ** power.get(name, 0.0) for name, values in measured.blocks.sums.items()
+    }
+    faulty = replace(measured, blocks=replace(measured.blocks, sums=sums))
+    method = shipped_method("rebased")
+    sound, found = (
+        recompute(method, w.tows, w.blocks, with_bands=False) for w in (measured, faulty)
+    )
+    ratio = (found.curves["cw_kg_m"] / sound.curves["cw_kg_m"]).to_numpy()
+    assert ratio == pytest.approx(1.0, abs=0.005)
+    assert ratio.mean() == pytest.approx(1.0, abs=5e-4)
+    rows = found.season_diagnosis.filter(instrument="anemometer_scale")
+    assert rows["verdict"].to_list() == ["alarm", "alarm"]
+    assert rows.select(pl.lit(np.log(0.7)).is_between("lo", "hi")).to_series().all()

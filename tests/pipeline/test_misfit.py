@@ -1,0 +1,77 @@
+"""How far hulls lie from their hyperbolas, by the lack of fit of run points."""
+
+import numpy as np
+import pytest
+
+from herijk.pipeline import curve
+from herijk.pipeline.uncertainty.misfit import Departure, departure_of_boats
+
+TARGET = np.tile([0.9, 1.0, 1.1], 2)
+WAY = np.repeat([1.0, -1.0], 3)
+TOWS, PER_BOAT = 240, 3
+SCATTER = 0.008
+
+
+def departures(hump, seed=1):
+    """Hulls that lie `hump` above a hyperbola at the declared speed and as much below at 10 %."""
+    rng = np.random.default_rng(seed)
+    boat = np.arange(TOWS) // PER_BOAT
+    own = hump * rng.standard_normal(TOWS // PER_BOAT)[boat]
+    speed = TARGET * (1.0 + 0.01 * rng.standard_normal((TOWS, 6)))
+    shape = own[:, None] * (1.0 - ((speed - 1.0) / 0.1) ** 2)
+    true = 40.0 / (1.0 - (speed / 1.6) ** 2)
+    noise = SCATTER * rng.standard_normal((TOWS, 6))
+    points = curve.Points.of(speed, true * (1.0 + shape + noise))
+    fitted = curve.fit(points)
+    on_curve = curve.cw(fitted.a_kg_m[:, None], fitted.s_s2_m2[:, None], speed)
+    found = Departure.of(
+        points.cw_kg_m / on_curve - 1.0,
+        points.used,
+        speed,
+        np.broadcast_to(WAY, speed.shape),
+        np.broadcast_to(TARGET, speed.shape),
+        np.array([1.0]),
+    )
+    at_declared = 40.0 / (1.0 - 1.6**-2.0) * (1.0 + own)
+    return found, boat, at_declared / fitted.cw_at(np.ones(TOWS)) - 1.0
+
+
+def test_a_hump_is_seen_and_its_size_is_known():
+    found, boat, true = departures(0.02)
+    mean, variance = (x[:, 0] for x in departure_of_boats(found, boat))
+    assert np.std(true - mean) < 0.7 * np.std(true)
+    assert np.abs(true - mean).mean() < 0.01
+    assert np.sqrt(mean**2 + variance).mean() == pytest.approx(np.std(true), rel=0.3)
+
+
+def test_hyperbolas_have_none():
+    found, boat, _ = departures(0.0)
+    mean, variance = departure_of_boats(found, boat)
+    assert np.sqrt(mean**2 + variance).max() < 0.004
+
+
+def test_tows_that_do_not_tell_have_what_the_others_show():
+    found, boat, _ = departures(0.02)
+    lost = boat == 0
+    blind = Departure(
+        np.where(lost[:, None], 0.0, found.ratio), np.where(lost[:, None], np.inf, found.variance)
+    )
+    mean, variance = departure_of_boats(blind, boat)
+    assert mean[lost].tolist() == [[0.0]] * PER_BOAT
+    assert variance[lost].min() > variance[~lost].max()
+
+
+def test_two_speeds_show_no_shape():
+    found, _, _ = departures(0.02)
+    two = np.where(TARGET == 1.1, 1.0, TARGET)
+    shape = (TOWS, 6)
+    held = Departure.of(
+        np.zeros(shape),
+        np.ones(shape, bool),
+        np.broadcast_to(TARGET, shape),
+        np.broadcast_to(WAY, shape),
+        np.broadcast_to(two, shape),
+        np.array([1.0]),
+    )
+    assert np.isfinite(found.variance).all()
+    assert np.isinf(held.variance).all()

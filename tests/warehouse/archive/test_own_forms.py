@@ -1,0 +1,178 @@
+"""Archives in forms of their own: other headers, units, sheets, files and folders."""
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import polars as pl
+import pytest
+import xlsxwriter
+
+from herijk.warehouse.archive.check import Checked, check_archive
+from herijk.warehouse.archive.sheets import read_sheets
+from herijk.warehouse.archive.text import Column, split_header
+from tests.warehouse.archive.conftest import BOATS, FIRST, HEADER, TOWS, Archive, Scan
+from tests.warehouse.archive.test_formats import assert_same, cells_of
+
+BEAM = Column("beam_m", "breedte", "length", "m")
+COLUMNS = (Column("fsn_no", "fsn_nr"), Column("name", "sloep"), BEAM)
+
+
+def settled(archive: Archive) -> Checked:
+    """Check, take every question as answered by what is proposed, and check again."""
+    first = check_archive(archive.root)
+    answered = "\n".join(line.removeprefix("# ") for line in str(first.profile).split("\n"))
+    (archive.root / "archief.toml").write_text(answered, encoding="utf-8")
+    assert check_archive(archive.root).causes == ()
+    return first
+
+
+def units_below(archive: Archive) -> None:
+    """Names in one row, units in the next, in lists and samples."""
+    archive.replace(FIRST, HEADER, "run;log1;log2;gps;kracht;wind;windvaan\n-;m/s;m/s;m/s;N;m/s;°")
+    archive.replace(TOWS, "roeisnelheid [m/s]", "roeisnelheid")
+    archive.edit(TOWS, lambda t: t.replace("\n", f"\n{';' * 7}m/s{';' * 12}\n", 1))
+
+
+def totals_and_notes(archive: Archive) -> None:
+    archive.edit(
+        BOATS, lambda t: t + "Totaal;;;;;;;3250;;\n;;;;;;;;;\nBron: de commissie;;;;;;;;;\n"
+    )
+
+
+def units_last(archive: Archive) -> None:
+    archive.replace(FIRST, HEADER, "run;log1_m_s;log2 m/s;gps, m/s;kracht_N;wind m/s;windvaan gra")
+    archive.replace(BOATS, "breedte [m]", "breedte_cm")
+    for old, new in (("2,25", "225"), ("2,10", "210"), ("2,73", "273")):
+        archive.replace(BOATS, old, new)
+
+
+def blanks_before(archive: Archive) -> None:
+    archive.edit(FIRST, lambda t: t.replace(";", "   ").replace("\n", "\n   ").replace(" [", "_["))
+
+
+def a_sheet_a_year(archive: Archive) -> None:
+    """One workbook for all years, with days in merged cells and a header over two rows."""
+    header, *rows = cells_of(archive, TOWS)
+    book = xlsxwriter.Workbook(str(archive.root / "sleeplijsten/sleeplijst.xlsx"))
+    book.add_worksheet("Toelichting").write(0, 0, "Van de commissie")
+    for name, kept in (("a", rows[:2]), ("b", rows[2:])):
+        sheet = book.add_worksheet(name)
+        upper = ["Gewicht" if cell.startswith("gewicht") else cell for cell in header]
+        lower = [
+            {"gewicht [kg]": "voor [kg]", "gewicht na [kg]": "na [kg]"}.get(c, "") for c in header
+        ]
+        weight = header.index("gewicht [kg]")
+        sheet.write_row(0, 0, upper)
+        sheet.merge_range(0, weight, 0, weight + 1, "Gewicht")
+        sheet.write_row(1, 0, lower)
+        for place, row in enumerate(kept, start=2):
+            sheet.write_row(place, 0, row)
+    book.close()
+    (archive.root / TOWS).unlink()
+
+
+def runs_in_a_folder(archive: Archive) -> None:
+    """A folder for a tow, in which a file is named after its run alone."""
+    header, *lines = (archive.root / FIRST).read_text("utf-8").splitlines()
+    folder = archive.root / FIRST.removesuffix(".csv")
+    folder.mkdir()
+    for run in "123456":
+        own = [line for line in lines if line.startswith(run)]
+        (folder / f"vaart {run}.csv").write_text("\n".join([header, *own, ""]))
+    (archive.root / FIRST).unlink()
+
+
+READ_AS_THEY_ARE = (
+    *(units_below, totals_and_notes, units_last, blanks_before, a_sheet_a_year, runs_in_a_folder),
+)
+
+
+@pytest.mark.parametrize("form", READ_AS_THEY_ARE, ids=lambda form: form.__name__)
+def test_forms_that_are_read_as_they_are(
+    archive: Archive, good_scan: Scan, form: Callable[[Archive], None]
+) -> None:
+    form(archive)
+    assert_same(archive.scan(), good_scan)
+
+
+def other_names(archive: Archive) -> None:
+    root = archive.root
+    shutil.move(root / "sloepregister/sloependata.csv", root / "Onze boten.csv")
+    (root / "lijsten").mkdir()
+    shutil.move(root / TOWS, root / "lijsten/Proeven 2014.csv")
+    (root / "ruw").mkdir()
+    shutil.move(root / "meetdata_2014", root / "ruw/2014")
+    (root / "Notulen.docx").write_bytes(b"PK")
+
+
+def other_headers(archive: Archive) -> None:
+    for old, new in (
+        ("sleep_id", "nr"), ("datum", "Dag van de proef"), (";roeiers;", ";Bemensing;"),
+        (";klasse;", ";Team;"), ("roeisnelheid [m/s]", "v (m/s)"),
+        ("gewicht na [kg]", "Gewicht na afl. (kg)"),
+        ("gebruik runs", "Goede"), ("watertemperatuur [C]", "Temp. van het water"),
+    ):  # fmt: skip
+        archive.replace(TOWS, old, new)
+    archive.edit(BOATS, lambda t: t.replace(";H\n", ";M\n").replace(";D\n", ";V\n"))
+
+
+def other_channels(archive: Archive) -> None:
+    for path in sorted((archive.root / "meetdata_2014").glob("*.csv")):
+        name = path.relative_to(archive.root).as_posix()
+        archive.replace(name, HEADER, "run;SB (m/s);BB (m/s);gps;Dynamometer [N];wind;windvaan")
+
+
+def no_rate(archive: Archive) -> None:
+    archive.edit(TOWS, lambda t: t.replace(";20;", ";;"))
+
+
+SETTLED = (other_names, other_headers, other_channels, no_rate)
+
+
+@pytest.mark.parametrize("form", SETTLED, ids=lambda form: form.__name__)
+def test_forms_that_one_round_settles(
+    archive: Archive, good_scan: Scan, form: Callable[[Archive], None]
+) -> None:
+    form(archive)
+    checked = settled(archive)
+    assert checked.tows == 3
+    scan = archive.scan()
+    assert scan.faults == []
+    columns = [c for c in good_scan.index.tows.columns if not c.endswith(("path", "sha256"))]
+    assert scan.index.tows.select(columns).equals(good_scan.index.tows.select(columns))
+    assert all(scan.good[tow].equals(samples) for tow, samples in good_scan.good.items())
+
+
+def test_faults_behind_a_fault_come_out_in_the_same_round(archive: Archive) -> None:
+    other_channels(archive)
+    archive.edit(TOWS, lambda t: t.replace(";H;", ";?;").replace(";D;", ";?;"))
+    codes = {cause.reason_code for cause in check_archive(archive.root).causes}
+    assert codes == {"bad_list_row", "missing_column"}
+
+
+@pytest.mark.parametrize(
+    ("header", "expected"),
+    [
+        ("kracht_N", ("kracht", "N")), ("speed_m_s", ("speed", "m/s")),
+        ("wind in kn", ("wind", "kn")),
+        ("hull mass (lb)", ("hullmass", "lb")), ("meetfile b", ("meetfileb", None)),
+        ("log C", ("logc", None)), ("gewicht na kg", ("gewichtna", "kg")), ("h/d", ("hd", None)),
+    ],
+)  # fmt: skip
+def test_a_unit_at_the_end_of_a_header(header: str, expected: tuple[str, str | None]) -> None:
+    assert split_header(header) == expected
+
+
+def test_a_row_of_data_is_no_second_row_of_the_header() -> None:
+    (sheet,) = read_sheets(b"fsn_nr;sloep;breedte\nFSN1;m;2,1\n", COLUMNS)
+    assert sheet.header == ["fsn_nr", "sloep", "breedte"]
+    assert [row.fields for row in sheet.rows] == [["FSN1", "m", "2,1"]]
+
+
+def test_a_workbook_of_photographs_is_nothing(tmp_path: Path, archive: Archive) -> None:
+    pl.DataFrame({"a": [1]}).write_csv(archive.root / "cijfers.csv")
+    causes = check_archive(archive.root).causes
+    assert [(c.reason_code, c.proposals[0].line) for c in causes] == [
+        ("unrecognised_file", 'ignore = ["cijfers.csv"]')
+    ]
