@@ -59,9 +59,10 @@ def write_report(
         _write(folder / f"{now:%Y-%m-%dT%H%M%S}.json", text)
     else:
         for language, name in PAGES.items():
-            if (page := folder / name).exists():
-                shown = page.read_text(encoding="utf-8")
-                _write(page, with_later_rebuild(shown, report["made_at"], speaker(language)))
+            path = folder / name
+            if path.exists():
+                shown = path.read_text(encoding="utf-8")
+                _write(path, with_later_rebuild(shown, report["made_at"], speaker(language)))
     _write(folder / "latest.json", text)
     remember(store)
     return report

@@ -13,6 +13,7 @@ from herijk.dashboards.speech import Speech
 from herijk.dashboards.words import LANGUAGES
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.editions import NOTES, NOTES_EN, NOTICE, NOTICE_EN, edition_path
+from herijk.warehouse.store.storage import Place
 
 GUIDES: Final = ("method", "audit")
 """Documents of the project that have a page, by their name."""
@@ -31,7 +32,8 @@ def guide_pages() -> Iterator[Page]:
     """The documents; they are in English only, and say so."""
     links = {f"{name}.md": f"{name}.html" for name in GUIDES}
     for name in GUIDES:
-        prose = _read(guide_file(name), guide_file(name), links)
+        text = guide_file(name).read_text(encoding="utf-8")
+        prose = _in_language((text, text), links)
         section = Section(f"guide_{name}", "guide_note", prose=prose, prose_language="en")
         yield Page(f"{name}.html", f"guide_{name}", [section])
 
@@ -50,7 +52,7 @@ def edition_pages(views: Views) -> Iterator[Page]:
             "edition_title",
             [
                 *(
-                    Section(title, prose=_read(*(folder / file for file in files), {}))
+                    Section(title, prose=_in_language(_texts(folder, files), {}))
                     for title, files in _TEXTS.items()
                 ),
                 Section("downloads", "downloads_note", files=files_of(edition)),
@@ -59,7 +61,12 @@ def edition_pages(views: Views) -> Iterator[Page]:
         )
 
 
-def _read(dutch: Path, english: Path, links: Mapping[str, str]) -> Callable[[Speech], Markup]:
+def _texts(folder: Place, files: tuple[str, str]) -> tuple[str, str]:
+    dutch, english = ((folder / file).read_bytes().decode() for file in files)
+    return dutch, english
+
+
+def _in_language(in_each: tuple[str, str], links: Mapping[str, str]) -> Callable[[Speech], Markup]:
     """The document in the language of the page."""
-    files = dict(zip(LANGUAGES, (dutch, english), strict=True))
-    return lambda speech: to_html(files[speech.language].read_text(encoding="utf-8"), links)
+    texts = dict(zip(LANGUAGES, in_each, strict=True))
+    return lambda speech: to_html(texts[speech.language], links)

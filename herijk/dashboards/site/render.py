@@ -9,6 +9,7 @@ import shutil
 import tempfile
 from collections.abc import Iterator
 from functools import cache
+from importlib.metadata import version
 from itertools import chain, groupby
 from pathlib import Path
 from typing import Final
@@ -203,7 +204,7 @@ def _vega(root: Path) -> str:
 
 def _vega_mark(script: str) -> str:
     digest = hashlib.sha256(script.encode()).hexdigest()
-    return f"// vl-convert {vl_convert.__version__}, sha256 {digest}"
+    return f"// vl-convert {version('vl-convert-python')}, sha256 {digest}"
 
 
 def charts_script(language: str) -> str:
