@@ -36,6 +36,7 @@ HERE: Final = Path(__file__).parent
 DRAWN: Final = 5
 """Significant digits of what charts draw."""
 HUNDRED: Final = 100
+VL_CONVERT: Final = version("vl-convert-python")
 OWN_FILES: Final = ("site.css", "site.js")
 FOLDERS: Final = {"nl": "", "en": "en/"}
 """Where the pages of each language lie within the site."""
