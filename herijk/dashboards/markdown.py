@@ -13,11 +13,13 @@ _READER = MarkdownIt("commonmark", {"html": False}).enable("table")
 def to_html(text: str, links: Mapping[str, str]) -> Markup:
     """A document as HTML, its headings one level down: a page has a title of its own.
 
+    Diagrams are left out: to draw them takes a script of megabytes.
+
     Args:
         text: the document; HTML in it is shown, not obeyed.
         links: for addresses in it, where they lead; a link to anything else becomes plain text.
     """
-    tokens = _READER.parse(text)
+    tokens = [token for token in _READER.parse(text) if token.info != "mermaid"]
     for token in tokens:
         if token.type in ("heading_open", "heading_close"):
             token.tag = f"h{int(token.tag[1:]) + 1}"

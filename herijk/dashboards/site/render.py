@@ -205,7 +205,7 @@ def _vega(root: Path) -> str:
 
 def _vega_mark(script: str) -> str:
     digest = hashlib.sha256(script.encode()).hexdigest()
-    return f"// vl-convert {version('vl-convert-python')}, sha256 {digest}"
+    return f"// vl-convert {VL_CONVERT}, sha256 {digest}"
 
 
 def charts_script(language: str) -> str:
