@@ -30,14 +30,14 @@ SUBJECT = {"herijk/subject": "archive"}
 )
 def archive_index(setup: Setup) -> dg.MaterializeResult:
     """Boats, tow lists and files of the archive, with what is wrong in the lists."""
-    found = intake.index(setup.store, setup.archive_root)
+    listed = intake.index(setup.store, setup.archive_root)
     return dg.MaterializeResult(
         metadata={
-            "dagster/row_count": found.tows.height,
-            "boats": found.boats.height,
-            "files": found.files.height,
-            "faults": len(found.faults),
-            "simulated": found.profiles.simulated,
+            "dagster/row_count": listed.tows.height,
+            "boats": listed.boats.height,
+            "files": listed.files.height,
+            "faults": len(listed.faults),
+            "simulated": listed.profiles.simulated,
         }
     )
 
@@ -61,21 +61,21 @@ def samples(
 
 def read(setup: Setup, season: int, progress: Progress) -> dg.MaterializeResult:
     """Brings a season's samples into the lake."""
-    found = intake.read_season(setup.store, setup.archive_root, season, progress.tow_read)
-    faulty = found.filter(pl.col("reason_code").is_not_null())
+    season_index = intake.read_season(setup.store, setup.archive_root, season, progress.tow_read)
+    faulty = season_index.filter(pl.col("reason_code").is_not_null())
     reasons = faulty["reason_code"].value_counts(sort=True).rows()
     return dg.MaterializeResult(
         metadata={
-            "dagster/row_count": int(found["samples"].sum()),
-            "tows": found.height - faulty.height,
+            "dagster/row_count": int(season_index["samples"].sum()),
+            "tows": season_index.height - faulty.height,
             "set_aside": dg.MetadataValue.json(dict(reasons)),
         },
         check_results=[
             dg.AssetCheckResult(
                 check_name="most_tows_sound",
-                passed=2 * faulty.height <= found.height,
+                passed=2 * faulty.height <= season_index.height,
                 severity=dg.AssetCheckSeverity.WARN,
-                metadata={"set_aside": faulty.height, "listed": found.height},
+                metadata={"set_aside": faulty.height, "listed": season_index.height},
             )
         ],
     )
@@ -97,5 +97,5 @@ def blocks(context: dg.AssetExecutionContext, setup: Setup) -> dg.MaterializeRes
 
 def add_up(setup: Setup, season: int) -> dg.MaterializeResult:
     """Puts a season's blocks together in one table."""
-    found = intake.collect_blocks(setup.store, season)
-    return dg.MaterializeResult(metadata={"dagster/row_count": found.height})
+    blocks_of_season = intake.collect_blocks(setup.store, season)
+    return dg.MaterializeResult(metadata={"dagster/row_count": blocks_of_season.height})

@@ -156,6 +156,6 @@ def _look(now: str, cursor: str) -> dg.SensorResult:
     return dg.SensorResult(run_requests=[dg.RunRequest()], cursor=f"{now} {now}")
 
 
-def _digest(found: Listing) -> str:
+def _digest(files: Listing) -> str:
     """A listing in a few letters: a cursor is kept for every tick."""
-    return fingerprint(found)
+    return fingerprint(files)

@@ -141,9 +141,9 @@ def notifier_of(data: str, settings: Settings) -> Notifier:
 
 def _password(settings: Settings) -> str:
     """The password of the mail server: from the environment, or the file that the settings name."""
-    found = os.environ.get(PASSWORD_VARIABLE)
-    if found is not None or settings.smtp_password_file is None:
-        return found or ""
+    password = os.environ.get(PASSWORD_VARIABLE)
+    if password is not None or settings.smtp_password_file is None:
+        return password or ""
     try:
         return settings.smtp_password_file.read_text(encoding="utf-8").strip()
     except (OSError, ValueError) as error:

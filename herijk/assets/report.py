@@ -37,7 +37,7 @@ def write_report(
 
     Where nothing changed, the page about the last change stays, and says so.
     """
-    found = change_report(store)
+    changes = change_report(store)
     about = store.read("about_archive")
     report = {
         "made_at": now.isoformat(timespec="seconds"),
@@ -45,16 +45,16 @@ def write_report(
         "simulated": about["simulated"][0],
         "code_version": code_version(),
         "done": done,
-        **as_plain(found),
+        **as_plain(changes),
         "checks": [_plain(check) for check in checks],
     }
     report["headlines"] = headlines(report, speaker("en"))
     text = json.dumps(report, default=str, indent=1)
     folder = store.root / "report"
-    if not found.nothing:
+    if not changes.nothing:
         from herijk.dashboards.report_page import report_pages  # noqa: PLC0415 - Altair takes a second
 
-        for name, page in report_pages(store, found, report).items():
+        for name, page in report_pages(store, changes, report).items():
             _write(folder / name, page)
         _write(folder / f"{now:%Y-%m-%dT%H%M%S}.json", text)
     else:

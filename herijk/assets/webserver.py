@@ -23,7 +23,7 @@ DEFINITIONS = ModuleTarget("herijk.assets.definitions", None, None, None)
 def main(host: str, port: str, rights: str) -> None:
     """Serves until the process is ended."""
     with (
-        listen(host, int(port)) as held,
+        listen(host, int(port)) as listening,
         dg.DagsterInstance.get() as instance,
         WorkspaceProcessContext(
             instance,
@@ -33,7 +33,7 @@ def main(host: str, port: str, rights: str) -> None:
         ) as context,
     ):
         app = create_app_from_workspace_process_context(context)
-        guarded(app, host).run(sockets=[held])
+        guarded(app, host).run(sockets=[listening])
 
 
 if __name__ == "__main__":

@@ -2,10 +2,13 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import asdict, is_dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, TypeVar
 
 import typer
+
+R = TypeVar("R")
 
 ArchiveFolder = Annotated[
     Path,
@@ -23,6 +26,11 @@ DataFolder = Annotated[
 AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
 
 
-def show(report: dict[str, Any], as_text: Callable[[dict[str, Any]], str], as_json: bool) -> None:
+def show(report: R, as_text: Callable[[R], str], as_json: bool) -> None:
     """Prints a result for a person, or for a program."""
-    typer.echo(json.dumps(report, default=str, indent=1) if as_json else as_text(report))
+    typer.echo(json.dumps(report, default=_plain, indent=1) if as_json else as_text(report))
+
+
+def _plain(value: object) -> object:
+    """What JSON has no form for: a dataclass as its fields, anything else as text."""
+    return asdict(value) if is_dataclass(value) and not isinstance(value, type) else str(value)

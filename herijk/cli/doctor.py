@@ -14,6 +14,7 @@ from herijk.cli.arguments import AsJson, DataFolder, show
 from herijk.pipeline.errors import HerijkError
 
 if TYPE_CHECKING:
+    from herijk.warehouse.queries.reports import RebuildReport
     from herijk.warehouse.store.methods import KnownMethods
 
 LEAST_FREE: Final = 2 * 2**30
@@ -95,9 +96,9 @@ def _taken(lock: AbstractContextManager[None]) -> str:
         return "free"
 
 
-def _tows(report: dict[str, Any]) -> str:
-    tows = sum(season["tows"] for season in report["seasons"])
-    return f"{tows} tows in {len(report['seasons'])} seasons"
+def _tows(report: "RebuildReport") -> str:
+    tows = sum(season["tows"] for season in report.seasons)
+    return f"{tows} tows in {len(report.seasons)} seasons"
 
 
 def _text(report: dict[str, Any]) -> str:

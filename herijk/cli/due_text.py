@@ -1,11 +1,13 @@
 """The due list as text for a person."""
 
 from collections import Counter
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from herijk.cli.text import SIMULATED, table
 
-Report = dict[str, Any]
+if TYPE_CHECKING:
+    from herijk.warehouse.queries.due import DueReport
+    from herijk.warehouse.store.database import Row
 
 REASONS: Final = {
     "in_range": "as declared",
@@ -24,17 +26,17 @@ URGENCIES: Final = {
 }
 
 
-def due(report: Report) -> str:
-    """Who is due, at what speed, and which boats would make the season factors surest."""
-    counts = Counter(line["urgency"] for line in report["lines"])
-    parts = [SIMULATED] if report["simulated"] else []
+def due(report: "DueReport") -> str:
+    """Who is due, at what speed, and which boats to tow again."""
+    counts = Counter(line["urgency"] for line in report.lines)
+    parts = [SIMULATED] if report.simulated else []
     parts.append(
-        f"Due list as of {report['as_of']}, the day of the last tow or race; curves of method "
-        f"{report['method']}. {len(report['lines'])} boats and crews: {counts['expired']} expired, "
+        f"Due list as of {report.as_of}, the day of the last tow or race; curves of method "
+        f"{report.method}. {len(report.lines)} boats and crews: {counts['expired']} expired, "
         f"{counts['this_year']} expire this year, {counts['without_curve']} without a curve."
     )
     parts += [
-        f"{title}\n{_lines([line for line in report['lines'] if line['urgency'] == urgency])}"
+        f"{title}\n{_lines([line for line in report.lines if line['urgency'] == urgency])}"
         for urgency, title in URGENCIES.items()
         if counts[urgency]
     ]
@@ -43,11 +45,11 @@ def due(report: Report) -> str:
         "that was altered\nsince may be towed at another one. * lies outside 85-115 % of the last "
         "declared speed, where its curve does not hold."
     )
-    parts.append(_choice(report["retow_choice"]))
+    parts.append(_choice(report.retow_choice))
     return "\n\n".join(parts)
 
 
-def _lines(lines: list[Report]) -> str:
+def _lines(lines: list["Row"]) -> str:
     head = (
         *("valid until", "boat", "name", "crew", "last tow", "declared", "W", "raced"),
         *("from", "to", "tow at m/s", "why"),
@@ -55,7 +57,7 @@ def _lines(lines: list[Report]) -> str:
     return table(head, [_line(line) for line in lines])
 
 
-def _line(line: Report) -> tuple[Any, ...]:
+def _line(line: "Row") -> tuple[Any, ...]:
     tow_at = _speed(line["tow_speed_m_s"]) + ("*" if line["beyond_curve"] else "")
     return (
         _day(line["valid_until"]),
@@ -73,8 +75,8 @@ def _line(line: Report) -> tuple[Any, ...]:
     )
 
 
-def _choice(choice: list[Report]) -> str:
-    title = "To tie the seasons together best, tow these again, in this order"
+def _choice(choice: list["Row"]) -> str:
+    title = "To narrow the season factors most, tow these again, in this order"
     if not choice:
         return f"{title}: nobody, this method estimates no log error, so no tow would narrow it."
     rows = [

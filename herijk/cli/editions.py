@@ -88,12 +88,12 @@ def publish(
         folder = publish_edition(store, known_methods(data).get(str(method)), terms, carry)
     made = read_edition(store, folder.name)
     counts = made.register["status"].value_counts().sort("count", "status", descending=True)
-    found = made.about.model_dump(mode="json") | {
+    shown = made.about.model_dump(mode="json") | {
         "folder": str(folder),
         "statuses": dict(counts.rows()),
         "to_look_at": lines_to_look_at(made),
     }
-    show(found, text.published, as_json)
+    show(shown, text.published, as_json)
 
 
 def diff(
@@ -119,9 +119,9 @@ def diff(
         stream=_one_of(STREAMS, stream, "--stream"),  # type: ignore[arg-type]
     )
     store = Store(data)
-    found = compare.diff(store, old, new)
-    races = compare.race_effects(store, found.old, found.new, rules)
-    report = compare.report(found) | {
+    comparison = compare.diff(store, old, new)
+    races = compare.race_effects(store, comparison.old, comparison.new, rules)
+    report = compare.report(comparison) | {
         "race_rules": vars(rules),
         "races": None if races is None else races.results.to_dicts(),
         "winners": None if races is None else races.winners.to_dicts(),

@@ -239,14 +239,14 @@ def lineage(report: Report) -> str:
     return "\n\n".join(parts)
 
 
-def _line_history(found: Report) -> str:
-    printed = "; ".join(f"{header} {cell}" for header, cell in found["printed"].items() if cell)
-    parts = [f"Verification code {found['code']}\n  {printed}"]
-    if found["tow"] is None:
+def _line_history(line: Report) -> str:
+    printed = "; ".join(f"{header} {cell}" for header, cell in line["printed"].items() if cell)
+    parts = [f"Verification code {line['code']}\n  {printed}"]
+    if line["tow"] is None:
         parts.append("  No tow of the archive is behind this line.")
         return "\n".join(parts)
-    files = "\n".join(f"    {f['path']}  sha256 {f['sha256']}" for f in found["files"])
-    parts.append(f"  Tow {found['tow']['tow_id']} of {found['tow']['tow_date']}, from\n{files}")
+    files = "\n".join(f"    {f['path']}  sha256 {f['sha256']}" for f in line["files"])
+    parts.append(f"  Tow {line['tow']['tow_id']} of {line['tow']['tow_date']}, from\n{files}")
     rows = [
         (
             run["run"],
@@ -255,7 +255,7 @@ def _line_history(found: Report) -> str:
             run["cw_kg_m"],
             "yes" if run["used"] else f"no: {run['reason']}",
         )
-        for run in found["runs"]
+        for run in line["runs"]
     ]
     parts.append(table(("run", "seconds", "v m/s", "Cw kg/m", "counts"), rows))
     return "\n".join(parts)

@@ -27,20 +27,20 @@ def fit(
     if not file.is_file():
         raise MissingKnowledgeError(f"there is no file {file}")
     points = read_points(file, speed, force)
-    found = fit_curve(points["speed_m_s"], cw_kg_m=points["cw_kg_m"])
+    fitted = fit_curve(points["speed_m_s"], cw_kg_m=points["cw_kg_m"])
     speeds = points["speed_m_s"].unique().sort().to_list()
     report = {
         "file": str(file),
         "points": points.height,
-        "a_kg_m": found.curve.a_kg_m,
-        "b_m_s": found.b._asdict(),
-        "b_is_determined": found.b_is_determined,
-        "cw_kg_m": [{"speed_m_s": v, **found.cw(v)._asdict()} for v in speeds],
+        "a_kg_m": fitted.curve.a_kg_m,
+        "b_m_s": fitted.b._asdict(),
+        "b_is_determined": fitted.b_is_determined,
+        "cw_kg_m": [{"speed_m_s": v, **fitted.cw(v)._asdict()} for v in speeds],
     }
     if plot is not None:
         from herijk.dashboards.fit_plot import write_fit_plot
 
-        write_fit_plot(found, plot)
+        write_fit_plot(fitted, plot)
     show(report, _text, as_json)
 
 

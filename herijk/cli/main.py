@@ -144,8 +144,10 @@ def rebuild(
     except Exception as error:
         _tell_failure(data, error)
         raise
-    report = reports.rebuild_report(Store(data)) | {"done": done.work, "since": done.report}
-    show(report, text.rebuild, as_json)
+    report = reports.rebuild_report(Store(data))
+    as_text = text.rebuild(report, done.work, done.report["headlines"])
+    everything = {**vars(report), "done": done.work, "since": done.report}
+    show(everything, lambda _: as_text, as_json)
     notifier = notifier_of(str(data), read_settings(data))
     for problem in tell(notifier, done.report):
         typer.echo(f"herijk: {problem}", err=True)

@@ -24,22 +24,22 @@ def method_in_words(shown: Method, parent: Method | None) -> str:
     lines = [f"{shown.name}: {shown.title_en}", "", shown.description.strip(), ""]
     if parent is not None:
         lines += [f"Extends {parent.name}; what differs from it is marked {DIFFERS}.", ""]
-    for held in shown.ranges:
-        lines += [_seasons(held), *_sentences(held, parent), ""]
+    for block in shown.ranges:
+        lines += [_seasons(block), *_sentences(block, parent), ""]
     lines.append(f"Content hash {shown.content_hash}")
     return "\n".join(lines)
 
 
-def _seasons(held: SeasonSteps) -> str:
-    if held.first == held.last:
-        return f"Season {held.first}"
-    last = "the present" if held.last == LAST_SEASON else str(held.last)
-    return f"Seasons {held.first} to {last}"
+def _seasons(block: SeasonSteps) -> str:
+    if block.first == block.last:
+        return f"Season {block.first}"
+    last = "the present" if block.last == LAST_SEASON else str(block.last)
+    return f"Seasons {block.first} to {last}"
 
 
-def _sentences(held: SeasonSteps, parent: Method | None) -> list[str]:
-    sentences = steps_in_words(held.steps)
-    before = sentences if parent is None else steps_in_words(parent.for_season(held.first))
+def _sentences(block: SeasonSteps, parent: Method | None) -> list[str]:
+    sentences = steps_in_words(block.steps)
+    before = sentences if parent is None else steps_in_words(parent.for_season(block.first))
     return [
         f"  {DIFFERS if before[step] != words else ' '} {step:12} {words}"
         for step, words in sentences.items()

@@ -38,7 +38,11 @@ class Overview(TyperGroup):
         rest = tuple(name for name in self.list_commands(ctx) if name not in listed)
         for title, names in {**SECTIONS, OTHER: rest}.items():
             commands = ((name, self.get_command(ctx, name)) for name in names)
-            rows = [(name, found.get_short_help_str(500)) for name, found in commands if found]
+            rows = [
+                (name, command_of.get_short_help_str(500))
+                for name, command_of in commands
+                if command_of
+            ]
             if rows:
                 with formatter.section(title):
                     formatter.write_dl(rows)
@@ -68,12 +72,12 @@ def folders_here(start: Path) -> dict[str, str]:
 
 def _read(file: Path) -> dict[str, Any]:
     try:
-        found = tomllib.loads(file.read_text(encoding="utf-8"))
+        settings = tomllib.loads(file.read_text(encoding="utf-8"))
     except (ValueError, OSError) as error:
         raise MissingKnowledgeError(f"{file} cannot be read: {error}") from error
-    wrong = [k for k, value in found.items() if k not in FOLDERS or not isinstance(value, str)]
+    wrong = [k for k, value in settings.items() if k not in FOLDERS or not isinstance(value, str)]
     if wrong:
         raise MissingKnowledgeError(
             f'{file}: {wrong[0]!r}: it may hold archive = "folder" and data = "folder"'
         )
-    return found
+    return settings

@@ -103,9 +103,9 @@ def site_app(data: Path) -> Starlette:
 
 @contextmanager
 def _site(what: Served) -> Iterator[None]:
-    with listen(what.host, what.port + 1) as held:
+    with listen(what.host, what.port + 1) as listening:
         server = guarded(site_app(what.data), what.host)
-        thread = threading.Thread(target=server.run, kwargs={"sockets": [held]}, daemon=True)
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]}, daemon=True)
         thread.start()
         yield
         server.should_exit = True
@@ -174,12 +174,12 @@ def _make_end(child: subprocess.Popen[bytes]) -> None:
 
 def _end(children: Iterable[subprocess.Popen[bytes]]) -> None:
     """Asks the processes to end; after a while, makes them."""
-    held = list(children)
-    for child in held:
+    running = list(children)
+    for child in running:
         if child.poll() is None:
             _ask_to_end(child)
     last = time.monotonic() + PATIENCE_S
-    for child in held:
+    for child in running:
         with suppress(subprocess.TimeoutExpired):
             child.wait(max(0.1, last - time.monotonic()))
         with suppress(ProcessLookupError):

@@ -4,9 +4,15 @@ The pages of `herijk audit` are in `cli.audit_text`.
 """
 
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-Report = dict[str, Any]
+if TYPE_CHECKING:
+    from herijk.warehouse.queries.rebase import RebaseReport
+    from herijk.warehouse.queries.reports import LogErrorReport, RebuildReport
+
+Row = dict[str, Any]
+"""A row of a query, by the names of its columns."""
+
 SIMULATED = "SIMULATED archive: made by `herijk simulate`, not the federation's measurements."
 
 
@@ -37,34 +43,31 @@ def _per_cent(ratio: float | None) -> str:
     return "-" if ratio is None else f"{100 * (ratio - 1):+.1f} %"
 
 
-def rebuild(report: Report) -> str:
+def rebuild(report: "RebuildReport", done: Row, headlines: list[str]) -> str:
     """The closing summary of a rebuild."""
-    done = report["done"]
-    parts = [SIMULATED] if report["simulated"] else []
+    parts = [SIMULATED] if report.simulated else []
     parts.append(_work_done(done))
-    parts.append("Since the last report:\n" + _indented(report["since"]["headlines"]))
+    parts.append("Since the last report:\n" + _indented(headlines))
     parts.append(
-        "Tows accepted: "
-        + ", ".join(f"{row['season']}: {row['tows']}" for row in report["seasons"])
+        "Tows accepted: " + ", ".join(f"{row['season']}: {row['tows']}" for row in report.seasons)
     )
-    if report["set_aside"]:
-        rows = [(r["lost"], r["reason_code"], r["number"]) for r in report["set_aside"]]
+    if report.set_aside:
+        rows = [(r["lost"], r["reason_code"], r["number"]) for r in report.set_aside]
         parts.append("Set aside:\n" + table(("lost", "reason", "number"), rows))
-        parts.append(_faults(report["first_faults"], sum(number for *_, number in rows)))
+        parts.append(_faults(report.first_faults, sum(number for *_, number in rows)))
     else:
         parts.append("Set aside: nothing.")
-    rows = [(r["method"], r["status"], r["number"]) for r in report["curves"]]
+    rows = [(r["method"], r["status"], r["number"]) for r in report.curves]
     parts.append("Curves:\n" + table(("method", "status", "number"), rows))
-    if report["by_season"]:
-        parts.append(_by_season(report["by_season"]))
-        parts.append(_biggest(report["biggest_changes"]))
-    parts.append(
-        f"Tables: {report['database']}\nSite: {report['site']}\nReport: {report['report']}"
-    )
+    if report.by_season:
+        parts.append(_by_season(report.by_season))
+    if report.biggest_changes:
+        parts.append(_biggest(report.biggest_changes))
+    parts.append(f"Tables: {report.database}\nSite: {report.site}\nReport: {report.report}")
     return "\n\n".join(parts)
 
 
-def _work_done(done: Report) -> str:
+def _work_done(done: Row) -> str:
     if not done["database"]:
         return "Nothing changed: no file was read again, all tables are up to date."
     seasons = ", ".join(str(s) for s in done["seasons"]) or "none"
@@ -76,7 +79,7 @@ def _indented(lines: Iterable[str]) -> str:
     return "\n".join(f"  {line}" for line in lines)
 
 
-def _faults(first: list[Report], number: int) -> str:
+def _faults(first: list[Row], number: int) -> str:
     lines = [f"  {_place(fault)}: {fault['message']}" for fault in first]
     told = sum(fault["number"] for fault in first)
     if number > told:
@@ -84,14 +87,14 @@ def _faults(first: list[Report], number: int) -> str:
     return "\n".join(lines)
 
 
-def _place(fault: Report) -> str:
+def _place(fault: Row) -> str:
     line = "" if fault["line"] is None else f", line {fault['line']}"
     tow = "" if fault["tow_id"] is None else f" (tow {fault['tow_id']})"
     more = f" and {fault['number'] - 1} more" if fault["number"] > 1 else ""
     return f"{fault['path']}{line}{tow}{more}"
 
 
-def _by_season(rows: list[Report]) -> str:
+def _by_season(rows: list[Row]) -> str:
     lines = [
         (
             r["method"],
@@ -109,7 +112,7 @@ def _by_season(rows: list[Report]) -> str:
     )
 
 
-def _biggest(rows: list[Report]) -> str:
+def _biggest(rows: list[Row]) -> str:
     lines = [
         (
             r["to_edition"],
@@ -125,7 +128,7 @@ def _biggest(rows: list[Report]) -> str:
     return f"Biggest changes against {rows[0]['from_edition']}:\n" + table(head, lines)
 
 
-def methods(report: Report) -> str:
+def methods(report: Row) -> str:
     """The list of methods."""
     rows = [(m["method"], m["title"], m["content_hash"][:12]) for m in report["methods"]]
     return table(("method", "title", "hash"), rows)
@@ -135,10 +138,10 @@ PLOT_WIDTH = 41
 PLOT_RANGE = (0.94, 1.08)
 
 
-def log_error(report: Report) -> str:
+def log_error(report: "LogErrorReport") -> str:
     """The season table with a small plot of each factor and its interval."""
-    parts = [SIMULATED] if report["simulated"] else []
-    parts.append(f"True speed = log speed x factor, under {report['method']} (95 % intervals):")
+    parts = [SIMULATED] if report.simulated else []
+    parts.append(f"True speed = log speed x factor, under {report.method} (95 % intervals):")
     head = (
         "season",
         "factor",
@@ -164,14 +167,14 @@ def log_error(report: Report) -> str:
             "-" if r["agreement"] is None else f"{r['agreement']:+.1f}",
             r["cause"],
         )
-        for r in report["factors"]
+        for r in report.factors
     ]
     parts.append(table(head, rows))
     low, high = PLOT_RANGE
     scale = (
         f"{low:<{_place_on_line(1.0)}.2f}{'1':<{PLOT_WIDTH - _place_on_line(1.0) - 4}}{high:.2f}"
     )
-    plots = [f"  {r['season']}  {_plot(r)}" for r in report["factors"]]
+    plots = [f"  {r['season']}  {_plot(r)}" for r in report.factors]
     parts.append("\n".join([f"  {'':4}  {scale}", *plots]))
     parts.append(
         "links: boats also towed in other seasons; without boats: a second estimate that does not\n"
@@ -180,10 +183,10 @@ def log_error(report: Report) -> str:
         "the same boats' curves tells; prescribed: nothing ties the season to one with dGPS, so\n"
         "its factor is not determined and the method's prescribed one is used."
     )
-    lacking = _seasons_between([r["season"] for r in report["factors"]])
+    lacking = _seasons_between([r["season"] for r in report.factors])
     if lacking:
         parts.append(f"No sound tow in {lacking}: nothing is known of the log there.")
-    if report["parts"]:
+    if report.parts:
         parts += ["Each log, and each part of a season in which one was replaced:", _parts(report)]
     parts += ["What may be wrong with the instruments of a season:", _diagnosis(report)]
     return "\n\n".join(parts)
@@ -195,9 +198,9 @@ def _seasons_between(seasons: list[int]) -> str:
     return ", ".join(str(season) for season in every if season not in seasons)
 
 
-def _diagnosis(report: Report) -> str:
+def _diagnosis(report: "LogErrorReport") -> str:
     """Faults that were found, or that cannot be told."""
-    if not report["diagnosis"]:
+    if not report.diagnosis:
         return "  nothing was found, and nothing is in doubt"
     head = ("season", "what", "verdict", "size", "from", "to", "chance", "or else")
     rows = [
@@ -209,7 +212,7 @@ def _diagnosis(report: Report) -> str:
             "-" if r["p_fault"] is None else f"{r['p_fault']:.0%}",
             r["confused_with"] or "-",
         )
-        for r in report["diagnosis"]
+        for r in report.diagnosis
     ]
     return table(head, rows)
 
@@ -218,7 +221,7 @@ def _size(value: float, unit: str) -> str:
     return f"{value:+.1f} N" if unit == "N" else f"{value:+.1%}"
 
 
-def _parts(report: Report) -> str:
+def _parts(report: "LogErrorReport") -> str:
     head = ("season", "log", "part", "factor", "from", "to", "source", "tows", "links")
     rows = [
         (
@@ -230,7 +233,7 @@ def _parts(report: Report) -> str:
             r["n_tows"],
             r["n_links"],
         )
-        for r in report["parts"]
+        for r in report.parts
     ]
     return table(head, rows)
 
@@ -239,7 +242,7 @@ def _factor(value: float | None) -> str:
     return "-" if value is None else f"{value:.4f}"
 
 
-def _plot(row: Report) -> str:
+def _plot(row: Row) -> str:
     """A line of text: the interval as dashes, the factor as o, no error at the bar."""
     marks = [" "] * PLOT_WIDTH
     marks[_place_on_line(1.0)] = "|"
@@ -256,13 +259,13 @@ def _place_on_line(factor: float) -> int:
     return min(max(place, 0), PLOT_WIDTH - 1)
 
 
-def rebase(report: Report) -> str:
+def rebase(report: "RebaseReport") -> str:
     """What a method changes: the ladder per season, and the boats most affected."""
-    parts = [SIMULATED] if report["simulated"] else []
-    parts.append(f"{report['method']} against {report['against']}; nothing was stored.")
-    counts = ", ".join(f"{row['count']} {row['change']}" for row in report["changes"])
+    parts = [SIMULATED] if report.simulated else []
+    parts.append(f"{report.method} against {report.against}; nothing was stored.")
+    counts = ", ".join(f"{row['count']} {row['change']}" for row in report.changes)
     parts.append(f"Register lines: {counts}.")
-    seasons = report["by_season"]
+    seasons = report.by_season
     steps = [key for key in seasons[0] if key not in ("season", "tows", "total")]
     head = ("season", "tows", *steps, "total")
     lines = [
@@ -282,7 +285,7 @@ def rebase(report: Report) -> str:
             _per_cent(row["cw_ratio"]),
             f"{7200 * (row['time_ratio'] - 1):+.0f} s",
         )
-        for row in report["boats"]
+        for row in report.boats
     ]
     head = ("boat", "name", "crew", *steps, "Cw", "in 2 h")
     parts.append("Register lines most affected:\n" + table(head, boats))

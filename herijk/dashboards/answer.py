@@ -134,12 +134,12 @@ def _change(line: Row, speech: Speech) -> Iterator[str]:
 
 def causes_of(line: Row, speech: Speech) -> list[tuple[str, float]]:
     """Name and factor of what made the change, the largest first; small ones as one."""
-    found = [
+    causes = [
         (speech.say(f"code.{cause.get('step', cause['cause'])}"), float(cause["factor"]))
         for cause in json.loads(line["causes"] or "[]")
     ]
-    small = [factor for _, factor in found if abs(factor - 1) < SHOWN]
-    large = [(name, factor) for name, factor in found if abs(factor - 1) >= SHOWN]
+    small = [factor for _, factor in causes if abs(factor - 1) < SHOWN]
+    large = [(name, factor) for name, factor in causes if abs(factor - 1) >= SHOWN]
     rest = 1.0
     for factor in small:
         rest *= factor

@@ -158,7 +158,7 @@ def _encodings(part: Any) -> Iterator[dict[str, Any]]:
 
 
 def _types(report: dict[str, Any]) -> list[str]:
-    return [found["boat_type"] for found in report["types"]]
+    return [one["boat_type"] for one in report["types"]]
 
 
 def file_name(text: str) -> str:

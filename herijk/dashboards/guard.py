@@ -84,17 +84,19 @@ def listen(host: str, port: int) -> socket.socket:
     Raises:
         UnavailableError: the address cannot be used.
     """
-    held = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET, socket.SOCK_STREAM)
-    held.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    listening = socket.socket(
+        socket.AF_INET6 if ":" in host else socket.AF_INET, socket.SOCK_STREAM
+    )
+    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
-        held.bind((host, port))
-        held.listen()
+        listening.bind((host, port))
+        listening.listen()
     except OSError as error:
-        held.close()
+        listening.close()
         raise UnavailableError(
             f"{host}:{port} cannot be used: {error.strerror}. Name another with --port"
         ) from error
-    return held
+    return listening
 
 
 def guarded(app: ASGIApp, host: str) -> uvicorn.Server:

@@ -97,21 +97,21 @@ def _path(x: Axis, y: Axis, across: pl.Series, up: pl.Series) -> str:
 
 def _axes(x: Axis, y: Axis, speech: Speech) -> list[Markup]:
     floor, left = HEIGHT - BOTTOM, LEFT
-    found = [
+    parts = [
         _LINE.format(left, floor, WIDTH - 12, floor, GREY, 1),
         _LINE.format(left, floor, left, TOP, GREY, 1),
         _TEXT.format((left + WIDTH) / 2, HEIGHT - 5, "middle", speech.say("speed")),
         _TEXT.format(4, 11, "start", speech.say("cw")),
     ]
     for tick in x.ticks:
-        found.append(_LINE.format(x.place(tick), floor, x.place(tick), floor + 4, GREY, 1))
+        parts.append(_LINE.format(x.place(tick), floor, x.place(tick), floor + 4, GREY, 1))
         label = speech.number(tick, x.digits)
-        found.append(_TEXT.format(x.place(tick), floor + 17, "middle", label))
+        parts.append(_TEXT.format(x.place(tick), floor + 17, "middle", label))
     for tick in y.ticks:
-        found.append(_LINE.format(left - 4, y.place(tick), WIDTH - 12, y.place(tick), "#ddd", 1))
+        parts.append(_LINE.format(left - 4, y.place(tick), WIDTH - 12, y.place(tick), "#ddd", 1))
         label = speech.number(tick, y.digits)
-        found.append(_TEXT.format(left - 7, y.place(tick) + 4, "end", label))
-    return found
+        parts.append(_TEXT.format(left - 7, y.place(tick) + 4, "end", label))
+    return parts
 
 
 def _run(x: Axis, y: Axis, row: dict[str, float]) -> Markup:

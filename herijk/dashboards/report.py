@@ -54,8 +54,8 @@ def _line(line: Report) -> str:
 
 def headlines(report: Report, say: Say) -> list[str]:
     """What happened in a few lines, the most important first."""
-    found = [*_wrong(report, say), *_moved(report, say)]
-    return found or [say("report_nothing")]
+    sentences = [*_wrong(report, say), *_moved(report, say)]
+    return sentences or [say("report_nothing")]
 
 
 def in_short(report: Report, say: Say) -> str:

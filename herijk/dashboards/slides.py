@@ -31,6 +31,7 @@ from herijk.dashboards.words import Say, speaker
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.queries.views import Views
+from herijk.warehouse.store.database import choice_of
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.store import Store
 
@@ -119,9 +120,7 @@ def slides(
     lines = views.table("type_lines").with_columns(method_order())
     known_choices = lines["tows"].unique().to_list()
     if tows not in known_choices:
-        raise MissingKnowledgeError(
-            f"there are no tows {tows!r}; choose from {', '.join(sorted(known_choices))}"
-        )
+        raise MissingKnowledgeError(f"there are no tows {tows!r}; {choice_of(known_choices)}")
     chosen = _types(compared, types)
     about = _About(views, say, compared, lines)
     for quantity in QUANTITIES:
@@ -140,15 +139,15 @@ def slides(
 def _types(compared: pl.DataFrame, wanted: Sequence[str]) -> list[str]:
     """The types asked for, or those of the presentation."""
     known = by_tows(compared)
-    found = []
+    types = []
     for name in wanted:
         like = [t for t in known if t.casefold().startswith(name.casefold())]
         if not like:
             raise MissingKnowledgeError(
                 f"there is no type {name!r}; the types are {', '.join(sorted(known))}"
             )
-        found.append(like[0])
-    return found or pair_of_types(compared)
+        types.append(like[0])
+    return types or pair_of_types(compared)
 
 
 class _About:
@@ -156,8 +155,8 @@ class _About:
 
     def __init__(self, views: Views, say: Say, compared: pl.DataFrame, lines: pl.DataFrame) -> None:
         self.views, self.say, self.compared, self.lines = views, say, compared, lines
-        held = compared.select("method", "order").unique().sort("order", "method")
-        self.before, self.after = held["method"][0], _last_method(held["method"].to_list())
+        methods = compared.select("method", "order").unique().sort("order", "method")
+        self.before, self.after = methods["method"][0], _last_method(methods["method"].to_list())
 
     def against(self, quantity: str, explaining: str, types: list[str], tows: str) -> Slide:
         """A quantity against an explaining variable, of some types and tows."""
@@ -187,8 +186,8 @@ class _About:
             quantity=QUANTITIES[quantity][0],
             explaining=EXPLAINING[explaining],
         )
-        found = {row["method"]: row for row in own.iter_rows(named=True)}
-        before, after = found.get(self.before), found.get(self.after)
+        by_method = {row["method"]: row for row in own.iter_rows(named=True)}
+        before, after = by_method.get(self.before), by_method.get(self.after)
         if after is None or after["slope"] is None:
             n, boats = (after["n"], after["n_boats"]) if after else (0, 0)
             return self.say("slide.no_line").format(type=boat_type, n=n, boats=boats)
@@ -220,15 +219,15 @@ class _About:
         row = self.views.table("hull_speed").filter(
             method=self.after, tows=ALL_TOWS, boat_type=ALL_TOWS
         )
-        found = row.row(0, named=True)
-        key = {None: "b_unknown", True: "b_is", False: "b_is_not"}[found["b_is_hull_speed"]]
+        line = row.row(0, named=True)
+        key = {None: "b_unknown", True: "b_is", False: "b_is_not"}[line["b_is_hull_speed"]]
         sentence = self.say(f"slide.{key}").format(
             after=self.after,
-            ratio=self._digits(found["b_ratio"]),
-            lo=self._digits(found["b_ratio_lo"]),
-            hi=self._digits(found["b_ratio_hi"]),
-            boats=found["n_boats"],
-            share=_share(found["b_share_within_5pct"]),
+            ratio=self._digits(line["b_ratio"]),
+            lo=self._digits(line["b_ratio_lo"]),
+            hi=self._digits(line["b_ratio_hi"]),
+            boats=line["n_boats"],
+            share=_share(line["b_share_within_5pct"]),
         )
         known = self.compared.filter(pl.col("boat_type") != UNKNOWN_TYPE)
         return Slide(
@@ -240,9 +239,9 @@ class _About:
         row = self.views.table("hull_speed").filter(
             method=self.after, tows=ALL_TOWS, boat_type=ALL_TOWS
         )
-        found = row.row(0, named=True)
+        line = row.row(0, named=True)
         sentence = self.say("slide.towed").format(
-            ratio=_share(found["tow_ratio"]), share=_share(found["tow_share_60_70"])
+            ratio=_share(line["tow_ratio"]), share=_share(line["tow_share_60_70"])
         )
         rows = self.compared.with_columns(newest_method=pl.lit(self.after))
         return Slide("towed at", "slide_towed_at", rows, self.say("slide.towed_at"), sentence)

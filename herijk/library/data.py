@@ -43,11 +43,11 @@ class DataFolder:
             MissingKnowledgeError: there is no such edition.
         """
         lines = self.table("register")
-        found = lines.filter(pl.col("edition") == edition)
-        if found.is_empty():
+        chosen = lines.filter(pl.col("edition") == edition)
+        if chosen.is_empty():
             known = ", ".join(lines["edition"].unique().sort())
             raise MissingKnowledgeError(f"there is no edition {edition!r}; there are {known}")
-        return found
+        return chosen
 
     def samples(self, tow_id: str) -> pl.DataFrame:
         """The samples of one tow as `apply_method` takes them, calibrated by nothing yet.

@@ -40,11 +40,11 @@ class NamedWorld:
 
     def defects(self, season: int) -> Defects:
         """What is wrong in a season."""
-        found = self.base(season)
+        of_season = self.base(season)
         for seasons, sizes in self.faults:
             if season in seasons:
-                found = replace(found, **sizes)
-        return found
+                of_season = replace(of_season, **sizes)
+        return of_season
 
 
 def _warming(first: float, last: float) -> tuple[tuple[range, Mapping[str, Any]], ...]:

@@ -5,8 +5,8 @@ import sys
 
 import pytest
 
-from herijk.cli.main import main
-from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.cli.main import app, main
+from herijk.pipeline.errors import HerijkError, MissingKnowledgeError
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from tests.conftest import Workbench
@@ -57,6 +57,20 @@ def test_one_tow_without_runs_that_are_not_asked_for_is_computed(one_tow, monkey
         assert stopped.value.code in {0, None} or said.err.startswith("herijk: "), command
 
 
+OF_TABLES = (
+    *(["audit", "FSN101"], ["due"], ["log-error"], ["slides"], ["certificate", "FSN101"]),
+    *(["proposal", "rebased"], ["audit", "Kuikensloep"]),
+)
+
+
+def told(bench, command):
+    """What a command says where it cannot do it."""
+    arguments = [*command, "--data", str(bench.data)]
+    with pytest.raises(HerijkError) as error:
+        app(arguments, standalone_mode=False)
+    return str(error.value)
+
+
 def test_where_nothing_is_sound_the_quarantine_says_why(one_tow, tmp_path):
     bench = Workbench(one_tow.archive, tmp_path / "data")
     (file,) = (one_tow.archive / "meetdata_2014").iterdir()
@@ -68,5 +82,7 @@ def test_where_nothing_is_sound_the_quarantine_says_why(one_tow, tmp_path):
             bench.rebuild(METHODS)
         assert bench.table("quarantine")["reason_code"].to_list() == ["missing_column"]
         assert bench.table("curves").is_empty()
+        for command in OF_TABLES:
+            assert "the last rebuild found none that it could use" in told(bench, command), command
     finally:
         file.write_bytes(kept)

@@ -192,10 +192,10 @@ def test_rebase_finds_what_the_workbench_showed(bench, built):
     method = parse_method(path.read_text(encoding="utf-8"), str(path))
     against = bench.history.under(parse_method(_extending("as-published"), "x")).method
     report = rebase(built.store, method, against)
-    counts = {row["change"]: row["count"] for row in report["changes"]}
+    counts = {row["change"]: row["count"] for row in report.changes}
     assert counts.get("changed", 0) == answer["summary"]["changed"]
     shown = {(r["fsn_no"], r["rowers"], r["crew_class"]): r["cw_ratio"] for r in answer["register"]}
-    for row in report["boats"]:
+    for row in report.boats:
         key = row["fsn_no"], row["rowers"], row["crew_class"]
         assert shown[key] == pytest.approx(row["cw_ratio"], rel=10.0 ** (1 - KEPT))
 

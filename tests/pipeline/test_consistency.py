@@ -213,6 +213,15 @@ def test_like_boats_raise_few_false_alarms(like_boats):
     assert within(rejected, 0.05, TRIALS)
 
 
+def test_like_hulls_that_are_no_hyperbolas_raise_no_more():
+    """One shape with a hump, towed at other speeds by each crew."""
+    curves, tows, boats, runs = fleet(13, TRIALS, speeds_m_s=np.linspace(2.1, 2.9, 12))
+    hump = 0.04 * (np.pi * (pl.col("speed_m_s") - 2.4)).cos()
+    humped = runs.with_columns((pl.col("cw_kg_m") * hump.exp()).alias("cw_kg_m"))
+    p = type_homogeneity(observe(curves, tows, boats, humped))["p_value"].to_numpy()
+    assert within((p < 0.05).mean(), 0.05, TRIALS)
+
+
 def test_power_is_what_is_stated_and_enough():
     for cv, column, least in ((0.05, "power_at_5pct", 0.5), (0.10, "power_at_10pct", 0.9)):
         found = type_homogeneity(observe(*fleet(12, TRIALS, b_cv=cv)))

@@ -52,7 +52,7 @@ class EditionBench:
         """Everything that a rebuild does up to the curves."""
         store = self.store
         intake.bring_in(store, self.archive)
-        ARCHIVE.make(store, (), DAY)
+        ARCHIVE.make(store, (), today=DAY)
         for method in methods:
             METHOD.make(store, [method])
 

@@ -25,11 +25,11 @@ def test_every_line_of_the_register_is_on_the_list(built):
 
 def test_the_report_tells_who_is_due(built):
     report = due_report(built.store, METHOD)
-    assert report["simulated"]
-    assert {line["urgency"] for line in report["lines"]} <= set(URGENCIES)
-    expired = [line for line in report["lines"] if line["urgency"] == "expired"]
-    assert all(line["valid_until"] < report["as_of"] for line in expired)
-    days = [line["valid_until"] for line in report["lines"] if line["valid_until"]]
+    assert report.simulated
+    assert {line["urgency"] for line in report.lines} <= set(URGENCIES)
+    expired = [line for line in report.lines if line["urgency"] == "expired"]
+    assert all(line["valid_until"] < report.as_of for line in expired)
+    days = [line["valid_until"] for line in report.lines if line["valid_until"]]
     assert days == sorted(days)
 
 

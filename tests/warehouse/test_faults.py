@@ -235,7 +235,7 @@ def read_again(bench: Workbench, day: dt.date) -> pl.DataFrame:
     """Brings the archive into the lake as a rebuild of that day does; gives what is set aside."""
     store = bench.store
     intake.bring_in(store, bench.archive)
-    ARCHIVE.make(store, (), day)
+    ARCHIVE.make(store, (), today=day)
     return store.read("quarantine")
 
 

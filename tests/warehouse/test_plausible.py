@@ -49,7 +49,7 @@ class Archive:
 
     def collect(self) -> None:
         intake.bring_in(self.store, self.root)
-        ARCHIVE.make(self.store, (), DAY)
+        ARCHIVE.make(self.store, (), today=DAY)
 
     def quarantined(self) -> dict[str, tuple[str, str]]:
         faults = self.store.read("quarantine").filter(lost="tow")

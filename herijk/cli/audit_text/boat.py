@@ -202,8 +202,8 @@ def _curve(curve: Report) -> str:
         )
         for p in curve["run_points"]
     ]
-    found = [f"  {curve['method']}: {_result(curve)}", table(head, rows), _budget(curve["budget"])]
-    return "\n".join(part for part in found if part)
+    parts = [f"  {curve['method']}: {_result(curve)}", table(head, rows), _budget(curve["budget"])]
+    return "\n".join(part for part in parts if part)
 
 
 def _budget(budget: list[Report]) -> str:

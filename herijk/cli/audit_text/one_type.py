@@ -43,8 +43,8 @@ NAMES: Final = {
 
 def one_type(report: Report) -> list[str]:
     """The parts of the page."""
-    found, fleet = report["types"][0], report["fleet"]
-    under = found["under"]
+    of_type, fleet = report["types"][0], report["fleet"]
+    under = of_type["under"]
     repeats = [
         *_eras(under, fleet),
         *_agreement(fleet),
@@ -70,7 +70,7 @@ def one_type(report: Report) -> list[str]:
         ("7. Do repeat tows of unaltered boats agree, before and after correction?", repeats),
         ("8. Second opinion without towing: Cw from weight, length, beam and type", opinion),
     ]
-    top = (f"{found['boat_type']}: are equal boats equal?", heading(found), NOTE)
+    top = (f"{of_type['boat_type']}: are equal boats equal?", heading(of_type), NOTE)
     return ["\n".join(wrapped(line, 0, 0) for line in top), *(section(*one) for one in sections)]
 
 
@@ -186,10 +186,10 @@ def _closest(under: Report) -> list[str]:
         False: "Cw lies further apart",
         None: "these differ no more than chance lets them",
     }[closest["cw_closest"]]
-    found = {letter: line_of(under, q, "weight_kg") for q, letter in QUANTITIES.items()}
+    by_letter = {letter: line_of(under, q, "weight_kg") for q, letter in QUANTITIES.items()}
     spreads = ", ".join(
         f"{letter} {share(line['residual_sd_ratio'], 1)} (n {line['n']})"
-        for letter, line in found.items()
+        for letter, line in by_letter.items()
     )
     return [f"spread about weight: {spreads}: {verdict}."]
 
@@ -238,12 +238,12 @@ def _shared(under: Report) -> list[str]:
     """What becomes of the register when boats share their bend: B, and how far Cw would move."""
     cells, silent = [], []
     for method, figures in under.items():
-        found = {row["pooling"]: row for row in figures["shared"]}
-        if "shared" not in found:
+        by_pooling = {row["pooling"]: row for row in figures["shared"]}
+        if "shared" not in by_pooling:
             reason = {"reason": figures["bends"]["reason"] or "few_boats"}
             silent.append((method, "shared bend", nothing(figures["bends"] | reason)))
             continue
-        own, part, shared = (found[pooling] for pooling in ("own", "partial", "shared"))
+        own, part, shared = (by_pooling[pooling] for pooling in ("own", "partial", "shared"))
         b = shared["median_b_m_s"]
         spreads = [share(row["b_sd_ratio"], 1) for row in (own, part)]
         moves = [share(shared[f"most_{at}"], 1) for at in ("085", "100", "115")]
@@ -377,12 +377,12 @@ def _cause(row: Report) -> str:
 
 def _causes(fleet: Report) -> list[str]:
     """Spread of Cw within types by cause."""
-    found = {row["component"]: row for row in fleet["components"]}
-    if "boat" not in found or found["boat"]["reason"]:
-        reason = found["boat"]["reason"] if "boat" in found else "no_curves"
+    by_component = {row["component"]: row for row in fleet["components"]}
+    if "boat" not in by_component or by_component["boat"]["reason"]:
+        reason = by_component["boat"]["reason"] if "boat" in by_component else "no_curves"
         return [f"spread by cause: nothing claimed, {REASONS[reason]}."]
-    causes = ", ".join(f"{words} {_cause(found[name])}" for name, words in NAMES.items())
-    return [f"within types, at one speed: {causes} (n {found['boat']['n']})."]
+    causes = ", ".join(f"{words} {_cause(by_component[name])}" for name, words in NAMES.items())
+    return [f"within types, at one speed: {causes} (n {by_component['boat']['n']})."]
 
 
 def _newest_reproducibility(fleet: Report) -> str:

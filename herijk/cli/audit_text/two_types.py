@@ -74,8 +74,8 @@ def _spread(under: Report) -> str:
     closest = under["closest"]
     if closest["reason"]:
         return _nothing(closest)
-    found = [line_of(under, quantity, "weight_kg") for quantity in QUANTITIES]
-    b, a, cw = (line["residual_sd_ratio"] for line in found)
+    lines = [line_of(under, quantity, "weight_kg") for quantity in QUANTITIES]
+    b, a, cw = (line["residual_sd_ratio"] for line in lines)
     return f"B {100 * b:.1f}, A {100 * a:.1f}, Cw {100 * cw:.1f} %, n {closest['n']}"
 
 

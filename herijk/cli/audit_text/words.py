@@ -125,18 +125,18 @@ def line_of(under: Report, quantity: str, explaining: str) -> Report:
     return {"n": 0, "n_boats": 0, "slope": None, "follows": None, "reason": "no_curves"}
 
 
-def heading(found: Report) -> str:
+def heading(report: Report) -> str:
     """How many boats and tows of a type there are, and how they differ."""
-    boats = f"{found['n_boats']} boats, {found['n_towed']} of them towed; {found['n_tows']} tows"
-    if not found["n_tows"]:
+    boats = f"{report['n_boats']} boats, {report['n_towed']} of them towed; {report['n_tows']} tows"
+    if not report["n_tows"]:
         return f"{boats} accepted."
-    seasons = f"{found['first_season']}-{found['last_season']}"
+    seasons = f"{report['first_season']}-{report['last_season']}"
     weight = (
         "weight not known"
-        if found["lightest_kg"] is None
-        else f"{found['lightest_kg']:.0f}-{found['heaviest_kg']:.0f} kg"
+        if report["lightest_kg"] is None
+        else f"{report['lightest_kg']:.0f}-{report['heaviest_kg']:.0f} kg"
     )
-    speeds = f"{found['slowest_m_s']:.2f}-{found['fastest_m_s']:.2f} m/s"
+    speeds = f"{report['slowest_m_s']:.2f}-{report['fastest_m_s']:.2f} m/s"
     return f"{boats}, {seasons}; {weight}; declared speed {speeds}."
 
 

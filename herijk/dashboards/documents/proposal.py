@@ -129,13 +129,13 @@ def _parts(views: Views, method: str, lines: pl.DataFrame, speech: Speech) -> It
 
 def _steps(lines: pl.DataFrame, speech: Speech) -> list[list[str]]:
     """The mean effect of each cause over all lines that have it, the largest first."""
-    found: dict[str, list[float]] = defaultdict(list)
+    factors: dict[str, list[float]] = defaultdict(list)
     for causes in lines["causes"].to_list():
         for cause in json.loads(causes):
-            found[cause.get("step", cause["cause"])].append(log(cause["factor"]))
-    means = {name: sum(values) / len(values) for name, values in found.items()}
+            factors[cause.get("step", cause["cause"])].append(log(cause["factor"]))
+    means = {name: sum(values) / len(values) for name, values in factors.items()}
     return [
-        [speech.say(f"code.{name}"), speech.per_cent(exp(means[name])), str(len(found[name]))]
+        [speech.say(f"code.{name}"), speech.per_cent(exp(means[name])), str(len(factors[name]))]
         for name in sorted(means, key=lambda name: -abs(means[name]))
     ]
 

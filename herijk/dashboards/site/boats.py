@@ -105,7 +105,7 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
     lineage = views.table("lineage").with_columns(
         pl.format("{}{}", "rowers", "crew_class").alias("crew")
     )
-    found = {
+    frames = {
         "boats": views.table("boats"),
         "register": _once(register),
         "curves": curves,
@@ -128,8 +128,8 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
     for name in EXTRA:
         if views.has(name):
             rows = views.flagged() if name == "assessments" else views.table(name)
-            found[name] = rows.join(boat_of, on="tow_id", maintain_order="left")
-    return found
+            frames[name] = rows.join(boat_of, on="tow_id", maintain_order="left")
+    return frames
 
 
 POINT = ["run", "direction", "speed_m_s", "cw_kg_m", "used"]
@@ -240,7 +240,7 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
     curves = Table("curves", own["curves"], CURVE_COLUMNS, "boat_history", exact=False)
     runs = Table("run_points", own["runs"], RUN_COLUMNS, "boat_runs", FOLLOWS, exact=False)
     lines = Table("register", own["register"], LINE_COLUMNS, "boat_lines")
-    found = [
+    sections = [
         Section("boat_lines", tables=[lines]),
         Section("boat_history", "boat_history_note", [history], [curves]),
         Section("boat_curve", "boat_curve_note", [curve]),
@@ -254,11 +254,11 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
         if rows is not None and rows.height:
             follows = [c for c in FOLLOWS if c in rows.columns]
             table = Table(name, rows, columns, name, follows, exact=False)
-            found.append(Section(name, f"{name}_note", tables=[table]))
+            sections.append(Section(name, f"{name}_note", tables=[table]))
     lineage = Table("lineage", own["lineage"], LINEAGE_COLUMNS, "boat_lineage")
     if own["lineage"].height:
-        found.append(Section("boat_lineage", "boat_lineage_note", tables=[lineage]))
-    return [replace(section, folded=True) for section in found]
+        sections.append(Section("boat_lineage", "boat_lineage_note", tables=[lineage]))
+    return [replace(section, folded=True) for section in sections]
 
 
 def _once(register: pl.DataFrame) -> pl.DataFrame:

@@ -42,10 +42,10 @@ def changes(lines: pl.DataFrame) -> Headline:
 
 
 def _largest(causes: str) -> str | None:
-    found = json.loads(causes)
-    if not found:
+    parts = json.loads(causes)
+    if not parts:
         return None
-    most = max(found, key=lambda cause: abs(cause["factor"] - 1))
+    most = max(parts, key=lambda cause: abs(cause["factor"] - 1))
     return str(most.get("step", most["cause"]))
 
 

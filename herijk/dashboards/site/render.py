@@ -234,11 +234,11 @@ def _column(column: pl.Series) -> str:
         numbers = ("null" if v is None else f"{v:.{DRAWN}g}" for v in known)
         return f"[{','.join(numbers)}]"
     values = column.to_list()
-    held = [(value, len(list(same))) for value, same in groupby(values)]
-    if column.dtype != pl.String and 2 * len(held) >= len(values):
+    stretches = [(value, len(list(same))) for value, same in groupby(values)]
+    if column.dtype != pl.String and 2 * len(stretches) >= len(values):
         return as_json(values)
-    places = {value: place for place, value in enumerate(dict.fromkeys(v for v, _ in held))}
-    runs = list(chain.from_iterable((places[value], number) for value, number in held))
+    places = {value: place for place, value in enumerate(dict.fromkeys(v for v, _ in stretches))}
+    runs = list(chain.from_iterable((places[value], number) for value, number in stretches))
     return as_json({"values": list(places), "runs": runs})
 
 

@@ -98,10 +98,10 @@ def _years(views: Views, compared: pl.DataFrame) -> pl.DataFrame:
 
 
 def _claims(views: Views) -> list[Section]:
-    found = []
+    sections = []
     for name, columns in CLAIMS.items():
         if views.has(name):
             frame = views.table(name)
             table = Table(name, frame, ["method", *columns.split()], f"claim_{name}", ["method"])
-            found.append(Section(f"claim_{name}", f"claim_{name}_note", tables=[table]))
-    return found
+            sections.append(Section(f"claim_{name}", f"claim_{name}_note", tables=[table]))
+    return sections

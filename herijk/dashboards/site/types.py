@@ -128,7 +128,7 @@ def _pair(types: Sequence[str]) -> tuple[str, str]:
 
 
 def _type_tables(views: Views) -> list[Section]:
-    found = []
+    sections = []
     outliers = views.outliers() if views.has("type_outliers") else pl.DataFrame()
     if outliers.height:
         shown_columns = (
@@ -139,7 +139,7 @@ def _type_tables(views: Views) -> list[Section]:
         table = Table(
             "type_outliers", shown, shown_columns, "types_outliers", ["after", "boat_type"]
         )
-        found.append(Section("types_outliers", "types_outliers_note", tables=[table]))
+        sections.append(Section("types_outliers", "types_outliers_note", tables=[table]))
     wanted = {
         "type_consistency": (
             "types_lines",
@@ -156,5 +156,5 @@ def _type_tables(views: Views) -> list[Section]:
         if views.has(name):
             shown = views.table(name).with_columns(after="method")
             table = Table(name, shown, columns.split(), title, ["after", "boat_type"])
-            found.append(Section(title, note, tables=[table]))
-    return found
+            sections.append(Section(title, note, tables=[table]))
+    return sections

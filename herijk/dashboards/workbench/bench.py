@@ -146,9 +146,9 @@ class Bench:
             "name": method.name,
             "title": method.title,
             "ranges": [
-                held.model_dump(mode="json")
-                | {"seasons": [s for s in self._seasons if held.first <= s <= held.last]}
-                for held in cut_at(method, self._seasons)
+                block.model_dump(mode="json")
+                | {"seasons": [s for s in self._seasons if block.first <= s <= block.last]}
+                for block in cut_at(method, self._seasons)
             ],
         }
 
@@ -210,8 +210,8 @@ class Bench:
         if len(ranges) != len(wish.steps):
             raise HerijkError(f"{base.name} has {len(ranges)} ranges, not {len(wish.steps)}")
         steps = (
-            SeasonSteps(first=held.first, last=held.last, steps=steps)
-            for held, steps in zip(ranges, wish.steps, strict=True)
+            SeasonSteps(first=block.first, last=block.last, steps=steps)
+            for block, steps in zip(ranges, wish.steps, strict=True)
         )
         return variant(base, name, title, reason, tuple(steps))
 

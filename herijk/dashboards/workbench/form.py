@@ -30,15 +30,15 @@ def controls() -> list[Control]:
         `by` (a step of the slider) and `whole`; `fixed` with nothing more.
     """
     schema = Steps.model_json_schema()
-    found = []
+    steps = []
     for step, place in schema["properties"].items():
         rules = schema["$defs"][place["$ref"].rsplit("/", 1)[1]]
         options = [
             {"option": name, "unit": _unit(name)} | _kind(rule)
             for name, rule in rules["properties"].items()
         ]
-        found.append({"step": step, "meaning": rules["description"], "options": options})
-    return found
+        steps.append({"step": step, "meaning": rules["description"], "options": options})
+    return steps
 
 
 def _kind(rule: Schema) -> Control:

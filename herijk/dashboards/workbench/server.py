@@ -155,9 +155,9 @@ def _text(key: str) -> Markup:
     return in_both(both(key, TEXTS))
 
 
-def address(held: socket.socket) -> str:
+def address(listening: socket.socket) -> str:
     """Where a browser finds the workbench."""
-    return f"http://{LOOPBACK}:{held.getsockname()[1]}/"
+    return f"http://{LOOPBACK}:{listening.getsockname()[1]}/"
 
 
 def serving(bench: Bench) -> uvicorn.Server:

@@ -72,7 +72,7 @@ def with_status(
     pairs = pl.DataFrame(
         list(rejecting), schema={"season": pl.Int32(), "check": pl.String()}, orient="row"
     ).with_columns(pl.lit(True).alias("rejects"))
-    found = (
+    flagged = (
         assessments.filter("flagged")
         .join(curves.select("tow_id", "season"), on="tow_id")
         .join(pairs, on=["season", "check"], how="left")
@@ -90,7 +90,7 @@ def with_status(
         .otherwise(pl.lit("accepted"))
     )
     return (
-        curves.join(found, on="tow_id", how="left", maintain_order="left")
+        curves.join(flagged, on="tow_id", how="left", maintain_order="left")
         .with_columns(status.alias("status"), pl.col("flags").fill_null([]))
         .drop("rejects")
     )
@@ -144,15 +144,15 @@ def _held_against_limits(observed: pl.DataFrame, curves: pl.DataFrame) -> pl.Dat
 
 
 def _of_curves(curves: pl.DataFrame) -> pl.DataFrame:
-    found = pl.col("a_kg_m").is_not_null()
+    has_curve = pl.col("a_kg_m").is_not_null()
     return curves.select(
         "tow_id",
-        no_curve=found,
+        no_curve=has_curve,
         few_runs="runs_used",
         residual_large="residual_sd_ratio",
         unusual_calibration="calibration_factor",
-        b_at_cap=pl.when(found).then("b_capped"),
-        b_not_determined=pl.when(found).then(pl.col("b_m_s").is_null()),
+        b_at_cap=pl.when(has_curve).then("b_capped"),
+        b_not_determined=pl.when(has_curve).then(pl.col("b_m_s").is_null()),
         power_outside_range="power_w",
         slow_tow="power_w",
     )

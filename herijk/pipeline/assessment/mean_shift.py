@@ -73,7 +73,7 @@ def find_shifts(
     at_first = precision.weights(may.directions)
     weight = at_first.copy()
     limits = limit * _scales(score, weight, may.single)
-    found: list[tuple[int, float, float]] = []
+    shifts: list[tuple[int, float, float]] = []
     while True:
         told = weight > SAME_DIRECTION * at_first
         sd = 1.0 / np.sqrt(np.where(told, weight, 1.0))
@@ -82,8 +82,8 @@ def find_shifts(
         beyond[~told | (np.abs(size) < may.least)] = 0.0
         best = int(first_largest(beyond))
         if beyond[best] < 1.0:
-            return found
-        found.append((best, float(size[best]), float(sd[best])))
+            return shifts
+        shifts.append((best, float(size[best]), float(sd[best])))
         moved = precision.take_out(may.directions[:, [best]].toarray()[:, 0])
         share = np.asarray(may.directions.T @ moved)
         score = score - share * size[best]

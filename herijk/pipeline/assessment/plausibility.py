@@ -124,11 +124,11 @@ def _in_radians(seen: Seen) -> Iterator[Shift]:
     tows, whose = seen.batch.tows["tow_id"].to_numpy(), seen.batch.of_tow("season")
     for season in seen.batch.seasons:
         mine = whose == season
-        found = mine & seen.in_radians
-        if found.sum() >= FEWEST and found.sum() > 0.5 * mine.sum():
+        written_so = mine & seen.in_radians
+        if written_so.sum() >= FEWEST and written_so.sum() > 0.5 * mine.sum():
             yield Shift("season", str(season), "vane", 1.0, 0.0, tuple(tows[mine]), _RADIANS)
         else:
-            for tow in tows[found]:
+            for tow in tows[written_so]:
                 yield Shift("tow", str(tow), "vane", 1.0, 0.0, (str(tow),), _RADIANS)
 
 
@@ -240,13 +240,13 @@ def _named(
         np.array([kind == "tow" for _, (kind, _, _), _ in columns]),
         np.array([LEAST[quantity] for quantity, _, _ in columns]),
     )
-    found = []
+    shifts = []
     for place, size, sd in find_shifts(observed, may, LIMIT):
         quantity, (kind, key, places), _ = columns[place]
         ids = tuple(tows["tow_id"].gather(np.sort(places)))
         cause = likely_cause(quantity, _ln_ratio(quantity, size), sd)
-        found.append(Shift(kind, key, quantity, size, sd, ids, cause))
-    return found
+        shifts.append(Shift(kind, key, quantity, size, sd, ids, cause))
+    return shifts
 
 
 def _ln_ratio(quantity: str, size: float) -> float:

@@ -70,13 +70,16 @@ def block_sums(samples: pl.DataFrame, sample_rate_hz: int) -> pl.DataFrame:
     channels = [filled[name].to_numpy() for name in _CHANNELS]
     _add_up(run, sample_rate_hz, number, second, n, sums, *channels)
     _leave_out(channels, sample_rate_hz, n, sums)
-    found = pl.Series(sums.ravel())
+    sums_of_blocks = pl.Series(sums.ravel())
     return pl.DataFrame(
         [
             pl.Series("run", number),
             pl.Series("second", second),
             pl.Series("n", n),
-            *(found.slice(i * blocks, blocks).alias(name) for i, name in enumerate(SUM_NAMES)),
+            *(
+                sums_of_blocks.slice(i * blocks, blocks).alias(name)
+                for i, name in enumerate(SUM_NAMES)
+            ),
         ]
     )
 

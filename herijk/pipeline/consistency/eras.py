@@ -107,10 +107,10 @@ def _shift(pairs: pl.DataFrame, era: Era, ageing: _Ageing) -> dict[str, Any]:
     if ageing.per_year is not None:
         facts |= {"ageing_per_year": per_year, "ageing_lo": slowest, "ageing_hi": fastest}
     years = across.select(_years()).to_series().to_numpy()
-    found = median_interval(across["ln_ratio"].to_numpy() - per_year * years)
-    if found is None:
+    interval = median_interval(across["ln_ratio"].to_numpy() - per_year * years)
+    if interval is None:
         return facts | {"reason": "few_pairs"}
-    median, lo, hi = found
+    median, lo, hi = interval
     aged = 0.5 * (fastest - slowest) * float(years.mean())
     lo, hi = median - hypot(median - lo, aged), median + hypot(hi - median, aged)
     return facts | {

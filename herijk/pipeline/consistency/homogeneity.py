@@ -1,19 +1,19 @@
 """Equal boats, equal B? A test, its power, and what the register would be if boats shared a bend.
 
-Boats of a type may differ in the height of their curve; asked is whether they differ in its bend,
-s = 1/B^2, beyond what class and speed of the tow explain. Scatter of the runs is relative and
+Boats of a type may differ in the height of their curve; asked is whether they differ in its bend
+beyond one shape that all share and what class explains. Scatter of the runs is relative and
 pooled over the type. One row per boat and crew, its newest tow. B counts as free, also where the
 method caps it.
 """
 
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 import polars as pl
 import scipy
 
 from herijk.pipeline import curve
-from herijk.pipeline.arrays import FloatArray
+from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.consistency import mixed
 from herijk.pipeline.consistency.observed import (
     LINE,
@@ -36,9 +36,11 @@ SPEED_RATIOS: Final = {"cw_085_kg_m": 0.85, "cw_kg_m": 1.0, "cw_115_kg_m": 1.15}
 BEND_BOUNDS: Final = (-2.0, 0.999)
 """Of the shared s, as a share of that which puts B on the fastest point."""
 
-STEPS: Final = 20
-LEAST_SPREAD: Final = 1e-4
-"""Classes or speeds that differ by less than this do not tell how the bend follows them."""
+HIGHEST_POWER: Final = 6
+"""Of ln speed in the shape that equal hulls share: enough for a hump near hull speed."""
+
+SAME_COLUMN: Final = 1e-9
+"""Columns that differ by less, relatively, are one: a single class, or speeds all alike."""
 
 BEND_MARGIN: Final = 1e-3
 """Within this of the least that a plain search finds lies the least itself."""
@@ -50,11 +52,11 @@ def shared_bend(boats: Observed) -> float:
     """The one s = 1/B^2 [s2/m2] that fits all boats best, each with its own height."""
     fastest = float(np.where(boats.points.used, boats.points.speed_m_s, 0.0).max()) ** 2
     lowest, highest = BEND_BOUNDS
-    found = scipy.optimize.minimize_scalar(
+    optimum = scipy.optimize.minimize_scalar(
         lambda r: _misfit(boats, r / fastest), bounds=BEND_BOUNDS, method="bounded"
     )
-    below = max(float(found.x) - BEND_MARGIN, lowest)
-    above = min(float(found.x) + BEND_MARGIN, highest)
+    below = max(float(optimum.x) - BEND_MARGIN, lowest)
+    above = min(float(optimum.x) + BEND_MARGIN, highest)
     if _misfit_slope(boats, below / fastest) >= 0.0:
         return below / fastest
     if _misfit_slope(boats, above / fastest) <= 0.0:
@@ -64,46 +66,6 @@ def shared_bend(boats: Observed) -> float:
         lambda r: _misfit_slope(boats, r / fastest), below, above, xtol=1e-15
     )
     return float(least) / fastest
-
-
-def expected_bends(boats: Observed) -> tuple[FloatArray, int]:
-    """The s of every boat if all were alike, and how many numbers that took.
-
-    A hyperbola only describes a hull: the bend of equal hulls follows the speed at which they are
-    towed, and men tow faster than women. So s may differ between classes and follow the square of
-    the declared speed; what a column of these cannot show (one class, one speed) is left out. Least
-    squares by Gauss-Newton, each boat with its own height.
-    """
-    women = (boats.table["crew_class"] == "D").to_numpy()
-    speed2 = boats.column("declared_speed_m_s") ** 2
-    columns = [np.ones(len(speed2))]
-    for column in (women.astype(np.float64), speed2 / speed2.mean() - 1.0):
-        design = np.column_stack([*columns, column])
-        enough = len(speed2) > design.shape[1] + 1
-        if enough and np.linalg.svd(design, compute_uv=False)[-1] > LEAST_SPREAD * len(design):
-            columns.append(column)
-    design = np.column_stack(columns)
-    ceiling = BEND_BOUNDS[1] / np.where(boats.points.used, boats.points.speed_m_s, 0.0).max(1) ** 2
-    s = np.full(len(speed2), shared_bend(boats))
-    for _ in range(STEPS):
-        residual, slope = _along_bend(boats, s)
-        pull, weight = (slope * residual).sum(axis=1), (slope**2).sum(axis=1)
-        normal = design.T @ (weight[:, None] * design)
-        move = design @ np.linalg.solve(normal, design.T @ pull)
-        s = np.minimum(s + move, ceiling)
-    return s, design.shape[1]
-
-
-def _along_bend(boats: Observed, s_s2_m2: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Relative residuals of each boat's points at given s, and their slopes but for the height."""
-    points, c0 = boats.points, boats.column("c0_kg_m")[:, None]
-    v2 = np.where(points.used, points.speed_m_s, 0.0) ** 2
-    shape = points.used / (1.0 - s_s2_m2[:, None] * v2)
-    a = height_given_bend(points, s_s2_m2)[:, None]
-    residual = np.where(points.used, points.cw_kg_m - a * shape, 0.0) / c0
-    slope = a * shape**2 * v2 / c0
-    share = (slope * shape).sum(axis=1) / (shape**2).sum(axis=1)
-    return residual, slope - share[:, None] * shape
 
 
 def height_given_bend(points: curve.Points, s_s2_m2: FloatArray) -> FloatArray:
@@ -117,7 +79,11 @@ def height_given_bend(points: curve.Points, s_s2_m2: FloatArray) -> FloatArray:
 
 def _misfit(boats: Observed, s_s2_m2: float) -> float:
     """Residual sum of squares relative to each boat's own Cw, with one s for all."""
-    return float((_along_bend(boats, np.full(boats.table.height, s_s2_m2))[0] ** 2).sum())
+    points = boats.points
+    v2 = np.where(points.used, points.speed_m_s, 0.0) ** 2
+    a = height_given_bend(points, np.full(boats.table.height, s_s2_m2))[:, None]
+    residual = np.where(points.used, points.cw_kg_m - a / (1.0 - s_s2_m2 * v2), 0.0)
+    return float(((residual / boats.column("c0_kg_m")[:, None]) ** 2).sum())
 
 
 def _misfit_slope(boats: Observed, s_s2_m2: float) -> float:
@@ -144,6 +110,56 @@ def type_homogeneity(observed: Observed) -> pl.DataFrame:
     return frame_of(TypeHomogeneity, rows)
 
 
+class _Squares(NamedTuple):
+    """Sums of squares of ln Cw: what own slopes explain, and what they leave."""
+
+    between: float
+    within: float
+    dof_between: int
+    dof_within: int
+
+
+def _same_or_own_slopes(boats: Observed) -> _Squares:
+    """Whether boats need slopes of their own beside one shape (analysis of covariance).
+
+    If boats are alike, ln Cw has one shape in ln speed, a polynomial, with a height for
+    each boat and, as women are lighter, a slope for each class. Against it every boat may have a
+    slope of its own. The shape is free in both, so that a hull that is no hyperbola counts for
+    neither.
+    """
+    used = boats.points.used
+    ln_speed, ln_cw = (
+        np.log(np.where(used, values, 1.0))
+        for values in (boats.points.speed_m_s, boats.points.cw_kg_m)
+    )
+    middle = ln_speed[used].mean()
+    x = np.where(used, (ln_speed - middle) / ln_speed[used].std(), 0.0)
+    women = (boats.table["crew_class"] == "D").to_numpy()[:, None]
+    shape = [x**power for power in range(2, HIGHEST_POWER + 1)]
+    height = used.astype(np.float64)
+    same = _rest(used, [height], [x, women * x, *shape], ln_cw)
+    own = _rest(used, [height, x], shape, ln_cw)
+    boats_in_both, points = len(used), int(used.sum())
+    return _Squares(
+        max(same[0] - own[0], 0.0),
+        own[0],
+        boats_in_both + own[1] - same[1],
+        points - 2 * boats_in_both - own[1],
+    )
+
+
+def _rest(
+    used: BoolArray, own: list[FloatArray], shared: list[FloatArray], values: FloatArray
+) -> tuple[float, int]:
+    """Sum of squares that columns of each boat's own and shared ones leave; rank of the shared."""
+    basis = np.linalg.qr(np.stack(own, axis=2) * used[:, :, None])[0]
+    columns = np.stack([*shared, values], axis=2) * used[:, :, None]
+    left = (columns - basis @ (np.swapaxes(basis, 1, 2) @ columns))[used]
+    fitted = np.linalg.lstsq(left[:, :-1], left[:, -1], rcond=SAME_COLUMN)
+    residual = left[:, -1] - left[:, :-1] @ fitted[0]
+    return float((residual**2).sum()), int(fitted[2])
+
+
 def _tested(boats: Observed, boat_type: str) -> dict[str, Any]:
     n_boats = boats.table["fsn_no"].n_unique()
     counts = {"n": boats.table.height, "n_boats": n_boats}
@@ -151,14 +167,12 @@ def _tested(boats: Observed, boat_type: str) -> dict[str, Any]:
         return counts | {"reason": "no_type"}
     if n_boats < FEWEST_BOATS:
         return counts | {"reason": "few_boats"}
-    within = float(boats.column("run_rss_ratio2").sum())
-    if within <= 1e-20 * boats.table.height:
+    found = _same_or_own_slopes(boats)
+    if found.within <= 1e-20 * boats.table.height:
         return counts | {"reason": "no_scatter"}
-    alike, parameters = expected_bends(boats)
-    dof = boats.table.height - parameters, int(boats.column("run_dof").sum())
-    misfit = float((_along_bend(boats, alike)[0] ** 2).sum())
-    f = max(misfit - within, 0.0) / dof[0] / (within / dof[1])
-    sigma = float(np.sqrt(within / dof[1]))
+    dof = found.dof_between, found.dof_within
+    f = found.between / dof[0] / (found.within / dof[1])
+    sigma = float(np.sqrt(found.within / dof[1]))
     return (
         counts
         | {"dof_between": dof[0], "dof_within": dof[1], "f_value": f, "run_sd_ratio": sigma}

@@ -161,8 +161,8 @@ def type_lines(observed: Observed) -> tuple[pl.DataFrame, pl.DataFrame]:
         Rows of the tables `type_lines` and `type_line_points`. Where a line compares boats within
         a crew, its points are given per class; `crew_class` is `all` elsewhere.
     """
-    found = [_lines(tows, choice) for choice, tows in chosen_tows(observed)]
-    lines, points = zip(*found, strict=True)
+    parts = [_lines(tows, choice) for choice, tows in chosen_tows(observed)]
+    lines, points = zip(*parts, strict=True)
     return pl.concat(lines), pl.concat(points)
 
 
@@ -270,8 +270,8 @@ def _fitted_line(
 
 def _seasons(boats: Observed, choice: Choice) -> IntArray | None:
     """The season of each tow, where seasons may deviate."""
-    held = boats.table["season"].to_numpy().astype(np.int64)
-    return held if mixed.OTHER in choice.components else None
+    seasons = boats.table["season"].to_numpy().astype(np.int64)
+    return seasons if mixed.OTHER in choice.components else None
 
 
 def _points(
@@ -412,7 +412,7 @@ def _candidates(
         "b_at_cap": table["b_capped"].to_numpy(),
         "b_not_determined": table["b_m_s"].is_null().to_numpy(),
     }
-    return [[code for code, found in checks.items() if found[i]] for i in range(table.height)]
+    return [[code for code, applies in checks.items() if applies[i]] for i in range(table.height)]
 
 
 def _steering_checked(season: int, eras: tuple[Era, ...]) -> bool:
@@ -421,13 +421,13 @@ def _steering_checked(season: int, eras: tuple[Era, ...]) -> bool:
 
 def _unusual(values: FloatArray) -> BoolArray:
     """Whether a value lies far from the other boats', each judged by the others."""
-    found = np.zeros(len(values), bool)
+    unusual = np.zeros(len(values), bool)
     for i, value in enumerate(values):
         others = np.delete(values, i)
         others = others[np.isfinite(others)]
         if np.isfinite(value) and len(others) >= FEWEST_BOATS:
-            found[i] = abs(value - others.mean()) > UNUSUAL_SD * max(others.std(ddof=1), 1e-9)
-    return found
+            unusual[i] = abs(value - others.mean()) > UNUSUAL_SD * max(others.std(ddof=1), 1e-9)
+    return unusual
 
 
 def _with_season(outliers: pl.DataFrame) -> pl.DataFrame:

@@ -60,8 +60,8 @@ class Observed:
     def groups(self, *by: str) -> list[tuple[tuple[str, ...], "Observed"]]:
         """The rows of each group, in the order of the group's names."""
         numbered = self.table.with_row_index("row").group_by(by, maintain_order=True)
-        found = [(key, self.take(group["row"].to_numpy())) for key, group in numbered]
-        return sorted(found, key=lambda item: tuple(map(str, item[0])))
+        groups = [(key, self.take(group["row"].to_numpy())) for key, group in numbered]
+        return sorted(groups, key=lambda item: tuple(map(str, item[0])))
 
 
 def observe(

@@ -57,7 +57,7 @@ def _predicted(fleet: Observed) -> pl.DataFrame:
     speed = fleet.column("standard_speed_m_s")
     cw = curve_at(fleet, speed)
     variance = ln_cw_variance(fleet, speed)
-    found = fleet.table.select(
+    rows = fleet.table.select(
         "method",
         "tow_id",
         *LINE,
@@ -70,7 +70,7 @@ def _predicted(fleet: Observed) -> pl.DataFrame:
     n_boats = fleet.table["fsn_no"].n_unique()
     enough = n_boats >= FEWEST_BOATS_PER_COLUMN * (x.shape[1] + 1)
     numbers = _second_opinion(fleet, x, cw, variance) if enough else _nothing(len(cw))
-    return found.with_columns(
+    return rows.with_columns(
         *(pl.Series(name, values, pl.Float64).fill_nan(None) for name, values in numbers.items())
     ).with_columns(_disagrees(), pl.lit("" if enough else "few_boats").alias("reason"))
 

@@ -212,11 +212,11 @@ def speed_case(tow_hull_ratio: FloatArray) -> list[str]:
 def _text_says(case: list[str], raced_ratio: FloatArray) -> list[str | None]:
     """What the text expects of a race at that part of the tow speed; null where it counts."""
     slowest, fastest = VALID_RATIO
-    found: list[str | None] = []
+    expected: list[str | None] = []
     for one, ratio in zip(case, raced_ratio, strict=True):
         pace = "faster" if ratio > fastest else "slower" if ratio < slowest else ""
-        found.append(TEXT_SAYS.get((one, pace)))
-    return found
+        expected.append(TEXT_SAYS.get((one, pace)))
+    return expected
 
 
 def _raced_power(tows: Observed, speed_m_s: FloatArray) -> FloatArray:

@@ -185,9 +185,9 @@ class Method(_Options):
         Raises:
             MissingKnowledgeError: the method does not cover that season.
         """
-        for held in self.ranges:
-            if held.first <= season <= held.last:
-                return held.steps
+        for block in self.ranges:
+            if block.first <= season <= block.last:
+                return block.steps
         raise MissingKnowledgeError(
             f"method {self.name} says nothing about season {season}; "
             f"it covers {self.ranges[0].first} to {_season_text(self.ranges[-1].last)}. "
@@ -197,14 +197,14 @@ class Method(_Options):
     @property
     def interval(self) -> str:
         """What its intervals hold: `COMPLETE`, or `RUNS_ALONE` if no log factor is estimated."""
-        estimated = any(held.steps.speed.correction == "estimated" for held in self.ranges)
+        estimated = any(block.steps.speed.correction == "estimated" for block in self.ranges)
         return COMPLETE if estimated else RUNS_ALONE
 
     @property
     def definition(self) -> str:
         """Everything that can change a curve, as canonical JSON; the register's rule cannot."""
-        held = [r.model_dump(mode="json") for r in self.ranges]
-        return json.dumps(held, sort_keys=True, separators=(",", ":"))
+        blocks = [r.model_dump(mode="json") for r in self.ranges]
+        return json.dumps(blocks, sort_keys=True, separators=(",", ":"))
 
     @property
     def content_hash(self) -> str:
@@ -360,13 +360,13 @@ class _Reader:
     def _keys_of_lines(self) -> list[tuple[int, set[str]]]:
         """The keys named on each line, with those of the table it is in."""
         table: set[str] = set()
-        found = []
+        keys = []
         for number, line in enumerate(self.text.splitlines(), 1):
             header = re.match(r"\s*\[+([\w.-]+)\]+", line)
             if header:
                 table = set(header[1].split("."))
-            found.append((number, table | set(_KEYS.findall(line))))
-        return found
+            keys.append((number, table | set(_KEYS.findall(line))))
+        return keys
 
 
 def _keys_at(model: type[BaseModel], path: list[str]) -> list[str]:
@@ -397,8 +397,8 @@ def _layers(
     own = []
     for block in head.overrides:
         options = {key: value for key, value in block.items() if key not in ("range", "why")}
-        held = _Range.parse(block.get("range"), reader, "overrides.range")
-        own.append(_Layer(held=held, options=_step_tables(reader, options, "overrides")))
+        seasons = _Range.parse(block.get("range"), reader, "overrides.range")
+        own.append(_Layer(held=seasons, options=_step_tables(reader, options, "overrides")))
     _refuse_overlap(reader, own)
     return layers + own
 
@@ -454,13 +454,13 @@ def _ranges(reader: _Reader, layers: list[_Layer], seasons: _Range) -> tuple[Sea
 
 def joined(ranges: Iterable[SeasonSteps]) -> tuple[SeasonSteps, ...]:
     """Neighbouring ranges with equal steps together, so that equal methods have equal hashes."""
-    found: list[SeasonSteps] = []
-    for held in ranges:
-        if found and found[-1].steps == held.steps:
-            found[-1] = SeasonSteps(first=found[-1].first, last=held.last, steps=held.steps)
+    merged: list[SeasonSteps] = []
+    for block in ranges:
+        if merged and merged[-1].steps == block.steps:
+            merged[-1] = SeasonSteps(first=merged[-1].first, last=block.last, steps=block.steps)
         else:
-            found.append(held)
-    return tuple(found)
+            merged.append(block)
+    return tuple(merged)
 
 
 def _steps_of_season(reader: _Reader, layers: list[_Layer], season: int) -> Steps:

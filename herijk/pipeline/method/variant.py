@@ -49,7 +49,7 @@ class Difference:
 def cut_at(method: Method, seasons: Iterable[int]) -> tuple[SeasonSteps, ...]:
     """The ranges of a method, cut before each of the given seasons that it covers."""
     whole_first, whole_last = _whole(method)
-    cuts = {held.first for held in method.ranges}
+    cuts = {block.first for block in method.ranges}
     firsts = sorted(cuts | {s for s in seasons if whole_first < s <= whole_last})
     lasts = [*(first - 1 for first in firsts[1:]), whole_last]
     return tuple(
@@ -71,8 +71,8 @@ def variant(
     Raises:
         MethodFileError: the ranges leave out a season of `base`, or have one twice.
     """
-    seasons = [(held.first, held.last) for held in ranges]
-    if seasons != [(held.first, held.last) for held in cut_at(base, (s[0] for s in seasons))]:
+    seasons = [(block.first, block.last) for block in ranges]
+    if seasons != [(block.first, block.last) for block in cut_at(base, (s[0] for s in seasons))]:
         raise MethodFileError(f"{name}: the seasons {seasons} are not those of {base.name}")
     ships = base.name in shipped_methods() and base == shipped_method(base.name)
     return Method(
@@ -92,18 +92,18 @@ def differences(method: Method, parent: Method) -> list[Difference]:
     Returns:
         By step and option in the order of `Steps`, then by season.
     """
-    pieces = cut_at(method, (held.first for held in parent.ranges))
-    found: list[Difference] = []
+    pieces = cut_at(method, (block.first for block in parent.ranges))
+    changed: list[Difference] = []
     for step, option in _options():
-        for held in pieces:
+        for block in pieces:
             old, new = (
                 getattr(getattr(steps, step), option)
-                for steps in (parent.for_season(held.first), held.steps)
+                for steps in (parent.for_season(block.first), block.steps)
             )
             if old != new:
-                one = Difference(step, option, held.first, held.last, (old,), new)
-                found[-1:] = _together(found[-1:], one)
-    return found
+                one = Difference(step, option, block.first, block.last, (old,), new)
+                changed[-1:] = _together(changed[-1:], one)
+    return changed
 
 
 def variant_text(method: Method) -> str:
@@ -156,9 +156,9 @@ def _options() -> Iterator[tuple[str, str]]:
 
 def _together(last: list[Difference], one: Difference) -> list[Difference]:
     """A difference joined to the one before it, where it goes on in the next season."""
-    for held in last:
-        here = (held.step, held.option, held.last + 1, held.after)
+    for block in last:
+        here = (block.step, block.option, block.last + 1, block.after)
         if here == (one.step, one.option, one.first, one.after):
-            before = held.before + tuple(v for v in one.before if v not in held.before)
-            return [replace(held, last=one.last, before=before)]
+            before = block.before + tuple(v for v in one.before if v not in block.before)
+            return [replace(block, last=one.last, before=before)]
     return [*last, one]

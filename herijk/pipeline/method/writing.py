@@ -29,9 +29,9 @@ def method_text(method: Method) -> str:
         "[register]",
         *(f"{key} = {toml_value(value)}" for key, value in years.items()),
     ]
-    for held in method.ranges:
-        steps = held.steps.model_dump(mode="json", exclude_none=True)
-        lines += ["", *override_lines(range_text(held.first, held.last), steps)]
+    for block in method.ranges:
+        steps = block.steps.model_dump(mode="json", exclude_none=True)
+        lines += ["", *override_lines(range_text(block.first, block.last), steps)]
     return "\n".join(lines) + "\n"
 
 
@@ -40,10 +40,10 @@ def beginning_text(name: str, base: Method) -> str:
     seasons = range_text(base.ranges[0].first, base.ranges[-1].last)
     listed = [
         f"# {line}".rstrip()
-        for held in base.ranges
+        for block in base.ranges
         for line in (
-            f"Seasons {range_text(held.first, held.last)}",
-            *step_lines(held.steps.model_dump(mode="json", exclude_none=True)),
+            f"Seasons {range_text(block.first, block.last)}",
+            *step_lines(block.steps.model_dump(mode="json", exclude_none=True)),
             "",
         )
     ]
@@ -79,11 +79,12 @@ def override_lines(range_of: str, steps: Mapping[str, Mapping[str, Any]]) -> lis
 
 
 def step_lines(steps: Mapping[str, Mapping[str, Any]]) -> list[str]:
-    """One line a step, with its options."""
-    return [
-        f"{step} = {{ {', '.join(f'{key} = {toml_value(value)}' for key, value in held.items())} }}"
-        for step, held in steps.items()
-    ]
+    """One line per step, with its options."""
+    lines = []
+    for step, options in steps.items():
+        pairs = ", ".join(f"{key} = {toml_value(value)}" for key, value in options.items())
+        lines.append(f"{step} = {{ {pairs} }}")
+    return lines
 
 
 def toml_value(value: Any) -> str:

@@ -26,7 +26,7 @@ QUANTILE: Final = 1.959964
 
 def with_best(
     curves: pl.DataFrame,
-    found: SeasonFactors | None,
+    estimated: SeasonFactors | None,
     budget: pl.DataFrame,
     misfit: pl.DataFrame,
 ) -> pl.DataFrame:
@@ -36,20 +36,20 @@ def with_best(
 
     Args:
         curves: rows of the table.
-        found: what all tows say; None where the method does not ask it: the columns are null.
+        estimated: what all tows say; None where the method does not ask it: the columns are null.
         budget: rows of the budget at the declared speed.
         misfit: how far each hull lies from its curve there.
     """
-    if found is None:
+    if estimated is None:
         return curves.with_columns(pl.lit(None, pl.Float64).alias(n) for n in (*BEST, OTHERS))
     shared = (
         budget.filter(pl.col("component").is_in(NOT_SEEN_BY_REPEATS))
         .group_by("tow_id")
         .agg((pl.col("u_ratio") ** 2).sum().alias("shared"))
     )
-    determined = found.instruments.drop_nulls("factor").select("tow_id", "others_ln_ratio")
-    known = found.best.join(determined, on="tow_id")
-    held = curves.join(known, on="tow_id", how="left", maintain_order="left").join(
+    determined = estimated.instruments.drop_nulls("factor").select("tow_id", "others_ln_ratio")
+    known = estimated.best.join(determined, on="tow_id")
+    joined = curves.join(known, on="tow_id", how="left", maintain_order="left").join(
         shared.join(misfit, on="tow_id"), on="tow_id", how="left", maintain_order="left"
     )
     moved = pl.col("ln_cw") - pl.col("as_measured") + pl.col("misfit").log1p()
@@ -61,7 +61,7 @@ def with_best(
 
     by_all = (best, best * (-half("lo")).exp(), best * half("hi").exp())
     measured = ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
-    return held.select(
+    return joined.select(
         *curves.columns,
         *(
             pl.coalesce(values, alone).alias(name)

@@ -90,7 +90,7 @@ def run_point_ratio(o: Outcome) -> FloatArray:
 
 
 def budget_of(
-    outcomes: Sequence[Outcome], found: SeasonFactors | None, speed_ratios: Sequence[float]
+    outcomes: Sequence[Outcome], estimated: SeasonFactors | None, speed_ratios: Sequence[float]
 ) -> pl.DataFrame:
     """Every component of the uncertainty of Cw at some speeds, per tow with a curve.
 
@@ -99,18 +99,18 @@ def budget_of(
 
     Args:
         outcomes: all batches of a method.
-        found: its season factors, if it has estimated ones.
+        estimated: its season factors, if it has estimated ones.
         speed_ratios: those speeds / declared speed.
 
     Returns:
         Rows as `pipeline.uncertainty.propagation.budget` gives them.
     """
-    misfit = misfit_of(outcomes, found, speed_ratios)
-    return pl.concat([_budget_of_batch(o, found, speed_ratios, misfit) for o in outcomes])
+    misfit = misfit_of(outcomes, estimated, speed_ratios)
+    return pl.concat([_budget_of_batch(o, estimated, speed_ratios, misfit) for o in outcomes])
 
 
 def misfit_of(
-    outcomes: Sequence[Outcome], found: SeasonFactors | None, speed_ratios: Sequence[float]
+    outcomes: Sequence[Outcome], estimated: SeasonFactors | None, speed_ratios: Sequence[float]
 ) -> pl.DataFrame:
     """How far the hull of each tow lies from its curve, by all tows of the boat.
 
@@ -125,7 +125,7 @@ def misfit_of(
         Departure(*(np.concatenate([getattr(d, n) for d in each]) for n in ("ratio", "variance"))),
         boat,
     )
-    asked = 0.0 if found is None else 1.0
+    asked = 0.0 if estimated is None else 1.0
     return pl.concat(
         [
             tows.select(
@@ -172,12 +172,12 @@ def cw_bounds(held: pl.DataFrame) -> pl.DataFrame:
 
 def _budget_of_batch(
     o: Outcome,
-    found: SeasonFactors | None,
+    estimated: SeasonFactors | None,
     speed_ratios: Sequence[float],
     misfit: pl.DataFrame,
 ) -> pl.DataFrame:
-    scatter = scatter_of(o, found is not None)
-    terms = _terms_of_tows(o, found, scatter)
+    scatter = scatter_of(o, estimated is not None)
+    terms = _terms_of_tows(o, estimated, scatter)
     cw, bend = pl.col("cw_kg_m"), pl.col("bend")
     r = (bend / (1.0 + bend) * pl.col("speed_ratio") ** 2).clip(-1.0, MOST_BENT)
     random = np.concatenate([_random_ratio(o, scatter, ratio) for ratio in speed_ratios])
@@ -195,7 +195,7 @@ def _budget_of_batch(
             (pl.col("still_air_kg_m") / cw).alias("still_air_ratio"),
         )
     )
-    return budget(rows, _assumed(o, found))
+    return budget(rows, _assumed(o, estimated))
 
 
 def _at_speeds(o: Outcome, speed_ratios: Sequence[float]) -> pl.DataFrame:
@@ -264,20 +264,20 @@ def _median_bend(o: Outcome) -> float:
     return float(np.median(r[known] / (1.0 - r[known]))) if known.any() else USUAL_BEND
 
 
-def _tow_log_sd(o: Outcome, found: SeasonFactors | None) -> FloatArray:
+def _tow_log_sd(o: Outcome, estimated: SeasonFactors | None) -> FloatArray:
     """Standard deviation of ln of the log factor from tow to tow, by era."""
-    if found is None:
+    if estimated is None:
         return np.zeros(o.batch.size)
     season = o.batch.of_tow("season")
     log_sd = np.zeros(o.batch.size)
-    for first, sd in sorted(found.tow_log_sd.items()):
+    for first, sd in sorted(estimated.tow_log_sd.items()):
         log_sd = np.where(season >= first, sd, log_sd)
     return log_sd
 
 
-def _assumed(o: Outcome, found: SeasonFactors | None) -> Assumed:
+def _assumed(o: Outcome, estimated: SeasonFactors | None) -> Assumed:
     """What is assumed, or shown by repeat tows: of Cw at the declared speed, whatever is asked."""
-    assumed = Assumed() if found is None else Assumed().beside_repeats(found.tow_sd)
+    assumed = Assumed() if estimated is None else Assumed().beside_repeats(estimated.tow_sd)
     if o.steps.wind.coefficients == "archive":
         assumed = replace(assumed, wind_coefficient=o.coefficient_sd)
     return assumed

@@ -82,10 +82,10 @@ def recompute(
     """
     plans = [(batch, steps) for batch, (steps,) in batches([method], tows, blocks)]
     cache = RunCache() if cache is None else cache
-    asked = any(is_estimated(held.steps) for held in method.ranges)
-    found = season_factors(plans, cache) if asked else None
-    factors = None if found is None else tow_instruments(found)
-    return as_tables(method, tows, evaluate(plans, cache, factors), found, with_bands)
+    asked = any(is_estimated(block.steps) for block in method.ranges)
+    estimated = season_factors(plans, cache) if asked else None
+    factors = None if estimated is None else tow_instruments(estimated)
+    return as_tables(method, tows, evaluate(plans, cache, factors), estimated, with_bands)
 
 
 def season_factors(plans: Sequence[tuple[Batch, Steps]], cache: RunCache) -> SeasonFactors | None:
@@ -103,8 +103,8 @@ def log_factors(plans: Sequence[tuple[Batch, Steps]], cache: RunCache) -> pl.Dat
     """The factors alone, as `evaluate` wants them; None if the steps ask for none."""
     if not any(is_estimated(steps) for _, steps in plans):
         return None
-    found = season_factors(plans, cache)
-    return None if found is None else tow_instruments(found)
+    estimated = season_factors(plans, cache)
+    return None if estimated is None else tow_instruments(estimated)
 
 
 def batches(
@@ -120,8 +120,8 @@ def batches(
         steps = tuple(method.for_season(season) for method in methods)
         seasons.setdefault(str(steps), (steps, []))[1].append(season)
     return [
-        (Batch.of(tows.filter(pl.col("season").is_in(held)), blocks), steps)
-        for steps, held in seasons.values()
+        (Batch.of(tows.filter(pl.col("season").is_in(season_batch)), blocks), steps)
+        for steps, season_batch in seasons.values()
     ]
 
 

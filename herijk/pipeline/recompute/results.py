@@ -70,7 +70,7 @@ def as_tables(
     method: Method,
     tows: pl.DataFrame,
     outcomes: Sequence[Outcome],
-    found: SeasonFactors | None,
+    estimated: SeasonFactors | None,
     with_bands: bool = True,
 ) -> Recomputed:
     """The tables of a method from its batches; tows are assessed when all curves are there."""
@@ -79,13 +79,13 @@ def as_tables(
     def together(frames: list[pl.DataFrame]) -> pl.DataFrame:
         return pl.concat(frames).select(name, pl.all())
 
-    pooled, at_declared = found is not None, pl.col("speed_ratio") == DECLARED
+    pooled, at_declared = estimated is not None, pl.col("speed_ratio") == DECLARED
     run_points = together([_run_points(o, pooled) for o in outcomes])
-    budget = budget_of(outcomes, found, CURVE_SPEED_RATIOS if with_bands else (DECLARED,))
+    budget = budget_of(outcomes, estimated, CURVE_SPEED_RATIOS if with_bands else (DECLARED,))
     bounds = cw_bounds(budget)
     curves = together([_curves(o, bounds.filter(at_declared), pooled) for o in outcomes])
-    misfit = misfit_of(outcomes, found, (DECLARED,))
-    curves = with_best(curves, found, budget.filter(at_declared), misfit)
+    misfit = misfit_of(outcomes, estimated, (DECLARED,))
+    curves = with_best(curves, estimated, budget.filter(at_declared), misfit)
     assessments = assess(curves, run_points, tows)
     rejecting = [
         (season, check)
@@ -95,7 +95,7 @@ def as_tables(
     return Recomputed(
         run_points=run_points,
         curves=with_status(curves, assessments, rejecting),
-        log_factors=together([_log_factors(o, found) for o in outcomes]),
+        log_factors=together([_log_factors(o, estimated) for o in outcomes]),
         assessments=assessments,
         uncertainty_budget=budget.filter(at_declared).select(
             name,
@@ -105,21 +105,21 @@ def as_tables(
         curve_points=curve_points(outcomes, bounds).select(name, pl.all())
         if with_bands
         else pl.DataFrame(),
-        season_links=_season_links(found).select(name, pl.all()),
-        retow_choice=_retow_choice(found).select(name, pl.all()),
-        season_steps=_season_steps(found).select(name, pl.all()),
-        season_diagnosis=_diagnosis(found, outcomes).select(name, pl.all()),
-        tow_instruments=_instruments(found).select(name, pl.all()),
-        best_estimate_weights=_weights(found).select(name, pl.all()),
-        factors=found,
+        season_links=_season_links(estimated).select(name, pl.all()),
+        retow_choice=_retow_choice(estimated).select(name, pl.all()),
+        season_steps=_season_steps(estimated).select(name, pl.all()),
+        season_diagnosis=_diagnosis(estimated, outcomes).select(name, pl.all()),
+        tow_instruments=_instruments(estimated).select(name, pl.all()),
+        best_estimate_weights=_weights(estimated).select(name, pl.all()),
+        factors=estimated,
     )
 
 
 def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
-    blocks, mask, found = o.batch.blocks, o.windows.mask, o.windows.found
+    blocks, mask, has_window = o.batch.blocks, o.windows.mask, o.windows.found
     tow = o.batch.tow
     on_curve = curve.cw(o.curves.a_kg_m[tow], o.curves.s_s2_m2[tow], o.speed_m_s)
-    log1 = np.where(found, blocks.mean("log1_v", mask), 1.0)
+    log1 = np.where(has_window, blocks.mean("log1_v", mask), 1.0)
     has_limits = o.steps.window.rule != "all"
     wind, log2 = (o.batch.measured(channel)[tow] for channel in ("wind", "log2"))
     log2_ratio = blocks.mean("log2_v", mask) / log1
@@ -148,10 +148,10 @@ def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
     }
     return blocks.runs.select("tow_id", "run", "direction", "target_speed_ratio").with_columns(
         pl.Series("lost_s", o.batch.lost_s),
-        *(_column(name, values, found) for name, values in numbers.items()),
-        _column("ends_ratio", o.windows.ends.in_limits(o.steps.window), found & has_limits),
-        _column("gps_ratio", o.means.gps_m_s / log1, found),
-        _column("fitted_cw_kg_m", on_curve, found & o.curves.converged[tow]),
+        *(_column(name, values, has_window) for name, values in numbers.items()),
+        _column("ends_ratio", o.windows.ends.in_limits(o.steps.window), has_window & has_limits),
+        _column("gps_ratio", o.means.gps_m_s / log1, has_window),
+        _column("fitted_cw_kg_m", on_curve, has_window & o.curves.converged[tow]),
         pl.Series("cut_reason", o.windows.reasons, pl.String),
         pl.Series("used", o.used),
         pl.Series("reason", o.reasons, pl.String),
@@ -195,7 +195,7 @@ def _calibrated(o: Outcome) -> BoolArray:
     return np.full(o.batch.size, o.steps.calibration.rule != "none")
 
 
-def _log_factors(o: Outcome, found: SeasonFactors | None) -> pl.DataFrame:
+def _log_factors(o: Outcome, estimated: SeasonFactors | None) -> pl.DataFrame:
     """The factor of each season: from GPS, estimated, prescribed or none, in this order.
 
     With a calibration per tow it is the mean of the tows' factors, with a t interval of that mean.
@@ -205,7 +205,7 @@ def _log_factors(o: Outcome, found: SeasonFactors | None) -> pl.DataFrame:
     if o.steps.calibration.rule != "none":
         rows = [_mean_factor(o, season) for season in seasons]
     else:
-        rows = [_factor_row(o, season, found) for season in seasons]
+        rows = [_factor_row(o, season, estimated) for season in seasons]
     schema = dtypes(LogFactors, without=["method"])
     return pl.DataFrame(rows, schema=schema, orient="row")
 
@@ -232,10 +232,10 @@ def _mean_factor(o: Outcome, season: int) -> FactorRow:
     )
 
 
-def _factor_row(o: Outcome, season: int, found: SeasonFactors | None) -> FactorRow:
+def _factor_row(o: Outcome, season: int, estimated: SeasonFactors | None) -> FactorRow:
     speed = o.steps.speed
-    if found is not None and speed.correction == "estimated":
-        known = found.of_season(season, speed.source)
+    if estimated is not None and speed.correction == "estimated":
+        known = estimated.of_season(season, speed.source)
         if known is not None:
             return (season, *known)
     nothing = np.array([np.nan])
@@ -243,45 +243,47 @@ def _factor_row(o: Outcome, season: int, found: SeasonFactors | None) -> FactorR
     return season, factor, None, None, "none" if factor == 1.0 else "prescribed"
 
 
-def _season_links(found: SeasonFactors | None) -> pl.DataFrame:
+def _season_links(estimated: SeasonFactors | None) -> pl.DataFrame:
     """What each estimated factor rests on; no rows where nothing was estimated."""
-    if found is None:
+    if estimated is None:
         return pl.DataFrame(schema=LINK_SCHEMA)
-    rows = pl.concat([found.factors, other_log_factors(found)], how="diagonal_relaxed")
+    rows = pl.concat([estimated.factors, other_log_factors(estimated)], how="diagonal_relaxed")
     return rows.select(pl.col(name).cast(kind) for name, kind in LINK_SCHEMA.items())
 
 
-def _season_steps(found: SeasonFactors | None) -> pl.DataFrame:
+def _season_steps(estimated: SeasonFactors | None) -> pl.DataFrame:
     """Whether a season's step is the log's or the load cell's; no rows without an estimate."""
-    if found is None:
+    if estimated is None:
         return pl.DataFrame(schema=STEP_SCHEMA)
-    return found.steps
+    return estimated.steps
 
 
-def _diagnosis(found: SeasonFactors | None, outcomes: Sequence[Outcome]) -> pl.DataFrame:
+def _diagnosis(estimated: SeasonFactors | None, outcomes: Sequence[Outcome]) -> pl.DataFrame:
     """What is wrong with the instruments of each season; no rows without an estimate."""
-    joint = pl.DataFrame(schema=DIAGNOSIS_SCHEMA) if found is None else found.diagnosis
+    joint = pl.DataFrame(schema=DIAGNOSIS_SCHEMA) if estimated is None else estimated.diagnosis
     both = pl.concat([joint, anemometer_diagnosis(outcomes)])
     return both.sort("season", "part", "instrument")
 
 
-def _instruments(found: SeasonFactors | None) -> pl.DataFrame:
+def _instruments(estimated: SeasonFactors | None) -> pl.DataFrame:
     """What was found of the instruments of each tow; no rows without an estimate."""
-    return pl.DataFrame(schema=INSTRUMENT_SCHEMA) if found is None else tow_instruments(found)
+    return (
+        pl.DataFrame(schema=INSTRUMENT_SCHEMA) if estimated is None else tow_instruments(estimated)
+    )
 
 
-def _weights(found: SeasonFactors | None) -> pl.DataFrame:
+def _weights(estimated: SeasonFactors | None) -> pl.DataFrame:
     """What each best estimate rests on; no rows without an estimate."""
-    return pl.DataFrame(schema=WEIGHT_SCHEMA) if found is None else found.weights
+    return pl.DataFrame(schema=WEIGHT_SCHEMA) if estimated is None else estimated.weights
 
 
 INSTRUMENT_SCHEMA = dtypes(TowInstruments, without=["method"])
 WEIGHT_SCHEMA = dtypes(BestEstimateWeights, without=["method"])
 
 
-def _retow_choice(found: SeasonFactors | None) -> pl.DataFrame:
+def _retow_choice(estimated: SeasonFactors | None) -> pl.DataFrame:
     """The boats whose next tow would narrow the factors most; no rows without an estimate."""
-    return pl.DataFrame(schema=RETOW_SCHEMA) if found is None else retow_choice(found)
+    return pl.DataFrame(schema=RETOW_SCHEMA) if estimated is None else retow_choice(estimated)
 
 
 LINK_SCHEMA = dtypes(SeasonLinks, without=["method"])

@@ -86,33 +86,33 @@ def factor_of_tows(batch: Batch, steps: Steps, factors: pl.DataFrame | None) -> 
     if factors is None:
         nothing, none, one = (np.full(batch.size, x) for x in (np.nan, 0.0, 1.0))
         return TowFactor(nothing, nothing, nothing, one, none, nothing)
-    held = batch.tows.select("tow_id", pl.lit(steps.speed.source).alias("log")).join(
+    corrections = batch.tows.select("tow_id", pl.lit(steps.speed.source).alias("log")).join(
         factors, on=["tow_id", "log"], how="left", maintain_order="left"
     )
     if not is_estimated(steps):
-        held = held.with_columns(pl.lit(None, pl.Float64).alias("factor"))
-    held = held.with_columns(
+        corrections = corrections.with_columns(pl.lit(None, pl.Float64).alias("factor"))
+    corrections = corrections.with_columns(
         pl.col("force_factor").fill_null(1.0), pl.col("force_zero_n").fill_null(0.0)
     )
     names = (field.name for field in fields(TowFactor))
-    return TowFactor(**{name: held[name].cast(pl.Float64).to_numpy() for name in names})
+    return TowFactor(**{name: corrections[name].cast(pl.Float64).to_numpy() for name in names})
 
 
-def tow_instruments(found: SeasonFactors) -> pl.DataFrame:
+def tow_instruments(estimated: SeasonFactors) -> pl.DataFrame:
     """What was found of the instruments of each tow; of the other log, by the ratio of both.
 
     Returns:
         `tow_id, log`, and the fields of `TowFactor`.
     """
     other = (
-        found.tows.filter(~pl.col("anchored"))
+        estimated.tows.filter(~pl.col("anchored"))
         .select("tow_id", "season", part="other_part", log="other_log")
-        .join(other_log_factors(found).select(*GROUP, "factor", "ln_sd", "dof"), on=GROUP)
+        .join(other_log_factors(estimated).select(*GROUP, "factor", "ln_sd", "dof"), on=GROUP)
     )
-    shared = found.instruments.select("tow_id", "force_factor", "force_zero_n", "bend")
+    shared = estimated.instruments.select("tow_id", "force_factor", "force_zero_n", "bend")
     return pl.concat(
         [
-            found.instruments.drop("others_ln_ratio"),
+            estimated.instruments.drop("others_ln_ratio"),
             other.drop("season", "part").join(shared, on="tow_id"),
         ],
         how="diagonal",
@@ -128,8 +128,8 @@ def log_group(steps: Steps) -> tuple[pl.Expr, pl.Expr, pl.Expr]:
 def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
     """Per tow its curve at its line's `speed`, with uncertainty, and its GPS ratio."""
     batch, steps = o.batch, o.steps
-    held = batch.tows.select(LINE).join(reference, on=LINE, how="left", maintain_order="left")
-    speed = held["speed"].to_numpy()
+    lines = batch.tows.select(LINE).join(reference, on=LINE, how="left", maintain_order="left")
+    speed = lines["speed"].to_numpy()
     water = _water_points(o)
     curves = curve.fit(water)
     cw, r = curves.cw_at(speed), curves.s_s2_m2 * speed**2

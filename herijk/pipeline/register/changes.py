@@ -212,8 +212,10 @@ def _causes(
     known = pairs.select(LINE).join(of_line, on=LINE, how="left", maintain_order="left")["parts"]
     rests = _grounds(pairs, grounds)
     return [
-        json.dumps(_factors(found or [], float(factor), rest) if both else [])
-        for found, both, factor, rest in zip(known.to_list(), compared, ratio, rests, strict=True)
+        json.dumps(_factors(parts_of_line or [], float(factor), rest) if both else [])
+        for parts_of_line, both, factor, rest in zip(
+            known.to_list(), compared, ratio, rests, strict=True
+        )
     ]
 
 

@@ -92,18 +92,18 @@ def replay(
     results = results.sort(*RACE, *LINE)
     speed = _speed_m_s(results, rules, legs)
     lines = register.filter(pl.col("a_kg_m").is_not_null()).select(*LINE, "a_kg_m", "b_m_s")
-    found = results.join(lines, on=LINE, how="left", maintain_order="left")
-    a = found["a_kg_m"].to_numpy()
-    b = found["b_m_s"].fill_null(float("inf")).to_numpy()
+    rowed = results.join(lines, on=LINE, how="left", maintain_order="left")
+    a = rowed["a_kg_m"].to_numpy()
+    b = rowed["b_m_s"].fill_null(float("inf")).to_numpy()
     resistance = cw(np.nan_to_num(a), s_of_b(b), speed)
     sound = np.isfinite(a) & np.isfinite(resistance)
     fatigue = _fatigue(results, rules)
-    power = power_per_rower_w(np.where(sound, resistance, 0.0), speed, found["rowers"]) * fatigue
-    penalty = found["penalty_w"].fill_null(0.0).to_numpy()
+    power = power_per_rower_w(np.where(sound, resistance, 0.0), speed, rowed["rowers"]) * fatigue
+    penalty = rowed["penalty_w"].fill_null(0.0).to_numpy()
     reason = np.select([~np.isfinite(a), ~sound], [NOT_IN_REGISTER, ABOVE_B], "")
     rank = pl.col("power_w").rank("min", descending=True).over(CLASSIFICATION).cast(pl.Int32)
     return (
-        found.with_columns(
+        rowed.with_columns(
             pl.Series("speed_m_s", speed),
             pl.Series("fatigue_factor", fatigue),
             _where(sound, "cw_kg_m", resistance),
@@ -162,11 +162,11 @@ def winner_changes(
         One row a race and class: `old_winner`, `new_winner` (boat; null where nobody has a power),
         `winner_changed` and `change_probability` (null where it is not known).
     """
-    found = []
+    rows = []
     for key, results in new.group_by(CLASSIFICATION, maintain_order=True):
         before = old.filter(*(pl.col(n) == k for n, k in zip(CLASSIFICATION, key, strict=True)))
         winners = [_winner(results_of) for results_of in (before, results)]
-        found.append(
+        rows.append(
             dict(zip(CLASSIFICATION, key, strict=True))
             | {
                 "old_winner": None if winners[0] is None else winners[0][0],
@@ -175,7 +175,7 @@ def winner_changes(
                 "change_probability": _change_probability(results, winners[0], register, members),
             }
         )
-    return pl.DataFrame(found, schema=WINNER_SCHEMA).sort(CLASSIFICATION)
+    return pl.DataFrame(rows, schema=WINNER_SCHEMA).sort(CLASSIFICATION)
 
 
 def _winner(results: pl.DataFrame) -> tuple[object, ...] | None:

@@ -182,10 +182,10 @@ def _without_each_boat(network: Network, posterior: Posterior) -> FloatArray:
     clusters = int(network.cluster.max()) + 1
     information = np.zeros((clusters, len(fit.active), len(fit.active)))
     score = np.zeros((clusters, len(fit.active)))
-    for held in fit.told:
-        whose = network.cluster[held.patterns.tow[:, 0]]
-        np.add.at(information, whose, held.information)
-        np.add.at(score, whose, np.einsum("bi,bip->bp", held.mean_pull, held.slope))
+    for told in fit.told:
+        whose = network.cluster[told.patterns.tow[:, 0]]
+        np.add.at(information, whose, told.information)
+        np.add.at(score, whose, np.einsum("bi,bip->bp", told.mean_pull, told.slope))
     left = np.linalg.inv(fit.covariance) - information
     return np.asarray(-np.linalg.solve(left, score[:, :, None])[:, :, 0])
 

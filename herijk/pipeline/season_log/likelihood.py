@@ -60,9 +60,9 @@ def patterns_of(boat: IntArray, settings: Settings) -> list[Patterns]:
     order = np.argsort(boat, kind="stable")
     boats, first, count = np.unique(boat[order], return_index=True, return_counts=True)
     return [
-        Patterns(order[first[count == n][:, None] + np.arange(n)], boats[count == n], *held)
+        Patterns(order[first[count == n][:, None] + np.arange(n)], boats[count == n], *steps)
         for n in np.unique(count).tolist()
-        for held in [_steps(n, settings)]
+        for steps in [_steps(n, settings)]
     ]
 
 
@@ -137,26 +137,26 @@ def tell(
         slope: (tows, 3, unknowns).
         share: of gaps between tows in which a boat was altered without a report.
     """
-    for held in groups:
-        boats, tows = held.tow.shape
-        n, z = 3 * tows, state[held.tow]
-        full = np.einsum("bki,blj,pkl->bpkilj", z[..., 0], z[..., 0], held.level)
-        full += np.einsum("bki,blj,pkl->bpkilj", z[..., 1], z[..., 1], held.bend)
+    for group in groups:
+        boats, tows = group.tow.shape
+        n, z = 3 * tows, state[group.tow]
+        full = np.einsum("bki,blj,pkl->bpkilj", z[..., 0], z[..., 0], group.level)
+        full += np.einsum("bki,blj,pkl->bpkilj", z[..., 1], z[..., 1], group.bend)
         each = np.arange(tows)
         # Indexing twice with one array puts that axis first.
-        full[:, :, each, :, each, :] += covariance[held.tow].swapaxes(0, 1)[:, :, None]
+        full[:, :, each, :, each, :] += covariance[group.tow].swapaxes(0, 1)[:, :, None]
         full = full.reshape(boats, -1, n, n)
         precision = np.linalg.inv(full)
-        own = residual[held.tow].reshape(boats, 1, n)
+        own = residual[group.tow].reshape(boats, 1, n)
         pull = np.einsum("bpij,bqj->bpi", precision, own)
         ln_density = -0.5 * ((pull * own).sum(axis=2) + np.linalg.slogdet(full)[1])
-        weight = scipy.special.softmax(ln_density + held.prior(share), axis=1)
+        weight = scipy.special.softmax(ln_density + group.prior(share), axis=1)
         yield Told(
-            held,
+            group,
             weight,
             precision,
             pull,
             np.einsum("bp,bpij->bij", weight, precision),
             np.einsum("bp,bpi->bi", weight, pull),
-            slope[held.tow].reshape(boats, n, -1),
+            slope[group.tow].reshape(boats, n, -1),
         )

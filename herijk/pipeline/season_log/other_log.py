@@ -15,22 +15,22 @@ OTHER_LOG = "other log"
 FEWEST_TOWS = 2
 
 
-def other_log_factors(found: SeasonFactors) -> pl.DataFrame:
+def other_log_factors(estimated: SeasonFactors) -> pl.DataFrame:
     """Factors of the log beside the one in use, by season and part of it.
 
     Args:
-        found: the season factors; its tows with `other_log`, `other_part` and `other_ln_ratio`,
+        estimated: the season factors; its tows with `other_log`, `other_part` and `other_ln_ratio`,
             ln(log in use / other log), null where there is no other or it did not turn.
 
     Returns:
         `season, part, log, source, n_tows, n_links` (0), `component, factor, lo, hi, ln_sd, dof`;
         no row where fewer than two tows tell.
     """
-    own = found.factors.drop_nulls("factor").select(
+    own = estimated.factors.drop_nulls("factor").select(
         *GROUP, "component", "ln_sd", "dof", pl.col("factor").log().alias("ln_own")
     )
     rows = (
-        found.tows.filter(~pl.col("anchored"))
+        estimated.tows.filter(~pl.col("anchored"))
         .drop_nulls("other_ln_ratio")
         .join(own, on=GROUP)
         .with_columns((pl.col("ln_own") + pl.col("other_ln_ratio")).alias("ln_factor"))

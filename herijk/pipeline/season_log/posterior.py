@@ -125,13 +125,15 @@ class Problem:
         way = np.array([WAYS[self.unknowns[i].name] for i in active])
         speed = way == "speed"
         share = self.share[:, active]
-        held = slopes(self.q, self.force_n, share[:, speed] @ value[speed])
+        slopes_of_tows = slopes(self.q, self.force_n, share[:, speed] @ value[speed])
         others = np.where(speed, 0.0, value)
-        return held, self.observed - held.predicted - self.design(held, active) @ others
+        return slopes_of_tows, self.observed - slopes_of_tows.predicted - self.design(
+            slopes_of_tows, active
+        ) @ others
 
-    def design(self, held: Slopes, chosen: IntArray) -> FloatArray:
+    def design(self, tangent: Slopes, chosen: IntArray) -> FloatArray:
         """Slopes of the numbers by some unknowns, (n, 3, chosen)."""
-        by = np.stack([held.ways[WAYS[self.unknowns[i].name]] for i in chosen], axis=2)
+        by = np.stack([tangent.ways[WAYS[self.unknowns[i].name]] for i in chosen], axis=2)
         return np.asarray(by * self.share[:, None, chosen])
 
 
@@ -198,11 +200,11 @@ class Fit:
         """
         along = direction @ self.covariance
         by = np.zeros((len(direction), len(self.parts)))
-        for held in self.told:
-            boats, tows = held.patterns.tow.shape
-            moved = held.mean_precision @ held.slope @ along.T
+        for told in self.told:
+            boats, tows = told.patterns.tow.shape
+            moved = told.mean_precision @ told.slope @ along.T
             moved = moved.reshape(boats, tows, 3, -1)
-            part = self.parts[:, held.patterns.tow]
+            part = self.parts[:, told.patterns.tow]
             by += np.einsum("btic,abtij,btjc->ca", moved, part, moved, optimize=True)
         variance = (along * direction).sum(axis=1)
         spread = np.einsum("ca,ab,cb->c", by, self.ln_variance_covariance, by)
@@ -231,7 +233,7 @@ def fit(
     places, steps = [now.array], []
     for iteration in range(MAX_ITERATIONS):
         untroubled = start is None and iteration < UNTROUBLED
-        found, step = _step(problem, active, now, untroubled)
+        fitted, step = _step(problem, active, now, untroubled)
         steps.append(step)
         if np.abs(step).max() < tolerance and not untroubled:
             break
@@ -239,7 +241,7 @@ def fit(
         settled = iteration >= ACCELERATED and np.abs(step).max() < MODEST
         places.append(following if settled else places[-1] + step)
         now = now.of(places[-1])
-    return found
+    return fitted
 
 
 def _step(
@@ -248,11 +250,11 @@ def _step(
     """What is known at a state, and the scoring step from there."""
     mean, precision = _prior(problem, active)
     prior, prior_precision = _variance_prior(problem)
-    held, residual = problem.slopes(now.value, active)
-    own, parts = _own(problem, held, now.ln_variance)
-    design = problem.design(held, active)
+    tangent, residual = problem.slopes(now.value, active)
+    own, parts = _own(problem, tangent, now.ln_variance)
+    design = problem.design(tangent, active)
     share = NO_ALTERATION if untroubled else now.share
-    told = list(tell(problem.groups, residual, own, held.state, design, share))
+    told = list(tell(problem.groups, residual, own, tangent.state, design, share))
     full = np.sum([t.complete_information.sum(axis=0) for t in told], axis=0)
     seen = np.sum([t.information.sum(axis=0) for t in told], axis=0)
     covariance: FloatArray = np.linalg.inv(_positive(seen, full, precision)).astype(np.float64)
@@ -263,8 +265,8 @@ def _step(
     ln_variance_covariance: FloatArray = np.linalg.inv(fisher).astype(np.float64)
     move = ln_variance_covariance @ (slope - prior_precision * (now.ln_variance - prior))
     gain = scipy.special.logit(_share(told, problem.settings)) - scipy.special.logit(now.share)
-    found = Fit(active, now, covariance, ln_variance_covariance, told, held, own, parts)
-    return found, np.concatenate([step, np.clip(move, -1.0, 1.0), [gain]])
+    fitted = Fit(active, now, covariance, ln_variance_covariance, told, tangent, own, parts)
+    return fitted, np.concatenate([step, np.clip(move, -1.0, 1.0), [gain]])
 
 
 def _accelerated(places: list[FloatArray], steps: list[FloatArray]) -> FloatArray:
@@ -303,7 +305,9 @@ def _variance_prior(problem: Problem) -> tuple[FloatArray, FloatArray]:
     return mean, sd**-2.0
 
 
-def _own(problem: Problem, held: Slopes, ln_variance: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _own(
+    problem: Problem, tangent: Slopes, ln_variance: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """Covariance of what is a tow's own, (n, 3, 3), and its slopes by each ln variance."""
     n, eras = len(problem.q), len(problem.settings.era_starts)
     variance = np.exp(ln_variance)
@@ -311,7 +315,7 @@ def _own(problem: Problem, held: Slopes, ln_variance: FloatArray) -> tuple[Float
     parts = np.zeros((len(ln_variance), n, 3, 3))
     for place in range(3):
         parts[place, :, place, place] = variance[place]
-    by_speed = held.ways["speed"]
+    by_speed = tangent.ways["speed"]
     for era in range(eras):
         of_log = (problem.era == era)[:, None] * by_speed
         parts[3 + era] = variance[3 + era] * of_log[:, :, None] * of_log[:, None, :]
@@ -345,11 +349,11 @@ def _variance_slopes(
 
 def _share(told: list[Told], settings: Settings) -> float:
     """Share of gaps with an alteration: those found and those held of it beforehand."""
-    found, gaps = settings.changed_share * settings.changed_gaps, settings.changed_gaps
+    steps, gaps = settings.changed_share * settings.changed_gaps, settings.changed_gaps
     for t in told:
-        found += float((t.weight @ t.patterns.steps).sum())
+        steps += float((t.weight @ t.patterns.steps).sum())
         gaps += t.patterns.tow.size - len(t.patterns.tow)
-    return found / gaps
+    return steps / gaps
 
 
 @dataclass(frozen=True)
@@ -376,13 +380,13 @@ class Posterior:
 def solve(problem: Problem) -> Posterior:
     """The posterior of everything, with the faults that the archive shows."""
     active = problem.always
-    found = fit(problem, active, tolerance=ROUGH)
+    fitted = fit(problem, active, tolerance=ROUGH)
     for _ in range(2 * MOST_FAULTS):
-        chosen = _better(problem, found)
+        chosen = _better(problem, fitted)
         if chosen is None:
             break
-        found = fit(problem, chosen, found, ROUGH)
-    return _averaged(problem, fit(problem, found.active, found))
+        fitted = fit(problem, chosen, fitted, ROUGH)
+    return _averaged(problem, fit(problem, fitted.active, fitted))
 
 
 @dataclass(frozen=True)
@@ -398,12 +402,12 @@ class _More:
     shift: FloatArray
 
 
-def _candidates(problem: Problem, found: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _candidates(problem: Problem, fitted: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Information of every fault with the fit's unknowns and itself, and its score."""
-    design = problem.design(found.slopes, problem.faults)
-    across = np.zeros((len(found.active), len(problem.faults)))
+    design = problem.design(fitted.slopes, problem.faults)
+    across = np.zeros((len(fitted.active), len(problem.faults)))
     itself, score = np.zeros(len(problem.faults)), np.zeros(len(problem.faults))
-    for t in found.told:
+    for t in fitted.told:
         boats, n = t.mean_pull.shape
         by = design[t.patterns.tow].reshape(boats, n, -1)
         off = t.pull - t.mean_pull[:, None]
@@ -423,9 +427,9 @@ def _more(
 ) -> _More:
     """Every fault added to a normal posterior whose mean is `away` from the fit's."""
     across, itself, score = candidates
-    held = [problem.unknowns[i] for i in problem.faults]
-    prior = np.array([u.sd for u in held]) ** 2
-    chance = np.array([u.chance for u in held])
+    faults = [problem.unknowns[i] for i in problem.faults]
+    prior = np.array([u.sd for u in faults]) ** 2
+    chance = np.array([u.chance for u in faults])
     shift = covariance @ across
     information = np.maximum(itself - (across * shift).sum(axis=0), 0.0)
     pull = score - across.T @ away
@@ -435,30 +439,30 @@ def _more(
     return _More(ln_odds, variance * pull, variance, shift)
 
 
-def _in_fit(problem: Problem, found: Fit) -> tuple[IntArray, FloatArray]:
+def _in_fit(problem: Problem, fitted: Fit) -> tuple[IntArray, FloatArray]:
     """Faults in the fit, as places among its unknowns, and their ln odds (Savage-Dickey)."""
-    places = np.flatnonzero(np.isin(found.active, problem.faults))
-    held = [problem.unknowns[i] for i in found.active[places]]
-    variance = np.diag(found.covariance)[places]
-    square = found.value[places] ** 2 / variance
-    prior = np.array([u.sd for u in held]) ** 2
-    chance = np.array([u.chance for u in held])
+    places = np.flatnonzero(np.isin(fitted.active, problem.faults))
+    unknowns = [problem.unknowns[i] for i in fitted.active[places]]
+    variance = np.diag(fitted.covariance)[places]
+    square = fitted.value[places] ** 2 / variance
+    prior = np.array([u.sd for u in unknowns]) ** 2
+    chance = np.array([u.chance for u in unknowns])
     ln_odds = 0.5 * (square + np.log(variance / prior)) + np.log(chance / (1.0 - chance))
     return places, ln_odds
 
 
-def _better(problem: Problem, found: Fit) -> IntArray | None:
+def _better(problem: Problem, fitted: Fit) -> IntArray | None:
     """The unknowns with the fault that is missed most, or without the one that is not needed."""
-    places, ln_odds = _in_fit(problem, found)
+    places, ln_odds = _in_fit(problem, fitted)
     if len(places) and ln_odds.min() < 0.0:
-        return np.delete(found.active, places[int(ln_odds.argmin())])
+        return np.delete(fitted.active, places[int(ln_odds.argmin())])
     if len(places) == MOST_FAULTS:
         return None
-    nothing = np.zeros(len(found.active))
-    more = _more(problem, _candidates(problem, found), found.covariance, nothing).ln_odds
-    more[np.isin(problem.faults, found.active)] = -np.inf
+    nothing = np.zeros(len(fitted.active))
+    more = _more(problem, _candidates(problem, fitted), fitted.covariance, nothing).ln_odds
+    more[np.isin(problem.faults, fitted.active)] = -np.inf
     best = int(first_largest(more))
-    return np.append(found.active, problem.faults[best]) if more[best] > 0.0 else None
+    return np.append(fitted.active, problem.faults[best]) if more[best] > 0.0 else None
 
 
 def _in_window(problem: Problem, weight: FloatArray) -> FloatArray:
@@ -467,8 +471,8 @@ def _in_window(problem: Problem, weight: FloatArray) -> FloatArray:
     A fault that is twenty times less likely than the best model lies in the tails that an interval
     of 95 % leaves out. All places where one log may have changed count as one.
     """
-    held = [problem.unknowns[i] for i in problem.faults]
-    names = [(u.name, u.season, u.group) for u in held]
+    faults = [problem.unknowns[i] for i in problem.faults]
+    names = [(u.name, u.season, u.group) for u in faults]
     kinds = {name: number for number, name in enumerate(dict.fromkeys(names))}
     kind = np.array([kinds[name] for name in names], dtype=np.int64)
     together = np.stack([np.bincount(kind, row[:-1], len(kinds))[kind] for row in weight])
@@ -477,17 +481,17 @@ def _in_window(problem: Problem, weight: FloatArray) -> FloatArray:
     return np.asarray(kept / kept.sum())
 
 
-def _averaged(problem: Problem, found: Fit) -> Posterior:
+def _averaged(problem: Problem, fitted: Fit) -> Posterior:
     """Averages over the fit and all models that differ by one fault more, less, or for another."""
-    candidates = _candidates(problem, found)
-    k, faults = len(found.active), len(problem.faults)
-    places, ln_odds = _in_fit(problem, found)
-    own = [int(np.flatnonzero(problem.faults == found.active[p])[0]) for p in places]
-    bases = [(0.0, -1, found.covariance, np.zeros(k))]
+    candidates = _candidates(problem, fitted)
+    k, faults = len(fitted.active), len(problem.faults)
+    places, ln_odds = _in_fit(problem, fitted)
+    own = [int(np.flatnonzero(problem.faults == fitted.active[p])[0]) for p in places]
+    bases = [(0.0, -1, fitted.covariance, np.zeros(k))]
     for place, odds in zip(places.tolist(), ln_odds.tolist(), strict=True):
-        along = found.covariance[:, place] / found.covariance[place, place]
-        without = found.covariance - np.outer(along, found.covariance[place])
-        bases.append((-odds, place, without, -along * found.value[place]))
+        along = fitted.covariance[:, place] / fitted.covariance[place, place]
+        without = fitted.covariance - np.outer(along, fitted.covariance[place])
+        bases.append((-odds, place, without, -along * fitted.value[place]))
     ln_weight, models = [], []
     for ln_base, _, covariance, away in bases:
         more = _more(problem, candidates, covariance, away)
@@ -502,7 +506,7 @@ def _averaged(problem: Problem, found: Fit) -> Posterior:
     for w, all_w, more, (_, place, covariance, away) in zip(
         weight, all_weight, models, bases, strict=True
     ):
-        centre = np.append(found.value + away, np.zeros(faults))
+        centre = np.append(fitted.value + away, np.zeros(faults))
         spread = np.zeros_like(second)
         spread[:k, :k] = covariance
         # Column f of `way` is how all unknowns move with fault f.
@@ -520,8 +524,8 @@ def _averaged(problem: Problem, found: Fit) -> Posterior:
             else:
                 instead[fault] += all_w[:-1]
     return Posterior(
-        found,
-        np.append(found.active, problem.faults),
+        fitted,
+        np.append(fitted.active, problem.faults),
         mean,
         second - np.outer(mean, mean),
         chance,

@@ -27,7 +27,7 @@ MOST_BOATS: Final = 10
 RETOW_SCHEMA: Final = dtypes(RetowChoice, without=["method"])
 
 
-def retow_choice(found: SeasonFactors, most: int = MOST_BOATS) -> pl.DataFrame:
+def retow_choice(estimated: SeasonFactors, most: int = MOST_BOATS) -> pl.DataFrame:
     """The boats to tow again, the one that tells most first, each given those before it.
 
     Of boats that tell as much the first by boat and crew is chosen.
@@ -36,18 +36,18 @@ def retow_choice(found: SeasonFactors, most: int = MOST_BOATS) -> pl.DataFrame:
     once, with dGPS, in the season after the last.
 
     Args:
-        found: the season factors, with the tows they were estimated from.
+        estimated: the season factors, with the tows they were estimated from.
         most: no more boats than this; fewer where another one would tell nothing.
 
     Returns:
         Rows of `RETOW_SCHEMA`: `seasons` are those without dGPS in which the boat was towed;
         `factor_sd_*_ratio` the root of the mean variance of all ln factors before and after.
     """
-    network = Network.of(found.tows)
+    network = Network.of(estimated.tows)
     if not network.groups.height:
         return pl.DataFrame(schema=RETOW_SCHEMA)
-    covariance = _covariance(found)
-    tie, variance, current = _candidates(network, found)
+    covariance = _covariance(estimated)
+    tie, variance, current = _candidates(network, estimated)
     season = network.groups["season"].to_numpy()
     lines = _lines(network)
     open_to_choice = current.copy()
@@ -75,15 +75,17 @@ def retow_choice(found: SeasonFactors, most: int = MOST_BOATS) -> pl.DataFrame:
     return pl.DataFrame(rows, schema=RETOW_SCHEMA)
 
 
-def _covariance(found: SeasonFactors) -> FloatArray:
+def _covariance(estimated: SeasonFactors) -> FloatArray:
     """Of all ln factors; those that are not determined are as good as unknown."""
-    known = found.factors["factor"].is_not_null().to_numpy()
+    known = estimated.factors["factor"].is_not_null().to_numpy()
     covariance = np.diag(np.where(known, 0.0, UNKNOWN_SD**2))
-    covariance[np.ix_(known, known)] = found.covariance
+    covariance[np.ix_(known, known)] = estimated.covariance
     return covariance
 
 
-def _candidates(network: Network, found: SeasonFactors) -> tuple[FloatArray, FloatArray, BoolArray]:
+def _candidates(
+    network: Network, estimated: SeasonFactors
+) -> tuple[FloatArray, FloatArray, BoolArray]:
     """What one more tow of each boat would compare with its earlier ones.
 
     Returns:
@@ -94,16 +96,16 @@ def _candidates(network: Network, found: SeasonFactors) -> tuple[FloatArray, Flo
     kappa, random_sd, season = (network.numbers(n) for n in ("kappa", "ln_cw_sd", "season"))
     loose = network.group >= 0
     log_sd = np.zeros(len(season))
-    for first, sd in sorted(found.tow_log_sd.items()):
+    for first, sd in sorted(estimated.tow_log_sd.items()):
         log_sd = np.where(season >= first, sd, log_sd)
-    own = random_sd**2 + found.tow_sd**2 + np.where(loose, kappa * log_sd, 0.0) ** 2
+    own = random_sd**2 + estimated.tow_sd**2 + np.where(loose, kappa * log_sd, 0.0) ** 2
     boats = int(network.boat.max()) + 1
     weight = np.bincount(network.boat, 1.0 / own, boats)
     tie = np.zeros((boats, network.groups.height))
     np.add.at(tie, (network.boat[loose], network.group[loose]), (kappa / own)[loose])
     years = season.max() + 1.0 - np.bincount(network.boat, season / own, boats) / weight
-    new_tow = found.tow_sd**2 + float(np.median(random_sd)) ** 2
-    variance = new_tow + 1.0 / weight + (found.ageing_sd * years) ** 2
+    new_tow = estimated.tow_sd**2 + float(np.median(random_sd)) ** 2
+    variance = new_tow + 1.0 / weight + (estimated.ageing_sd * years) ** 2
     last = network.tows.select(pl.col("state") == pl.col("state").max().over(LINE)).to_series()
     current = np.zeros(boats, dtype=bool)
     current[network.boat[last.to_numpy()]] = True

@@ -47,12 +47,12 @@ def instrument_errors(
     level = np.where(of_boats, 0.0, design[:, LEVEL])
     share = problem.share[:, posterior.places]
     names = np.array([problem.unknowns[i].name for i in posterior.places])
-    found = np.isin(posterior.places, posterior.fit.active) & np.isin(
+    corrected = np.isin(posterior.places, posterior.fit.active) & np.isin(
         posterior.places, problem.faults
     )
     k = len(posterior.fit.active)
-    found[k:] = False
-    force, zero = found & (names == FORCE), found & np.isin(names, (ZERO, ZERO_DRIFT))
+    corrected[k:] = False
+    force, zero = corrected & (names == FORCE), corrected & np.isin(names, (ZERO, ZERO_DRIFT))
     variance = np.maximum(((level @ posterior.covariance) * level).sum(axis=1), 0.0)
     loose = network.group >= 0
     determined = ~loose
@@ -98,15 +98,15 @@ def best_estimates(
     away[: len(posterior.fit.value)] -= posterior.fit.value
     numbers = np.zeros((len(problem.q), 4))
     shares = []
-    for held in posterior.fit.told:
-        found = _of_boats(held, posterior, (design, true_level, away))
-        numbers[held.patterns.tow] = found[0]
-        tows = held.patterns.tow.shape[1]
+    for told in posterior.fit.told:
+        found = _of_boats(told, posterior, (design, true_level, away))
+        numbers[told.patterns.tow] = found[0]
+        tows = told.patterns.tow.shape[1]
         shares.append(
             pl.DataFrame(
                 {
-                    "tow": np.repeat(held.patterns.tow, tows, axis=1).ravel(),
-                    "other": np.tile(held.patterns.tow, (1, tows)).ravel(),
+                    "tow": np.repeat(told.patterns.tow, tows, axis=1).ravel(),
+                    "other": np.tile(told.patterns.tow, (1, tows)).ravel(),
                     "weight": found[1].ravel(),
                 }
             )
@@ -153,10 +153,11 @@ def best_estimates(
     )
 
 
-def _as_measured(problem: Problem, network: Network, found: pl.DataFrame) -> FloatArray:
+def _as_measured(problem: Problem, network: Network, errors: pl.DataFrame) -> FloatArray:
     """Ln Cw of each tow alone, with its instruments corrected as `instrument_errors` says."""
     factor, scale, zero = (
-        found[name].fill_null(1.0).to_numpy() for name in ("factor", "force_factor", "force_zero_n")
+        errors[name].fill_null(1.0).to_numpy()
+        for name in ("factor", "force_factor", "force_zero_n")
     )
     by_log = slopes(problem.q, problem.force_n, np.log(factor)).predicted[:, LEVEL]
     by_force = np.log(scale) - np.log1p(-zero / problem.force_n)
@@ -172,32 +173,32 @@ def _design(problem: Problem, posterior: Posterior) -> tuple[FloatArray, BoolArr
 
 
 def _of_boats(
-    held: Told,
+    told: Told,
     posterior: Posterior,
     given: tuple[FloatArray, FloatArray, FloatArray],
 ) -> tuple[FloatArray, FloatArray]:
     """Boats with the same number of tows: (boats, tows, 4) numbers, (boats, tows, tows) shares."""
     design, true_level, away = given
-    tow = held.patterns.tow
+    tow = told.patterns.tow
     boats, tows = tow.shape
     state = posterior.fit.slopes.state[tow][..., 0]
     # Covariance of the level at each tow with every number of the boat, per pattern.
-    with_level = np.einsum("pkl,bli->bpkli", held.patterns.level, state)
+    with_level = np.einsum("pkl,bli->bpkli", told.patterns.level, state)
     with_level = with_level.reshape(boats, -1, tows, 3 * tows)
-    gain = with_level @ held.precision
-    prior = np.einsum("pkk->pk", held.patterns.level)
+    gain = with_level @ told.precision
+    prior = np.einsum("pkk->pk", told.patterns.level)
     variance = prior - (gain * with_level).sum(axis=3)
     by = true_level[tow][:, None] - gain @ design[tow].reshape(boats, 1, 3 * tows, -1)
-    mean = np.einsum("bpkn,bpn->bpk", with_level, held.pull) + by @ away
+    mean = np.einsum("bpkn,bpn->bpk", with_level, told.pull) + by @ away
     shared = np.einsum("bpkf,fg,bpkg->bpk", by, posterior.covariance, by, optimize=True)
     variance = np.maximum(variance + shared, 1e-12)
-    weight = np.repeat(held.weight[:, :, None], tows, axis=2)
+    weight = np.repeat(told.weight[:, :, None], tows, axis=2)
     average = (weight * mean).sum(axis=1)
     spread = (weight * (variance + (mean - average[:, None]) ** 2)).sum(axis=1)
     bounds = _quantiles(weight, mean, np.sqrt(variance))
     numbers = np.stack([average, np.sqrt(spread), *bounds], axis=2)
     on_level = gain.reshape(boats, -1, tows, tows, 3)[..., LEVEL]
-    return numbers, np.einsum("bp,bpkl->bkl", held.weight, on_level)
+    return numbers, np.einsum("bp,bpkl->bkl", told.weight, on_level)
 
 
 def _quantiles(weight: FloatArray, mean: FloatArray, sd: FloatArray) -> list[FloatArray]:

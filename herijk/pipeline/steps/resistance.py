@@ -119,17 +119,17 @@ def _air_terms(
     by_ratio = steps.run_point.estimator == "ratio_of_means"
     smooth = averaged_terms(blocks, steps.wind.averaging_s) if steps.wind.averaging_s else None
     count = np.maximum(blocks.count(window), 1.0)
-    found = {}
+    terms = {}
     for name in air_sums(steps.wind):
         if by_ratio:
             sums = blocks[name] if smooth is None else smooth[name] * blocks.n
-            found[name] = np.where(window, sums, 0.0).sum(axis=1) / count / _or_one(speed) ** 2
+            terms[name] = np.where(window, sums, 0.0).sum(axis=1) / count / _or_one(speed) ** 2
         elif smooth is None:
-            found[name] = blocks.mean(f"{source}_{name}", window)
+            terms[name] = blocks.mean(f"{source}_{name}", window)
         else:
             sums = smooth[name] * blocks[f"{source}_inv_v2"]
-            found[name] = np.where(window, sums, 0.0).sum(axis=1) / count
-    return found
+            terms[name] = np.where(window, sums, 0.0).sum(axis=1) / count
+    return terms
 
 
 def _end_speed_change(batch: Batch, window: BoolArray, source: str) -> FloatArray:

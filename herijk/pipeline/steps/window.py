@@ -143,8 +143,8 @@ def _given_by_hand(blocks: RunBlocks, rule: Window, searched: Windows) -> Window
     inside = (second >= start) & (second < end) & blocks.inside
     long_enough = inside.sum(axis=1, keepdims=True) >= rule.minimum_s
     reasons = tuple(
-        f"{BY_HAND}: {why}" if hand else found
-        for hand, why, found in zip(given, hand_reason, searched.reasons, strict=True)
+        f"{BY_HAND}: {why}" if hand else reason
+        for hand, why, reason in zip(given, hand_reason, searched.reasons, strict=True)
     )
     mask = np.where(given[:, None], inside & long_enough, searched.mask)
     return _windows(blocks, mask, reasons)
@@ -207,9 +207,9 @@ def _wind_change(blocks: RunBlocks, present: BoolArray) -> FloatArray:
 def _robust(values: FloatArray, present: BoolArray) -> tuple[FloatArray, FloatArray]:
     """Median and robust standard deviation of each row, shape (runs, 1); 0 for an empty row."""
     empty = ~present.any(axis=1, keepdims=True)
-    held = np.where(present, values, np.where(empty, 0.0, np.nan))
-    median = np.nanmedian(held, axis=1, keepdims=True)
-    return median, MAD_TO_SD * np.nanmedian(np.abs(held - median), axis=1, keepdims=True)
+    filled = np.where(present, values, np.where(empty, 0.0, np.nan))
+    median = np.nanmedian(filled, axis=1, keepdims=True)
+    return median, MAD_TO_SD * np.nanmedian(np.abs(filled - median), axis=1, keepdims=True)
 
 
 def _widened(values: FloatArray) -> FloatArray:
@@ -269,10 +269,10 @@ def _search(present: BoolArray, faults: _Faults, rule: Window) -> tuple[IntArray
         accepted = (_span(good, size) == size) & (speed <= 1.0)
         worth = np.where(accepted, np.round(worth, WORTH_DECIMALS), -np.inf)
         best = worth.argmax(axis=1)
-        found = np.take_along_axis(worth, best[:, None], 1)[:, 0]
-        better = found > value
+        highest = np.take_along_axis(worth, best[:, None], 1)[:, 0]
+        better = highest > value
         start, length = np.where(better, best, start), np.where(better, size, length)
-        value = np.maximum(found, value)
+        value = np.maximum(highest, value)
     return start, length
 
 

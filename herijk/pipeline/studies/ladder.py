@@ -70,8 +70,8 @@ def ladder(
             continue
         plans = [(batch, steps) for (batch, _), steps in zip(pairs, mixed, strict=True)]
         rungs.append(evaluate(plans, cache, new_factors if count else old_factors))
-    found = [_rungs_of_batch(list(outcomes)) for outcomes in zip(*rungs, strict=True)]
-    return pl.concat(found).sort("tow_id", "position")
+    parts = [_rungs_of_batch(list(outcomes)) for outcomes in zip(*rungs, strict=True)]
+    return pl.concat(parts).sort("tow_id", "position")
 
 
 def _mixed(old: Steps, new: Steps, count: int) -> Steps:
@@ -84,16 +84,16 @@ def _rungs_of_batch(outcomes: list[Outcome]) -> pl.DataFrame:
     sound = np.isfinite(cw[0]) & np.isfinite(cw[-1])
     for rung in range(1, len(cw)):
         cw[rung] = np.where(np.isfinite(cw[rung]), cw[rung], cw[rung - 1])
-    held = cw[:, sound]
-    factor = np.vstack([np.ones(held.shape[1]), held[1:] / held[:-1]])
+    cw_known = cw[:, sound]
+    factor = np.vstack([np.ones(cw_known.shape[1]), cw_known[1:] / cw_known[:-1]])
     tow_ids = outcomes[0].batch.tows["tow_id"].filter(pl.Series(sound))
     steps = (START, *STEP_ORDER)
     return pl.DataFrame(
         {
             "tow_id": pl.concat([tow_ids] * len(steps)),
-            "position": np.repeat(np.arange(len(steps), dtype=np.int8), held.shape[1]),
-            "step": np.repeat(np.array(steps), held.shape[1]),
+            "position": np.repeat(np.arange(len(steps), dtype=np.int8), cw_known.shape[1]),
+            "step": np.repeat(np.array(steps), cw_known.shape[1]),
             "factor": factor.ravel(),
-            "cw_kg_m": held.ravel(),
+            "cw_kg_m": cw_known.ravel(),
         }
     )

@@ -23,7 +23,7 @@ SEED: Final = 2009
 def register_ensemble(
     lines: pl.DataFrame,
     budget: pl.DataFrame,
-    found: SeasonFactors | None,
+    estimated: SeasonFactors | None,
     members: int = MEMBERS,
     seed: int = SEED,
 ) -> FloatArray:
@@ -35,7 +35,7 @@ def register_ensemble(
     Args:
         lines: one row per line with `tow_id` (may occur more than once) and `cw_kg_m`.
         budget: rows of `uncertainty.budget`, at least of those tows.
-        found: the season factors, whose errors are drawn with their correlation; None where the
+        estimated: the season factors, whose errors are drawn with their correlation; None where the
             method estimates none.
         members: number of realisations.
         seed: of the draws; a part of the edition.
@@ -44,7 +44,7 @@ def register_ensemble(
         Cw [kg/m], shape (members, lines).
     """
     budget = budget.filter(pl.col("tow_id").is_in(lines["tow_id"].unique().implode()))
-    keys, errors = _errors(budget, found, members, seed)
+    keys, errors = _errors(budget, estimated, members, seed)
     tows = budget["tow_id"].unique().sort()
     place = pl.DataFrame({"tow_id": tows}).with_row_index("place")
     row = budget.select("tow_id").join(place, on="tow_id", maintain_order="left")["place"]
@@ -58,17 +58,17 @@ def register_ensemble(
 
 
 def tow_ensemble(
-    method: str, curves: pl.DataFrame, budget: pl.DataFrame, found: SeasonFactors | None
+    method: str, curves: pl.DataFrame, budget: pl.DataFrame, estimated: SeasonFactors | None
 ) -> pl.DataFrame:
     """Rows of the table `ensemble` of a method: members of every tow with a curve.
 
     Args:
         method: its name.
         curves, budget: its tables `curves` and `uncertainty_budget`.
-        found: its season factors, as `register_ensemble` takes them.
+        estimated: its season factors, as `register_ensemble` takes them.
     """
     tows = curves.drop_nulls("cw_kg_m").select("tow_id", "cw_kg_m")
-    members = as_frame(tows, register_ensemble(tows, budget, found))
+    members = as_frame(tows, register_ensemble(tows, budget, estimated))
     return members.with_columns(pl.lit(method).alias("method"))
 
 
@@ -136,19 +136,19 @@ def _members_of(members: pl.DataFrame, tow_id: str) -> FloatArray:
 
 
 def _errors(
-    budget: pl.DataFrame, found: SeasonFactors | None, members: int, seed: int
+    budget: pl.DataFrame, estimated: SeasonFactors | None, members: int, seed: int
 ) -> tuple[pl.DataFrame, FloatArray]:
     """Standard normal errors of every key, shape (keys, members), season factors correlated."""
     keys = budget.select("key").unique().sort("key").with_row_index("index")
     independent = [_stream(seed, key).standard_normal(members) for key in keys["key"]]
     errors = np.array(independent).reshape(-1, members)
-    if found is None:
+    if estimated is None:
         return keys, errors
-    determined = found.factors.filter(pl.col("factor").is_not_null()).select(
+    determined = estimated.factors.filter(pl.col("factor").is_not_null()).select(
         log_key(pl.col("season"), pl.col("part"), pl.col("log")).alias("key")
     )
-    sd = np.sqrt(np.diag(found.covariance))
-    root = np.linalg.cholesky(found.covariance / np.outer(sd, sd))
+    sd = np.sqrt(np.diag(estimated.covariance))
+    root = np.linalg.cholesky(estimated.covariance / np.outer(sd, sd))
     independent = [_stream(seed, key).standard_normal(members) for key in determined["key"]]
     if independent:
         joint = root @ np.stack(independent)

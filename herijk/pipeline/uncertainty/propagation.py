@@ -265,7 +265,7 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
         "season_log": pl.lit(SEASON),
     }
     dof = {"random": pl.col("random_dof"), "season_log": pl.col("log_dof")}
-    held = [
+    parts = [
         tows.select(
             "tow_id",
             "speed_ratio",
@@ -278,7 +278,7 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
         )
         for name in COMPONENTS
     ]
-    return pl.concat(held)
+    return pl.concat(parts)
 
 
 def _key(component: str, shared: pl.Expr) -> pl.Expr:

@@ -120,7 +120,7 @@ def _faults(root: Path, profiles: Profiles) -> tuple[ArchiveIndex | None, list[F
     Files that nobody reads come first, and alone: they can be the lists.
     """
     unread = strangers(root, profiles)
-    if unread:
+    if any(propose(fault, profiles.wording.files) for fault in unread):
         return None, unread
     lacking = missing_lists(root, profiles)
     if lacking:
@@ -235,11 +235,11 @@ def _grouped(seen: Iterable[tuple[Fault, Sequence[Proposal]]]) -> tuple[Cause, .
         groups.setdefault(_cause_of(fault), []).append((fault, offered))
     causes = [
         Cause(
-            found[0][0].reason_code,
-            tuple(fault for fault, _ in found),
-            tuple(dict.fromkeys(p for _, offered in found for p in offered)),
+            group[0][0].reason_code,
+            tuple(fault for fault, _ in group),
+            tuple(dict.fromkeys(p for _, offered in group for p in offered)),
         )
-        for found in groups.values()
+        for group in groups.values()
     ]
     return tuple(sorted(causes, key=lambda cause: -len(cause.faults)))
 

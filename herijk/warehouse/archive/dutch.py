@@ -8,6 +8,9 @@ DUTCH: Final[dict[str, str]] = {
     "Row {row}: {what}": "Rij {row}: {what}",
     "line {line} of {path}": "regel {line} van {path}",
     "sheet '{sheet}': {what}": "blad '{sheet}': {what}",
+    "The name of '{name}' has letters that cannot be read; give it another name.": (
+        "De naam van '{name}' heeft letters die niet te lezen zijn; geef het een andere naam."
+    ),
     "there is no list of boats: {path} is expected.": (
         "er is geen lijst van sloepen: {path} wordt verwacht."
     ),

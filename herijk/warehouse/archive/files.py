@@ -97,15 +97,15 @@ def list_files(root: Path, kind: ListKind, named: Mapping[str, str]) -> list[Arc
         named: what other files and folders stand for, by their path (`[files]`).
     """
     matches = ((e, _match_list(kind, e.name)) for e in _entries_of(root, kind.folder))
-    found = [
+    files = [
         _archive_file(root, entry, int(match[1] or 0))
         for entry, match in matches
         if match is not None and (entry.is_file() or entry.is_symlink())
     ]
     for path, name, season in _named(named):
         if name == kind.stands_for and (root / path).is_file():
-            found.append(_archive_file(root, root / path, season))
-    return sorted(found, key=lambda file: file.path)
+            files.append(_archive_file(root, root / path, season))
+    return sorted(files, key=lambda file: file.path)
 
 
 def _match_list(kind: ListKind, name: str) -> re.Match[str] | None:
@@ -138,7 +138,7 @@ def list_sample_files(root: Path, named: Mapping[str, str]) -> list[ArchiveFile]
 def list_strangers(root: Path, named: Mapping[str, str]) -> list[str]:
     """Return the files and folders of an archive that nobody reads, relative to it."""
     folders = {kind.folder: _find_folder(root, kind.folder) for kind in LIST_KINDS}
-    found = [
+    strangers = [
         entry
         for name, folder in folders.items()
         for entry in _entries(folder)
@@ -146,14 +146,14 @@ def list_strangers(root: Path, named: Mapping[str, str]) -> list[str]:
     ]
     sample_folders = {folder for _, folder in _sample_folders(root, named)}
     for folder in sample_folders:
-        found += [entry for entry in _files_of_tows(folder) if not sample_suffix(entry.name)]
+        strangers += [entry for entry in _files_of_tows(folder) if not sample_suffix(entry.name)]
     known = {*folders.values(), *sample_folders, *(root / path for path in named)}
-    found += [
+    strangers += [
         entry
         for entry in _entries(root)
         if entry not in known and entry.name.casefold() != PROFILE_FILE
     ]
-    opened = [inner for entry in found for inner in _opened(entry, known)]
+    opened = [inner for entry in strangers for inner in _opened(entry, known)]
     return [_path_in(root, e) for e in opened if not _NOT_OURS.fullmatch(e.name)]
 
 
@@ -172,8 +172,8 @@ def _path_in(root: Path, entry: Path) -> str:
 
 def find_boats_file(root: Path, named: Mapping[str, str]) -> str | None:
     """Return the path of the boat list, whatever kind of file it is; None when there is none."""
-    found = list_files(root, BOAT_LIST, named)
-    return found[0].path if found else None
+    lists = list_files(root, BOAT_LIST, named)
+    return lists[0].path if lists else None
 
 
 def _sample_folders(root: Path, named: Mapping[str, str]) -> Iterator[tuple[int, Path]]:
@@ -207,11 +207,35 @@ def _find_folder(root: Path, name: str) -> Path:
 def _entries(folder: Path) -> list[Path]:
     if not folder.is_dir():
         return []
-    return sorted(entry for entry in folder.iterdir() if not entry.name.startswith("."))
+    return sorted(
+        entry
+        for entry in folder.iterdir()
+        if not entry.name.startswith(".") and _can_be_written(entry.name)
+    )
+
+
+def _can_be_written(name: str) -> bool:
+    """Whether a name is text; one made under another encoding can hold bytes that are none."""
+    try:
+        name.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
+def list_misnamed(root: Path) -> list[str]:
+    """Return files and folders whose names are no text, which are not read, with `?` for that."""
+    found = (
+        Path(folder, name)
+        for folder, folders, files in os.walk(root)
+        for name in (*folders, *files)
+        if not _can_be_written(name)
+    )
+    return sorted(os.fsencode(_path_in(root, path)).decode(errors="replace") for path in found)
 
 
 def _archive_file(root: Path, entry: Path, season: int) -> ArchiveFile:
-    inside = entry.resolve().is_relative_to(root.resolve()) and entry.is_file()
+    inside = _is_inside(root, entry) and entry.is_file()
     return ArchiveFile(entry.relative_to(root).as_posix(), entry, season, inside)
 
 
@@ -255,7 +279,10 @@ def path_inside(root: Path, relative: str) -> Path:
 
 
 def _is_inside(root: Path, full: Path) -> bool:
-    return full.resolve().is_relative_to(root.resolve())
+    try:
+        return full.resolve().is_relative_to(root.resolve())
+    except (RuntimeError, OSError):  # a link to itself
+        return False
 
 
 def outside_archive(relative: str) -> DefectiveFileError:

@@ -34,6 +34,7 @@ from herijk.warehouse.archive.files import (
     find_boats_file,
     hash_of_parts,
     list_files,
+    list_misnamed,
     list_sample_files,
     list_strangers,
     match_key,
@@ -264,7 +265,12 @@ def _read_boats(root: Path, profiles: Profiles, hashes: _Hashes, faults: list[Fa
 
 def strangers(root: Path, profiles: Profiles) -> list[Fault]:
     """Return what lies in the archive and is not read; what it can be, where that can be told."""
-    return [
+    message = "The name of '{name}' has letters that cannot be read; give it another name."
+    misnamed = [
+        Fault(path, None, None, "unrecognised_file", say(message, name=path))
+        for path in list_misnamed(root)
+    ]
+    return misnamed + [
         Fault(path, None, None, "unrecognised_file", _about_stranger(root, path))
         for path in list_strangers(root, profiles.wording.files)
         if fold(path) not in profiles.wording.ignore
@@ -511,8 +517,8 @@ def _find_file(entry: _Entry, name: str, by_name: _FilesByName) -> SamplesFile:
         message = say("there is no file '{name}' in {folder}.", **values)
         raise entry.fault("samples_missing", message)
     if len(candidates) > 1:
-        found = ", ".join(f"'{file.parts[0].full_path.name}'" for file in candidates)
-        message = say("'{name}' can be any of {found}.", name=shorten(name), found=found)
+        names = ", ".join(f"'{file.parts[0].full_path.name}'" for file in candidates)
+        message = say("'{name}' can be any of {found}.", name=shorten(name), found=names)
         raise entry.fault("ambiguous_file", message)
     outside = [part for part in candidates[0].parts if not part.inside]
     if outside:

@@ -307,8 +307,8 @@ class ListRow:
 
     def named(self, key: str) -> str:
         """Return what the file calls a column."""
-        found = self.columns.get(key)
-        return found.header if found else key
+        place = self.columns.get(key)
+        return place.header if place else key
 
 
 class AmbiguousDateError(ValueError):
@@ -346,8 +346,8 @@ def parse_date(text: str, order: str = "") -> dt.date:
 
 def date_order(cells: Iterable[str]) -> str:
     """Return `dmy` or `mdy` where dates with slashes in a list can only be meant so, else empty."""
-    found = (_DAY_FIRST.fullmatch(_TIME_OF_DAY.sub("", cell.strip())) for cell in cells)
-    pairs = [(int(m[1]), int(m[3])) for m in found if m and m[2] == "/"]
+    matches = (_DAY_FIRST.fullmatch(_TIME_OF_DAY.sub("", cell.strip())) for cell in cells)
+    pairs = [(int(m[1]), int(m[3])) for m in matches if m and m[2] == "/"]
     orders = {"dmy" for first, _ in pairs if first > 12}
     orders |= {"mdy" for _, second in pairs if second > 12}
     return orders.pop() if len(orders) == 1 else ""
@@ -373,8 +373,8 @@ def read_rows(
         DefectiveInputError: the table as a whole cannot be read.
     """
     sheet = read_sheets(data, columns, suffix)[0]
-    found = find_columns(sheet.header, columns, sheet.line)
-    return _rows(sheet, Reading(found, reason_code, {}, "", "", limits))
+    places = find_columns(sheet.header, columns, sheet.line)
+    return _rows(sheet, Reading(places, reason_code, {}, "", "", limits))
 
 
 def read_list(
@@ -426,9 +426,9 @@ def _columns_of(
 ) -> dict[str, FoundColumn]:
     """Return the columns of a list; one that nobody knows is a fault."""
     optional = [replace(column, required=False) for column in wanted]
-    found = find_columns(sheet.header, optional, sheet.line)
-    strange = [h for h in unknown_headers(sheet.header, found) if fold(h) not in wording.ignore]
-    free = [column for column in wanted if column.key not in found]
+    places = find_columns(sheet.header, optional, sheet.line)
+    strange = [h for h in unknown_headers(sheet.header, places) if fold(h) not in wording.ignore]
+    free = [column for column in wanted if column.key not in places]
     if strange:
         raise DefectiveInputError(
             "unknown_column", _strange(_meanings(strange, free, sheet, table)), sheet.line

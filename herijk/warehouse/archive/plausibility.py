@@ -196,14 +196,14 @@ def _selected_runs(
         if samples[name].null_count() == 0
     }
     wanted = runs.filter((pl.col("tow_id") == tow["tow_id"]) & pl.col("selected"))
-    found, missing = [], []
+    selected, missing = [], []
     for row in wanted.sort("run").iter_rows(named=True):
         if row["run"] not in bounds:
             missing.append(_missing_run(row["run"], tow, sorted(bounds)))
             continue
         start, end = bounds[row["run"]]
         offset = second if row["run"] > SECOND_FILE_OFFSET else 0
-        found.append(
+        selected.append(
             _Run(
                 row["run"],
                 int(start) - offset + 2,
@@ -213,7 +213,7 @@ def _selected_runs(
                 {key: values[start:end] for key, values in channels.items()},
             )
         )
-    return found, missing
+    return selected, missing
 
 
 def _missing_run(run: int, tow: Mapping[str, Any], present: list[int]) -> Fault:
@@ -631,10 +631,10 @@ def _unlikely_mean(run: _Run, key: str) -> Said | None:
 
 def _without_stuck_gps(runs: list[_Run], tow: Mapping[str, Any]) -> tuple[list[_Run], list[Fault]]:
     """GPS has one fix a second in steps of 0.01 m/s, so a steady boat may well hold one value."""
-    held: dict[float, _Run] = {}
+    stuck: dict[float, _Run] = {}
     kept, faults = [], []
     for run in runs:
-        why = _stuck_gps(run, held)
+        why = _stuck_gps(run, stuck)
         if why is None:
             kept.append(run)
             continue
@@ -645,14 +645,14 @@ def _without_stuck_gps(runs: list[_Run], tow: Mapping[str, Any]) -> tuple[list[_
     return kept, faults
 
 
-def _stuck_gps(run: _Run, held: dict[float, _Run]) -> str | None:
-    """Why a GPS that holds one value is stuck; `held` is added to."""
+def _stuck_gps(run: _Run, stuck: dict[float, _Run]) -> str | None:
+    """Why a GPS that holds one value is stuck; `stuck` is added to."""
     gps = run.channels.get("gps")
     if gps is None or gps.min() != gps.max():  # NaN differs from itself
         return None
     seconds = _second_means(run.channels["log1"], run.rate_hz)
     span = float(np.nanmax(seconds) - np.nanmin(seconds))
-    before = held.setdefault(float(gps[0]), run)
+    before = stuck.setdefault(float(gps[0]), run)
     if span > GPS_MUST_MOVE_M_S:
         return f"while log1 changed by {span:.2f} m/s"
     if before.intended_m_s != run.intended_m_s:

@@ -362,10 +362,10 @@ def _profile_path(root: Path) -> Path | None:
     """
     if not root.is_dir():
         return None
-    found = sorted(p.name for p in root.iterdir() if p.name.casefold() == PROFILE_FILE)
-    if len(found) > 1:
-        raise MissingKnowledgeError(f"{' and '.join(found)} both are in {root}; keep one")
-    path = path_inside(root, found[0]) if found else None
+    names = sorted(p.name for p in root.iterdir() if p.name.casefold() == PROFILE_FILE)
+    if len(names) > 1:
+        raise MissingKnowledgeError(f"{' and '.join(names)} both are in {root}; keep one")
+    path = path_inside(root, names[0]) if names else None
     return path if path is not None and path.is_file() else None
 
 

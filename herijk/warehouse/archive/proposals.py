@@ -148,7 +148,7 @@ def _of_stranger(path: str, values: Any, _: int) -> Iterator[Proposal]:
     """A file or folder of another name: what it can be, else to be ignored."""
     for file, stands_for in values.get("can_be", ()):
         yield Proposal("files", file, stands_for)
-    if not values.get("can_be"):
+    if "path" in values and not values.get("can_be"):
         yield Proposal("ignore", "", path)
 
 

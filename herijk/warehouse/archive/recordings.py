@@ -65,13 +65,13 @@ def labview_as_table(text: str) -> tuple[str, list[int]]:
 
 def _about(lines: list[str]) -> dict[str, str]:
     """Return what the head of the file says, by name."""
-    found = {}
+    properties = {}
     for line in lines[:40]:
         if line.strip().startswith(_END_OF_HEADER):
             break
         name, _, value = line.replace("\t", ",", 1).partition(",")
-        found[name.strip().casefold()] = value.strip(", \t")
-    return found
+        properties[name.strip().casefold()] = value.strip(", \t")
+    return properties
 
 
 def _segment_header(lines: list[str], start: int, separator: str) -> tuple[list[str], list[int]]:

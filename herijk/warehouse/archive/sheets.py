@@ -7,6 +7,7 @@ What the columns mean is in `lists`; samples are read faster, in `samples`.
 
 import datetime as dt
 import io
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final
@@ -30,6 +31,7 @@ SPREADSHEETS: Final = (".xlsx", ".xlsm", ".xls", ".ods")
 MOST_ROWS: Final = 100_000
 MOST_COLUMNS: Final = 500
 """Of a list; a spreadsheet that says to have more is not one."""
+_LETTER: Final = re.compile(r"[^\W\d_]")
 _TOTALS: Final = frozenset(
     {"totaal", "totalen", "subtotaal", "total", "som", "sum", "summe", "gesamt", "aantal",
      "gemiddelde", "gemiddeld", "average", "mean", "mittelwert"}
@@ -154,7 +156,8 @@ def _is_total(cell: str) -> bool:
 def find_header(lines: Sequence[str], columns: Sequence[Column]) -> int:
     """Return which of the first lines is the header."""
     rows = [
-        [] if is_separator_line(line) else _split_or_nothing(line) for line in lines[:HEADER_WITHIN]
+        _split_or_nothing(line) if _LETTER.search(line) and not is_separator_line(line) else []
+        for line in lines[:HEADER_WITHIN]
     ]
     return _header_among(rows, columns)
 

@@ -13,7 +13,7 @@ import re
 import unicodedata
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import Final
 
 from herijk.pipeline.errors import DefectiveInputError
@@ -141,6 +141,7 @@ def split_line(line: str, delimiter: str) -> list[str]:
         raise DefectiveInputError("unreadable_file", said, line=1) from error
 
 
+@lru_cache(10_000)
 def fold(text: str) -> str:
     """Return a header for comparing: its letters and digits, without case and accents."""
     plain = unicodedata.normalize("NFKD", text).casefold()
@@ -223,7 +224,7 @@ def find_columns(
         DefectiveInputError: `missing_column`, `duplicate_column` or `unknown_unit`.
     """
     wanted = tuple(columns)
-    found: dict[str, FoundColumn] = {}
+    places: dict[str, FoundColumn] = {}
     cells = [split_header(cell) for cell in header]
     own_names = {fold(column.header) for column in wanted}
     own_first = sorted(range(len(cells)), key=lambda i: cells[i][0] not in own_names)
@@ -232,17 +233,17 @@ def find_columns(
             name, unit = cells[index]
             namesakes = [column for column in wanted if name and column.answers_to(name)]
             if name not in own_names:
-                taken = {c.key for c in namesakes if _is_own(c, found)}
+                taken = {c.key for c in namesakes if _is_own(c, places)}
                 namesakes = [column for column in namesakes if column.key not in taken]
             if not namesakes or (unit is not None or len(namesakes) == 1) != is_clear:
                 continue
-            column = _choose(namesakes, unit, header[index], found, line)
+            column = _choose(namesakes, unit, header[index], places, line)
             scale = find_scale(column.dimension, unit or column.unit) or (1, 1)
-            found[column.key] = FoundColumn(index, header[index].strip(), scale, column.dimension)
-    missing = [column for column in wanted if column.required and column.key not in found]
+            places[column.key] = FoundColumn(index, header[index].strip(), scale, column.dimension)
+    missing = [column for column in wanted if column.required and column.key not in places]
     if missing:
-        raise DefectiveInputError("missing_column", _missing_message(missing, header, found), line)
-    return found
+        raise DefectiveInputError("missing_column", _missing_message(missing, header, places), line)
+    return places
 
 
 def _is_own(column: Column, found: Mapping[str, FoundColumn]) -> bool:
@@ -265,8 +266,13 @@ def nearest_column(cell: str, columns: Iterable[Column]) -> Column | None:
 
 def score_of(header: Sequence[str], columns: Iterable[Column]) -> int:
     """Return how many cells of a line are names of columns: the header has most."""
-    names = {fold(name) for column in columns for name in (column.header, *column.also)}
+    names = _names_of(tuple(columns))
     return sum(split_header(cell)[0] in names for cell in header)
+
+
+@cache
+def _names_of(columns: tuple[Column, ...]) -> frozenset[str]:
+    return frozenset(fold(name) for c in columns for name in (c.header, *c.also))
 
 
 def _choose(

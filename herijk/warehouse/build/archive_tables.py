@@ -43,11 +43,11 @@ def archive_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
     present = _present_runs(inputs["blocks"])
     listed = inputs["season_tows"].join(sound, on="tow_id", how="semi")
-    held = inputs["season_runs"].join(present, on=["tow_id", "run"], how="semi")
+    runs_read = inputs["season_runs"].join(present, on=["tow_id", "run"], how="semi")
     tows, contradicted = _judged(
-        with_boat_types(listed, inputs["listed_boats"]), held, inputs["blocks"]
+        with_boat_types(listed, inputs["listed_boats"]), runs_read, inputs["blocks"]
     )
-    sound, runs = (frame.join(tows, on="tow_id", how="semi") for frame in (sound, held))
+    sound, runs = (frame.join(tows, on="tow_id", how="semi") for frame in (sound, runs_read))
     windows = inputs["listed_windows"].join(runs, on=["tow_id", "run"], how="semi")
     beyond = frame_of(Faults, map(dataclasses.asdict, outside_run(windows, present)))
     losses = index.select(pl.col("losses").explode()).unnest("losses").drop_nulls("path")
@@ -56,7 +56,7 @@ def archive_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     set_aside = pl.concat(
         [inputs["list_faults"], beyond, unsound, losses, contradicted], how="diagonal"
     )
-    found = {
+    tables = {
         "boats": inputs["listed_boats"].unique("fsn_no", keep="last", maintain_order=True),
         "seasons": _seasons(inputs["season_tows"], sound, losses),
         "tows": _with_lost_runs(tows, losses),
@@ -66,9 +66,9 @@ def archive_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
         ),
         "quarantine": _dated(set_aside, inputs.earlier("quarantine"), inputs.today),
     }
-    if found["tows"].is_empty():
-        raise NothingSoundError(_why_nothing(found["quarantine"]), found)
-    return found
+    if tables["tows"].is_empty():
+        raise NothingSoundError(_why_nothing(tables["quarantine"]), tables)
+    return tables
 
 
 def _present_runs(blocks: pl.DataFrame) -> pl.DataFrame:

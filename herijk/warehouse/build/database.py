@@ -34,13 +34,13 @@ MEANINGS: Final = str(
 
 def warehouse_database(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     """All tables in one DuckDB file, and each as Parquet; both swapped in whole."""
-    found = {name: conform(name, inputs[name]) for name in inputs.names if name in TABLES}
-    found["about"] = _about(inputs.store)
-    found["contents"] = _contents(found)
-    build_database(inputs.store.database, found)
-    write_package(inputs.store.root, found, TABLES | ABOUT, _origin(found))
+    tables = {name: conform(name, inputs[name]) for name in inputs.names if name in TABLES}
+    tables["about"] = _about(inputs.store)
+    tables["contents"] = _contents(tables)
+    build_database(inputs.store.database, tables)
+    write_package(inputs.store.root, tables, TABLES | ABOUT, _origin(tables))
     sha256 = pl.lit(file_sha256(inputs.store.database)).alias("sha256")
-    return {DATABASE_TABLE: found["contents"].select("table", "rows", sha256)}
+    return {DATABASE_TABLE: tables["contents"].select("table", "rows", sha256)}
 
 
 def database_without_tows(store: Store, found: Mapping[str, pl.DataFrame]) -> None:

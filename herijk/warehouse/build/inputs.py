@@ -122,8 +122,8 @@ def _listed(store: Store, name: str) -> pl.DataFrame:
 
 
 def _decisions(store: Store) -> pl.DataFrame:
-    found = decisions.read_decisions(store.root / decisions.FILE_NAME)
-    return decisions.decision_table(found)
+    decided = decisions.read_decisions(store.root / decisions.FILE_NAME)
+    return decisions.decision_table(decided)
 
 
 def _printed(store: Store) -> pl.DataFrame:

@@ -30,13 +30,13 @@ def count_faults(store: Store, methods: Sequence[Method]) -> list[str]:
     """Tables with other numbers of rows than in the lake, and methods that lost a tow."""
     expected = {name: _rows_in_lake(store, name, methods) for name in DATABASED}
     with open_database(store.database) as db:
-        found = {name: len(db.table(name)) for name in expected}
+        counts = {name: len(db.table(name)) for name in expected}
         curves = dict(db.sql("SELECT method, count(*) FROM curves GROUP BY method").fetchall())
     return [
         *(
-            f"{name} has {found[name]} rows, and {number} in the lake"
+            f"{name} has {counts[name]} rows, and {number} in the lake"
             for name, number in expected.items()
-            if found[name] != number
+            if counts[name] != number
         ),
         *(
             f"{m.name} has {curves.get(m.name, 0)} curves of {expected['tows']} tows"

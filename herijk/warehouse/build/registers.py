@@ -73,14 +73,14 @@ def _due_list(inputs: "Inputs") -> pl.DataFrame:
     """
     tows, results = inputs["tows"], inputs["listed_races"]
     as_of = max([*tows["tow_date"], *results["race_date"]])
-    found = []
+    parts = []
     for method in inputs.methods:
         curves = inputs["curves"].filter(pl.col("method") == method.name)
         crews, decided = inputs["listed_boats"], inputs["decisions"]
         register = draft_register(curves, tows, crews, as_of, method.validity, decided)
         due = due_list(register, inputs["boats"], results, as_of)
-        found.append(due.select(pl.lit(method.name).alias("method"), pl.all()))
-    return pl.concat(found)
+        parts.append(due.select(pl.lit(method.name).alias("method"), pl.all()))
+    return pl.concat(parts)
 
 
 def _methods(methods: Sequence[Method]) -> pl.DataFrame:

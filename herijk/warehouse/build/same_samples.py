@@ -42,8 +42,8 @@ def same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
     faults = [
         fault for _, same in runs.group_by(_CONTENT, maintain_order=True) for fault in _faults(same)
     ]
-    found = frame_of(Faults, map(dataclasses.asdict, faults))
-    return found.unique("tow_id", keep="first", maintain_order=True)
+    rows = frame_of(Faults, map(dataclasses.asdict, faults))
+    return rows.unique("tow_id", keep="first", maintain_order=True)
 
 
 def _faults(same: pl.DataFrame) -> Iterator[Fault]:

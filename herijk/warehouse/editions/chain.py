@@ -52,15 +52,15 @@ def chain_findings(store: Store) -> tuple[list[Finding], str | None]:
 
 
 def _chained(store: Store) -> list[About]:
-    found = []
+    editions = []
     for name in edition_names(store):
         try:
             about = read_about(store.editions / name)
         except BrokenPromiseError:
             continue  # told where its own files are looked at
         if about.number is not None:
-            found.append(about)
-    return found
+            editions.append(about)
+    return editions
 
 
 def _known(store: Store) -> set[str]:

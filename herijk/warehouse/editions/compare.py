@@ -193,8 +193,12 @@ def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
 
 def _links(old: Edition, new: Edition) -> tuple[pl.DataFrame, pl.DataFrame] | None:
     """The log factors with which both editions were made; None where one does not have them."""
-    found = [edition.tables.get("tow_instruments") for edition in (old, new)]
-    return None if found[0] is None or found[1] is None else (found[0], found[1])
+    instruments = [edition.tables.get("tow_instruments") for edition in (old, new)]
+    return (
+        None
+        if instruments[0] is None or instruments[1] is None
+        else (instruments[0], instruments[1])
+    )
 
 
 def _grounds(old: Edition, new: Edition, separated: set[object], code_known: bool) -> pl.DataFrame:
@@ -307,14 +311,14 @@ def _by_size(lines: pl.DataFrame) -> pl.DataFrame:
 
 def _causes(lines: pl.DataFrame) -> list[Report]:
     """Per cause and step: the lines it moved, and its factors there."""
-    found = [
+    moved = [
         {"cause": one["cause"], "step": one.get("step"), "factor": one["factor"]}
         for text in lines["causes"]
         for one in _moved(text)
     ]
     schema = {name: PART_SCHEMA[name] for name in ("cause", "step", "factor")}
     return (
-        pl.DataFrame(found, schema=schema)
+        pl.DataFrame(moved, schema=schema)
         .group_by("cause", "step")
         .agg(
             pl.len().alias("lines"),

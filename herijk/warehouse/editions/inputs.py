@@ -56,8 +56,8 @@ def same_tows(was: Mapping[str, pl.DataFrame], now: Mapping[str, pl.DataFrame]) 
         for name in ("tows", "tow_runs")
     }
     one, other = (
-        with_input_hashes(*(held[name].select(shared[name]) for name in shared))
-        for held in (was, now)
+        with_input_hashes(*(edition[name].select(shared[name]) for name in shared))
+        for edition in (was, now)
     )
     return frozenset(one.join(other, on=["tow_id", INPUTS_HASH], how="semi")["tow_id"])
 

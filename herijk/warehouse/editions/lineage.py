@@ -22,16 +22,16 @@ def lineage(store: Store, edition: str, fsn_no: str) -> Report:
     Raises:
         MissingKnowledgeError: there is no such edition, or the boat is not in it.
     """
-    held = read_edition(store, edition)
-    lines = held.register.filter(pl.col("fsn_no") == fsn_no)
+    published = read_edition(store, edition)
+    lines = published.register.filter(pl.col("fsn_no") == fsn_no)
     if lines.is_empty():
         raise MissingKnowledgeError(
             f"boat {fsn_no} is not in edition {edition}; its register.csv lists the boats"
         )
     return {
-        "about": held.about.model_dump(mode="json", exclude={"files", "tables"}),
+        "about": published.about.model_dump(mode="json", exclude={"files", "tables"}),
         "folder": str(edition_path(store, edition)),
-        "lines": [_line(held, row) for row in lines.sort(LINE).iter_rows(named=True)],
+        "lines": [_line(published, row) for row in lines.sort(LINE).iter_rows(named=True)],
     }
 
 
@@ -39,9 +39,9 @@ def _line(edition: Edition, row: dict[str, Any]) -> Report:
     frame = pl.DataFrame([row], schema=edition.register.schema)
     cells = printed_cells(frame, REGISTER_FIELDS)[0]
     printed = {field.header: cell for field, cell in zip(REGISTER_FIELDS, cells, strict=True)}
-    found: Report = {"line": row, "printed": printed, "code": row[CODE_FIELD.column]}
+    line: Report = {"line": row, "printed": printed, "code": row[CODE_FIELD.column]}
     if row["tow_id"] is None or "tows" not in edition.tables:
-        return found | {"tow": None, "files": [], "runs": [], "curve": None}
+        return line | {"tow": None, "files": [], "runs": [], "curve": None}
     of_tow = {
         name: edition.tables[name].filter(pl.col("tow_id") == row["tow_id"]).to_dicts()
         for name in ("tows", "curves", "run_points")
@@ -51,7 +51,7 @@ def _line(edition: Edition, row: dict[str, Any]) -> Report:
         (tow["samples_path"], tow["samples_sha256"]),
         (tow["second_path"], tow["second_sha256"]),
     ]
-    return found | {
+    return line | {
         "tow": tow,
         "files": [{"path": path, "sha256": sha256} for path, sha256 in files if path],
         "runs": of_tow["run_points"],

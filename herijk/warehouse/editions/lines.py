@@ -87,13 +87,13 @@ def made_again(store: Store, edition: Edition) -> Again:
     tows = tows_of_today(store).drop("doubts").join(mine, on="tow_id")
     runs = intake.runs_with_windows(store).join(mine, on="tow_id", how="semi")
     blocks = stack_blocks(intake.all_blocks(store), runs)
-    found = recompute(edition.method, tows, blocks)
+    recomputed = recompute(edition.method, tows, blocks)
     nobody = pl.DataFrame(schema={name: edition.register.schema[name] for name in LINE})
     text = (edition_path(store, edition.about.edition) / DECISIONS).read_text(encoding="utf-8")
     decisions = TypeAdapter(tuple[decided.Decision, ...]).validate_json(text)
     about = edition.about
     lines = method_lines(
-        {"curves": found.curves, "tows": tows},
+        {"curves": recomputed.curves, "tows": tows},
         nobody,
         about.valid_from,
         edition.method.validity,
@@ -101,9 +101,11 @@ def made_again(store: Store, edition: Edition) -> Again:
     )
     if about.carried_from is not None:
         printed = read_edition(store, about.carried_from)
-        lines = with_carried(lines, printed, found.log_factors, about.valid_from, edition.method)
+        lines = with_carried(
+            lines, printed, recomputed.log_factors, about.valid_from, edition.method
+        )
     members = tow_ensemble(
-        edition.method.name, found.curves, found.uncertainty_budget, found.factors
+        edition.method.name, recomputed.curves, recomputed.uncertainty_budget, recomputed.factors
     )
     return Again(lines, members.join(edition.tables["ensemble"], on="tow_id", how="semi"))
 

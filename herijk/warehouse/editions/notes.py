@@ -37,7 +37,7 @@ HEADS: Final = {
 
 def texts(edition: Edition, previous: Comparison | None) -> dict[str, str]:
     """All texts of an edition as Markdown, by file name."""
-    found = None if previous is None else report(previous)
+    changes = None if previous is None else report(previous)
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(Path(__file__).parent / "templates"),
         undefined=jinja2.StrictUndefined,
@@ -47,7 +47,7 @@ def texts(edition: Edition, previous: Comparison | None) -> dict[str, str]:
     )
     return {
         name: environment.get_template(name).render(
-            _facts(edition, language) | _changes(found, language)
+            _facts(edition, language) | _changes(changes, language)
         )
         + "\n"
         for name, language in TEXTS.items()

@@ -32,10 +32,10 @@ def printed_path(store: Store, season: int) -> str:
         MissingKnowledgeError: the archive holds no such register, or one with a line that cannot be
             read: an edition is kept for ever and must not lack it.
     """
-    found, faults = _registers(store)
-    paths = found.filter(pl.col("season") == season)["path"].unique()
+    registers, faults = _registers(store)
+    paths = registers.filter(pl.col("season") == season)["path"].unique()
     if paths.is_empty():
-        known = ", ".join(str(s) for s in found["season"].unique().sort()) or "none"
+        known = ", ".join(str(s) for s in registers["season"].unique().sort()) or "none"
         raise MissingKnowledgeError(
             f"the archive holds no readable register printed in {season}; it holds: {known}"
         )

@@ -224,8 +224,8 @@ def _check_decision(terms: Terms) -> None:
 
 def _decisions(store: Store, terms: Terms) -> tuple[decided.Decision, ...]:
     """Decisions about tows taken up to the day of publication."""
-    found = decided.read_decisions(store.root / decided.FILE_NAME)
-    return tuple(d for d in found if d.datum <= terms.published_on)
+    decisions = decided.read_decisions(store.root / decided.FILE_NAME)
+    return tuple(d for d in decisions if d.datum <= terms.published_on)
 
 
 def _check_decided_tows(decisions: pl.DataFrame, tows: pl.DataFrame) -> None:

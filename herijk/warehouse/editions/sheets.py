@@ -217,8 +217,8 @@ def _printed(value: Any, field: Field) -> str:
 
 
 def _code(parts: Sequence[str | None]) -> str:
-    held = json.dumps(list(parts), ensure_ascii=False, separators=(",", ":"))
-    digest = hashlib.sha256(held.encode("utf-8")).digest()
+    text = json.dumps(list(parts), ensure_ascii=False, separators=(",", ":"))
+    digest = hashlib.sha256(text.encode("utf-8")).digest()
     return base64.b32encode(digest).decode("ascii")[:CODE_LENGTH]
 
 
@@ -294,11 +294,11 @@ def read_xlsx_cells(content: bytes) -> dict[str, str | float]:
     except (zipfile.BadZipFile, KeyError, ElementTree.ParseError) as error:
         raise ValueError(f"no XLSX: {error}") from error
     texts = ["".join(t.text or "" for t in s.iter(f"{_SHEET}t")) for s in shared]
-    found: dict[str, str | float] = {}
+    cells: dict[str, str | float] = {}
     for cell in sheet.iter(f"{_SHEET}c"):
         value = cell.find(f"{_SHEET}v")
         if value is not None and value.text is not None:
             place = cell.get("r", "")
             is_text = cell.get("t") == "s"
-            found[place] = texts[int(value.text)] if is_text else float(value.text)
-    return found
+            cells[place] = texts[int(value.text)] if is_text else float(value.text)
+    return cells

@@ -170,14 +170,14 @@ def _expected_csv(path: Place) -> sheets.Cells:
 
 def _cells(file: str, was: sheets.Cells, now: sheets.Cells) -> list[tuple[str, str]]:
     """The cells that differ, each with its line, boat and column."""
-    found: list[tuple[str, str]] = []
+    problems: list[tuple[str, str]] = []
     if len(was) != len(now):
-        found.append((file, f"it has {len(now) - 1} lines; there were {len(was) - 1}"))
+        problems.append((file, f"it has {len(now) - 1} lines; there were {len(was) - 1}"))
     for number, (before, after) in enumerate(zip(was, now, strict=False), 1):
         if len(before) != len(after):
-            found.append((f"{file}, line {number}", "it has another number of cells"))
+            problems.append((f"{file}, line {number}", "it has another number of cells"))
             continue
-        found += [
+        problems += [
             (
                 f"{file}, line {number} ({before[0]}), column {header}",
                 f"it says {b!r}; it was {a!r}",
@@ -185,7 +185,7 @@ def _cells(file: str, was: sheets.Cells, now: sheets.Cells) -> list[tuple[str, s
             for header, a, b in zip(was[0], before, after, strict=True)
             if a != b
         ]
-    return _not_too_many(file, found)
+    return _not_too_many(file, problems)
 
 
 def _xlsx_cells(path: Place, about: About) -> list[tuple[str, str]]:
@@ -194,11 +194,11 @@ def _xlsx_cells(path: Place, about: About) -> list[tuple[str, str]]:
     was = sheets.read_xlsx_cells(sheets.xlsx_bytes(register, fields, about))
     now = sheets.read_xlsx_cells((path / XLSX).read_bytes())
     places = sorted(p for p in was.keys() | now.keys() if was.get(p) != now.get(p))
-    found = [
+    problems = [
         (f"{XLSX}, cell {place}", f"it says {now.get(place)!r}; it was {was.get(place)!r}")
         for place in places
     ]
-    return _not_too_many(XLSX, found)
+    return _not_too_many(XLSX, problems)
 
 
 def _not_too_many(file: str, found: list[tuple[str, str]]) -> list[tuple[str, str]]:

@@ -44,21 +44,21 @@ def index(store: Store, root: Path) -> ArchiveIndex:
         HerijkError: the folder is missing or holds nothing that looks like an archive.
     """
     hashes = FileHashes.load(store.file_hashes)
-    found = index_archive(root, hashes.hash_file)
+    listed = index_archive(root, hashes.hash_file)
     hashes.save(store.file_hashes)
     for name in LISTED:
-        store.write(f"listed_{name}", getattr(found, name), made_from="")
+        store.write(f"listed_{name}", getattr(listed, name), made_from="")
     races, race_faults = read_races(root)
     _, register_faults = read_published_registers(root)
-    faults = [dataclasses.asdict(f) for f in (*found.faults, *race_faults, *register_faults)]
+    faults = [dataclasses.asdict(f) for f in (*listed.faults, *race_faults, *register_faults)]
     store.write("list_faults", frame_of(Faults, faults), made_from="")
-    about = {"simulated": found.profiles.simulated, "root": str(root.resolve())}
-    about |= found.profiles.publication.model_dump()
+    about = {"simulated": listed.profiles.simulated, "root": str(root.resolve())}
+    about |= listed.profiles.publication.model_dump()
     about_archive = frame_of(AboutArchive, [about])
     store.write("about_archive", about_archive, made_from="")
-    store.write("listed_files", found.files, made_from="")
+    store.write("listed_files", listed.files, made_from="")
     store.write("listed_races", races, made_from="")
-    return found
+    return listed
 
 
 Listing = dict[str, list[int]]
@@ -124,20 +124,20 @@ def read_season(store: Store, root: Path, season: int, report: lake.Report) -> p
     """
     tows, runs = _listed(store, season)
     profile = read_profiles(root).for_season(season)
-    found = lake.read_season(store, root, tows, runs, profile, report)
+    season_index = lake.read_season(store, root, tows, runs, profile, report)
     made_from = lake.season_fingerprint(tows, runs, profile)
-    kept = {"season_tows": tows, "season_runs": runs, "season_index": found}
+    kept = {"season_tows": tows, "season_runs": runs, "season_index": season_index}
     for name, frame in kept.items():
         store.write(name, frame, made_from, str(season))
-    return found
+    return season_index
 
 
 def collect_blocks(store: Store, season: int) -> pl.DataFrame:
     """Puts the blocks of a season's sound tows together in one table."""
     made_from = store.made_from("season_index", str(season))
-    found = lake.season_blocks(store, season, store.read("season_index", str(season)))
-    store.write("blocks", found, made_from or "", str(season))
-    return found
+    season_blocks = lake.season_blocks(store, season, store.read("season_index", str(season)))
+    store.write("blocks", season_blocks, made_from or "", str(season))
+    return season_blocks
 
 
 def all_blocks(store: Store) -> pl.DataFrame:

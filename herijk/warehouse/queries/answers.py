@@ -14,6 +14,7 @@ from herijk.pipeline.register.register import LINE, draft_name
 from herijk.pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
 from herijk.warehouse.build.studies import STUDIED_METHOD
 from herijk.warehouse.queries.views import Views
+from herijk.warehouse.store.database import choice_of
 from herijk.warehouse.store.editions import read_edition
 from herijk.warehouse.store.ensemble import read_ensemble
 
@@ -41,14 +42,14 @@ def line_changes(views: Views) -> pl.DataFrame:
     """
     register = views.table("register")
     changes = views.table("register_changes")
-    found = [
+    parts = [
         _pair(views, register, changes.filter(from_edition=old, to_edition=new))
         for old, new in changes.select(PAIR).unique().sort(PAIR).rows()
     ]
-    if not found:
-        found = [_side_by_side(register.clear(), register.clear(), changes)]
+    if not parts:
+        parts = [_side_by_side(register.clear(), register.clear(), changes)]
     names = views.table("boats").select("fsn_no", "name", "boat_type")
-    return pl.concat(found).join(names, on="fsn_no", how="left", maintain_order="left")
+    return pl.concat(parts).join(names, on="fsn_no", how="left", maintain_order="left")
 
 
 def compared(views: Views, old: str, new: str) -> pl.DataFrame:
@@ -61,12 +62,12 @@ def compared(views: Views, old: str, new: str) -> pl.DataFrame:
     before, after = (register.filter(edition=edition) for edition in (old, new))
     for edition, side in ((old, before), (new, after)):
         if side.is_empty():
-            known = ", ".join(register["edition"].unique().sort())
-            raise MissingKnowledgeError(f"there is no edition {edition}; there are {known}")
+            known = choice_of(register["edition"].unique())
+            raise MissingKnowledgeError(f"there is no edition {edition}; {known}")
     names = views.table("boats").select("fsn_no", "name", "boat_type")
     steps = steps_of_lines(after, _steps(views, before, after))
-    found = _side_by_side(before, after, register_changes(before, after, steps))
-    return found.join(names, on="fsn_no", how="left", maintain_order="left")
+    side_by_side = _side_by_side(before, after, register_changes(before, after, steps))
+    return side_by_side.join(names, on="fsn_no", how="left", maintain_order="left")
 
 
 def _pair(views: Views, register: pl.DataFrame, changes: pl.DataFrame) -> pl.DataFrame:

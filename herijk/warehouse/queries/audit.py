@@ -13,7 +13,7 @@ import duckdb
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.queries.audit_types import TYPE, type_facts, types_page
-from herijk.warehouse.store.database import is_simulated, open_database, rows
+from herijk.warehouse.store.database import is_simulated, open_results, rows
 from herijk.warehouse.store.store import Store
 
 Report = dict[str, Any]
@@ -36,7 +36,7 @@ def audit(store: Store, names: Sequence[str], method: str | None = None) -> Repo
     Raises:
         MissingKnowledgeError: there is no such boat, type or method, or no database.
     """
-    with open_database(store.database) as db:
+    with open_results(store.database) as db:
         methods = _methods(db, method)
         boats = _boats_named(db, names[0]) if len(names) == 1 else []
         if boats:

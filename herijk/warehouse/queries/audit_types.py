@@ -80,9 +80,9 @@ def _type_under(db: duckdb.DuckDBPyConnection, boat_type: str, method: str) -> R
 def _one(db: duckdb.DuckDBPyConnection, table: str, method: str, boat_type: str) -> Report:
     """The one row of a method and type; there is none without a curve, or where types are asked."""
     query = f"SELECT * FROM {table} WHERE method = ? AND boat_type = ?"  # noqa: S608
-    found = rows(db, query, method, boat_type)
+    matching = rows(db, query, method, boat_type)
     reason = "no_type" if boat_type == UNKNOWN_TYPE else "no_curves"
-    return found[0] if found else {"n": 0, "reason": reason}
+    return matching[0] if matching else {"n": 0, "reason": reason}
 
 
 def _away_from_zero(line: Report) -> bool | None:
@@ -98,8 +98,8 @@ def closest(lines: list[Report]) -> Report:
     `cw_closest` is None where the variances differ no more than an F test at 5 % lets them. The
     three come from the same runs, so the test is on the safe side.
     """
-    found = {line["quantity"]: line for line in lines if line["explaining"] == "weight_kg"}
-    three = [found.get(name) for name in ("cw_standard_kg_m", "a_kg_m", "b_m_s")]
+    by_quantity = {line["quantity"]: line for line in lines if line["explaining"] == "weight_kg"}
+    three = [by_quantity.get(name) for name in ("cw_standard_kg_m", "a_kg_m", "b_m_s")]
     for line in three:
         if line is None or line["reason"]:
             n = 0 if line is None else line["n"]
@@ -146,9 +146,9 @@ def _repeats(pairs: list[Report]) -> Report:
 
 def _era(db: duckdb.DuckDBPyConnection, method: str, boat_type: str, era: str) -> Report:
     """Whether an era stands apart; the table has no row where a type has no pair at all."""
-    found = rows(db, _ERA, method, boat_type, era)
-    if found:
-        return found[0]
+    matching = rows(db, _ERA, method, boat_type, era)
+    if matching:
+        return matching[0]
     return {"era": era, "n": 0, "apart": None, "reason": "few_pairs"}
 
 
@@ -178,13 +178,13 @@ def _intervals(under: Report) -> dict[str, tuple[float, float, float]]:
     """Every slope and shift with its interval; shifts as logarithms."""
     slopes = {f"{line['quantity']} {line['explaining']}": line for line in under["lines"]}
     slopes["speed_trend"] = under["speed_trend"]
-    found = {
+    intervals = {
         name: (line["slope"], line["slope_lo"], line["slope_hi"])
         for name, line in slopes.items()
         if not line["reason"]
     }
     shifts = {era["era"]: era for era in under["eras"] if not era["reason"]}
-    return found | {
+    return intervals | {
         name: (log(era["shift_ratio"]), log(era["lo"]), log(era["hi"]))
         for name, era in shifts.items()
     }

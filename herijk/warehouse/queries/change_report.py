@@ -206,8 +206,8 @@ def _factors(was: pl.DataFrame, now: pl.DataFrame) -> pl.DataFrame:
 
 def _lines(was: Tables, now: Tables) -> pl.DataFrame:
     drafts = [_draft_lines(was, now, method) for method in now["methods"]["method"]]
-    found = [draft for draft in drafts if draft is not None]
-    return pl.concat(found or [_no_lines()], how="diagonal_relaxed")
+    known = [draft for draft in drafts if draft is not None]
+    return pl.concat(known or [_no_lines()], how="diagonal_relaxed")
 
 
 def _no_lines() -> pl.DataFrame:
@@ -282,26 +282,26 @@ def _ground(tow: bool, own: bool, others: bool, method: bool, code: bool) -> str
 
 def last_report_with_changes(store: Store) -> dict[str, Any] | None:
     """What changed since the last report; where nothing did, the last report of a change."""
-    found = change_report(store)
-    if not found.nothing:
-        return as_plain(found)
+    report = change_report(store)
+    if not report.nothing:
+        return as_plain(report)
     told = sorted((store.root / "report").glob("2*.json"))
     return json.loads(told[-1].read_text(encoding="utf-8")) if told else None
 
 
-def as_plain(found: ChangeReport) -> dict[str, Any]:
+def as_plain(report: ChangeReport) -> dict[str, Any]:
     """The report as plain data, for a page, a mail or a program."""
     return {
-        "first": found.first,
-        "nothing_changed": found.nothing,
-        "tows": _counted(found.tows, ["what"]),
-        "tow_rows": [] if found.first else found.tows.to_dicts(),
-        "set_aside": _counted(found.set_aside, ["what", "reason_code"]),
-        "set_aside_rows": found.set_aside.to_dicts(),
-        "factors": found.factors.to_dicts(),
-        "register": _counted(found.lines, ["to_edition", "change"]),
-        "beyond_interval": int(found.lines["exceeds_interval"].fill_null(False).sum()),
-        "lines": found.lines.to_dicts(),
+        "first": report.first,
+        "nothing_changed": report.nothing,
+        "tows": _counted(report.tows, ["what"]),
+        "tow_rows": [] if report.first else report.tows.to_dicts(),
+        "set_aside": _counted(report.set_aside, ["what", "reason_code"]),
+        "set_aside_rows": report.set_aside.to_dicts(),
+        "factors": report.factors.to_dicts(),
+        "register": _counted(report.lines, ["to_edition", "change"]),
+        "beyond_interval": int(report.lines["exceeds_interval"].fill_null(False).sum()),
+        "lines": report.lines.to_dicts(),
     }
 
 

@@ -10,6 +10,7 @@ from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.races.race import power_per_rower_w
 from herijk.warehouse.queries.answers import answers
 from herijk.warehouse.queries.views import Views
+from herijk.warehouse.store.database import choice_of
 
 SPEEDS: Final = (0.85, 0.90, 0.95, 1.0, 1.05, 1.10, 1.15)
 """Speeds of the power table, as parts of the declared speed: where the curve holds."""
@@ -28,8 +29,8 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[di
     """
     lines = answers(views, edition)
     if lines.is_empty():
-        known = ", ".join(views.table("register")["edition"].unique().sort())
-        raise MissingKnowledgeError(f"there is no edition {edition}; there are {known}")
+        known = choice_of(views.table("register")["edition"].unique())
+        raise MissingKnowledgeError(f"there is no edition {edition}; {known}")
     wanted = lines.filter(pl.col("cw_kg_m").is_not_null())
     if fsn_no is not None:
         wanted = wanted.filter(pl.col("fsn_no").str.to_lowercase() == fsn_no.lower())

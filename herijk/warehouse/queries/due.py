@@ -3,25 +3,44 @@
 The rule for the speed is `pipeline.register.due`'s.
 """
 
-from typing import Any, Final
+import datetime as dt
+from dataclasses import dataclass
+from typing import Final
 
 from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.warehouse.store.database import is_simulated, open_database, rows
+from herijk.warehouse.store.database import Row, is_simulated, open_results, rows
 from herijk.warehouse.store.store import Store
-
-Report = dict[str, Any]
 
 EXPIRED, THIS_YEAR, LATER, NEVER = "expired", "this_year", "later", "without_curve"
 URGENCIES: Final = (EXPIRED, THIS_YEAR, NEVER, LATER)
 
 
-def due_report(store: Store, method: str) -> Report:
-    """Who is due under a method, at what speed, and which boats would tie the seasons together.
+@dataclass(frozen=True)
+class DueReport:
+    """Who is due under a method.
+
+    Attributes:
+        method: whose curves are used.
+        simulated: whether the archive is.
+        as_of: day on which validity is judged.
+        lines: rows of `due_list` with `name`, `boat_type` and `urgency`.
+        retow_choice: rows of that table with `name`, `valid_until` and `tow_speed_m_s`.
+    """
+
+    method: str
+    simulated: bool
+    as_of: dt.date
+    lines: list[Row]
+    retow_choice: list[Row]
+
+
+def due_report(store: Store, method: str) -> DueReport:
+    """Who is due under a method, at what speed, and which boats to tow again.
 
     Raises:
         MissingKnowledgeError: the method was not applied by the last rebuild.
     """
-    with open_database(store.database) as db:
+    with open_results(store.database) as db:
         lines = rows(db, _LINES, method)
         choice = rows(db, _CHOICE, method)
         simulated = is_simulated(db)
@@ -30,16 +49,11 @@ def due_report(store: Store, method: str) -> Report:
             f"there is no due list of method {method}; make it with: herijk rebuild --archive DIR "
             f"--data {store.root} --method {method}"
         )
-    return {
-        "method": method,
-        "simulated": simulated,
-        "as_of": lines[0]["as_of"],
-        "lines": [line | {"urgency": _urgency(line)} for line in lines],
-        "retow_choice": choice,
-    }
+    urgent = [line | {"urgency": _urgency(line)} for line in lines]
+    return DueReport(method, simulated, lines[0]["as_of"], urgent, choice)
 
 
-def _urgency(line: Report) -> str:
+def _urgency(line: Row) -> str:
     if line["valid_until"] is None:
         return NEVER
     if line["status"] == "expired":

@@ -4,7 +4,7 @@ Reads the lake, writes nothing: a committee looks at the result before anyone pu
 steps compute is in `pipeline`.
 """
 
-from typing import Any
+from dataclasses import dataclass
 
 import polars as pl
 
@@ -13,18 +13,35 @@ from herijk.pipeline.register.changes import register_changes
 from herijk.pipeline.register.register import LINE
 from herijk.pipeline.studies.ladder import START, ladder
 from herijk.warehouse.queries.history import History
+from herijk.warehouse.store.database import Row
 from herijk.warehouse.store.store import Store
 
-Report = dict[str, Any]
 MOST_AFFECTED = 15
 
 
-def rebase(store: Store, method: Method, against: Method) -> Report:
-    """Recomputes everything under a method and says what changes against another, and why.
+@dataclass(frozen=True)
+class RebaseReport:
+    """What a method changes against another.
 
-    Returns:
-        `by_season`: median factor on Cw of each step, per season, with `total`; `boats`: the
-        register lines most affected, with their factors; `changes`: lines by kind of change.
+    Attributes:
+        method, method_hash, against: the methods.
+        simulated: whether the archive is.
+        by_season: median factor on Cw of each step, per season, with `total`.
+        changes: number of lines by kind of change.
+        boats: the register lines most affected, with their factors.
+    """
+
+    method: str
+    method_hash: str
+    against: str
+    simulated: bool
+    by_season: list[Row]
+    changes: list[Row]
+    boats: list[Row]
+
+
+def rebase(store: Store, method: Method, against: Method) -> RebaseReport:
+    """Recomputes everything under a method and says what changes against another, and why.
 
     Raises:
         MissingKnowledgeError: there is no sound tow, or a method does not cover a season.
@@ -35,15 +52,15 @@ def rebase(store: Store, method: Method, against: Method) -> Report:
     rungs = ladder(against, method, history.tows, history.blocks, links, history.cache)
     rungs = rungs.filter(pl.col("step") != START)
     changes = register_changes(old.register, new.register)
-    return {
-        "method": method.name,
-        "method_hash": method.content_hash,
-        "against": against.name,
-        "simulated": history.simulated,
-        "by_season": _by_season(rungs, history.tows).to_dicts(),
-        "changes": changes["change"].value_counts(sort=True).to_dicts(),
-        "boats": _most_affected(changes, new.register, rungs, history.boats).to_dicts(),
-    }
+    return RebaseReport(
+        method=method.name,
+        method_hash=method.content_hash,
+        against=against.name,
+        simulated=history.simulated,
+        by_season=_by_season(rungs, history.tows).to_dicts(),
+        changes=changes["change"].value_counts(sort=True).to_dicts(),
+        boats=_most_affected(changes, new.register, rungs, history.boats).to_dicts(),
+    )
 
 
 def _by_season(rungs: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:

@@ -4,12 +4,11 @@ Reads only `warehouse.duckdb`; computes no new number about a boat. What is behi
 or one type is in `warehouse.queries.audit`.
 """
 
-from typing import Any
+from dataclasses import dataclass
 
-from herijk.warehouse.store.database import is_simulated, open_database, rows
+from herijk.warehouse.store.database import Row, is_simulated, open_database, open_results, rows
 from herijk.warehouse.store.store import Store
 
-Report = dict[str, Any]
 BIGGEST = 10
 FIRST_FAULTS = 10
 _FAULTS_BY_REASON = """
@@ -24,39 +23,84 @@ LIMIT ?
 """
 
 
-def rebuild_report(store: Store) -> Report:
+@dataclass(frozen=True)
+class RebuildReport:
+    """What the warehouse has after a rebuild.
+
+    Attributes:
+        database, site, report: where they are.
+        simulated: whether the archive is.
+        seasons: `season` and `tows`.
+        set_aside: `lost`, `reason_code` and their `number`.
+        first_faults: some of them, with file, line and sentence.
+        curves: `method`, `status` and their `number`.
+        by_season, biggest_changes: what the newest method changes.
+    """
+
+    database: str
+    site: str
+    report: str
+    simulated: bool
+    seasons: list[Row]
+    set_aside: list[Row]
+    first_faults: list[Row]
+    curves: list[Row]
+    by_season: list[Row]
+    biggest_changes: list[Row]
+
+
+@dataclass(frozen=True)
+class LogErrorReport:
+    """The log error of every season under a method.
+
+    Attributes:
+        simulated: whether the archive is.
+        method: whose factors.
+        factors: rows of `log_factors` with what each rests on.
+        parts: the same per part of a season and log.
+        diagnosis: rows of `season_diagnosis` that are not sound.
+    """
+
+    simulated: bool
+    method: str
+    factors: list[Row]
+    parts: list[Row]
+    diagnosis: list[Row]
+
+
+def rebuild_report(store: Store) -> RebuildReport:
     """What the warehouse holds: seasons, set-aside rows, curves by status, biggest changes."""
     with open_database(store.database) as db:
-        return {
-            "database": str(store.database),
-            "site": str(store.root / "site" / "index.html"),
-            "report": str(store.root / "report" / "latest.html"),
-            "simulated": is_simulated(db),
-            "seasons": rows(
+        return RebuildReport(
+            database=str(store.database),
+            site=str(store.root / "site" / "index.html"),
+            report=str(store.root / "report" / "latest.html"),
+            simulated=is_simulated(db),
+            seasons=rows(
                 db, "SELECT season, count(*) AS tows FROM tows GROUP BY season ORDER BY season"
             ),
-            "set_aside": rows(db, _FAULTS_BY_REASON),
-            "first_faults": rows(db, _FIRST_FAULTS, FIRST_FAULTS),
-            "curves": rows(
+            set_aside=rows(db, _FAULTS_BY_REASON),
+            first_faults=rows(db, _FIRST_FAULTS, FIRST_FAULTS),
+            curves=rows(
                 db,
                 "SELECT method, status, count(*) AS number FROM curves "
                 "GROUP BY method, status ORDER BY method, status",
             ),
-            "by_season": rows(db, _BY_SEASON),
-            "biggest_changes": rows(db, _BIGGEST_CHANGES, BIGGEST),
-        }
+            by_season=rows(db, _BY_SEASON),
+            biggest_changes=rows(db, _BIGGEST_CHANGES, BIGGEST),
+        )
 
 
-def log_error_report(store: Store, method: str) -> Report:
+def log_error_report(store: Store, method: str) -> LogErrorReport:
     """The log factor of every season under a method, and what the estimated ones rest on."""
-    with open_database(store.database) as db:
-        return {
-            "simulated": is_simulated(db),
-            "method": method,
-            "factors": rows(db, _LOG_FACTORS, method),
-            "parts": rows(db, _LOG_PARTS, method),
-            "diagnosis": rows(db, _DIAGNOSIS, method),
-        }
+    with open_results(store.database) as db:
+        return LogErrorReport(
+            simulated=is_simulated(db),
+            method=method,
+            factors=rows(db, _LOG_FACTORS, method),
+            parts=rows(db, _LOG_PARTS, method),
+            diagnosis=rows(db, _DIAGNOSIS, method),
+        )
 
 
 # A season in which a log was replaced has a factor per part: its line here has the mean, and those

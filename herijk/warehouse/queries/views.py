@@ -7,10 +7,9 @@ import datetime as dt
 from types import TracebackType
 from typing import Self
 
-import duckdb
 import polars as pl
 
-from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.warehouse.store.database import open_database
 from herijk.warehouse.store.store import Store
 
 
@@ -18,11 +17,9 @@ class Views:
     """The open database, with the questions pages ask."""
 
     def __init__(self, store: Store) -> None:
-        if not store.database.exists():
-            raise MissingKnowledgeError(f"{store.database} is not there; make it with rebuild")
         self.store = store
         self._contents: dict[str, int] = {}
-        self._db = duckdb.connect(store.database, read_only=True)
+        self._db = open_database(store.database)
         self._db.execute("SET threads = 1")  # rows in one order: same tables, same bytes
 
     def __enter__(self) -> Self:

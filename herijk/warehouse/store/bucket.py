@@ -70,8 +70,8 @@ class BucketPath:
     def iterdir(self) -> Iterator["BucketPath"]:
         """Objects and prefixes directly below it, sorted."""
         with _explained(self):
-            found = obstore.list_with_delimiter(_client(self.bucket), str(self.key))
-        below = [*(one["path"] for one in found["objects"]), *found["common_prefixes"]]
+            listing = obstore.list_with_delimiter(_client(self.bucket), str(self.key))
+        below = [*(one["path"] for one in listing["objects"]), *listing["common_prefixes"]]
         yield from (BucketPath(self.bucket, PurePosixPath(path)) for path in sorted(below))
 
     def glob(self, pattern: str) -> Iterator["BucketPath"]:
@@ -94,10 +94,10 @@ class BucketPath:
     def read_end(self, size: int) -> bytes:
         """The last bytes, all where there are fewer; raises as `read_bytes`."""
         with _explained(self):
-            found = obstore.get(
+            response = obstore.get(
                 _client(self.bucket), str(self.key), options={"range": {"suffix": size}}
             )
-            return found.bytes().to_bytes()
+            return response.bytes().to_bytes()
 
     def write_bytes(self, content: bytes) -> None:
         """Puts an object, in the place of an older one."""

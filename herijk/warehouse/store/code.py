@@ -48,10 +48,10 @@ class Sources:
     @classmethod
     def installed(cls) -> Self:
         """The package that is running, with what earlier processes found out about it."""
-        found = cls(Path(__file__).parents[3])
+        sources = cls(Path(__file__).parents[3])
         with suppress(OSError, ValueError):
-            found.known = json.loads(_cache_file().read_text(encoding="utf-8"))
-        return found
+            sources.known = json.loads(_cache_file().read_text(encoding="utf-8"))
+        return sources
 
     def hash_of(self, *modules: str) -> str:
         """Hash of the given modules and all that they import from the package."""

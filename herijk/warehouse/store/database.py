@@ -5,7 +5,7 @@ sees the new ones. Nobody sees half of either. What is asked of it is in `wareho
 and `warehouse.queries.audit`.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -110,6 +110,15 @@ def _quoted(text: str | None) -> str:
     return "'" + (text or "").replace("'", "''") + "'"
 
 
+Row = dict[str, Any]
+"""A row of a query, by the names of its columns."""
+
+NO_TOW: Final = (
+    "the last rebuild found none that it could use; `herijk check ARCHIVE` and the table "
+    "quarantine say why"
+)
+
+
 def open_database(path: Path) -> duckdb.DuckDBPyConnection:
     """The database, to read only.
 
@@ -124,17 +133,37 @@ def open_database(path: Path) -> duckdb.DuckDBPyConnection:
     try:
         return duckdb.connect(path, read_only=True)
     except duckdb.Error as error:
-        held = isinstance(error, duckdb.IOException) and "lock" in str(error).casefold()
-        raise UnavailableError(f"{path} cannot be opened: {_HELD if held else _SPOILT}") from error
+        locked = isinstance(error, duckdb.IOException) and "lock" in str(error).casefold()
+        raise UnavailableError(
+            f"{path} cannot be opened: {_HELD if locked else _SPOILT}"
+        ) from error
 
 
-def rows(
-    connection: duckdb.DuckDBPyConnection, query: str, *values: object
-) -> list[dict[str, Any]]:
+def open_results(path: Path) -> duckdb.DuckDBPyConnection:
+    """The database of a rebuild that accepted a tow.
+
+    Raises:
+        MissingKnowledgeError: it was not made yet, or no tow was accepted.
+        UnavailableError: as `open_database`.
+    """
+    connection = open_database(path)
+    if connection.execute("SELECT 1 FROM tows LIMIT 1").fetchone() is None:
+        connection.close()
+        raise MissingKnowledgeError(f"{path} has no tow: {NO_TOW}")
+    return connection
+
+
+def choice_of(names: Iterable[str]) -> str:
+    """What can be chosen, for a sentence: names, or why there is none."""
+    known = ", ".join(sorted(names))
+    return f"there are {known}" if known else f"there is none: {NO_TOW}"
+
+
+def rows(connection: duckdb.DuckDBPyConnection, query: str, *values: object) -> list[Row]:
     """What a query gives, a dictionary a row; `values` fill its question marks."""
-    found = connection.execute(query, list(values))
-    names = [column[0] for column in found.description or []]
-    return [dict(zip(names, row, strict=True)) for row in found.fetchall()]
+    cursor = connection.execute(query, list(values))
+    names = [column[0] for column in cursor.description or []]
+    return [dict(zip(names, row, strict=True)) for row in cursor.fetchall()]
 
 
 def is_simulated(connection: duckdb.DuckDBPyConnection) -> bool:

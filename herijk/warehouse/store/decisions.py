@@ -48,7 +48,7 @@ def read_decisions(path: Path) -> tuple[Decision, ...]:
     if not path.exists():
         return ()
     try:
-        found = _File.model_validate(tomllib.loads(path.read_text(encoding="utf-8"))).besluit
+        decisions = _File.model_validate(tomllib.loads(path.read_text(encoding="utf-8"))).besluit
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])
@@ -58,11 +58,11 @@ def read_decisions(path: Path) -> tuple[Decision, ...]:
         ) from error
     except (ValueError, RecursionError) as error:
         raise MissingKnowledgeError(f"{path}: not valid TOML: {error}") from error
-    tows = [decision.sleep_id for decision in found]
+    tows = [decision.sleep_id for decision in decisions]
     twice = sorted({tow for tow in tows if tows.count(tow) > 1})
     if twice:
         raise MissingKnowledgeError(f"{path}: more than one decision about {', '.join(twice)}")
-    return tuple(sorted(found, key=lambda decision: (decision.datum, decision.sleep_id)))
+    return tuple(sorted(decisions, key=lambda decision: (decision.datum, decision.sleep_id)))
 
 
 def decision_table(decisions: Sequence[Decision]) -> pl.DataFrame:

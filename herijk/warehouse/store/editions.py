@@ -111,8 +111,8 @@ class About(BaseModel):
     def expected_seal(self) -> str:
         """SHA-256 of everything but the seal."""
         unchained = {"number", "after_seal"} if self.number is None else set()
-        held = self.model_dump(mode="json", exclude={"seal", *unchained})
-        return hashlib.sha256(json.dumps(held, sort_keys=True).encode()).hexdigest()
+        content = self.model_dump(mode="json", exclude={"seal", *unchained})
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
 @dataclass(frozen=True)

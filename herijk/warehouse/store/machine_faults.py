@@ -5,6 +5,7 @@ the chain of causes, and the few words by which SQLite, DuckDB and Polars pass o
 """
 
 import errno
+import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -19,6 +20,9 @@ _FULL: Final = (
 _FORBIDDEN: Final = (
     "{root} cannot be written. Give the user who runs this the right to write in all of it, or "
     "name another folder with --data"
+)
+_ELSEWHERE: Final = (
+    "{path} cannot be read or written. Give the user who runs this the right to it, or name another"
 )
 _HANDLES: Final = (
     "this process may not open more files. Allow more (ulimit -n 1024; in systemd "
@@ -70,6 +74,9 @@ _BY_WORDS: Final = {
     "disk image is malformed": _DAMAGED_RECORDS,
 }
 
+_LITTLE: Final = 1 << 20
+"""Bytes: with less a disk is full."""
+
 REASSURANCE: Final = "What was there before is whole, and what was finished is kept."
 
 
@@ -85,10 +92,29 @@ def machine_faults_explained(root: Path) -> Iterator[None]:
     except (HerijkError, KeyboardInterrupt, SystemExit):
         raise
     except BaseException as error:  # a panic of a library in Rust is no Exception
-        found = _machine_fault(error)
-        if found is None:
+        explanation = _machine_fault(error)
+        if explanation is None:
             raise
-        raise UnavailableError(f"{found.format(root=root)}. {REASSURANCE}") from error
+        said = _said(explanation, error, root)
+        raise UnavailableError(f"{said}. {REASSURANCE}") from error
+
+
+def _said(found: str, error: BaseException, root: Path) -> str:
+    """The sentence about a fault of the machine, with the path that it is about."""
+    if found == _FORBIDDEN:
+        names = (str(e.filename) for e in _causes(error) if isinstance(e, OSError) and e.filename)
+        path = next(names, None)
+        if path is not None and not Path(path).absolute().is_relative_to(root.absolute()):
+            return _ELSEWHERE.format(path=path)
+    if found == _BROKEN_DISK and _is_full(root):
+        found = _FULL
+    return found.format(root=root)
+
+
+def _is_full(root: Path) -> bool:
+    """Whether no room is left: SQLite calls that an error of the disk."""
+    folder = next((p for p in (root, *root.absolute().parents) if p.is_dir()), None)
+    return folder is not None and shutil.disk_usage(folder).free < _LITTLE
 
 
 def is_machine_fault(error: BaseException) -> bool:
@@ -101,9 +127,9 @@ def _machine_fault(error: BaseException) -> str | None:
         if isinstance(one, OSError) and one.errno in _BY_NUMBER:
             return _BY_NUMBER[one.errno]
         text = str(one).casefold()
-        for words, found in _BY_WORDS.items():
+        for words, kind in _BY_WORDS.items():
             if words in text:
-                return found
+                return kind
     return None
 
 

@@ -121,8 +121,8 @@ class Store:
         if not path.exists():
             return None
         try:
-            held = (_footer(path).metadata or {}).get(FINGERPRINT_KEY.encode())
-            return None if held is None else bytes(held).decode()
+            stored = (_footer(path).metadata or {}).get(FINGERPRINT_KEY.encode())
+            return None if stored is None else bytes(stored).decode()
         except _UNREADABLE as error:
             if is_machine_fault(error):
                 raise

@@ -1,6 +1,8 @@
 """Archives in forms of their own: other headers, units, sheets, files and folders."""
 
+import os
 import shutil
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -176,3 +178,23 @@ def test_a_workbook_of_photographs_is_nothing(tmp_path: Path, archive: Archive) 
     assert [(c.reason_code, c.proposals[0].line) for c in causes] == [
         ("unrecognised_file", 'ignore = ["cijfers.csv"]')
     ]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems refuse such names")
+def test_names_that_are_no_text_and_links_to_themselves_are_told(
+    archive: Archive, good_scan: Scan
+) -> None:
+    folder = os.fsencode(archive.root / "meetdata_2014")
+    Path(os.fsdecode(folder + b"/bo\xffot.csv")).write_text("x")
+    (archive.root / "meetdata_2014/zelf.csv").symlink_to("zelf.csv")
+    (archive.root / "sleeplijsten/sleeplijst_2015.csv").symlink_to("sleeplijst_2015.csv")
+    (archive.root / "meetdata_2014/lus").symlink_to(".")
+    scan = archive.scan()
+    assert {(f.reason_code, f.path) for f in scan.faults} == {
+        ("unrecognised_file", "meetdata_2014/bo\N{REPLACEMENT CHARACTER}ot.csv"),
+        ("unrecognised_file", "meetdata_2014/lus"),
+        ("path_outside_archive", "meetdata_2014/zelf.csv"),
+        ("path_outside_archive", "sleeplijsten/sleeplijst_2015.csv"),
+    }
+    assert scan.good.keys() == good_scan.good.keys()
+    assert {c.reason_code for c in check_archive(archive.root).causes} >= {"unrecognised_file"}

@@ -40,7 +40,7 @@ def bring_in(archive: Archive, store: Store) -> None:
     """A rebuild as far as the tables about the archive, only where something changed."""
     intake.bring_in(store, archive.root)
     if ARCHIVE.is_stale(store, ()):
-        ARCHIVE.make(store, (), TODAY)
+        ARCHIVE.make(store, (), today=TODAY)
 
 
 def test_windows_are_read_as_written(archive: Archive) -> None:
