@@ -31,9 +31,9 @@ from distributed import Client
 from polars.testing import assert_frame_equal
 
 from benchmarks.world import RATE_HZ, SEASONS, World
-from herijk.assets import rebuild
+from herijk.assets import rebuild, runs
 from herijk.assets.cluster import read_seasons
-from herijk.assets.resources import Quiet
+from herijk.assets.progress import Quiet
 from herijk.pipeline.method.definition import shipped_method, shipped_methods
 from herijk.warehouse.editions.publish import Terms, publish
 from herijk.warehouse.intake import seasons as intake
@@ -135,7 +135,7 @@ def read_there(
         store = remote_store(data, here)
         intake.index(store, archive)
         with (
-            rebuild._instance(store) as instance,
+            runs.instance_of(store) as instance,
             dask_cluster(workers, store.dagster_home) as cluster,
         ):
             warm_up(cluster)

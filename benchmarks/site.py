@@ -21,8 +21,8 @@ from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
+from herijk.assets.progress import Quiet
 from herijk.assets.rebuild import rebuild
-from herijk.assets.resources import Quiet
 from herijk.dashboards.site import build_site
 from herijk.dashboards.site.pages import MENU
 from herijk.pipeline.method.definition import shipped_methods

@@ -2,7 +2,7 @@
 
 import shutil
 from collections.abc import Collection, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from unittest import mock
@@ -14,8 +14,9 @@ import pytest
 from hypothesis import settings
 
 import herijk.assets.rebuild
+import herijk.assets.runs
+from herijk.assets.progress import Quiet
 from herijk.assets.rebuild import Done
-from herijk.assets.resources import Quiet
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.warehouse.store.store import Store
@@ -35,6 +36,11 @@ def _dagster_in_memory(store: Store) -> Iterator[dg.DagsterInstance]:
         yield instance
 
 
+def _without_site() -> AbstractContextManager[object]:
+    """Inside, the site counts as made."""
+    return mock.patch.object(herijk.assets.rebuild, "site_is_stale", return_value=False)
+
+
 @dataclass(frozen=True)
 class Workbench:
     """An archive and a data folder that a test may change."""
@@ -47,16 +53,22 @@ class Workbench:
         return Store(self.data)
 
     def rebuild(
-        self, methods: Sequence[str] = METHODS, seasons: Collection[int] | None = None
+        self,
+        methods: Sequence[str] = METHODS,
+        seasons: Collection[int] | None = None,
+        site: bool = False,
     ) -> Done:
-        """A rebuild in this process; Dagster's records are kept in memory to save time."""
-        with self.records_in_memory():
+        """A rebuild in this process.
+
+        To save time Dagster's records are kept in memory, and pages are made only for who asks.
+        """
+        with self.records_in_memory(), nullcontext() if site else _without_site():
             return herijk.assets.rebuild.rebuild(self.archive, self.data, methods, Quiet(), seasons)
 
     @staticmethod
     def records_in_memory() -> AbstractContextManager[object]:
         """Inside, rebuilds keep no records of Dagster's on disk."""
-        return mock.patch.object(herijk.assets.rebuild, "_instance", _dagster_in_memory)
+        return mock.patch.object(herijk.assets.runs, "instance_of", _dagster_in_memory)
 
     def table(self, name: str) -> pl.DataFrame:
         """A table as a reader of the database gets it."""
@@ -85,7 +97,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Workbench:
     root = tmp_path_factory.mktemp("built")
     bench = Workbench(root / "archive", root / "data")
     write_simulated_archive(bench.archive, simulate_world(SMALL))
-    bench.rebuild()
+    bench.rebuild(site=True)
     return bench
 
 

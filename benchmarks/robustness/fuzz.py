@@ -8,7 +8,6 @@ else or take more than two seconds. Where it accepts samples, an independent rea
 bytes (Python's own csv, gzip and float) must give the same numbers.
 """
 
-import csv
 import gzip
 import io
 import random
@@ -19,21 +18,27 @@ import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
+import nptdms
 import numpy as np
 import polars as pl
 import pyarrow as pa
+import xlsxwriter
 
 from herijk.assets.settings import read_settings
 from herijk.pipeline.channels import SAMPLE_SCHEMA
-from herijk.pipeline.errors import HerijkError
+from herijk.pipeline.errors import DefectiveInputError, HerijkError
 from herijk.pipeline.method.definition import parse_method, shipped_methods, shipped_text
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
-from herijk.warehouse.archive import FileHashes, index_archive
+from herijk.tables.lake import ListedTows
+from herijk.warehouse.archive import FileHashes, index_archive, tows
+from herijk.warehouse.archive.faults import REASONS
+from herijk.warehouse.archive.lists import Wording, read_list
 from herijk.warehouse.archive.profile import Profiles, read_profiles
 from herijk.warehouse.archive.samples import read_samples
 from herijk.warehouse.store.decisions import FILE_NAME as DECISIONS
@@ -147,10 +152,8 @@ def independent(data: bytes) -> np.ndarray:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
         text = data.decode("cp1252")
-    usual = csv.field_size_limit(len(text) + 1)  # of the whole process, so put back
-    lines = text.rstrip("\r\n").split("\n")  # a quotation mark ends with its line
-    rows = [next(csv.reader([line], delimiter=";"), []) for line in lines]
-    csv.field_size_limit(usual)
+    lines = text.rstrip("\r\n").split("\n")
+    rows = [line.rstrip("\r").split(";") for line in lines]
     width = len(rows[0])
     return np.array([_python_row(row, width) for row in rows[1:]])
 
@@ -162,7 +165,9 @@ def _python_row(row: list[str], width: int) -> list[float]:
 
 
 def _python_number(cell: str) -> float:
-    stripped = cell.strip(" \t\r")
+    stripped = cell.strip(" \t")
+    if len(stripped) > 1 and stripped[0] == stripped[-1] == '"':
+        stripped = stripped[1:-1].strip(" \t")
     if not _NUMBER.fullmatch(stripped):
         return np.nan
     number = float(stripped.replace(",", "."))
@@ -238,12 +243,55 @@ def targets(folder: Path) -> list[Target]:
         Target("samples.csv.gz", gzip.compress(text, mtime=0), read),
         Target("samples.csv.zst", zstd, read),
         Target("samples.parquet", parquet.getvalue(), read),
+        Target("samples.lvm", _lvm(frame), read),
+        Target("samples.tdms", _tdms(frame), read),
+        Target("list.xlsx", _xlsx(lists[1]), _read_list),
+        Target("list.csv", lists[1].read_bytes(), _read_list),
         *(Target(str(path), path.read_bytes(), here) for path in lists),
         Target(DECISIONS, _DECISION, lambda path, _: read_decisions(path) and None),
         Target("beheer.toml", _SETTINGS, lambda path, _: read_settings(path.parent) and None),
         Target(ABOUT, b'{"edition": "1", "kind": "as_printed"}', _read_about),
         Target("method.toml", shipped_text(list(shipped_methods())[-1]).encode(), _read_method),
     ]
+
+
+def _lvm(frame: pl.DataFrame) -> bytes:
+    """A LabVIEW file with a segment per run."""
+    lines = ["LabVIEW Measurement\t", "Separator\tTab", "***End_of_Header***\t", ""]
+    for _, run in frame.group_by("run", maintain_order=True):
+        lines += ["Channels\t6", "***End_of_Header***\t"]
+        lines += run.drop("run").write_csv(separator="\t").splitlines()
+    return "\n".join([*lines, ""]).encode()
+
+
+def _tdms(frame: pl.DataFrame) -> bytes:
+    """A TDMS file with a group per run."""
+    content = io.BytesIO()
+    with nptdms.TdmsWriter(content) as writer:
+        for (number,), run in frame.group_by("run", maintain_order=True):
+            channels = run.drop("run").cast(pl.Float64, strict=False)
+            objects = [
+                nptdms.ChannelObject(f"run {number}", series.name, series.to_numpy())
+                for series in channels
+            ]
+            writer.write_segment(objects)
+    return content.getvalue()
+
+
+def _xlsx(tow_list: Path) -> bytes:
+    """A tow list as a workbook."""
+    content = io.BytesIO()
+    with xlsxwriter.Workbook(content) as book:
+        sheet = book.add_worksheet("2009")
+        for row, line in enumerate(tow_list.read_text("cp1252").splitlines()):
+            sheet.write_row(row, 0, line.split(";"))
+    return content.getvalue()
+
+
+def _read_list(path: Path, data: bytes) -> None:
+    for row in read_list(data, tows.COLUMNS, "bad_list_row", path.name, Wording(), ListedTows):
+        with suppress(DefectiveInputError):  # of a row: it is set aside
+            tows.read_tow(row, 2009, 20)
 
 
 _DECISION: Final = b"""[[besluit]]
@@ -288,6 +336,16 @@ def _hangs(*_: object) -> None:
     raise TimeoutError(f"no answer within {HANG_S:.0f} s")
 
 
+def assert_told(error: HerijkError, found: Findings, number: int, path: Path) -> None:
+    """A refusal must reach a person: a sentence, and of a file of the archive a known code."""
+    is_sentence = len(str(error)) > 10 and str(error).isprintable()
+    is_known = not isinstance(error, DefectiveInputError) or error.reason_code in REASONS
+    if not (is_sentence and is_known):
+        found.failures.append(
+            f"input {number}, {path.name}: refused, but not told: {error!r}"[:300]
+        )
+
+
 def _try(folder: Path, target: Target, data: bytes, number: int, found: Findings) -> None:
     path = folder / target.name
     path.write_bytes(data)
@@ -296,8 +354,9 @@ def _try(folder: Path, target: Target, data: bytes, number: int, found: Findings
     try:
         target.read(path, data)
         outcome = "accepted"
-    except HerijkError:
+    except HerijkError as error:
         outcome = "refused"
+        assert_told(error, found, number, path)
     except (Exception, pl.exceptions.PanicException) as error:
         outcome = "FAILED"
         what = f"input {number}, {path.name}: {type(error).__name__}: {error}"[:300]

@@ -25,9 +25,9 @@ from pathlib import Path
 
 import duckdb
 
+import herijk.dashboards.site  # noqa: F401 - takes a second, and victims are killed by the clock
+from herijk.assets.progress import Quiet
 from herijk.assets.rebuild import rebuild
-from herijk.assets.resources import Quiet
-from herijk.dashboards.site import render
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.warehouse.store.store import Store, fingerprint, table_digest
@@ -42,7 +42,6 @@ SETTLED = 10.0
 PAUSE_S = 1.0
 LONGER = 1.5
 """So many times as long as the last undisturbed rebuild may one take that does everything first."""
-SCRIPTS = ("vega.js", "charts-nl.js", "charts-en.js")
 
 
 @dataclass
@@ -105,14 +104,7 @@ class Victim:
 
 
 def be_victim(archive: Path, data: Path) -> None:
-    """Waits for the word, and rebuilds.
-
-    The scripts that every site has are taken from the one that is there: to make them takes each
-    process three seconds.
-    """
-    scripts = {name: (data / "site" / "static" / name).read_text("utf-8") for name in SCRIPTS}
-    render.vega_bundle = lambda: scripts["vega.js"]
-    render.charts_script = lambda language: scripts[f"charts-{language}.js"]
+    """Waits for the word, and rebuilds."""
     print("ready", flush=True)
     sys.stdin.readline()
     rebuild(archive, data, METHODS, Quiet())

@@ -6,7 +6,9 @@ import dagster as dg
 import polars as pl
 
 from herijk.assets.partitions import seasons
-from herijk.assets.resources import Progress, Setup
+from herijk.assets.progress import Progress
+from herijk.assets.resources import Setup
+from herijk.warehouse.archive import ArchiveIndex
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.code import ADDERS, READERS, code_hash
 
@@ -31,15 +33,18 @@ SUBJECT = {"herijk/subject": "archive"}
 def archive_index(setup: Setup) -> dg.MaterializeResult:
     """Boats, tow lists and files of the archive, with what is wrong in the lists."""
     listed = intake.index(setup.store, setup.archive_root)
-    return dg.MaterializeResult(
-        metadata={
-            "dagster/row_count": listed.tows.height,
-            "boats": listed.boats.height,
-            "files": listed.files.height,
-            "faults": len(listed.faults),
-            "simulated": listed.profiles.simulated,
-        }
-    )
+    return dg.MaterializeResult(metadata=index_metadata(listed))
+
+
+def index_metadata(listed: ArchiveIndex) -> dict[str, int | bool]:
+    """What is shown of an index."""
+    return {
+        "dagster/row_count": listed.tows.height,
+        "boats": listed.boats.height,
+        "files": listed.files.height,
+        "faults": len(listed.faults),
+        "simulated": listed.profiles.simulated,
+    }
 
 
 @dg.asset(

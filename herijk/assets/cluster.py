@@ -16,7 +16,8 @@ from dagster_dask import dask_executor
 from distributed.scheduler import KilledWorker, NoWorkerError
 
 from herijk.assets import archive
-from herijk.assets.resources import QUIET_LOG, Quiet, Setup
+from herijk.assets.progress import Quiet
+from herijk.assets.resources import QUIET_LOG, Setup
 from herijk.pipeline.errors import UnavailableError
 
 

@@ -8,7 +8,8 @@ import dagster as dg
 from herijk.assets import automation
 from herijk.assets.jobs import job_defs
 from herijk.assets.notify import notifier_of
-from herijk.assets.resources import Quiet, Setup
+from herijk.assets.progress import Quiet
+from herijk.assets.resources import Setup
 from herijk.assets.settings import Settings, read_settings
 
 

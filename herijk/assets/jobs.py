@@ -5,7 +5,8 @@ from typing import Final
 import dagster as dg
 
 from herijk.assets import archive, checks
-from herijk.assets.resources import Progress, Setup, fixed
+from herijk.assets.progress import Progress
+from herijk.assets.resources import Setup, fixed
 from herijk.assets.shown import with_site
 from herijk.assets.site import site
 from herijk.assets.tables import STEP_ASSETS

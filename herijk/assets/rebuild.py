@@ -1,43 +1,36 @@
-"""A rebuild: the jobs of the code location, run in process, only where something changed.
+"""A rebuild: whatever is stale is made again, as runs of Dagster's jobs; then a report.
 
-The decision what is stale is `warehouse`'s; here it becomes Dagster runs, with their history in
-the data folder.
+The decision what is stale is `warehouse`'s. Dagster is imported when there is work to do: looking
+that there is none takes a second, importing it two.
 """
 
 import datetime as dt
-import os
-import shutil
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Collection, Sequence
+from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
-import dagster as dg
-
-from herijk.assets import partitions
-from herijk.assets.jobs import BUILD_JOBS, CHECK, INDEX, NAMES, READ, SITE, job_defs
+from herijk.assets.progress import Progress
 from herijk.assets.report import write_report
-from herijk.assets.resources import QUIET_LOG, Progress, Setup
-from herijk.assets.settings import read_settings
-from herijk.assets.site import site_is_stale
+from herijk.assets.settings import Settings, read_settings
+from herijk.assets.site_state import site_is_stale
 from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.warehouse.build.graph import DATABASE
+from herijk.pipeline.method.definition import Method
+from herijk.warehouse.archive import ArchiveIndex
+from herijk.warehouse.build.graph import DATABASE, STEPS
 from herijk.warehouse.build.step import Step
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.intake.lake import ArchiveChangedError
 from herijk.warehouse.queries.change_report import is_reported
-from herijk.warehouse.store.files import written_beside
-from herijk.warehouse.store.lock import nobody_writes, only_writer
+from herijk.warehouse.store.lock import only_writer
 from herijk.warehouse.store.machine_faults import machine_faults_explained
+from herijk.warehouse.store.methods import KnownMethods
 from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import DamagedFileError, Store
 
-INSTANCE_SETTINGS = Path(__file__).with_name("dagster.yaml")
-"""Dagster's settings for a new data folder."""
-
-STEP_TAG: Final = "herijk/step"
-"""Marks runs that live and die with the process of a rebuild."""
+if TYPE_CHECKING:
+    from herijk.assets.runs import Jobs
 
 ROUNDS: Final = 3
 """So many times a rebuild begins again because the archive changed under its hands."""
@@ -88,17 +81,9 @@ def rebuild(
     check_apart(archive, data)
     with machine_faults_explained(data):
         settings = read_settings(data)
-    setup = Setup(
-        archive=str(archive),
-        data=str(data),
-        methods=list(methods),
-        set_aside_share=settings.set_aside_share,
-        factor_jump=settings.factor_jump,
-    )
-    with machine_faults_explained(data), only_writer(data), _instance(setup.store) as instance:
-        _bury_the_dead(instance)
-        work = _Rebuild(_Jobs(job_defs(setup, progress), instance), setup, progress, settings.dask)
-        _mending(lambda: work.do(archive, seasons))
+    with machine_faults_explained(data), only_writer(data), ExitStack() as opened:
+        work = _Rebuild(archive, Store(data), methods, progress, settings, opened)
+        _mending(lambda: work.do(seasons))
     return work.done
 
 
@@ -123,102 +108,96 @@ def _mending(work: Callable[[], None]) -> None:
 class _Rebuild:
     """One rebuild: knows what it did so far, also when it begins again."""
 
-    def __init__(self, jobs: "_Jobs", setup: Setup, progress: Progress, dask: str | None) -> None:
-        self.jobs, self.setup, self.progress, self.dask = jobs, setup, progress, dask
-        self.store, self.done = setup.store, Done()
+    def __init__(
+        self,
+        archive: Path,
+        store: Store,
+        methods: Sequence[str],
+        progress: Progress,
+        settings: Settings,
+        opened: ExitStack,
+    ) -> None:
+        self.archive, self.store, self.names = archive, store, methods
+        self.progress, self.settings, self.opened = progress, settings, opened
+        self.done = Done()
+        self._index: ArchiveIndex | None = None
+        self._jobs: Jobs | None = None
 
-    def do(self, archive: Path, seasons: Collection[int] | None) -> None:
+    @property
+    def jobs(self) -> "Jobs":
+        """Dagster's jobs, from the first work on."""
+        self._jobs = self._jobs or self._open_jobs()
+        return self._jobs
+
+    def _open_jobs(self) -> "Jobs":
+        from herijk.assets.resources import Setup  # noqa: PLC0415 - see above
+        from herijk.assets.runs import opened_jobs  # noqa: PLC0415
+
+        setup = Setup(
+            archive=str(self.archive),
+            data=str(self.store.root),
+            methods=list(self.names),
+            set_aside_share=self.settings.set_aside_share,
+            factor_jump=self.settings.factor_jump,
+        )
+        jobs = self.opened.enter_context(opened_jobs(setup, self.progress))
+        if self._index is not None:
+            jobs.record_index(self._index)
+        return jobs
+
+    @property
+    def methods(self) -> list[Method]:
+        """The methods to apply."""
+        known = KnownMethods.of(self.store)
+        return [known.get(name) for name in self.names]
+
+    def do(self, seasons: Collection[int] | None) -> None:
         """Everything that is stale, and the report."""
-        self._read(archive, seasons)
-        for step in BUILD_JOBS:
+        self._read(seasons)
+        for step in STEPS:
             self._build(step)
-        self._make_site()
+        if site_is_stale(self.store):
+            self.progress.step("making the site")
+            self.jobs.make_site()
         if not is_reported(self.store):
             self.progress.step("checking the tables")
-            self.jobs.run(CHECK)
+            self.jobs.check()
+        checks = [] if self._jobs is None else self._jobs.checks
         now = dt.datetime.now().astimezone()
-        self.done.report = write_report(self.store, self.done.work, self.jobs.checks, now)
+        self.done.report = write_report(self.store, self.done.work, checks, now)
 
-    def _read(self, archive: Path, seasons: Collection[int] | None) -> None:
-        self.progress.step("looking what the archive holds")
-        self.jobs.run(INDEX)
+    def _read(self, seasons: Collection[int] | None) -> None:
+        self.progress.step("looking at what the archive holds")
+        self._index = intake.index(self.store, self.archive)
         intake.forget_unlisted_seasons(self.store)
-        stale = intake.stale_seasons(self.store, archive, seasons)
+        stale = intake.stale_seasons(self.store, self.archive, seasons)
         self.done.seasons = sorted({*self.done.seasons, *stale})
-        if self.dask is not None and stale:
-            stale = self._read_elsewhere(self.dask, stale)
+        if self.settings.dask is not None and stale:
+            stale = self._read_elsewhere(self.settings.dask, stale)
         self.progress.expect(intake.count_listed(self.store, stale))
         for season in stale:
-            self.jobs.run(READ, str(season))
+            self.jobs.read(season)
 
     def _read_elsewhere(self, address: str, seasons: Sequence[int]) -> list[int]:
         """Has a Dask cluster read seasons; gives those to read here, where an error comes out."""
         self.progress.step(f"reading {len(seasons)} seasons on the Dask cluster at {address}")
-        failed = self.jobs.run_on_dask(address, self.setup, seasons)
+        failed = self.jobs.read_on_dask(address, (self.archive, self.store.root), seasons)
         for season, why in failed.items():
             self.progress.step(f"season {season} could not be read there ({why}); reading it here")
         return list(failed)
 
     def _build(self, step: Step) -> None:
         """Makes the tables of a step where they are stale, per method where they are made so."""
-        chosen = self.setup.chosen_methods
+        chosen = self.methods
         for methods in [[m] for m in chosen] if step.per_method else [chosen]:
             if not step.is_stale(self.store, methods):
                 continue
             method = methods[0].name if step.per_method else None
             self.progress.step(step.says.format(method))
-            self.jobs.run(BUILD_JOBS[step], method)
+            self.jobs.build(step, method)
             if method is not None and method not in self.done.methods:
                 self.done.methods.append(method)
             self.done.database |= step is DATABASE
-
-    def _make_site(self) -> None:
-        if site_is_stale(self.store):
-            self.progress.step("making the site")
-            self.jobs.run(SITE)
-
-
-class _Jobs:
-    """Runs jobs in process; an error comes out as the step raised it."""
-
-    def __init__(self, defs: dg.Definitions, instance: dg.DagsterInstance) -> None:
-        self.defs, self.instance = defs, instance
-        self._checks: dict[dg.AssetCheckKey, dg.AssetCheckEvaluation] = {}
-
-    @property
-    def checks(self) -> list[dg.AssetCheckEvaluation]:
-        """What the checks said, each the last time."""
-        return list(self._checks.values())
-
-    def run(self, job: str, partition: str | None = None) -> None:
-        """Runs a job, for a season or method where it has partitions."""
-        if partition is not None:
-            kind = partitions.seasons if job == READ else partitions.methods
-            self.instance.add_dynamic_partitions(str(kind.name), [partition])
-        result = self.defs.resolve_job_def(job).execute_in_process(
-            instance=self.instance,
-            partition_key=partition,
-            run_config=QUIET_LOG,
-            tags={STEP_TAG: job},
-        )
-        self._keep(result.get_asset_check_evaluations())
-
-    def run_on_dask(self, address: str, setup: Setup, seasons: Sequence[int]) -> Mapping[int, str]:
-        """Has a cluster read seasons; gives why, for those that it could not read."""
-        try:
-            from herijk.assets.cluster import read_seasons  # noqa: PLC0415 - needs the extra dask
-        except ImportError as error:
-            raise MissingKnowledgeError(
-                f"to read on {address} a library is needed that is not there; install it with: "
-                "pip install 'herijk[dask]'"
-            ) from error
-        folders = setup.archive_root, setup.store.root
-        read = read_seasons(self.instance, address, folders, seasons, {STEP_TAG: READ})
-        self._keep(read.checks)
-        return read.failed
-
-    def _keep(self, checks: Iterable[dg.AssetCheckEvaluation]) -> None:
-        self._checks |= {check.asset_check_key: check for check in checks}
 
 
 def check_apart(archive: Path, data: Path) -> None:
@@ -232,55 +211,3 @@ def check_apart(archive: Path, data: Path) -> None:
             f"the archive {archive} lies in the data folder {data}, or is the same; name a data "
             "folder outside the archive with --data"
         )
-
-
-def taking_over(store: Store) -> Iterator[str]:
-    """Ends the runs of a server that was stopped or killed: later ones would wait for them.
-
-    Returns:
-        A sentence for anyone who starts the new server, about each kind of run that was found.
-    """
-    if not nobody_writes(store.root):
-        yield "A rebuild is at work; scheduled ones wait for it."
-        return
-    with _instance(store) as instance:
-        dead = instance.get_runs(dg.RunsFilter(statuses=list(_BEGUN)))
-        for run in dead:
-            instance.report_run_failed(run, "The process it was part of was stopped or killed.")
-        waiting = instance.get_runs_count(dg.RunsFilter(statuses=[dg.DagsterRunStatus.QUEUED]))
-    if dead:
-        yield f"{len(dead)} runs that were stopped or killed are recorded as failed."
-    if waiting:
-        yield f"{waiting} runs wait in the queue, and are done now one by one."
-
-
-_BEGUN: Final = (
-    dg.DagsterRunStatus.STARTED,
-    dg.DagsterRunStatus.STARTING,
-    dg.DagsterRunStatus.CANCELING,
-)
-
-
-def _bury_the_dead(instance: dg.DagsterInstance) -> None:
-    """Records runs of killed rebuilds as failed; only who holds the lock can tell."""
-    unfinished = dg.RunsFilter(tags={STEP_TAG: list(NAMES)}, statuses=[dg.DagsterRunStatus.STARTED])
-    for run in instance.get_runs(unfinished):
-        instance.report_run_failed(run, "The rebuild it was part of was killed.")
-
-
-@contextmanager
-def _instance(store: Store) -> Iterator[dg.DagsterInstance]:
-    """Dagster's own records, under the data folder."""
-    home = prepare_home(store)
-    os.environ["DAGSTER_HOME"] = str(home)
-    with dg.DagsterInstance.from_config(str(home)) as instance:
-        yield instance
-
-
-def prepare_home(store: Store) -> Path:
-    """Dagster's folder, with settings that may be changed by hand afterwards."""
-    settings = store.dagster_home / "dagster.yaml"
-    if not settings.exists():
-        with written_beside(settings) as beside:
-            shutil.copyfile(INSTANCE_SETTINGS, beside)
-    return store.dagster_home.resolve()

@@ -1,4 +1,4 @@
-"""What a rebuild leaves to be read: a page, JSON, and a message to who wants one.
+"""What a rebuild leaves to be read: a page, JSON, and a message to anyone who wants one.
 
 They are under `report/` in the data folder: `latest.json` about the last rebuild; `latest.html`
 about the last that changed something, with the day of the last one after it that changed nothing;
@@ -9,9 +9,7 @@ import datetime as dt
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
-
-import dagster as dg
+from typing import TYPE_CHECKING, Any, Final
 
 from herijk.assets.notify import Message, Notifier
 from herijk.dashboards.report import (
@@ -27,11 +25,17 @@ from herijk.warehouse.queries.change_report import as_plain, change_report, reme
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.store import Store
 
+if TYPE_CHECKING:  # Dagster takes two seconds, and only a rebuild with work to do needs it
+    import dagster as dg
+
 Report = dict[str, Any]
+
+ERROR: Final = "ERROR"
+"""Dagster's word for a check whose failing means that a table is not what it promises."""
 
 
 def write_report(
-    store: Store, done: Report, checks: Sequence[dg.AssetCheckEvaluation], now: dt.datetime
+    store: Store, done: Report, checks: Sequence["dg.AssetCheckEvaluation"], now: dt.datetime
 ) -> Report:
     """Finds out what changed, writes page and JSON, and returns the JSON as plain data.
 
@@ -68,7 +72,7 @@ def write_report(
     return report
 
 
-def _plain(check: dg.AssetCheckEvaluation) -> Report:
+def _plain(check: "dg.AssetCheckEvaluation") -> Report:
     return {
         "asset": check.asset_key.to_user_string(),
         "check": check.check_name,
@@ -88,12 +92,12 @@ def failed_checks(report: Report) -> list[str]:
     return [
         f"{check['check']}: {found_in_words(check, speaker('en'))}"
         for check in report["checks"]
-        if not check["passed"] and check["severity"] == dg.AssetCheckSeverity.ERROR.value
+        if not check["passed"] and check["severity"] == ERROR
     ]
 
 
 def tell(notifier: Notifier, report: Report) -> list[str]:
-    """Sends the report to who wants it, where something changed or a check failed.
+    """Sends the report to those who want it, where something changed or a check failed.
 
     Returns:
         A sentence for each message that could not be sent.

@@ -6,7 +6,6 @@ Resources load nothing and compute nothing; they hand plain objects to `warehous
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Protocol
 
 import dagster as dg
 from pydantic import Field
@@ -69,29 +68,3 @@ def fixed(setup: Setup) -> dg.ResourceDefinition:
             yield setup
 
     return held
-
-
-class Progress(Protocol):
-    """Is told what happens; shows it or keeps quiet."""
-
-    def expect(self, tows: int) -> None:
-        """So many tows are going to be read."""
-
-    def tow_read(self, tow_id: str, set_aside: bool) -> None:
-        """A tow was read or set aside."""
-
-    def step(self, what: str) -> None:
-        """A step begins."""
-
-
-class Quiet:
-    """Progress that shows nothing."""
-
-    def expect(self, tows: int) -> None:
-        """Nothing is shown."""
-
-    def tow_read(self, tow_id: str, set_aside: bool) -> None:
-        """Nothing is shown."""
-
-    def step(self, what: str) -> None:
-        """Nothing is shown."""

@@ -1,4 +1,4 @@
-"""`beheer.toml`: when to rebuild, whom to tell and who helps, written by who runs it.
+"""`beheer.toml`: when to rebuild, whom to tell and who helps, written by whoever runs it.
 
 It lies in the data folder and may be left out. No setting in it can change a number.
 """
@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Final
 from zoneinfo import available_timezones
 
-from dagster._utils.schedules import is_valid_cron_schedule
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from herijk.pipeline.method.definition import shipped_methods
@@ -57,6 +56,8 @@ class Settings(BaseModel):
     @field_validator("nightly", "campaign")
     @classmethod
     def _is_cron(cls, line: str) -> str:
+        from dagster._utils.schedules import is_valid_cron_schedule  # noqa: PLC0415 - takes a second
+
         if not is_valid_cron_schedule(line):
             raise ValueError(f"{line!r} is no cron line, such as '0 3 * * *'")
         return line

@@ -45,7 +45,7 @@ def step_asset(step: Step) -> dg.AssetsDefinition:
         if step.per_method:
             chosen = [setup.known_methods.get(context.partition_key)]
         asked = {key.to_user_string() for key in context.selected_asset_keys}
-        made = step.make(setup.store, chosen, asked)
+        made = step.make(setup.store, chosen, wanted=asked)
         for table, frame in made.tables.items():
             yield dg.MaterializeResult(asset_key=table, metadata=_metadata(table, frame))
         yield from _check_results(made, context.selected_asset_check_keys)

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Final, Literal
 
 import typer
 
-from herijk.cli.arguments import AsJson, show
+from herijk.cli.arguments import AsJson, show, show_files
 
 Language = Annotated[
     Literal["nl", "en"] | None,
@@ -77,12 +77,14 @@ def check(
 def init(
     directory: Annotated[Path, typer.Argument(metavar="DIR", help="Folder to make.")],
     lang: Language = None,
+    as_json: AsJson = False,
 ) -> None:
     """An empty archive with examples, spreadsheets to fill in, and a page that explains it."""
     from herijk.warehouse.archive.templates import write_templates
 
     write_templates(directory)
-    typer.echo(say("made", language(lang), path=directory))
+    files = sorted(file for file in directory.rglob("*") if file.is_file())
+    show_files(files, as_json, say("made", language(lang), path=directory))
 
 
 def check_text(report: Report, lang: str) -> str:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from herijk.cli.arguments import DataFolder
+from herijk.cli.arguments import AsJson, DataFolder, show_files
 
 if TYPE_CHECKING:
     from herijk.warehouse.store.store import Store
@@ -32,6 +32,7 @@ def certificate(
         Path | None, typer.Option(metavar="FILE", help="File to write: a PDF, or .html for a page.")
     ] = None,
     lang: Language = "nl",
+    as_json: AsJson = False,
 ) -> None:
     """The certificate of a boat, a page per crew; or of all boats of an edition in one file."""
     from herijk.dashboards.documents.certificate import certificates
@@ -45,7 +46,7 @@ def certificate(
         as_page = out is not None and out.suffix == ".html"
         made = certificates(views, chosen, fsn_no, lang, as_page)
     name = "-".join(filter(None, ("certificate", chosen, fsn_no)))
-    _write(made, out or _documents(store) / f"{name}.pdf")
+    _write(made, out or _documents(store) / f"{name}.pdf", as_json)
 
 
 def proposal(
@@ -59,27 +60,28 @@ def proposal(
     ] = "concept-as-published",
     out: Target = None,
     lang: Language = "nl",
+    as_json: AsJson = False,
 ) -> None:
     """What a board sends its members before they vote: what changes, for whom, how uncertain."""
+    from herijk.cli.methods import known_methods
     from herijk.dashboards.documents.proposal import proposal as make_proposal
-    from herijk.pipeline.method.definition import shipped_text
     from herijk.warehouse.queries.views import Views
     from herijk.warehouse.store.store import Store
 
     for method in methods:
-        shipped_text(method)
+        known_methods(data).text(method)
     store = Store(data)
     with Views(store) as views:
         made = make_proposal(views, methods, against, lang)
     name = "-".join(("proposal", *methods))
-    _write(made, out or _documents(store) / f"{name}.pdf")
+    _write(made, out or _documents(store) / f"{name}.pdf", as_json)
 
 
 def _documents(store: "Store") -> Path:
     return store.root / "documents"
 
 
-def _write(content: bytes, path: Path) -> None:
+def _write(content: bytes, path: Path, as_json: bool) -> None:
     """Writes the file whole, and says where."""
     from herijk.warehouse.store.files import written_beside
     from herijk.warehouse.store.machine_faults import machine_faults_explained
@@ -88,4 +90,4 @@ def _write(content: bytes, path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         with written_beside(path) as beside:
             beside.write_bytes(content)
-    typer.echo(path)
+    show_files([path], as_json)

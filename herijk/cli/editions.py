@@ -160,7 +160,7 @@ def due(
     ] = "rebased",
     as_json: AsJson = False,
 ) -> None:
-    """Whose tow expires when, at what speed to tow each next, and who would tell most."""
+    """Whose tow expires when, at what speed to tow each next, and which boats to tow again."""
     from herijk.warehouse.queries.due import due_report
     from herijk.warehouse.store.store import Store
 

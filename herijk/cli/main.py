@@ -20,7 +20,7 @@ from herijk.cli import documents as commands_documents
 from herijk.cli import editions as commands_editions
 from herijk.cli import methods, text
 from herijk.cli.archive import check, init
-from herijk.cli.arguments import ArchiveFolder, AsJson, DataFolder, show
+from herijk.cli.arguments import ArchiveFolder, AsJson, DataFolder, show, show_files
 from herijk.cli.doctor import doctor
 from herijk.cli.fit import fit
 from herijk.cli.overview import Overview, defaults_of, folders_here
@@ -73,7 +73,7 @@ def _written_down(error: BaseException) -> str:
         file.write("".join(traceback.format_exception(error)))
     return (
         f"{unexpected(error)}. Nothing was published. Details are in {file.name}; please send it "
-        "to who keeps Herijk"
+        "to whoever maintains Herijk"
     )
 
 
@@ -156,7 +156,7 @@ def rebuild(
 
 
 def _tell_failure(data: Path, error: Exception) -> None:
-    """Tells who wants to be told that a rebuild failed, as under `serve`."""
+    """Tells those who asked to be told that a rebuild failed, as under `serve`."""
     from herijk.assets.notify import notifier_of
     from herijk.assets.report import tell_failure
     from herijk.assets.settings import read_settings
@@ -181,7 +181,8 @@ def serve(
     ] = False,
 ) -> None:
     """Rebuild by itself: schedules and sensor, with Dagster's page and the site, until stopped."""
-    from herijk.assets.rebuild import check_apart, prepare_home, taking_over
+    from herijk.assets.rebuild import check_apart
+    from herijk.assets.runs import prepare_home, taking_over
     from herijk.assets.settings import read_settings
     from herijk.cli.serving import Served, serve_until_stopped
     from herijk.warehouse.store.lock import only_server
@@ -275,6 +276,7 @@ def slides(
         str, typer.Option(metavar="all|newest|SEASON", help="Which tows are drawn.")
     ] = "all",
     language: Annotated[str, typer.Option(help="nl or en.", metavar="nl|en")] = "nl",
+    as_json: AsJson = False,
 ) -> None:
     """Every chart of the 2015 presentation over this archive, as SVG and PNG and in one PDF."""
     from herijk.dashboards.slides import write_slides
@@ -287,7 +289,7 @@ def slides(
         raise typer.BadParameter("give one or two types")
     store = Store(data)
     written = write_slides(store, out or store.root / "slides", language, boat_type or (), tows)
-    typer.echo("\n".join(str(path) for path in written))
+    show_files(written, as_json)
 
 
 def _plots(store: "Store", report: dict[str, Any], folder: Path) -> list[Path]:
@@ -346,11 +348,13 @@ def simulate(
     seed: Annotated[int, typer.Option(min=0, help="Decides all that is drawn.")] = 1,
     world: Annotated[str, typer.Option(help="What is wrong in it; see --worlds.")] = "history",
     worlds: Annotated[bool, typer.Option("--worlds", help="List the worlds, and stop.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Write a simulated archive with known truth (the truth lies beside it, not in it)."""
     from herijk.cli.progress import TerminalProgress
     from herijk.simulate import WORLDS, simulate_world, world_settings
     from herijk.simulate.archive_writer import write_simulated_archive
+    from herijk.warehouse.store.machine_faults import machine_faults_explained
 
     if worlds:
         typer.echo("\n".join(f"{name:18s}{named.about}" for name, named in WORLDS.items()))
@@ -360,9 +364,30 @@ def simulate(
     settings = world_settings(
         world, seasons=tuple(seasons), tows_per_season=tows_per_season, rate_hz=rate, seed=seed
     )
-    with TerminalProgress() as progress:
+    with machine_faults_explained(directory), TerminalProgress() as progress:
         progress.expect(len(seasons) * tows_per_season)
         truth = write_simulated_archive(
             directory, simulate_world(settings), lambda done, _: progress.tow_read(str(done), False)
         )
-    typer.echo(f"Simulated archive: {directory}\nIts truth: {truth}")
+    made = {"archive": str(directory), "truth": str(truth)}
+    show(made, "Simulated archive: {archive}\nIts truth: {truth}".format_map, as_json)
+
+
+@app.command()
+def schema(
+    command: Annotated[
+        list[str] | None, typer.Argument(metavar="[COMMAND]", help="A command, such as: due.")
+    ] = None,
+) -> None:
+    """What --json of a command prints, as JSON Schema; without a command, of which there is one."""
+    import json
+
+    from herijk.cli.json_schemas import schema_of, schemas
+
+    if not command:
+        typer.echo("\n".join(schemas()))
+        return
+    name = " ".join(command)
+    if name not in schemas():
+        raise typer.BadParameter(f"{name!r} has no --json; these have: {', '.join(schemas())}")
+    typer.echo(json.dumps(schema_of(name), indent=1, ensure_ascii=False))

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from herijk.cli.arguments import AsJson, DataFolder, show
+from herijk.cli.arguments import AsJson, DataFolder, show, show_files
 from herijk.pipeline.errors import HerijkError
 
 if TYPE_CHECKING:
@@ -52,18 +52,18 @@ def methods(
 
 
 @app.command("show")
-def show_method(name: Named, data: DataFolder = Path("data")) -> None:
+def show_method(name: Named, data: DataFolder = Path("data"), as_json: AsJson = False) -> None:
     """One method in words, with what differs from the one it extends."""
     known = known_methods(data)
-    typer.echo(_in_words(known.named(name), known))
+    show(_one(known.named(name), known), lambda found: str(found["words"]), as_json)
 
 
 @app.command()
-def check(file: Named, data: DataFolder = Path("data")) -> None:
+def check(file: Named, data: DataFolder = Path("data"), as_json: AsJson = False) -> None:
     """Read a method file and say in words what it does; an error is told with its line."""
     known = known_methods(data)
-    method = known.named(file)
-    typer.echo(f"{_in_words(method, known)}\n\nThe file is sound. Try it: herijk rebase {file}")
+    sound = f"The file is sound. Try it: herijk rebase {file}"
+    show(_one(known.named(file), known), lambda found: f"{found['words']}\n\n{sound}", as_json)
 
 
 @app.command()
@@ -73,6 +73,7 @@ def new(
         str, typer.Option("--from", metavar="METHOD", help="Method that it begins from.")
     ] = "rebased",
     data: DataFolder = Path("data"),
+    as_json: AsJson = False,
 ) -> None:
     """Begin a method file NAME.toml here, which extends another; every option is listed in it."""
     from herijk.pipeline.method.writing import beginning_text
@@ -87,7 +88,8 @@ def new(
         write_new(file, text)
     except FileExistsError as error:
         raise HerijkError(f"{file} is there already; choose another name") from error
-    typer.echo(f"{file} extends {base}. Change it, then: herijk methods check {file}")
+    said = f"{file} extends {base}. Change it, then: herijk methods check {file}"
+    show_files([file], as_json, said)
 
 
 @app.command()
@@ -115,11 +117,18 @@ def diff(
     show(report, _diff_text, as_json)
 
 
-def _in_words(method: "Method", known: "KnownMethods") -> str:
+def _one(method: "Method", known: "KnownMethods") -> dict[str, Any]:
+    """A method with its words."""
     from herijk.cli.method_text import method_in_words
 
     parent = None if method.extends is None else known.get(method.extends)
-    return method_in_words(method, parent)
+    return {
+        "method": method.name,
+        "title": method.title_en,
+        "content_hash": method.content_hash,
+        "extends": method.extends,
+        "words": method_in_words(method, parent),
+    }
 
 
 def _diff_text(report: dict[str, Any]) -> str:

@@ -24,7 +24,7 @@ SECTIONS: Final = {
     "Look": ("audit", "due", "log-error", "slides", "fit", "workbench"),
     "Change the method": ("methods", "rebase", "proposal"),
     "Publish": ("publish", "diff", "verify", "lineage", "certificate"),
-    "Run it as a service": ("serve",),
+    "Run it as a service, use it in programs": ("serve", "schema"),
 }
 OTHER: Final = "More"
 

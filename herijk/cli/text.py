@@ -206,15 +206,21 @@ def _diagnosis(report: "LogErrorReport") -> str:
     rows = [
         (
             r["season"],
-            r["instrument"] if r["first_tow"] is None else f"{r['instrument']}, {r['first_tow']}",
+            _what(r),
             r["verdict"],
             *(_size(r[name], r["unit"]) for name in ("estimate", "lo", "hi")),
             "-" if r["p_fault"] is None else f"{r['p_fault']:.0%}",
-            r["confused_with"] or "-",
+            (r["confused_with"] or "-").replace("_", " "),
         )
         for r in report.diagnosis
     ]
     return table(head, rows)
+
+
+def _what(row: Row) -> str:
+    """What may be wrong, in words, and from which tow on."""
+    words = str(row["instrument"]).replace("_", " ")
+    return words if row["first_tow"] is None else f"{words}, from {row['first_tow']}"
 
 
 def _size(value: float, unit: str) -> str:

@@ -32,6 +32,7 @@ DEFAULTS: Final = {
     "log1_part": 0,
     "log2_part": 0,
     "boat_type": None,
+    "doubts": [],
 }
 
 

@@ -1,7 +1,7 @@
 """Choosing the best of several that may be equal but for rounding.
 
 Processors sum in other orders, so that equals differ in their last digits by chance. A choice must
-not rest on that: of numbers that are equal to `SAME_SHARE` the first counts, and who asks says by
+not rest on that: of numbers that are equal to `SAME_SHARE` the first counts, and the caller says by
 its order which that is.
 """
 

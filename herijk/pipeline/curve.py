@@ -15,10 +15,10 @@ from dataclasses import dataclass
 from typing import Final, NamedTuple, Self
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from herijk.pipeline.errors import BrokenPromiseError
+from herijk.pipeline.quantiles import t_quantile
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -579,8 +579,7 @@ def _sensitivities(
 
 def _t_quantile(dof: ArrayLike, level: float) -> FloatArray:
     """Two-sided t-quantile; 0 degrees of freedom give that of 1: callers treat them apart."""
-    freedom = np.maximum(np.asarray(dof, dtype=np.float64), 1.0)
-    return np.asarray(scipy.special.stdtrit(freedom, 0.5 * (1.0 + level)), dtype=np.float64)
+    return t_quantile(np.maximum(dof, 1.0), level)
 
 
 def _last_below(

@@ -125,10 +125,10 @@ class BestEstimateWeights(dy.Schema):
 
 
 class RetowChoice(dy.Schema):
-    """Which few boats to tow again, with dGPS, so that the season factors are surest."""
+    """Which few boats to tow again, with dGPS, to narrow the season factors most."""
 
     method = column.method(primary_key=True)
-    position = dy.Int32(primary_key=True, description="1 tells most, given none of the others")
+    position = dy.Int32(primary_key=True, description="order: 1 reduces the uncertainty most")
     fsn_no = column.fsn_no()
     rowers = column.rowers()
     crew_class = column.crew_class()

@@ -6,7 +6,8 @@ import polars as pl
 from herijk.assets.definitions import defs
 from herijk.assets.jobs import ASSETS as ASSETS_HELD
 from herijk.assets.jobs import job_defs
-from herijk.assets.resources import Quiet, Setup
+from herijk.assets.progress import Quiet
+from herijk.assets.resources import Setup
 from herijk.assets.shown import PAGES, preview, with_site
 from herijk.tables.schemas import TABLES
 from tests.conftest import METHODS

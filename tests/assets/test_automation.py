@@ -17,7 +17,7 @@ from dagster._daemon.sensor import execute_sensor_iteration
 from herijk.assets.automation import archive_sensor, schedules
 from herijk.assets.definitions import build_defs, defs
 from herijk.assets.jobs import NAMES
-from herijk.assets.rebuild import INSTANCE_SETTINGS
+from herijk.assets.runs import INSTANCE_SETTINGS
 from herijk.assets.settings import Settings
 from tests.conftest import METHODS
 

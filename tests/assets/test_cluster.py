@@ -10,9 +10,9 @@ import dagster as dg
 import dask
 import pytest
 
-from herijk.assets import rebuild
+from herijk.assets import rebuild, runs
 from herijk.assets.cluster import read_seasons
-from herijk.assets.resources import Quiet
+from herijk.assets.progress import Quiet
 from herijk.pipeline.errors import UnavailableError
 from herijk.pipeline.method.definition import shipped_method
 from herijk.warehouse.editions.publish import Terms, publish
@@ -83,7 +83,7 @@ def test_a_rebuild_of_which_a_worker_is_killed_makes_what_is_made_here(
     assert not (remote.data / "lake" / "tables").exists()
     assert not (remote.data / "editions").exists()
     assert intake.stale_seasons(remote.store, remote.archive) == []
-    with rebuild._instance(remote.store) as instance:
+    with runs.instance_of(remote.store) as instance:
         seasons = set(map(str, SMALL.seasons))
         for asset in ("samples", "blocks"):
             assert instance.get_materialized_partitions(dg.AssetKey(asset)) == seasons
@@ -91,7 +91,7 @@ def test_a_rebuild_of_which_a_worker_is_killed_makes_what_is_made_here(
 
 def test_a_season_that_a_worker_cannot_read_is_told(built, remote, cluster):
     elsewhere = remote.data / "without-settings"  # so the worker looks for a lake in it
-    with rebuild._instance(remote.store) as instance:
+    with runs.instance_of(remote.store) as instance:
         read = read_seasons(instance, cluster.address, (built.archive, elsewhere), [2009], {})
     assert list(read.failed) == [2009]
     assert "without-settings/lake/tables/listed_tows.parquet" in read.failed[2009]
@@ -99,7 +99,7 @@ def test_a_season_that_a_worker_cannot_read_is_told(built, remote, cluster):
 
 def test_a_cluster_that_is_not_there_is_told_with_the_way_out(built, remote):
     with (
-        rebuild._instance(remote.store) as instance,
+        runs.instance_of(remote.store) as instance,
         dask.config.set({"distributed.comm.timeouts.connect": "0.2s"}),
         pytest.raises(UnavailableError, match=r"tcp://127\.0\.0\.1:1 did not finish"),
     ):
@@ -109,7 +109,7 @@ def test_a_cluster_that_is_not_there_is_told_with_the_way_out(built, remote):
 def test_a_scheduler_without_workers_is_not_waited_for_without_end(built, remote, monkeypatch):
     monkeypatch.setenv("DASK_DISTRIBUTED__SCHEDULER__NO_WORKERS_TIMEOUT", "1s")
     with (
-        rebuild._instance(remote.store) as instance,
+        runs.instance_of(remote.store) as instance,
         dask_cluster(0, remote.store.dagster_home) as deserted,
         pytest.raises(UnavailableError, match=r"did not finish.*without any running workers"),
     ):

@@ -3,8 +3,9 @@
 import dagster as dg
 
 from herijk.assets.jobs import BUILD_JOBS, INDEX, READ, SITE, job_defs
-from herijk.assets.rebuild import prepare_home
-from herijk.assets.resources import Quiet, Setup
+from herijk.assets.progress import Quiet
+from herijk.assets.resources import Setup
+from herijk.assets.runs import prepare_home
 from tests.assets.test_rebuild import assert_same_tables
 from tests.conftest import METHODS, SMALL, Workbench
 

@@ -11,9 +11,11 @@ import duckdb
 import pytest
 
 import herijk.warehouse.intake.lake
-from herijk.pipeline.errors import UnavailableError
+from herijk.assets.runs import instance_of
+from herijk.pipeline.errors import MissingKnowledgeError, UnavailableError
 from herijk.warehouse.intake.lake import ArchiveChangedError
 from herijk.warehouse.store.machine_faults import machine_faults_explained
+from herijk.warehouse.store.store import Store
 from tests.assets.test_rebuild import assert_same_tables, samples_files, spoil
 from tests.conftest import METHODS
 
@@ -81,7 +83,7 @@ LIMITED = """
 import resource, sys
 from pathlib import Path
 from herijk.assets.rebuild import rebuild
-from herijk.assets.resources import Quiet
+from herijk.assets.progress import Quiet
 from herijk.pipeline.errors import UnavailableError
 import herijk.dashboards.report_page, herijk.dashboards.site
 _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
@@ -128,7 +130,7 @@ AS_NOBODY = """
 import os, sys
 from pathlib import Path
 from herijk.assets.rebuild import rebuild
-from herijk.assets.resources import Quiet
+from herijk.assets.progress import Quiet
 from herijk.pipeline.errors import UnavailableError
 os.setuid(int(sys.argv[3]))
 try:
@@ -246,9 +248,34 @@ def test_a_clock_that_jumps_changes_no_table(bench, built, year):
     assert_same_tables(bench.tables(), built.tables())
 
 
-def test_damaged_records_of_dagster_say_what_to_remove(tmp_path):
+@pytest.mark.parametrize("words", ["file is not a database", "no such table: event_logs"])
+def test_damaged_records_of_dagster_say_what_to_remove(tmp_path, words):
     with (
         pytest.raises(UnavailableError, match=r"Remove that folder"),
         machine_faults_explained(tmp_path),
     ):
-        raise duckdb.IOException("file is not a database")
+        raise duckdb.IOException(words)
+
+
+def test_an_archive_that_may_not_be_read_is_not_called_the_data_folder(tmp_path):
+    with pytest.raises(UnavailableError) as told, machine_faults_explained(tmp_path / "data"):
+        raise PermissionError(errno.EACCES, "no", str(tmp_path / "archief/sleeplijsten"))
+    assert str(tmp_path / "archief/sleeplijsten") in str(told.value)
+    assert "data" not in str(told.value)
+
+
+def test_a_full_disk_that_sqlite_calls_an_error_of_the_disk_is_called_full(tmp_path, monkeypatch):
+    usage = shutil.disk_usage(tmp_path)._replace(free=0)
+    monkeypatch.setattr("shutil.disk_usage", lambda _: usage)
+    with pytest.raises(UnavailableError, match="no room left"), machine_faults_explained(tmp_path):
+        raise OSError("disk I/O error")
+
+
+@pytest.mark.parametrize("text", ["storage: [\n : :", "no_such_key: 1\n"])
+def test_settings_of_dagster_that_cannot_be_understood_are_one_sentence(tmp_path, text):
+    store = Store(tmp_path)
+    store.dagster_home.mkdir(parents=True)
+    (store.dagster_home / "dagster.yaml").write_text(text)
+    expected = pytest.raises(MissingKnowledgeError, match=r"dagster\.yaml cannot be understood")
+    with expected, instance_of(store):
+        pass

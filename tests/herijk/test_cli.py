@@ -6,6 +6,7 @@ import re
 import pytest
 from typer.main import get_command
 
+from herijk.cli.json_schemas import schemas
 from herijk.cli.main import app
 from tests.conftest import METHODS
 
@@ -138,6 +139,47 @@ def test_methods_lists_and_shows(herijk):
         assert name in shown
         for step in ("speed", "calibration", "window", "wind", "run_point", "runs", "curve"):
             assert re.search(rf"^[ *]+{step} ", shown, re.MULTILINE), step
+
+
+def named(command, *path):
+    for name, inner in getattr(command, "commands", {}).items():
+        yield " ".join((*path, name)), inner
+        yield from named(inner, *path, name)
+
+
+def test_every_result_has_a_documented_form():
+    with_json = {
+        name
+        for name, command in named(get_command(app))
+        if any("--json" in parameter.opts for parameter in command.params)
+    }
+    assert with_json == set(schemas())
+    assert {name for name, _ in named(get_command(app))} - with_json == {
+        *("serve", "workbench", "schema"),  # two pages to look at, and the forms themselves
+    }
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        ("log-error", "--method", METHODS[1]),
+        ("verify",),
+        ("methods", "show", "rebased"),
+        ("check",),
+    ],
+)
+def test_results_have_their_documented_form(herijk, built, call):
+    """The fixture compares; results of other commands are compared where these are tested."""
+    given = {"check": [built.archive]}
+    data = [] if call == ("check",) else ["--data", built.data]
+    status, out, err = herijk(*call, *given.get(call[0], ()), *data, "--json")
+    assert out, (status, err)
+
+
+def test_a_schema_is_shown_by_the_name_of_its_command(herijk):
+    assert "methods diff" in herijk("schema")[1].splitlines()
+    assert json.loads(herijk("schema", "methods", "diff")[1])["title"].endswith("diff --json")
+    assert herijk("schema", "serve")[0] == 2
 
 
 def test_json_is_json_and_nothing_else(herijk, built):

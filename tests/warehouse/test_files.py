@@ -1,7 +1,10 @@
 """A folder is put in place of another at once."""
 
+import os
 import threading
+from pathlib import Path
 
+from herijk.warehouse.store import files
 from herijk.warehouse.store.files import put_in_place
 
 
@@ -23,14 +26,6 @@ def test_the_older_folder_is_beside_after(tmp_path):
     assert (tmp_path / "beside" / "page.html").read_text("utf-8") == "old"
 
 
-def test_the_same_where_names_cannot_be_exchanged(tmp_path, monkeypatch):
-    monkeypatch.setattr("herijk.warehouse.store.files._exchange", lambda one, other: False)
-    target = filled(tmp_path / "site", "old")
-    put_in_place(filled(tmp_path / "beside", "new"), target)
-    assert (target / "page.html").read_text("utf-8") == "new"
-    assert sorted(f.name for f in tmp_path.iterdir()) == ["beside", "site"]
-
-
 def test_a_reader_always_finds_a_whole_folder(tmp_path):
     target, beside = filled(tmp_path / "site", "0"), filled(tmp_path / "beside", "1")
     missed, reads, stop = [], [0], threading.Event()
@@ -49,3 +44,23 @@ def test_a_reader_always_finds_a_whole_folder(tmp_path):
     reader.join()
     assert reads[0] > 50
     assert missed == []
+
+
+def test_all_is_written_where_folders_cannot_be_synced_nor_names_exchanged(tmp_path, monkeypatch):
+    """As on Windows, where opening a folder is an error."""
+    opened = os.open
+
+    def open_no_folder(path, flags, *rest, **more):
+        if Path(path).is_dir():
+            raise PermissionError(path)
+        return opened(path, flags, *rest, **more)
+
+    monkeypatch.setattr(files, "WINDOWS", True)
+    monkeypatch.setattr("os.open", open_no_folder)
+    files.write_new(tmp_path / "new.txt", "text")
+    with files.written_beside(tmp_path / "new.txt") as beside:
+        beside.write_text("other")
+    for text in ("first", "second"):
+        files.put_in_place(filled(tmp_path / f"beside-{text}", text), tmp_path / "site")
+    assert (tmp_path / "new.txt").read_text() == "other"
+    assert (tmp_path / "site" / "page.html").read_text() == "second"

@@ -12,11 +12,12 @@ import pytest
 from herijk.tables.schemas import ABOUT, TABLES
 from herijk.warehouse.build.graph import LAKE_ONLY
 from herijk.warehouse.store.files import file_sha256
-from herijk.warehouse.store.package import Origin, package_is_whole, write_package
+from herijk.warehouse.store.package import Origin, Rights, package_is_whole, write_package
 from tests.conftest import Workbench
 
 NAMES = sorted({*TABLES, *ABOUT} - {*LAKE_ONLY})
-MEASURED = Origin("1", False, "The federation", "https://example.org/licence", (("a", "0" * 64),))
+RIGHTS = Rights("The federation", "https://example.org/licence")
+MEASURED = Origin("1", False, RIGHTS, (("a", "0" * 64),))
 
 
 @pytest.fixture(scope="module")
@@ -29,12 +30,15 @@ def _read(path: Path) -> dict:
 
 
 def test_the_folder_is_a_data_package(folder: Path):
+    """By the standard's own program; its reader of Parquet gives NaN for an empty field."""
     package = frictionless.Package(str(folder / "datapackage.json"))
-    assert package.metadata_validate(package.to_descriptor()) is not None
+    misread = frictionless.Checklist(skip_errors=["type-error", "constraint-error"])
+    for name in ("boats", "curves", "register"):
+        report = package.get_resource(name).validate(misread)
+        assert report.valid, report.flatten(["type", "message"])
     assert [resource.name for resource in package.resources] == NAMES
     for resource in package.resources:
         assert resource.hash == f"sha256:{file_sha256(folder / resource.path)}"
-        assert resource.bytes == (folder / resource.path).stat().st_size
     assert package.licenses == [{"name": "CC0-1.0"}]
     assert "Simulated" in package.description
     assert [source["title"].split()[0] for source in package.sources] == [
@@ -93,7 +97,7 @@ def test_a_damaged_file_is_noticed_and_made_again(tmp_path):
 
 def test_without_a_declared_licence_none_is_given(tmp_path):
     frames = {name: schema.create_empty() for name, schema in ABOUT.items()}
-    write_package(tmp_path, frames, ABOUT, Origin("1", False, None, None, ()))
+    write_package(tmp_path, frames, ABOUT, Origin("1", False, Rights(), ()))
     package = _read(tmp_path / "tables" / "datapackage.json")
     assert "licenses" not in package
     assert "declares no licence" in package["description"]

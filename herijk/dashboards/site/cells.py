@@ -28,12 +28,13 @@ CODES: Final = {
     *("status", "flags", "reason", "cut_reason", "change", "source", "step", "component", "code"),
     *("quantity", "explaining", "candidates", "severity", "check", "shared", "kind", "scope"),
     *("option", "speed_reason", "cause", "log", "flag", "what", "outcome", "reason_code", "lost"),
+    *("instrument", "verdict", "confused_with"),
 }
 """Columns that hold codes of the warehouse, shown as words."""
 
 LONG: Final = {
     *("flags", "cut_reason", "reason", "speed_reason", "causes", "message", "decision"),
-    *("candidates", "name", "meanings"),
+    *("candidates", "name", "meanings", "confused_with"),
 }
 """Columns of texts that may take several lines."""
 

@@ -130,7 +130,7 @@ CHOICE_COLUMNS = (
 
 
 def _due(views: Views, methods: Sequence[str]) -> Page:
-    """Who has to tow again, at what speed, and which tows would tell most."""
+    """Who has to tow again, at what speed, and which boats to tow again."""
     rows = views.due_list()
     due = Table("due_list", rows, DUE_COLUMNS, "due_list", ["method"], search=True, cards=DUE_CARDS)
     headline = headlines.due(rows.filter(method=default_method(methods)))
@@ -356,6 +356,7 @@ def _quality(views: Views, methods: list[str]) -> Page:
             ],
         ),
         _set_aside(views),
+        *_season_diagnosis(views),
     ]
     for kind, title, note in (("flag", "flags", "flags_note"), ("run", "run_reasons", None)):
         frame = views.counts(kind)
@@ -375,6 +376,26 @@ def _quality(views: Views, methods: list[str]) -> Page:
         selects=[methods_select(methods)],
         data={"statuses": [statuses]},
     )
+
+
+SOUND_VERDICTS = ("sound", "estimated")
+DIAGNOSIS_COLUMNS = (
+    *("method", "season", "part", "instrument", "verdict", "p_fault", "estimate", "lo", "hi"),
+    *("unit", "first_tow", "confused_with"),
+)
+
+
+def _season_diagnosis(views: Views) -> Iterator[Section]:
+    """What may be wrong with the instruments of a season; none where no method asks."""
+    if not views.has("season_diagnosis"):
+        return
+    doubted = views.table("season_diagnosis").filter(~pl.col("verdict").is_in(SOUND_VERDICTS))
+    # What else it could be: the kinds, without their seasons.
+    rows = doubted.with_columns(
+        pl.col("confused_with").str.replace_all(r" \d+", "").str.replace_all(", ", ",")
+    )
+    table = Table("season_diagnosis", rows, DIAGNOSIS_COLUMNS, "season_diagnosis", ["method"])
+    yield Section("season_diagnosis", "season_diagnosis_note", tables=[table])
 
 
 def _flagged_boats(views: Views) -> Table:

@@ -4,7 +4,6 @@ Every page is made once per language, in Dutch at the root and in English under 
 its charts once, as a script beside them.
 """
 
-import hashlib
 import shutil
 import tempfile
 from collections.abc import Iterator
@@ -20,6 +19,7 @@ import vl_convert
 from herijk.dashboards import fonts
 from herijk.dashboards.answer import told
 from herijk.dashboards.html import as_json, environment
+from herijk.dashboards.kept import kept
 from herijk.dashboards.site.cells import Cells
 from herijk.dashboards.site.downloads import copy_sheets
 from herijk.dashboards.site.pages import MENU, all_pages
@@ -36,7 +36,6 @@ HERE: Final = Path(__file__).parent
 DRAWN: Final = 5
 """Significant digits of what charts draw."""
 HUNDRED: Final = 100
-VL_CONVERT: Final = version("vl-convert-python")
 OWN_FILES: Final = ("site.css", "site.js")
 FOLDERS: Final = {"nl": "", "en": "en/"}
 """Where the pages of each language lie within the site."""
@@ -84,7 +83,7 @@ def _write(views: Views, folder: Path) -> None:
     for name in OWN_FILES:
         shutil.copyfile(HERE / "static" / name, static / name)
     (static / "font.css").write_text(fonts.style_sheet(), encoding="utf-8")
-    (static / "vega.js").write_text(_vega(views.store.root), encoding="utf-8")
+    (static / "vega.js").write_text(vega_bundle(), encoding="utf-8")
     for language in LANGUAGES:
         (static / f"charts-{language}.js").write_text(charts_script(language), encoding="utf-8")
     (static / "find.js").write_text(_search_script(views), encoding="utf-8")
@@ -189,23 +188,8 @@ def _by_column(comments: dict[str, str]) -> dict[str, str]:
 @cache
 def vega_bundle() -> str:
     """Vega, Vega-Lite and Vega-Embed in one script, as Altair's own converter ships them."""
-    return str(vl_convert.javascript_bundle())  # type: ignore[call-arg]  # its stub lacks the default
-
-
-def _vega(root: Path) -> str:
-    """Vega's script, which takes two seconds to bundle: that of the site which is there will do."""
-    there = root / "site" / "static" / "vega.js"
-    text = there.read_text(encoding="utf-8") if there.exists() else ""
-    mark, _, held = text.partition("\n")
-    if mark == _vega_mark(held):
-        return text
-    made = vega_bundle()
-    return f"{_vega_mark(made)}\n{made}"
-
-
-def _vega_mark(script: str) -> str:
-    digest = hashlib.sha256(script.encode()).hexdigest()
-    return f"// vl-convert {VL_CONVERT}, sha256 {digest}"
+    bundle = vl_convert.javascript_bundle
+    return kept("vega", version("vl-convert-python"), lambda: str(bundle()))  # type: ignore[call-arg]  # its stub lacks the default
 
 
 def charts_script(language: str) -> str:

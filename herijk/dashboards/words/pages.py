@@ -69,14 +69,14 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "no": ("nee", "no"),
     # Index
     "index_intro": (
-        "De weerstand van roeisloepen wordt gemeten met een sleepproef. Deze bladen laten zien wat "
-        "er van alle proeven wordt als ze met dezelfde rekenmethode worden herrekend: het "
-        "register, elke sloep met haar metingen, en wat elke stap verandert.",
-        "The resistance of rowing sloops is measured with a tow test. These pages show what "
-        "becomes of all tests when they are recomputed with one method: the register, every boat "
-        "with its measurements, and what each step changes.",
+        "De weerstand van roeisloepen wordt gemeten met een sleepproef. Op deze pagina's ziet u "
+        "wat alle proeven opleveren als ze met één methode worden herrekend: het register, elke "
+        "sloep met de bijbehorende metingen, en wat elke stap verandert.",
+        "The resistance of rowing sloops is measured with a tow test. These pages show the results "
+        "of all tests, recomputed with one method: the register, every boat with its "
+        "measurements, and what each step changes.",
     ),
-    "index_pages": ("Wat waar staat", "What is where"),
+    "index_pages": ("Waar u wat vindt", "Where to find what"),
     "about_register": (
         "Elke sloep en ploeg met A, B en Cw; zoeken, sorteren, downloaden.",
         "Every boat and crew with A, B and Cw; search, sort, download.",
@@ -113,32 +113,32 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     ),
     "tables": ("Tabellen in de database", "Tables in the database"),
     "tables_note": (
-        "Alles op deze bladen staat in warehouse.duckdb.",
+        "Alles op deze pagina's staat in warehouse.duckdb.",
         "Everything on these pages is in warehouse.duckdb.",
     ),
     "about_compare": (
-        "Twee sloepen over elkaar: wie loopt lichter, bij welke snelheid?",
-        "Two boats over each other: which runs easier, at what speed?",
+        "Twee sloepen vergeleken: welke loopt lichter, en bij welke snelheid?",
+        "Two boats compared: which runs easier, and at what speed?",
     ),
     "about_races": (
         "Elke wedstrijd opnieuw gerekend: wint een ander, en hoe waarschijnlijk is dat?",
         "Every race computed again: is there another winner, and how likely is that?",
     ),
     "about_words": ("Wat de woorden en tekens betekenen.", "What the words and signs mean."),
-    "now": ("Waar het staat", "Where it stands"),
+    "now": ("De stand van zaken", "The current state"),
     "years": ("Door de seizoenen", "Through the seasons"),
-    "edition_in_force": ("Geldende editie", "Edition in force"),
+    "edition_in_force": ("Geldende editie", "Current edition"),
     "no_edition": ("nog geen: dit is een concept", "none yet: this is a draft"),
     "edition_from": ("{edition}, vanaf {day}", "{edition}, from {day}"),
     "as_of": ("Gezien op", "As of"),
     "boats_number": ("Sloepen", "Boats"),
     "tows_number": ("Sleepproeven", "Tows"),
-    "compare_boats": ("Twee sloepen over elkaar", "Two boats over each other"),
+    "compare_boats": ("Twee sloepen vergeleken", "Two boats compared"),
     "compare_note": (
         "De krommen van het concept dat het best is, elk met zijn 95 %-band. Waar de banden "
-        "elkaar raken, is niet gezegd wie lichter loopt.",
-        "The curves of the best draft, each with its 95 % band. Where the bands touch it is not "
-        "said which boat runs easier.",
+        "elkaar raken, is niet te zeggen welke lichter loopt.",
+        "The curves of the best draft, each with its 95 % band. Where the bands touch, the data do "
+        "not say which boat runs easier.",
     ),
     "types_pages": ("Een type", "One type"),
     "types_pages_note": (
@@ -242,11 +242,11 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     # Words
     "words_list": ("Wat de woorden betekenen", "What the words mean"),
     "words_note": (
-        "Getallen in het Nederlands hebben een komma. Een interval van 95 % bevat de ware waarde "
+        "Nederlandse getallen hebben een komma. Een interval van 95 % bevat de ware waarde "
         "in 19 van de 20 gevallen, als alle oorzaken erin zitten; waar dat niet zo is, staat het "
         "erbij.",
-        "An interval of 95 % holds the true value in 19 of 20 cases if all causes are in it; where "
-        "that is not so, it is said.",
+        "A 95 % interval contains the true value in 19 of 20 cases if it includes all causes; "
+        "where it does not, the page says so.",
     ),
     "term_tow": ("Sleepproef", "Tow"),
     "meaning_tow": (
@@ -256,9 +256,11 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "term_cw": ("Cw", "Cw"),
     "meaning_cw": (
         "Weerstandscoëfficiënt in kg/m: sleepkracht gedeeld door snelheid in het kwadraat. Hoe "
-        "lager, hoe lichter de sloep loopt.",
+        "lager, hoe lichter de sloep loopt. Dit is niet de dimensieloze golfweerstand die "
+        "scheepsbouwers Cw noemen.",
         "Resistance coefficient in kg/m: tow force divided by speed squared. The lower, the "
-        "easier the boat runs.",
+        "easier the boat runs. It is not the dimensionless wave-making coefficient that naval "
+        "architects call Cw.",
     ),
     "term_a": ("A", "A"),
     "meaning_a": ("Cw bij zeer lage snelheid, in kg/m.", "Cw at very low speed, in kg/m."),
@@ -345,32 +347,32 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     ),
     # Register
     "register_note": (
-        "A en B gelden van 85 tot 115 % van de opgegeven roeisnelheid; Cw is die bij deze "
-        "snelheid, met haar interval: van 95 % bij een methode die de fout van de log schat, en "
-        "anders de spreiding van de runs alleen: de fout van de log zit er niet in. Een verlopen "
-        "regel heeft geen A, B en Cw. Een editie die concept heet, is niet gepubliceerd.",
-        "A and B hold from 85 to 115 % of the declared speed; Cw is that at this speed, with its "
-        "interval: of 95 % for a method that estimates the log's error, and otherwise the spread "
-        "of the runs alone: the log's error is not in it. An expired line has no A, B and "
-        "Cw. An edition called concept is a draft: not published.",
+        "A en B gelden van 85 tot 115 % van de opgegeven roeisnelheid; Cw geldt bij die snelheid. "
+        "Het interval van Cw is 95 % bij een methode die de fout van de log schat. Bij andere "
+        "methoden is het alleen de spreiding van de runs: de fout van de log zit er niet in. Een "
+        "verlopen regel heeft geen A, B en Cw. Een editie die concept heet, is niet gepubliceerd.",
+        "A and B hold from 85 to 115 % of the declared speed; Cw holds at that speed. Its interval "
+        "is a 95 % interval for a method that estimates the log's error. For other methods it is "
+        "the spread of the runs alone: the log's error is not in it. An expired line has no A, B "
+        "and Cw. An edition called concept is a draft: not published.",
     ),
     # Due
     "due_list": ("Wie moet weer slepen", "Who has to tow again"),
     "due_list_note": (
         "Tot wanneer elke proef telt, beoordeeld op de dag van de laatste proef of wedstrijd "
-        "(Gezien op), en de snelheid voor de volgende: met 70 tot 90 W per roeier (heren) of 40 "
-        "tot 55 W (dames) op de bekende kromme (Laagste en Hoogste). Buiten de kromme: verder dan "
-        "85 tot 115 % van de opgegeven snelheid.",
+        "(Gezien op), en de snelheid voor de volgende. Laagste en Hoogste: 70 tot 90 W per roeier "
+        "(heren) of 40 tot 55 W (dames) op de bekende kromme. Buiten de kromme: verder dan 85 tot "
+        "115 % van de opgegeven snelheid.",
         "Until when each tow counts, as judged on the day of the last tow or race (As of), and the "
-        "speed of the next one: with 70 to 90 W per rower (men) or 40 to 55 W (women) on the known "
-        "curve (Lowest and Highest). Beyond the curve: outside 85 to 115 % of the declared speed.",
+        "speed of the next one. Lowest and Highest: 70 to 90 W per rower (men) or 40 to 55 W "
+        "(women) on the known curve. Beyond the curve: outside 85 to 115 % of the declared speed.",
     ),
-    "retow_choice": ("Welke proeven het meest leren", "Which tows would tell most"),
+    "retow_choice": ("Welke sloepen opnieuw slepen", "Which boats to tow again"),
     "retow_choice_note": (
-        "Sloepen die, opnieuw gesleept met dGPS, de logfactoren van de seizoenen het zekerst "
-        "maken; de eerste leert het meest. Sd: standaardafwijking van een factor, voor en na.",
-        "Boats that, towed again with dGPS, make the log factors of the seasons surest; the first "
-        "tells most. Sd: standard deviation of a factor, before and after.",
+        "Sloepen die, opnieuw gesleept met dGPS, de onzekerheid van de logfactoren het meest "
+        "verkleinen; de eerste het meest. Sd: standaardafwijking van een factor, voor en na.",
+        "Boats that, towed again with dGPS, reduce the uncertainty of the log factors most; the "
+        "first one most. Sd: standard deviation of a factor, before and after.",
     ),
     # Boat
     "facts": ("Maten", "Dimensions"),
@@ -486,11 +488,11 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "hoogste.",
         "Cw under the method / Cw as published, of the same tow: median, and lowest to highest.",
     ),
-    "options": ("Keuzen van oordeel", "Choices of judgement"),
+    "options": ("Gevoeligheid voor keuzes", "Sensitivity to choices"),
     "options_note": (
         "Wat Cw verandert als één keuze anders was gemaakt: mediaan en de middelste 90 % van de "
         "proeven.",
-        "What happens to Cw had one choice been made otherwise: median and the middle 90 % of "
+        "How Cw would change if one choice were made otherwise: median and the middle 90 % of "
         "tows.",
     ),
     # Reproducibility
@@ -542,10 +544,10 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "Cw new / old.",
     ),
     # Quality
-    "statuses": ("Stand van de krommen", "Status of the curves"),
+    "statuses": ("Status van de krommen", "Status of the curves"),
     "flags": ("Waarschuwingen", "Flags"),
     "flags_note": (
-        "Een waarschuwing zegt waar iemand naar moet kijken; zij verandert geen getal.",
+        "Een waarschuwing zegt waar iemand naar moet kijken; ze verandert geen getal.",
         "A flag says what a person should look at; it never changes a number.",
     ),
     "run_reasons": ("Runs die niet tellen", "Runs that do not count"),
@@ -619,7 +621,18 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "their standard deviation (sd); for a step below 0.03 or below twice its sd no cause is "
         "looked for.",
     ),
-    "eras": ("Staat een tijdvak apart?", "Does an era stand apart?"),
+    "season_diagnosis": ("Instrumenten per seizoen", "Instruments by season"),
+    "season_diagnosis_note": (
+        "Wat er in een seizoen mis kan zijn met log, GPS, krachtmeter, windmeter of temperatuur. "
+        "Fout: waarschijnlijker wel dan niet. Niet te zeggen: 10 tot 50 %. Alarm: 4 "
+        "standaardafwijkingen van wat gewoon is. Grootte: logaritme van een factor (0,04 is "
+        "4 %), of in N. Wat niet in de tabel staat, is in orde.",
+        "What may be wrong in a season with log, GPS, load cell, anemometer or temperature. Fault: "
+        "likelier than not. Cannot be told: 10 to 50 %. Alarm: 4 standard deviations from what is "
+        "usual. Size: logarithm of a factor (0.04 is 4 %), or in N. What is not in the table is "
+        "sound.",
+    ),
+    "eras": ("Wijkt een tijdvak af?", "Does an era differ?"),
     "eras_note": (
         "Volgende proef van dezelfde sloepen, in een later tijdvak, tegen die in het tijdvak "
         "zelf, zonder veroudering: mediaan van n paren met 95 %-interval. In de grafiek alle "
@@ -633,13 +646,13 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "Only what lies beyond its limit; all checks are in the table assessments.",
     ),
     "uncertainty_budget_note": (
-        "Relatieve standaardonzekerheid van Cw door elke oorzaak; de tabel zegt wie haar delen.",
-        "Relative standard uncertainty of Cw by each cause; who share it is in the table.",
+        "Relatieve standaardonzekerheid van Cw per oorzaak; de tabel zegt welke proeven die delen.",
+        "Relative standard uncertainty of Cw by cause; the table says which tows share it.",
     ),
     "hand_windows_note": (
         "Vensters die iemand zelf heeft gekozen, met de reden.",
         "Windows that a person chose, with the reason.",
     ),
     "uncertainty_budget": ("Waaruit de onzekerheid bestaat", "What the uncertainty is made of"),
-    "hand_windows": ("Vensters met de hand", "Windows by hand"),
+    "hand_windows": ("Met de hand gekozen vensters", "Windows chosen by hand"),
 }

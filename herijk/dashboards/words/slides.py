@@ -11,14 +11,14 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     "slides_note": (
         "De methoden staan naast elkaar op gelijke assen. Cirkels zijn heren, driehoeken dames. "
         "Een open teken is een proef die te langzaam of te snel was voor de standaardsnelheid. De "
-        "lijn is de best passende rechte met haar 95 %-interval; bij gewicht en lengte een per "
-        "ploegklasse. Een proef die buiten haar type valt, is genoemd. Een streep is het "
+        "lijn is de best passende rechte met een 95 %-interval; bij gewicht en lengte een per "
+        "ploegklasse. Een proef die van het type afwijkt, is genoemd. Een streep is het "
         "95 %-interval van een proef; een streepjeslijn de spreiding van de runs alleen: de fout "
         "van de log zit er niet in.",
         "The methods stand side by side on equal axes. Circles are men, triangles women. An open "
         "mark is a tow too slow or too fast for the standard speed. The line is the straight line "
         "that fits best, with its 95 % interval; against weight and length one per crew class. A "
-        "tow outside its type is named. A bar is the 95 % interval of a tow; a dashed "
+        "tow that is an outlier of its type is named. A bar is a tow's 95 % interval; a dashed "
         "one the spread of the runs alone: the log's error is not in it.",
     ),
     # Charts
@@ -57,7 +57,7 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     "slide.boat_years": ("{name} door de jaren", "{name} through the years"),
     "slide.eras": (
         "Wijken de proeven van een tijdvak af van latere?",
-        "Do tows of an era stand apart from later ones?",
+        "Do tows of an era differ from later ones?",
     ),
     # Sentences
     "slide.line": (
@@ -77,8 +77,8 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     "slide.x.speed": ("sleepsnelheid", "tow speed"),
     "slide.x.length": ("lengte", "length"),
     "slide.outside": (
-        "Buiten hun type onder {after}: {names}.",
-        "Outside their type under {after}: {names}.",
+        "Uitschieters van hun type onder {after}: {names}.",
+        "Outliers of their type under {after}: {names}.",
     ),
     "slide.b_is_not": (
         "Nee: onder {after} ligt B op {ratio} keer de rompsnelheid ({lo} tot {hi}; {boats} "
@@ -122,7 +122,7 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
         "Tows of {era} lay {before_shift} higher under {before} than the next of the same boat; "
         "under {after} {after_shift}, {verdict}.",
     ),
-    "slide.is_apart": ("dat nog afwijkt", "still apart"),
+    "slide.is_apart": ("dat nog afwijkt", "which still differs"),
     "slide.not_apart": ("geen afwijking meer gezien", "no difference seen any more"),
     "decimal_mark": (",", "."),
     # Columns and codes
@@ -142,7 +142,7 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     "column.hull_speed_m_s": ("Romp\u00adsnelheid [m/s]", "Hull speed [m/s]"),
     "column.label": ("Proef", "Tow"),
     "column.newest_method": ("Methode", "Method"),
-    "column.outside": ("Buiten type", "Outside type"),
+    "column.outside": ("Uitschieter", "Outlier"),
     "column.share_stated_1pct": ("Zegt < 1 %", "States < 1 %"),
     "column.share_stated_2pct": ("Zegt < 2 %", "States < 2 %"),
     "column.share_seen_1pct": ("Herhaald < 1 %", "Repeated < 1 %"),
@@ -186,7 +186,7 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     "claim_hull_speed": ("B en rompsnelheid per type", "B and hull speed per type"),
     "claim_hull_speed_note": (
         "Sleepsnelheid en B als deel van de rompsnelheid, 1,25 keer de wortel van de waterlijn. "
-        "Van B de mediaan van de sloepen met haar 95 %-interval: staat 1 daarbuiten, dan is B niet "
+        "Van B de mediaan van de sloepen met het 95 %-interval: ligt 1 daarbuiten, dan is B niet "
         "de rompsnelheid.",
         "Tow speed and B as parts of hull speed, 1.25 times the root of the waterline. Of B the "
         "median of the boats with its 95 % interval: if 1 lies outside it, B is not hull speed.",

@@ -39,7 +39,7 @@ TEXTS: Final[Words] = {
     "busy": ("Bezig met herrekenen ...", "Recomputing ..."),
     "done_in": ("Herrekend en getekend in", "Recomputed and drawn in"),
     "tows_in_all": ("proeven", "tows"),
-    "refused": ("Dit kan niet:", "This cannot be:"),
+    "refused": ("Dit kan niet:", "Not possible:"),
     "refusal.greater_than": ("moet groter zijn dan", "has to be greater than"),
     "refusal.greater_than_equal": ("moet minstens zijn", "has to be at least"),
     "refusal.less_than": ("moet kleiner zijn dan", "has to be less than"),
@@ -97,10 +97,10 @@ TEXTS: Final[Words] = {
         "The workbench no longer answers. Start it again with herijk workbench.",
     ),
     "left_out": (
-        "Niet bij elke wijziging berekend: de band om een kromme over haar hele bereik (haar "
+        "Niet bij elke wijziging berekend: de band om een kromme over het hele bereik (het "
         "interval bij de opgegeven snelheid wel), de rechte lijnen en uitschieters per type en de "
         "oorzaken van spreiding. Die staan op de site na een herrekening.",
-        "Not computed at every change: the band round a curve over its whole range (its interval "
+        "Not computed at every change: the band around a curve over its whole range (its interval "
         "at the declared speed is), the lines and outliers per type and the causes of spread. "
         "They are on the site after a rebuild.",
     ),

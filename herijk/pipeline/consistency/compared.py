@@ -30,6 +30,7 @@ from herijk.pipeline.consistency.observed import (
     newest,
 )
 from herijk.pipeline.consistency.tow_speed import is_slow, speed_case
+from herijk.pipeline.quantiles import t_quantile
 from herijk.pipeline.steps.hull import hull_speed_m_s
 from herijk.tables.consistency import ComparedTows, HullSpeed
 from herijk.tables.frames import frame_of
@@ -38,7 +39,6 @@ ROWED_RATIO: Final = (0.60, 0.70)
 """Presentation 2015: "We roeien op ca. 60-70% van de rompsnelheid"."""
 
 ALL_TYPES: Final = "all"
-LEVEL: Final = 0.95
 FEWEST_LENGTHS: Final = 6
 
 
@@ -177,7 +177,7 @@ def _length_slope(boats: pl.DataFrame) -> dict[str, float]:
     if len(x) < FEWEST_LENGTHS or np.ptp(x) < 1e-9:
         return {}
     line = scipy.stats.linregress(x, y)
-    half = float(scipy.special.stdtrit(len(x) - 2, 0.5 + LEVEL / 2)) * line.stderr
+    half = float(t_quantile(len(x) - 2)) * line.stderr
     return {
         "length_slope": float(line.slope),
         "length_slope_lo": float(line.slope - half),

@@ -8,12 +8,14 @@ Women's and men's crews differ in weight and speed, so lines against weight or l
 within a crew; displacement contains the crew.
 """
 
-from collections.abc import Iterator
-from typing import Any, Final, NamedTuple
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Final, NamedTuple, Self
 
 import numpy as np
 import polars as pl
 import scipy
+from numpy.typing import NDArray
 
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.consistency import mixed
@@ -38,6 +40,7 @@ LN_CW, BEND = "ln_cw_standard", "bend"
 forms of the bend this one has the most even spread: where B truly spreads 10 %, 27 % of types of 24
 boats had an outlier by q, 11 % have one by this."""
 
+LN_DISPLACEMENT: Final = "ln_displacement"
 EXPLAINING: Final = ("weight_kg", "displacement_kg", "declared_speed_m_s", "waterline_length_m")
 OF_THE_BOAT: Final = ("weight_kg", "waterline_length_m")
 """Explaining variables that say nothing of the crew."""
@@ -169,18 +172,82 @@ def type_lines(observed: Observed) -> tuple[pl.DataFrame, pl.DataFrame]:
 def _lines(tows: Observed, choice: Choice) -> tuple[pl.DataFrame, pl.DataFrame]:
     rows: list[Row] = []
     points: list[Row] = []
-    for _, boats in tows.groups("method", "boat_type"):
-        for quantity, explaining, measured in _pairs(boats, choice):
-            row, drawn = _line(boats, choice, (quantity, explaining), measured)
-            rows.append(row)
-            points += drawn if (quantity, explaining) in SLIDE_PAIRS else []
+    for (method, boat_type), group in tows.groups("method", "boat_type"):
+        boats = _Boats.of(group)
+        facts = {"method": method, "tows": choice.tows, "boat_type": boat_type}
+        speed = {"standard_speed_m_s": standard_speed_m_s(group)}
+        for quantity, explaining, measured in _pairs(group, choice):
+            names = {"quantity": quantity, "explaining": explaining}
+            row, drawn = _line(boats, choice, names, measured)
+            rows.append(facts | names | speed | row)
+            if (quantity, explaining) in SLIDE_PAIRS:
+                points += [facts | names | point for point in drawn]
     return frame_of(TypeLines, rows), frame_of(TypeLinePoints, points)
+
+
+@dataclass(frozen=True)
+class _Boats:
+    """What lines need of the tows of a type, as arrays of shape (tows,): lines are many.
+
+    Attributes:
+        boat, crew: number of the boat, and of rowers and class.
+        crew_class: the class.
+        season: the season.
+        run_sd_ratio: as in `Observed`.
+        explaining: the explaining variables by name, NaN where missing.
+        type_known: whether the type is.
+    """
+
+    boat: IntArray
+    crew: IntArray
+    crew_class: NDArray[np.object_]
+    season: IntArray
+    run_sd_ratio: FloatArray
+    explaining: Mapping[str, FloatArray]
+    type_known: bool
+
+    @classmethod
+    def of(cls, tows: Observed) -> Self:
+        """The tows of one type under one method."""
+        crews = tows.table.select(pl.struct("rowers", "crew_class").rank("dense")).to_series()
+        return cls(
+            np.unique(tows.table["fsn_no"].to_numpy(), return_inverse=True)[1],
+            crews.to_numpy().astype(np.int64),
+            tows.table["crew_class"].to_numpy(),
+            tows.table["season"].to_numpy().astype(np.int64),
+            tows.column("run_sd_ratio"),
+            {name: _explaining(tows, name) for name in (*EXPLAINING, LN_DISPLACEMENT)},
+            tows.table["boat_type"][0] != UNKNOWN_TYPE,
+        )
+
+    def take(self, rows: IntArray) -> Self:
+        """Some of the tows."""
+        return replace(
+            self,
+            boat=self.boat[rows],
+            crew=self.crew[rows],
+            crew_class=self.crew_class[rows],
+            season=self.season[rows],
+            run_sd_ratio=self.run_sd_ratio[rows],
+            explaining={name: values[rows] for name, values in self.explaining.items()},
+        )
+
+    @property
+    def number(self) -> int:
+        """Number of different boats."""
+        return len(np.unique(self.boat))
+
+    @property
+    def crew_effects(self) -> FloatArray:
+        """One indicator column per crew."""
+        number = np.unique(self.crew, return_inverse=True)[1]
+        return np.asarray(np.eye(int(number.max(initial=0)) + 1)[number])
 
 
 def _pairs(boats: Observed, choice: Choice) -> Iterator[tuple[str, str, Measured]]:
     for quantity, measured in quantities(boats).items():
         if quantity == LN_CW:
-            explaining = ["ln_displacement"]
+            explaining = [LN_DISPLACEMENT]
         else:
             explaining = [] if quantity == BEND else list(EXPLAINING)
         for name in explaining:
@@ -189,46 +256,37 @@ def _pairs(boats: Observed, choice: Choice) -> Iterator[tuple[str, str, Measured
 
 
 def _line(
-    boats: Observed, choice: Choice, names: tuple[str, str], measured: Measured
+    boats: _Boats, choice: Choice, names: Mapping[str, str], measured: Measured
 ) -> tuple[Row, list[Row]]:
     """A line of a quantity on an explaining variable, and its points for drawing."""
-    quantity, explaining = names
-    facts = {
-        "method": boats.table["method"][0],
-        "tows": choice.tows,
-        "boat_type": boats.table["boat_type"][0],
-        "quantity": quantity,
-        "explaining": explaining,
-    }
-    speed = {"standard_speed_m_s": standard_speed_m_s(boats)}
     y, unit = measured
-    x = _explaining(boats, explaining)
+    x = boats.explaining[names["explaining"]]
     known = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
     boats, x, y = boats.take(known), x[known], y[known]
-    crews = _crew_effects(boats) if explaining in OF_THE_BOAT else np.ones((len(y), 1))
-    counts = {"n": len(y), "n_boats": boats.table["fsn_no"].n_unique()}
+    within_crew = names["explaining"] in OF_THE_BOAT
+    crews = boats.crew_effects if within_crew else np.ones((len(y), 1))
+    counts = {"n": len(y), "n_boats": boats.number}
     reason = _no_line(boats, crews, x)
     if reason:
-        return facts | speed | counts | {"reason": reason}, []
-    level = 1.0 if quantity == LN_CW else abs(y.mean())
+        return counts | {"reason": reason}, []
+    level = 1.0 if names["quantity"] == LN_CW else abs(y.mean())
     line, fit, centre, width = _fitted_line(boats, choice, crews, (x, y, unit[known]), level)
-    groups = boats.table["crew_class"].to_numpy() if explaining in OF_THE_BOAT else None
-    points = [facts | point for point in _points(fit, crews, x, (centre, width), groups)]
-    return facts | speed | counts | line, points
+    groups = boats.crew_class if within_crew else None
+    return counts | line, list(_points(fit, crews, x, (centre, width), groups))
 
 
-def _no_line(boats: Observed, crews: FloatArray, x: FloatArray) -> str:
+def _no_line(boats: _Boats, crews: FloatArray, x: FloatArray) -> str:
     """Why no line is drawn; empty where there is one."""
-    if (boats.table["boat_type"] == UNKNOWN_TYPE).any():
+    if not boats.type_known:
         return NO_TYPE
-    if boats.table["fsn_no"].n_unique() < max(FEWEST_BOATS, crews.shape[1] + 2):
+    if boats.number < max(FEWEST_BOATS, crews.shape[1] + 2):
         return FEW_BOATS
     centred = x - crews @ np.linalg.lstsq(crews, x)[0]
     return EQUAL_VALUES if np.abs(centred).max() <= 1e-9 * np.abs(x).max() else ""
 
 
 def _fitted_line(
-    boats: Observed,
+    boats: _Boats,
     choice: Choice,
     crews: FloatArray,
     values: tuple[FloatArray, FloatArray, FloatArray],
@@ -241,14 +299,14 @@ def _fitted_line(
     x, y, unit = values
     centre = np.asarray(np.linalg.lstsq(crews, x)[0], dtype=np.float64)
     centred = x - crews @ centre
-    variance = unit * boats.column("run_sd_ratio") ** 2
+    variance = unit * boats.run_sd_ratio**2
     width = float(np.abs(centred).max())
     problem = Problem.of(
         y,
         np.column_stack([crews, centred / width]),
         variance,
-        boats.table["fsn_no"].to_numpy(),
-        _seasons(boats, choice),
+        boats.boat,
+        _seasons(boats.season, choice),
     )
     fit = mixed.fit(problem, choice.components)
     slope, lo, hi = (float(end[-1]) / width for end in fit.coefficients())
@@ -268,10 +326,9 @@ def _fitted_line(
     return row, fit, centre, width
 
 
-def _seasons(boats: Observed, choice: Choice) -> IntArray | None:
+def _seasons(season: IntArray, choice: Choice) -> IntArray | None:
     """The season of each tow, where seasons may deviate."""
-    seasons = boats.table["season"].to_numpy().astype(np.int64)
-    return seasons if mixed.OTHER in choice.components else None
+    return season if mixed.OTHER in choice.components else None
 
 
 def _points(
@@ -297,16 +354,9 @@ def _points(
 
 def _explaining(boats: Observed, name: str) -> FloatArray:
     """An explaining variable, NaN where missing."""
-    if name == "ln_displacement":
+    if name == LN_DISPLACEMENT:
         return np.log(_explaining(boats, "displacement_kg"))
     return np.asarray(boats.table[name].to_numpy(), dtype=np.float64)
-
-
-def _crew_effects(boats: Observed) -> FloatArray:
-    """One indicator column per crew (rowers and class)."""
-    crews = boats.table.select(pl.struct("rowers", "crew_class").rank("dense") - 1).to_series()
-    number = crews.to_numpy().astype(np.int64)
-    return np.asarray(np.eye(int(number.max(initial=0)) + 1)[number])
 
 
 def type_outliers(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
@@ -353,7 +403,7 @@ def _against_type(
 ) -> pl.DataFrame | None:
     y, unit = quantities(boats)[quantity]
     speed = standard_speed_m_s(boats)
-    displacement = _explaining(boats, "ln_displacement")
+    displacement = _explaining(boats, LN_DISPLACEMENT)
     weighed = quantity == LN_CW and bool(np.isfinite(displacement).all())
     known = np.flatnonzero(np.isfinite(y))
     boats, y, displacement = boats.take(known), y[known], displacement[known]
@@ -367,7 +417,8 @@ def _against_type(
         return None
     variance = unit[known] * boats.column("run_sd_ratio") ** 2
     fsn_no = boats.table["fsn_no"].to_numpy()
-    problem = Problem.of(y, x, variance, fsn_no, _seasons(boats, choice))
+    season = boats.table["season"].to_numpy().astype(np.int64)
+    problem = Problem.of(y, x, variance, fsn_no, _seasons(season, choice))
     fit = mixed.fit(problem, choice.components)
     left_out = fit.leave_boats_out()
     deviation = _studentised(left_out.error / np.sqrt(left_out.variance * fit.scale), fit)

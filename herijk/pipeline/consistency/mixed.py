@@ -18,11 +18,11 @@ import scipy
 
 from herijk.pipeline.arrays import FloatArray, IntArray
 from herijk.pipeline.consistency.reml import Problem, Whitened, search
+from herijk.pipeline.quantiles import t_quantile
 
 BOAT, OTHER, CELL = "boat", "other", "cell"
 COMPONENTS: Final = (BOAT, OTHER, CELL)
 
-LEVEL: Final = 0.95
 PROFILE_DROP: Final = 3.841458820694124
 """Deviance above its minimum at the ends of a 95 % profile interval (chi-squared, 1 dof)."""
 
@@ -118,7 +118,7 @@ class Fit:
         rows = len(self.problem.y) - self.problem.x.shape[1]
         spread = (np.linalg.solve(self._root.T, x.T) ** 2).sum(axis=0)
         sd = np.sqrt(spread * self.misfit / rows)
-        half = float(scipy.special.stdtrit(self.dof, 0.5 + LEVEL / 2)) * sd
+        half = float(t_quantile(self.dof)) * sd
         mean = x @ self.beta
         return Coefficients(mean, mean - half, mean + half)
 

@@ -8,7 +8,6 @@ from typing import Final
 
 import numpy as np
 import polars as pl
-import scipy
 
 from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.consistency import mixed
@@ -22,10 +21,10 @@ from herijk.pipeline.consistency.observed import (
     newest,
 )
 from herijk.pipeline.consistency.reml import Problem
+from herijk.pipeline.quantiles import t_quantile
 from herijk.tables.consistency import PredictedCw, PredictionError
 from herijk.tables.frames import frame_of
 
-LEVEL: Final = 0.95
 FEWEST_BOATS_PER_COLUMN: Final = 3
 MEASURES: Final = ("displacement_kg", "waterline_length_m", "beam_m", "standard_speed_m_s")
 
@@ -85,7 +84,7 @@ def _second_opinion(
     ratio = np.where(known, left_out.error, np.nan)
     total = np.where(known, left_out.variance * fit.scale, np.nan)
     sd = np.sqrt(np.maximum(total - variance, 0.0))
-    half = float(scipy.special.stdtrit(fit.dof, 0.5 + LEVEL / 2)) * sd
+    half = float(t_quantile(fit.dof)) * sd
     return {
         "predicted_cw_kg_m": cw * np.exp(-ratio),
         "predicted_lo_kg_m": cw * np.exp(-ratio - half),

@@ -1,7 +1,7 @@
 """The best estimate of each tow's Cw, beside what was measured.
 
-All tows together know a boat at one speed; what they change there, as a ratio, is taken for the
-declared speed, and how far their points show the hull to lie from its hyperbola is added. What
+All tows together know a boat at its usual speed; from there to the declared speed of a tow its bend
+by all tows leads. How far their points show the hull to lie from its hyperbola is added. What
 all tows share, and repeats can therefore not show, is added to the interval
 (ISO 5725-1: precision is not trueness). A tow of a season that is not determined stays as measured:
 the bend of its curves alone would say what its log was, and no hull is an exact hyperbola.
@@ -19,6 +19,12 @@ NOT_SEEN_BY_REPEATS: Final = ("force", "wind", "anemometer", "mass", "temperatur
 """Components of the budget that repeat tows share."""
 
 OTHERS: Final = "cw_others_kg_m"
+
+BEND_SD: Final = 0.04
+"""Of a boat's bend q by its own tows and its type, where a tow was far from its usual speed."""
+
+LEAST_MARGIN: Final = 0.05
+"""1 - q ((v/v0)^2 - 1) is kept above this."""
 
 QUANTILE: Final = 1.959964
 """Of a normal distribution, for intervals of 95 %."""
@@ -48,16 +54,17 @@ def with_best(
         .agg((pl.col("u_ratio") ** 2).sum().alias("shared"))
     )
     determined = estimated.instruments.drop_nulls("factor").select("tow_id", "others_ln_ratio")
-    known = estimated.best.join(determined, on="tow_id")
+    known = estimated.best.join(determined, on="tow_id").join(_to_declared(estimated), on="tow_id")
     joined = curves.join(known, on="tow_id", how="left", maintain_order="left").join(
         shared.join(misfit, on="tow_id"), on="tow_id", how="left", maintain_order="left"
     )
-    moved = pl.col("ln_cw") - pl.col("as_measured") + pl.col("misfit").log1p()
+    moved = pl.col("ln_cw") - pl.col("as_measured") + pl.col("by_bend") + pl.col("misfit").log1p()
     best = pl.col("cw_kg_m") * moved.exp()
 
     def half(end: str) -> pl.Expr:
         own = pl.col(end) - pl.col("ln_cw")
-        return (own**2 + QUANTILE**2 * (pl.col("shared") + pl.col("misfit_variance"))).sqrt()
+        beside = pl.col("shared") + pl.col("misfit_variance") + pl.col("bend_variance")
+        return (own**2 + QUANTILE**2 * beside).sqrt()
 
     by_all = (best, best * (-half("lo")).exp(), best * half("hi").exp())
     measured = ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
@@ -68,4 +75,24 @@ def with_best(
             for name, values, alone in zip(BEST, by_all, measured, strict=True)
         ),
         (pl.col("cw_kg_m") * pl.col("others_ln_ratio").fill_null(0.0).exp()).alias(OTHERS),
+    )
+
+
+def _to_declared(found: SeasonFactors) -> pl.DataFrame:
+    """From the line's usual speed to the declared one along the boat's bend, not the tow's own.
+
+    Returns:
+        `tow_id, by_bend`, what that changes of ln Cw, and `bend_variance`, its uncertainty.
+    """
+    r = pl.col("q") / (1.0 + pl.col("q")) / pl.col("factor") ** 2
+    away = pl.col("reference_ratio") ** 2 - 1.0
+    own, boat = (
+        (1.0 - q * away).clip(lower_bound=LEAST_MARGIN) for q in (r / (1.0 - r), pl.col("bend"))
+    )
+    return found.tows.join(
+        found.instruments.select("tow_id", "factor", "bend").drop_nulls(), on="tow_id"
+    ).select(
+        "tow_id",
+        (own.log() - boat.log()).alias("by_bend"),
+        ((BEND_SD * away / boat) ** 2).alias("bend_variance"),
     )

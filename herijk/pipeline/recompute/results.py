@@ -10,13 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import polars as pl
-import scipy
 from numpy.typing import ArrayLike
 
 from herijk.pipeline import curve
 from herijk.pipeline.arrays import BoolArray
 from herijk.pipeline.assessment.assess import assess, with_status
 from herijk.pipeline.method.definition import Method
+from herijk.pipeline.quantiles import t_quantile
 from herijk.pipeline.races.race import power_per_rower_w
 from herijk.pipeline.recompute.anemometer import anemometer_diagnosis
 from herijk.pipeline.recompute.best import with_best
@@ -39,8 +39,6 @@ from herijk.pipeline.steps.speed import log_factor
 from herijk.pipeline.steps.wind import mean_wind_angle_deg
 from herijk.tables.frames import dtypes
 from herijk.tables.season_log import BestEstimateWeights, LogFactors, SeasonLinks, TowInstruments
-
-LEVEL = 0.95
 
 
 @dataclass(frozen=True)
@@ -222,7 +220,7 @@ def _mean_factor(o: Outcome, season: int) -> FactorRow:
     mean = float(ln_factor.mean())
     if n == 1:
         return season, float(np.exp(mean)), None, None, "gps"
-    half = float(scipy.special.stdtrit(n - 1, 0.5 + LEVEL / 2) * ln_factor.std(ddof=1) / np.sqrt(n))
+    half = float(t_quantile(n - 1) * ln_factor.std(ddof=1) / np.sqrt(n))
     return (
         season,
         float(np.exp(mean)),

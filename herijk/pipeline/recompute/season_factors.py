@@ -160,6 +160,7 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
         log_part(OTHER_LOG.get(steps.speed.source, "mean")).alias("other_part"),
         pl.lit(calibrated).alias("anchored"),
         pl.Series("temperature_known", o.temperature_known),
+        pl.Series("reference_ratio", batch.of_tow("declared_speed_m_s") / speed),
         *(pl.Series(name, values).fill_nan(None) for name, values in numbers.items()),
     )
 

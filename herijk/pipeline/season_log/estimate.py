@@ -5,11 +5,11 @@ from typing import Final
 
 import numpy as np
 import polars as pl
-import scipy
 
 from herijk.pipeline.arrays import FloatArray, IntArray
 from herijk.pipeline.choice import first_largest
 from herijk.pipeline.errors import BrokenPromiseError
+from herijk.pipeline.quantiles import t_quantile
 from herijk.pipeline.season_log.assumed import USUAL, Settings
 from herijk.pipeline.season_log.diagnosis import season_diagnosis, season_steps
 from herijk.pipeline.season_log.effects import AGEING, WAYS
@@ -18,7 +18,6 @@ from herijk.pipeline.season_log.posterior import Posterior, Problem, solve
 from herijk.pipeline.season_log.tows import best_estimates, instrument_errors
 from herijk.pipeline.season_log.without_boats import Second, without_boats
 
-LEVEL: Final = 0.95
 ESTIMATED: Final = "estimated"
 GPS: Final = "gps"
 NOT_DETERMINED: Final = "not determined"
@@ -74,7 +73,7 @@ class SeasonFactors:
         share = count / count.sum()
         ln_factor = share @ known["factor"].log().to_numpy()
         sd = np.sqrt(share @ self.covariance @ share)
-        half = sd * scipy.special.stdtrit(parts["dof"].to_numpy().min(), 0.5 * (1.0 + LEVEL))
+        half = sd * t_quantile(parts["dof"].to_numpy().min())
         factor, lo, hi = np.exp(ln_factor + np.array([0.0, -half, half])).tolist()
         return factor, lo, hi, ESTIMATED if (parts["source"] == ESTIMATED).any() else GPS
 
@@ -270,5 +269,5 @@ def _described(table: pl.DataFrame, network: Network, second: Second) -> pl.Data
 
 
 def _half_width(sd: pl.Series, dof: pl.Series) -> pl.Series:
-    quantile = scipy.special.stdtrit(dof.fill_null(1.0).clip(1.0).to_numpy(), 0.5 * (1.0 + LEVEL))
+    quantile = t_quantile(dof.fill_null(1.0).clip(1.0).to_numpy())
     return sd * pl.Series(quantile)

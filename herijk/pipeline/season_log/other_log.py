@@ -6,9 +6,9 @@ is. Nothing of how the first one's is estimated.
 
 import numpy as np
 import polars as pl
-import scipy
 
-from herijk.pipeline.season_log.estimate import LEVEL, SeasonFactors
+from herijk.pipeline.quantiles import t_quantile
+from herijk.pipeline.season_log.estimate import SeasonFactors
 from herijk.pipeline.season_log.network import GROUP
 
 OTHER_LOG = "other log"
@@ -48,7 +48,7 @@ def other_log_factors(estimated: SeasonFactors) -> pl.DataFrame:
     spread = own_variance**2 / pl.col("dof") + ratio_variance**2 / (pl.col("n_tows") - 1)
     variance = own_variance + ratio_variance
     rows = rows.with_columns(variance.sqrt().alias("ln_sd"), (variance**2 / spread).alias("dof"))
-    quantile = scipy.special.stdtrit(rows["dof"].to_numpy(), 0.5 * (1.0 + LEVEL))
+    quantile = t_quantile(rows["dof"].to_numpy())
     half = np.asarray(quantile) * rows["ln_sd"].to_numpy()
     return rows.select(
         *GROUP,

@@ -28,7 +28,7 @@ RETOW_SCHEMA: Final = dtypes(RetowChoice, without=["method"])
 
 
 def retow_choice(estimated: SeasonFactors, most: int = MOST_BOATS) -> pl.DataFrame:
-    """The boats to tow again, the one that tells most first, each given those before it.
+    """The boats to tow again, the most informative first, each given those before it.
 
     Of boats that tell as much the first by boat and crew is chosen.
 
@@ -37,7 +37,7 @@ def retow_choice(estimated: SeasonFactors, most: int = MOST_BOATS) -> pl.DataFra
 
     Args:
         estimated: the season factors, with the tows they were estimated from.
-        most: no more boats than this; fewer where another one would tell nothing.
+        most: no more boats than this; fewer where another one would add nothing.
 
     Returns:
         Rows of `RETOW_SCHEMA`: `seasons` are those without dGPS in which the boat was towed;

@@ -134,7 +134,7 @@ def run_statistics(blocks: pl.DataFrame) -> pl.DataFrame:
     swings faster. The mean is the same.
 
     Args:
-        blocks: rows of `pipeline.blocks.run_blocks.block_sums` with `tow_id`.
+        blocks: rows of `pipeline.blocks.sums.block_sums` with `tow_id`.
 
     Returns:
         Rows of the table `run_statistics`, one per tow, run and channel that was recorded.

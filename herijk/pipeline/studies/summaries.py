@@ -125,7 +125,7 @@ def second_means(blocks: pl.DataFrame) -> pl.DataFrame:
     """Means over every second of every run: what the instruments said.
 
     Args:
-        blocks: rows of `pipeline.blocks.run_blocks.block_sums` with `tow_id`.
+        blocks: rows of `pipeline.blocks.sums.block_sums` with `tow_id`.
 
     Returns:
         `tow_id, run, second, speed_m_s` (log 1)`, gps_m_s` (null without GPS)`, force_n, wind_m_s,

@@ -14,10 +14,10 @@ from typing import Final
 
 import numpy as np
 import polars as pl
-import scipy
 
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.blocks.run_blocks import RunBlocks
+from herijk.pipeline.quantiles import t_quantile
 
 LONGEST_LAG_S: Final = 10
 """Lags up to here count: surge and wander of the force have died away, and a window is 30-50 s."""
@@ -328,7 +328,7 @@ def combine(held: pl.DataFrame, level: float = 0.95) -> pl.DataFrame:
         .with_columns((pl.col("u_ratio") ** 4 / pl.col("spread")).alias("dof"))
         .with_columns(pl.col("dof").fill_nan(np.inf))
     )
-    quantile = scipy.special.stdtrit(rows["dof"].clip(1.0).to_numpy(), 0.5 * (1.0 + level))
+    quantile = t_quantile(rows["dof"].clip(1.0).to_numpy(), level)
     half = rows["u_ratio"] * pl.Series(quantile, dtype=pl.Float64)
     return rows.drop("spread").with_columns(
         (-half).exp().alias("lo_ratio"), half.exp().alias("hi_ratio")

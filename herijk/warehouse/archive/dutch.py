@@ -11,6 +11,12 @@ DUTCH: Final[dict[str, str]] = {
     "The name of '{name}' has letters that cannot be read; give it another name.": (
         "De naam van '{name}' heeft letters die niet te lezen zijn; geef het een andere naam."
     ),
+    "{boat} {crew} is listed twice for {race}; the rows are equal and the first counts.": (
+        "{boat} {crew} staat twee keer bij {race}; de rijen zijn gelijk en de eerste telt."
+    ),
+    "{boat} {crew} is listed twice for {race}; the rows differ, so neither counts.": (
+        "{boat} {crew} staat twee keer bij {race}; de rijen verschillen, dus geen van beide telt."
+    ),
     "there is no list of boats: {path} is expected.": (
         "er is geen lijst van sloepen: {path} wordt verwacht."
     ),

@@ -30,10 +30,22 @@ class Sentence(str):
 
 
 def say(template: str, **values: Any) -> Sentence:
-    """Return the sentence that a template gives with the values filled in."""
-    sentence = Sentence(template.format(**values))
-    sentence.template, sentence.values = template, values
+    """Return the sentence that a template gives with the values filled in.
+
+    What comes from files and libraries is made printable: it goes to terminals and tables.
+    """
+    shown = {name: _printable(value) for name, value in values.items()}
+    sentence = Sentence(template.format(**shown))
+    sentence.template, sentence.values = template, shown
     return sentence
+
+
+def _printable(value: Any) -> Any:
+    """Return text or an error as one line without control characters; other values as they are."""
+    if isinstance(value, Sentence) or not isinstance(value, str | Exception):
+        return value
+    line = " ".join(str(value).split())
+    return "".join(letter if letter.isprintable() else "?" for letter in line)
 
 
 def spoken(text: Any, language: str) -> Any:

@@ -11,7 +11,7 @@ from herijk.warehouse.archive.text import (
     Column,
     decode,
     find_delimiter,
-    fold,
+    split_header,
     split_line,
 )
 
@@ -39,7 +39,8 @@ def read_points(path: Path, speed: str | None, force: str | None) -> pl.DataFram
     """
     data = path.read_bytes()
     header = decode(data).split("\n", 1)[0]
-    names = [fold(cell.split("[")[0]) for cell in split_line(header, find_delimiter(header))]
+    names = [split_header(cell)[0] for cell in split_line(header, find_delimiter(header))]
+    speed, force = (name and split_header(name)[0] for name in (speed, force))
     speed_column = Column("speed", speed or _first(names, "speed", header), "speed", "m/s")
     if force is None and any(name in names for name in KNOWN["cw"]):
         other = Column("cw", KNOWN["cw"][0])

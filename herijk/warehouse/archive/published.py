@@ -4,7 +4,7 @@ Both are optional in an archive. Computing with them belongs elsewhere.
 """
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
@@ -88,7 +88,44 @@ def read_races(
     """
     wording = wording or read_profiles(root).wording
     files = list_files(root, RACES, wording.files)
-    return _read_all(root, files, RACE_COLUMNS, "bad_race_row", ListedRaces, _race_result, wording)
+    found, faults = _read_all(
+        root, files, RACE_COLUMNS, "bad_race_row", ListedRaces, _race_result, wording
+    )
+    kept, twice = _once(found)
+    return kept, (*faults, *twice)
+
+
+_RESULT: Final = ("race", "race_date", "fsn_no", "rowers", "crew_class")
+"""What a crew has one result of."""
+
+
+_EQUAL: Final = "{boat} {crew} is listed twice for {race}; the rows are equal and the first counts."
+_DIFFER: Final = "{boat} {crew} is listed twice for {race}; the rows differ, so neither counts."
+
+
+def _once(results: pl.DataFrame) -> tuple[pl.DataFrame, list[Fault]]:
+    """Return the results of crews that have one in a race; of equal rows the first counts."""
+    others = [name for name in results.columns if name not in {"path", "line"}]
+    is_again = pl.struct(others).is_first_distinct().not_()
+    one = results.filter(is_again.not_())
+    differ = one.filter(pl.struct(_RESULT).is_duplicated())
+    equal_message = (
+        "{boat} {crew} is listed twice for {race}; the rows are equal and the first counts."
+    )
+    other_message = "{boat} {crew} is listed twice for {race}; the rows differ, so neither counts."
+    faults = [
+        _again(row, message)
+        for rows, message in ((results.filter(is_again), equal_message), (differ, other_message))
+        for row in rows.iter_rows(named=True)
+    ]
+    return one.filter(pl.struct(_RESULT).is_unique()), faults
+
+
+def _again(row: Mapping[str, Any], message: str) -> Fault:
+    crew = f"{row['rowers']}{row['crew_class']}"
+    what = say(message, boat=row["fsn_no"], crew=crew, race=row["race"])
+    said = say("Line {line}: {what}", line=row["line"], what=what)
+    return Fault(row["path"], None, row["line"], "bad_race_row", said)
 
 
 def _read_all(

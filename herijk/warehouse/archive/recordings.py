@@ -12,6 +12,7 @@ import numpy as np
 import polars as pl
 
 from herijk.pipeline.errors import DefectiveInputError
+from herijk.warehouse.archive.limits import MOST_ROWS, too_many_rows
 from herijk.warehouse.archive.messages import say
 
 _END_OF_HEADER: Final = "***End_of_Header***"
@@ -109,7 +110,7 @@ def read_tdms(path: Path, max_bytes: int) -> pl.DataFrame:
     """Return the channels of a TDMS file as columns; each group is a run where none is named.
 
     Raises:
-        DefectiveInputError: `unreadable_file`.
+        DefectiveInputError: `unreadable_file` or `too_large`.
     """
     import nptdms  # type: ignore[import-untyped]  # noqa: PLC0415 - seldom needed
 
@@ -119,7 +120,9 @@ def read_tdms(path: Path, max_bytes: int) -> pl.DataFrame:
         with nptdms.TdmsFile.open(path) as file:
             groups = [group for group in file.groups() if group.channels()]
             frames = [_group(group, place) for place, group in enumerate(groups, start=1)]
-    except (OSError, ValueError, KeyError, TypeError, EOFError, IndexError) as error:
+    except DefectiveInputError:
+        raise
+    except Exception as error:  # npTDMS raises whatever a damaged file makes Python raise
         said = say("'{name}' is not a whole TDMS file: {error}.", name=path.name, error=error)
         raise DefectiveInputError("unreadable_file", said) from error
     if not frames:
@@ -130,6 +133,8 @@ def read_tdms(path: Path, max_bytes: int) -> pl.DataFrame:
 def _group(group: Any, place: int) -> pl.DataFrame:
     columns = {}
     for channel in group.channels():
+        if len(channel) > MOST_ROWS:  # said by the file, and not by its size
+            raise too_many_rows(len(channel))
         unit = str(
             channel.properties.get("unit_string", "")
             or channel.properties.get("NI_UnitDescription", "")

@@ -11,7 +11,7 @@ from herijk.tables.views import VIEWS
 from herijk.warehouse.build.version import code_version
 from herijk.warehouse.store.database import build_database, left_wal
 from herijk.warehouse.store.files import file_sha256
-from herijk.warehouse.store.package import Origin, package_is_whole, write_package
+from herijk.warehouse.store.package import Origin, Rights, package_is_whole, write_package
 from herijk.warehouse.store.store import Store, fingerprint
 
 if TYPE_CHECKING:
@@ -72,8 +72,7 @@ def _origin(found: Mapping[str, pl.DataFrame]) -> Origin:
     return Origin(
         version=about["code_version"],
         simulated=about["simulated"] == "true",
-        publisher=about.get("publisher"),
-        licence=about.get("licence"),
+        rights=Rights(about.get("publisher"), about.get("licence")),
         sources=((archive, fingerprint(hashes)), *methods),
     )
 

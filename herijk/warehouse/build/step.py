@@ -105,16 +105,16 @@ class Step:
         self,
         store: Store,
         methods: Sequence[Method],
-        wanted: Collection[str] | None = None,
         today: dt.date | None = None,
+        wanted: Collection[str] | None = None,
     ) -> "Made":
         """Makes the outputs and writes them.
 
         Args:
             store: the data folder.
             methods: those to apply, or the one where the step is made per method.
-            wanted: the outputs to write; None for all. Others stay as they are, and stale.
             today: the day that is noted where something is seen for the first time.
+            wanted: the outputs to write; None for all. Others stay as they are, and stale.
         """
         made_from = self.made_from(store, methods)
         inputs = Inputs(store, self.inputs, methods, today or dt.date.today())

@@ -67,6 +67,7 @@ from herijk.warehouse.store.editions import (
     write_folder,
 )
 from herijk.warehouse.store.ensemble import read_ensemble
+from herijk.warehouse.store.package import Rights
 from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import Store, table_digest
 
@@ -295,7 +296,8 @@ def _write(store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str,
         **{name: text.encode("utf-8") for name, text in written.items()},
         **{f"{name}.parquet": _parquet(tables[name]) for name in TABLES if name in tables},
     }
-    contents[PACKAGE] = sheets.package_bytes(about, contents, notes.summary(edition))
+    summary, rights = notes.summary(edition), Rights.of(store)
+    contents[PACKAGE] = sheets.package_bytes(about, contents, summary, rights)
     sealed = about.model_copy(
         update={
             "tables": {

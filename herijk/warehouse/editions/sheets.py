@@ -22,6 +22,7 @@ import xlsxwriter  # type: ignore[import-untyped,unused-ignore]
 
 from herijk.warehouse.editions.words import DUTCH
 from herijk.warehouse.store.editions import CSV, INPUTS, About
+from herijk.warehouse.store.package import Rights
 
 A4: Final = 9
 """The paper's number in a spreadsheet."""
@@ -150,7 +151,7 @@ def xlsx_bytes(frame: pl.DataFrame, fields: Sequence[Field], about: About) -> by
     return target.getvalue()
 
 
-def package_bytes(about: About, contents: dict[str, bytes], notes: str) -> bytes:
+def package_bytes(about: About, contents: dict[str, bytes], notes: str, rights: Rights) -> bytes:
     """The Frictionless descriptor of the CSV files of an edition."""
     register = [*REGISTER_FIELDS, CODE_FIELD]
     package = {
@@ -160,6 +161,7 @@ def package_bytes(about: About, contents: dict[str, bytes], notes: str) -> bytes
         "description": notes,
         "version": about.edition,
         "created": f"{about.published_on}T00:00:00Z",
+        **rights.described,
         "resources": [
             _resource("register", CSV, contents[CSV], register, ["fsn_nr", "roeiers", "klasse"]),
             _resource("inputs", INPUTS, contents[INPUTS], INPUT_FIELDS, ["bestand"]),

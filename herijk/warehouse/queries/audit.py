@@ -31,7 +31,7 @@ def audit(store: Store, names: Sequence[str], method: str | None = None) -> Repo
         method: show this method only.
 
     Returns:
-        The report of `_boat_page` or `_types_page`, with `about`: boat or types.
+        A boat page or a page of types, with `about`: boat or types.
 
     Raises:
         MissingKnowledgeError: there is no such boat, type or method, or no database.

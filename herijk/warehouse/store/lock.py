@@ -82,7 +82,7 @@ def nobody_writes(root: Path) -> bool:
 
 @contextmanager
 def _locked(file: Path, wait: bool, taken: str, way_out: str) -> Iterator[None]:
-    """Holds a lock, signed with who holds it.
+    """Holds a lock, signed with its holder.
 
     Raises:
         UnavailableError: another process holds it; `taken` says what is, `way_out` what to do.

@@ -72,6 +72,7 @@ _BY_WORDS: Final = {
     "disk i/o error": _BROKEN_DISK,
     "file is not a database": _DAMAGED_RECORDS,
     "disk image is malformed": _DAMAGED_RECORDS,
+    "no such table": _DAMAGED_RECORDS,
 }
 
 _LITTLE: Final = 1 << 20

@@ -13,11 +13,12 @@ import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Self
 
 import polars as pl
 
 from herijk.warehouse.store.files import TEMPORARY_PREFIX, file_sha256, put_in_place
+from herijk.warehouse.store.store import Store
 
 if TYPE_CHECKING:
     import dataframely as dy
@@ -31,21 +32,49 @@ _SIMULATED: Final = "Simulated: these are not the federation's measurements."
 
 
 @dataclass(frozen=True)
+class Rights:
+    """Who publishes what is made from an archive, and what others may do with it.
+
+    Attributes:
+        publisher: its name, if the archive says so.
+        licence: SPDX name or web address of the licence, if the archive says so.
+    """
+
+    publisher: str | None = None
+    licence: str | None = None
+
+    @classmethod
+    def of(cls, store: Store) -> Self:
+        """What the archive of a data folder declares."""
+        about = store.read("about_archive").row(0, named=True)
+        return cls(about.get("publisher"), about.get("licence"))
+
+    @property
+    def described(self) -> dict[str, Any]:
+        """The same as the fields of a data package."""
+        found: dict[str, Any] = {}
+        if self.publisher:
+            found["contributors"] = [{"title": self.publisher, "roles": ["publisher"]}]
+        if self.licence:
+            key = "path" if "://" in self.licence else "name"
+            found["licenses"] = [{key: self.licence}]
+        return found
+
+
+@dataclass(frozen=True)
 class Origin:
     """Where the tables come from.
 
     Attributes:
         version: of the code that made them.
         simulated: the archive was made by a simulator.
-        publisher: who publishes them, if the archive says so.
-        licence: SPDX name or web address of the licence, if the archive says so.
+        rights: of the archive.
         sources: title and hash of all that they were made from.
     """
 
     version: str
     simulated: bool
-    publisher: str | None
-    licence: str | None
+    rights: Rights
     sources: tuple[tuple[str, str], ...]
 
 
@@ -72,7 +101,8 @@ def write_package(
             for name, frame in sorted(tables.items())
         ]
         package = _package(resources, origin)
-        for name, text in ((DESCRIPTOR, package), (CATALOGUE, _catalogue(package, origin))):
+        catalogue = _catalogue(package, origin, beside)
+        for name, text in ((DESCRIPTOR, package), (CATALOGUE, catalogue)):
             json_text = json.dumps(text, indent=1, ensure_ascii=False)
             (beside / name).write_text(json_text, encoding="utf-8")
         put_in_place(beside, target)
@@ -109,12 +139,12 @@ def _resource(
         "format": "parquet",
         "mediatype": _PARQUET,
         "description": schema.__doc__,
-        "bytes": len(data),
         "hash": f"sha256:{sha256}",
         "rowcount": frame.height,
         "schema": {
             "fields": [_field(*column) for column in schema.columns().items()],
             "primaryKey": schema.primary_key(),
+            "missingValues": [],
         },
     }
 
@@ -163,8 +193,8 @@ def _package(resources: list[dict[str, Any]], origin: Origin) -> dict[str, Any]:
     """The descriptor; its `id` is a hash of all tables, so equal tables have equal ids."""
     hashes = "".join(resource["hash"] for resource in resources)
     said = [_SIMULATED] if origin.simulated else []
-    said += [] if origin.licence else [_NO_LICENCE]
-    package = {
+    said += [] if origin.rights.licence else [_NO_LICENCE]
+    return {
         "$schema": "https://datapackage.org/profiles/2.0/datapackage.json",
         "name": "herijk",
         "id": f"urn:sha256:{hashlib.sha256(hashes.encode()).hexdigest()}",
@@ -172,17 +202,12 @@ def _package(resources: list[dict[str, Any]], origin: Origin) -> dict[str, Any]:
         "description": " ".join([*said, "One file per table; SI units, named in each field."]),
         "version": origin.version,
         "sources": [{"title": title, "sha256": sha256} for title, sha256 in origin.sources],
+        **origin.rights.described,
         "resources": resources,
     }
-    if origin.publisher:
-        package["contributors"] = [{"title": origin.publisher, "roles": ["publisher"]}]
-    if origin.licence:
-        key = "path" if "://" in origin.licence else "name"
-        package["licenses"] = [{key: origin.licence}]
-    return package
 
 
-def _catalogue(package: Mapping[str, Any], origin: Origin) -> dict[str, Any]:
+def _catalogue(package: Mapping[str, Any], origin: Origin, folder: Path) -> dict[str, Any]:
     """The same for catalogues of open data."""
     described: dict[str, Any] = {
         "@context": {
@@ -203,12 +228,13 @@ def _catalogue(package: Mapping[str, Any], origin: Origin) -> dict[str, Any]:
             {"dct:title": title, "dct:identifier": f"urn:sha256:{sha256}"}
             for title, sha256 in origin.sources
         ],
-        "dcat:distribution": [_distribution(resource) for resource in package["resources"]],
+        "dcat:distribution": [_distribution(resource, folder) for resource in package["resources"]],
     }
-    if origin.publisher:
-        described["dct:publisher"] = {"@type": "foaf:Agent", "foaf:name": origin.publisher}
-    if origin.licence:
-        described["dct:license"] = {"@id": _address(origin.licence)}
+    rights = origin.rights
+    if rights.publisher:
+        described["dct:publisher"] = {"@type": "foaf:Agent", "foaf:name": rights.publisher}
+    if rights.licence:
+        described["dct:license"] = {"@id": _address(rights.licence)}
     else:
         described["dct:accessRights"] = _NO_LICENCE
     return described
@@ -218,14 +244,14 @@ def _address(licence: str) -> str:
     return licence if "://" in licence else f"https://spdx.org/licenses/{licence}"
 
 
-def _distribution(resource: Mapping[str, Any]) -> dict[str, Any]:
+def _distribution(resource: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     return {
         "@type": "dcat:Distribution",
         "dct:title": resource["name"],
         "dct:description": resource["description"],
         "dcat:downloadURL": {"@id": resource["path"]},
         "dcat:mediaType": f"https://www.iana.org/assignments/media-types/{_PARQUET}",
-        "dcat:byteSize": resource["bytes"],
+        "dcat:byteSize": (folder / resource["path"]).stat().st_size,
         "spdx:checksum": {
             "spdx:algorithm": {"@id": "spdx:checksumAlgorithm_sha256"},
             "spdx:checksumValue": resource["hash"].removeprefix("sha256:"),

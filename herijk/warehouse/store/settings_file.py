@@ -1,4 +1,4 @@
-"""Files of settings in the data folder: TOML, written by who runs Herijk, read into a model."""
+"""Files of settings in the data folder: TOML, written by whoever runs Herijk, read into a model."""
 
 import tomllib
 from pathlib import Path

@@ -12,6 +12,7 @@ from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse import archive as package
 from herijk.warehouse.archive.check import as_report, check_archive
 from herijk.warehouse.archive.dutch import DUTCH
+from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.profile import parse_profiles
 from herijk.warehouse.archive.templates import write_templates
 from tests.warehouse.archive.conftest import BOATS, FIRST, TOWS, Archive, Scan
@@ -120,6 +121,12 @@ def test_a_misspelt_optional_header_is_never_ignored(archive: Archive, old: str)
 def test_a_number_that_can_be_read_in_two_ways_is_asked(archive: Archive) -> None:
     archive.replace(TOWS, ";760;", ";1.140;")
     assert [f.reason_code for f in archive.scan().faults] == ["ambiguous_number"]
+
+
+def test_what_libraries_say_is_made_printable() -> None:
+    said = say("broken: {error}, {cell}.", error=ValueError("a\nb\x0e"), cell="\x1b[31mred")
+    assert said == "broken: a b?, ?[31mred."
+    assert said.spoken("nl").isprintable()
 
 
 def test_an_empty_archive_to_begin_with(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ import io
 import unicodedata
 import zipfile
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from xml.sax.saxutils import escape
 
@@ -238,3 +239,24 @@ def test_a_header_beside_the_file(tmp_path: Path) -> None:
     found = read_samples(tmp_path / "x.txt", SeasonProfile(2014, columns, header=header))
     assert found["force_n"].to_list() == [200, 210]
     assert found["wind_speed_m_s"].null_count() == 2
+
+
+def test_a_damaged_tdms_is_a_fault_wherever_it_was_cut(archive: Archive) -> None:
+    tdms(archive)
+    (path,) = (archive.root / "meetdata_2014").glob("*.tdms")
+    content = path.read_bytes()
+    for place in range(1, len(content), len(content) // 40):
+        path.write_bytes(content[:place])
+        with suppress(DefectiveInputError):
+            read_samples(path, SeasonProfile(2014))
+
+
+def test_a_recording_that_claims_too_many_samples_is_not_read(
+    archive: Archive, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tdms(archive)
+    (path,) = (archive.root / "meetdata_2014").glob("*.tdms")
+    monkeypatch.setattr("herijk.warehouse.archive.recordings.MOST_ROWS", 10)
+    with pytest.raises(DefectiveInputError) as told:
+        read_samples(path, SeasonProfile(2014))
+    assert told.value.reason_code == "too_large"

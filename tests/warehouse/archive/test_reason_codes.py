@@ -10,7 +10,7 @@ from pathlib import Path
 import polars as pl
 import pytest
 
-from herijk.warehouse.archive import REASONS
+from herijk.warehouse.archive import REASONS, read_races
 from tests.warehouse.archive.conftest import (
     BOATS,
     FIRST,
@@ -362,6 +362,21 @@ def test_an_unreadable_list_costs_only_its_own_season(archive: Archive) -> None:
     scan = archive.scan()
     assert [f.reason_code for f in scan.faults] == ["unreadable_file"]
     assert set(scan.good) == ALL
+
+
+@pytest.mark.parametrize(("again", "kept"), [("2:10:25", 2), ("2:10:26", 1)])
+def test_a_result_that_is_listed_twice_counts_once_or_not_at_all(
+    archive: Archive, again: str, kept: int
+) -> None:
+    rows = ["FSN1;8;H;2:10:25", "FSN2;6;D;2:20:00", f"FSN1;8;H;{again}"]
+    (archive.root / "wedstrijden/tocht_2014.csv").write_text(
+        "wedstrijd;datum;afstand [km];fsn_nr;roeiers;klasse;roeitijd\n"
+        + "".join(f"Tocht;2014-06-01;18,4;{row}\n" for row in rows)
+    )
+    results, faults = read_races(archive.root)
+    assert results.height == kept
+    assert {fault.reason_code for fault in faults} == {"bad_race_row"}
+    assert 4 in {fault.line for fault in faults}
 
 
 def test_every_reason_code_is_explained_in_the_documentation() -> None:

@@ -296,7 +296,7 @@
     place.classList.add("drawn");
   }
 
-  // The rows of a chart as a table, made when it is opened: for who cannot see the chart.
+  // The rows of a chart as a table, made when it is opened: for people who cannot see the chart.
   async function tabulate(figure) {
     const place = figure.querySelector(".values");
     if (!place.open) return;

@@ -1,0 +1,30 @@
+"""Whether the site is that of the database that is in place."""
+
+from pathlib import Path
+from typing import Final
+
+from herijk.warehouse.build.database import DATABASE_TABLE
+from herijk.warehouse.store.code import code_hash
+from herijk.warehouse.store.files import file_sha256
+from herijk.warehouse.store.store import Store, fingerprint
+
+SITE_CODE: Final = "herijk.dashboards.site"
+SITE_TABLE: Final = "site"
+"""An empty table that remembers what the site was made from."""
+
+
+def site_made_from(store: Store) -> str:
+    """The database, and the code and files that make pages of it."""
+    folder = Path(__file__).parents[1] / "dashboards"
+    files = [f for f in folder.rglob("*.*") if f.parent.name in {"static", "templates"}]
+    return fingerprint(
+        store.made_from(DATABASE_TABLE),
+        code_hash(SITE_CODE),
+        [file_sha256(file) for file in sorted(files)],
+    )
+
+
+def site_is_stale(store: Store) -> bool:
+    """Whether the pages have to be made again."""
+    there = (store.root / "site" / "index.html").exists()
+    return not there or store.made_from(SITE_TABLE) != site_made_from(store)

@@ -1,0 +1,50 @@
+"""The image and the wheel hold what they need, and nothing of one system alone."""
+
+import ast
+import re
+import tomllib
+
+from packaging.specifiers import SpecifierSet
+
+from tests.architecture.repository import ROOT, read, tracked_files
+
+PROJECT = tomllib.loads(read("pyproject.toml"))["project"]
+ONE_SYSTEM = {"fcntl", "grp", "msvcrt", "posix", "pwd", "resource", "termios", "winreg"}
+
+
+def test_the_image_copies_and_starts_what_is_there():
+    text = read("Containerfile")
+    copied = re.findall(r"^COPY (?!--from)(.+) \./", text, re.MULTILINE)
+    sources = {source for line in copied for source in line.split()}
+    assert all((ROOT / source).exists() for source in sources)
+    let_in = {line[1:] for line in read(".dockerignore").splitlines() if line.startswith("!")}
+    assert sources <= let_in
+    assert {PROJECT["readme"], *PROJECT["license-files"], "pyproject.toml"} <= sources  # to build
+    assert re.findall(r'^ENTRYPOINT \["(.+)"\]', text, re.MULTILINE) == [*PROJECT["scripts"]]
+    for python in re.findall(r"^FROM python:([\d.]+)", text, re.MULTILINE):
+        assert python in SpecifierSet(PROJECT["requires-python"])
+    named = re.search(r"# Of pyproject.toml: (\S+)", text)
+    assert set(named[1].split(",")) <= set(PROJECT["optional-dependencies"])
+
+
+def test_who_cites_names_the_version_that_is():
+    assert f"\nversion: {PROJECT['version']}\n" in read("CITATION.cff")
+
+
+def test_no_module_is_imported_that_one_system_alone_has():
+    found = {
+        (str(file), name)
+        for file in tracked_files()
+        if file.suffix == ".py" and file.is_relative_to(ROOT / "herijk")
+        for node in ast.walk(ast.parse(file.read_bytes()))
+        for name in _imported(node)
+    }
+    assert {(file, name) for file, name in found if name in ONE_SYSTEM} == set()
+
+
+def _imported(node):
+    if isinstance(node, ast.Import):
+        return [alias.name.partition(".")[0] for alias in node.names]
+    if isinstance(node, ast.ImportFrom) and not node.level:
+        return [str(node.module).partition(".")[0]]
+    return []

@@ -1,0 +1,106 @@
+"""What the documents tell a reader to type runs, and prints what they say."""
+
+import re
+import runpy
+import shlex
+import tomllib
+
+import pytest
+from typer.main import get_command
+
+from herijk.assets.settings import Settings
+from herijk.cli.main import app
+from herijk.warehouse.archive.profile import parse_profiles
+from tests.architecture.repository import ROOT, read
+from tests.conftest import METHODS
+
+PAGES = sorted(
+    str(path.relative_to(ROOT))
+    for path in (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md"))
+)
+BLOCK = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+CALL = re.compile(r"`(?:\.venv/bin/)?herijk ([a-z][^`]*)`")
+NOTEBOOK = ROOT / "docs" / "notebooks" / "from_tow_to_register.py"
+
+
+def blocks(page, *languages):
+    return [text for language, text in BLOCK.findall(read(page)) if language in languages]
+
+
+def shell_lines(page):
+    """The calls of herijk in the blocks of a page, each split as a shell does."""
+    for block in blocks(page, "", "sh"):
+        for line in block.splitlines():
+            if re.match(r"(\.venv/bin/)?herijk ", line):
+                yield shlex.split(line, comments=True)[1:]
+
+
+def command_of(words):
+    """The command that a call names, with the words that follow."""
+    command, left = get_command(app), list(words)
+    while getattr(command, "commands", None) and left and left[0] in command.commands:
+        command = command.commands[left.pop(0)]
+    return command, left
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_every_call_has_its_command_and_options(page):
+    """A call in a block is parsed as the command would; one in a sentence may leave things out."""
+    for words in shell_lines(page):
+        command, left = command_of(words)
+        command.make_context(command.name, left)
+    for call in CALL.findall(read(page)):
+        command, left = command_of(re.split(r"[\s|\[\]]+", call))
+        assert command.name in {*call.split(), "methods"}, (page, call)
+        known = {name for parameter in command.params for name in parameter.opts} | {"--help"}
+        assert {word for word in left if word.startswith("--")} <= known | {"--lang"}, (page, call)
+
+
+@pytest.fixture
+def reader(built, monkeypatch, tmp_path):
+    """The folder of a reader who did what the pages say until here."""
+    for folder in ("data", "demo/data"):
+        (tmp_path / folder).parent.mkdir(exist_ok=True)
+        (tmp_path / folder).symlink_to(built.data)
+    (tmp_path / "tests").symlink_to(ROOT / "tests")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "python")])
+def test_code_runs(page, reader, built):
+    code = "\n".join(blocks(page, "python"))
+    some = iter(built.table("tows")["tow_id"])
+    code = re.sub(r'"20\d\d-\d{3}"', lambda _: f'"{next(some)}"', code)
+    code = re.sub(r'"(concept-)?rebased"', rf'"\1{METHODS[1]}"', code)  # the method of the fixture
+    (reader / "snippets.py").write_text(code, "utf-8")
+    assert runpy.run_path(str(reader / "snippets.py"))
+
+
+def test_worked_examples_print_what_the_page_says(reader, herijk):
+    (code,) = blocks("docs/fitting.md", "python")
+    (reader / "points.py").write_text(code, "utf-8")
+    runpy.run_path("points.py")
+    said = blocks("docs/fitting.md", "text")
+    for words, expected in zip(shell_lines("docs/fitting.md"), said, strict=True):
+        status, out, _ = herijk(*words)
+        assert status == 0
+        assert out.startswith(expected)
+    assert (reader / "delft.svg").exists()
+
+
+def test_settings_are_understood():
+    for page in PAGES:
+        for text in blocks(page, "toml"):
+            tomllib.loads(text)
+    for text in blocks("docs/archive.md", "toml"):
+        parse_profiles(text)
+    (settings,) = blocks("docs/operations.md", "toml")
+    Settings.model_validate(tomllib.loads(settings))
+
+
+def test_the_notebook_ends_at_the_line_of_the_register(built, monkeypatch):
+    monkeypatch.setenv("HERIJK_DATA", str(built.data))
+    shown, found = runpy.run_path(str(NOTEBOOK))["app"].run()
+    assert found["curve"]["cw_kg_m"] == pytest.approx(found["line"]["cw_kg_m"], rel=1e-9)
+    assert f"{found['line']['cw_kg_m']:.2f} kg/m" in shown[-1].text
