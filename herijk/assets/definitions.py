@@ -13,8 +13,14 @@ from herijk.assets.resources import Setup
 from herijk.assets.settings import Settings, read_settings
 
 
-def build_defs(archive: str, data: str, settings: Settings) -> dg.Definitions:
-    """The jobs of a rebuild, and what starts them when nobody asks."""
+def build_defs(archive: str, data: str, settings: Settings, site: str = "") -> dg.Definitions:
+    """The jobs of a rebuild, and what starts them when nobody asks.
+
+    Args:
+        archive, data: folders.
+        settings: of the data folder.
+        site: address at which the site is served, for links to it.
+    """
     setup = Setup(
         archive=archive,
         data=data,
@@ -23,7 +29,7 @@ def build_defs(archive: str, data: str, settings: Settings) -> dg.Definitions:
         factor_jump=settings.factor_jump,
     )
     return dg.Definitions.merge(
-        job_defs(setup, Quiet()),
+        job_defs(setup, Quiet(), site),
         dg.Definitions(
             jobs=[automation.rebuild_job],
             schedules=automation.schedules(settings),
@@ -39,4 +45,5 @@ defs = build_defs(
     os.environ.get("HERIJK_ARCHIVE", "archive"),
     os.environ.get("HERIJK_DATA", "data"),
     read_settings(Path(os.environ.get("HERIJK_DATA", "data"))),
+    os.environ.get("HERIJK_SITE", ""),
 )

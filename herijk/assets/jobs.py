@@ -7,6 +7,7 @@ import dagster as dg
 from herijk.assets import archive, checks
 from herijk.assets.progress import Progress
 from herijk.assets.resources import Setup, fixed
+from herijk.assets.shown import with_site
 from herijk.assets.site import site
 from herijk.assets.tables import STEP_ASSETS
 from herijk.warehouse.build import graph
@@ -51,10 +52,13 @@ JOBS = [
 ]
 
 
-def job_defs(setup: Setup, progress: Progress) -> dg.Definitions:
-    """The jobs of a rebuild for given folders, and someone who is told the progress."""
+def job_defs(setup: Setup, progress: Progress, address: str = "") -> dg.Definitions:
+    """The jobs of a rebuild for given folders, and someone who is told the progress.
+
+    Assets link to their pages at the address, if the site is served at one.
+    """
     return dg.Definitions(
-        assets=ASSETS,
+        assets=with_site(ASSETS, address) if address else ASSETS,
         asset_checks=checks.ALL,
         jobs=JOBS,
         resources={

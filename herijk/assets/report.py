@@ -1,7 +1,8 @@
 """What a rebuild leaves to be read: a page, JSON, and a message to anyone who wants one.
 
-They are under `report/` in the data folder: `latest.json` about the last rebuild, `latest.html`
-about the last that changed something, and a dated JSON for each of those.
+They are under `report/` in the data folder: `latest.json` about the last rebuild; `latest.html`
+about the last that changed something, with the day of the last one after it that changed nothing;
+and a dated JSON for each that changed something.
 """
 
 import datetime as dt
@@ -11,7 +12,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from herijk.assets.notify import Message, Notifier
-from herijk.dashboards.report import found_in_words, headlines, mail
+from herijk.dashboards.report import (
+    PAGES,
+    found_in_words,
+    headlines,
+    mail,
+    with_later_rebuild,
+)
 from herijk.dashboards.words import speaker
 from herijk.warehouse.build.version import code_version
 from herijk.warehouse.queries.change_report import as_plain, change_report, remember
@@ -32,7 +39,7 @@ def write_report(
 ) -> Report:
     """Finds out what changed, writes page and JSON, and returns the JSON as plain data.
 
-    Where nothing changed, the page about the last change stays.
+    Where nothing changed, the page about the last change stays, and says so.
     """
     changes = change_report(store)
     about = store.read("about_archive")
@@ -54,6 +61,12 @@ def write_report(
         for name, page in report_pages(store, changes, report).items():
             _write(folder / name, page)
         _write(folder / f"{now:%Y-%m-%dT%H%M%S}.json", text)
+    else:
+        for language, name in PAGES.items():
+            path = folder / name
+            if path.exists():
+                shown = path.read_text(encoding="utf-8")
+                _write(path, with_later_rebuild(shown, report["made_at"], speaker(language)))
     _write(folder / "latest.json", text)
     remember(store)
     return report

@@ -9,6 +9,7 @@ import polars as pl
 
 from herijk.assets.partitions import methods
 from herijk.assets.resources import Setup
+from herijk.assets.shown import preview
 from herijk.tables.lake import SEASON_TABLES
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.build.graph import STEPS
@@ -46,7 +47,7 @@ def step_asset(step: Step) -> dg.AssetsDefinition:
         asked = {key.to_user_string() for key in context.selected_asset_keys}
         made = step.make(setup.store, chosen, wanted=asked)
         for table, frame in made.tables.items():
-            yield dg.MaterializeResult(asset_key=table, metadata=_metadata(frame))
+            yield dg.MaterializeResult(asset_key=table, metadata=_metadata(table, frame))
         yield from _check_results(made, context.selected_asset_check_keys)
 
     return asset
@@ -93,12 +94,12 @@ def _columns(schema: type[dy.Schema]) -> dg.TableSchema:
     )
 
 
-def _metadata(frame: pl.DataFrame) -> dict[str, Any]:
+def _metadata(table: str, frame: pl.DataFrame) -> dict[str, Any]:
     metadata: dict[str, Any] = {"dagster/row_count": frame.height}
     if "status" in frame.columns:
         counts = frame["status"].value_counts().sort("status").rows()
         metadata["statuses"] = dg.MetadataValue.json(dict(counts))
-    return metadata
+    return metadata | preview(table, frame)
 
 
 def _check_results(

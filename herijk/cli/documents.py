@@ -28,7 +28,9 @@ def certificate(
     edition: Annotated[
         str | None, typer.Option(metavar="EDITION", help="Edition; the newest when left out.")
     ] = None,
-    out: Target = None,
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="File to write: a PDF, or .html for a page.")
+    ] = None,
     lang: Language = "nl",
     as_json: AsJson = False,
 ) -> None:
@@ -41,7 +43,8 @@ def certificate(
     store = Store(data)
     with Views(store) as views:
         chosen = edition or current_edition(views)
-        made = certificates(views, chosen, fsn_no, lang)
+        as_page = out is not None and out.suffix == ".html"
+        made = certificates(views, chosen, fsn_no, lang, as_page)
     name = "-".join(filter(None, ("certificate", chosen, fsn_no)))
     _write(made, out or _documents(store) / f"{name}.pdf", as_json)
 

@@ -54,6 +54,11 @@ class Served:
     port: int
     may_start: bool = False
 
+    @property
+    def site(self) -> str:
+        """Where the site is."""
+        return f"http://{self.host}:{self.port + 1}/site"
+
 
 def serve_until_stopped(what: Served, home: Path, tell: Callable[[str], None]) -> None:
     """Serves until SIGINT or SIGTERM.
@@ -73,7 +78,7 @@ def serve_until_stopped(what: Served, home: Path, tell: Callable[[str], None]) -
         tell(EXPOSED.format(host=what.host))
     listen(what.host, what.port).close()  # told now, not by a child
     with _site(what), _dagster(what, home) as children:
-        tell(f"Site: http://{what.host}:{what.port + 1}/site/index.html")
+        tell(f"Site: {what.site}/index.html")
         tell(f"Dagster: http://{what.host}:{what.port}/")
         while not stop.wait(0.5):
             for name, child in children.items():
@@ -117,6 +122,7 @@ def _dagster(what: Served, home: Path) -> Iterator[dict[str, subprocess.Popen[by
         "DAGSTER_HOME": str(home),
         "HERIJK_ARCHIVE": str(what.archive.resolve()),
         "HERIJK_DATA": str(what.data.resolve()),
+        "HERIJK_SITE": what.site,
         "DAGSTER_DISABLE_TELEMETRY": "1",
     }
     rights = MAY_START if what.may_start else READ_ONLY

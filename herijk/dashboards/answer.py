@@ -6,6 +6,7 @@ The numbers come from `warehouse.queries.answers`, the texts from `dashboards.wo
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from math import exp
 from typing import Any, Final
 
 import polars as pl
@@ -31,12 +32,14 @@ class Answer:
         races: rows of `own_races` of this boat and crew.
         curve: rows of `curve_points` of the tow that counts.
         points: rows of `run_points` of that tow.
+        faults: rows of `season_diagnosis` of its season that a person should look at.
     """
 
     line: Row
     races: Sequence[Row]
     curve: pl.DataFrame
     points: pl.DataFrame
+    faults: Sequence[Row] = ()
 
 
 @dataclass(frozen=True)
@@ -99,6 +102,8 @@ def _sentences(answer: Answer, speech: Speech) -> Iterator[str]:
     if line["cw_kg_m"] is not None:
         yield from _change(line, speech)
         yield from _certainty(line, speech)
+        yield from _best(line, speech)
+        yield from _instruments(answer, speech)
         yield from _place(line, speech)
     yield from (_race(race, speech) for race in answer.races)
     yield from _validity(line, speech)
@@ -148,16 +153,56 @@ def _certainty(line: Row, speech: Speech) -> Iterator[str]:
     if low is not None and high is not None:
         key = "answer_interval" if line["new_log_known"] else "answer_spread"
         yield speech.say(key).format(low=speech.number(low, 2), high=speech.number(high, 2))
-    if line.get("cw_best_kg_m") is not None:
-        best = (line[f"cw_best_{end}kg_m"] for end in ("", "lo_", "hi_"))
-        value, low, high = (speech.number(number, 2) for number in best)
-        yield speech.say("answer_best").format(best=value, low=low, high=high)
     if line["change"] != "changed":
         return
     verdict = {True: "answer_exceeds", False: "answer_within", None: "answer_unknown"}
     yield speech.say(verdict[line["exceeds_interval"]])
     if line["exceeds_interval"] is not None and not line["old_log_known"]:
         yield speech.say("answer_old_spread")
+
+
+def _best(line: Row, speech: Speech) -> Iterator[str]:
+    """What the whole archive makes of the tow, and of its difference from the last one."""
+    if line["cw_best_kg_m"] is None:
+        return
+    best = (line[f"cw_best_{end}kg_m"] for end in ("", "lo_", "hi_"))
+    value, low, high = (speech.number(number, 2) for number in best)
+    share = speech.number(100 * line["own_weight"], 0)
+    yield speech.say("answer_best").format(best=value, low=low, high=high, share=share)
+    if line["best_moved_ratio"] is not None and abs(line["moved_ratio"] - 1) >= SHOWN:
+        yield speech.say("answer_moved").format(
+            before=line["season_before"],
+            moved=speech.per_cent(line["moved_ratio"]),
+            kept=speech.per_cent(line["best_moved_ratio"]),
+        )
+
+
+def _instruments(answer: Answer, speech: Speech) -> Iterator[str]:
+    """What is known of the log of its season, and what may be wrong with the instruments."""
+    line = answer.line
+    if line["log_source"] == "estimated":
+        factor, low, high = (line[f"log_{part}"] for part in ("factor", "lo", "hi"))
+        yield speech.say("answer_log_low" if factor > 1 else "answer_log_high").format(
+            season=line["season"],
+            by=speech.number(100 * abs(1 - 1 / factor), 1),
+            low=speech.per_cent(1 / high),
+            high=speech.per_cent(1 / low),
+        )
+    for fault in answer.faults:
+        chance = fault["p_fault"]
+        yield speech.say(f"answer_{fault['verdict'].replace(' ', '_')}").format(
+            instrument=speech.say(f"instrument.{fault['instrument']}"),
+            season=fault["season"],
+            chance="" if chance is None else speech.number(100 * chance, 0),
+            size=_size(fault["estimate"], fault["unit"], speech),
+        )
+
+
+def _size(value: float, unit: str, speech: Speech) -> str:
+    """A force, or the logarithm of a factor as a change."""
+    if unit == "N":
+        return f"{speech.number(value, 1, '+')}\u00a0N"
+    return speech.per_cent(exp(value))
 
 
 def _place(line: Row, speech: Speech) -> Iterator[str]:

@@ -12,6 +12,7 @@ from typing import Any, Final, NamedTuple
 import altair as alt
 import polars as pl
 import vl_convert
+from markupsafe import Markup
 
 from herijk.dashboards.figures import FIGURES, drop_links
 from herijk.dashboards.site.parts import default_method
@@ -25,22 +26,44 @@ VEGA_LITE: Final = ".".join(alt.SCHEMA_VERSION.removeprefix("v").split(".")[:2])
 
 
 class Plot(NamedTuple):
-    """A figure with its rows, and which method or type they are of, if they are of one."""
+    """A figure with its rows, and which method or type they are of, if they are of one.
+
+    Axes have room for all rows of `beside`: those of the plots that it is compared with.
+    """
 
     figure: str
     rows: pl.DataFrame
     of: str = ""
+    beside: pl.DataFrame | None = None
 
 
 def write_audit_plots(store: Store, report: dict[str, Any], folder: Path) -> list[Path]:
     """Writes the plots of a report of `warehouse.queries.audit`, replacing those of the same name.
 
+    Beside them `index.html` shows all.
+
     Returns:
-        The files; a plot without rows is left out.
+        The plots; one without rows is left out.
     """
     with Views(store) as views:
         plots = _of_boat(views, report) if report["about"] == "boat" else _of_types(views, report)
-        return [_write(plot, report, folder) for plot in plots if plot.rows.height]
+        files = [_write(plot, report, folder) for plot in plots if plot.rows.height]
+    title = ", ".join(_about(report))
+    pictures = Markup("\n").join(_PICTURE.format(f.name, f.stem) for f in files)
+    with written_beside(folder / "index.html") as beside:
+        beside.write_text(_INDEX.format(title, title, pictures), encoding="utf-8")
+    return files
+
+
+_INDEX: Final = Markup(
+    '<!doctype html><html lang="en"><meta charset="utf-8"><title>{}</title>'
+    '<meta name="viewport" content="width=device-width, initial-scale=1"><h1>{}</h1>\n{}\n</html>\n'
+)
+_PICTURE: Final = Markup('<p><img src="{}" alt="{}" style="max-width:100%"></p>')
+
+
+def _about(report: dict[str, Any]) -> list[str]:
+    return [report["boat"]["fsn_no"]] if report["about"] == "boat" else _types(report)
 
 
 def _of_types(views: Views, report: dict[str, Any]) -> Iterator[Plot]:
@@ -77,13 +100,13 @@ def _of_boat(views: Views, report: dict[str, Any]) -> Iterator[Plot]:
 
 def _scatters(boats: pl.DataFrame, method: str) -> Iterator[Plot]:
     for name in SCATTERS:
-        yield Plot(name, boats.filter(method=method), method)
+        yield Plot(name, boats.filter(method=method), method, boats)
 
 
 def _write(plot: Plot, report: dict[str, Any], folder: Path) -> Path:
     """One SVG, its title saying of what and whether it was simulated; a boat stands out."""
     say = speaker("en")
-    about = [report["boat"]["fsn_no"]] if report["about"] == "boat" else _types(report)
+    about = _about(report)
     of = [plot.of] if plot.of in about else [*about, plot.of]
     title = alt.Title(
         ", ".join(filter(None, of)),
@@ -91,6 +114,8 @@ def _write(plot: Plot, report: dict[str, Any], folder: Path) -> Path:
     )
     spec = FIGURES[plot.figure](plot.rows, say).properties(title=title).to_dict()
     drop_links(spec)
+    if plot.beside is not None:
+        _widen(spec, plot.beside)
     for parameter in spec.get("params", []):
         if parameter["name"] == "chosen":
             parameter["value"] = about[0]
@@ -99,6 +124,37 @@ def _write(plot: Plot, report: dict[str, Any], folder: Path) -> Path:
     with written_beside(path) as beside:
         beside.write_text(svg, encoding="utf-8")
     return path
+
+
+def _widen(spec: dict[str, Any], rows: pl.DataFrame) -> None:
+    """Gives both axes room for all these rows, so that plots of several methods compare."""
+    for axis in ("x", "y"):
+        shown = [e for e in _encodings(spec) if e.get(axis, {}).get("type") == "quantitative"]
+        fields = {e[end].get("field") for e in shown for end in (axis, f"{axis}2") if end in e}
+        values = pl.concat([rows[name].drop_nulls() for name in fields & set(rows.columns)])
+        if values.is_empty():
+            continue
+        low, high = values.min(), values.max()
+        room = ROOM * (high - low)
+        for encoding in shown:
+            scale = {"domain": [low - room, high + room], "nice": False}
+            encoding[axis]["scale"] = encoding[axis].get("scale", {}) | scale
+
+
+ROOM: Final = 0.04
+"""Of an axis, beyond its outermost points."""
+
+
+def _encodings(part: Any) -> Iterator[dict[str, Any]]:
+    """Every encoding of a specification, also of its layers and facets."""
+    if isinstance(part, dict):
+        if "encoding" in part:
+            yield part["encoding"]
+        for name in ("spec", "layer", "concat", "hconcat", "vconcat"):
+            yield from _encodings(part.get(name))
+    elif isinstance(part, list):
+        for one in part:
+            yield from _encodings(one)
 
 
 def _types(report: dict[str, Any]) -> list[str]:

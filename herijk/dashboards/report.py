@@ -3,6 +3,7 @@
 What changed is found out in `warehouse.queries.change_report`; texts are in `dashboards.words`.
 """
 
+import re
 from collections.abc import Iterable
 from typing import Any, Final
 
@@ -11,6 +12,8 @@ from herijk.dashboards.words import Say, speaker
 Report = dict[str, Any]
 
 LINES_IN_MAIL: Final = 20
+PAGES: Final = {"nl": "latest.html", "en": "latest.en.html"}
+"""The page of each language."""
 
 
 def outcome_of(check: Report) -> str:
@@ -53,6 +56,28 @@ def headlines(report: Report, say: Say) -> list[str]:
     """What happened in a few lines, the most important first."""
     sentences = [*_wrong(report, say), *_moved(report, say)]
     return sentences or [say("report_nothing")]
+
+
+def in_short(report: Report, say: Say) -> str:
+    """The headlines as sentences of one paragraph."""
+    return " ".join(f"{line.rstrip('.')}." for line in headlines(report, say))
+
+
+def with_later_rebuild(page: str, made_at: str, say: Say) -> str:
+    """The page about a rebuild, saying that one after it changed nothing."""
+    text = say("report_later").format(made_at=minutes_of(made_at))
+    return _LATER.sub(f"{LATER}{text}", page)
+
+
+def minutes_of(made_at: str) -> str:
+    """A moment as people read it, to the minute."""
+    return made_at.replace("T", " ")[:16]
+
+
+LATER: Final = "<!-- later -->"
+"""Where the page about a rebuild says what came after it."""
+
+_LATER: Final = re.compile(f"{LATER}.*")
 
 
 def _wrong(report: Report, say: Say) -> Iterable[str]:

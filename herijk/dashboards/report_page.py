@@ -6,8 +6,16 @@ It lies beside the site and uses its style.
 from typing import Any, Final
 
 import polars as pl
+from markupsafe import Markup
 
-from herijk.dashboards.report import outcome_of, values_found
+from herijk.dashboards.report import (
+    LATER,
+    PAGES,
+    in_short,
+    minutes_of,
+    outcome_of,
+    values_found,
+)
 from herijk.dashboards.site.parts import Page, Section, Table
 from herijk.dashboards.site.render import Edition
 from herijk.dashboards.words import LANGUAGES, speaker
@@ -16,7 +24,8 @@ from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.store import Store
 
 TO_SITE: Final = "../site/"
-FILES: Final = {"nl": "latest.html", "en": "latest.en.html"}
+
+_LATER: Final = Markup(LATER)  # noqa: S704 - a constant
 
 _COLUMNS: Final = {
     "tows": ("what", "tow_id", "fsn_no", "season"),
@@ -58,17 +67,20 @@ def report_pages(store: Store, found: ChangeReport, report: dict[str, Any]) -> d
         else Section(f"report_{name}", empty="report_none")
         for name, frame in frames.items()
     ]
-    made_at = report["made_at"].replace("T", " ")[:16]
+    summary = Section(
+        "report_summary",
+        headline=lambda speech: Markup("{} {}").format(in_short(report, speech.say), _LATER),
+    )
     with Views(store) as views:
         return {
-            FILES[language]: Edition(views, language).html(
+            PAGES[language]: Edition(views, language).html(
                 Page(
-                    FILES[language],
+                    PAGES[language],
                     "report",
-                    sections,
-                    name=f"{speaker(language)('report')} {made_at}",
+                    [summary, *sections],
+                    name=f"{speaker(language)('report')} {minutes_of(report['made_at'])}",
                     site=TO_SITE,
-                    others=FILES,
+                    others=PAGES,
                 )
             )
             for language in LANGUAGES

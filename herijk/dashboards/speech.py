@@ -17,6 +17,7 @@ class Speech:
         self.language = language
         self.say = speaker(language)
         self.decimal = DECIMALS[language]
+        self._marks = str.maketrans({".": self.decimal, "-": MINUS})
 
     def text(self, key: str) -> Markup:
         """A text, escaped."""
@@ -24,8 +25,7 @@ class Speech:
 
     def number(self, value: float, digits: int, sign: str = "") -> str:
         """A number with so many decimals; `sign` is "+" where a plus is to be shown."""
-        shown = f"{value:{sign}z.{digits}f}"
-        return shown.replace(".", self.decimal).replace("-", MINUS)
+        return f"{value:{sign}z.{digits}f}".translate(self._marks)
 
     def per_cent(self, ratio: float) -> str:
         """A ratio as a change in per cent, with its sign."""

@@ -1,11 +1,14 @@
 """The Dagster code location loads, and nobody adds or loses an asset without noticing."""
 
 import dagster as dg
+import polars as pl
 
 from herijk.assets.definitions import defs
+from herijk.assets.jobs import ASSETS as ASSETS_HELD
 from herijk.assets.jobs import job_defs
 from herijk.assets.progress import Quiet
 from herijk.assets.resources import Setup
+from herijk.assets.shown import PAGES, preview, with_site
 from herijk.tables.schemas import TABLES
 from tests.conftest import METHODS
 
@@ -126,3 +129,16 @@ def test_one_table_can_be_made_alone(bench):
 
 def _tables(bench):
     return (bench.data / "lake" / "tables").glob("*.parquet")
+
+
+def test_assets_link_to_their_page_where_the_site_is_served():
+    specs = [s for a in with_site(ASSETS_HELD, "http://127.0.0.1:3001/site") for s in a.specs]
+    pages = {s.key.to_user_string(): s.metadata["page"].url for s in specs if "page" in s.metadata}
+    assert pages.keys() == PAGES.keys()
+    assert pages["register"] == "http://127.0.0.1:3001/site/register.html"
+
+
+def test_a_table_that_people_look_for_is_seen_in_dagster():
+    seen = preview("log_factors", pl.DataFrame({"season": [2009], "factor": [1.04259]}))
+    assert "| 2009   | 1.0426 |" in seen["preview"].md_str
+    assert preview("run_points", pl.DataFrame({"run": [1]})) == {}

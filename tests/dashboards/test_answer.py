@@ -21,14 +21,17 @@ LINE = {
     "gain_in_two_hours_s": -79.2, "exceeds_interval": False, "old_log_known": True,
     "new_log_known": True, "old_type_place": 3, "new_type_place": 2, "type_size": 5,
     "status": "valid", "tow_date": dt.date(2017, 3, 10), "valid_until": dt.date(2022, 12, 31),
+    "season": 2017, "season_before": 2013, "moved_ratio": 1.021, "best_moved_ratio": 1.004,
+    "cw_best_kg_m": 31.2, "cw_best_lo_kg_m": 30.9, "cw_best_hi_kg_m": 31.5, "own_weight": 0.74,
+    "log_source": "estimated", "log_factor": 1.04, "log_lo": 1.03, "log_hi": 1.05,
     "tow_speed_m_s": 2.25, "speed_reason": "brought_down", "verification_code": "ABCDEFGHIJ",
 }  # fmt: skip
 RACE = {"race": "Spiegelrace", "race_date": dt.date(2018, 6, 4), "race_size": 35}
 EMPTY = pl.DataFrame(schema=["speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"])
 
 
-def said(speech=NL, races=(), **other):
-    found = told(Answer(LINE | other, races, EMPTY, EMPTY), speech)
+def said(speech=NL, races=(), faults=(), **other):
+    found = told(Answer(LINE | other, races, EMPTY, EMPTY, faults), speech)
     return "\n".join([found.headline, *found.sentences])
 
 
@@ -54,7 +57,7 @@ def test_whether_it_exceeds_the_uncertainty(exceeds, words):
 
 def test_an_interval_that_leaves_the_log_out_says_so():
     assert "Met 95 % zekerheid" in said()
-    text = said(new_log_known=False)
+    text = said(new_log_known=False, log_source="none")
     assert "95 %" not in text
     assert "de fout van de log komt daar nog bij" in text
     assert "zit de fout van de log niet" in said(old_log_known=False)
@@ -80,8 +83,35 @@ def test_another_declared_speed_is_told():
 
 
 def test_both_estimates_stand_beside_each_other_where_they_are_known():
-    text = said(cw_best_kg_m=31.2, cw_best_lo_kg_m=30.9, cw_best_hi_kg_m=31.5)
+    text = said()
     assert "beste schatting uit alle proeven van het archief is 31,20" in text
+    assert "rust voor 74 % op deze proef" in text
+    assert "beste schatting" not in said(cw_best_kg_m=None)
+
+
+def test_how_much_of_a_tow_s_move_the_archive_believes():
+    text = said(EN)
+    assert "Against the tow of 2013 Cw at equal speed is +2.1\N{NO-BREAK SPACE}%" in text
+    assert "by the best estimate +0.4\N{NO-BREAK SPACE}%" in text
+    assert "Against the tow" not in said(EN, best_moved_ratio=None, season_before=None)
+
+
+def test_how_far_the_log_of_its_season_was_off():
+    assert "log wees in 2017 3,8 % te laag" in said()
+    assert "read 2.0 % too high" in said(EN, log_factor=0.98, log_lo=0.97, log_hi=0.99)
+    assert "log wees" not in said(log_source="gps")
+
+
+@pytest.mark.parametrize(
+    ("verdict", "words"),
+    [("fault", "waarschijnlijk iets mis"), ("cannot be told", "niet te zeggen (kans 30 %)")],
+)
+def test_what_may_be_wrong_with_the_instruments(verdict, words):
+    fault = {"instrument": "force_zero", "season": 2017, "verdict": verdict, "p_fault": 0.3,
+             "estimate": 4.2, "unit": "N"}  # fmt: skip
+    text = said(faults=[fault])
+    assert words in text
+    assert "nulpunt van de krachtmeter" in text
 
 
 def test_how_to_object_names_boat_and_code():

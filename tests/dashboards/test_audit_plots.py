@@ -79,3 +79,22 @@ def test_what_has_no_rows_has_no_plot(built, tmp_path):
 
 def test_a_name_becomes_a_file_name():
     assert file_name("Kromhout whaler/../x") == "Kromhout-whaler-x"
+
+
+def test_plots_of_two_methods_have_equal_axes(type_plots):
+    ticks = [
+        [
+            text
+            for text in words(type_plots[f"b_weight-{method}"])
+            if text.replace(".", "").isdigit()
+        ]
+        for method in ("as-published", "rebased-2015")
+    ]
+    assert ticks[0] == ticks[1] != []
+
+
+def test_an_index_shows_every_plot(built, tmp_path):
+    files = write_audit_plots(built.store, audit(built.store, ["Kuikensloep"]), tmp_path)
+    page = (tmp_path / "index.html").read_text("utf-8")
+    assert page.count("<img") == len(files) > 0
+    assert f'src="{files[0].name}"' in page

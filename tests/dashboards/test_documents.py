@@ -49,6 +49,15 @@ def test_a_certificate_says_what_the_register_says(views, contents):
     assert power == pytest.approx(float(exact), abs=0.05)
 
 
+def test_a_certificate_is_a_page_too(views):
+    line = lines_of(views, EDITIONS[-1]).row(0, named=True)
+    text = certificate.certificates(views, EDITIONS[-1], line["fsn_no"], "en", True).decode()
+    assert line["verification_code"] in text
+    assert f"Cw {line['cw_kg_m']:.2f} kg/m" in text
+    assert text.count("<svg") >= 2
+    assert "<8 mei>" not in text
+
+
 def test_all_certificates_of_an_edition_are_in_one_file(views, contents):
     certificate.certificates(views, EDITIONS[-1], None, "nl")
     assert len(contents[0]["certificates"]) == lines_of(views, EDITIONS[-1]).height

@@ -1,8 +1,10 @@
 """The site: every page, escaped, alone, and the same bytes from the same tables."""
 
 import hashlib
+import html
 import json
 import re
+from itertools import accumulate
 
 import polars as pl
 import pytest
@@ -12,13 +14,22 @@ from herijk.dashboards.site import build_site
 from herijk.dashboards.site.cells import CODES, KEPT
 from herijk.dashboards.site.downloads import SHEETS
 from herijk.dashboards.site.pages import MENU, all_pages
-from herijk.dashboards.site.parts import boat_path, default_method, race_path, type_path
+from herijk.dashboards.site.parts import (
+    boat_path,
+    default_method,
+    edition_page,
+    race_path,
+    type_path,
+)
+from herijk.dashboards.site.prose import GUIDES
 from herijk.dashboards.site.render import DRAWN
 from herijk.dashboards.words import WORDS
-from herijk.warehouse.queries.answers import line_changes
+from herijk.dashboards.words.tables import TABLES_IN_DUTCH
+from herijk.warehouse.queries.answers import answers, line_changes
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.store import Store
 from tests.dashboards.conftest import ATTACK, EDITIONS
+from tests.dashboards.test_answer import LINE
 
 
 def pages(site):
@@ -36,7 +47,8 @@ def hashes(site):
 def test_every_page_is_there(site, built):
     names = {str(f.relative_to(site)) for f in pages(site)}
     boats = {boat_path(fsn_no) for fsn_no in built.table("boats")["fsn_no"]}
-    paths = boats | {f"{name}.html" for name in MENU}
+    paths = boats | {f"{name}.html" for name in (*MENU, *GUIDES)}
+    paths |= {edition_page(edition) for edition in EDITIONS}
     with Views(Store(site.parent)) as views:
         paths |= {type_path(name) for name in views.type_names()}
         paths |= {race_path(race, day) for race, day in views.race_days()}
@@ -63,6 +75,12 @@ def test_json_cannot_close_its_element(text):
     made = as_json([text])
     assert not re.search("<|\u2028|\u2029", made)
     assert json.loads(made) == [text]
+
+
+def test_an_answer_is_told_all_that_it_says(site):
+    with Views(Store(site.parent)) as views:
+        columns = answers(views, EDITIONS[-1]).columns
+    assert LINE.keys() <= set(columns)
 
 
 def test_no_file_names_an_address(site):
@@ -96,25 +114,35 @@ def test_a_number_on_a_page_is_the_warehouse_s(site, built):
     assert f"data-v={line['cw_kg_m']:.{KEPT}g}>{shown}" in text
 
 
+def keys_of(rows, table, page):
+    """What selectors choose rows of a table by, row by row."""
+    keys = re.search(rf'data-table="{table}".*?data-keys="([^"]*)"', page)[1]
+    known = json.loads(html.unescape(keys))
+    return [known[int(place)] for place in re.findall(r"<tr data-k=(\d+)>", rows)]
+
+
 def test_a_browser_lays_out_only_the_edition_that_is_chosen(site, built, store):
     text = (site / "register.html").read_text("utf-8")
-    body, rest = re.search(
-        r"<tbody>(.*?)</tbody>.*?<template>(.*?)</template>", text, re.DOTALL
-    ).groups()
-    of = re.compile(r'<tr data-f-edition="([^"]+)">')
+    body, rest = (
+        [edition for (edition,) in keys_of(rows, "register", text)]
+        for rows in re.search(
+            r"<tbody>(.*?)</tbody>.*?<template>(.*?)</template>", text, re.DOTALL
+        ).groups()
+    )
     with Views(store) as views:
         editions = views.register()["edition"].to_list()
-    assert set(of.findall(body)) == {EDITIONS[-1]}
-    assert EDITIONS[-1] not in of.findall(rest)
-    assert sorted([*of.findall(body), *of.findall(rest)]) == sorted(editions)
+    assert set(body) == {EDITIONS[-1]}
+    assert EDITIONS[-1] not in rest
+    assert sorted([*body, *rest]) == sorted(editions)
 
 
 def test_every_crew_stands_on_the_due_list_once_a_method(site, store):
     with Views(store) as views:
         due = views.table("due_list")
     text = (site / "due.html").read_text("utf-8")
-    for method, lines in due.group_by("method"):
-        assert text.count(f'<tr data-f-method="{method[0]}">') == lines.height
+    start = text.index('data-table="due_list"')
+    rows = text[start : text.find("data-table=", start + 1)]
+    assert sorted(method for (method,) in keys_of(rows, "due_list", text)) == sorted(due["method"])
 
 
 def test_a_log_s_factors_are_shown_as_often_as_the_table_has_them(site, store):
@@ -146,6 +174,11 @@ def test_a_column_and_a_code_on_a_page_have_a_text(store):
     assert "accepted" in codes
     words = {code for code in codes if re.fullmatch(r"[a-z_]+", code)}
     assert words - {key.removeprefix("code.") for key in WORDS} == set()
+
+
+def test_every_table_has_a_meaning_in_dutch(store):
+    with Views(store) as views:
+        assert set(views.table("contents")["table"]) == TABLES_IN_DUTCH.keys()
 
 
 def test_nothing_half_made_is_left(store):
@@ -219,6 +252,16 @@ def drawn(file):
     return json.loads(text.removeprefix("window.HERIJK_DATA = ").removesuffix(";\n"))
 
 
+def values_of(column):
+    """The values of a column of a chart's data, as `site.js` reads it."""
+    if isinstance(column, list):
+        return column
+    if "steps" in column:
+        return [total / 100 for total in accumulate(column["steps"])]
+    places, numbers = column["runs"][::2], column["runs"][1::2]
+    return [column["values"][p] for p, n in zip(places, numbers, strict=True) for _ in range(n)]
+
+
 def test_every_number_in_a_chart_stands_in_the_warehouse(store, site):
     known = warehouse_numbers(store, DRAWN)
     shown = set()
@@ -226,8 +269,7 @@ def test_every_number_in_a_chart_stands_in_the_warehouse(store, site):
         for name, frames in drawn(file).items():
             columns = [v for f in frames for v in f.values() if name != "traces"]
             for values in columns:
-                if isinstance(values, list):
-                    shown |= {f"{v:.{DRAWN}g}" for v in values if isinstance(v, float)}
+                shown |= {f"{v:.{DRAWN}g}" for v in values_of(values) if isinstance(v, float)}
     assert len(shown) > 1000
     assert shown - known == set()
 
@@ -239,7 +281,7 @@ def test_traces_are_those_of_the_warehouse_to_the_digits_of_a_chart(store, site,
     mine = seconds.join(tows, on="tow_id", how="semi", maintain_order="left")
     traces = drawn(site / "data" / boat_path(attacked).replace(".html", ".js"))["traces"][0]
     assert traces["force_n"] == mine["force_n"].round(0).to_list()
-    assert traces["speed_m_s"] == mine["speed_m_s"].round(2).to_list()
+    assert values_of(traces["speed_m_s"]) == mine["speed_m_s"].round(2).to_list()
 
 
 def test_every_page_forbids_the_network_and_eval(site):

@@ -14,7 +14,7 @@ from herijk.dashboards.guard import listen
 from herijk.dashboards.site.cells import KEPT
 from herijk.dashboards.words import LANGUAGES, both
 from herijk.dashboards.workbench import texts
-from herijk.dashboards.workbench.bench import TRIAL, Base, Bench, Named, Question
+from herijk.dashboards.workbench.bench import SCENARIO, Base, Bench, Named, Question
 from herijk.dashboards.workbench.form import _kind, controls
 from herijk.dashboards.workbench.server import LOOPBACK
 from herijk.pipeline.assessment.checks import CODES
@@ -141,9 +141,9 @@ def test_an_answer_is_plain_data_for_json(bench, history):
     answer = bench.answer(question(bench, boat=boat, curve={"cap_hull_speeds": 1.2}))
     text = json.dumps(answer, allow_nan=False)
     assert answer["summary"]["lines"] == len(answer["register"])
-    assert {row["method"] for row in answer["boat_curves"]} == {"as-published", TRIAL}
+    assert {row["method"] for row in answer["boat_curves"]} == {"as-published", SCENARIO}
     assert [d["option"] for d in answer["changed_options"]] == ["cap_hull_speeds"]
-    assert TRIAL in text
+    assert SCENARIO in text
 
 
 def test_a_method_against_itself_shows_no_change(bench):
@@ -220,7 +220,7 @@ def test_no_file_is_written_over(bench):
     assert [f.name for f in bench.known.folder.iterdir()] == ["own.toml"]
 
 
-@pytest.mark.parametrize("name", ["rebased", TRIAL])
+@pytest.mark.parametrize("name", ["rebased", SCENARIO])
 def test_names_that_mean_something_else_are_refused(bench, name):
     with pytest.raises(HerijkError, match="another"):
         bench.save(named(bench, name))

@@ -9,6 +9,7 @@ from herijk.dashboards.workbench.bench import Base, Bench, Question
 from herijk.pipeline.method.definition import Steps, parse_method
 from herijk.warehouse.queries.history import History
 from herijk.warehouse.store.store import Store
+from tests.conftest import METHODS
 from tests.dashboards import test_browser as site
 from tests.dashboards.conftest import served
 
@@ -107,6 +108,7 @@ def test_it_opens_and_draws_everything(page, width):
     assert site.scrolled(page, ".chart, .scroll" if width == "desktop" else ".chart") == []
     site.SHOTS.mkdir(exist_ok=True)
     page.screenshot(path=site.SHOTS / f"workbench-{width}.png", full_page=True)
+    assert site.barriers(page) == []
 
 
 def test_print_shows_whole_tables_and_which_methods_they_compare(page):
@@ -155,6 +157,20 @@ def test_of_two_quick_changes_the_last_wins(page, bench):
     assert 1 <= len(asked) <= 5
 
 
+def test_a_change_is_shared_as_a_link(page, bench):
+    set_number(page, "temperature.reference_c", 25)
+    page.wait_for_function(IDLE)
+    page.locator("#against").select_option(METHODS[-1])
+    page.wait_for_function(IDLE)
+    shown, link = median(page), page.url
+    page.goto("about:blank")
+    page.goto(link)
+    page.wait_for_function(IDLE)
+    assert median(page) == shown
+    assert page.locator("#against").input_value() == METHODS[-1]
+    assert "15 → 25" in page.locator("#changed").inner_text()
+
+
 def test_a_change_of_one_season_is_of_that_season(page):
     page.locator("details.seasons").first.locator("summary").first.click()
     season = page.get_by_role("group", name="2009-2011")
@@ -169,7 +185,7 @@ def test_what_cannot_be_is_said_and_what_can_be_goes_on(page):
     set_number(page, "wind.side", 9)
     alert = page.get_by_role("alert")
     alert.wait_for()
-    assert "wind.side" in alert.inner_text()
+    assert "Coëfficiënt van opzij mag hoogstens zijn 2." in alert.inner_text()
     wrong = option(page, "wind.side").get_by_role("spinbutton")
     assert wrong.get_attribute("aria-invalid") == "true"
     assert median(page) == before

@@ -6,7 +6,7 @@ from typing import Any, Final
 import segno
 
 from herijk.dashboards.answer import crew_name
-from herijk.dashboards.documents import pdf
+from herijk.dashboards.documents import page, pdf
 from herijk.dashboards.pictures import curve_picture
 from herijk.dashboards.speech import Speech
 from herijk.warehouse.queries.documents import certificate_lines
@@ -17,8 +17,10 @@ Row = dict[str, Any]
 READING: Final = ("certificate_read_cw", "certificate_read_curve", "certificate_read_power")
 
 
-def certificates(views: Views, edition: str, fsn_no: str | None, language: str) -> bytes:
-    """The certificates of a boat in an edition, or of all boats, as PDF.
+def certificates(
+    views: Views, edition: str, fsn_no: str | None, language: str, as_page: bool = False
+) -> bytes:
+    """The certificates of a boat in an edition, or of all boats, as PDF or as an HTML page.
 
     Raises:
         MissingKnowledgeError: there is no such edition, or no valid line in it.
@@ -42,7 +44,7 @@ def certificates(views: Views, edition: str, fsn_no: str | None, language: str) 
         "footing": f"{say('made_by')} {about.get('code_version', '')}",
         "certificates": [_one(line, speech) for line in lines],
     }
-    return pdf("certificate.typ", content)
+    return page("certificate.html.j2", content) if as_page else pdf("certificate.typ", content)
 
 
 def _one(line: Row, speech: Speech) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from herijk.dashboards.figures.style import (
     Drawing,
     by_method,
     colour,
+    editions_legend,
     method_colour,
     method_shape,
     named,
@@ -128,8 +129,8 @@ def register_changes(frame: pl.DataFrame, say: Say) -> Drawing:
         .encode(
             number(alt.X, "cw_ratio", say("column.cw_ratio")),
             number(alt.Y, "time_ratio", say("time_ratio")),
-            colour("to_edition", say("edition")),
-            shape("to_edition", say("edition")),
+            colour("to_edition", say("edition"), legend=editions_legend(say)),
+            shape("to_edition", say("edition"), legend=editions_legend(say)),
             href="page:N",
             tooltip=tips(
                 ("name:N", say("name")),

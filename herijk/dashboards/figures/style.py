@@ -8,6 +8,7 @@ import altair as alt
 
 from herijk.dashboards.words import Say
 from herijk.pipeline.method.definition import COMPLETE, RUNS_ALONE, shipped_method, shipped_methods
+from herijk.pipeline.register.register import draft_name
 
 OKABE_ITO: Final = (
     "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999",
@@ -69,6 +70,12 @@ def methods_named(say: Say) -> str:
     """A Vega expression that gives a method that ships its name in words."""
     texts = {name: say(f"method.{name}") for name in shipped_methods()}
     return f"({json.dumps(texts)})[datum.value] || datum.value"
+
+
+def editions_legend(say: Say) -> alt.Legend:
+    """A legend of editions: the draft of a method that ships by its name in words."""
+    texts = {draft_name(m): f"{say('draft')}: {say(f'method.{m}')}" for m in shipped_methods()}
+    return alt.Legend(labelExpr=f"({json.dumps(texts)})[datum.value] || datum.value")
 
 
 def type_legend(say: Say, **more: Any) -> alt.Legend:

@@ -1,5 +1,6 @@
 """One page per boat: the owner's answer, and folded below it how each number was made."""
 
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
@@ -18,53 +19,78 @@ from herijk.dashboards.site.parts import (
     draft_of,
     methods_select,
 )
-from herijk.warehouse.queries.answers import DRAFT, answers, newest_edition, own_races
+from herijk.warehouse.queries.answers import (
+    DRAFT,
+    answers,
+    newest_edition,
+    own_races,
+    season_faults,
+)
 from herijk.warehouse.queries.views import Views
 
 OF_THE_CURVE = {"tow_id": "tow_id", "method": "method"}
 FOLLOWS = ["tow_id", "method"]
 EXTRA = {
-    "assessments": ("tow_id", "method", "check", "severity", "observed", "limit", "unit"),
-    "hand_windows": ("tow_id", "run", "start_s", "end_s", "reason"),
+    "assessments": ("check", "severity", "observed", "limit", "unit"),
+    "hand_windows": ("run", "start_s", "end_s", "reason"),
 }
-"""Tables about tows that are shown where there are any, with the columns shown."""
+"""Tables about tows that are shown where there are any, with the columns shown; which tow and
+method they are of, the selectors say."""
 
 
 def boat_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
     """The page of every boat that the archive lists."""
-    frames = _frames(views, methods)
-    by_boat = {name: _by_boat(frame) for name, frame in frames.items()}
+    frames = _frames(views)
+    by_boat = {name: _parts(frame, ["fsn_no"], name in KEEP) for name, frame in frames.items()}
+    editions = frames["register"]["edition"].unique().sort().to_list()
+    crews = _answers(views, newest_edition(editions, draft_of(methods)), frames)
     for fsn_no in frames["boats"]["fsn_no"]:
-        own = {name: by_boat[name].get(fsn_no, frame.head(0)) for name, frame in frames.items()}
-        yield _page(fsn_no, own, methods)
+        key = (fsn_no,)
+        own = {name: by_boat[name].get(key, frame.head(0)) for name, frame in frames.items()}
+        yield _page(fsn_no, own, methods, crews.get(fsn_no, ()))
 
 
-def _answers(own: dict[str, pl.DataFrame]) -> list[Answer]:
-    """What there is to say of each crew."""
-    return [
-        Answer(
-            line=line,
-            races=own["races"]
-            .filter(rowers=line["rowers"], crew_class=line["crew_class"])
-            .to_dicts(),
-            curve=_of_line(own["line"], line),
-            points=_of_line(own["point"], line),
+KEEP = ("boats",)
+"""Frames whose rows are shown with the number of their boat."""
+
+
+def _answers(
+    views: Views, edition: str, frames: dict[str, pl.DataFrame]
+) -> dict[str, list[Answer]]:
+    """What there is to say of each crew, by boat."""
+    lines = answers(views, edition)
+    compared = lines["from_edition"].drop_nulls()
+    races = own_races(views, compared[0] if compared.len() else None, edition)
+    crew, tow = ["fsn_no", "rowers", "crew_class"], ["method", "tow_id"]
+    by_crew = _parts(races, crew)
+    curves, points = (
+        _parts(frames[name].join(lines.select(tow), on=tow, how="semi"), tow)
+        for name in ("line", "point")
+    )
+    faults = season_faults(views)
+    found: dict[str, list[Answer]] = defaultdict(list)
+    for line in lines.to_dicts():
+        of_tow = (line["method"], line["tow_id"])
+        found[line["fsn_no"]].append(
+            Answer(
+                line=line,
+                races=by_crew.get(tuple(line[name] for name in crew), races.head(0)).to_dicts(),
+                curve=curves.get(of_tow, frames["line"].head(0)),
+                points=points.get(of_tow, frames["point"].head(0)),
+                faults=faults.get((line["method"], line["season"]), ()),
+            )
         )
-        for line in own["answers"].iter_rows(named=True)
-    ]
+    return found
 
 
-def _of_line(rows: pl.DataFrame, line: dict[str, Any]) -> pl.DataFrame:
-    """The rows of the tow that counts."""
-    return rows.filter(method=line["method"], tow_id=line["tow_id"] or "")
+def _parts(
+    frame: pl.DataFrame, by: Sequence[str], keep: bool = True
+) -> dict[tuple[Any, ...], pl.DataFrame]:
+    """The rows of each key, in their order; without the key unless it is kept."""
+    return frame.partition_by(by, as_dict=True, maintain_order=True, include_key=keep)
 
 
-def _by_boat(frame: pl.DataFrame) -> dict[str, pl.DataFrame]:
-    parts = frame.partition_by("fsn_no", as_dict=True, maintain_order=True)
-    return {str(key[0]): part for key, part in parts.items()}
-
-
-def _frames(views: Views, methods: Sequence[str]) -> dict[str, pl.DataFrame]:
+def _frames(views: Views) -> dict[str, pl.DataFrame]:
     """Everything a boat's page draws, of all boats at once."""
     boat_of = views.table("tows").select("tow_id", "fsn_no")
     points = views.run_points()
@@ -75,10 +101,6 @@ def _frames(views: Views, methods: Sequence[str]) -> dict[str, pl.DataFrame]:
         tow=pl.format("{} · {}{}", "tow_date", "rowers", "crew_class")
     )
     declared = curves.drop_nulls("cw_kg_m").with_columns(speed_m_s="declared_speed_m_s")
-    edition = newest_edition(register["edition"].unique().sort().to_list(), draft_of(methods))
-    answered = answers(views, edition)
-    compared = answered["from_edition"].drop_nulls()
-    before = compared[0] if compared.len() else None
     intervals = views.table("methods").select("method", "interval")
     lines = views.table("curve_points").join(boat_of, on="tow_id").join(intervals, on="method")
     lineage = views.table("lineage").with_columns(
@@ -86,11 +108,11 @@ def _frames(views: Views, methods: Sequence[str]) -> dict[str, pl.DataFrame]:
     )
     frames = {
         "boats": views.table("boats"),
-        "answers": answered,
-        "races": own_races(views, before, edition),
         "register": _once(register),
         "curves": curves,
+        "history": curves.select("fsn_no", *HISTORY),
         "runs": points,
+        "wind": points.select("fsn_no", *WIND),
         "line": _kind(lines, "line", "method", *NUMBERS, "interval"),
         "point": _kind(points.drop_nulls("cw_kg_m"), "point", "method", *POINT),
         "declared": _kind(declared, "declared", "method", *NUMBERS, "interval"),
@@ -107,7 +129,7 @@ def _frames(views: Views, methods: Sequence[str]) -> dict[str, pl.DataFrame]:
     statistics = views.table("run_statistics").join(boat_of, on="tow_id", maintain_order="left")
     frames |= {
         "statistics": statistics,
-        "ticks": _ticks(views),
+        "ticks": _ticks(views).drop("method", "b_m_s"),
         "choices": _choices(views, boat_of),
     }
     for name in EXTRA:
@@ -138,6 +160,8 @@ def _choices(views: Views, boat_of: pl.DataFrame) -> pl.DataFrame:
 
 POINT = ["run", "direction", "speed_m_s", "cw_kg_m", "used"]
 WINDOW = ["window_start_s", "window_end_s", "run_end_s", "cut_reason"]
+WIND = ["method", "tow_id", "run", "direction", "wind_m_s", "wind_angle_deg"]
+HISTORY = ["method", "tow", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", "a_kg_m", "b_m_s", "interval"]
 NUMBERS = ["speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"]
 
 
@@ -159,11 +183,13 @@ def _stages(points: pl.DataFrame) -> pl.DataFrame:
 
 def _seconds(traces: pl.DataFrame) -> pl.DataFrame:
     """Seconds of every run, to the digits that a chart of 110 pixels can show."""
-    fields = ("speed_m_s", "gps_m_s", "wind_m_s")
     rounded = traces.with_columns(
-        pl.col(*fields).round(2), pl.col("force_n").round().cast(pl.Int32)
+        pl.col("speed_m_s", "gps_m_s").round(2),
+        pl.col("wind_m_s").round(1),
+        pl.col("force_n").round().cast(pl.Int32),
     )
-    return _kind(rounded, "trace", "run", "second", *fields, "force_n")
+    fields = ("run", "second", "speed_m_s", "gps_m_s", "wind_m_s", "force_n")
+    return _kind(rounded, "trace", *fields)
 
 
 LINE_COLUMNS = (
@@ -198,14 +224,17 @@ FACT_COLUMNS = (
 LINEAGE_COLUMNS = ("edition", "crew", "tow_id", "path", "sha256", "method_hash", "code_version")
 
 
-def _page(fsn_no: str, own: dict[str, pl.DataFrame], methods: Sequence[str]) -> Page:
+def _page(
+    fsn_no: str, own: dict[str, pl.DataFrame], methods: Sequence[str], told: Sequence[Answer]
+) -> Page:
     facts = Section("facts", tables=[Table("boats", own["boats"], FACT_COLUMNS, "facts")])
-    name = own["boats"]["name"][0]
-    curves = own["curves"].unique("tow_id", maintain_order=True)
-    if curves.is_empty():
-        return Page(boat_path(fsn_no), "boat", [facts], name=name)
-    tows = curves["tow_id"].to_list()
-    named = dict(curves.select("tow_id", "tow").rows())
+    boat = own["boats"].row(0, named=True)
+    name = boat["name"]
+    subtitle = " · ".join(filter(None, (fsn_no, boat["ht_no"], boat["boat_type"])))
+    named = dict(zip(own["curves"]["tow_id"], own["curves"]["tow"], strict=True))
+    if not named:
+        return Page(boat_path(fsn_no), "boat", [facts], name=name, subtitle=subtitle)
+    tows = list(named)
     selects = [
         Select("tow_id", "tow", tows, tows[-1], named=lambda tow, _: named[tow]),
         methods_select(methods),
@@ -216,35 +245,24 @@ def _page(fsn_no: str, own: dict[str, pl.DataFrame], methods: Sequence[str]) -> 
         [replace(facts, folded=True), *_sections(own)],
         name=name,
         selects=selects,
-        data=_data(own),
-        answers=_answers(own),
+        data={name: [own[part] for part in parts] for name, parts in DRAWN.items()},
+        answers=told,
+        subtitle=subtitle,
     )
 
 
-def _data(own: dict[str, pl.DataFrame]) -> dict[str, list[pl.DataFrame]]:
-    """What the charts draw; rows of several kinds stand one below the other."""
-    wind = ("method", "tow_id", "run", "direction", "wind_m_s", "wind_angle_deg")
-    history = (
-        "method",
-        "tow",
-        "cw_kg_m",
-        "cw_lo_kg_m",
-        "cw_hi_kg_m",
-        "a_kg_m",
-        "b_m_s",
-        "interval",
-    )
-    parts = {"curve": ("line", "point", "declared"), "traces": ("trace", "window")}
-    found = {name: [own[part].drop("fsn_no") for part in held] for name, held in parts.items()}
-    return found | {
-        "stages": [own["stages"].drop("fsn_no")],
-        "runs": [own["runs"].select(wind)],
-        "curves": [own["curves"].select(history)],
-        "budget": [own["budget"].drop("fsn_no")],
-        "statistics": [own["statistics"].drop("fsn_no")],
-        "ticks": [own["ticks"].drop("fsn_no", "method", "b_m_s")],
-        "choices": [own["choices"].drop("fsn_no")],
-    }
+DRAWN = {
+    "curve": ("line", "point", "declared"),
+    "traces": ("trace", "window"),
+    "stages": ("stages",),
+    "runs": ("wind",),
+    "curves": ("history",),
+    "budget": ("budget",),
+    "statistics": ("statistics",),
+    "ticks": ("ticks",),
+    "choices": ("choices",),
+}
+"""What the charts draw, by name; rows of several kinds stand one below the other."""
 
 
 def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
@@ -280,7 +298,7 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
     for name, columns in EXTRA.items():
         rows = own.get(name)
         if rows is not None and rows.height:
-            follows = [c for c in FOLLOWS if c in columns]
+            follows = [c for c in FOLLOWS if c in rows.columns]
             table = Table(name, rows, columns, name, follows, exact=False)
             sections.append(Section(name, f"{name}_note", tables=[table]))
     lineage = Table("lineage", own["lineage"], LINEAGE_COLUMNS, "boat_lineage")

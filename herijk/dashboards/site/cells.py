@@ -8,7 +8,7 @@ from itertools import repeat
 from typing import Any, Final
 
 import polars as pl
-from markupsafe import Markup, escape
+from markupsafe import Markup
 
 from herijk.dashboards.site.parts import Page, Table, boat_path, type_path
 from herijk.dashboards.speech import Speech, duration
@@ -34,8 +34,8 @@ CODES: Final = {
 """Columns that hold codes of the warehouse, shown as words."""
 
 LONG: Final = {
-    *("flags", "cut_reason", "reason", "speed_reason", "causes", "message", "meaning", "decision"),
-    *("candidates", "name", "confused_with", "old_remark", "new_remark"),
+    *("flags", "cut_reason", "reason", "speed_reason", "causes", "message", "decision"),
+    *("candidates", "name", "meanings", "confused_with", "old_remark", "new_remark"),
 }
 """Columns of texts that may take several lines."""
 
@@ -43,17 +43,16 @@ METHODS: Final = {"method", "from_method", "to_method"}
 EDITIONS: Final = {"edition", "from_edition", "to_edition", "previous"}
 
 Show = Callable[[Any], Markup]
+Key = tuple[str, ...]
 
 _EMPTY = Markup("<td class=t>")
-_SAME_CELL = Markup("<td class={}>{}")
-"""A cell whose text is its value; others have the value in `data-v`. End tags are left out: HTML
-closes a cell and a row by itself, and a boat's page has thousands. For the same reason a number is
-what has no class: text is `t`, and `w` where it may be wide."""
-_CELL = Markup('<td class={} data-v="{}">{}')
-_SHORT = Markup("t")
-_LONG = Markup('"t w"')
+_SHORT = Markup("<td class=t>{}")
+"""A cell of text. End tags are left out: HTML closes a cell and a row by itself, and a boat's page
+has thousands. For the same reason a number is what has no class, and text that may be wide is `w`
+alone; a number that shows fewer digits than it holds has it in `data-v`."""
+_LONG = Markup("<td class=w>{}")
 _BOAT = Markup(' data-boat="{}"')
-_FOLLOWED = Markup(' data-f-{}="{}"')
+_KEYED = Markup(" data-k={}")
 
 
 class Cells:
@@ -62,11 +61,17 @@ class Cells:
     def __init__(self, speech: Speech) -> None:
         self.speech = speech
         self.text = speech.text
+        self._text = cache(self._made)
 
-    def rows(self, page: Page, table: Table) -> tuple[Markup, Markup]:
+    def _made(self, name: str, root: str, value: Any) -> Markup:
+        """The cell of a text in a column of this name; the same value comes often."""
+        return (_LONG if name in LONG else _SHORT).format(self._shower(name, root)(value))
+
+    def rows(self, page: Page, table: Table) -> tuple[Markup, Markup, list[Key]]:
         """The rows that the selectors show at first, and all others.
 
-        A browser lays out only the first; `site.js` brings in others when they are chosen.
+        A browser lays out only the first; `site.js` brings in others when they are chosen. Third
+        come the keys, the values that selectors choose by: a row has the place of its own.
         """
         frame, follows = table.frame, list(table.follows)
         # Column by column, because the cells of a column are made in one way.
@@ -74,50 +79,43 @@ class Cells:
             *(self._cells(frame[c], page.root, table.exact) for c in table.columns), strict=True
         )
         boats = [_BOAT.format(n) for n in frame["fsn_no"]] if table.linked else repeat("")
-        keys = frame.select(follows).rows() if follows else repeat(())
+        keys = zip(*(frame[name].to_list() for name in follows), strict=True)
+        places: dict[Key, int] = {}
 
         @cache
-        def marked(key: tuple[str, ...]) -> tuple[list[str], str]:
-            """Where rows of a key stand, and what they say of it besides their cells."""
-            own = dict(zip(follows, key, strict=True))
-            is_first = all(page.chosen[name] in ("", value) for name, value in own.items())
-            marks = "".join(_FOLLOWED.format(*one) for one in own.items())
-            return first if is_first else others, marks
+        def marked(key: Key) -> tuple[list[str], str]:
+            """Where rows of a key stand, and how they name it."""
+            own = zip(follows, key, strict=True)
+            is_first = all(page.chosen[name] in ("", value) for name, value in own)
+            place = places.setdefault(key, len(places))
+            return first if is_first else others, _KEYED.format(place) if follows else ""
 
         first: list[str] = []
         others: list[str] = []
-        for row, boat, key in zip(cells, boats, keys, strict=False):
+        for row, boat, key in zip(cells, boats, keys if follows else repeat(()), strict=False):
             place, marks = marked(key)
             place.append(f"<tr{boat}{marks}>{''.join(row)}")
-        return Markup("\n".join(first)), Markup("\n".join(others))  # noqa: S704 - escaped parts
+        return Markup("\n".join(first)), Markup("\n".join(others)), list(places)  # noqa: S704 - escaped parts
 
-    def _cells(self, column: pl.Series, root: str, exact: bool) -> Sequence[Markup]:
+    def _cells(self, column: pl.Series, root: str, exact: bool) -> Sequence[str]:
         name = column.name
         if name == "rowing_time_s":
-            return [_EMPTY if v is None else _CELL.format(_SHORT, v, duration(v)) for v in column]
+            return [_EMPTY if v is None else _SHORT.format(duration(v)) for v in column]
         if column.dtype.is_float():
             digits = next((d for ending, d in DIGITS if name.endswith(ending)), 4)
-            return [self._number(value, digits, exact) for value in column.to_list()]
+            return self._numbers(column.to_list(), digits, exact)
         if column.dtype.is_integer() and name != "direction":
-            return [_integer(value) for value in column.to_list()]
-        show = self._shower(name, root)
-        mark = _LONG if name in LONG else _SHORT
-
-        def made(value: Any) -> Markup:
-            return _EMPTY if value is None else _shown(value, show, mark)
-
-        if isinstance(column.dtype, pl.List):
-            return [made(value) for value in column]
+            return ["<td>" if v is None else f"<td>{v}" for v in column.to_list()]
         values = column.to_list()
-        of = {value: made(value) for value in set(values)}
-        return [of[value] for value in values]
+        if isinstance(column.dtype, pl.List):
+            values = [None if v is None else tuple(v) for v in values]
+        return [_EMPTY if v is None else self._text(name, root, v) for v in values]
 
-    def _number(self, value: float | None, digits: int, exact: bool) -> Markup:
-        if value is None:
-            return Markup("<td>")
-        shown, held = self.speech.number(value, digits), f"{value:.{KEPT}g}"
-        mark = f" data-v={held}" if exact and shown != held else ""
-        return Markup(f"<td{mark}>{shown}")  # noqa: S704 - a number
+    def _numbers(self, values: Sequence[float | None], digits: int, exact: bool) -> list[str]:
+        number = self.speech.number
+        if not exact:
+            return ["<td>" if v is None else f"<td>{number(v, digits)}" for v in values]
+        return ["<td>" if v is None else _exact(v, number(v, digits)) for v in values]
 
     def _shower(self, name: str, root: str) -> Show:
         """How values of a column are shown."""
@@ -128,7 +126,7 @@ class Cells:
         if name == "boat_type":
             return lambda value: self._type(value, root)
         named = {
-            "titles": self._titles,
+            **dict.fromkeys(("titles", "meanings"), self._titles),
             "direction": lambda value: self.text("out" if value == 1 else "back"),
             "causes": self._causes,
             "unit": lambda value: self._plain("" if value == "1" else value),
@@ -175,17 +173,10 @@ class Cells:
         return Markup("{}").format(value[LANGUAGES.index(self.speech.language)])
 
 
-def _integer(value: int | None) -> Markup:
-    text = "" if value is None else str(value)
-    return Markup(f"<td>{text}")  # noqa: S704 - a number
-
-
-def _shown(value: Any, show: Show, mark: Markup) -> Markup:
-    plain = ", ".join(value) if isinstance(value, pl.Series | list) else str(value)
-    shown = show(value)
-    if shown == escape(plain):
-        return _SAME_CELL.format(mark, shown)
-    return _CELL.format(mark, plain, shown)
+def _exact(value: float, shown: str) -> str:
+    """A number that shows fewer digits than it holds, with both."""
+    held = f"{value:.{KEPT}g}"
+    return f"<td>{shown}" if shown == held else f"<td data-v={held}>{shown}"
 
 
 def _hash(value: str) -> Markup:

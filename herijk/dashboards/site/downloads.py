@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Final
 
+from herijk.dashboards.documents.notice import notice
 from herijk.warehouse.store.editions import (
     CSV,
     NOTES,
@@ -17,12 +18,21 @@ from herijk.warehouse.store.store import Store
 
 DOWNLOADS: Final = "downloads"
 SHEETS: Final = (CSV, XLSX, NOTICE, NOTES, NOTICE_EN, NOTES_EN)
+PAPERS: Final = {"bericht.pdf": (NOTICE, "nl"), "notice.pdf": (NOTICE_EN, "en")}
+"""What is made for paper: of which text, in which language."""
+
+
+def files_of(edition: str) -> list[tuple[str, str]]:
+    """Path within the site and name of all there is to download of an edition."""
+    return [(f"{DOWNLOADS}/{edition}/{f}", f"{edition} {f}") for f in (*SHEETS, *PAPERS)]
 
 
 def copy_sheets(store: Store, folder: Path) -> None:
-    """Copies the sheets of every edition to `downloads/<edition>/`, byte for byte."""
+    """Copies the sheets of every edition to `downloads/<edition>/`, byte for byte, with papers."""
     for edition in edition_names(store):
         target = folder / DOWNLOADS / edition
         target.mkdir(parents=True)
         for name in SHEETS:
             (target / name).write_bytes((edition_path(store, edition) / name).read_bytes())
+        for name, (text, language) in PAPERS.items():
+            (target / name).write_bytes(notice((target / text).read_text("utf-8"), language))

@@ -6,7 +6,7 @@ import polars as pl
 
 from herijk.dashboards.site import headlines
 from herijk.dashboards.site.boats import boat_pages
-from herijk.dashboards.site.downloads import DOWNLOADS, SHEETS
+from herijk.dashboards.site.downloads import files_of
 from herijk.dashboards.site.parts import (
     Chart,
     Page,
@@ -15,14 +15,17 @@ from herijk.dashboards.site.parts import (
     Table,
     default_method,
     draft_of,
+    edition_page,
     editions_select,
     methods_select,
     with_page,
 )
+from herijk.dashboards.site.prose import edition_pages, guide_pages
 from herijk.dashboards.site.races import race_pages
 from herijk.dashboards.site.slides import slides_page
 from herijk.dashboards.site.start import methods_table, start_page, words_page
 from herijk.dashboards.site.types import type_pages, types_page
+from herijk.dashboards.words.tables import TABLES_IN_DUTCH
 from herijk.warehouse.build.studies import JUDGEMENT
 from herijk.warehouse.queries.answers import line_changes, newest_edition
 from herijk.warehouse.queries.views import Views
@@ -50,6 +53,8 @@ def all_pages(views: Views) -> Iterator[Page]:
     yield _changes(methods, changes)
     yield _quality(views, methods)
     yield words_page()
+    yield from guide_pages()
+    yield from edition_pages(views)
     yield from boat_pages(views, methods)
 
 
@@ -108,8 +113,11 @@ def _register(views: Views, methods: Sequence[str]) -> Page:
 def _downloads(views: Views) -> list[Section]:
     """The sheets of every published edition, which `render` puts beside the pages."""
     names = views.table("editions")["edition"].to_list()
-    files = [(f"{DOWNLOADS}/{name}/{file}", f"{name} {file}") for name in names for file in SHEETS]
-    return [Section("downloads", "downloads_note", files=files)] if files else []
+    if not names:
+        return []
+    files = [file for name in names for file in files_of(name)]
+    pages = [(edition_page(name), name) for name in names]
+    return [Section("downloads", "downloads_note", pages=pages, files=files)]
 
 
 DUE_COLUMNS = (
@@ -414,12 +422,14 @@ def _set_aside(views: Views) -> Section:
 def _rebuilt(views: Views) -> Section:
     """What the rebuild read, applied and made."""
     seasons, tables = views.table("seasons"), views.table("contents")
+    dutch = pl.col("table").replace(TABLES_IN_DUTCH)
+    tables = tables.with_columns(meanings=pl.concat_list(dutch, "meaning"))
     return Section(
         "rebuilt",
         "rebuilt_note",
         tables=[
             Table("seasons", seasons, seasons.columns, "seasons"),
             methods_table(views),
-            Table("contents", tables, ("table", "rows", "meaning"), "tables"),
+            Table("contents", tables, ("table", "rows", "meanings"), "tables"),
         ],
     )

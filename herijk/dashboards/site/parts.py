@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import TypeAlias
 
 import polars as pl
+from markupsafe import Markup
 
 from herijk.dashboards.answer import Answer
 from herijk.dashboards.speech import Speech
@@ -104,6 +105,8 @@ class Section:
         headline: what it shows, in each language; see `dashboards.site.headlines`.
         terms: key of a word and key of its meaning.
         key_figures: key of what is counted, and the figure.
+        prose: a text to read, as HTML.
+        prose_language: its language, where that is not the page's.
     """
 
     title: str
@@ -118,6 +121,8 @@ class Section:
     headline: Headline | None = None
     terms: Sequence[tuple[str, str]] = ()
     key_figures: Sequence[tuple[str, str | Headline]] = ()
+    prose: Callable[[Speech], Markup] | None = None
+    prose_language: str = ""
 
 
 @dataclass(frozen=True)
@@ -129,6 +134,7 @@ class Page:
         title: key of its title.
         sections: in order.
         name: of a boat, type or race, data rather than a text; empty elsewhere.
+        subtitle: what tells a boat from one of the same name: its numbers and type.
         selects: selectors.
         data: frames that charts draw, by name; of several, the rows come one below the other.
         site: the way to the site, of a page that lies outside it.
@@ -145,6 +151,7 @@ class Page:
     site: str = ""
     answers: Sequence[Answer] = ()
     others: Mapping[str, str] = field(default_factory=dict)
+    subtitle: str = ""
 
     @property
     def chosen(self) -> dict[str, str]:
@@ -192,6 +199,11 @@ def boat_path(fsn_no: str) -> str:
 def type_path(boat_type: str) -> str:
     """The page of a type of boat."""
     return _path("types", boat_type)
+
+
+def edition_page(edition: str) -> str:
+    """The page of a published edition."""
+    return _path("editions", edition)
 
 
 def race_path(race: str, day: dt.date) -> str:

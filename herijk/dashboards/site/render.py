@@ -5,40 +5,38 @@ its charts once, as a script beside them.
 """
 
 import datetime as dt
-import json
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import cache
 from importlib.metadata import version
 from itertools import chain, groupby
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
-import altair as alt
 import polars as pl
 import vl_convert
 
 from herijk.dashboards import fonts
 from herijk.dashboards.answer import told
-from herijk.dashboards.figures import FIGURES
 from herijk.dashboards.html import as_json, environment
 from herijk.dashboards.kept import kept
 from herijk.dashboards.site.cells import Cells
 from herijk.dashboards.site.downloads import copy_sheets
 from herijk.dashboards.site.pages import MENU, all_pages
 from herijk.dashboards.site.parts import Page, boat_path, race_path, type_path
+from herijk.dashboards.site.specifications import chart_specifications
 from herijk.dashboards.site.still import still_pictures
 from herijk.dashboards.speech import Speech
 from herijk.dashboards.words import LANGUAGES, WORDS, speaker
 from herijk.warehouse.queries.views import Views
-from herijk.warehouse.store.code import code_hash
 from herijk.warehouse.store.files import TEMPORARY_PREFIX, put_in_place
-from herijk.warehouse.store.store import Store, fingerprint
+from herijk.warehouse.store.store import Store
 
 HERE: Final = Path(__file__).parent
 DRAWN: Final = 5
 """Significant digits of what charts draw."""
+HUNDRED: Final = 100
 OWN_FILES: Final = ("site.css", "site.js")
 FOLDERS: Final = {"nl": "", "en": "en/"}
 """Where the pages of each language lie within the site."""
@@ -157,11 +155,15 @@ def _data_path(page: Page) -> str:
 
 def _data_script(page: Page) -> str:
     """A script and not JSON: a page from disk may load nothing else."""
-    held = {
-        name: [{c.name: _column(c) for c in frame} for frame in frames]
+    held = ",".join(
+        f"{as_json(name)}:[{','.join(_columns(frame) for frame in frames)}]"
         for name, frames in page.data.items()
-    }
-    return f"window.HERIJK_DATA = {as_json(held)};\n"
+    )
+    return f"window.HERIJK_DATA = {{{held}}};\n"
+
+
+def _columns(frame: pl.DataFrame) -> str:
+    return "{" + ",".join(f"{as_json(c.name)}:{_column(c)}" for c in frame) + "}"
 
 
 def _search_script(views: Views) -> str:
@@ -196,19 +198,6 @@ def vega_bundle() -> str:
     return kept("vega", version("vl-convert-python"), lambda: str(bundle()))  # type: ignore[call-arg]  # its stub lacks the default
 
 
-@cache
-def chart_specifications(language: str) -> dict[str, Any]:
-    """Every figure's Vega-Lite in a language, without data."""
-
-    def make() -> str:
-        say = speaker(language)
-        return as_json({name: specification(figure, say) for name, figure in FIGURES.items()})
-
-    made_from = fingerprint(alt.__version__, WORDS, code_hash("herijk.dashboards.figures"))
-    found: dict[str, Any] = json.loads(kept(f"charts-{language}", made_from, make))
-    return found
-
-
 def charts_script(language: str) -> str:
     """A script with the figures and their words in one language."""
     say = speaker(language)
@@ -220,27 +209,35 @@ def charts_script(language: str) -> str:
     return f"window.HERIJK_FIGURES = {figures};\nwindow.HERIJK_WORDS = {as_json(words)};\n"
 
 
-def specification(figure: Callable[..., Any], say: Callable[[str], str]) -> dict[str, Any]:
-    """A figure's Vega-Lite with the data left to the page: a dataset called `rows`."""
-    # Validating takes as long as all else of a small site; the tests of figures do it.
-    spec: dict[str, Any] = figure(pl.DataFrame({"kind": ["x"]}), say).to_dict(validate=False)
-    (placeholder,) = spec.pop("datasets")
-    spec.pop("$schema")
-    text = json.dumps(spec).replace(f'"{placeholder}"', '"rows"')
-    return dict(json.loads(text))
+def _column(column: pl.Series) -> str:
+    """A list, or what `site.js` makes one of with fewer characters to read.
 
-
-def _column(column: pl.Series) -> list[Any] | dict[str, list[Any]]:
-    """A list; of texts and of what stays the same for many rows, each value once.
-
-    `runs` then has the place of a value and for how many rows it holds, one pair after the other.
+    `steps` are the differences of numbers with two decimals at most, in hundredths. `values` of
+    texts and of what stays the same for many rows stand once: `runs` then has the place of a value
+    and for how many rows it holds, one pair after the other.
     """
-    values = column.to_list()
     if column.dtype.is_float():
-        return [None if v is None else float(f"{v:.{DRAWN}g}") for v in values]
+        steps = _steps(column)
+        if steps is not None:
+            return f'{{"steps":[{",".join(map(str, steps))}]}}'
+        known = column.fill_nan(None).to_list()
+        numbers = ("null" if v is None else f"{v:.{DRAWN}g}" for v in known)
+        return f"[{','.join(numbers)}]"
+    values = column.to_list()
     stretches = [(value, len(list(same))) for value, same in groupby(values)]
     if column.dtype != pl.String and 2 * len(stretches) >= len(values):
-        return values
+        return as_json(values)
     places = {value: place for place, value in enumerate(dict.fromkeys(v for v, _ in stretches))}
-    runs = chain.from_iterable((places[value], number) for value, number in stretches)
-    return {"values": list(places), "runs": list(runs)}
+    runs = list(chain.from_iterable((places[value], number) for value, number in stretches))
+    return as_json({"values": list(places), "runs": runs})
+
+
+def _steps(column: pl.Series) -> list[int] | None:
+    """Differences in hundredths, where every number is known and has no more decimals."""
+    if column.is_empty() or column.null_count():
+        return None
+    hundredths = (column * HUNDRED).round()
+    if not (column.is_finite() & (hundredths / HUNDRED == column)).all():
+        return None
+    steps: list[int] = hundredths.diff().fill_null(hundredths[0]).cast(pl.Int64).to_list()
+    return steps

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import polars as pl
 
+from herijk.dashboards.report import in_short
 from herijk.dashboards.site import headlines
 from herijk.dashboards.site.parts import (
     Chart,
@@ -14,8 +15,10 @@ from herijk.dashboards.site.parts import (
     draft_of,
     methods_select,
 )
+from herijk.dashboards.site.prose import guide_links
 from herijk.dashboards.speech import Speech
 from herijk.warehouse.queries.answers import newest_edition
+from herijk.warehouse.queries.change_report import last_report_with_changes
 from herijk.warehouse.queries.views import Views
 
 CARDS = ("register", "due", "types", "compare", "races", "corrections", "reproducibility",
@@ -28,7 +31,7 @@ def start_page(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> P
     """The edition in force, key figures, what changes, the years, and where to go."""
     editions = changes["to_edition"].unique().sort().to_list() if changes.height else []
     chosen = newest_edition(editions, draft_of(methods))
-    links = [(f"{name}.html", name, f"about_{name}") for name in CARDS]
+    links = [(f"{name}.html", name, f"about_{name}") for name in CARDS] + guide_links()
     years = views.table("season_changes")
     sections = [
         Section(
@@ -37,6 +40,7 @@ def start_page(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> P
             key_figures=_figures(views),
             headline=headlines.changes(changes.filter(to_edition=chosen)) if editions else None,
         ),
+        *_last_rebuild(views),
         Section("index_pages", links=links),
     ]
     if years.height:
@@ -50,6 +54,16 @@ def start_page(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> P
         selects=[methods_select(methods)] if years.height else [],
         data={"years": [years]} if years.height else {},
     )
+
+
+def _last_rebuild(views: Views) -> list[Section]:
+    """What the rebuild that last changed something changed."""
+    report = last_report_with_changes(views.store)
+    if report is None:
+        return []
+
+    changes = report | {"checks": []}
+    return [Section("last_rebuild", headline=lambda speech: in_short(changes, speech.say))]
 
 
 def methods_table(views: Views) -> Table:

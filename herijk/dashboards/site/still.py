@@ -1,5 +1,7 @@
 """A page's first chart as a picture made with the page, to be seen before any script is there."""
 
+import copy
+import json
 import re
 from typing import Final
 
@@ -9,8 +11,9 @@ import vl_convert
 from markupsafe import Markup
 
 from herijk.dashboards import fonts
-from herijk.dashboards.figures import FIGURES, drop_links
+from herijk.dashboards.figures import drop_links
 from herijk.dashboards.site.parts import Chart, Page
+from herijk.dashboards.site.specifications import chart_specifications
 from herijk.dashboards.speech import Speech
 
 VEGA_LITE: Final = ".".join(alt.SCHEMA_VERSION.removeprefix("v").split(".")[:2])
@@ -30,17 +33,24 @@ def still_pictures(page: Page, speech: Speech) -> dict[str, Markup]:
     rows = _shown(page, charts[0])
     if rows.is_empty():
         return {}
-    return {charts[0].figure: still(charts[0].figure, rows, speech)}
+    first = charts[0]
+    return {first.figure: still(first.figure, rows, speech, speech.say(first.caption))}
 
 
-def still(figure: str, rows: pl.DataFrame, speech: Speech) -> Markup:
-    """A figure as SVG."""
-    spec = FIGURES[figure](rows, speech.say).to_dict(validate=False)
+def still(figure: str, rows: pl.DataFrame, speech: Speech, caption: str) -> Markup:
+    """A figure as SVG; a screen reader says its caption."""
+    spec = copy.deepcopy(chart_specifications(speech.language)[figure])
     drop_links(spec)
+    spec["datasets"] = {"rows": rows.to_dicts()}
     svg = vl_convert.vegalite_to_svg(
-        spec, vl_version=VEGA_LITE, config=CONFIG, format_locale=LOCALES[speech.language]
+        json.dumps(spec, default=str),
+        vl_version=VEGA_LITE,
+        config=CONFIG,
+        format_locale=LOCALES[speech.language],
     )
-    return Markup(_renumbered(svg))  # noqa: S704 - Vega escapes texts
+    bare = re.sub(r' (role|aria-[a-z]+)="[^"]*"', "", _renumbered(svg))  # described as a whole
+    named = Markup('<svg role="img" aria-label="{}" ').format(caption)
+    return Markup(bare.replace("<svg ", named, 1))  # noqa: S704 - Vega escapes texts
 
 
 def _renumbered(svg: str) -> str:

@@ -53,9 +53,53 @@ ANSWERS: Final[dict[str, tuple[str, str]]] = {
         "log comes on top of that and is not known under this method.",
     ),
     "answer_best": (
-        "De beste schatting uit alle proeven van het archief is {best} kg/m ({low} tot {high}).",
-        "The best estimate from all tows of the archive is {best} kg/m ({low} to {high}).",
+        "De beste schatting uit alle proeven van het archief is {best} kg/m ({low} tot {high}); "
+        "zij rust voor {share} % op deze proef.",
+        "The best estimate from all tows of the archive is {best} kg/m ({low} to {high}); {share} "
+        "% of it rests on this tow.",
     ),
+    "answer_moved": (
+        "Tegenover de proef van {before} is Cw bij gelijke snelheid {moved}; volgens de beste "
+        "schatting {kept}. Wat die twee scheelt, ligt eerder aan het meten dan aan de sloep.",
+        "Against the tow of {before} Cw at equal speed is {moved}; by the best estimate {kept}. "
+        "What differs between the two comes from measuring rather than from the boat.",
+    ),
+    "answer_log_low": (
+        "De log wees in {season} {by} % te laag aan (95 %: {low} tot {high}); dat is verrekend.",
+        "In {season} the log read {by} % too low (95 %: {low} to {high}); that is corrected.",
+    ),
+    "answer_log_high": (
+        "De log wees in {season} {by} % te hoog aan (95 %: {low} tot {high}); dat is verrekend.",
+        "In {season} the log read {by} % too high (95 %: {low} to {high}); that is corrected.",
+    ),
+    "answer_fault": (
+        "In {season} is waarschijnlijk iets mis met {instrument}: {size} (kans {chance} %).",
+        "In {season} something is probably wrong with {instrument}: {size} (chance {chance} %).",
+    ),
+    "answer_cannot_be_told": (
+        "Of er in {season} iets mis was met {instrument}, is niet te zeggen (kans {chance} %).",
+        "Whether something was wrong with {instrument} in {season} cannot be told (chance "
+        "{chance} %).",
+    ),
+    "answer_alarm": (
+        "In {season} wijkt {instrument} sterk af van wat is aangenomen: {size}. Iemand moet "
+        "ernaar kijken.",
+        "In {season} {instrument} lies far from what is assumed: {size}. A person should look.",
+    ),
+    "instrument.log_trend": (
+        "het verloop van de log door het seizoen",
+        "the drift of the log through the season",
+    ),
+    "instrument.log_change": ("de log halverwege het seizoen", "the log part way the season"),
+    "instrument.gps_scale": ("de gewone gps", "the plain GPS"),
+    "instrument.force_scale": ("de schaal van de krachtmeter", "the scale of the load cell"),
+    "instrument.force_zero": ("het nulpunt van de krachtmeter", "the zero of the load cell"),
+    "instrument.force_zero_drift": (
+        "het verloop van het nulpunt van de krachtmeter",
+        "the drift of the load cell's zero",
+    ),
+    "instrument.fleet_step": ("alle sloepen tegelijk", "all boats at once"),
+    "instrument.season_bend": ("de bocht van alle krommen", "the bend of all curves"),
     "answer_exceeds": (
         "De verandering is groter dan de onzekerheid van beide getallen samen.",
         "The change is larger than the uncertainty of both numbers together.",

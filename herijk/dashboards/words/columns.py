@@ -219,7 +219,7 @@ COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "column.code": ("Wat", "What"),
     "column.beyond": ("Buiten de grens", "Beyond the limit"),
     "column.listed": ("In de lijst", "Listed"),
-    "column.meaning": ("Betekenis (Engels)", "Meaning"),
+    "column.meanings": ("Betekenis", "Meaning"),
     "column.dof": ("Vrijheidsgraden", "Degrees of freedom"),
     "column.flagged": ("Over de grens", "Beyond"),
     "column.speed_reason": ("Waarom deze snelheid", "Why this speed"),

@@ -16,6 +16,23 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "compare": ("Vergelijk", "Compare"),
     "races": ("Wedstrijden", "Races"),
     "words": ("Woorden", "Words"),
+    "guide_method": ("De rekenmethode", "The method"),
+    "about_guide_method": (
+        "Elke formule, van meting tot registerregel, met haar bron.",
+        "Every formula, from samples to a register line, with its source.",
+    ),
+    "guide_audit": ("Een controle lezen", "Reading an audit"),
+    "about_guide_audit": (
+        "Hoe een controle van een sloep of type gelezen wordt.",
+        "How to read the audit of a boat or a type.",
+    ),
+    "guide_note": (
+        "Dit document is er alleen in het Engels.",
+        "The document of the project, as it stands beside the program.",
+    ),
+    "edition_title": ("Editie", "Edition"),
+    "notice": ("Bericht aan de leden", "Notice to the members"),
+    "release_notes": ("Toelichting", "Release notes"),
     "boat": ("Sloep", "Boat"),
     "find": ("Zoek sloep, type of wedstrijd", "Find a boat, type or race"),
     "found": ("Gevonden", "Found"),

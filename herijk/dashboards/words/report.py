@@ -4,6 +4,15 @@ from typing import Final
 
 REPORT: Final[dict[str, tuple[str, str]]] = {
     "report": ("Verslag van de herberekening", "Report of the rebuild"),
+    "report_summary": ("In het kort", "In short"),
+    "report_later": (
+        "De herberekening van {made_at} veranderde daarna niets.",
+        "The rebuild of {made_at} changed nothing after that.",
+    ),
+    "last_rebuild": (
+        "Wat de laatste herberekening veranderde",
+        "What the last rebuild changed",
+    ),
     "report_lines": ("Veranderde regels van de concepten", "Changed lines of the drafts"),
     "report_tows": ("Sleepproeven", "Tows"),
     "report_set_aside": ("Terzijde gelegd", "Set aside"),

@@ -25,7 +25,8 @@ from starlette.routing import Route
 
 from herijk.dashboards import fonts
 from herijk.dashboards.html import as_json, environment, in_both
-from herijk.dashboards.site.render import chart_specifications, vega_bundle
+from herijk.dashboards.site.render import vega_bundle
+from herijk.dashboards.site.specifications import chart_specifications
 from herijk.dashboards.words import LANGUAGES, both
 from herijk.dashboards.workbench.bench import Base, Bench, Named, Question
 from herijk.dashboards.workbench.texts import TEXTS
@@ -126,14 +127,20 @@ def _from_own_page(request: Request) -> None:
 
 
 def _refusal(error: ValidationError) -> dict[str, Any]:
-    """The first thing that is wrong, with the option it is about."""
-    first = error.errors(include_url=False, include_context=False)[0]
+    """The first thing that is wrong, with the option it is about.
+
+    `kind` and `limit` are for the page, which says it in its language; `refused` is for others.
+    """
+    first = error.errors(include_url=False)[0]
+    known = first.get("ctx", {})
     where = [part for part in first["loc"] if isinstance(part, str) and part != "steps"]
     message = first["msg"]
     shown = "" if first["type"] == "json_invalid" else f", not {first['input']!r}"
     return {
         "refused": f"{'.'.join(where)}: {message[0].lower()}{message[1:]}{shown}",
         "where": ".".join(where),
+        "kind": first["type"],
+        "limit": next((known[name] for name in ("gt", "ge", "lt", "le") if name in known), None),
     }
 
 

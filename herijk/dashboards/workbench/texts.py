@@ -40,6 +40,54 @@ TEXTS: Final[Words] = {
     "done_in": ("Herrekend en getekend in", "Recomputed and drawn in"),
     "tows_in_all": ("proeven", "tows"),
     "refused": ("Dit kan niet:", "Not possible:"),
+    "refusal.greater_than": ("moet groter zijn dan", "has to be greater than"),
+    "refusal.greater_than_equal": ("moet minstens zijn", "has to be at least"),
+    "refusal.less_than": ("moet kleiner zijn dan", "has to be less than"),
+    "refusal.less_than_equal": ("mag hoogstens zijn", "has to be at most"),
+    "refusal.int_from_float": ("moet een heel getal zijn", "has to be a whole number"),
+    "refusal.int_parsing": ("moet een heel getal zijn", "has to be a whole number"),
+    "share": ("Kopieer een link naar deze wijziging", "Copy a link to this change"),
+    "shared": ("De link staat in het klembord.", "The link is on the clipboard."),
+    "not_shared": (
+        "De link staat in de adresbalk; kopieer hem daar.",
+        "The link is in the address bar; copy it there.",
+    ),
+    "explained": ("Wat deze getallen zeggen", "What these figures say"),
+    "means.count_changed": (
+        "Regels waarvan Cw verandert, van alle regels.",
+        "Lines whose Cw changes, of all lines.",
+    ),
+    "means.count_gains": (
+        "Ploegen die voor hetzelfde vermogen langer over een wedstrijd mogen doen.",
+        "Crews that may take longer over a race for the same power.",
+    ),
+    "means.count_loses": (
+        "Ploegen die voor hetzelfde vermogen sneller moeten zijn.",
+        "Crews that have to be faster for the same power.",
+    ),
+    "means.count_added": (
+        "Regels die er nu wel een geldige kromme bij krijgen.",
+        "Lines that get a valid curve by the change.",
+    ),
+    "means.count_removed": (
+        "Regels die hun geldige kromme verliezen.",
+        "Lines that lose their valid curve.",
+    ),
+    "means.median_cw": (
+        "De middelste verhouding van nieuwe tot oude Cw over alle regels.",
+        "The middle ratio of new to old Cw over all lines.",
+    ),
+    "means.within_1": (
+        "Van de keren dat een niet verbouwde sloep opnieuw werd gesleept: hoe vaak beide Cw's "
+        "hoogstens 1 % verschillen. Hoger is beter.",
+        "Of the times that an unaltered boat was towed again: how often both Cw's differ by 1 % "
+        "at most. Higher is better.",
+    ),
+    "means.within_2": ("Hetzelfde voor 2 %.", "The same for 2 %."),
+    "means.sd_tow": (
+        "Hoeveel één proef toevallig afwijkt, als standaardafwijking van Cw. Lager is beter.",
+        "By how much one tow is off by chance, as standard deviation of Cw. Lower is better.",
+    ),
     "failed": (
         "De werkbank gaf een fout; in het venster waar hij gestart is, staat meer.",
         "The workbench failed; the terminal it was started in says more.",

@@ -3,7 +3,8 @@
 Joins the tables and `pipeline.register.changes`; computes nothing else. Words are in `dashboards`.
 """
 
-from typing import Final
+from collections import defaultdict
+from typing import Any, Final
 
 import polars as pl
 
@@ -97,7 +98,11 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
         Rows of `register` of that edition with the columns of `line_changes` where it is compared
         with another; `old_type_place`, `new_type_place` and `type_size` among boats of its type
         and class; `old_log_known` and `new_log_known`: whether the interval holds the error of the
-        log; what `due_list` says of the next tow; and what the tow weighed and measured.
+        log; what `due_list` says of the next tow; what the tow weighed and measured; its best
+        estimate `cw_best_*`, what share `own_weight` of that rests on the tow itself, and by what
+        factor the tow (`moved_ratio`) and its best estimate (`best_moved_ratio`) differ from the
+        tow before, `season_before`, of the same, unaltered boat and crew; `log_factor` of its
+        season with `log_lo`, `log_hi` and `log_source`.
     """
     changes = line_changes(views).filter(to_edition=edition)
     lines = views.register().filter(edition=edition)
@@ -108,15 +113,59 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
         "method", *LINE, "tow_speed_m_s", "speed_reason", "as_of",
         next_before="valid_until",
     )  # fmt: skip
+    logs = views.table("log_factors").select(
+        "method", "season", log_factor="factor", log_lo="lo", log_hi="hi", log_source="source"
+    )
+    seasons = views.table("tows").select("tow_id", "season")
     found = (
         lines.join(compared, on=LINE, how="left", maintain_order="left")
         .with_columns(old_method=pl.col("from_edition").replace(methods))
+        .join(seasons, on="tow_id", how="left", maintain_order="left")
         .join(due, on=["method", *LINE], how="left", maintain_order="left")
+        .join(_best_estimates(views), on=["method", "tow_id"], how="left", maintain_order="left")
+        .join(logs, on=["method", "season"], how="left", maintain_order="left")
     )
     for side, method in (("old", "old_method"), ("new", "method")):
         mine = known.rename({"method": method, "log_known": f"{side}_log_known"})
         found = found.join(mine, on=method, how="left", maintain_order="left")
     return _with_places(found)
+
+
+def _best_estimates(views: Views) -> pl.DataFrame:
+    """What the whole archive says of each tow, and how far both numbers moved since the last."""
+    key = ("method", "tow_id")
+    best = views.table("curves").select(*key, "^cw_best_.*$", kept=_BEST_TO_MEASURED)
+    own = views.table("best_estimate_weights").filter(pl.col("tow_id") == pl.col("rests_on"))
+    pairs = views.table("repeat_pairs").select(*key, "tow_id_before", "season_before", "ln_ratio")
+    before = best.select("method", tow_id_before="tow_id", kept_before="kept")
+    moved = pl.col("ln_ratio").exp()
+    return (
+        best.join(own.select(*key, own_weight="weight"), on=key, how="left")
+        .join(pairs, on=key, how="left")
+        .join(before, on=["method", "tow_id_before"], how="left")
+        .with_columns(
+            moved_ratio=moved,
+            best_moved_ratio=moved * pl.col("kept") / pl.col("kept_before"),
+        )
+        .drop("tow_id_before", "ln_ratio", "kept", "kept_before")
+    )
+
+
+_BEST_TO_MEASURED: Final = pl.col("cw_best_kg_m") / pl.col("cw_kg_m")
+"""The best estimate over the number as measured, at the tow's declared speed. With the ratio of two
+tows at one speed it gives that of their best estimates."""
+
+
+def season_faults(views: Views) -> dict[tuple[str, int], list[dict[str, Any]]]:
+    """What is wrong, or may be, with the instruments of a season, by method and season.
+
+    Returns:
+        Rows of `season_diagnosis` that a person should look at.
+    """
+    found: dict[tuple[str, int], list[dict[str, Any]]] = defaultdict(list)
+    for row in views.table("season_diagnosis").filter("alarm").to_dicts():
+        found[row["method"], row["season"]].append(row)
+    return found
 
 
 def _with_places(lines: pl.DataFrame) -> pl.DataFrame:

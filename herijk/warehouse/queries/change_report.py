@@ -4,6 +4,7 @@ The database that was last reported on is kept beside the reports, so a rebuild 
 before its report is reported on by the next. Where and how a report is shown is not decided here.
 """
 
+import json
 import os
 import shutil
 from collections.abc import Sequence
@@ -278,6 +279,15 @@ def _ground(tow: bool, own: bool, others: bool, method: bool, code: bool) -> str
 
 
 # As plain data
+
+
+def last_report_with_changes(store: Store) -> dict[str, Any] | None:
+    """What changed since the last report; where nothing did, the last report of a change."""
+    report = change_report(store)
+    if not report.nothing:
+        return as_plain(report)
+    told = sorted((store.root / "report").glob("2*.json"))
+    return json.loads(told[-1].read_text(encoding="utf-8")) if told else None
 
 
 def as_plain(report: ChangeReport) -> dict[str, Any]:

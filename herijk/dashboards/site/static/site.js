@@ -138,8 +138,9 @@
     const words = plain(table.querySelector(".search")?.value ?? "").split(/\s+/).filter(Boolean);
     const linked = table.querySelector("table.linked");
     const follows = JSON.parse(table.dataset.follows);
+    const chosen = JSON.parse(table.dataset.keys).map((key) => key.every((value, i) => matches(follows[i], value)));
     const fits = (row) =>
-      follows.every((name) => matches(name, row.getAttribute(`data-f-${name}`))) &&
+      (chosen[row.dataset.k] ?? true) &&
       words.every((word) => plain(row.textContent).includes(word)) &&
       (!linked || selected === null || selected.has(row.dataset.boat));
     const shown = rowsOfTable.get(table).filter(fits);
@@ -159,9 +160,6 @@
     return wanted.length === 0 || wanted.includes(String(value));
   }
 
-  // What a cell holds: its text, unless it says otherwise.
-  const valueOf = (cell) => cell.dataset.v ?? cell.textContent;
-
   // The number in a cell, or "" where there is none.
   function numberOf(cell) {
     if (cell.dataset.v !== undefined) return Number(cell.dataset.v);
@@ -169,7 +167,7 @@
     return text === "" ? "" : Number(text);
   }
 
-  const isNumeric = (cell) => !cell.classList.contains("t");
+  const isNumeric = (cell) => cell.className === "";
 
   function sort(table, header, down = header.getAttribute("aria-sort") === "ascending") {
     const place = [...header.parentElement.children].indexOf(header);
@@ -177,7 +175,7 @@
     header.setAttribute("aria-sort", down ? "descending" : "ascending");
     const numeric = header.classList.contains("n");
     const compare = new Intl.Collator("nl", { numeric: true }).compare;
-    const key = (cell) => (numeric ? numberOf(cell) : valueOf(cell));
+    const key = (cell) => (numeric ? numberOf(cell) : cell.textContent);
     const rows = rowsOfTable.get(table).map((row) => [key(row.cells[place]), row]);
     rows.sort(([a], [b]) => {
       if (a === "" || b === "") return (a === "") - (b === "");
@@ -218,9 +216,14 @@
       Object.fromEntries(names.map((name, j) => [name, values[j][i]])));
   }
 
-  // A column may hold its values once, with the place of each and for how many rows it holds.
+  // A column may hold differences in hundredths, or its values once, with the place of each and for
+  // how many rows it holds.
   function valuesOf(column) {
     if (Array.isArray(column)) return column;
+    if (column.steps) {
+      let sum = 0;
+      return column.steps.map((step) => (sum += step) / 100);
+    }
     const found = [];
     for (let i = 0; i < column.runs.length; i += 2) {
       for (let n = column.runs[i + 1]; n > 0; n -= 1) found.push(column.values[column.runs[i]]);
@@ -274,6 +277,8 @@
         formatLocale: LOCALES[language],
         loader: { target: "_self" },
         config: {
+          aria: false, // the picture is described as a whole
+          mark: { aria: false },
           font: "Open Sans",
           axis: { labelFontSize: 12, titleFontSize: 12, labelLimit: 200 },
           legend: { labelFontSize: 12, titleFontSize: 12, labelLimit: 220 },
@@ -359,6 +364,7 @@
   function describe(figure, place) {
     const picture = place.querySelector("svg");
     if (!picture) return;
+    all("[role]", picture).forEach((part) => part.removeAttribute("role")); // of a brush
     picture.setAttribute("role", "img");
     picture.setAttribute("aria-label", `${figure.dataset.caption} ${picked(figure)}`.trim());
   }

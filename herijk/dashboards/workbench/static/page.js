@@ -38,6 +38,9 @@ export function number(value, digits, sign = false) {
   return plus + (root.lang === "nl" ? text.replace(".", ",") : text);
 }
 
+// A number with the decimals that it has.
+export const exact = (value) => String(value).replace(".", root.lang === "nl" ? "," : ".");
+
 export function seasonsText(first, last) {
   if (last >= 9999) return make("span", {}, `${first} `, say("and_later"));
   return make("span", {}, first === last ? `${first}` : `${first}-${last}`);

@@ -2,7 +2,7 @@
 // One question at a time is on its way; of those that come meanwhile only the last is asked.
 import { outdateCharts, redrawCharts } from "./charts.js";
 import { buildForm, markWrong } from "./controls.js";
-import { all, byId, make, number, pair, root, say, seasonsText, start, state, word } from "./page.js";
+import { all, byId, exact, make, number, pair, root, say, seasonsText, start, state, word } from "./page.js";
 import { updateSeen } from "./seen.js";
 import { download, outdateTables } from "./tables.js";
 
@@ -13,12 +13,19 @@ let since = 0; // when the last change was made
 
 const complaints = new Map(); // path -> why the last question there has no answer
 
-function complain(path, message = "", where = "") {
-  complaints.set(path, message);
-  const texts = [...complaints.values()].filter(Boolean);
-  byId("refused").hidden = !texts.length;
-  byId("refused").replaceChildren(...texts.map((text) => make("p", {}, say("refused"), ` ${text}`)));
-  if (path === "answer") markWrong(where);
+function complain(path, found = {}) {
+  complaints.set(path, found);
+  const refusals = [...complaints.values()].filter(({ refused }) => refused);
+  byId("refused").hidden = !refusals.length;
+  byId("refused").replaceChildren(...refusals.map((one) => make("p", {}, say("refused"), " ", ...inWords(one))));
+  if (path === "answer") markWrong(found.where ?? "");
+}
+
+// A refusal with the label that the option has on this page; what it has no words for, as it came.
+function inWords({ refused, where, kind, limit }) {
+  if (!(`refusal.${kind}` in start.words)) return [refused];
+  const end = limit === null ? "." : ` ${exact(limit)}.`;
+  return [say(where), " ", say(`refusal.${kind}`), end];
 }
 
 // What the server says, or null after telling why there is nothing.
@@ -28,12 +35,12 @@ async function post(path, body) {
     response = await fetch(path, { method: "POST", body: JSON.stringify(body),
       headers: { "Content-Type": "application/json" } });
   } catch {
-    complain(path, word("gone"));
+    complain(path, { refused: word("gone") });
     return null;
   }
-  if (!response.ok) { complain(path, word("failed")); return null; }
+  if (!response.ok) { complain(path, { refused: word("failed") }); return null; }
   const found = await response.json();
-  complain(path, found.refused, found.where);
+  complain(path, found.refused ? found : {});
   return found.refused ? null : found;
 }
 
@@ -49,7 +56,7 @@ async function ask() {
     const found = await post("answer", { base: state.source, steps: state.steps, against: byId("against").value,
       boat: byId("boat").value });
     if (asked) continue;
-    if (found) { state.answer = found; await show(); }
+    if (found) { state.answer = found; writeAddress(); await show(); }
     const seconds = (performance.now() - since) / 1000;
     root.dataset.seconds = seconds;
     byId("state").replaceChildren(...(found ? [`${start.tows} `, say("tows_in_all"), ". ",
@@ -61,19 +68,49 @@ async function ask() {
 
 let wantedBase = null;
 
-async function load(wanted) {
+async function load(wanted, changes = []) {
   wantedBase = wanted;
   const found = await post("base", wanted);
   if (!found || wantedBase !== wanted) return; // another was chosen meanwhile
   state.source = wanted;
   state.base = found;
-  reset();
+  reset(changes);
 }
 
-function reset() {
+function reset(changes = []) {
   state.steps = state.base.ranges.map((range) => structuredClone(range.steps));
+  for (const [place, step, option, value] of changes) {
+    if (option in (state.steps[place]?.[step] ?? {})) state.steps[place][step][option] = value;
+  }
   buildForm(ask);
   ask();
+}
+
+// -- A change as a link: the address holds what is asked ------------------------------------------
+function changesMade() {
+  const isSame = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+  return state.base.ranges.flatMap(({ steps }, place) => Object.entries(steps).flatMap(([step, options]) =>
+    Object.entries(state.steps[place][step]).filter(([option, value]) => !isSame(value, options[option]))
+      .map(([option, value]) => [place, step, option, value])));
+}
+
+function writeAddress() {
+  const asked = { base: state.source, against: byId("against").value, changes: changesMade() };
+  history.replaceState(null, "", `#${encodeURIComponent(JSON.stringify(asked))}`);
+  byId("shared").replaceChildren();
+}
+
+function readAddress() {
+  try {
+    return JSON.parse(decodeURIComponent(location.hash.slice(1)));
+  } catch {
+    return {}; // no link, or a damaged one: begin as always
+  }
+}
+
+async function share() {
+  const done = await navigator.clipboard.writeText(location.href).then(() => true, () => false);
+  byId("shared").replaceChildren(say(done ? "shared" : "not_shared"));
 }
 
 // -- Answers --------------------------------------------------------------------------------------
@@ -104,7 +141,7 @@ function valueOf(value) {
     return value.length ? make("span", {}, ...joined(value.map((v) => say(`code.${v}`))))
       : say("nothing");
   }
-  return typeof value === "number" ? make("span", {}, `${value}`) : say(`choice.${value}`);
+  return typeof value === "number" ? make("span", {}, exact(value)) : say(`choice.${value}`);
 }
 
 function showSummary() {
@@ -126,6 +163,8 @@ function showSummary() {
   byId("summary").replaceChildren(...tiles.map(([key, value, was]) => make("div",
     { id: key }, make("dt", {}, say(key)), make("dd", {}, value,
       ...(was ? [make("small", {}, " ", say("was"), ` ${was}`)] : [])))));
+  byId("explained").replaceChildren(...tiles.flatMap(([key]) => [
+    make("dt", {}, say(key)), make("dd", {}, say(`means.${key}`))]));
 }
 
 // -- Choices and buttons --------------------------------------------------------------------------
@@ -144,7 +183,7 @@ function group(key, names) {
 function fillSources() {
   const groups = [["group_methods", start.methods], ["group_saved", start.saved]];
   byId("base").replaceChildren(...groups.filter(([, n]) => n.length).map((g) => group(...g)));
-  const old = [["group_methods", start.methods], ["group_editions", start.editions]];
+  const old = [["group_methods", start.methods], ["group_editions", start.editions], ["group_saved", start.saved]];
   byId("against").replaceChildren(...old.filter(([, n]) => n.length).map((g) => group(...g)));
   setLanguage(root.lang);
 }
@@ -186,7 +225,8 @@ byId("download").addEventListener("click", async () => {
   const found = await post("file", wished());
   if (found) download(`${byId("name").value}.toml`, found.text, "application/toml");
 });
-byId("reset").addEventListener("click", reset);
+byId("reset").addEventListener("click", () => reset());
+byId("share").addEventListener("click", share);
 byId("form").addEventListener("submit", (event) => event.preventDefault());
 byId("base").addEventListener("change", () => load({ name: byId("base").value }));
 byId("open").addEventListener("change", async () => {
@@ -208,6 +248,7 @@ const anyType = make("option", { value: "" });
 [anyType.dataset.nl, anyType.dataset.en] = pair("all");
 byId("boat_type").append(anyType, ...start.types.map((type) => make("option", { value: type }, type)));
 fillSources();
-byId("base").value = start.base;
-byId("against").value = start.against;
-load(state.source);
+const linked = readAddress();
+byId("base").value = linked.base?.name ?? start.base;
+byId("against").value = linked.against ?? start.against;
+load(linked.base ?? state.source, linked.changes);

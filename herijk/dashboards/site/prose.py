@@ -1,0 +1,72 @@
+"""Pages that are read: the method, how to read an audit, and what goes with an edition."""
+
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Final
+
+from markupsafe import Markup
+
+from herijk.dashboards.markdown import to_html
+from herijk.dashboards.site.downloads import files_of
+from herijk.dashboards.site.parts import Page, Section, edition_page
+from herijk.dashboards.speech import Speech
+from herijk.dashboards.words import LANGUAGES
+from herijk.warehouse.queries.views import Views
+from herijk.warehouse.store.editions import NOTES, NOTES_EN, NOTICE, NOTICE_EN, edition_path
+from herijk.warehouse.store.storage import Place
+
+GUIDES: Final = ("method", "audit")
+"""Documents of the project that have a page, by their name."""
+
+_PACKAGE: Final = Path(__file__).parents[2]
+_TEXTS: Final = {"notice": (NOTICE, NOTICE_EN), "release_notes": (NOTES, NOTES_EN)}
+
+
+def guide_file(name: str) -> Path:
+    """Where the document is: packed with the program, or in its checkout."""
+    packed = _PACKAGE / "docs" / f"{name}.md"
+    return packed if packed.exists() else _PACKAGE.parent / "docs" / f"{name}.md"
+
+
+def guide_pages() -> Iterator[Page]:
+    """The documents; they are in English only, and say so."""
+    links = {f"{name}.md": f"{name}.html" for name in GUIDES}
+    for name in GUIDES:
+        text = guide_file(name).read_text(encoding="utf-8")
+        prose = _in_language((text, text), links)
+        section = Section(f"guide_{name}", "guide_note", prose=prose, prose_language="en")
+        yield Page(f"{name}.html", f"guide_{name}", [section])
+
+
+def guide_links() -> list[tuple[str, str, str]]:
+    """Path of each document, key of its title and of a sentence about it."""
+    return [(f"{name}.html", f"guide_{name}", f"about_guide_{name}") for name in GUIDES]
+
+
+def edition_pages(views: Views) -> Iterator[Page]:
+    """Per published edition its notice and release notes, in the language of the page."""
+    for edition in views.table("editions")["edition"]:
+        folder = edition_path(views.store, edition)
+        yield Page(
+            edition_page(edition),
+            "edition_title",
+            [
+                *(
+                    Section(title, prose=_in_language(_texts(folder, files), {}))
+                    for title, files in _TEXTS.items()
+                ),
+                Section("downloads", "downloads_note", files=files_of(edition)),
+            ],
+            name=edition,
+        )
+
+
+def _texts(folder: Place, files: tuple[str, str]) -> tuple[str, str]:
+    dutch, english = ((folder / file).read_bytes().decode() for file in files)
+    return dutch, english
+
+
+def _in_language(in_each: tuple[str, str], links: Mapping[str, str]) -> Callable[[Speech], Markup]:
+    """The document in the language of the page."""
+    texts = dict(zip(LANGUAGES, in_each, strict=True))
+    return lambda speech: to_html(texts[speech.language], links)

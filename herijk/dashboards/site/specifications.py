@@ -1,0 +1,41 @@
+"""Every figure's Vega-Lite without data: pages load it once, and fill in what they draw."""
+
+import json
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import altair as alt
+import polars as pl
+from altair.utils.schemapi import debug_mode
+
+from herijk.dashboards.figures import FIGURES
+from herijk.dashboards.html import as_json
+from herijk.dashboards.kept import kept
+from herijk.dashboards.words import WORDS, speaker
+from herijk.warehouse.store.code import code_hash
+from herijk.warehouse.store.store import fingerprint
+
+
+@cache
+def chart_specifications(language: str) -> dict[str, Any]:
+    """Every figure's Vega-Lite in a language, without data."""
+
+    def make() -> str:
+        say = speaker(language)
+        return as_json({name: specification(figure, say) for name, figure in FIGURES.items()})
+
+    made_from = fingerprint(alt.__version__, WORDS, code_hash("herijk.dashboards.figures"))
+    found: dict[str, Any] = json.loads(kept(f"charts-{language}", made_from, make))
+    return found
+
+
+def specification(figure: Callable[..., Any], say: Callable[[str], str]) -> dict[str, Any]:
+    """A figure's Vega-Lite with the data left to the page: a dataset called `rows`."""
+    # Validating takes as long as all else of a small site; the tests of figures do it.
+    with debug_mode(False):
+        spec: dict[str, Any] = figure(pl.DataFrame({"kind": ["x"]}), say).to_dict(validate=False)
+    (placeholder,) = spec.pop("datasets")
+    spec.pop("$schema")
+    text = json.dumps(spec).replace(f'"{placeholder}"', '"rows"')
+    return dict(json.loads(text))
