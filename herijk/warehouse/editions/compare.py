@@ -49,7 +49,7 @@ METHOD: Final = "method"
 UNSEPARATED: Final = "unseparated"
 UNEXPLAINED: Final = "unexplained"
 
-NO_LADDER: Final = CorrectionSteps.create_empty().select("tow_id", "position", "step", "factor")
+LADDER_COLUMNS: Final = ("tow_id", "position", "step", "factor")
 
 
 @dataclass(frozen=True)
@@ -182,13 +182,13 @@ def _printed_parts(old: Edition, new: Edition) -> pl.DataFrame:
 def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     """The ladder from the old to the new method, on the new edition's tows that are still there."""
     if old.method is None or new.method is None:
-        return NO_LADDER
+        return CorrectionSteps.create_empty().select(LADDER_COLUMNS)
     if old.method.content_hash == new.method.content_hash:
-        return NO_LADDER
+        return CorrectionSteps.create_empty().select(LADDER_COLUMNS)
     there = pl.col("tow_id").is_in(list(unchanged_tows(store, new)))
     tows, runs = tows_of_today(store).filter(there), intake.runs_with_windows(store).filter(there)
     if tows.is_empty():
-        return NO_LADDER
+        return CorrectionSteps.create_empty().select(LADDER_COLUMNS)
     blocks = stack_blocks(intake.all_blocks(store), runs)
     return ladder(old.method, new.method, tows, blocks, _links(old, new))
 
