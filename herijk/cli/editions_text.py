@@ -167,7 +167,7 @@ def _races(report: Report) -> str:
         return "Races: the archive holds none."
     moved = [r for r in races if r["old_rank"] != r["new_rank"]]
     podium = sum(r["podium_changed"] for r in races)
-    head = f"Races (fatigue {rules['fatigue']}, stream {rules['stream']}): "
+    head = f"Races (fatigue {rules['fatigue']}): "
     text = f"{head}{len(races)} results, {len(moved)} change rank, {podium} on or off the podium."
     parts = [text, f"Winners:\n{_winners(report['winners'])}"]
     if moved:

@@ -370,6 +370,19 @@ def _lineage() -> Schema:
     )
 
 
+def _register() -> Schema:
+    own = NAME | columns("boats", "boat_type")
+    return record(
+        "The lines of an edition, and whether they are valid on a day.",
+        {
+            **SIMULATED,
+            "edition": text("name of the edition or draft"),
+            "as_of": text("day on which validity is judged"),
+            "lines": rows("a boat and crew each", columns("register") | own),
+        },
+    )
+
+
 def _due() -> Schema:
     own = NAME | columns("boats", "boat_type")
     choice = columns("due_list", "valid_until", "tow_speed_m_s")
@@ -379,6 +392,7 @@ def _due() -> Schema:
             **SIMULATED,
             "method": text("method"),
             "as_of": text("day of the list"),
+            "asked": flag("whether that day was asked for"),
             "lines": rows(
                 "a boat and crew each",
                 columns("due_list")
@@ -488,6 +502,7 @@ def _audit() -> Schema:
         "predicted": "predicted_cw",
         "register": "register",
         "set_aside": "quarantine",
+        "options": "option_effects",
     }
     of_boat = {
         "boat": record("the boat", columns("boats")),
@@ -506,6 +521,7 @@ def _audit() -> Schema:
             **SIMULATED,
             "about": text("boat, or types"),
             "methods": texts("methods shown"),
+            "statistics_over": text("the tows that statistics of types are over"),
             **of_boat,
             **of_types,
             "plots": texts("pictures written"),
@@ -537,6 +553,7 @@ def schemas() -> dict[str, Schema]:
         "publish": _publish(),
         "rebase": _rebase(),
         "rebuild": _rebuild(),
+        "register": _register(),
         "simulate": record("The simulated archive.", simulated),
         "slides": _written("The slides."),
         "verify": _verify(),

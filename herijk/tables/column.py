@@ -4,9 +4,6 @@ from typing import Any, Final
 
 import dataframely as dy
 
-LINE: Final = ("fsn_no", "rowers", "crew_class")
-"""What names a line of the register: a boat and one of its crews."""
-
 LOWER_END: Final = (
     "lower end of its 95 % interval; where methods.interval is runs_alone, of the spread of the "
     "runs alone: the log's error is not in it"

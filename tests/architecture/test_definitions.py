@@ -46,6 +46,7 @@ ASSETS = [
     "race_changes",
     "register",
     "register_changes",
+    "register_history",
     "repeat_pairs",
     "reproducibility",
     "retow_choice",

@@ -10,7 +10,8 @@ NEEDED = {
     "herijk.cli.main": set(),
     "herijk.pipeline.method.definition": set(),
     "herijk.warehouse.queries.reports": {"duckdb", "numpy", "polars"},
-    "herijk.warehouse.queries.audit": {"duckdb", "numpy", "polars", "scipy"},
+    # It computes the statistics of types over the tows that are asked for.
+    "herijk.warehouse.queries.audit": HEAVY - {"altair", "dagster"},
     "herijk.warehouse.editions.lineage": {"numpy", "polars"},
 }
 UNUSED_PARTS = {"scipy.optimize", "scipy.signal", "scipy.sparse", "scipy.special", "scipy.stats"}

@@ -12,7 +12,7 @@ import herijk.pipeline.recompute.recompute
 import herijk.pipeline.studies.ladder
 from herijk.pipeline.method.definition import parse_method, shipped_method
 from herijk.pipeline.register.replay import RaceRules
-from herijk.tables.column import LINE
+from herijk.tables.keys import LINE
 from herijk.warehouse.editions.compare import diff, race_effects, report
 from herijk.warehouse.editions.publish import publish_printed
 from herijk.warehouse.store.decisions import FILE_NAME

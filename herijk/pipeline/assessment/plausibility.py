@@ -24,7 +24,7 @@ from herijk.pipeline.assessment.likely_unit import likely_cause
 from herijk.pipeline.assessment.mean_shift import Candidates, Observations, find_shifts
 from herijk.pipeline.assessment.seen import USUAL_BEND, Seen
 from herijk.pipeline.blocks.batch import Batch
-from herijk.tables.column import LINE
+from herijk.tables.keys import LINE
 
 LIMIT: Final = 4.5
 """Standard deviations from which a shift is no chance: one in 300,000, as thousands are tried."""

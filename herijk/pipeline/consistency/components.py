@@ -18,9 +18,9 @@ from herijk.pipeline.consistency.observed import (
     ln_cw_unit_variance,
 )
 from herijk.pipeline.consistency.reml import Problem
-from herijk.tables.column import LINE
 from herijk.tables.consistency import VarianceComponents
 from herijk.tables.frames import frame_of
+from herijk.tables.keys import LINE
 
 FLEET, WITHIN_TYPE = "fleet", "within_type"
 SCOPES: Final = (FLEET, WITHIN_TYPE)

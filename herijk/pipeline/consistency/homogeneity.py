@@ -17,9 +17,9 @@ from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.consistency import mixed
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE, Observed, newest, q_at
 from herijk.pipeline.consistency.reml import Problem
-from herijk.tables.column import LINE
 from herijk.tables.consistency import PooledCurves, TypeHomogeneity
 from herijk.tables.frames import frame_of
+from herijk.tables.keys import LINE
 
 LEVEL: Final = 0.05
 FEWEST_BOATS: Final = 3

@@ -31,9 +31,9 @@ from herijk.pipeline.consistency.observed import (
 )
 from herijk.pipeline.consistency.reml import Problem
 from herijk.pipeline.consistency.tow_speed import is_slow
-from herijk.tables.column import LINE
 from herijk.tables.consistency import TypeLinePoints, TypeLines, TypeOutliers
 from herijk.tables.frames import frame_of
+from herijk.tables.keys import LINE
 
 LN_CW, BEND = "ln_cw_standard", "bend"
 """What tells an outlier: height and bend (v/B)^2 of the curve, both at the standard speed. Of the

@@ -14,7 +14,7 @@ import polars as pl
 from herijk.pipeline import curve
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.curve import VALID_RATIO
-from herijk.tables.column import LINE
+from herijk.tables.keys import LINE
 
 UNKNOWN_TYPE: Final = "unknown"
 

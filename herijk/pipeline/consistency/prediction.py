@@ -21,9 +21,9 @@ from herijk.pipeline.consistency.observed import (
 )
 from herijk.pipeline.consistency.reml import Problem
 from herijk.pipeline.quantiles import t_quantile
-from herijk.tables.column import LINE
 from herijk.tables.consistency import PredictedCw, PredictionError
 from herijk.tables.frames import frame_of
+from herijk.tables.keys import LINE
 
 FEWEST_BOATS_PER_COLUMN: Final = 3
 MEASURES: Final = ("displacement_kg", "waterline_length_m", "beam_m", "standard_speed_m_s")

@@ -14,9 +14,9 @@ from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.consistency.components import DISTINCT, WITHIN_TYPE
 from herijk.pipeline.consistency.eras import ERAS, Era
 from herijk.pipeline.consistency.observed import Observed, bend_of_curve
-from herijk.tables.column import LINE
 from herijk.tables.consistency import Reproducibility
 from herijk.tables.frames import frame_of
+from herijk.tables.keys import LINE
 
 LEVEL: Final = 0.95
 ALL_PAIRS: Final = "all"

@@ -25,9 +25,9 @@ from herijk.pipeline.consistency.reml import Problem
 from herijk.pipeline.curve import VALID_RATIO
 from herijk.pipeline.races.race import mean_speed_m_s, power_per_rower_w
 from herijk.pipeline.steps.hull import hull_speed_m_s
-from herijk.tables.column import LINE
 from herijk.tables.consistency import SlowTows, SpeedTrend
 from herijk.tables.frames import frame_of
+from herijk.tables.keys import LINE
 
 SLOW_POWER_W: Final = {"H": 60.0, "D": 34.0}
 """Power per rower below which a tow is too slow. Men: "minder dan 60-70 Watt" (Cw-kromme, R. Pot

@@ -11,7 +11,7 @@ from typing import Final
 import polars as pl
 
 from herijk.pipeline.method.definition import RegisterRule
-from herijk.tables.column import LINE as CREW
+from herijk.tables.keys import LINE as CREW
 
 LINE: Final = (*CREW, "empty_thwart")
 """What a line is for. A curve measured with a thwart left free holds only with that thwart free

@@ -31,7 +31,7 @@ from herijk.pipeline.season_log.network import GROUP
 from herijk.pipeline.season_log.other_log import other_log_factors
 from herijk.pipeline.season_log.retow_design import retow_choice
 from herijk.pipeline.season_log.scale import scale_effect
-from herijk.tables.column import LINE
+from herijk.tables.keys import LINE
 
 __all__ = [
     "GROUP",

@@ -12,7 +12,7 @@ import polars as pl
 import scipy
 
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
-from herijk.tables.column import LINE
+from herijk.tables.keys import LINE
 
 GROUP: Final = ("season", "part", "log")
 """What has a log factor of its own: one log, in a season or the part of it until a replacement."""

@@ -16,8 +16,8 @@ from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.choice import first_largest
 from herijk.pipeline.season_log.estimate import SeasonFactors
 from herijk.pipeline.season_log.network import Network
-from herijk.tables.column import LINE
 from herijk.tables.frames import dtypes
+from herijk.tables.keys import LINE
 from herijk.tables.season_log import RetowChoice
 
 UNKNOWN_SD: Final = 0.06

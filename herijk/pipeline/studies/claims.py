@@ -8,7 +8,7 @@ from typing import Final
 
 import polars as pl
 
-from herijk.tables.column import LINE
+from herijk.tables.keys import LINE
 
 PROMISED: Final = {"1pct": 0.01, "2pct": 0.02}
 """Presentation 2015, "N.B.": within 2 % for the great majority; less than 1 % for all."""

@@ -7,7 +7,7 @@ exchanged, a wrong unit, another boat's samples) costs the tow. Judging a good t
 agreement of out and back) is measuring method and belongs to `pipeline`.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Any, Final
@@ -284,7 +284,7 @@ def _typical(runs: list[_Run]) -> dict[str, _Typical]:
     return {
         key: _Typical(
             *(
-                float(np.median([measure(run.channels[key]) for run in runs]))
+                float(np.median([_known(measure, run.channels[key]) for run in runs]))
                 for measure in (_median, np.nanmax, np.nanmin)
             )
         )
@@ -292,9 +292,14 @@ def _typical(runs: list[_Run]) -> dict[str, _Typical]:
     }
 
 
+def _known(measure: Callable[[Array], float], values: Array) -> float:
+    """A measure of the samples that are numbers; NaN without any."""
+    return float(measure(values)) if np.isfinite(values).any() else np.nan
+
+
 def _median(values: Array) -> float:
     """Median of every tenth sample: only gross faults are looked for, and all of them take long."""
-    return float(np.nanmedian(values[::10]))
+    return _known(np.nanmedian, values[::10])
 
 
 def _implausible(channels: Mapping[str, _Typical], intended_m_s: float) -> list[str]:
@@ -381,7 +386,7 @@ def _check_speed_unit(runs: list[_Run], tow: Mapping[str, Any]) -> None:
 def _usual_resistance_kg_m(runs: list[_Run]) -> float:
     """Force / speed squared of a typical run, which a fault over most of one does not move."""
     each = [_median(run.channels["force"]) / run.intended_m_s**2 for run in runs]
-    return abs(float(np.nanmedian(each)))
+    return abs(_known(np.nanmedian, np.asarray(each)))
 
 
 def _judge_run(

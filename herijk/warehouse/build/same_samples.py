@@ -13,8 +13,8 @@ from typing import Final
 import polars as pl
 
 from herijk.pipeline.channels import SECOND_FILE_OFFSET
-from herijk.tables.column import LINE
 from herijk.tables.frames import frame_of
+from herijk.tables.keys import LINE
 from herijk.tables.lake import Faults
 from herijk.warehouse.archive.faults import Fault
 

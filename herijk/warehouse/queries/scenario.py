@@ -55,7 +55,7 @@ class Scenario:
             .sort(
                 pl.col("cw_ratio").log().abs().fill_null(float("inf")),
                 *LINE,
-                descending=[True, False, False, False],
+                descending=[True, *(False for _ in LINE)],
             )
         )
 
