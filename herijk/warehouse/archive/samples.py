@@ -404,17 +404,23 @@ def _read_carefully(body: _Body) -> pl.DataFrame:
     return pl.DataFrame(columns)
 
 
-_THOUSAND: Final = r"^[+-]?[0-9]{1,3}[.,][0-9]{3}$"
+_THOUSAND: Final = {
+    ",": r"^[+-]?[0-9]{1,3},[0-9]{3}$",
+    ".": r"^[+-]?[0-9]{1,3}\.[0-9]{3}$",
+}
 
 
 def _to_numbers(cells: pl.Series, whole: pl.Series) -> pl.Series:
     """Return text as numbers, NaN where it is none or the row is not whole.
 
-    In a column with commas and points 1.012 can be a thousand and twelve: it is no number either.
+    In a column of decimal commas 1.012 can be a thousand and twelve: it is no number either. Nor is
+    1,012 among points.
     """
     spelled = cells.str.contains(NUMBER_PATTERN)
-    if all(cells.str.contains(mark, literal=True).any() for mark in ",."):
-        spelled &= ~cells.str.contains(_THOUSAND)
+    commas, points = (cells.str.contains(mark, literal=True).sum() for mark in ",.")
+    for mark, rarer in ((",", commas <= points), (".", points <= commas)):
+        if commas and points and rarer:
+            spelled &= ~cells.str.contains(_THOUSAND[mark])
     numbers = cells.str.replace(",", ".", literal=True).cast(pl.Float64(), strict=False)
     good = (spelled & whole & numbers.is_finite()).fill_null(value=False)
     return pl.select(pl.when(good).then(numbers).otherwise(float("nan"))).to_series()

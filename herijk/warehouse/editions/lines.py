@@ -100,7 +100,7 @@ def made_again(store: Store, edition: Edition) -> Again:
         printed = read_edition(store, about.carried_from)
         lines = with_carried(
             lines, printed, recomputed.log_factors, about.valid_from, edition.method
-        )
+        ).with_columns(as_of=pl.lit(about.valid_from))
     members = tow_ensemble(
         edition.method.name, recomputed.curves, recomputed.uncertainty_budget, recomputed.factors
     )

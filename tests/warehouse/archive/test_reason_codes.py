@@ -34,7 +34,7 @@ def constant(column: int, value: str, first: int, last: int) -> Spoil:
 
 def scaled(column: int, factor: float, first: int = 2, last: int = LAST) -> Spoil:
     def change(cell: str, line: int) -> str:
-        return f"{float(cell.replace(',', '.')) * factor:.3f}"
+        return f"{float(cell.replace(',', '.')) * factor:.3f}".replace(".", ",")
 
     return lambda a: a.cells(column, change, first, last)
 
