@@ -76,7 +76,8 @@ REGISTER_COLUMNS = (
     *("name", "fsn_no", "boat_type", "rowers", "crew_class", "empty_thwart", "tow_date"),
     *("valid_until", "status", "as_of"),
     *("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),
-    *("waterline_length_m", "weight_kg", "verification_code", "method"),
+    *("waterline_length_m", "beam_m", "bow_height_m", "weight_kg"),
+    *("verification_code", "method"),
 )
 REGISTER_CARDS = (
     *("name", "fsn_no", "boat_type", "rowers", "crew_class", "cw_kg_m", "cw_lo_kg_m"),

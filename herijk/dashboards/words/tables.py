@@ -31,7 +31,7 @@ TABLES_IN_DUTCH: Final[dict[str, str]] = {
     "quarantine": "Wat terzijde is gelegd, met de reden in een zin.",
     "race_changes": "Wedstrijden onder twee edities: vermogen, plaats en podium.",
     "register": "Eén regel per editie, sloep en ploeg.",
-    "register_history": "Elke regel die het register van een editie ooit had, met de proef waarop hij rust.",
+    "register_history": "Elke regel die een register ooit had, met de proef waarop hij rust.",
     "register_changes": "Wat er tussen twee edities verschilt, per sloep en ploeg.",
     "repeat_pairs": "Opeenvolgende proeven van een sloep en ploeg, zonder verbouwing ertussen.",
     "reproducibility": "Hoe goed herhaalde proeven van niet verbouwde sloepen overeenkomen.",
