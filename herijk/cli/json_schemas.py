@@ -305,8 +305,9 @@ def _or_none(schema: Schema) -> Schema:
 def _race() -> dict[str, Schema]:
     return columns(
         "race_changes",
-        *("race", "race_date", "fsn_no", "rowers", "crew_class", "rowing_time_s"),
-        *("old_power_w", "new_power_w", "old_rank", "new_rank", "podium_changed"),
+        *("race", "race_date", "fsn_no", "rowers", "crew_class", "empty_thwart", "rowing_time_s"),
+        *("old_power_w", "new_power_w", "old_remark", "new_remark"),
+        *("old_rank", "new_rank", "podium_changed"),
     )
 
 

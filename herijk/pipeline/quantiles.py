@@ -3,7 +3,7 @@
 from typing import Final
 
 import numpy as np
-import scipy.special
+import scipy
 from numpy.typing import ArrayLike
 
 from herijk.pipeline.arrays import FloatArray

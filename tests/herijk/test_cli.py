@@ -155,7 +155,12 @@ def test_every_result_has_a_documented_form():
     }
     assert with_json == set(schemas())
     assert {name for name, _ in named(get_command(app))} - with_json == {
-        *("serve", "workbench", "schema"),  # two pages to look at, and the forms themselves
+        *(
+            "serve",
+            "workbench",
+            "pages",
+            "schema",
+        ),  # two pages to look at, and the forms themselves
     }
 
 
