@@ -288,7 +288,6 @@ def _diff() -> Schema:
                 "how races are worked out",
                 {
                     "fatigue": text("correction for fatigue"),
-                    "stream": text("how the stream is taken off"),
                     "speed_decimals": whole("decimals of the speed; null for all", maybe=True),
                 },
             ),

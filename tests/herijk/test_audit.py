@@ -147,7 +147,8 @@ def test_plots_lie_where_they_are_asked_for(built, tmp_path):
     fsn_no = built.table("tows")["fsn_no"][0]
     asked = tmp_path / "plots"
     printed = run("audit", fsn_no, "--data", built.data, "--plots", asked)
-    assert printed.stdout.rstrip().endswith(f"{len(list(asked.glob('*.svg')))} plots in {asked}")
+    plots = list(asked.glob("*.svg"))
+    assert printed.stdout.rstrip().endswith(f"{len(plots)} plots in {asked}")
     assert (asked / "history.svg").is_file()
 
 

@@ -160,7 +160,7 @@ def test_every_result_has_a_documented_form():
             "workbench",
             "pages",
             "schema",
-        ),  # two pages to look at, and the forms themselves
+        ),  # pages to look at, and the forms
     }
 
 
