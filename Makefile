@@ -13,11 +13,12 @@ unexport PYTHONDONTWRITEBYTECODE
 export DAGSTER_DISABLE_TELEMETRY = 1
 export DAGSTER_DG_UPDATE_CHECK_ENABLED = 0
 
-.PHONY: help env demo test lint wheel docs bench scale accuracy accuracy-parts survive fuzz full-scale clean
+.PHONY: help env demo test slow lint wheel docs bench scale accuracy accuracy-parts survive fuzz full-scale clean
 
 help:
 	@echo "make demo   simulate an archive of ten seasons and rebuild its history"
-	@echo "make test   run all tests"
+	@echo "make test   run all tests but the slow ones"
+	@echo "make slow   run the tests that take half a minute and more each"
 	@echo "make lint   check style, types, imports and the Dagster definitions"
 	@echo "make wheel  build the wheel and try it in a clean environment"
 	@echo "make docs   make the documents and the reference as pages, in docs/_build"
@@ -68,6 +69,9 @@ $(DEMO)/archief: | $(READY)
 
 test: $(DEVELOP)
 	@$(BIN)/python -m pytest -n 2 --dist worksteal
+
+slow: $(DEVELOP)
+	@$(BIN)/python -m pytest -n 2 --dist worksteal -m slow
 
 lint: $(DEVELOP)
 	@$(BIN)/ruff check .

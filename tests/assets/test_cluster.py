@@ -64,6 +64,7 @@ def published(store):
     return edition_hashes(store, "2026-1")
 
 
+@pytest.mark.slow
 def test_a_rebuild_of_which_a_worker_is_killed_makes_what_is_made_here(
     built, remote, cluster, tmp_path
 ):

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import polars as pl
+import pytest
 
 from herijk.warehouse.store.store import table_digest
 from tests.conftest import METHODS, SMALL, Workbench
@@ -16,6 +17,7 @@ ROOT = Path(__file__).parents[2]
 THREAD_LIMITS = ("POLARS_MAX_THREADS", "OPENBLAS_NUM_THREADS")
 
 
+@pytest.mark.slow
 def test_a_fresh_process_with_one_thread_gives_the_tables_of_two(built: Workbench, tmp_path: Path):
     assert pl.thread_pool_size() == 2  # with which `built` was made
     chosen = [part for name in METHODS for part in ("--method", name)]

@@ -10,6 +10,8 @@ import pytest
 
 from tests.pipeline.finding_2015 import AFTER, AGAINST, BEFORE, LETTERS, PAIR, find
 
+pytestmark = pytest.mark.slow
+
 SEEDS = (1, 2)
 SPREAD = {
     ("B", "weight"): (0.09, 0.05),

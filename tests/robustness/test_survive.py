@@ -12,6 +12,7 @@ TWO_IN_TIME = 45
 neither is done before."""
 
 
+@pytest.mark.slow
 def test_killed_rebuilds_lose_nothing_and_readers_see_whole_states(tmp_path):
     outcome = survive.survive(tmp_path, 2, seed=TWO_IN_TIME, tell=lambda line: None)
     assert (outcome.kills, outcome.different, outcome.bad_reads) == (2, 0, set())

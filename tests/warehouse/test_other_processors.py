@@ -82,6 +82,7 @@ def here_and_there(tmp_path_factory):
     return here, there, json.loads(report)
 
 
+@pytest.mark.slow
 def test_another_processor_makes_the_same_tables(here_and_there):
     """On a processor that ignores the variables this compares equal with equal."""
     here, there, _ = here_and_there
@@ -92,6 +93,7 @@ def test_another_processor_makes_the_same_tables(here_and_there):
     assert tables["variance_components"]["sd_ratio"].null_count() == 0
 
 
+@pytest.mark.slow
 def test_an_edition_of_another_processor_is_as_it_was_published(here_and_there):
     _, _, report = here_and_there
     assert report["findings"] == []
