@@ -1,6 +1,7 @@
 """The same jobs step by step in processes of their own give the tables of one process."""
 
 import dagster as dg
+import pytest
 
 from herijk.assets.jobs import BUILD_JOBS, INDEX, READ, SITE, job_defs
 from herijk.assets.progress import Quiet
@@ -31,6 +32,7 @@ def job_of(archive: str, data: str, name: str) -> dg.JobDefinition:
     return repository_of(archive, data).resolve_job_def(name)
 
 
+@pytest.mark.slow
 def test_the_multiprocess_executor_gives_identical_tables(built, tmp_path, monkeypatch):
     bench = Workbench(built.archive, tmp_path / "data")
     home = prepare_home(bench.store)

@@ -135,7 +135,7 @@ def test_a_removed_season_leaves_and_a_new_one_enters(bench, built, files_read, 
     assert bench.rebuild().seasons == []
     assert bench.table("tows")["season"].unique().to_list() == [2014]
     assert bench.table("curves")["season"].unique().to_list() == [2014]
-    assert not [name for name in bench.lake_files() if "2009" in name]
+    assert not [name for name in bench.lake_files() if "season=2009" in name]
     (tmp_path / "list").rename(bench.archive / TOWS_2009)
     (tmp_path / "samples").rename(bench.archive / "meetdata_2009")
     assert files_read == []
