@@ -97,6 +97,7 @@ for limit in (14, 200):
 """
 
 
+@pytest.mark.slow
 def test_without_file_handles_it_stops_with_the_way_out_and_goes_on_with_more(bench, built):
     """Where handles run out differs from one machine to the next; a half success is none."""
     for table in ("season_index/2009", "blocks/2009", *(f"curves/{name}" for name in METHODS)):
@@ -178,6 +179,7 @@ DAMAGED = {
 it is met only where it is read: those are."""
 
 
+@pytest.mark.slow
 def test_damaged_tables_are_made_again_when_they_are_needed(bench, built):
     file = samples_files(bench, 2009)[0]
     kept, left = file.read_bytes(), {}
@@ -196,6 +198,7 @@ def test_damaged_tables_are_made_again_when_they_are_needed(bench, built):
     assert_same_tables(bench.tables(), built.tables())
 
 
+@pytest.mark.slow
 def test_a_damaged_database_is_made_again_by_the_next_run(bench, built):
     statistics = bench.store.table_path("type_consistency")
     made = statistics.stat().st_mtime_ns
