@@ -60,7 +60,7 @@ class Workbench:
     ) -> Done:
         """A rebuild in this process.
 
-        To save time Dagster's records are kept in memory, and pages are made only for who asks.
+        To save time Dagster's records are kept in memory, and pages are made only on request.
         """
         with self.records_in_memory(), nullcontext() if site else _without_site():
             return herijk.assets.rebuild.rebuild(self.archive, self.data, methods, Quiet(), seasons)

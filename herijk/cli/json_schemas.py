@@ -457,7 +457,7 @@ def _check() -> Schema:
         "value": text("value"),
         "season": whole("season of a profile, else 0"),
         "is_active": flag("it is no guess"),
-        "line": text("the line as it stands in the file"),
+        "line": text("the line to put into the file"),
     }
     place = {"path": text("file"), "line": whole("line", True), "tow_id": text("tow", True)}
     cause = {

@@ -27,7 +27,7 @@ _STOP_WORDS: Final = frozenset(
     | {"wel", "niet"}
 )
 _BY_CONTENT: Final = frozenset({"use_runs"})
-"""Columns that need not be there, and that are known by what stands in them."""
+"""Columns that need not be there, and that are recognised by their content."""
 _DISTINCT: Final = frozenset({"tow_id", "file"})
 _SHORTEST_START: Final = 3
 """Letters of an abbreviation: `opm.` is `opmerking`."""

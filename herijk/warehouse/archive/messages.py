@@ -49,7 +49,7 @@ def _printable(value: Any) -> Any:
 
 
 def spoken(text: Any, language: str) -> Any:
-    """Return a text in a language where it is a sentence, and as it is otherwise."""
+    """Return a sentence in the language asked for; anything else unchanged."""
     return text.spoken(language) if isinstance(text, Sentence) else text
 
 

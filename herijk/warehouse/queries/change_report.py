@@ -50,7 +50,7 @@ Tables = dict[str, pl.DataFrame]
 
 @dataclass(frozen=True)
 class ChangeReport:
-    """What is otherwise than at the last report.
+    """What changed since the last report.
 
     Attributes:
         first: there was no report before; then all tows are new and no line is compared.
