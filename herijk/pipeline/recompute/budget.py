@@ -244,6 +244,7 @@ def _terms_of_tows(o: Outcome, found: SeasonFactors | None, scatter: curve.Scatt
         pl.Series("random_dof", scatter.dof),
         pl.Series("bend", bend),
         pl.Series("calibrated", o.calibrated),
+        pl.Series("askew_ratio", o.estimated.askew_ratio).fill_nan(None),
         pl.Series("log_sd", np.where(estimated, o.estimated.ln_sd, 0.0)),
         pl.Series("log_dof", np.where(estimated, o.estimated.dof, np.inf)),
         pl.Series("tow_log_sd", np.where(o.calibrated, 0.0, _tow_log_sd(o, found))),
@@ -289,7 +290,9 @@ def _tow_log_sd(o: Outcome, estimated: SeasonFactors | None) -> FloatArray:
 
 def _assumed(o: Outcome, estimated: SeasonFactors | None) -> Assumed:
     """What is assumed, or shown by repeat tows: of Cw at the declared speed, whatever is asked."""
-    assumed = Assumed() if estimated is None else Assumed().beside_repeats(estimated.tow_sd)
+    assumed = Assumed()
+    if estimated is not None:
+        assumed = assumed.beside_repeats(estimated.tow_sd, estimated.calibration_sd)
     if o.steps.wind.coefficients == "archive":
         assumed = replace(assumed, wind_coefficient=o.coefficient_sd)
     return assumed

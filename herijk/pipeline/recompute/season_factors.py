@@ -85,7 +85,7 @@ def factor_of_tows(batch: Batch, steps: Steps, factors: pl.DataFrame | None) -> 
     """
     if factors is None:
         nothing, none, one = (np.full(batch.size, x) for x in (np.nan, 0.0, 1.0))
-        return TowFactor(nothing, nothing, nothing, one, none, nothing)
+        return TowFactor(nothing, nothing, nothing, one, none, nothing, nothing)
     corrections = batch.tows.select("tow_id", pl.lit(steps.speed.source).alias("log")).join(
         factors, on=["tow_id", "log"], how="left", maintain_order="left"
     )
@@ -109,7 +109,9 @@ def tow_instruments(estimated: SeasonFactors) -> pl.DataFrame:
         .select("tow_id", "season", part="other_part", log="other_log")
         .join(other_log_factors(estimated).select(*GROUP, "factor", "ln_sd", "dof"), on=GROUP)
     )
-    shared = estimated.instruments.select("tow_id", "force_factor", "force_zero_n", "bend")
+    shared = estimated.instruments.select(
+        "tow_id", "force_factor", "force_zero_n", "bend", "askew_ratio"
+    )
     return pl.concat(
         [
             estimated.instruments.drop("others_ln_ratio"),
