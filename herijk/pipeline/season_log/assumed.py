@@ -64,7 +64,7 @@ class Settings:
     gps_sd: float = 0.008
     tow_log_sd: float = 0.004
     calibration_sd: float = 0.0036
-    spread: float = 2.0
+    spread: float = 1.5
     season_spread: float = 0.3
     bend_sd: float = 0.08
     type_bend_sd: float = 0.15
