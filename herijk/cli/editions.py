@@ -14,6 +14,7 @@ from herijk.cli import due_text
 from herijk.cli import editions_text as text
 from herijk.cli.arguments import AsJson, AsOf, DataFolder, read_day, show
 from herijk.cli.methods import known_methods
+from herijk.words import say
 
 
 def add_to(app: typer.Typer) -> None:
@@ -24,7 +25,7 @@ def add_to(app: typer.Typer) -> None:
 
 def _one_of(known: tuple[str, ...], value: str, option: str) -> str:
     if value not in known:
-        raise typer.BadParameter(f"{option} is one of {', '.join(known)}, not {value!r}")
+        raise typer.BadParameter(say("{} is one of {}, not {!r}", option, ", ".join(known), value))
     return value
 
 

@@ -4,9 +4,8 @@ from typing import Final
 
 from markupsafe import Markup, escape
 
-from herijk.dashboards.words import speaker
+from herijk.words import DECIMALS, speaker
 
-DECIMALS: Final = {"nl": ",", "en": "."}
 MINUS: Final = "\u2212"
 
 

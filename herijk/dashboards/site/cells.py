@@ -12,7 +12,7 @@ from markupsafe import Markup
 
 from herijk.dashboards.site.parts import Page, Table, boat_path, type_path
 from herijk.dashboards.speech import Speech, duration
-from herijk.dashboards.words import LANGUAGES
+from herijk.words import LANGUAGES
 
 DIGITS: Final = (
     ("_kg_m", 2), ("_m_s", 2), ("_deg", 0), ("_kg", 0), ("_w", 1), ("_s", 0), ("cw_sd", 2),

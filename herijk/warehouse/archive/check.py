@@ -28,12 +28,12 @@ from herijk.warehouse.archive.files import (
     path_inside,
 )
 from herijk.warehouse.archive.index import ArchiveIndex, index_archive, missing_lists, strangers
-from herijk.warehouse.archive.messages import Sentence, innermost, say, spoken
 from herijk.warehouse.archive.plausibility import judge_samples
 from herijk.warehouse.archive.profile import Profiles, SeasonProfile, parse_profiles, profile_text
 from herijk.warehouse.archive.proposals import Proposal, merged, propose
 from herijk.warehouse.archive.published import read_published_registers, read_races
 from herijk.warehouse.archive.samples import check_header, read_samples, read_tow_samples
+from herijk.words import Sentence, innermost, say, spoken
 
 ROUNDS: Final = 8
 """So often what was proposed is tried, at most."""

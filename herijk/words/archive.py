@@ -2,10 +2,9 @@
 
 from typing import Final
 
-DUTCH: Final[dict[str, str]] = {
+ARCHIVE: Final[dict[str, str]] = {
     # Lists
     "Line {line}: {what}": "Regel {line}: {what}",
-    "Row {row}: {what}": "Rij {row}: {what}",
     "line {line} of {path}": "regel {line} van {path}",
     "sheet '{sheet}': {what}": "blad '{sheet}': {what}",
     "The name of '{name}' has letters that cannot be read; give it another name.": (
@@ -84,9 +83,6 @@ DUTCH: Final[dict[str, str]] = {
     ),
     "the row has {fields} fields where the header has {width}.": (
         "de rij heeft {fields} velden en de kop {width}."
-    ),
-    "the row has {fields} fields where the header has {width}: '{line}'.": (
-        "de rij heeft {fields} velden en de kop {width}: '{line}'."
     ),
     "a quotation mark is not closed, or in mid-field.": (
         "een aanhalingsteken is niet gesloten, of staat midden in een veld."
@@ -241,5 +237,4 @@ DUTCH: Final[dict[str, str]] = {
         "Run {run}: volgens de tijden heeft hij {observed:.4g} metingen per seconde, volgens de "
         "lijst of het profiel {rate}; dat mag {most:.0%} verschillen."
     ),
-    "the number for {name} is too large.": "het getal voor {name} is te groot.",
 }
