@@ -6,7 +6,7 @@ The pages of `herijk audit` are in `cli.audit_text`.
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from herijk.words import code, number, tell
+from herijk.words import LANGUAGE, code, number, tell
 
 if TYPE_CHECKING:
     from herijk.warehouse.queries.rebase import RebaseReport
@@ -86,7 +86,8 @@ def _indented(lines: Iterable[str]) -> str:
 
 
 def _faults(first: list[Row], number: int) -> str:
-    lines = [f"  {_place(fault)}: {fault['message']}" for fault in first]
+    said = "message_nl" if LANGUAGE.get() == "nl" else "message"
+    lines = [f"  {_place(fault)}: {fault[said]}" for fault in first]
     told = sum(fault["number"] for fault in first)
     if number > told:
         lines.append(tell("  and {} more: see the table quarantine", number - told))

@@ -8,6 +8,7 @@ are shown at once, in the language of this command.
 
 from collections.abc import Mapping
 from contextvars import ContextVar
+from numbers import Real
 from string import Formatter
 from typing import Any, Final
 
@@ -33,7 +34,7 @@ class _InWords(Formatter):
 
     def format_field(self, value: Any, format_spec: str) -> str:
         text = str(super().format_field(value, format_spec))
-        return text.replace(".", self._decimal) if isinstance(value, float) else text
+        return text.replace(".", self._decimal) if isinstance(value, Real) else text
 
 
 def _filled(template: str, language: str, values: tuple[Any, ...], named: Mapping[str, Any]) -> str:
@@ -116,3 +117,22 @@ def innermost(text: str) -> str:
     while isinstance(text, Sentence) and isinstance(text.values.get("what"), str):
         text = text.values["what"]
     return text
+
+
+def cause_of(text: str) -> str:
+    """Return what sentences of one cause share: the same words about the same column.
+
+    What differs from fault to fault is left open: `column 'klasse' is '…'; H or D is expected.`
+    """
+    what = innermost(text)
+    if not isinstance(what, Sentence):
+        return what
+    shared = {name: what.values[name] for name in _SHARED if name in what.values}
+    return "".join(
+        literal + ("" if name is None else str(shared.get(name, "…")))
+        for literal, name, _, _ in Formatter().parse(what.template)
+    )
+
+
+_SHARED: Final = ("column", "names", "unit", "found")
+"""Values that faults of one cause have in common."""

@@ -5,7 +5,6 @@ from functools import cache
 from pathlib import Path
 from string import Formatter
 
-import pytest
 from typer.main import get_command
 
 import herijk
@@ -85,13 +84,14 @@ def test_every_dutch_text_is_of_something_that_is_said():
     assert DUTCH.keys() - written - OF_LIBRARY - set(said_in_help(get_command(app))) == set()
 
 
-@pytest.mark.parametrize("english", DUTCH)
-def test_dutch_has_the_same_values(english):
-    fields = [
-        sorted(f"{name}{form}" for _, name, form, _ in Formatter().parse(text) if name is not None)
-        for text in (english, DUTCH[english])
-    ]
-    assert fields[0] == fields[1]
+def values(text):
+    return sorted(
+        f"{name}{form}" for _, name, form, _ in Formatter().parse(text) if name is not None
+    )
+
+
+def test_dutch_has_the_same_values():
+    assert [english for english, dutch in DUTCH.items() if values(english) != values(dutch)] == []
 
 
 def test_numbers_have_the_decimal_mark_of_the_language():

@@ -34,7 +34,7 @@ CODES: Final = {
 """Columns that hold codes of the warehouse, shown as words."""
 
 LONG: Final = {
-    *("flags", "cut_reason", "reason", "speed_reason", "causes", "message", "decision"),
+    *("flags", "cut_reason", "reason", "speed_reason", "causes", "message", "messages", "decision"),
     *("candidates", "name", "meanings", "confused_with", "old_remark", "new_remark"),
 }
 """Columns of texts that may take several lines."""
@@ -126,7 +126,7 @@ class Cells:
         if name == "boat_type":
             return lambda value: self._type(value, root)
         named = {
-            **dict.fromkeys(("titles", "meanings"), self._titles),
+            **dict.fromkeys(("titles", "meanings", "messages"), self._titles),
             "direction": lambda value: self.text("out" if value == 1 else "back"),
             "causes": self._causes,
             "unit": lambda value: self._plain("" if value == "1" else value),
