@@ -25,7 +25,7 @@ from herijk.cli.doctor import doctor
 from herijk.cli.fit import fit
 from herijk.cli.overview import Overview, defaults_of, folders_here
 from herijk.pipeline.errors import BrokenPromiseError, HerijkError, unexpected
-from herijk.words import LANGUAGE, say, spoken, tell
+from herijk.words import LANGUAGE, say, speaker, spoken, tell
 
 if TYPE_CHECKING:
     from herijk.warehouse.store.store import Store
@@ -136,6 +136,7 @@ def rebuild(
     from herijk.assets.report import failed_checks, tell
     from herijk.assets.settings import read_settings
     from herijk.cli.progress import TerminalProgress
+    from herijk.dashboards.report import headlines
     from herijk.warehouse.queries import reports
     from herijk.warehouse.store.store import Store
 
@@ -148,7 +149,8 @@ def rebuild(
         _tell_failure(data, error)
         raise
     report = reports.rebuild_report(Store(data))
-    as_text = text.rebuild(report, done.work, done.report["headlines"])
+    news = headlines(done.report, speaker(LANGUAGE.get()))
+    as_text = text.rebuild(report, done.work, news)
     everything = {**vars(report), "done": done.work, "since": done.report}
     show(everything, lambda _: as_text, as_json)
     notifier = notifier_of(str(data), read_settings(data))

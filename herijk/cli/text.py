@@ -56,7 +56,9 @@ def rebuild(report: "RebuildReport", done: Row, headlines: list[str]) -> str:
         + ", ".join(f"{row['season']}: {row['tows']}" for row in report.seasons)
     )
     if report.set_aside:
-        rows = [(code(r["lost"]), r["reason_code"], r["number"]) for r in report.set_aside]
+        rows = [
+            (code("lost_" + r["lost"]), r["reason_code"], r["number"]) for r in report.set_aside
+        ]
         parts.append(tell("Set aside:\n") + table(("lost", "reason", "number"), rows))
         parts.append(_faults(report.first_faults, sum(number for *_, number in rows)))
     else:

@@ -22,7 +22,8 @@ WITH causes AS (
     FROM quarantine GROUP BY lost, reason_code, cause
 )
 SELECT one.path, one.tow_id, one.line, reason_code, one.message, one.message_nl, number FROM causes
-ORDER BY list_position(['file', 'tow', 'row', 'run', 'seconds'], lost), number DESC, one.path, one.line
+ORDER BY list_position(['file', 'tow', 'row', 'run', 'seconds'], lost), number DESC,
+         one.path, one.line
 LIMIT ?
 """
 
