@@ -23,7 +23,8 @@ from herijk.warehouse.build.version import code_version
 from herijk.warehouse.queries.change_report import as_plain, change_report, remember
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.store import Store
-from herijk.words import LANGUAGE, speaker
+from herijk.words import LANGUAGE
+from herijk.words.catalogue import speaker
 
 if TYPE_CHECKING:  # Dagster takes two seconds, and only a rebuild with work to do needs it
     import dagster as dg

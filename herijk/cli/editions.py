@@ -10,8 +10,6 @@ from typing import Annotated
 
 import typer
 
-from herijk.cli import due_text
-from herijk.cli import editions_text as text
 from herijk.cli.arguments import AsJson, AsOf, DataFolder, read_day, show
 from herijk.cli.methods import known_methods
 from herijk.words import say
@@ -41,6 +39,7 @@ def register(
     as_json: AsJson = False,
 ) -> None:
     """The register: every line with its sizes, and whether it is valid on a day."""
+    from herijk.cli import editions_text as text
     from herijk.warehouse.queries.register import register_report
     from herijk.warehouse.store.store import Store
 
@@ -78,6 +77,7 @@ def publish(
     as_json: AsJson = False,
 ) -> None:
     """Freeze an edition of the register: it is never changed afterwards."""
+    from herijk.cli import editions_text as text
     from herijk.warehouse.editions.publish import Terms, lines_to_look_at, publish_printed
     from herijk.warehouse.editions.publish import publish as publish_edition
     from herijk.warehouse.store.editions import read_edition
@@ -114,6 +114,7 @@ def diff(
     as_json: AsJson = False,
 ) -> None:
     """Two editions side by side: who gains, who loses, why, and what it does to races."""
+    from herijk.cli import editions_text as text
     from herijk.pipeline.register.replay import FATIGUES, RaceRules
     from herijk.warehouse.editions import compare
     from herijk.warehouse.store.store import Store
@@ -134,6 +135,7 @@ def diff(
 
 def verify(data: DataFolder = Path("data"), as_json: AsJson = False) -> None:
     """Check that editions and archive are what they were, and make the editions again."""
+    from herijk.cli import editions_text as text
     from herijk.warehouse.editions.verify import verify as verify_editions
     from herijk.warehouse.store.store import Store
 
@@ -150,6 +152,7 @@ def lineage(
     as_json: AsJson = False,
 ) -> None:
     """From a printed line to the files, runs and seconds behind it."""
+    from herijk.cli import editions_text as text
     from herijk.warehouse.editions.lineage import lineage as find_lineage
     from herijk.warehouse.store.store import Store
 
@@ -165,6 +168,7 @@ def due(
     as_json: AsJson = False,
 ) -> None:
     """Whose tow expires when, at what speed to tow each next, and which boats to tow again."""
+    from herijk.cli import due_text
     from herijk.warehouse.queries.due import due_report
     from herijk.warehouse.store.store import Store
 

@@ -25,7 +25,7 @@ from herijk.cli.doctor import doctor
 from herijk.cli.fit import fit
 from herijk.cli.overview import Overview, defaults_of, folders_here
 from herijk.pipeline.errors import BrokenPromiseError, HerijkError, unexpected
-from herijk.words import LANGUAGE, say, speaker, spoken, tell
+from herijk.words import LANGUAGE, say, spoken, tell
 
 if TYPE_CHECKING:
     from herijk.warehouse.store.store import Store
@@ -139,6 +139,7 @@ def rebuild(
     from herijk.dashboards.report import headlines
     from herijk.warehouse.queries import reports
     from herijk.warehouse.store.store import Store
+    from herijk.words.catalogue import speaker
 
     known = methods.known_methods(data)
     chosen = [known.kept(name) for name in method or read_settings(data).applied]

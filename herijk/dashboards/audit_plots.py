@@ -19,7 +19,7 @@ from herijk.dashboards.site.parts import default_method
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.store import Store
-from herijk.words import speaker
+from herijk.words.catalogue import speaker
 
 SCATTERS: Final = ("a_weight", "b_weight", "cw_standard_weight", "b_speed", "cw_standard_speed")
 VEGA_LITE: Final = ".".join(alt.SCHEMA_VERSION.removeprefix("v").split(".")[:2])

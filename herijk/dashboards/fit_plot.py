@@ -11,7 +11,7 @@ from herijk.dashboards.audit_plots import VEGA_LITE
 from herijk.dashboards.figures.style import HEIGHT, OKABE_ITO, WIDTH, number
 from herijk.library.curves import Fit
 from herijk.warehouse.store.files import written_beside
-from herijk.words import speaker
+from herijk.words.catalogue import speaker
 
 BAND_POINTS = 41
 MARGIN = 0.05

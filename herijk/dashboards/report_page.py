@@ -21,7 +21,8 @@ from herijk.dashboards.site.render import Edition
 from herijk.warehouse.queries.change_report import ChangeReport
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.store import Store
-from herijk.words import LANGUAGES, speaker
+from herijk.words import LANGUAGES
+from herijk.words.catalogue import speaker
 
 TO_SITE: Final = "../site/"
 

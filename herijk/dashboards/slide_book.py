@@ -25,7 +25,7 @@ from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.studies.tool_options import AS_READ, SPEEDS, TICKS
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.database import choice_of
-from herijk.words import Say
+from herijk.words.catalogue import Say
 
 ALL_TOWS: Final = "all"
 

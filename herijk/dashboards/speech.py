@@ -4,7 +4,8 @@ from typing import Final
 
 from markupsafe import Markup, escape
 
-from herijk.words import DECIMALS, speaker
+from herijk.words import DECIMALS
+from herijk.words.catalogue import speaker
 
 MINUS: Final = "\u2212"
 

@@ -4,14 +4,14 @@ Texts of pages and documents have a key (`catalogue`); sentences that are said w
 of faults and of the command line, go by their English text (`sentences`).
 """
 
-from herijk.words.catalogue import LANGUAGES, WORDS, Say, Words, both, speaker
 from herijk.words.sentences import (
     DECIMALS,
-    DUTCH,
     LANGUAGE,
+    LANGUAGES,
     Sentence,
     cause_of,
     code,
+    dutch,
     innermost,
     number,
     say,
@@ -21,20 +21,15 @@ from herijk.words.sentences import (
 
 __all__ = [
     "DECIMALS",
-    "DUTCH",
     "LANGUAGE",
     "LANGUAGES",
-    "WORDS",
-    "Say",
     "Sentence",
-    "Words",
-    "both",
     "cause_of",
     "code",
+    "dutch",
     "innermost",
     "number",
     "say",
-    "speaker",
     "spoken",
     "tell",
 ]

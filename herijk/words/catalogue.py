@@ -14,9 +14,8 @@ from herijk.words.columns import COLUMNS
 from herijk.words.documents import DOCUMENTS
 from herijk.words.pages import PAGES
 from herijk.words.report import REPORT
+from herijk.words.sentences import LANGUAGES
 from herijk.words.slides import SLIDES
-
-LANGUAGES: Final = ("nl", "en")
 
 Say = Callable[[str], str]
 """Gives the text of a key in one language."""

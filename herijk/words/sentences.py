@@ -8,22 +8,26 @@ are shown at once, in the language of this command.
 
 from collections.abc import Mapping
 from contextvars import ContextVar
+from functools import cache
 from numbers import Real
 from string import Formatter
 from typing import Any, Final
 
-from herijk.words.archive import ARCHIVE
-from herijk.words.catalogue import speaker
-from herijk.words.command import COMMAND
-from herijk.words.errors import ERRORS
-
-DUTCH: Final[Mapping[str, str]] = ARCHIVE | ERRORS | COMMAND
-"""Every such sentence in Dutch, by its English text."""
-
+LANGUAGES: Final = ("nl", "en")
 DECIMALS: Final = {"nl": ",", "en": "."}
 
 LANGUAGE: Final = ContextVar("LANGUAGE", default="en")
 """The language in which this command speaks: `nl` or `en`."""
+
+
+@cache
+def dutch() -> Mapping[str, str]:
+    """Return every such sentence in Dutch, by its English text; read when it is needed."""
+    from herijk.words.archive import ARCHIVE  # noqa: PLC0415
+    from herijk.words.command import COMMAND  # noqa: PLC0415
+    from herijk.words.errors import ERRORS  # noqa: PLC0415
+
+    return ARCHIVE | ERRORS | COMMAND
 
 
 class _InWords(Formatter):
@@ -38,7 +42,7 @@ class _InWords(Formatter):
 
 
 def _filled(template: str, language: str, values: tuple[Any, ...], named: Mapping[str, Any]) -> str:
-    text = DUTCH.get(template, template) if language == "nl" else template
+    text = dutch().get(template, template) if language == "nl" else template
     return _InWords(language).vformat(text, values, named) if values or named else text
 
 
@@ -90,6 +94,8 @@ def number(value: float, form: str) -> str:
 
 def code(name: str) -> str:
     """Return a code of the tables in words, in the language of this command."""
+    from herijk.words.catalogue import speaker  # noqa: PLC0415
+
     return speaker(LANGUAGE.get())(f"code.{name}")
 
 
@@ -109,7 +115,7 @@ def spoken(text: Any, language: str) -> Any:
         text = text.args[0] if text.args and isinstance(text.args[0], Sentence) else str(text)
     if isinstance(text, Sentence):
         return text.spoken(language)
-    return DUTCH.get(text, text) if language == "nl" and isinstance(text, str) else text
+    return dutch().get(text, text) if language == "nl" and isinstance(text, str) else text
 
 
 def innermost(text: str) -> str:

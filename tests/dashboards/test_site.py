@@ -26,7 +26,7 @@ from herijk.dashboards.site.render import DRAWN
 from herijk.warehouse.queries.answers import answers, line_changes
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.store import Store
-from herijk.words import WORDS
+from herijk.words.catalogue import WORDS
 from herijk.words.tables import TABLES_IN_DUTCH
 from tests.dashboards.conftest import ATTACK, EDITIONS
 from tests.dashboards.test_answer import LINE

@@ -10,7 +10,8 @@ from herijk.dashboards import slides as files
 from herijk.dashboards.figures.slides import METHODS
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.queries.views import Views
-from herijk.words import LANGUAGES, speaker
+from herijk.words import LANGUAGES
+from herijk.words.catalogue import speaker
 
 
 @pytest.fixture(scope="module")

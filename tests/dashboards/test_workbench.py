@@ -23,7 +23,8 @@ from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.warehouse.queries.history import History
 from herijk.warehouse.queries.rebase import rebase
 from herijk.warehouse.store.store import Store
-from herijk.words import LANGUAGES, both
+from herijk.words import LANGUAGES
+from herijk.words.catalogue import both
 from tests.architecture.repository import ROOT
 from tests.dashboards.conftest import served
 

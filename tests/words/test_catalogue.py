@@ -11,8 +11,9 @@ import herijk
 from herijk.cli.main import app
 from herijk.cli.overview import SECTIONS, USAGE
 from herijk.pipeline import errors
-from herijk.words import DUTCH, LANGUAGE, say, spoken, tell
+from herijk.words import LANGUAGE, dutch, say, spoken, tell
 
+DUTCH = dutch()
 ROOT = Path(str(herijk.__file__)).parent
 SPEAKERS = {"say", "tell", "MethodFileError"} | {n for n in dir(errors) if n.endswith("Error")}
 OF_LIBRARY = {

@@ -23,7 +23,7 @@ from herijk.dashboards.figures.style import (
 from herijk.pipeline.method.definition import COMPLETE
 from herijk.pipeline.steps.window import CUT_REASONS
 from herijk.pipeline.uncertainty.propagation import COMPONENTS
-from herijk.words import Say
+from herijk.words.catalogue import Say
 
 DIRECTION = "datum.value == 1 ? '{out}' : '{back}'"
 

@@ -17,7 +17,7 @@ from herijk.dashboards.figures.style import (
     tips,
 )
 from herijk.pipeline.method.definition import COMPLETE
-from herijk.words import Say
+from herijk.words.catalogue import Say
 
 
 def curves_compared(frame: pl.DataFrame, say: Say) -> Drawing:

@@ -16,7 +16,7 @@ from herijk.dashboards.figures.style import (
 )
 from herijk.pipeline.studies.ladder import STEP_ORDER
 from herijk.pipeline.studies.options import CHOICES
-from herijk.words import Say
+from herijk.words.catalogue import Say
 
 
 def _at_one(frame: pl.DataFrame, channel: str) -> alt.Chart:

@@ -8,7 +8,7 @@ import altair as alt
 
 from herijk.pipeline.method.definition import COMPLETE, RUNS_ALONE, shipped_method, shipped_methods
 from herijk.pipeline.register.register import draft_name
-from herijk.words import Say
+from herijk.words.catalogue import Say
 
 OKABE_ITO: Final = (
     "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999",

@@ -31,7 +31,8 @@ from herijk.dashboards.speech import Speech
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.files import TEMPORARY_PREFIX, put_in_place
 from herijk.warehouse.store.store import Store
-from herijk.words import LANGUAGES, WORDS, speaker
+from herijk.words import LANGUAGES
+from herijk.words.catalogue import WORDS, speaker
 
 HERE: Final = Path(__file__).parent
 DRAWN: Final = 5

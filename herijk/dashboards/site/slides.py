@@ -20,7 +20,8 @@ from herijk.dashboards.slide_rows import compared_frame, lines_frame, methods_of
 from herijk.dashboards.speech import Speech
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
 from herijk.warehouse.queries.views import Views
-from herijk.words import LANGUAGES, speaker
+from herijk.words import LANGUAGES
+from herijk.words.catalogue import speaker
 
 PAIR_SELECTORS = ("pair_first", "pair_second")
 ALL_TOWS = "all"

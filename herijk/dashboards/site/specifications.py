@@ -14,7 +14,7 @@ from herijk.dashboards.html import as_json
 from herijk.dashboards.kept import kept
 from herijk.warehouse.store.code import code_hash
 from herijk.warehouse.store.store import fingerprint
-from herijk.words import WORDS, speaker
+from herijk.words.catalogue import WORDS, speaker
 
 
 @cache

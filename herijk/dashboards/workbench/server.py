@@ -30,7 +30,8 @@ from herijk.dashboards.site.specifications import chart_specifications
 from herijk.dashboards.workbench.bench import Base, Bench, Named, Question
 from herijk.dashboards.workbench.texts import TEXTS
 from herijk.pipeline.errors import HerijkError
-from herijk.words import LANGUAGES, both
+from herijk.words import LANGUAGES
+from herijk.words.catalogue import both
 
 LOOPBACK: Final = "127.0.0.1"
 HOSTS: Final = (LOOPBACK, "localhost")
