@@ -15,7 +15,7 @@ from herijk.pipeline.method.definition import (
     Wind,
     Window,
 )
-from herijk.words import LANGUAGE, code, tell
+from herijk.words import LANGUAGE, tell
 
 DIFFERS = "*"
 
@@ -43,7 +43,7 @@ def _sentences(block: SeasonSteps, parent: Method | None) -> list[str]:
     sentences = steps_in_words(block.steps)
     before = sentences if parent is None else steps_in_words(parent.for_season(block.first))
     return [
-        f"  {DIFFERS if before[step] != words else ' '} {code(step):12} {words}"
+        f"  {DIFFERS if before[step] != words else ' '} {step:12} {words}"
         for step, words in sentences.items()
     ]
 

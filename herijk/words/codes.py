@@ -47,7 +47,6 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.speed": ("snelheid", "speed"),
     "code.window": ("venster", "window"),
     "code.runs": ("runs", "runs"),
-    "code.assessment": ("beoordeling", "assessment"),
     "code.calibration": ("ijking", "calibration"),
     "code.run_point": ("runpunt", "run point"),
     "code.wind": ("wind", "wind"),
