@@ -75,7 +75,7 @@ class _Directly:
 
 
 @contextmanager
-def _directly() -> Iterator[None]:
+def directly() -> Iterator[None]:
     """Inside, rebuilds do their work without Dagster, and the site counts as made."""
 
     def opened(setup: Setup, progress: Progress) -> AbstractContextManager[_Directly]:
@@ -108,7 +108,7 @@ class Workbench:
         The whole has Dagster's runs (recorded in memory), studies, comparisons of types, checks and
         pages; a third of it does for most tests.
         """
-        with self.records_in_memory() if whole else _directly():
+        with self.records_in_memory() if whole else directly():
             return herijk.assets.rebuild.rebuild(self.archive, self.data, methods, Quiet(), seasons)
 
     @staticmethod
