@@ -1,6 +1,7 @@
 """Frames made with the dtypes that a table declares."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from functools import cache
 from typing import Any, TypeVar
 
 import dataframely as dy
@@ -15,6 +16,7 @@ def dtypes(schema: type[dy.Schema], without: Collection[str] = ()) -> pl.Schema:
     return pl.Schema({name: column.dtype for name, column in columns if name not in without})
 
 
+@cache  # asked for per cell of a list
 def limits(schema: type[dy.Schema], name: str) -> tuple[Any, Any]:
     """The lowest and highest value that a column declares."""
     column = schema.columns()[name]
