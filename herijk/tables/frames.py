@@ -4,8 +4,9 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from functools import cache
 from typing import Any, TypeVar
 
-import dataframely as dy
 import polars as pl
+
+from herijk.tables.declare import dy
 
 S = TypeVar("S", bound=dy.Schema)
 

@@ -8,7 +8,6 @@ physically is explained in the module that computes it; how tables are stored is
 
 from typing import Final
 
-import dataframely as dy
 import polars as pl
 
 from herijk.tables import (
@@ -21,6 +20,7 @@ from herijk.tables import (
     season_log,
     studies,
 )
+from herijk.tables.declare import dy
 
 TABLES: Final[dict[str, type[dy.Schema]]] = {
     "boats": archive.Boats,

@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
-import dataframely as dy
 import polars as pl
 
+from herijk.tables.declare import dy
 from herijk.tables.schemas import ABOUT, TABLES, conform, ordered
 from herijk.tables.views import VIEWS
 from herijk.warehouse.build.version import code_version
