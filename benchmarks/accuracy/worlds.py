@@ -116,18 +116,23 @@ def measured(world: str, seed: int, files: bool) -> list[Record]:
 
 
 def _by_blocks(world: str, seed: int) -> tuple[dict[str, pl.DataFrame], pl.DataFrame]:
-    archive = _simulated(world, seed)
+    archive = simulated(world, seed)
+    return recomputed(archive, WORLDS[world].options.get("spread") == 0.0), archive.truth
+
+
+def recomputed(archive: Measured, equal_boats: bool) -> dict[str, pl.DataFrame]:
+    """Tables of an archive as a rebuild makes them; where asked, whether equal boats are alike."""
     tows = with_doubts(archive.tows, implausible(Batch.of(archive.tows, archive.blocks)))
     made = recompute(shipped_method(METHOD), tows, archive.blocks, with_bands=False)
     tables = {name: getattr(made, name) for name in TABLES if hasattr(made, name)}
-    if WORLDS[world].options.get("spread") == 0.0:
+    if equal_boats:
         boats = archive.tows.select("fsn_no", "boat_type").unique()
         seen = observe(made.curves, archive.tows, boats, made.run_points)
         tables[EQUAL_BOATS] = type_homogeneity(seen)
-    return tables, archive.truth
+    return tables
 
 
-def _simulated(world: str, seed: int) -> Measured:
+def simulated(world: str, seed: int) -> Measured:
     """Simulated once for every version of the simulator; sums are kept with seven digits."""
     version = code_hash("herijk.simulate.worlds", "herijk.pipeline.blocks.sums")
     kept = FOLDER / "blocks" / version / f"{world}-{seed}.pickle"
