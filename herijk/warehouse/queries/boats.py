@@ -29,12 +29,12 @@ def the_boat(boats: pl.DataFrame, name: str) -> str:
     Raises:
         MissingKnowledgeError: there is none, or there are several of that name.
     """
-    found = boats_named(boats, name)
-    if len(found) == 1:
-        return found[0]
-    if found:
+    named = boats_named(boats, name)
+    if len(named) == 1:
+        return named[0]
+    if named:
         raise MissingKnowledgeError(
-            f"{len(found)} boats are called {name!r}: {', '.join(found)}; give the FSN number"
+            f"{len(named)} boats are called {name!r}: {', '.join(named)}; give the FSN number"
         )
     number, called = boats.sort("fsn_no").select("fsn_no", "name").row(0)
     raise MissingKnowledgeError(

@@ -100,16 +100,16 @@ def machine_faults_explained(root: Path) -> Iterator[None]:
         raise UnavailableError(f"{said}. {REASSURANCE}") from error
 
 
-def _said(found: str, error: BaseException, root: Path) -> str:
+def _said(sentence: str, error: BaseException, root: Path) -> str:
     """The sentence about a fault of the machine, with the path that it is about."""
-    if found == _FORBIDDEN:
+    if sentence == _FORBIDDEN:
         names = (str(e.filename) for e in _causes(error) if isinstance(e, OSError) and e.filename)
         path = next(names, None)
         if path is not None and not Path(path).absolute().is_relative_to(root.absolute()):
             return _ELSEWHERE.format(path=path)
-    if found == _BROKEN_DISK and _is_full(root):
-        found = _FULL
-    return found.format(root=root)
+    if sentence == _BROKEN_DISK and _is_full(root):
+        sentence = _FULL
+    return sentence.format(root=root)
 
 
 def _is_full(root: Path) -> bool:
