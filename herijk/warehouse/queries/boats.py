@@ -29,15 +29,17 @@ def the_boat(boats: pl.DataFrame, name: str) -> str:
     Raises:
         MissingKnowledgeError: there is none, or there are several of that name.
     """
-    named = boats_named(boats, name)
-    if len(named) == 1:
-        return named[0]
-    if named:
+    found = boats_named(boats, name)
+    if len(found) == 1:
+        return found[0]
+    if found:
         raise MissingKnowledgeError(
-            f"{len(named)} boats are called {name!r}: {', '.join(named)}; give the FSN number"
+            "{} boats are called {!r}: {}; give the FSN number", len(found), name, ", ".join(found)
         )
     number, called = boats.sort("fsn_no").select("fsn_no", "name").row(0)
     raise MissingKnowledgeError(
-        f"there is no boat {name!r}; boats go by FSN number or name, for example {number} or "
-        f"{called}"
+        "there is no boat {!r}; boats go by FSN number or name, for example {} or {}",
+        name,
+        number,
+        called,
     )
