@@ -29,11 +29,14 @@ class World:
     curves: pl.DataFrame
     run_points: pl.DataFrame
     tows: pl.DataFrame
+    diagnosis: pl.DataFrame
 
     def changed(self, table: str, tow_id: str, **columns: Any) -> "World":
         """The world with some values of one tow replaced, by a value or an expression."""
         frame: pl.DataFrame = getattr(self, table)
         mine = pl.col("tow_id") == tow_id
+        if table == "diagnosis":
+            mine = pl.col("season") == int(tow_id[-4:])
         values = {
             name: pl.when(mine)
             .then(value if isinstance(value, pl.Expr) else pl.lit(value, frame.schema[name]))
@@ -43,7 +46,7 @@ class World:
         return replace(self, **{table: frame.with_columns(**values)})
 
     def assessed(self) -> pl.DataFrame:
-        return assess(self.curves, self.run_points, self.tows)
+        return assess(self.curves, self.run_points, self.tows, self.diagnosis)
 
     def flagged(self, tow_id: str) -> set[str]:
         return set(self.assessed().filter("flagged", tow_id=tow_id)["check"])
@@ -125,6 +128,9 @@ def sound() -> World:
         curves.cast({"runs_used": pl.Int8}),
         pl.DataFrame(points, schema_overrides=integers),
         pl.DataFrame(tows, schema_overrides=integers | dict.fromkeys(("doubts", "unusual"), names)),
+        pl.DataFrame(
+            {"season": [2012, 2014], "verdict": "sound", "alarm": False}, schema_overrides=integers
+        ),
     )
 
 
@@ -146,6 +152,7 @@ heavier = {"a_kg_m": 1.08 * A, "cw_kg_m": 1.08 * CW}
 CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
     **{code: ("tows", SUBJECT, {"doubts": [code]}, 1, 0, set()) for code in DOUBTS},
     **{code: ("tows", SUBJECT, {"unusual": [code]}, 1, 0, set()) for code in UNUSUAL},
+    "season_in_doubt": ("diagnosis", SUBJECT, {"alarm": True}, 1, 0, set()),
     "correction_not_used": ("run_points", SUBJECT, {"speed_factor": 1.0}, 0.02, 0, set()),
     "lamps_burned": ("tows", SUBJECT, {"lamp_ratio": 0.3}, 0.3, 0.2, set()),
     "load_cell_off": ("tows", SUBJECT, {"load_cell_ratio": 0.985}, -0.015, -0.01, set()),
@@ -296,9 +303,26 @@ def test_a_log_that_errs_all_season_is_not_askew_pulling(sound: World) -> None:
     worn = sound.curves.with_columns(
         pl.when(in_2012).then(pl.col(c) * 1.2).otherwise(c).alias(c) for c in ("a_kg_m", "cw_kg_m")
     )
-    found = assess(worn, sound.run_points, sound.tows).filter(check="pulled_askew")
+    found = replace(sound, curves=worn).assessed().filter(check="pulled_askew")
     assert found.height == len(BOATS)
     assert not found["flagged"].any()
+
+
+def test_what_all_boats_change_between_uncalibrated_seasons_is_not_the_boats(sound: World) -> None:
+    worn, one = pl.col("season") == 2012, pl.col("tow_id") == LATER
+    curves = sound.curves.with_columns(
+        calibration_factor=pl.when(~worn).then("calibration_factor"),
+        **{
+            c: pl.when(worn).then(pl.col(c) * 1.2).when(one).then(pl.col(c) * 1.1).otherwise(c)
+            for c in ("a_kg_m", "cw_kg_m")
+        },
+    )
+    world = replace(sound, curves=curves)
+    found = world.assessed().filter(check="curve_change_unexplained")
+    assert found.filter("flagged")["tow_id"].to_list() == [LATER]
+    assert found.filter(tow_id=LATER)["observed"][0] == pytest.approx(0.1, abs=1e-3)
+    to_scale = world.changed("diagnosis", SUBJECT, verdict="estimated").assessed()
+    assert to_scale.filter(check="curve_change_unexplained")["flagged"].all()
 
 
 def test_a_few_like_boats_or_an_unknown_type_are_no_measure(sound: World) -> None:
@@ -307,14 +331,17 @@ def test_a_few_like_boats_or_an_unknown_type_are_no_measure(sound: World) -> Non
         sound.tows.with_columns(boat_type=pl.when(few).then(pl.col("boat_type"))),
         sound.tows.drop("boat_type"),
     ):
-        found = assess(sound.curves, sound.run_points, tows)
+        found = replace(sound, tows=tows).assessed()
         assert "pulled_askew" not in set(found["check"])
 
 
 def test_the_order_of_the_rows_does_not_matter(sound: World) -> None:
     spoiled = sound.changed("curves", LATER, **heavier)
     shuffled = assess(
-        spoiled.curves.reverse(), spoiled.run_points.reverse(), spoiled.tows.reverse()
+        spoiled.curves.reverse(),
+        spoiled.run_points.reverse(),
+        spoiled.tows.reverse(),
+        spoiled.diagnosis.reverse(),
     )
     key = ["tow_id", "check"]
     expected = spoiled.assessed().sort(key)

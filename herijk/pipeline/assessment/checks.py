@@ -173,6 +173,14 @@ CHECKS: Final = (
         "inferred, as force_unusual",
         highest=0.0,
     ),
+    Check(
+        "season_in_doubt",
+        "whether an instrument of the season has a fault or may have one (1) or not (0): the table "
+        "`season_diagnosis` says which",
+        "1",
+        "inferred: a fault that the season log finds, or cannot rule out, concerns all its tows",
+        highest=0.0,
+    ),
     # The runs
     Check(
         "log2_differs",
@@ -350,7 +358,8 @@ CHECKS: Final = (
     ),
     Check(
         "curve_change_unexplained",
-        "the same after taking off what weight and length explain, without a reported alteration",
+        "the same after taking off what weight and length explain, and, where nothing calibrates "
+        "the logs, what all boats of the seasons share; without a reported alteration",
         "1",
         "as curve_changed; Sleepproef 2017, 'Eerste beoordeling'",
         lowest=-0.05,
