@@ -4,6 +4,7 @@ The world here: five like boats, towed in 2012 and again in 2014, all of it soun
 """
 
 import datetime as dt
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -89,6 +90,9 @@ def _curve(tow: Mapping[str, Any]) -> dict[str, Any]:
         "a_kg_m": A,
         "b_m_s": B,
         "cw_kg_m": CW,
+        "cw_lo_kg_m": CW * math.exp(-0.0392),
+        "cw_hi_kg_m": CW * math.exp(0.0392),
+        "cw_others_kg_m": CW,
         "b_capped": False,
         "power_w": CW * V0**3 / 8,
         "residual_sd_ratio": 0.01,
@@ -147,6 +151,7 @@ run1 = pl.col("run") == 1
 back = pl.col("direction") == -1
 lower_cw = pl.col("cw_kg_m") * 0.95
 heavier = {"a_kg_m": 1.08 * A, "cw_kg_m": 1.08 * CW}
+narrow = {"cw_lo_kg_m": CW * math.exp(-0.0196), "cw_hi_kg_m": CW * math.exp(0.0196)}
 
 # check: (table, tow, changes, observed, limit, what fires as well)
 CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
@@ -213,6 +218,10 @@ CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
         "curves", LATER, heavier, 0.08, 0.05, {"curve_change_unexplained"},
     ),
     "curve_change_unexplained": ("curves", LATER, heavier, 0.08, 0.05, {"curve_changed"}),
+    "curve_change_significant": (
+        "curves", LATER, {**heavier, **narrow}, math.log(1.08) / (0.02**2 + 0.01**2) ** 0.5, 3,
+        {"curve_changed", "curve_change_unexplained"},
+    ),
     "pulled_askew": (
         "curves", SUBJECT, heavier,
         1.08 * (1775 / 1765) ** 0.5 - 1, 0.05, set(),  # boat 3 is the median, 10 kg heavier
@@ -258,7 +267,7 @@ def test_what_is_not_known_is_not_checked(sound: World) -> None:
     missing = afloat | {"heavier_after", "unusual_calibration", "pulled_askew"}
     assert checks_of(unknown, LATER) == set(CODES) - missing
     first = {"weight_changed", "length_changed", "beam_changed", "bow_height_changed"}
-    first |= {"curve_changed", "curve_change_unexplained", *afloat}
+    first |= {"curve_changed", "curve_change_unexplained", "curve_change_significant", *afloat}
     assert checks_of(sound, SUBJECT) == set(CODES) - first
 
 
@@ -279,6 +288,11 @@ def test_the_curve_is_compared_at_the_earlier_declared_speed(sound: World) -> No
     faster = sound.changed("curves", LATER, declared_speed_m_s=2.7, cw_kg_m=A / (1 - 0.54**2))
     row = faster.assessed().row(by_predicate=_row(LATER, "curve_changed"), named=True)
     assert row["observed"] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_method_that_estimates_no_log_does_not_know_its_uncertainty(sound: World) -> None:
+    alone = sound.changed("curves", LATER, **heavier, **narrow, cw_others_kg_m=None)
+    assert "curve_change_significant" not in checks_of(alone, LATER)
 
 
 def test_an_earlier_tow_without_a_curve_is_passed_over(sound: World) -> None:

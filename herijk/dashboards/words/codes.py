@@ -176,6 +176,10 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.weight_changed": ("gewicht veranderd", "weight changed"),
     "code.curve_changed": ("kromme veranderd", "curve changed"),
     "code.curve_change_unexplained": ("kromme onverklaard veranderd", "unexplained curve change"),
+    "code.curve_change_significant": (
+        "kromme meer veranderd dan de onzekerheid",
+        "curve changed beyond its uncertainty",
+    ),
     "code.b_at_cap": ("B op zijn bovengrens", "B at its cap"),
     "code.heavier_after": ("na de proef zwaarder", "heavier after"),
     "code.log2_differs": ("log 2 wijkt af", "log 2 differs"),

@@ -23,6 +23,9 @@ LIKE: Final = ("boat_type", "rowers", "crew_class")
 FEWEST_LIKE_BOATS: Final = 4
 """A type needs so many boats before one of them can stick out (inferred)."""
 
+NORMAL_WIDTH: Final = 3.92
+"""Standard deviations in a 95 % interval."""
+
 FREEBOARDS: Final = ("freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m")
 SIZES: Final = {
     "weight_changed": "weight_kg",
@@ -260,17 +263,20 @@ def _with_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
 
     `size` is sqrt(displacement x waterline length): wetted surface follows it (docs of
     `pipeline.steps.resistance`), and friction, most of Cw, follows wetted surface. `s_s2_m2` is
-    1/B^2, also of a flat or falling curve, from A and Cw at the declared speed.
+    1/B^2, also of a flat or falling curve, from A and Cw at the declared speed. `ln_sd` is that of
+    ln Cw, where the method estimates the logs: the interval of others holds the runs alone.
     """
     kept = ("tow_date", "altered", "waterline_length_m", "weight_kg", "crew_weight_kg")
     types = [c for c in ("boat_type",) if c in tows.columns]
     displacement = pl.col("weight_kg") + pl.col("crew_weight_kg")
+    ln_width = (pl.col("cw_hi_kg_m") / pl.col("cw_lo_kg_m")).log()
     return (
         curves.filter(pl.col("a_kg_m").is_not_null())
         .join(tows.select("tow_id", *kept, *types), on="tow_id")
         .with_columns(
             size=(displacement * pl.col("waterline_length_m")).sqrt(),
             s_s2_m2=(1 - pl.col("a_kg_m") / pl.col("cw_kg_m")) / pl.col("declared_speed_m_s") ** 2,
+            ln_sd=pl.when(pl.col("cw_others_kg_m").is_not_null()).then(ln_width / NORMAL_WIDTH),
         )
         .sort("tow_date", "tow_id")
     )
@@ -304,6 +310,7 @@ def _of_previous_curve(
         before=_before("season", LINE),
         curve_changed=change - 1,
         ln=pl.when(~pl.col("altered")).then((change / by_size).log()),
+        sd=(pl.col("ln_sd") ** 2 + _before("ln_sd", LINE) ** 2).sqrt(),
     )
     level = season_levels(changed.drop_nulls("ln"), _seasons_to_scale(curves, diagnosis))
     shared = (
@@ -311,8 +318,12 @@ def _of_previous_curve(
         for column in ("season", "before")
     )
     now, then = shared
+    ln = pl.col("ln") - now + then
     return changed.select(
-        "tow_id", "curve_changed", curve_change_unexplained=(pl.col("ln") - now + then).exp() - 1
+        "tow_id",
+        "curve_changed",
+        curve_change_unexplained=ln.exp() - 1,
+        curve_change_significant=ln / pl.col("sd"),
     )
 
 

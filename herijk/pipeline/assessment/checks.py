@@ -366,6 +366,15 @@ CHECKS: Final = (
         highest=0.05,
     ),
     Check(
+        "curve_change_significant",
+        "the same / the standard uncertainty of both curves together, where the method estimates "
+        "the logs, so that it knows that uncertainty",
+        "1",
+        "inferred: chance exceeds 3 standard deviations in one tow of 400",
+        lowest=-3.0,
+        highest=3.0,
+    ),
+    Check(
         "pulled_askew",
         "excess of Cw over like boats that weight, length and season leave unexplained: the boat "
         "may have been pulled askew",
