@@ -271,6 +271,12 @@ class Profiles:
         ways = _ways(profile.directions)
         return Plan(tuple(TARGET_SPEED_RATIOS[i % 3] for i in range(len(ways))), ways)
 
+    @property
+    def season_ranges(self) -> list[tuple[str, tuple[int, int]]]:
+        """Return the seasons of every profile and plan, by the name of their table."""
+        plans = [("plan", plan.seasons) for plan in self.plans if plan.seasons is not None]
+        return [("profile", table.seasons) for table in self.tables] + plans
+
     def _table(self, season: int) -> _ProfileTable | None:
         return next((t for t in self.tables if t.seasons[0] <= season <= t.seasons[1]), None)
 
