@@ -4,7 +4,6 @@ Where the folders are, in this order: the option, `HERIJK_ARCHIVE` and `HERIJK_D
 `herijk.toml` in this folder or above, and for the data folder `data`.
 """
 
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -12,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 from typer.core import TyperGroup
 
 from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.toml_text import parse_toml
 
 if TYPE_CHECKING:
     from typer._click import Command, Context, HelpFormatter
@@ -72,7 +72,7 @@ def folders_here(start: Path) -> dict[str, str]:
 
 def _read(file: Path) -> dict[str, Any]:
     try:
-        settings = tomllib.loads(file.read_text(encoding="utf-8"))
+        settings = parse_toml(file.read_text(encoding="utf-8"))
     except (ValueError, OSError) as error:
         raise MissingKnowledgeError(f"{file} cannot be read: {error}") from error
     wrong = [k for k, value in settings.items() if k not in FOLDERS or not isinstance(value, str)]

@@ -11,7 +11,6 @@ import hashlib
 import itertools
 import json
 import re
-import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from importlib import resources
 from typing import Annotated, Any, Final, Literal
@@ -28,6 +27,7 @@ from pydantic_core import PydanticCustomError
 
 from herijk.pipeline.assessment.checks import CODES
 from herijk.pipeline.errors import HerijkError, MissingKnowledgeError
+from herijk.pipeline.toml_text import parse_toml
 
 LAST_SEASON: Final = 9999
 """End of a range written as `2015:`, which holds until a later method says otherwise."""
@@ -237,8 +237,7 @@ def shipped_method(name: str) -> Method:
 
 
 LONGEST_TEXT: Final = 100_000
-MOST_DOTS: Final = 200
-"""More than any method has; a key of 100,000 parts takes minutes and gigabytes."""
+"""More than any method has."""
 
 
 def parse_method(text: str, file_name: str, text_of: Callable[[str], str] = shipped_text) -> Method:
@@ -252,11 +251,9 @@ def parse_method(text: str, file_name: str, text_of: Callable[[str], str] = ship
     Raises:
         MethodFileError: with file, line, key and what is allowed.
     """
-    most = max((line.count(".") for line in text.splitlines()), default=0)
-    if len(text) > LONGEST_TEXT or most > MOST_DOTS:
+    if len(text) > LONGEST_TEXT:
         raise MethodFileError(
-            f"{file_name}: {len(text)} letters, up to {most} dots in a line; a method has at most "
-            f"{LONGEST_TEXT} and {MOST_DOTS}"
+            f"{file_name}: {len(text)} letters; a method has at most {LONGEST_TEXT}"
         )
     reader = _Reader(text, file_name)
     head = reader.head()
@@ -322,10 +319,10 @@ class _Reader:
 
     def head(self) -> _Head:
         try:
-            return _Head.model_validate(tomllib.loads(self.text))
+            return _Head.model_validate(parse_toml(self.text))
         except ValidationError as error:
             raise self.from_validation(error, allowed=_Head) from error
-        except (ValueError, RecursionError) as error:
+        except ValueError as error:
             raise MethodFileError(f"{self.file_name}: not valid TOML: {error}") from error
 
     def error(self, key: str, message: str, where: str | None = None) -> MethodFileError:

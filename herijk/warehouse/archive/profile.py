@@ -6,7 +6,6 @@ Reading the samples with it belongs to `samples`.
 """
 
 import datetime as dt
-import tomllib
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
@@ -23,6 +22,7 @@ from herijk.pipeline.channels import (
     TARGET_SPEED_RATIOS,
 )
 from herijk.pipeline.errors import DefectiveInputError, MissingKnowledgeError
+from herijk.pipeline.toml_text import parse_toml
 from herijk.warehouse.archive.files import PROFILE_FILE, STANDS_FOR, path_inside
 from herijk.warehouse.archive.lists import Wording, fold_word
 from herijk.warehouse.archive.text import Column, fold, split_header
@@ -338,10 +338,10 @@ def parse_profiles(text: str) -> Profiles:
         MissingKnowledgeError: it cannot be understood; the message names the key.
     """
     try:
-        parsed = _File.model_validate(tomllib.loads(text))
+        parsed = _File.model_validate(parse_toml(text))
     except ValidationError as error:
         raise MissingKnowledgeError(f"{PROFILE_FILE}: {_explain(error)}") from error
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         raise MissingKnowledgeError(f"{PROFILE_FILE} is not valid TOML: {error}") from error
     return Profiles(
         simulated=parsed.simulated,
