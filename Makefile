@@ -123,7 +123,7 @@ survive: $(DEVELOP)
 
 plausible: $(DEVELOP)
 	@mkdir -p $(TRIED)
-	@for seed in $(WORLDS); do for part in 0 1 2 3; do PYTHONPATH=. $(BIN)/python \
+	@for seed in $(WORLDS); do for part in 0 1 2 3 4 5 6 7; do PYTHONPATH=. $(BIN)/python \
 	benchmarks/robustness/plausible.py try $$seed $$part $(TRIED)/$$seed-$$part.parquet || exit 1; done; done
 	@PYTHONPATH=. $(BIN)/python benchmarks/robustness/plausible.py table $(TRIED)/*.parquet
 

@@ -3,8 +3,8 @@
     python benchmarks/robustness/plausible.py try SEED PART FILE
     python benchmarks/robustness/plausible.py table FILE...
 
-`try` takes two minutes for one simulated archive and every fourth fault of the list, from PART (0
-to 3) on; FILE is Parquet. `table` prints what was found in all files.
+`try` takes a minute or two for one simulated archive and every eighth fault of the list, from PART
+(0 to 7) on; FILE is Parquet. `table` prints what was found in all files.
 
 One fault at a time is put into a tow, a day or a season of an archive, by what a reader would make
 of it: samples are judged as when they are read, then added up; tows that nothing happened to keep
@@ -37,7 +37,7 @@ from tests.worlds import run_rows, tow_rows
 
 TOWS, DAYS, SEASONS = 3, 1, 1
 """How many get each fault in one archive."""
-PARTS: Final = 4
+PARTS: Final = 8
 """Of the list of faults, so that each takes minutes."""
 WORLD: Final = "clean"
 """Nothing else is wrong in it, so what needs a look is the fault's."""
@@ -329,7 +329,7 @@ def all_faults() -> Iterator[tuple[str, str, Fault, tuple[str, ...]]]:
 
 
 def study(seed: int, part: int) -> Iterator[pl.DataFrame]:
-    """Rows of every fourth fault in one archive, one per tow that has it or is off."""
+    """Rows of every eighth fault in one archive, one per tow that has it or is off."""
     ground, rng = Ground(seed), np.random.default_rng(seed)
     yield pl.DataFrame({"kind": ["none"], "off": [len(ground.right.look) / ground.tows.height]})
     groups = list(ground.groups(rng))
