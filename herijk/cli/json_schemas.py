@@ -8,9 +8,9 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any, Final
 
-import dataframely as dy
 import polars as pl
 
+from herijk.tables.declare import dy
 from herijk.tables.schemas import TABLES
 
 Schema = dict[str, Any]

@@ -3,9 +3,8 @@
 from functools import partial
 from typing import Final
 
-import dataframely as dy
-
 from herijk.tables import column
+from herijk.tables.declare import dy
 
 LOST: Final = partial(
     column.text,

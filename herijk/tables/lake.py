@@ -3,10 +3,9 @@
 These tables are not in the database and no other program relies on them.
 """
 
-import dataframely as dy
-
 from herijk.tables import column
 from herijk.tables.archive import LOST, Boats, HandWindows, RunList, TowFacts
+from herijk.tables.declare import dy
 
 
 class AboutArchive(dy.Schema):

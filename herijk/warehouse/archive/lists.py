@@ -12,9 +12,8 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Final
 
-import dataframely as dy
-
 from herijk.pipeline.errors import DefectiveInputError
+from herijk.tables.declare import dy
 from herijk.tables.frames import limits
 from herijk.warehouse.archive.meaning import Meaning, meanings
 from herijk.warehouse.archive.messages import say

@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-import dataframely as dy
 import polars as pl
 
+from herijk.tables.declare import dy
 from herijk.tables.frames import limits
 from herijk.warehouse.archive.messages import Sentence, say
 

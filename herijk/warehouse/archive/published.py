@@ -8,12 +8,12 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-import dataframely as dy
 import polars as pl
 
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.pipeline.register.register import NO_EMPTY_THWART
 from herijk.tables.archive import TowFacts
+from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of, limits
 from herijk.tables.lake import ListedRaces, PrintedLines
 from herijk.warehouse.archive.faults import Fault, fault_from

@@ -4,9 +4,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
-import dataframely as dy
-
 from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.tables.declare import dy
 from herijk.tables.lake import ListedBoats, ListedTows
 from herijk.warehouse.archive import boats as boat_list
 from herijk.warehouse.archive import tows as tow_list

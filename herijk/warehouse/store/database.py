@@ -17,7 +17,7 @@ from herijk.tables.views import VIEWS
 from herijk.warehouse.store.files import written_beside
 
 if TYPE_CHECKING:
-    import dataframely as dy
+    from herijk.tables.declare import dy
 
 STORAGE: Final = "v1.0.0"
 """Any DuckDB since 1.0 opens the file; the newest form would shut out programs of last year."""
