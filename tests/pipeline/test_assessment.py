@@ -201,6 +201,10 @@ CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
         "run_points", SUBJECT, {"used": pl.col("target_speed_ratio") < 1.1},
         1.1 - 1.01, 0.05, set(),
     ),
+    "declared_speed_not_covered": (
+        "run_points", SUBJECT, {"used": pl.col("target_speed_ratio") < 1.0},
+        1 - 0.9 * 1.01, 0.05, {"range_not_covered"},
+    ),
     "power_outside_range": ("curves", SUBJECT, {"power_w": 95.0}, 95, 90, set()),
     "slow_tow": ("curves", SUBJECT, {"power_w": 59.0}, 59, 60, {"power_outside_range"}),
     "crew_weight": ("tows", SUBJECT, {"crew_weight_kg": 500.0}, 62.5, 81, {"pulled_askew"}),

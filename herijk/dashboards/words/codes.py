@@ -154,6 +154,10 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.b_not_determined": ("B niet bepaald", "B not determined"),
     "code.pulled_askew": ("scheef gesleept", "pulled askew"),
     "code.range_not_covered": ("snelheden te dicht bijeen", "range not covered"),
+    "code.declared_speed_not_covered": (
+        "opgegeven snelheid ligt buiten de runs",
+        "declared speed outside the runs",
+    ),
     "code.slow_tow": ("te langzaam gesleept", "slow tow"),
     "code.unbalanced_runs": ("heen en terug niet evenveel", "unbalanced runs"),
     "code.beam_changed": ("breedte veranderd", "beam changed"),

@@ -177,6 +177,7 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
     shortfall = pl.max_horizontal(
         (speed / declared).min() - lowest, highest - (speed / declared).max()
     )
+    beyond = pl.max_horizontal((speed / declared).min() - 1, 1 - (speed / declared).max())
     log1 = speed / pl.col("speed_factor")
     on_target = speed / (pl.col("target_speed_ratio") * declared)
     return (
@@ -192,6 +193,7 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
             off_target_speed=(on_target / on_target.median() - 1).abs().max(),
             ends_differ=pl.col("ends_ratio").max(),
             range_not_covered=shortfall,
+            declared_speed_not_covered=beyond,
         )
     )
 

@@ -226,6 +226,14 @@ CHECKS: Final = (
         highest=0.05,
         severity="note",
     ),
+    Check(
+        "declared_speed_not_covered",
+        "how far the declared speed lies outside those of the runs, as a part of it: Cw at it is "
+        "then extrapolated",
+        "1",
+        "Cw-kromme 2015, 'Hyperbool als beste benadering': never over 5 % from a measured speed",
+        highest=0.05,
+    ),
     # Instruments, and the declared speed
     Check(
         "correction_not_used",
