@@ -20,12 +20,12 @@ from herijk.dashboards.slide_rows import (
     methods_of,
     pair_of_types,
 )
-from herijk.dashboards.words import Say
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.studies.tool_options import AS_READ, SPEEDS, TICKS
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.database import choice_of
+from herijk.words.catalogue import Say
 
 ALL_TOWS: Final = "all"
 
@@ -92,7 +92,7 @@ class Book:
             like = [t for t in known if t.casefold().startswith(name.casefold())]
             if not like:
                 raise MissingKnowledgeError(
-                    f"there is no type {name!r}; the types are {', '.join(sorted(known))}"
+                    "there is no type {!r}; the types are {}", name, ", ".join(sorted(known))
                 )
             found.append(like[0])
         return found or pair_of_types(self.compared)
@@ -104,7 +104,9 @@ class Book:
                 "no type of boat has curves to compare: there are no slides"
             )
         if wanted not in self.choices:
-            raise MissingKnowledgeError(f"there are no tows {wanted!r}; {choice_of(self.choices)}")
+            raise MissingKnowledgeError(
+                "there are no tows {!r}; {}", wanted, choice_of(self.choices)
+            )
         return wanted
 
     def ends(self, tows: str = ALL_TOWS) -> tuple[str, str]:

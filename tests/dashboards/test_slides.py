@@ -8,9 +8,10 @@ import pytest
 from herijk.dashboards import slide_book as book
 from herijk.dashboards import slides as files
 from herijk.dashboards.figures.slides import METHODS
-from herijk.dashboards.words import LANGUAGES, speaker
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.queries.views import Views
+from herijk.words import LANGUAGES
+from herijk.words.catalogue import speaker
 
 
 @pytest.fixture(scope="module")

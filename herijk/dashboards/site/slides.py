@@ -18,9 +18,10 @@ from herijk.dashboards.site.parts import (
 from herijk.dashboards.slide_book import Slide, slides
 from herijk.dashboards.slide_rows import compared_frame, lines_frame, methods_of, pair_of_types
 from herijk.dashboards.speech import Speech
-from herijk.dashboards.words import LANGUAGES, speaker
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
 from herijk.warehouse.queries.views import Views
+from herijk.words import LANGUAGES
+from herijk.words.catalogue import speaker
 
 PAIR_SELECTORS = ("pair_first", "pair_second")
 ALL_TOWS = "all"

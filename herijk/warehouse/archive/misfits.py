@@ -7,7 +7,7 @@ import polars as pl
 
 from herijk.tables.declare import dy
 from herijk.tables.frames import limits
-from herijk.warehouse.archive.messages import Sentence, say
+from herijk.words import Sentence, say
 
 
 def misfits(

@@ -81,7 +81,7 @@ def write_templates(root: Path) -> None:
         MissingKnowledgeError: there is something in the folder already.
     """
     if root.exists() and any(root.iterdir()):
-        raise MissingKnowledgeError(f"{root} is not empty; name a folder that is new")
+        raise MissingKnowledgeError("{} is not empty; name a folder that is new", root)
     for folder in FOLDERS:
         (root / folder).mkdir(parents=True, exist_ok=True)
     (root / "LEESMIJ.md").write_text(README, encoding="utf-8")

@@ -22,6 +22,7 @@ from herijk.tables.frames import frame_of
 from herijk.tables.keys import LINE
 from herijk.tables.lake import Faults
 from herijk.warehouse.archive.faults import Fault
+from herijk.words import say
 
 _CONTENT: Final = ("n", "force", "log1_v", "log2_v", "log1_cw", "log1_cw2", "wind_v")
 
@@ -102,8 +103,15 @@ def _faults(same: pl.DataFrame) -> Iterator[Fault]:
             row["tow_id"],
             None,
             "duplicate_tow" if of_one else "samples_listed_twice",
-            f"Run {row['run'] % SECOND_FILE_OFFSET} holds the very samples of tow "
-            f"{other['tow_id']} ({other['samples_path']}) of {other['fsn_no']} "
-            f"{other['rowers']}{other['crew_class']}, packed or written otherwise.",
+            say(
+                "Run {} holds the very samples of tow {} ({}) of {} {}{}, packed or "
+                "written otherwise.",
+                row["run"] % SECOND_FILE_OFFSET,
+                other["tow_id"],
+                other["samples_path"],
+                other["fsn_no"],
+                other["rowers"],
+                other["crew_class"],
+            ),
             lost="tow",
         )

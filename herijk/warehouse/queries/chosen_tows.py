@@ -44,7 +44,7 @@ def choose(db: duckdb.DuckDBPyConnection, tows: str, methods: Sequence[str]) -> 
         seasons = _seasons(tows)
         own = observed.table["season"].is_in(seasons).to_numpy()
         if not own.any():
-            raise MissingKnowledgeError(f"no tow of {tows} has a curve that can be compared")
+            raise MissingKnowledgeError("no tow of {} has a curve that can be compared", tows)
         made = _over(observed.take(np.flatnonzero(own))) | _of_seasons(db, seasons)
     for name, frame in made.items():
         db.register(f"made_{name}", frame)
@@ -55,7 +55,7 @@ def _seasons(tows: str) -> list[int]:
     match = re.fullmatch(r"(\d{4})(?::(\d{4}))?", tows)
     if match is None:
         raise MissingKnowledgeError(
-            f"there are no tows {tows!r}; write all, newest, a season 2014 or a range 2012:2015"
+            "there are no tows {!r}; write all, newest, a season 2014 or a range 2012:2015", tows
         )
     return list(range(int(match[1]), int(match[2] or match[1]) + 1))
 
