@@ -6,15 +6,17 @@
 `try` takes a minute or two for one simulated archive and every eighth fault of the list, from PART
 (0 to 7) on; FILE is Parquet. `table` prints what was found in all files.
 
-One fault at a time is put into a tow, a day or a season of an archive, by what a reader would make
-of it: samples are judged as when they are read, then added up; tows that nothing happened to keep
-their sums. All checks follow, and the method `rebased`. A fault is told where its tow is set aside
-or needs a look, or, of the boat's later tow, the change against this one does. It is silent where
-Cw of the tow, or of any other tow, is more than 2 % off and nobody is told.
+One fault at a time is put into a tow, a day or a season of an archive, or into the only tow of a
+boat, by what a reader would make of it: samples are judged as when they are read, then added up;
+tows that nothing happened to keep their sums. All checks follow, and the method `rebased`. A fault
+is told where its tow is set aside or needs a look, its season's instruments do, or the change of
+the boat's later tow against this one does. It is silent where Cw of the tow, or of any other, is
+more than 2 % off and nobody is told.
 """
 
 import sys
 from collections.abc import Callable, Iterator, Mapping
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
@@ -35,8 +37,9 @@ from herijk.warehouse.archive.plausibility import judge_samples
 from herijk.warehouse.build.archive_tables import judged_tows
 from tests.worlds import run_rows, tow_rows
 
-TOWS, DAYS, SEASONS = 3, 1, 1
+TOWS, DAYS, SEASONS, NEW = 3, 1, 1, 2
 """How many get each fault in one archive."""
+GROUPS: Final = ("tow", "day", "season", "new")
 PARTS: Final = 8
 """Of the list of faults, so that each takes minutes."""
 WORLD: Final = "clean"
@@ -241,6 +244,14 @@ class Ground:
         self.blocks = {tow: _summed(tow, samples) for tow, samples in self.samples.items()}
         self.right = self.result(Tried(self.tows.clear(), {}))
 
+    def with_only(self, tow: str) -> "Ground":
+        """The archive in which this is its boat's only tow."""
+        other = copy(self)
+        boat = self.tows.filter(tow_id=tow)["fsn_no"]
+        other.tows = self.tows.filter((pl.col("tow_id") == tow) | ~pl.col("fsn_no").is_in(boat))
+        other.right = other.result(Tried(self.tows.clear(), {}))
+        return other
+
     def part(self, tows: list[str]) -> Tried:
         """Some tows as they are."""
         return Tried(
@@ -284,14 +295,16 @@ class Ground:
         known = curves.drop_nulls("cw_kg_m").join(right, on="tow_id")
         return dict(known.select("tow_id", cw).iter_rows())
 
-    def groups(self, rng: np.random.Generator) -> Iterator[tuple[str, list[str]]]:
-        """Single tows, those of a day and those of a season."""
+    def groups(self, rng: np.random.Generator) -> Iterator[tuple[str, "Ground", list[str]]]:
+        """Single tows, those of a day, those of a season, and tows of boats that have no other."""
         for tow in rng.choice(self.tows["tow_id"].to_numpy(), TOWS, replace=False):
-            yield "tow", [str(tow)]
+            yield "tow", self, [str(tow)]
         for kind, column, number in (("day", "tow_date", DAYS), ("season", "season", SEASONS)):
             parts = self.tows.partition_by(column)
             for place in rng.choice(len(parts), number, replace=False):
-                yield kind, parts[place]["tow_id"].to_list()
+                yield kind, self, parts[place]["tow_id"].to_list()
+        for tow in rng.choice(self.tows["tow_id"].to_numpy(), NEW, replace=False):
+            yield "new", self.with_only(str(tow)), [str(tow)]
 
     def compared(self, tried: Tried) -> list[tuple[bool, bool, bool, float]]:
         """Of each tow with the fault and each other that is off: whether it has the fault, is set
@@ -322,7 +335,7 @@ def _summed(tow: str, samples: Samples) -> pl.DataFrame:
 
 def all_faults() -> Iterator[tuple[str, str, Fault, tuple[str, ...]]]:
     """Every fault: kind, size, what it does, and the groups of tows that may have it."""
-    for faults, groups in ((OF_INSTRUMENTS, ("tow", "day", "season")), (OF_A_TOW, ("tow",))):
+    for faults, groups in ((OF_INSTRUMENTS, GROUPS), (OF_A_TOW, ("tow",))):
         for kind, sizes in faults.items():
             for size, fault in sizes.items():
                 yield kind, size, fault, groups
@@ -334,30 +347,34 @@ def study(seed: int, part: int) -> Iterator[pl.DataFrame]:
     yield pl.DataFrame({"kind": ["none"], "off": [len(ground.right.look) / ground.tows.height]})
     groups = list(ground.groups(rng))
     for kind, size, fault, kinds in islice(all_faults(), part, None, PARTS):
-        for group, tows in groups:
+        for group, archive, tows in groups:
             if group in kinds:
-                rows = ground.compared(fault(ground, ground.part(tows)))
+                rows = archive.compared(fault(archive, archive.part(tows)))
                 yield pl.DataFrame(rows, ["mine", "aside", "told", "off"], orient="row").select(
                     pl.all(), kind=pl.lit(kind), size=pl.lit(size), group=pl.lit(group)
                 )
 
 
 def table(rows: pl.DataFrame) -> Iterator[str]:
-    """Lines of the table of docs/operations.md."""
-    rows = rows.filter(pl.col("mine").is_not_null())
-    for (kind, size), part in rows.group_by("kind", "size", maintain_order=True):
-        mine = part.filter("mine")
-        one = mine.filter(group="tow", aside=False)["off"].median()
-        cells = [f"{kind} {size}", "-" if one is None else f"{one:.1%}"]
-        for group in ("tow", "day", "season"):
-            of = mine.filter(pl.col("group") == group)
-            silent = of.filter(~pl.col("told") & (pl.col("off") > SILENT))
-            cells.append(
-                f"{of['told'].mean():.0%} / {silent.height / of.height:.0%}" if of.height else ""
-            )
-        others = part.filter(~pl.col("mine") & ~pl.col("told"))
-        cells.append(f"{others.height}")
+    """Lines of the table of docs/operations.md, in the order of the faults."""
+    for kind, size, _, groups in all_faults():
+        part = rows.filter(kind=kind, size=size)
+        if part.is_empty():
+            continue
+        off = part.filter("mine", pl.col("off").is_finite(), group="tow", aside=False)["off"]
+        cells = [f"{kind} {size}", f"{off.median():.1%}" if off.len() else "-"]
+        cells += [_told(part.filter("mine", group=g)) if g in groups else "" for g in GROUPS]
+        cells.append(str(part.filter(~pl.col("mine") & ~pl.col("told")).height))
         yield f"| {' | '.join(cells)} |"
+
+
+def _told(tows: pl.DataFrame) -> str:
+    """Share of the tows that are told, and that are silently wrong."""
+    if tows.is_empty():
+        return ""
+    silent = ~pl.col("told") & (pl.col("off") > SILENT)
+    shares = tows.select(pl.col("told").mean(), silent.mean().alias("silent")).row(0)
+    return " / ".join(f"{share:.0%}" for share in shares)
 
 
 def main() -> None:
