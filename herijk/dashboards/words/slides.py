@@ -32,8 +32,8 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     "power": ("Vermogen bij slepen [W]", "Power when towed [W]"),
     "raced_power": ("Vermogen in wedstrijd [W]", "Power in the race [W]"),
     "power_ratio_raced": (
-        "Vermogen in wedstrijd: eigen kromme / kromme van het type",
-        "Race power: own curve / type's curve",
+        "Vermogen: eigen kromme / die van het type",
+        "Power: own curve / type's curve",
     ),
     "tows": ("Proeven", "Tows"),
     "newest_only": ("nieuwste per ploeg", "newest per crew"),
@@ -109,14 +109,7 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     "slide.x.weight": ("gewicht", "weight"),
     "slide.x.speed": ("sleepsnelheid", "tow speed"),
     "slide.x.length": ("lengte", "length"),
-    "slide.outside": (
-        "Uitschieters van hun type, {after}: {names}.",
-        "Outliers of their type, {after}: {names}.",
-    ),
-    "slide.none_outside": (
-        "Geen proef is een uitschieter van haar type, {after}.",
-        "No tow is an outlier of its type, {after}.",
-    ),
+    "slide.outside": ("Uitschieters in Cw: {names}.", "Outliers in Cw: {names}."),
     "slide.b_is_not": (
         "Nee: B ligt op {ratio} keer de rompsnelheid ({lo} tot {hi}; {boats}, {after}); {share} "
         "ligt er binnen 5 % van.",
@@ -138,11 +131,11 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
         "the presentation puts rowing.",
     ),
     "slide.raced": (
-        "De eigen kromme geeft {up} keer te veel en {down} keer te weinig vermogen (interval "
-        "zonder 1), bij {n} die met weinig vermogen zijn gesleept of buiten hun kromme geroeid. "
+        "Gesleept met weinig vermogen of geroeid buiten de eigen kromme: {n}. Daarvan geeft de "
+        "eigen kromme {up} keer te veel en {down} keer te weinig vermogen (interval zonder 1). "
         "Gesleept onder 70 W (dames 40) en geroeid boven 100 W (dames 57): {both}.",
-        "A tow's own curve gives too much power {up} times and too little {down} times (interval "
-        "without 1), among {n} made with little power or raced off their curve. Towed under 70 W "
+        "Towed with little power or raced off their own curve: {n}. The own curve of {up} of these "
+        "gives too much power, of {down} too little (interval without 1). Towed under 70 W "
         "(women 40) and raced above 100 W (women 57): {both}.",
     ),
     "slide.years": (
@@ -191,6 +184,9 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     ),
     "decimal_mark": (",", "."),
     # Columns and codes
+    "code.low": ("laag (onder 67 %)", "low (under 67 %)"),
+    "code.middle": ("midden (67 tot 80 %)", "middle (67 to 80 %)"),
+    "code.high": ("hoog (vanaf 80 %)", "high (80 % and above)"),
     "code.waterline_length_m": ("lengte waterlijn", "waterline length"),
     "column.a_lo_kg_m": ("A laagste [kg/m]", "A lowest [kg/m]"),
     "column.a_hi_kg_m": ("A hoogste [kg/m]", "A highest [kg/m]"),
@@ -204,6 +200,7 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     ),
     "column.cw_standard_lo_kg_m": ("Laagste [kg/m]", "Lowest [kg/m]"),
     "column.cw_standard_hi_kg_m": ("Hoogste [kg/m]", "Highest [kg/m]"),
+    "column.expected_cw_kg_m": ("Verwacht [kg/m]", "Expected [kg/m]"),
     "column.hull_speed_m_s": ("Romp\u00adsnelheid [m/s]", "Hull speed [m/s]"),
     "column.b_from_length": ("B uit sloep\u00adlengte", "B from length"),
     "column.channel": ("Kanaal", "Channel"),

@@ -26,6 +26,7 @@ from herijk.pipeline.recompute.results import Recomputed
 from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.pipeline.register.register import draft_name, draft_register
 from herijk.warehouse.intake.seasons import run_blocks, typed_tows
+from herijk.warehouse.queries.chosen_tows import chosen
 from herijk.warehouse.store.store import Store
 
 MOST_CACHED: Final = 200
@@ -107,6 +108,7 @@ class Draft:
     method: Method
     made: Recomputed
     register: pl.DataFrame
+    _tested: dict[str, pl.DataFrame] = field(default_factory=dict)
 
     @cached_property
     def observed(self) -> Observed:
@@ -124,7 +126,8 @@ class Draft:
         """Rows of the table `reproducibility`."""
         return reproducibility(self.repeat_pairs, self.observed)
 
-    @cached_property
-    def type_homogeneity(self) -> pl.DataFrame:
-        """Rows of the table `type_homogeneity`."""
-        return type_homogeneity(self.observed)
+    def type_homogeneity(self, tows: str) -> pl.DataFrame:
+        """Rows of the table `type_homogeneity`, of the newest of these tows."""
+        if tows not in self._tested:
+            self._tested[tows] = type_homogeneity(chosen(self.observed, tows))
+        return self._tested[tows]
