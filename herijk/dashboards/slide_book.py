@@ -25,7 +25,7 @@ from herijk.dashboards.words import Say
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.studies.tool_options import AS_READ, SPEEDS, TICKS
-from herijk.warehouse.queries.chosen_tows import ALL, NEWEST, STATED, rows_of
+from herijk.warehouse.queries.chosen_tows import ALL, STATED, choices_of_row, rows_of
 from herijk.warehouse.queries.views import Views
 
 CLEAR_R2: Final = 0.3
@@ -132,7 +132,7 @@ class Book:
             y=self.say(f"slide.{quantity}"), types=" / ".join(types)
         )
         if tows != ALL:
-            words = self.say("newest_only") if tows == NEWEST else tows
+            words = self.say(f"code.{tows}") if tows in STATED else tows
             title += self.say("slide.of_season").format(tows=words)
         said = [self.line((quantity, explaining), name, tows, self.ends(tows)) for name in types]
         return Slide(
@@ -167,7 +167,7 @@ class Book:
             r2_after=_share(after["r2"]),
             counted=counted,
         )
-        names = self._outside(boat_type, tows)
+        names = self._outliers.get((boat_type, self._stated(tows)))
         return f"{said} {self.say('slide.outside').format(names=names)}" if names else said
 
     def _counted(self, line: dict[str, Any] | None) -> str:
@@ -180,14 +180,17 @@ class Book:
     def _number(self, n: int, what: str) -> str:
         return self.say(f"slide.{'one' if n == 1 else 'many'}_{what}").format(n=n)
 
-    def _outside(self, boat_type: str, tows: str) -> str:
-        """The tows outside their type after correction, by boat, crew and season."""
-        own = self._outliers.filter(rows_of(tows), boat_type=boat_type)
-        return ", ".join(own["label"].unique(maintain_order=True))
-
     @cached_property
-    def _outliers(self) -> pl.DataFrame:
-        return self.compared.filter(pl.col("outside"), method=self.ends()[1])
+    def _outliers(self) -> dict[tuple[str, str], str]:
+        """Tows outside their type after correction, by type and choice: boat, crew and season."""
+        own = self.compared.filter(pl.col("outside"), method=self.ends()[1])
+        names = (
+            own.with_columns(choices_of_row())
+            .explode("tows")
+            .group_by("boat_type", "tows")
+            .agg(pl.col("label").str.join(", "))
+        )
+        return {(boat_type, tows): label for boat_type, tows, label in names.iter_rows()}
 
     def hull_speed(self) -> Slide:
         """B against length, and against hull speed."""

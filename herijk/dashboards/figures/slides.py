@@ -90,7 +90,7 @@ def panels(chart: Any, say: Say, of: str = "", **look: Any) -> Drawing:
 
 def small(field: str, title: str) -> alt.X:
     """A quantity along a narrow panel: labels that keep apart."""
-    axis = alt.Axis(tickCount=5, labelOverlap=True)
+    axis = alt.Axis(tickCount=4, labelOverlap=True, labelFlush=False)
     return alt.X(f"{field}:Q", title=title, scale=alt.Scale(zero=False), axis=axis)
 
 
@@ -308,7 +308,7 @@ def boat_years(frame: pl.DataFrame, say: Say) -> Drawing:
         legend=alt.Legend(orient="bottom"),
     )  # fmt: skip
     curve = base.mark_line(strokeWidth=2).encode(
-        small("speed_m_s", say("speed")),
+        small("speed_m_s", say("speed_short")),
         number(alt.Y, "cw_kg_m", say("cw")),
         ink,
         alt.StrokeDash("crew:N", title=say("crew"), legend=alt.Legend(orient="bottom")),
@@ -316,6 +316,6 @@ def boat_years(frame: pl.DataFrame, say: Say) -> Drawing:
         tooltip=tips(("tow_id:N", say("tow")), ("season:O", say("season"))),
     )
     common = base.mark_rule(color=GREY, strokeDash=[3, 3]).encode(
-        alt.X("mean(standard_speed_m_s):Q", title=say("speed"))
+        alt.X("mean(standard_speed_m_s):Q", title=say("speed_short"))
     )
     return panels(alt.layer(common, curve, data=frame), say, "name")

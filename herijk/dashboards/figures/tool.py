@@ -40,7 +40,7 @@ def ticks(frame: pl.DataFrame, say: Say) -> Drawing:
         )
         .mark_line(strokeWidth=1.2, opacity=0.8)
         .encode(
-            small("speed_m_s", say("speed")),
+            small("speed_m_s", say("speed_short")),
             number(alt.Y, "cw_curve_kg_m", say("cw")),
             alt.Color(
                 "on:N",

@@ -13,6 +13,7 @@ from markupsafe import Markup
 from herijk.dashboards.site.parts import Page, Table, boat_path, is_chosen, type_path
 from herijk.dashboards.speech import Speech, duration
 from herijk.dashboards.words import LANGUAGES
+from herijk.warehouse.queries.chosen_tows import STATED
 
 DIGITS: Final = (
     ("_kg_m", 2), ("_m_s", 2), ("_deg", 0), ("_kg", 0), ("_w", 1), ("_s", 0), ("cw_sd", 2),
@@ -126,6 +127,9 @@ class Cells:
             **dict.fromkeys(("titles", "meanings"), self._titles),
             "direction": lambda value: self.text("out" if value == 1 else "back"),
             "causes": self._causes,
+            "tows": lambda value: (
+                self.text(f"code.{value}") if value in STATED else self._plain(value)
+            ),
             "unit": lambda value: self._plain("" if value == "1" else value),
             **dict.fromkeys(("sha256", "content_hash", "method_hash", "seal"), _hash),
             **dict.fromkeys(METHODS, lambda value: self.text(f"method.{value}")),

@@ -206,7 +206,7 @@ def editions_select(name: str, editions: Sequence[str], chosen: str) -> Select:
 def tows_select(compared: pl.DataFrame) -> Select:
     """A selector of tows: all, the newest of each crew, or those of a season."""
     seasons = [str(season) for season in compared["season"].unique().sort()]
-    words = {ALL: "code.all", NEWEST: "newest_only"}
+    words = {ALL: "all_tows", NEWEST: "code.newest"}
     return Select(
         "tows", "tows", [*words, *seasons], ALL,
         named=lambda tows, speech: speech.say(words[tows]) if tows in words else tows,

@@ -181,6 +181,7 @@ def _claims(views: Views) -> list[Section]:
     for name, columns in CLAIMS.items():
         if views.has(name):
             frame = views.table(name)
-            table = Table(name, frame, ["method", *columns.split()], f"claim_{name}", ["method"])
+            follows = ["method", *(["tows"] if frame["tows"].dtype == pl.String else [])]
+            table = Table(name, frame, ["method", *columns.split()], f"claim_{name}", follows)
             sections.append(Section(f"claim_{name}", f"claim_{name}_note", tables=[table]))
     return sections

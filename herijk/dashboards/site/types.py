@@ -148,7 +148,11 @@ def _type_tables(views: Views, tows: pl.DataFrame) -> list[Section]:
         )
     sections = [Section("types_outliers", "types_outliers_note", tables=tables)]
     wanted = {
-        "type_lines": ("types_lines", "types_lines_note", f"boat_type {' '.join(LINE_COLUMNS)}"),
+        "type_consistency": (
+            "types_lines_newest",
+            "types_lines_note",
+            f"boat_type {' '.join(LINE_COLUMNS)}",
+        ),
         "type_homogeneity": (
             "types_homogeneity",
             "types_homogeneity_note",
@@ -158,7 +162,6 @@ def _type_tables(views: Views, tows: pl.DataFrame) -> list[Section]:
     for name, (title, note, columns) in wanted.items():
         if views.has(name):
             shown = views.table(name).with_columns(after="method")
-            follows = ["after", "boat_type", *(["tows"] if "tows" in shown.columns else [])]
-            table = Table(name, shown, columns.split(), title, follows)
+            table = Table(name, shown, columns.split(), title, ["after", "boat_type"])
             sections.append(Section(title, note, tables=[table]))
     return sections

@@ -446,15 +446,19 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "pair_first": ("Vergelijk", "Compare"),
     "pair_second": ("met", "with"),
     "types_lines": ("Hangt het af van gewicht of snelheid?", "Does it follow weight or speed?"),
+    "types_lines_newest": (
+        "Hangt het af van gewicht of snelheid? De nieuwste proef van elke ploeg",
+        "Does it follow weight or speed? The newest tow of each crew",
+    ),
     "types_lines_note": (
-        "Een rechte lijn per type, door de gekozen proeven (n); proeven van een sloep tellen als "
-        "herhaling. De helling "
+        "Een rechte lijn per type door n proeven; proeven van een sloep tellen als herhaling. De "
+        "pagina van een type heeft ook die door alle proeven en per seizoen. De helling "
         "is de verandering van de grootheid per kg of per m/s (van ln tegen ln: de macht); een "
         "helling waarvan het interval 0 bevat, is niet aangetoond. R²: deel van de spreiding dat "
         "de lijn verklaart. q is (v/B)²/(1 - (v/B)²) bij de standaardsnelheid, de middelste "
         "opgegeven snelheid van het type.",
-        "A straight line per type, through the chosen tows (n); tows of one boat count as repeats. "
-        "The slope is "
+        "A straight line per type through n tows; tows of one boat count as repeats. The page of a "
+        "type also has those through all tows and per season. The slope is "
         "the change of the quantity per kg or per m/s (of ln against ln: the power); a slope whose "
         "interval holds 0 is not shown to exist. R²: share of the spread that the line explains. q "
         "is (v/B)²/(1 - (v/B)²) at the standard speed, the median declared speed of the type.",

@@ -291,7 +291,7 @@
           mark: { aria: false },
           font: "Open Sans",
           axis: { labelFontSize: 12, titleFontSize: 12, labelLimit: 200 },
-          legend: { labelFontSize: 12, titleFontSize: 12, labelLimit: 220 },
+          legend: { labelFontSize: 12, titleFontSize: 12, labelLimit: 220, titleLimit: 300 },
           header: { labelFontSize: 12, titleFontSize: 12 },
         },
       });

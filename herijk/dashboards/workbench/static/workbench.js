@@ -250,8 +250,7 @@ const anyType = make("option", { value: "" });
 byId("boat_type").append(anyType, ...start.types.map((type) => make("option", { value: type }, type)));
 byId("tows").append(...start.choices.map((value) => {
   const option = make("option", { value }, value);
-  const key = { all: "code.all", newest: "newest_only" }[value];
-  if (key) [option.dataset.nl, option.dataset.en] = pair(key);
+  if (start.words[`code.${value}`]) [option.dataset.nl, option.dataset.en] = pair(`code.${value}`);
   return option;
 }));
 fillSources();
