@@ -67,6 +67,10 @@ $(DEMO)/archief: | $(READY)
 	@rm -f $(DEMO)/archief-truth.json
 	@$(BIN)/herijk simulate $(DEMO)/archief $(DEMO_WORLD)
 
+# Each worker has a core; threads of its own would fight the other's.
+test slow: export POLARS_MAX_THREADS = 1
+test slow: export OPENBLAS_NUM_THREADS = 1
+
 test: $(DEVELOP)
 	@$(BIN)/python -m pytest -n 2 --dist worksteal
 

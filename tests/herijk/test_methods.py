@@ -2,6 +2,8 @@
 
 import json
 
+from tests.conftest import directly
+
 
 def test_a_method_is_begun_checked_and_compared(herijk, built, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -39,7 +41,9 @@ def test_a_method_of_ones_own_is_rebuilt_and_published(herijk, bench, tmp_path):
     file = tmp_path / "ours.toml"
     file.write_text('name = "ours"\ntitle = "Onze"\nextends = "rebased-2015"\n', encoding="utf-8")
     folders = ("--archive", bench.archive, "--data", bench.data)
-    assert herijk("rebuild", *folders, "--method", "as-published", "--method", file)[0] == 0
+    with directly():
+        arguments = ("--method", "as-published", "--method", file)
+        assert herijk("rebuild", *folders, *arguments)[0] == 0
     assert set(bench.table("curves")["method"]) == {"as-published", "ours"}
     terms = ("--method", "ours", "--valid-from", "2015-01-01", "--decision", "ALV")
     assert herijk("publish", "2015-1", *terms, "--data", bench.data)[0] == 0

@@ -32,7 +32,7 @@ from herijk.pipeline.consistency import (
 )
 from herijk.pipeline.consistency.lines import LN_CW, quantities
 from herijk.pipeline.consistency.observed import newest
-from herijk.pipeline.consistency.reml import Problem
+from herijk.pipeline.consistency.reml import Problem, Stack
 from herijk.tables.schemas import conform
 from tests.pipeline.consistency_fleet import NO_RACES, fleet
 
@@ -55,6 +55,10 @@ def grouped_data(seed=1, n=60, boats=20, others=5):
     return Problem.of(y + np.sqrt(known) * rng.normal(size=n), x, known, boat, other)
 
 
+def deviance(problem, sd):
+    return Stack.of([problem]).likelihood(np.square([sd])).deviance[0]
+
+
 def dense_deviance(problem, sd):
     """-2 log restricted likelihood from the whole covariance matrix, as in the textbooks."""
     v = np.diag(problem.variance + sd[2] ** 2)
@@ -70,7 +74,7 @@ def dense_deviance(problem, sd):
 @pytest.mark.parametrize("sd", [(0.0, 0.0, 0.0), (2.0, 1.0, 0.5), (0.3, 0.0, 1.5)])
 def test_deviance_equals_the_dense_formula(sd):
     problem = grouped_data()
-    assert problem.deviance(sd) == pytest.approx(dense_deviance(problem, sd), rel=1e-10)
+    assert deviance(problem, sd) == pytest.approx(dense_deviance(problem, sd), rel=1e-10)
 
 
 def test_a_tow_without_any_error_keeps_the_fit_exact():
@@ -82,7 +86,7 @@ def test_a_tow_without_any_error_keeps_the_fit_exact():
     problem = Problem.of(y, x, [0.0, 9.6e-5, 1.1e-3, 3.8e-4, 2.2e-4, 7.4e-6], range(6), [0] * 6)
     for sd in (0.001, 0.1, 10.0):
         dense = dense_deviance(problem, (sd, 0.0, 0.0))
-        assert problem.deviance((sd, 0.0, 0.0)) == pytest.approx(dense, abs=1e-4)
+        assert deviance(problem, (sd, 0.0, 0.0)) == pytest.approx(dense, abs=1e-4)
     assert np.isfinite(mixed.fit(problem, (mixed.BOAT,)).coefficients()).all()
 
 
@@ -92,7 +96,7 @@ def test_fit_finds_the_minimum_that_another_optimiser_finds():
     other = optimize.minimize(
         lambda v: dense_deviance(problem, np.sqrt(v)), [1.0] * 3, bounds=[(0, 50)] * 3
     )
-    assert problem.deviance(found.sd) == pytest.approx(other.fun, abs=1e-3)
+    assert deviance(problem, found.sd) == pytest.approx(other.fun, abs=1e-3)
     # The likelihood is flat at its top, so the components agree less closely than its height.
     assert found.sd == pytest.approx(np.sqrt(other.x), abs=0.02 * problem.spread)
 
@@ -112,7 +116,7 @@ def test_the_last_bits_of_the_data_do_not_reach_the_components(boat_sd, other_sd
     ]
     sds, intervals = (
         np.array([getter(f) for f in fits], dtype=np.float64)
-        for getter in (lambda f: f.sd, lambda f: [f.interval(c) for c in mixed.COMPONENTS])
+        for getter in (lambda f: f.sd, lambda f: list(f.intervals().values()))
     )
     spread = fits[0].problem.spread
     assert sds[0] == pytest.approx(sds[1], abs=1e-10 * spread)
@@ -172,9 +176,19 @@ def test_variance_components_are_those_of_another_program():
     assert found.beta == pytest.approx(other.fe_params, rel=1e-3)
     assert found.sd == pytest.approx(np.sqrt([*other.vcomp, other.scale]), rel=1e-3)
     # The likelihood is flat at its top, so its height agrees more closely than the components.
-    assert problem.deviance(found.sd) == pytest.approx(
-        problem.deviance(np.sqrt([*other.vcomp, other.scale])), abs=1e-4
+    assert deviance(problem, found.sd) == pytest.approx(
+        deviance(problem, np.sqrt([*other.vcomp, other.scale])), abs=1e-4
     )
+
+
+def test_problems_side_by_side_are_fitted_as_each_alone():
+    rng = np.random.default_rng(4)
+    first = grouped_data()
+    ones = [replace(first, y=first.y + s * rng.normal(size=len(first.y))) for s in (0.0, 0.5, 20)]
+    problems = [*ones, replace(first, other=None)]
+    together = mixed.fit_all(problems, (mixed.BOAT, mixed.CELL))
+    for problem, fit in zip(problems, together, strict=True):
+        assert fit.sd == pytest.approx(mixed.fit(problem, fit.free).sd, rel=1e-9)
 
 
 def test_leaving_a_boat_out_equals_fitting_without_it():

@@ -85,8 +85,9 @@ def _shares(fit: mixed.Fit, run: float) -> list[dict[str, Any]]:
         {"component": name, "sd_ratio": s, "share": s * s / total if total > 0 else None}
         for name, s in sd.items()
     ]
+    intervals = fit.intervals()
     for row in rows[:-1]:
-        row["lo"], row["hi"] = fit.interval(NAMES[row["component"]])
+        row["lo"], row["hi"] = intervals[NAMES[row["component"]]]
     if between_tows > 0:
         rows[0]["distinct_categories"] = DISTINCT * sd["boat"] / between_tows
     return [row | {"reason": ""} for row in rows]

@@ -170,18 +170,24 @@ def type_lines(observed: Observed) -> tuple[pl.DataFrame, pl.DataFrame]:
 
 
 def _lines(tows: Observed, choice: Choice) -> tuple[pl.DataFrame, pl.DataFrame]:
+    to_fit: list[tuple[Row, Row, _Line]] = []
     rows: list[Row] = []
-    points: list[Row] = []
     for (method, boat_type), group in tows.groups("method", "boat_type"):
         boats = _Boats.of(group)
-        facts = {"method": method, "tows": choice.tows, "boat_type": boat_type}
         speed = {"standard_speed_m_s": standard_speed_m_s(group)}
         for quantity, explaining, measured in _pairs(group, choice):
-            names = {"quantity": quantity, "explaining": explaining}
-            row, drawn = _line(boats, choice, names, measured)
-            rows.append(facts | names | speed | row)
-            if (quantity, explaining) in SLIDE_PAIRS:
-                points += [facts | names | point for point in drawn]
+            names = {"method": method, "tows": choice.tows, "boat_type": boat_type}
+            names |= {"quantity": quantity, "explaining": explaining}
+            facts, line = _line(boats, choice, names, measured)
+            rows.append(names | speed | facts)
+            if line is not None:
+                to_fit.append((rows[-1], names, line))
+    fits = mixed.fit_all([line.problem for *_, line in to_fit], choice.components)
+    points: list[Row] = []
+    for (row, names, line), fit in zip(to_fit, fits, strict=True):
+        row.update(line.row(fit))
+        if (names["quantity"], names["explaining"]) in SLIDE_PAIRS:
+            points += [names | point for point in line.points(fit)]
     return frame_of(TypeLines, rows), frame_of(TypeLinePoints, points)
 
 
@@ -257,22 +263,33 @@ def _pairs(boats: Observed, choice: Choice) -> Iterator[tuple[str, str, Measured
 
 def _line(
     boats: _Boats, choice: Choice, names: Mapping[str, str], measured: Measured
-) -> tuple[Row, list[Row]]:
-    """A line of a quantity on an explaining variable, and its points for drawing."""
+) -> tuple[Row, "_Line | None"]:
+    """How many tows a line is of, and the line; without one, why."""
     y, unit = measured
     x = boats.explaining[names["explaining"]]
     known = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
     boats, x, y = boats.take(known), x[known], y[known]
     within_crew = names["explaining"] in OF_THE_BOAT
     crews = boats.crew_effects if within_crew else np.ones((len(y), 1))
-    counts = {"n": len(y), "n_boats": boats.number}
     reason = _no_line(boats, crews, x)
+    counts = {"n": len(y), "n_boats": boats.number, "reason": reason}
     if reason:
-        return counts | {"reason": reason}, []
+        return counts, None
+    centre = np.asarray(np.linalg.lstsq(crews, x)[0], dtype=np.float64)
+    centred = x - crews @ centre
+    width = float(np.abs(centred).max())
+    variance = unit[known] * boats.run_sd_ratio**2
+    problem = Problem.of(
+        y,
+        np.column_stack([crews, centred / width]),
+        variance,
+        boats.boat,
+        _seasons(boats.season, choice),
+    )
+    noise = float(np.sqrt(variance.mean()))
     level = 1.0 if names["quantity"] == LN_CW else abs(y.mean())
-    line, fit, centre, width = _fitted_line(boats, choice, crews, (x, y, unit[known]), level)
-    groups = boats.crew_class if within_crew else None
-    return counts | line, list(_points(fit, crews, x, (centre, width), groups))
+    groups = boats.crew_class if within_crew else np.full(len(y), "all", dtype=object)
+    return counts, _Line(problem, crews, x, (centre, width), noise, level, groups)
 
 
 def _no_line(boats: _Boats, crews: FloatArray, x: FloatArray) -> str:
@@ -285,71 +302,61 @@ def _no_line(boats: _Boats, crews: FloatArray, x: FloatArray) -> str:
     return EQUAL_VALUES if np.abs(centred).max() <= 1e-9 * np.abs(x).max() else ""
 
 
-def _fitted_line(
-    boats: _Boats,
-    choice: Choice,
-    crews: FloatArray,
-    values: tuple[FloatArray, FloatArray, FloatArray],
-    level: float,
-) -> tuple[Row, mixed.Fit, FloatArray, float]:
-    """The line itself, its spread as share of `level`; the crews' means of x, and its scale.
+@dataclass(frozen=True)
+class _Line:
+    """A line of a quantity on an explaining variable, to be fitted.
 
-    X is scaled to one so that no power of a unit gets lost in rounding.
+    Attributes:
+        problem: the quantity, the crews and x; x is scaled to one so that no power of a unit gets
+            lost in rounding.
+        crews: (tows, crews) which crew each tow is of.
+        x: (tows,) the explaining variable.
+        scale: the crews' means of x, and what it is divided by.
+        noise: root mean square of the measuring errors.
+        level: what the spread is a share of.
+        groups: (tows,) of which each gets points of its own.
     """
-    x, y, unit = values
-    centre = np.asarray(np.linalg.lstsq(crews, x)[0], dtype=np.float64)
-    centred = x - crews @ centre
-    variance = unit * boats.run_sd_ratio**2
-    width = float(np.abs(centred).max())
-    problem = Problem.of(
-        y,
-        np.column_stack([crews, centred / width]),
-        variance,
-        boats.boat,
-        _seasons(boats.season, choice),
-    )
-    fit = mixed.fit(problem, choice.components)
-    slope, lo, hi = (float(end[-1]) / width for end in fit.coefficients())
-    residual = y - problem.x @ fit.beta
-    total = fit.total_misfit
-    row = {
-        "slope": slope,
-        "slope_lo": lo,
-        "slope_hi": hi,
-        "r2": min(max(1.0 - fit.misfit / total, 0.0), 1.0) if total > 0 else None,
-        "residual_sd_ratio": float(np.sqrt((residual**2).sum() / (len(y) - problem.x.shape[1])))
-        / level,
-        "between_sd_ratio": fit.sd[0] / level,
-        "noise_sd_ratio": float(np.sqrt(variance.mean())) / level,
-        "reason": "",
-    }
-    return row, fit, centre, width
+
+    problem: Problem
+    crews: FloatArray
+    x: FloatArray
+    scale: tuple[FloatArray, float]
+    noise: float
+    level: float
+    groups: NDArray[np.object_]
+
+    def row(self, fit: mixed.Fit) -> Row:
+        """The line itself and its spread, as in `type_lines`."""
+        problem = self.problem
+        slope, lo, hi = (float(end[-1]) / self.scale[1] for end in fit.coefficients())
+        residual = problem.y - problem.x @ fit.beta
+        spread = np.sqrt((residual**2).sum() / (len(problem.y) - problem.x.shape[1]))
+        total = fit.total_misfit
+        return {
+            "slope": slope,
+            "slope_lo": lo,
+            "slope_hi": hi,
+            "r2": min(max(1.0 - fit.misfit / total, 0.0), 1.0) if total > 0 else None,
+            "residual_sd_ratio": float(spread) / self.level,
+            "between_sd_ratio": fit.sd[0] / self.level,
+            "noise_sd_ratio": self.noise / self.level,
+        }
+
+    def points(self, fit: mixed.Fit) -> Iterator[Row]:
+        """The line with its interval at some places; for each class at the mean of its crews."""
+        centre, width = self.scale
+        for name in np.unique(self.groups):
+            rows = self.groups == name
+            at = np.unique(np.linspace(self.x[rows].min(), self.x[rows].max(), PLACES))
+            crew = self.crews[rows].mean(axis=0)
+            design = np.column_stack([np.tile(crew, (len(at), 1)), (at - crew @ centre) / width])
+            for place, mean, lo, hi in zip(at, *fit.line_at(design), strict=True):
+                yield {"crew_class": name, "x": place, "y": mean, "lo": lo, "hi": hi}
 
 
 def _seasons(season: IntArray, choice: Choice) -> IntArray | None:
     """The season of each tow, where seasons may deviate."""
     return season if mixed.OTHER in choice.components else None
-
-
-def _points(
-    fit: mixed.Fit,
-    crews: FloatArray,
-    x: FloatArray,
-    scale: tuple[FloatArray, float],
-    classes: Any,
-) -> Iterator[Row]:
-    """The line with its interval at some places; for each class at the mean of its crews."""
-    centre, width = scale
-    groups = {"all": np.ones(len(x), bool)}
-    if classes is not None:
-        groups = {str(name): classes == name for name in np.unique(classes)}
-    for name, rows in groups.items():
-        at = np.unique(np.linspace(x[rows].min(), x[rows].max(), PLACES))
-        crew = crews[rows].mean(axis=0)
-        design = np.column_stack([np.tile(crew, (len(at), 1)), (at - crew @ centre) / width])
-        ends = fit.line_at(design)
-        for place, mean, lo, hi in zip(at, *ends, strict=True):
-            yield {"crew_class": name, "x": place, "y": mean, "lo": lo, "hi": hi}
 
 
 def _explaining(boats: Observed, name: str) -> FloatArray:

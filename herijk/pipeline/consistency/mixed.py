@@ -9,15 +9,16 @@ likelihood and its maximum are in `reml`; what y and X are, and what a result me
 elsewhere.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property
-from typing import Final, NamedTuple
+from functools import cached_property
+from typing import Final, NamedTuple, Self
 
 import numpy as np
-import scipy
+from scipy.optimize.elementwise import find_root
 
-from herijk.pipeline.arrays import FloatArray, IntArray
-from herijk.pipeline.consistency.reml import Problem, Whitened, search
+from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
+from herijk.pipeline.consistency.reml import Problem, Stack, Whitened, search
 from herijk.pipeline.quantiles import t_quantile
 
 BOAT, OTHER, CELL = "boat", "other", "cell"
@@ -28,6 +29,12 @@ PROFILE_DROP: Final = 3.841458820694124
 
 PROFILE_PRECISION: Final = 1e-12
 """Precision of the ends of a profile interval, as a share of the spread."""
+
+PROFILE_TOLERANCE: Final = 1e-7
+"""When the search for the other variances is done: their error counts squared in the deviance."""
+
+MAX_DOUBLINGS: Final = 7
+"""The upper end of an interval is looked for up to this power of 2 times where it is expected."""
 
 NO_GAIN: Final = 1e-4
 """A component that lowers the deviance by no more than this is 0."""
@@ -69,18 +76,18 @@ class Fit:
 
     @cached_property
     def _white(self) -> Whitened:
-        return Whitened.of(self.problem, np.square(self.sd))
+        return Whitened.of(Stack.of([self.problem]), np.square([self.sd]))
 
     @cached_property
     def _root(self) -> FloatArray:
         """R with (R'R)^-1 the covariance of the fixed effects, (p, p); upper triangular."""
-        first = len(self._white.of_others)
-        return self._white.r[first:, first:]
+        first = self._white.of_others.shape[1]
+        return self._white.r[0, first:, first:]
 
-    @property
+    @cached_property
     def misfit(self) -> float:
         """Y' P Y: the weighted sum of squares about the fixed effects."""
-        return self._white.misfit
+        return float(self._white.misfit[0])
 
     @property
     def total_misfit(self) -> float:
@@ -97,7 +104,7 @@ class Fit:
     @cached_property
     def beta(self) -> FloatArray:
         """Fixed effects, shape (p,)."""
-        known = self._white.along[len(self._white.of_others) :, 0]
+        known = self._white.along[0, self._white.of_others.shape[1] :, 0]
         plain = np.linalg.lstsq(self.problem.x, self.problem.y)[0]
         return np.asarray(plain + np.linalg.solve(self._root, known))
 
@@ -129,13 +136,13 @@ class Fit:
         Where the others do not determine the prediction, the variance is infinite.
         """
         white, boat = self._white, self.problem.boat
-        weighed = white.weigh(np.hstack([white.q, white.rest]))[0]
+        weighed = white.weigh(np.concatenate([white.q, white.rest], axis=-1))[0][0]
         known, py = weighed[:, :-1], weighed[:, -1]
-        shared = white.boat / white.inflation
+        weights, shared = white.weight[0], white.boat[0] / white.inflation[0]
         error, variance = np.zeros(len(py)), np.full(len(py), np.inf)
         order = np.argsort(boat, kind="stable")
         for rows in np.split(order, np.flatnonzero(np.diff(boat[order])) + 1):
-            weight = white.weight[rows]
+            weight = weights[rows]
             inverse = np.diag(weight) - shared[boat[rows[0]]] * np.outer(weight, weight)
             block = inverse - known[rows] @ known[rows].T
             if np.linalg.eigvalsh(block)[0] > 1e-9 * np.diag(inverse).max():
@@ -143,56 +150,107 @@ class Fit:
                 error[rows], variance[rows] = found @ py[rows], np.diag(found)
         return LeftOut(error, variance)
 
-    def interval(self, component: str) -> tuple[float, float | None]:
-        """95 % profile-likelihood interval of a component's sd; None without an upper bound."""
-        index = COMPONENTS.index(component)
-        least = self.problem.deviance(self.sd)
-        rest = _places(tuple(c for c in self.free if c != component))
-        nearest = np.square(self.sd)
+    def intervals(self) -> dict[str, tuple[float, float | None]]:
+        """95 % profile-likelihood intervals of the components' sds; None without an upper bound."""
+        profile = _Profile.of(self)
+        sd, places = np.asarray(self.sd), np.arange(len(COMPONENTS))
+        lo, nothing = np.zeros(len(sd)), np.zeros(len(sd))
+        above = profile.excess(nothing, places) > 0.0
+        lo[above] = profile.ends(nothing[above], sd[above], places[above])
+        outside = np.maximum(2.0 * sd, 0.1 * self.problem.spread)
+        beyond = profile.excess(outside, places) > 0.0
+        for _ in range(MAX_DOUBLINGS):
+            if beyond.all():
+                break
+            outside[~beyond] *= 2.0
+            beyond[~beyond] = profile.excess(outside[~beyond], places[~beyond]) > 0.0
+        hi = profile.ends(sd[beyond], outside[beyond], places[beyond])
+        upper = dict(zip(places[beyond].tolist(), hi.tolist(), strict=True))
+        return {name: (float(lo[i]), upper.get(i)) for i, name in enumerate(COMPONENTS)}
 
-        @cache
-        def excess(sd: float) -> float:
-            nonlocal nearest
-            nearest = nearest.copy()
-            nearest[index] = sd * sd
-            nearest, deviance = search(self.problem, rest, nearest)
-            # The root of a deviance is nearly straight, which a search for its zero likes.
-            return float(np.sqrt(max(deviance - least, 0.0)) - np.sqrt(PROFILE_DROP))
 
-        sd, scale = self.sd[index], self.problem.spread
-        lo = (
-            scipy.optimize.brentq(excess, 0.0, sd, xtol=PROFILE_PRECISION * scale)
-            if excess(0.0) > 0
-            else 0.0
+@dataclass(frozen=True)
+class _Profile:
+    """How much worse a fit is where one of its sds is something else, the others at their best.
+
+    Attributes:
+        stack: the problem once per component.
+        free: (3, 3) what is estimated, besides the component itself.
+        nearest: (3, 3) variances found last, to begin with.
+        least: the deviance of the fit.
+    """
+
+    stack: Stack
+    free: BoolArray
+    nearest: FloatArray
+    least: float
+
+    @classmethod
+    def of(cls, fit: Fit) -> Self:
+        """Of a fit, begun at its variances."""
+        stack = Stack.of([fit.problem] * len(COMPONENTS))
+        free = np.isin(COMPONENTS, fit.free) & ~np.eye(len(COMPONENTS), dtype=bool)
+        at = np.square([fit.sd] * len(COMPONENTS))
+        return cls(stack, free, at, float(stack.likelihood(at).deviance[0]))
+
+    def excess(self, sd: FloatArray, place: IntArray) -> FloatArray:
+        """Root of the deviance at sds of some components, less its value at the ends.
+
+        The root of a deviance is nearly straight, which a search for its zero likes.
+        """
+        start = self.nearest[place]
+        start[np.arange(len(place)), place] = sd**2
+        self.nearest[place], deviance = search(
+            self.stack.take(place), self.free[place], start, PROFILE_TOLERANCE
         )
-        outside = max(2.0 * sd, 0.1 * scale)
-        for _ in range(8):
-            if excess(outside) > 0:
-                return float(lo), float(
-                    scipy.optimize.brentq(excess, sd, outside, xtol=PROFILE_PRECISION * scale)
-                )
-            outside *= 2.0
-        return float(lo), None
+        root = np.sqrt(np.maximum(deviance - self.least, 0.0))
+        return np.asarray(root - np.sqrt(PROFILE_DROP))
+
+    def ends(self, inside: FloatArray, outside: FloatArray, place: IntArray) -> FloatArray:
+        """Sds between these at which the deviance is that of a 95 % interval's end."""
+        if not len(place):
+            return inside
+        spread = self.stack.problem.spread
+        found = find_root(
+            self.excess,
+            (inside, outside),
+            args=(place,),
+            tolerances={"xatol": PROFILE_PRECISION * spread, "xrtol": 0.0},
+        )
+        return np.asarray(found.x)
 
 
 def fit(problem: Problem, free: tuple[str, ...]) -> Fit:
     """Restricted maximum likelihood of the components named in `free`."""
-    places = _places(free)
+    return fit_all([problem], free)[0]
+
+
+def fit_all(problems: Sequence[Problem], free: tuple[str, ...]) -> list[Fit]:
+    """The same of each of many problems; those of one layout are searched side by side."""
+    layouts: dict[tuple[object, ...], list[int]] = {}
+    for i, problem in enumerate(problems):
+        layouts.setdefault(problem.layout, []).append(i)
+    sds = np.empty((len(problems), len(COMPONENTS)))
+    for numbers in layouts.values():
+        sds[numbers] = np.sqrt(_most_likely([problems[i] for i in numbers], free))
+    fitted = zip(problems, sds.tolist(), strict=True)
+    return [Fit(problem, free, (boat, other, cell)) for problem, (boat, other, cell) in fitted]
+
+
+def _most_likely(problems: Sequence[Problem], free: tuple[str, ...]) -> FloatArray:
+    """Variances of boat, other and cell of problems of one layout, (problems, 3)."""
+    stack = Stack.of(problems)
+    loose = np.tile(np.isin(COMPONENTS, free), (len(problems), 1))
     # What the errors leave of the spread, in equal parts.
-    left = problem.spread**2 - float(problem.variance.mean())
-    least = 0.1 * max(problem.spread**2, float(problem.variance.min()))
-    start = np.zeros(3)
-    start[places] = max(left, least) / max(len(places), 1)
-    found, least = search(problem, places, start)
-    for place in places:
+    left = [p.spread**2 - float(p.variance.mean()) for p in problems]
+    start = loose * (np.maximum(left, 0.1 * stack.unit) / max(len(free), 1))[:, None]
+    found, least = search(stack, loose, start)
+    for place in np.flatnonzero(loose[0]):
         without = found.copy()
-        without[place] = 0.0
-        if found[place] > 0.0 and problem.likelihood(without).deviance <= least + NO_GAIN:
-            places = places[places != place]
-            found, least = search(problem, places, without)
-    boat, other, cell = np.sqrt(found).tolist()
-    return Fit(problem, free, (boat, other, cell))
-
-
-def _places(components: tuple[str, ...]) -> IntArray:
-    return np.array([COMPONENTS.index(c) for c in components], dtype=np.int64)
+        without[:, place] = 0.0
+        idle = stack.likelihood(without).deviance <= least + NO_GAIN
+        idle &= found[:, place] > 0.0
+        loose[idle, place] = False
+        if idle.any():
+            found[idle], least[idle] = search(stack.take(idle), loose[idle], without[idle])
+    return found

@@ -6,6 +6,7 @@ Here the data, the likelihood with its slope, and the search for the variances o
 cell. What a fitted model says about anything is in `mixed`.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final, NamedTuple, Self
@@ -14,7 +15,7 @@ import numpy as np
 import scipy
 from numpy.typing import ArrayLike
 
-from herijk.pipeline.arrays import FloatArray, IntArray
+from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 
 SMALLEST_SHARE: Final = 1e-4
 """Least measuring error, as a share of the size of y.
@@ -42,17 +43,22 @@ what differs between types."""
 
 
 class Likelihood(NamedTuple):
-    """The restricted likelihood at some variances.
+    """The restricted likelihood of each problem of a stack at some variances.
 
     Attributes:
-        deviance: -2 log of it but for a constant.
-        gradient: (3,) slope of the deviance along the variances of boat, other and cell.
-        information: (3, 3) average of observed and expected second derivative of the deviance.
+        deviance: (m,) -2 log of it but for a constant.
+        gradient: (m, 3) slope of the deviance along the variances of boat, other and cell.
+        information: (m, 3, 3) average of observed and expected second derivative of the deviance.
     """
 
-    deviance: float
+    deviance: FloatArray
     gradient: FloatArray
     information: FloatArray
+
+    def put(self, rows: IntArray, there: "Likelihood", which: BoolArray) -> None:
+        """Sets some rows to those of another."""
+        for mine, other in zip(self, there, strict=True):
+            mine[rows] = other[which]
 
 
 @dataclass(frozen=True)
@@ -93,7 +99,7 @@ class Problem:
             None if other is None else np.unique(np.asarray(other), return_inverse=True)[1],
         )
 
-    @property
+    @cached_property
     def boats(self) -> int:
         """Number of boats."""
         return int(self.boat.max()) + 1
@@ -120,11 +126,6 @@ class Problem:
         )
 
     @cached_property
-    def columns(self) -> FloatArray:
-        """Others, fixed effects and what y is beyond the plain fit, side by side."""
-        return np.hstack([self.others, self.x, self.residual[:, None]])
-
-    @cached_property
     def by_boat(self) -> "scipy.sparse.csr_array":
         """Adds up the rows of each boat; (boats, n)."""
         n = len(self.y)
@@ -132,51 +133,93 @@ class Problem:
             (np.ones(n), (self.boat, np.arange(n))), shape=(self.boats, n)
         )
 
-    def likelihood(self, variances: ArrayLike) -> Likelihood:
+    @property
+    def layout(self) -> tuple[object, ...]:
+        """Equal for problems that can be searched together."""
+        other = None if self.other is None else self.other.tobytes()
+        return self.x.shape, self.boat.tobytes(), other
+
+
+@dataclass(frozen=True)
+class Stack:
+    """Problems of one layout side by side: small matrices cost their calls, not their numbers.
+
+    Attributes:
+        problem: one of them, for what they share.
+        columns: (m, n, k + p + 1) others, fixed effects and what y is beyond the plain fit.
+        variance: (m, n) known variance of each observation.
+        unit: (m,) size of a variance.
+    """
+
+    problem: Problem
+    columns: FloatArray
+    variance: FloatArray
+    unit: FloatArray
+
+    @classmethod
+    def of(cls, problems: Sequence[Problem]) -> Self:
+        """A stack of problems of one layout."""
+        columns = [np.hstack([p.others, p.x, p.residual[:, None]]) for p in problems]
+        unit = [max(p.spread**2, float(p.variance.min())) for p in problems]
+        variance = np.stack([p.variance for p in problems])
+        return cls(problems[0], np.stack(columns), variance, np.array(unit))
+
+    def take(self, rows: IntArray | BoolArray) -> Self:
+        """Some of the problems."""
+        return replace(
+            self, columns=self.columns[rows], variance=self.variance[rows], unit=self.unit[rows]
+        )
+
+    def by_boat(self, rows: FloatArray) -> FloatArray:
+        """Adds up the rows of each boat: (m, n, c) to (m, boats, c)."""
+        m, n, c = rows.shape
+        flat = rows.transpose(1, 0, 2).reshape(n, m * c)
+        sums = self.problem.by_boat @ flat
+        return np.asarray(sums.reshape(self.problem.boats, m, c).transpose(1, 0, 2))
+
+    def likelihood(self, variances: FloatArray) -> Likelihood:
         """The restricted likelihood at variances of boat, other and cell, none of them negative.
 
         Slope and average information are those of Gilmour, Thompson and Cullis (1995), tr(P V_k) -
         y'P V_k P y and y'P V_k P V_l P y: V_k is the part of one variance in the covariance V, P
         its inverse without the fixed effects.
+
+        Args:
+            variances: of boat, other and cell, (m, 3).
         """
         at = Whitened.of(self, variances)
-        own, of_boats = at.weigh(np.hstack([at.q, at.rest]))
-        p_y, boats_p_y = own[:, -1:], of_boats[:, -1:]
-        if at.other > 0.0:
-            others_p_y = at.of_others @ at.along / np.sqrt(at.other)
-            trace_of_others = (len(at.of_others) - (at.of_others**2).sum()) / at.other
-        else:
-            others = at.without_boats(at.root * self.others)
-            others_p_y = others.T @ at.rest
-            trace_of_others = (others**2).sum() - ((others.T @ at.q) ** 2).sum()
-        alone = at.weight * (1.0 + at.boat * (at.precision[self.boat] - at.weight))
-        traces = np.array(
-            [
-                (at.precision / at.inflation).sum() - (of_boats[:, :-1] ** 2).sum(),
-                trace_of_others,
-                (alone / at.inflation[self.boat]).sum() - (own[:, :-1] ** 2).sum(),
-            ]
-        )
-        squares = np.array([(part**2).sum() for part in (boats_p_y, others_p_y, p_y)])
-        parts = np.hstack([boats_p_y[self.boat], self.others @ others_p_y, p_y])
-        parts = at.without_boats(at.root * parts)
-        along = at.q.T @ parts
-        determinant = np.log(at.inflation).sum() - np.log(at.weight).sum()
-        determinant += 2.0 * np.log(np.abs(np.diag(at.r))).sum()
+        own, of_boats = at.weigh(np.concatenate([at.q, at.rest], axis=-1))
+        p_y, boats_p_y = own[..., -1:], of_boats[..., -1:]
+        others_p_y, trace_of_others = at.others()
+        boat = self.problem.boat
+        alone = at.weight * (1.0 + at.boat[:, None] * (at.precision[:, boat] - at.weight))
+        traces = [
+            (at.precision / at.inflation).sum(axis=-1) - _squares(of_boats[..., :-1]),
+            trace_of_others,
+            (alone / at.inflation[:, boat]).sum(axis=-1) - _squares(own[..., :-1]),
+        ]
+        squares = [_squares(part) for part in (boats_p_y, others_p_y, p_y)]
+        parts = [boats_p_y[:, boat], self.problem.others @ others_p_y, p_y]
+        felt = at.without_boats(at.root * np.concatenate(parts, axis=-1))
+        along = at.q.mT @ felt
+        determinant = np.log(at.inflation).sum(axis=-1) - np.log(at.weight).sum(axis=-1)
+        diagonal = np.diagonal(at.r, axis1=-2, axis2=-1)
+        determinant += 2.0 * np.log(np.abs(diagonal)).sum(axis=-1)
         return Likelihood(
-            float(determinant + at.misfit),
-            traces - squares,
-            np.asarray(parts.T @ parts - along.T @ along),
+            determinant + at.misfit,
+            np.stack(traces, axis=-1) - np.stack(squares, axis=-1),
+            felt.mT @ felt - along.mT @ along,
         )
 
-    def deviance(self, sd: ArrayLike) -> float:
-        """-2 log of the restricted likelihood but for a constant, at sds of boat, other, cell."""
-        return self.likelihood(np.square(sd)).deviance
+
+def _squares(rows: FloatArray) -> FloatArray:
+    """Sum of the squares of each matrix of a stack."""
+    return np.asarray((rows**2).sum(axis=(-2, -1)))
 
 
 @dataclass(frozen=True)
 class Whitened:
-    """A problem at some variances: rows of unit covariance, known columns taken out.
+    """A stack at some variances: rows of unit covariance, known columns taken out.
 
     Rows are whitened for error, cell and boat. Others (as further data: Woodbury) and fixed effects
     are then taken out by one orthogonal decomposition: no large numbers cancel, however small the
@@ -184,19 +227,19 @@ class Whitened:
     as many columns as rows comes out otherwise on another number of threads.
 
     Attributes:
-        problem: the problem.
-        boat, other: the variances.
-        weight: (n,) 1 / variance of error and cell; root: (n, 1) its root.
-        precision: (boats,) sum of the weights; inflation: 1 + boat's variance times that.
-        q: (n, k + p) orthogonal columns, with `of_others`, (k, k + p), below.
-        r: (k + p, k + p) triangular.
-        along: (k + p, 1) whitened y along the columns.
-        rest: (n, 1) what is left of it.
+        stack: the problems.
+        boat, other: the variances, (m,).
+        weight: (m, n) 1 / variance of error and cell; root: (m, n, 1) its root.
+        precision: (m, boats) sum of the weights; inflation: 1 + boat's variance times that.
+        q: (m, n, k + p) orthogonal columns, with `of_others`, (m, k, k + p), below.
+        r: (m, k + p, k + p) triangular.
+        along: (m, k + p, 1) whitened y along the columns.
+        rest: (m, n, 1) what is left of it.
     """
 
-    problem: Problem
-    boat: float
-    other: float
+    stack: Stack
+    boat: FloatArray
+    other: FloatArray
     weight: FloatArray
     precision: FloatArray
     inflation: FloatArray
@@ -207,96 +250,127 @@ class Whitened:
     rest: FloatArray
 
     @classmethod
-    def of(cls, problem: Problem, variances: ArrayLike) -> Self:
-        """A problem at its variances of boat, other and cell."""
-        boat, other, cell = np.asarray(variances, dtype=np.float64)
-        weight = 1.0 / (problem.variance + cell)
-        precision = problem.by_boat @ weight
-        none = np.zeros((0, 0))
-        bare = cls(problem, boat, other, weight, precision, 1.0 + boat * precision, *(none,) * 5)
-        k, n = problem.others.shape[1], len(problem.y)
-        white = bare.without_boats(bare.root * problem.columns)
-        known, y = white[:, :-1], white[:, -1:]
-        known[:, :k] *= np.sqrt(other)
-        q, r = np.linalg.qr(np.vstack([known, np.eye(k, known.shape[1])]))
-        along = q[:n].T @ y
-        return replace(bare, q=q[:n], of_others=q[n:], r=r, along=along, rest=y - q[:n] @ along)
+    def of(cls, stack: Stack, variances: FloatArray) -> Self:
+        """A stack at its variances of boat, other and cell, (m, 3)."""
+        boat, other, cell = variances.T
+        weight = 1.0 / (stack.variance + cell[:, None])
+        precision = stack.by_boat(weight[..., None])[..., 0]
+        inflation = 1.0 + boat[:, None] * precision
+        none = np.zeros((0, 0, 0))
+        bare = cls(stack, boat, other, weight, precision, inflation, *(none,) * 5)
+        k, n = stack.problem.others.shape[1], weight.shape[1]
+        white = bare.without_boats(bare.root * stack.columns)
+        known, y = white[..., :-1], white[..., -1:]
+        known[..., :k] *= np.sqrt(other)[:, None, None]
+        below = np.broadcast_to(np.eye(k, known.shape[-1]), (len(known), k, known.shape[-1]))
+        q, r = np.linalg.qr(np.concatenate([known, below], axis=-2))
+        along = q[:, :n].mT @ y
+        rest = y - q[:, :n] @ along
+        return replace(bare, q=q[:, :n], of_others=q[:, n:], r=r, along=along, rest=rest)
 
     @cached_property
     def root(self) -> FloatArray:
-        """Root of the weights, (n, 1)."""
-        return np.sqrt(self.weight)[:, None]
+        """Root of the weights, (m, n, 1)."""
+        return np.sqrt(self.weight)[..., None]
+
+    def others(self) -> tuple[FloatArray, FloatArray]:
+        """Y as it weighs on the other groups, (m, k, 1), and the trace of P times their part."""
+        others = self.without_boats(self.root * self.stack.problem.others)
+        weighs = others.mT @ self.rest
+        trace = _squares(others) - _squares(others.mT @ self.q)
+        # Where they vary they are taken out with the columns, which loses no digits.
+        taken = self.other > 0.0
+        variance = self.other[taken]
+        along = self.of_others[taken] @ self.along[taken]
+        weighs[taken] = along / np.sqrt(variance)[:, None, None]
+        trace[taken] = (self.of_others.shape[1] - _squares(self.of_others[taken])) / variance
+        return weighs, trace
 
     def without_boats(self, rows: FloatArray) -> FloatArray:
         """What is left of rows, in units of their errors, in units of boats and errors."""
-        return self._shrunk(rows, self.problem.by_boat @ (self.root * rows))
+        return self._shrunk(rows, self.stack.by_boat(self.root * rows))
 
     def weigh(self, rows: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Whitened rows as they weigh on the rows of the problem, and the sum of that by boat."""
-        total = self.problem.by_boat @ (self.root * rows)
-        of_boats = total / np.sqrt(self.inflation)[:, None]
-        return self.root * self._shrunk(rows, total), np.asarray(of_boats)
+        total = self.stack.by_boat(self.root * rows)
+        of_boats = total / np.sqrt(self.inflation)[..., None]
+        return self.root * self._shrunk(rows, total), of_boats
 
     def _shrunk(self, rows: FloatArray, total: FloatArray) -> FloatArray:
         """Rows with each boat's mean made smaller; `total` is the weighted sum by boat."""
         shrink = (1.0 / np.sqrt(self.inflation) - 1.0) / self.precision
-        return np.asarray(rows + self.root * (shrink[:, None] * total)[self.problem.boat])
+        return rows + self.root * (shrink[..., None] * total)[:, self.stack.problem.boat]
 
     @property
-    def misfit(self) -> float:
-        """Y' P Y: the weighted sum of squares about the fixed effects."""
-        return float((self.rest**2).sum() + ((self.of_others @ self.along) ** 2).sum())
+    def misfit(self) -> FloatArray:
+        """Y' P Y: the weighted sum of squares about the fixed effects, (m,)."""
+        return _squares(self.rest) + _squares(self.of_others @ self.along)
 
 
-def search(problem: Problem, free: IntArray, start: FloatArray) -> tuple[FloatArray, float]:
-    """Least deviance over some of the variances, the others held.
+def search(
+    stack: Stack, free: BoolArray, start: FloatArray, tolerance: float = TOLERANCE
+) -> tuple[FloatArray, FloatArray]:
+    """Least deviance of each problem over some of the variances, the others held.
 
     Newton's method with the average information, on variances that are not negative: one that is 0
     and would fall is left at exactly 0. The slope, not the deviance, says when it is done: the
     least of a smooth function is flat over the root of its rounding, its slope crosses 0 there.
 
     Args:
-        problem: the data.
-        free: places of the free variances among boat, other and cell.
-        start: (3,) variances to begin with; the others of the result are as here.
+        stack: the problems.
+        free: (m, 3) which of the variances of boat, other and cell are free.
+        start: (m, 3) variances to begin with; those that are not free stay so.
+        tolerance: share of its size by which a step at the end may change a variance.
 
     Returns:
-        The variances, and the deviance there.
+        The variances, (m, 3), and the deviance there, (m,).
     """
-    unit = max(problem.spread**2, float(problem.variance.min()))
-    at, now = start, problem.likelihood(start)
+    at, now = start.copy(), stack.likelihood(start)
+    busy = np.arange(len(at))
     for _ in range(MAX_ITERATIONS):
-        loose = free[(at[free] > 0.0) | (now.gradient[free] < 0.0)]
-        if not len(loose):
+        loose = free & ((at > 0.0) | (now.gradient < 0.0))
+        busy = busy[loose[busy].any(axis=1)]
+        if not len(busy):
             break
-        step = np.zeros(3)
-        step[loose] = _newton(now, loose, unit)
-        last = at
-        at, now = _descend(problem, at, now, step)
-        if (np.abs(at - last) <= TOLERANCE * np.maximum(at, NEGLIGIBLE * unit)).all():
-            break
+        last = at[busy]
+        steps = [
+            _newton(now.gradient[i], now.information[i], loose[i], stack.unit[i]) for i in busy
+        ]
+        _descend(stack, busy, np.array(steps), at, now)
+        size = np.maximum(at[busy], NEGLIGIBLE * stack.unit[busy, None])
+        busy = busy[(np.abs(at[busy] - last) > tolerance * size).any(axis=1)]
     return at, now.deviance
 
 
-def _newton(now: Likelihood, loose: IntArray, unit: float) -> FloatArray:
+def _newton(
+    gradient: FloatArray, information: FloatArray, loose: BoolArray, unit: float
+) -> FloatArray:
     """Step of the loose variances; one that the data do not feel goes nowhere, as do its like."""
-    felt = np.diag(now.information)[loose] > UNFELT / unit**2
-    size = np.sqrt(np.where(felt, np.diag(now.information)[loose], 1.0))
-    scaled = np.where(np.outer(felt, felt), now.information[np.ix_(loose, loose)], 0.0)
-    slope = np.where(felt, now.gradient[loose], 0.0) / size
+    size = np.diag(information)[loose]
+    felt = size > UNFELT / unit**2
+    size = np.sqrt(np.where(felt, size, 1.0))
+    scaled = np.where(np.outer(felt, felt), information[np.ix_(loose, loose)], 0.0)
+    slope = np.where(felt, gradient[loose], 0.0) / size
     scaled = scaled / np.outer(size, size)
-    return np.asarray(-np.linalg.lstsq(scaled, slope, rcond=UNFELT)[0] / size)
+    step = np.zeros(3)
+    step[loose] = -np.linalg.lstsq(scaled, slope, rcond=UNFELT)[0] / size
+    return step
 
 
 def _descend(
-    problem: Problem, at: FloatArray, now: Likelihood, step: FloatArray
-) -> tuple[FloatArray, Likelihood]:
-    """The step, cut off at 0, halved until the deviance does not rise by more than rounding."""
-    limit = now.deviance + ROUNDING * max(1.0, abs(now.deviance))
+    stack: Stack, rows: IntArray, step: FloatArray, at: FloatArray, now: Likelihood
+) -> None:
+    """Steps some rows of `at`, cut off at 0; each is halved until the deviance does not rise.
+
+    A rise by no more than rounding counts as none.
+    """
+    limit = now.deviance[rows] + ROUNDING * np.maximum(1.0, np.abs(now.deviance[rows]))
     for _ in range(MAX_HALVINGS):
-        trial = np.maximum(at + step, 0.0)
-        there = problem.likelihood(trial)
-        if there.deviance <= limit:
-            return trial, there
-        step = 0.5 * step
-    return at, now
+        trial = np.maximum(at[rows] + step, 0.0)
+        there = stack.take(rows).likelihood(trial)
+        lower = there.deviance <= limit
+        at[rows[lower]] = trial[lower]
+        now.put(rows[lower], there, lower)
+        rows, step, limit = rows[~lower], 0.5 * step[~lower], limit[~lower]
+        if not len(rows):
+            break
