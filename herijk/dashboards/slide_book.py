@@ -28,6 +28,9 @@ from herijk.pipeline.studies.tool_options import AS_READ, SPEEDS, TICKS
 from herijk.warehouse.queries.chosen_tows import ALL, STATED, choices_of_row, rows_of
 from herijk.warehouse.queries.views import Views
 
+RECOMPUTED: Final = (("cw", "weight"), ("b", "speed"), ("cw", "speed"))
+"""What the presentation shows of the recomputed season."""
+
 CLEAR_R2: Final = 0.3
 """From here on a line without a clear slope is not called "no link": too few boats tell."""
 
@@ -71,8 +74,8 @@ def slides(views: Views, say: Say, asked: Asked = THE_PRESENTATION) -> Iterator[
         for explaining in EXPLAINING:
             yield about.against(quantity, explaining, types, about.tows)
     if RECOMPUTED_SEASON in about.choices and about.tows == ALL:
-        for explaining in ("weight", "speed"):
-            yield about.against("cw", explaining, types, RECOMPUTED_SEASON)
+        for quantity, explaining in RECOMPUTED:
+            yield about.against(quantity, explaining, types, RECOMPUTED_SEASON)
     yield about.hull_speed()
     yield about.towed_at()
     yield from about.raced_beyond()

@@ -161,12 +161,13 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Dra
                 ("deviation_sd:Q", say("column.deviation_sd")),
             ),
         )
+        slow = tow.transform_filter("datum.slow").mark_circle(size=9, color="black", opacity=1)
         names = [
             name.encode(at, value, text="label:N")
             for name in _names(tow.transform_filter("datum.outside"), x, y)
         ]
         drawing = (
-            alt.layer(band, bars, drawn, point, *names, data=frame)
+            alt.layer(band, bars, drawn, point, slow.encode(at, value), *names, data=frame)
             .transform_joinaggregate(top=f"max({y})", bottom=f"min({y})", groupby=["boat_type"])
             .transform_calculate(
                 room=f"max({ROOM} * (datum.top - datum.bottom), {ROOM_OF_ONE} * datum.top)"

@@ -17,8 +17,9 @@ from herijk.dashboards.site.parts import (
     methods_select,
     tows_select,
 )
-from herijk.dashboards.slide_book import Book, Slide, slides
+from herijk.dashboards.slide_book import RECOMPUTED, Book, Slide, slides
 from herijk.dashboards.slide_rows import (
+    RECOMPUTED_SEASON,
     by_tows,
     compared_frame,
     lines_frame,
@@ -37,15 +38,16 @@ WHOLE = {
 """Figures that are not of a type, with what says what they show."""
 SAID = ("figure", "tows", "boat_type", *LANGUAGES)
 TOW_COLUMNS = (
-    *("kind", "method", "boat_type", "crew_class", "label", "outside", "beyond_curve"),
+    *("kind", "method", "boat_type", "crew_class", "label", "outside", "beyond_curve", "slow"),
     *("weight_kg", "declared_speed_m_s", "waterline_length_m", "deviation_sd"),
     *("hull_speed_m_s", "tow_hull_ratio", "b_hull_ratio"),
     *(column for columns in QUANTITIES.values() for column in columns),
 )
 NOT_DRAWN = (
-    *("fsn_no", "tow_id", "rowers", "candidates", "reason", "study", "newest", "slow"),
+    *("fsn_no", "tow_id", "rowers", "candidates", "reason", "study", "newest"),
     *("displacement_kg", "expected_cw_kg_m"),
 )
+OF_2014 = tuple(f"{y} {x} {RECOMPUTED_SEASON}" for y, x in RECOMPUTED)
 CLAIMS = {
     "hull_speed": "boat_type tows n n_boats tow_ratio tow_share_60_70 b_ratio b_ratio_lo "
     "b_ratio_hi",
@@ -75,7 +77,7 @@ def slides_page(views: Views, methods: Sequence[str]) -> Page:
         for x in EXPLAINING
     ]
     sections += [
-        Section("slides_2014", "slides_2014_note", book.of("cw weight 2014", "cw speed 2014")),
+        Section("slides_2014", "slides_2014_note", book.of(*OF_2014)),
         Section(
             "slides_hull_speed",
             charts=told_charts(WHOLE, told, [], {"tows": "tows"}),
@@ -120,7 +122,7 @@ class Drawn(NamedTuple):
 
     def data(self) -> dict[str, list[pl.DataFrame]]:
         """The rows of slides that no selector changes."""
-        own = ("cw weight 2014", "cw speed 2014", "raced beyond", "eras", "years", "ticks")
+        own = (*OF_2014, "raced beyond", "eras", "years", "ticks")
         return {_data_name(s): [_thin(s.rows)] for s in self.nl.values() if s.name.startswith(own)}
 
 
