@@ -19,11 +19,11 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
         "van de log zit er niet in.",
         "The methods stand side by side on equal axes. Circles are men, triangles women. An open "
         "mark is a tow too slow or too fast for the standard speed, a black dot one with too "
-        "little power. The line is the straight line that fits best, with its 95 % interval; against "
-        "weight and length one per crew class. R2 is the share of the spread that the line "
+        "little power. The line is the straight line that fits best, with its 95 % interval; "
+        "against weight and length one per crew class. R2 is the share of the spread that the line "
         "explains, each tow weighted by its error and tows of one boat as repeats. A tow whose Cw "
-        "is an outlier of its type is named. A bar is a tow's 95 % interval; a dashed "
-        "one the spread of the runs alone: the log's error is not in it.",
+        "is an outlier of its type is named. A bar is a tow's 95 % interval; a dashed one the "
+        "spread of the runs alone: the log's error is not in it.",
     ),
     # Charts
     "men": ("heren", "men"),
