@@ -53,6 +53,7 @@ CLAIMS = {
     "b_ratio_hi",
     "promise": "season tows share_stated_1pct share_stated_2pct n_pairs share_seen_1pct "
     "share_seen_2pct",
+    "season_changes": "season tows median_ratio lowest_ratio highest_ratio",
     "print_summary": "season tows median_ratio lowest_ratio highest_ratio share_within_1pct",
 }
 """Tables that hold a claim of the texts against the archive, with the columns shown."""

@@ -326,6 +326,15 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
         "First what the tows state themselves (half the 95 % interval; under the old methods the "
         "spread of the runs alone), then what repeat tows show.",
     ),
+    "claim_season_changes": ("Is 6 % snelheid 20-30 % in Cw?", "Is 6 % in speed 20-30 % in Cw?"),
+    "claim_season_changes_note": (
+        "De presentatie: de logs van 2009-2011 tot 6 % gecorrigeerd, 20-30 % in Cw. Hier Cw bij de "
+        "opgegeven snelheid onder de gekozen methode gedeeld door die zoals gepubliceerd: de "
+        "mediaan van het seizoen en de uitersten.",
+        "The presentation: the logs of 2009-2011 corrected by up to 6 %, 20-30 % in Cw. Here Cw at "
+        "the declared speed under the chosen method over that as published: the median of the "
+        "season and the extremes.",
+    ),
     "claim_print_summary": ("Komt de druk er weer uit?", "Does print come out again?"),
     "claim_print_summary_note": (
         "Gedrukte Cw gedeeld door de herrekende, per seizoen. Kijk hier eerst, voor er iets wordt "
