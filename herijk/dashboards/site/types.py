@@ -85,40 +85,26 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
     drawn, said = drawn_rows(views), sentences(views)
     for boat_type in views.type_names():
         own = pl.col("boat_type") == boat_type
+        charts = told_charts(TYPE_FIGURES, said, [boat_type], {"tows": "tows"})
+        listed = Table(
+            "type_boats", tows.filter(own), TYPE_COLUMNS, "types_list", ["method", "tows"],
+            search=True, cards=TYPE_CARDS,
+        )  # fmt: skip
+        fitted = Table(
+            "type_lines", lines.filter(own), LINE_COLUMNS, "types_lines", ["method", "tows"]
+        )
+        verdict = headlines.homogeneity(tests.filter(own, method=default_method(methods)))
         yield Page(
             type_path(boat_type),
             "types",
             [
-                Section(
-                    "type_verdict",
-                    "type_note",
-                    told_charts(TYPE_FIGURES, said, [boat_type], {"tows": "tows"}),
-                    [
-                        Table(
-                            "type_boats", tows.filter(own), TYPE_COLUMNS, "types_list",
-                            ["method", "tows"], search=True, cards=TYPE_CARDS,
-                        )
-                    ],
-                    headline=headlines.homogeneity(
-                        tests.filter(own, method=default_method(methods))
-                    ),
-                ),
-                Section(
-                    "types_lines",
-                    "types_lines_note",
-                    tables=[
-                        Table(
-                            "type_lines", lines.filter(own), LINE_COLUMNS, "types_lines",
-                            ["method", "tows"],
-                        )
-                    ],
-                    folded=True,
-                ),
+                Section("type_verdict", "type_note", charts, [listed], headline=verdict),
+                Section("types_lines", "types_lines_note", tables=[fitted], folded=True),
             ],
             name=boat_type,
             selects=[tows_select(tows), methods_select(methods)],
             data={"slides": [f.filter(own) for f in drawn], "said": [said.filter(own)]},
-        )  # fmt: skip
+        )
 
 
 OUTLIER_COLUMNS = (
