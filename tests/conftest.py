@@ -1,5 +1,6 @@
 """Settings of the property tests, and a small simulated archive with what a rebuild makes of it."""
 
+import os
 import shutil
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
@@ -31,6 +32,9 @@ from herijk.warehouse.store.store import Store
 # The same examples every time, whatever the machine's speed.
 settings.register_profile("repeatable", deadline=None, derandomize=True)
 settings.load_profile("repeatable")
+
+os.environ["LC_ALL"] = "C.UTF-8"
+"""Commands speak English, whatever the language of the machine."""
 
 METHODS = ("as-published", "rebased-2015")
 SMALL = WorldSettings(seasons=(2009, 2014), tows_per_season=20, rate_hz=20, seed=3)

@@ -125,8 +125,10 @@ def read_seasons(
             checks = result.get_asset_check_evaluations()
     except (OSError, KilledWorker, NoWorkerError) as error:
         raise UnavailableError(
-            f"the Dask cluster at {address} did not finish: {error}. Look whether its scheduler "
-            "and workers are up, and run it again: what was finished is kept"
+            "the Dask cluster at {} did not finish: {}. Look whether its scheduler "
+            "and workers are up, and run it again: what was finished is kept",
+            address,
+            error,
         ) from error
     failed = {s: _reason(failures[_step(s)]) for s in seasons if _step(s) in failures}
     return Read(checks, failed)

@@ -148,5 +148,5 @@ def _password(settings: Settings) -> str:
         return settings.smtp_password_file.read_text(encoding="utf-8").strip()
     except (OSError, ValueError) as error:
         raise MissingKnowledgeError(
-            f"{settings.smtp_password_file}, named by smtp_password_file, cannot be read"
+            "{}, named by smtp_password_file, cannot be read", settings.smtp_password_file
         ) from error

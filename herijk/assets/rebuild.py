@@ -28,6 +28,7 @@ from herijk.warehouse.store.machine_faults import machine_faults_explained
 from herijk.warehouse.store.methods import KnownMethods
 from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import DamagedFileError, Store
+from herijk.words import tell
 
 if TYPE_CHECKING:
     from herijk.assets.runs import Jobs
@@ -180,10 +181,14 @@ class _Rebuild:
 
     def _read_elsewhere(self, address: str, seasons: Sequence[int]) -> list[int]:
         """Has a Dask cluster read seasons; gives those to read here, where an error comes out."""
-        self.progress.step(f"reading {len(seasons)} seasons on the Dask cluster at {address}")
+        self.progress.step(
+            tell("reading {} seasons on the Dask cluster at {}", len(seasons), address)
+        )
         failed = self.jobs.read_on_dask(address, (self.archive, self.store.root), seasons)
         for season, why in failed.items():
-            self.progress.step(f"season {season} could not be read there ({why}); reading it here")
+            self.progress.step(
+                tell("season {} could not be read there ({}); reading it here", season, why)
+            )
         return list(failed)
 
     def _build(self, step: Step) -> None:
@@ -208,6 +213,8 @@ def check_apart(archive: Path, data: Path) -> None:
     """
     if archive.resolve().is_relative_to(data.resolve()):
         raise MissingKnowledgeError(
-            f"the archive {archive} lies in the data folder {data}, or is the same; name a data "
-            "folder outside the archive with --data"
+            "the archive {} lies in the data folder {}, or is the same; name a data "
+            "folder outside the archive with --data",
+            archive,
+            data,
         )

@@ -19,11 +19,12 @@ from herijk.dashboards.report import (
     mail,
     with_later_rebuild,
 )
-from herijk.dashboards.words import speaker
 from herijk.warehouse.build.version import code_version
 from herijk.warehouse.queries.change_report import as_plain, change_report, remember
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.store import Store
+from herijk.words import LANGUAGE
+from herijk.words.catalogue import speaker
 
 if TYPE_CHECKING:  # Dagster takes two seconds, and only a rebuild with work to do needs it
     import dagster as dg
@@ -90,7 +91,7 @@ def _write(path: Path, text: str) -> None:
 def failed_checks(report: Report) -> list[str]:
     """Checks whose failing means that a table is not what it promises."""
     return [
-        f"{check['check']}: {found_in_words(check, speaker('en'))}"
+        f"{check['check']}: {found_in_words(check, speaker(LANGUAGE.get()))}"
         for check in report["checks"]
         if not check["passed"] and check["severity"] == ERROR
     ]

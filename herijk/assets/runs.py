@@ -83,8 +83,9 @@ class Jobs:
             from herijk.assets.cluster import read_seasons  # noqa: PLC0415 - needs the extra dask
         except ImportError as error:
             raise MissingKnowledgeError(
-                f"to read on {address} a library is needed that is not there; install it with: "
-                "pip install 'herijk[dask]'"
+                "to read on {} a library is needed that is not there; install it "
+                "with: pip install 'herijk[dask]'",
+                address,
             ) from error
         read = read_seasons(self.instance, address, folders, seasons, {STEP_TAG: READ})
         self._keep(read.checks)
@@ -138,8 +139,10 @@ def instance_of(store: Store) -> Iterator[dg.DagsterInstance]:
     except (yaml.YAMLError, dg.DagsterError) as error:
         what = " ".join(str(error).split())[:200]
         raise MissingKnowledgeError(
-            f"{home / 'dagster.yaml'} cannot be understood: {what}. Mend it, or remove it: it is "
-            "made again with the usual settings"
+            "{} cannot be understood: {}. Mend it, or remove it: it is made again "
+            "with the usual settings",
+            home / "dagster.yaml",
+            what,
         ) from error
     with opened as instance:
         yield instance

@@ -40,7 +40,7 @@ def site(setup: Setup) -> dg.MaterializeResult:
 def _reproducibility(store: Store) -> str:
     """The figure that says best whether a rebuild made things better, as a picture."""
     from herijk.dashboards.figures import png  # noqa: PLC0415 - Altair takes a second to import
-    from herijk.dashboards.words import speaker  # noqa: PLC0415
+    from herijk.words.catalogue import speaker  # noqa: PLC0415
 
     with Views(store) as views:
         picture = png("reproducibility", views.table("reproducibility"), speaker("nl"))

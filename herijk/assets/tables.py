@@ -4,12 +4,12 @@ from collections.abc import Collection, Iterator
 from typing import Any
 
 import dagster as dg
-import dataframely as dy
 import polars as pl
 
 from herijk.assets.partitions import methods
 from herijk.assets.resources import Setup
 from herijk.assets.shown import preview
+from herijk.tables.declare import dy
 from herijk.tables.lake import SEASON_TABLES
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.build.graph import STEPS

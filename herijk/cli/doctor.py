@@ -12,6 +12,7 @@ import typer
 
 from herijk.cli.arguments import AsJson, DataFolder, show
 from herijk.pipeline.errors import HerijkError
+from herijk.words import LANGUAGE, spoken, tell
 
 if TYPE_CHECKING:
     from herijk.warehouse.queries.reports import RebuildReport
@@ -56,20 +57,20 @@ def _findings(data: Path, archive: Path | None) -> Iterator[Finding]:
     yield Finding("Herijk", sound=True, found=version("herijk"))
     yield Finding("Python", sys.version_info >= (3, 11), sys.version.split()[0])
     yield _space(data)
-    yield _tried("settings", lambda: f"applies {', '.join(read_settings(data).applied)}")
+    yield _tried("settings", lambda: tell("applies {}", ", ".join(read_settings(data).applied)))
     known = known_methods(data)
     for name in known.own:
-        yield _tried(f"method {name}", partial(_title, known, name))
+        yield _tried(tell("method {}", name), partial(_title, known, name))
     if data.is_dir():
         yield _tried("lock", lambda: _taken(only_writer(data)))
         yield _tried("tables", lambda: _tows(rebuild_report(Store(data))))
     else:
         yield Finding(
-            "data folder", sound=True, found=f"{data} is not there yet; a rebuild makes it"
+            "data folder", sound=True, found=tell("{} is not there yet; a rebuild makes it", data)
         )
     if archive is not None:
         there = archive.is_dir()
-        yield Finding("archive", there, str(archive) if there else f"{archive} is no folder")
+        yield Finding("archive", there, str(archive) if there else tell("{} is no folder", archive))
 
 
 def _space(data: Path) -> Finding:
@@ -77,14 +78,14 @@ def _space(data: Path) -> Finding:
         folder for folder in (data.resolve(), *data.resolve().parents) if folder.exists()
     )
     free = shutil.disk_usage(nearest).free
-    return Finding("disk", free >= LEAST_FREE, f"{free / 2**30:.1f} GB free at {nearest}")
+    return Finding("disk", free >= LEAST_FREE, tell("{:.1f} GB free at {}", free / 2**30, nearest))
 
 
 def _tried(what: str, look: Callable[[], str]) -> Finding:
     try:
         return Finding(what, sound=True, found=look())
     except (HerijkError, OSError) as error:
-        return Finding(what, sound=False, found=str(error))
+        return Finding(what, sound=False, found=spoken(error, LANGUAGE.get()))
 
 
 def _title(known: "KnownMethods", name: str) -> str:
@@ -98,11 +99,11 @@ def _taken(lock: AbstractContextManager[None]) -> str:
 
 def _tows(report: "RebuildReport") -> str:
     tows = sum(season["tows"] for season in report.seasons)
-    return f"{tows} tows in {len(report.seasons)} seasons"
+    return tell("{} tows in {} seasons", tows, len(report.seasons))
 
 
 def _text(report: dict[str, Any]) -> str:
     return "\n".join(
-        f"{'ok' if f['sound'] else 'WRONG':5}  {f['what']}: {f['found']}"
+        f"{tell('ok' if f['sound'] else 'WRONG'):5}  {tell(f['what'])}: {tell(f['found'])}"
         for f in report["findings"]
     )

@@ -1,16 +1,16 @@
 """The commands that make documents for paper: certificates, and a proposal to vote on."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from herijk.cli.arguments import AsJson, AsOf, DataFolder, show_files
+from herijk.words import LANGUAGE, tell
 
 if TYPE_CHECKING:
     from herijk.warehouse.store.store import Store
 
-Language = Annotated[Literal["nl", "en"], typer.Option("--lang", help="Language: nl or en.")]
 Target = Annotated[Path | None, typer.Option("--out", metavar="FILE", help="File to write, a PDF.")]
 
 
@@ -31,7 +31,6 @@ def certificate(
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help="File to write: a PDF, or .html for a page.")
     ] = None,
-    lang: Language = "nl",
     as_json: AsJson = False,
 ) -> None:
     """The certificate of a boat, a page per crew; or of all boats of an edition in one file."""
@@ -44,7 +43,7 @@ def certificate(
     with Views(store) as views:
         chosen = edition or current_edition(views)
         as_page = out is not None and out.suffix == ".html"
-        made = certificates(views, chosen, fsn_no, lang, as_page)
+        made = certificates(views, chosen, fsn_no, LANGUAGE.get(), as_page)
     name = "-".join(filter(None, ("certificate", chosen, fsn_no)))
     _write(made, out or _documents(store) / f"{name}.pdf", as_json)
 
@@ -61,9 +60,9 @@ def pages(
     from herijk.warehouse.store.store import Store
 
     if out.exists() and not (out / "static" / OWN_FILES[0]).is_file():
-        raise MissingKnowledgeError(f"{out} is there and holds no pages; give a new folder")
+        raise MissingKnowledgeError("{} is there and holds no pages; give a new folder", out)
     made = build_pages(Store(data), out, as_of)
-    typer.echo(f"{made['files']} files in {out}; begin with index.html")
+    typer.echo(tell("{} files in {}; begin with index.html", made["files"], out))
 
 
 def proposal(
@@ -76,7 +75,6 @@ def proposal(
         str, typer.Option(metavar="EDITION", help="Edition that counts now, or a draft.")
     ] = "concept-as-published",
     out: Target = None,
-    lang: Language = "nl",
     as_json: AsJson = False,
 ) -> None:
     """What a board sends its members before they vote: what changes, for whom, how uncertain."""
@@ -89,7 +87,7 @@ def proposal(
         known_methods(data).text(method)
     store = Store(data)
     with Views(store) as views:
-        made = make_proposal(views, methods, against, lang)
+        made = make_proposal(views, methods, against, LANGUAGE.get())
     name = "-".join(("proposal", *methods))
     _write(made, out or _documents(store) / f"{name}.pdf", as_json)
 

@@ -4,6 +4,7 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any, Final
 
 from herijk.cli.text import SIMULATED, table
+from herijk.words import tell
 
 if TYPE_CHECKING:
     from herijk.warehouse.queries.due import DueReport
@@ -30,11 +31,19 @@ URGENCIES: Final = {
 def due(report: "DueReport") -> str:
     """Who is due, at what speed, and which boats to tow again."""
     counts = Counter(line["urgency"] for line in report.lines)
-    parts = [SIMULATED] if report.simulated else []
+    parts = [tell(SIMULATED)] if report.simulated else []
     parts.append(
-        f"Due list as of {report.as_of}{'' if report.asked else LAST_DAY}; curves of method "
-        f"{report.method}. {len(report.lines)} boats and crews: {counts['expired']} expired, "
-        f"{counts['this_year']} expire this year, {counts['without_curve']} without a curve."
+        tell(
+            "Due list as of {}{}; curves of method {}. {} boats and crews: {} expired, "
+            "{} expire this year, {} without a curve.",
+            report.as_of,
+            "" if report.asked else LAST_DAY,
+            report.method,
+            len(report.lines),
+            counts["expired"],
+            counts["this_year"],
+            counts["without_curve"],
+        )
     )
     parts += [
         f"{title}\n{_lines([line for line in report.lines if line['urgency'] == urgency])}"
@@ -42,9 +51,12 @@ def due(report: "DueReport") -> str:
         if counts[urgency]
     ]
     parts.append(
-        "The speed takes 70-90 W per rower (men) or 40-55 W (women) on the known curve. A boat "
-        "that was altered\nsince may be towed at another one. * lies outside 85-115 % of the last "
-        "declared speed, where its curve does not hold."
+        tell(
+            "The speed takes 70-90 W per rower (men) or 40-55 W (women) on the known "
+            "curve. A boat that was altered\nsince may be towed at another one. * "
+            "lies outside 85-115 % of the last declared speed, where its curve does "
+            "not hold."
+        )
     )
     parts.append(_choice(report.retow_choice))
     return "\n\n".join(parts)
@@ -77,9 +89,11 @@ def _line(line: "Row") -> tuple[Any, ...]:
 
 
 def _choice(choice: list["Row"]) -> str:
-    title = "To narrow the season factors most, tow these again, in this order"
+    title = tell("To narrow the season factors most, tow these again, in this order")
     if not choice:
-        return f"{title}: nobody, this method estimates no log error, so no tow would narrow it."
+        return tell(
+            "{}: nobody, this method estimates no log error, so no tow would narrow it.", title
+        )
     rows = [
         (
             c["position"],
@@ -89,22 +103,26 @@ def _choice(choice: list["Row"]) -> str:
             c["seasons"],
             _day(c["valid_until"]),
             _speed(c["tow_speed_m_s"]),
-            f"{100 * c['factor_sd_after_ratio']:.3f} %",
+            tell("{:.3f} %", 100 * c["factor_sd_after_ratio"]),
         )
         for c in choice
     ]
     head = ("", "boat", "name", "crew", "towed in", "valid until", "tow at m/s", "uncertainty then")
     before = 100 * choice[0]["factor_sd_before_ratio"]
     after = 100 * choice[-1]["factor_sd_after_ratio"]
-    return (
-        f"{title}.\nAll of them together bring the uncertainty of a season's log error from "
-        f"{before:.3f} % to {after:.3f} % of speed (standard\ndeviation); the last column says how "
-        f"far it is after each.\n{table(head, rows)}"
+    return tell(
+        "{}.\nAll of them together bring the uncertainty of a season's log error from "
+        "{:.3f} % to {:.3f} % of speed (standard\ndeviation); the last column says "
+        "how far it is after each.\n{}",
+        title,
+        before,
+        after,
+        table(head, rows),
     )
 
 
 def _speed(value: float | None) -> str:
-    return "-" if value is None else f"{value:.2f}"
+    return "-" if value is None else tell("{:.2f}", value)
 
 
 def _day(value: Any) -> str:

@@ -10,10 +10,9 @@ from typing import Annotated
 
 import typer
 
-from herijk.cli import due_text
-from herijk.cli import editions_text as text
 from herijk.cli.arguments import AsJson, AsOf, DataFolder, read_day, show
 from herijk.cli.methods import known_methods
+from herijk.words import say
 
 
 def add_to(app: typer.Typer) -> None:
@@ -24,7 +23,7 @@ def add_to(app: typer.Typer) -> None:
 
 def _one_of(known: tuple[str, ...], value: str, option: str) -> str:
     if value not in known:
-        raise typer.BadParameter(f"{option} is one of {', '.join(known)}, not {value!r}")
+        raise typer.BadParameter(say("{} is one of {}, not {!r}", option, ", ".join(known), value))
     return value
 
 
@@ -40,6 +39,7 @@ def register(
     as_json: AsJson = False,
 ) -> None:
     """The register: every line with its sizes, and whether it is valid on a day."""
+    from herijk.cli import editions_text as text
     from herijk.warehouse.queries.register import register_report
     from herijk.warehouse.store.store import Store
 
@@ -77,6 +77,7 @@ def publish(
     as_json: AsJson = False,
 ) -> None:
     """Freeze an edition of the register: it is never changed afterwards."""
+    from herijk.cli import editions_text as text
     from herijk.warehouse.editions.publish import Terms, lines_to_look_at, publish_printed
     from herijk.warehouse.editions.publish import publish as publish_edition
     from herijk.warehouse.store.editions import read_edition
@@ -113,6 +114,7 @@ def diff(
     as_json: AsJson = False,
 ) -> None:
     """Two editions side by side: who gains, who loses, why, and what it does to races."""
+    from herijk.cli import editions_text as text
     from herijk.pipeline.register.replay import FATIGUES, RaceRules
     from herijk.warehouse.editions import compare
     from herijk.warehouse.store.store import Store
@@ -133,6 +135,7 @@ def diff(
 
 def verify(data: DataFolder = Path("data"), as_json: AsJson = False) -> None:
     """Check that editions and archive are what they were, and make the editions again."""
+    from herijk.cli import editions_text as text
     from herijk.warehouse.editions.verify import verify as verify_editions
     from herijk.warehouse.store.store import Store
 
@@ -149,6 +152,7 @@ def lineage(
     as_json: AsJson = False,
 ) -> None:
     """From a printed line to the files, runs and seconds behind it."""
+    from herijk.cli import editions_text as text
     from herijk.warehouse.editions.lineage import lineage as find_lineage
     from herijk.warehouse.store.store import Store
 
@@ -164,6 +168,7 @@ def due(
     as_json: AsJson = False,
 ) -> None:
     """Whose tow expires when, at what speed to tow each next, and which boats to tow again."""
+    from herijk.cli import due_text
     from herijk.warehouse.queries.due import due_report
     from herijk.warehouse.store.store import Store
 

@@ -6,6 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from herijk.cli.arguments import AsJson, show
+from herijk.words import tell
 
 
 def fit(
@@ -25,7 +26,7 @@ def fit(
     from herijk.warehouse.archive.points import read_points
 
     if not file.is_file():
-        raise MissingKnowledgeError(f"there is no file {file}")
+        raise MissingKnowledgeError("there is no file {}", file)
     points = read_points(file, speed, force)
     fitted = fit_curve(points["speed_m_s"], cw_kg_m=points["cw_kg_m"])
     speeds = points["speed_m_s"].unique().sort().to_list()
@@ -47,15 +48,21 @@ def fit(
 def _text(report: dict[str, Any]) -> str:
     """The curve, its B in words, and Cw at the speeds that were measured."""
     rows = [
-        f"  {r['speed_m_s']:8.3f}  {r['value']:8.3f}  {_number(r['lo'])} to {_number(r['hi'])}"
+        tell(
+            "  {:8.3f}  {:8.3f}  {} to {}",
+            r["speed_m_s"],
+            r["value"],
+            _number(r["lo"]),
+            _number(r["hi"]),
+        )
         for r in report["cw_kg_m"]
     ]
     return "\n".join(
         [
-            f"{report['file']}: {report['points']} points",
-            f"A = {report['a_kg_m']:.3f} kg/m; {_b_in_words(report)}",
-            "Cw [kg/m] with its 95 % interval, from the scatter of the points alone:",
-            "  v [m/s]       Cw  interval",
+            tell("{}: {} points", report["file"], report["points"]),
+            tell("A = {:.3f} kg/m; {}", report["a_kg_m"], _b_in_words(report)),
+            tell("Cw [kg/m] with its 95 % interval, from the scatter of the points alone:"),
+            tell("  v [m/s]       Cw  interval"),
             *rows,
         ]
     )
@@ -63,13 +70,17 @@ def _text(report: dict[str, Any]) -> str:
 
 def _b_in_words(report: dict[str, Any]) -> str:
     b = report["b_m_s"]
-    low = f"B above {b['lo']:.2f} m/s is possible" if b["lo"] is not None else "any B is possible"
+    low = (
+        tell("B above {:.2f} m/s is possible", b["lo"])
+        if b["lo"] is not None
+        else tell("any B is possible")
+    )
     if b["value"] is None:
-        return f"the points show no bend, so there is no B ({low})"
+        return tell("the points show no bend, so there is no B ({})", low)
     if not report["b_is_determined"]:
-        return f"B is not determined: the best fit has {b['value']:.2f} m/s, but {low}"
-    return f"B = {b['value']:.3f} m/s ({b['lo']:.3f} to {b['hi']:.3f})"
+        return tell("B is not determined: the best fit has {:.2f} m/s, but {}", b["value"], low)
+    return tell("B = {:.3f} m/s ({:.3f} to {:.3f})", b["value"], b["lo"], b["hi"])
 
 
 def _number(value: float | None) -> str:
-    return "without bound" if value is None else f"{value:.3f}"
+    return tell("without bound") if value is None else tell("{:.3f}", value)

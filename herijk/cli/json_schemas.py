@@ -8,9 +8,9 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any, Final
 
-import dataframely as dy
 import polars as pl
 
+from herijk.tables.declare import dy
 from herijk.tables.schemas import TABLES
 
 Schema = dict[str, Any]
@@ -101,7 +101,9 @@ def _rebuild() -> Schema:
         "lowest_ratio": number("the lowest", maybe=True),
         "highest_ratio": number("the highest", maybe=True),
     }
-    fault = columns("quarantine", "path", "tow_id", "line", "message")
+    fault = columns(
+        *("quarantine", "path", "tow_id", "line", "message", "message_nl", "reason_code")
+    )
     return record(
         "What a rebuild did and what the tables hold.",
         {
@@ -114,7 +116,7 @@ def _rebuild() -> Schema:
                 "what was set aside, by reason",
                 columns("quarantine", "lost", "reason_code") | {"number": whole("how often")},
             ),
-            "first_faults": rows("the first faults", fault | {"number": whole("how often")}),
+            "first_faults": rows("the first of each cause", fault | {"number": whole("how often")}),
             "curves": rows(
                 "curves by method and status",
                 columns("curves", "method", "status") | {"number": whole("curves")},

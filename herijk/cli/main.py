@@ -25,6 +25,7 @@ from herijk.cli.doctor import doctor
 from herijk.cli.fit import fit
 from herijk.cli.overview import Overview, defaults_of, folders_here
 from herijk.pipeline.errors import BrokenPromiseError, HerijkError, unexpected
+from herijk.words import LANGUAGE, say, spoken, tell
 
 if TYPE_CHECKING:
     from herijk.warehouse.store.store import Store
@@ -53,7 +54,7 @@ def main() -> None:
     try:
         app()
     except HerijkError as error:
-        typer.echo(f"herijk: {error}", err=True)
+        typer.echo(f"herijk: {spoken(error, LANGUAGE.get())}", err=True)
         sys.exit(1)
     except (KeyboardInterrupt, SystemExit):
         raise
@@ -71,10 +72,12 @@ def _written_down(error: BaseException) -> str:
         "w", prefix="herijk-error-", suffix=".txt", encoding="utf-8", delete=False
     ) as file:
         file.write("".join(traceback.format_exception(error)))
-    return (
-        f"{unexpected(error)}. Nothing was published. Details are in {file.name}; please send it "
-        "to whoever maintains Herijk"
+    said = say(
+        "{}. Nothing was published. Details are in {}; please send it to whoever maintains Herijk",
+        unexpected(error),
+        file.name,
     )
+    return said.spoken(LANGUAGE.get())
 
 
 def _version(wanted: bool) -> None:
@@ -133,8 +136,10 @@ def rebuild(
     from herijk.assets.report import failed_checks, tell
     from herijk.assets.settings import read_settings
     from herijk.cli.progress import TerminalProgress
+    from herijk.dashboards.report import headlines
     from herijk.warehouse.queries import reports
     from herijk.warehouse.store.store import Store
+    from herijk.words.catalogue import speaker
 
     known = methods.known_methods(data)
     chosen = [known.kept(name) for name in method or read_settings(data).applied]
@@ -145,14 +150,15 @@ def rebuild(
         _tell_failure(data, error)
         raise
     report = reports.rebuild_report(Store(data))
-    as_text = text.rebuild(report, done.work, done.report["headlines"])
+    news = headlines(done.report, speaker(LANGUAGE.get()))
+    as_text = text.rebuild(report, done.work, news)
     everything = {**vars(report), "done": done.work, "since": done.report}
     show(everything, lambda _: as_text, as_json)
     notifier = notifier_of(str(data), read_settings(data))
     for problem in tell(notifier, done.report):
         typer.echo(f"herijk: {problem}", err=True)
     if failed := failed_checks(done.report):
-        raise BrokenPromiseError(f"a check failed: {'; '.join(failed)}")
+        raise BrokenPromiseError("a check failed: {}", "; ".join(failed))
 
 
 def _tell_failure(data: Path, error: Exception) -> None:
@@ -286,22 +292,18 @@ def slides(
         list[str] | None,
         typer.Option(help="Boat through the years, by number or name; repeat for more."),
     ] = None,
-    language: Annotated[str, typer.Option(help="nl or en.", metavar="nl|en")] = "nl",
     as_json: AsJson = False,
 ) -> None:
     """Every chart of the 2015 presentation over this archive, as SVG and PNG and in one PDF."""
     from herijk.dashboards.slide_book import Asked
     from herijk.dashboards.slides import write_slides
-    from herijk.dashboards.words import LANGUAGES
     from herijk.warehouse.store.store import Store
 
-    if language not in LANGUAGES:
-        raise typer.BadParameter(f"--language is one of {', '.join(LANGUAGES)}")
     if len(boat_type or ()) > MOST_TYPES:
         raise typer.BadParameter("give one or two types")
     store = Store(data)
     asked = Asked(boat_type or (), tows, boat or ())
-    written = write_slides(store, out or store.root / "slides", language, asked)
+    written = write_slides(store, out or store.root / "slides", LANGUAGE.get(), asked)
     show_files(written, as_json)
 
 
@@ -312,8 +314,12 @@ def _plots(store: "Store", report: dict[str, Any], folder: Path) -> list[Path]:
     try:
         return write_audit_plots(store, report, folder)
     except OSError as error:
-        reason = f"herijk: no plots, for {folder} cannot be written ({error.strerror})"
-        typer.echo(f"{reason}; give another folder with --plots", err=True)
+        said = tell(
+            "no plots, for {} cannot be written ({}); give another folder with --plots",
+            folder,
+            error.strerror,
+        )
+        typer.echo(f"herijk: {said}", err=True)
         return []
 
 
@@ -333,7 +339,9 @@ def workbench(
 
     listening, store = listen(LOOPBACK, port), Store(data)
     bench = Bench(store, History.of(store))
-    typer.echo(f"The workbench is at {address(listening)} (on this machine only); Ctrl-C stops it.")
+    typer.echo(
+        tell("The workbench is at {} (on this machine only); Ctrl-C stops it.", address(listening))
+    )
     with suppress(KeyboardInterrupt):
         serving(bench).run(sockets=[listening])
 
@@ -370,7 +378,7 @@ def simulate(
     from herijk.warehouse.store.machine_faults import machine_faults_explained
 
     if worlds:
-        typer.echo("\n".join(f"{name:18s}{named.about}" for name, named in WORLDS.items()))
+        typer.echo("\n".join(f"{name:18s}{tell(named.about)}" for name, named in WORLDS.items()))
         return
     if directory is None:
         raise typer.BadParameter("name the folder to make", param_hint="DIR")
@@ -383,7 +391,7 @@ def simulate(
             directory, simulate_world(settings), lambda done, _: progress.tow_read(str(done), False)
         )
     made = {"archive": str(directory), "truth": str(truth)}
-    show(made, "Simulated archive: {archive}\nIts truth: {truth}".format_map, as_json)
+    show(made, lambda m: tell("Simulated archive: {archive}\nIts truth: {truth}", **m), as_json)
 
 
 @app.command()
@@ -402,5 +410,7 @@ def schema(
         return
     name = " ".join(command)
     if name not in schemas():
-        raise typer.BadParameter(f"{name!r} has no --json; these have: {', '.join(schemas())}")
+        raise typer.BadParameter(
+            say("{!r} has no --json; these have: {}", name, ", ".join(schemas()))
+        )
     typer.echo(json.dumps(schema_of(name), indent=1, ensure_ascii=False))

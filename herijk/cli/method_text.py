@@ -15,26 +15,28 @@ from herijk.pipeline.method.definition import (
     Wind,
     Window,
 )
+from herijk.words import LANGUAGE, tell
 
 DIFFERS = "*"
 
 
 def method_in_words(shown: Method, parent: Method | None) -> str:
     """The whole method; sentences that differ from those of `parent` are marked."""
-    lines = [f"{shown.name}: {shown.title_en}", "", shown.description.strip(), ""]
+    title = shown.title if LANGUAGE.get() == "nl" else shown.title_en
+    lines = [f"{shown.name}: {title}", "", shown.description.strip(), ""]
     if parent is not None:
-        lines += [f"Extends {parent.name}; what differs from it is marked {DIFFERS}.", ""]
+        lines += [tell("Extends {}; what differs from it is marked {}.", parent.name, DIFFERS), ""]
     for block in shown.ranges:
         lines += [_seasons(block), *_sentences(block, parent), ""]
-    lines.append(f"Content hash {shown.content_hash}")
+    lines.append(tell("Content hash {}", shown.content_hash))
     return "\n".join(lines)
 
 
 def _seasons(block: SeasonSteps) -> str:
     if block.first == block.last:
-        return f"Season {block.first}"
-    last = "the present" if block.last == LAST_SEASON else str(block.last)
-    return f"Seasons {block.first} to {last}"
+        return tell("Season {}", block.first)
+    last = tell("the present") if block.last == LAST_SEASON else str(block.last)
+    return tell("Seasons {} to {}", block.first, last)
 
 
 def _sentences(block: SeasonSteps, parent: Method | None) -> list[str]:
@@ -62,99 +64,119 @@ def steps_in_words(steps: Steps) -> dict[str, str]:
 
 
 def _speed(step: Speed) -> str:
-    source = {"log1": "log 1", "log2": "log 2", "mean": "mean of both logs where they agree"}
+    source = {
+        "log1": tell("log 1"),
+        "log2": tell("log 2"),
+        "mean": tell("mean of both logs where they agree"),
+    }
     words = source[step.source]
     if step.correction == "none":
-        return f"{words}, as it reads."
+        return tell("{}, as it reads.", words)
     if step.correction == "estimated":
-        return f"{words}, with the season's factor as estimated from repeat tows and GPS."
+        return tell("{}, with the season's factor as estimated from repeat tows and GPS.", words)
     factor = (
-        f"multiplied by {1 + step.correction_ratio:g}"
+        tell("multiplied by {:g}", 1 + step.correction_ratio)
         if step.operation == "multiply"
-        else f"divided by {1 - step.correction_ratio:g}"
+        else tell("divided by {:g}", 1 - step.correction_ratio)
     )
-    return f"{words}, {factor}; a percentage in the tow list goes before."
+    return tell("{}, {}; a percentage in the tow list goes before.", words, factor)
 
 
 def _calibration(step: Calibration) -> str:
     return {
-        "none": "none.",
-        "gps_per_tow": "one factor per file from GPS speed / log speed, as many runs out as back.",
-        "gps_per_season": "one factor a season, the mean of its tows' GPS speed / log speed.",
+        "none": tell("none."),
+        "gps_per_tow": tell(
+            "one factor per file from GPS speed / log speed, as many runs out as back."
+        ),
+        "gps_per_season": tell("one factor a season, the mean of its tows' GPS speed / log speed."),
     }[step.rule]
 
 
 def _window(step: Window) -> str:
     if step.rule == "all":
-        return "all samples of a run."
-    return (
-        f"the steady part of a run, at least {step.minimum_s:g} s; ends equal within "
-        f"{step.speed_drift_m_s:g} m/s, {100 * step.force_ends_ratio:g} % of force and "
-        f"{step.wind_ends_m_s:g} m/s of wind where that can be; without "
-        f"ramps over {step.ramp_m_s:g} m/s, force peaks over {step.peak_sd:g} and gusts over "
-        f"{step.gust_sd:g} deviations."
+        return tell("all samples of a run.")
+    return tell(
+        "the steady part of a run, at least {:g} s; ends equal within {:g} m/s, {:g} "
+        "% of force and {:g} m/s of wind where that can be; without ramps over {:g} "
+        "m/s, force peaks over {:g} and gusts over {:g} deviations.",
+        step.minimum_s,
+        step.speed_drift_m_s,
+        100 * step.force_ends_ratio,
+        step.wind_ends_m_s,
+        step.ramp_m_s,
+        step.peak_sd,
+        step.gust_sd,
     )
 
 
 def _wind(step: Wind) -> str:
     if step.model == "none":
-        return "no correction."
-    model = "head wind only" if step.model == "head" else "oblique wind on front and side"
-    values = f"{step.ahead:g} from ahead, {step.behind:g} from behind"
+        return tell("no correction.")
+    model = (
+        tell("head wind only") if step.model == "head" else tell("oblique wind on front and side")
+    )
+    values = tell("{:g} from ahead, {:g} from behind", step.ahead, step.behind)
     if step.model == "oblique":
-        values += f", {step.side:g} on the side"
+        values += tell(", {:g} on the side", step.side)
     coefficients = {
-        "fixed": f"fixed coefficients ({values})",
-        "per_run": "coefficients searched run by run between 0 and 1",
-        "per_tow": "one coefficient a tow, searched between 0.3 and 0.7",
-        "archive": "one coefficient found for the whole archive",
+        "fixed": tell("fixed coefficients ({})", values),
+        "per_run": tell("coefficients searched run by run between 0 and 1"),
+        "per_tow": tell("one coefficient a tow, searched between 0.3 and 0.7"),
+        "archive": tell("one coefficient found for the whole archive"),
     }[step.coefficients]
-    taken = f"wind averaged over {step.averaging_s} s" if step.averaging_s else "sample by sample"
+    taken = (
+        tell("wind averaged over {} s", step.averaging_s)
+        if step.averaging_s
+        else tell("sample by sample")
+    )
     if step.anemometer == "estimated":
-        taken += ", scaled per season by runs out and back"
+        taken += tell(", scaled per season by runs out and back")
     reading = {
         "as_felt": "",
-        "cw_vac_2014": "; 'Cw vac' read as on the screens of 2014",
-        "cw_opt_2014": "; 'Cw opt' read as on the screens of 2014: no still air put back",
+        "cw_vac_2014": tell("; 'Cw vac' read as on the screens of 2014"),
+        "cw_opt_2014": tell("; 'Cw opt' read as on the screens of 2014: no still air put back"),
     }[step.reading]
     return f"{model}, {coefficients}, {taken}{reading}."
 
 
 def _run_point(step: RunPoint) -> str:
     words = (
-        "mean of force / speed squared of all samples"
+        tell("mean of force / speed squared of all samples")
         if step.estimator == "mean_of_ratios"
-        else "mean force / mean speed squared"
+        else tell("mean force / mean speed squared")
     )
     if step.inertia == "none":
         return f"{words}."
-    return (
-        f"{words}, less what accelerated the boat (water moved along: {step.added_mass_ratio:g})."
+    return tell(
+        "{}, less what accelerated the boat (water moved along: {:g}).",
+        words,
+        step.added_mass_ratio,
     )
 
 
 def _temperature(step: Temperature) -> str:
     if step.rule == "none":
-        return "the water as it was."
-    return f"friction brought to water of {step.reference_c:g} C by the ITTC-57 line."
+        return tell("the water as it was.")
+    return tell("friction brought to water of {:g} C by the ITTC-57 line.", step.reference_c)
 
 
 def _runs(step: Runs) -> str:
-    return (
-        f"at least {step.minimum} runs, both ways; none faster than "
-        f"{100 * step.highest_target_ratio:g} % of the declared speed."
+    return tell(
+        "at least {} runs, both ways; none faster than {:g} % of the declared speed.",
+        step.minimum,
+        100 * step.highest_target_ratio,
     )
 
 
 def _curve(step: Curve) -> str:
     return {
-        "free": "least squares in Cw, B free.",
-        "capped": f"least squares in Cw, B at most {step.cap_hull_speeds:g} x hull speed.",
-        "hull_speed": "least squares for A alone, B is the hull speed.",
+        "free": tell("least squares in Cw, B free."),
+        "capped": tell("least squares in Cw, B at most {:g} x hull speed.", step.cap_hull_speeds),
+        "hull_speed": tell("least squares for A alone, B is the hull speed."),
     }[step.b]
 
 
 def _assessment(step: Assessment) -> str:
     if not step.reject:
-        return "flags are shown; none rejects a tow."
-    return f"a tow is rejected for: {', '.join(step.reject)}."
+        return tell("flags are shown; none rejects a tow.")
+    return tell("a tow is rejected for: {}.", ", ".join(step.reject))

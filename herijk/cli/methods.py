@@ -6,13 +6,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from herijk.cli.arguments import AsJson, DataFolder, show, show_files
+from herijk.cli.overview import Overview
 from herijk.pipeline.errors import HerijkError
+from herijk.words import tell
 
 if TYPE_CHECKING:
     from herijk.pipeline.method.definition import Method
     from herijk.warehouse.store.methods import KnownMethods
 
 app = typer.Typer(
+    cls=Overview,
     help="The methods: those that ship, and your own.",
     rich_markup_mode=None,
 )
@@ -62,7 +65,7 @@ def show_method(name: Named, data: DataFolder = Path("data"), as_json: AsJson = 
 def check(file: Named, data: DataFolder = Path("data"), as_json: AsJson = False) -> None:
     """Read a method file and say in words what it does; an error is told with its line."""
     known = known_methods(data)
-    sound = f"The file is sound. Try it: herijk rebase {file}"
+    sound = tell("The file is sound. Try it: herijk rebase {}", file)
     show(_one(known.named(file), known), lambda found: f"{found['words']}\n\n{sound}", as_json)
 
 
@@ -82,13 +85,13 @@ def new(
     known = known_methods(data)
     file = Path(f"{name}.toml")
     if name in known.names:
-        raise HerijkError(f"{name} is the name of another method; choose another")
+        raise HerijkError("{} is the name of another method; choose another", name)
     text = beginning_text(name, known.get(base))
     try:
         write_new(file, text)
     except FileExistsError as error:
-        raise HerijkError(f"{file} is there already; choose another name") from error
-    said = f"{file} extends {base}. Change it, then: herijk methods check {file}"
+        raise HerijkError("{} is there already; choose another name", file) from error
+    said = tell("{} extends {}. Change it, then: herijk methods check {}", file, base, file)
     show_files([file], as_json, said)
 
 
@@ -136,7 +139,7 @@ def _diff_text(report: dict[str, Any]) -> str:
     from herijk.cli import text
 
     if not report["options"]:
-        return f"{report['from']} and {report['to']} say the same of every season."
+        return tell("{} and {} say the same of every season.", report["from"], report["to"])
     rows = [
         (
             f"{option['step']}.{option['option']}",

@@ -13,6 +13,8 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
+from herijk.words import tell
+
 
 class TerminalProgress:
     """Tows read and set aside, with the time left; a line per step. Writes to stderr."""
@@ -23,9 +25,9 @@ class TerminalProgress:
             TextColumn("{task.description}"),
             BarColumn(),
             MofNCompleteColumn(),
-            TextColumn("tows, {task.fields[set_aside]} set aside,"),
+            TextColumn(tell("tows, {task.fields[set_aside]} set aside,")),
             TimeRemainingColumn(),
-            TextColumn("left"),
+            TextColumn(tell("left")),
             console=console,
             disable=not sys.stderr.isatty(),
         )
@@ -47,7 +49,7 @@ class TerminalProgress:
     def expect(self, tows: int) -> None:
         """So many tows are going to be handled."""
         if tows:
-            self._task = self._bar.add_task("tows", total=tows, set_aside=0)
+            self._task = self._bar.add_task(tell("tows"), total=tows, set_aside=0)
 
     def tow_read(self, tow_id: str, set_aside: bool) -> None:
         """One tow is done."""
@@ -58,4 +60,4 @@ class TerminalProgress:
     def step(self, what: str) -> None:
         """A step begins."""
         if not self._bar.disable:
-            self._bar.console.print(what, style="dim")
+            self._bar.console.print(tell(what), style="dim")

@@ -26,6 +26,7 @@ from herijk.assets.webserver import MAY_START, READ_ONLY
 from herijk.dashboards.guard import LOOPBACK, guarded, listen
 from herijk.pipeline.errors import UnavailableError
 from herijk.warehouse.store.files import WINDOWS
+from herijk.words import LANGUAGE, say
 
 SHOWN: Final = ("site", "report")
 """What of the data folder the site's address shows."""
@@ -75,7 +76,7 @@ def serve_until_stopped(what: Served, home: Path, tell: Callable[[str], None]) -
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
     if what.host not in LOOPBACK:
-        tell(EXPOSED.format(host=what.host))
+        tell(say(EXPOSED, host=what.host).spoken(LANGUAGE.get()))
     listen(what.host, what.port).close()  # told now, not by a child
     with _site(what), _dagster(what, home) as children:
         tell(f"Site: {what.site}/index.html")
@@ -84,8 +85,9 @@ def serve_until_stopped(what: Served, home: Path, tell: Callable[[str], None]) -
             for name, child in children.items():
                 if child.poll() is not None:
                     raise UnavailableError(
-                        f"{name} ended by itself with status {child.returncode}; what it said "
-                        "stands above"
+                        "{} ended by itself with status {}; what it said stands above",
+                        name,
+                        child.returncode,
                     )
 
 

@@ -6,6 +6,8 @@ The pages of `herijk audit` are in `cli.audit_text`.
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from herijk.words import LANGUAGE, code, number, tell
+
 if TYPE_CHECKING:
     from herijk.warehouse.queries.rebase import RebaseReport
     from herijk.warehouse.queries.reports import LogErrorReport, RebuildReport
@@ -17,7 +19,8 @@ SIMULATED = "SIMULATED archive: made by `herijk simulate`, not the federation's 
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
-    """Columns lined up; numbers to the right."""
+    """Columns lined up, their heads and what they say in words; numbers to the right."""
+    head = [tell(title) for title in head]
     held = [list(row) for row in rows]
     cells = [[_cell(value) for value in row] for row in held]
     widths = [max(len(line[i]) for line in [list(head), *cells]) for i in range(len(head))]
@@ -35,44 +38,49 @@ def _cell(value: Any) -> str:
     if value is None:
         return "-"
     if isinstance(value, float):
-        return f"{value:.3f}"
-    return str(value)
+        return number(value, ".3f")
+    return tell(value) if isinstance(value, str) else str(value)
 
 
 def _per_cent(ratio: float | None) -> str:
-    return "-" if ratio is None else f"{100 * (ratio - 1):+.1f} %"
+    return "-" if ratio is None else number(100 * (ratio - 1), "+z.1f") + " %"
 
 
 def rebuild(report: "RebuildReport", done: Row, headlines: list[str]) -> str:
     """The closing summary of a rebuild."""
-    parts = [SIMULATED] if report.simulated else []
+    parts = [tell(SIMULATED)] if report.simulated else []
     parts.append(_work_done(done))
-    parts.append("Since the last report:\n" + _indented(headlines))
+    parts.append(tell("Since the last report:\n") + _indented(headlines))
     parts.append(
-        "Tows accepted: " + ", ".join(f"{row['season']}: {row['tows']}" for row in report.seasons)
+        tell("Tows accepted: ")
+        + ", ".join(f"{row['season']}: {row['tows']}" for row in report.seasons)
     )
     if report.set_aside:
-        rows = [(r["lost"], r["reason_code"], r["number"]) for r in report.set_aside]
-        parts.append("Set aside:\n" + table(("lost", "reason", "number"), rows))
+        rows = [
+            (code("lost_" + r["lost"]), r["reason_code"], r["number"]) for r in report.set_aside
+        ]
+        parts.append(tell("Set aside:\n") + table(("lost", "reason", "number"), rows))
         parts.append(_faults(report.first_faults, sum(number for *_, number in rows)))
     else:
-        parts.append("Set aside: nothing.")
-    rows = [(r["method"], r["status"], r["number"]) for r in report.curves]
-    parts.append("Curves:\n" + table(("method", "status", "number"), rows))
+        parts.append(tell("Set aside: nothing."))
+    rows = [(r["method"], code(r["status"]), r["number"]) for r in report.curves]
+    parts.append(tell("Curves:\n") + table(("method", "status", "number"), rows))
     if report.by_season:
         parts.append(_by_season(report.by_season))
     if report.biggest_changes:
         parts.append(_biggest(report.biggest_changes))
-    parts.append(f"Tables: {report.database}\nSite: {report.site}\nReport: {report.report}")
+    parts.append(
+        tell("Tables: {}\nSite: {}\nReport: {}", report.database, report.site, report.report)
+    )
     return "\n\n".join(parts)
 
 
 def _work_done(done: Row) -> str:
     if not done["database"]:
-        return "Nothing changed: no file was read again, all tables are up to date."
+        return tell("Nothing changed: no file was read again, all tables are up to date.")
     seasons = ", ".join(str(s) for s in done["seasons"]) or "none"
     methods = ", ".join(done["methods"]) or "none"
-    return f"Seasons read: {seasons}. Methods applied: {methods}."
+    return tell("Seasons read: {}. Methods applied: {}.", seasons, methods)
 
 
 def _indented(lines: Iterable[str]) -> str:
@@ -80,17 +88,18 @@ def _indented(lines: Iterable[str]) -> str:
 
 
 def _faults(first: list[Row], number: int) -> str:
-    lines = [f"  {_place(fault)}: {fault['message']}" for fault in first]
+    said = "message_nl" if LANGUAGE.get() == "nl" else "message"
+    lines = [f"  {_place(fault)}: {fault[said]}" for fault in first]
     told = sum(fault["number"] for fault in first)
     if number > told:
-        lines.append(f"  and {number - told} more: see the table quarantine")
+        lines.append(tell("  and {} more: see the table quarantine", number - told))
     return "\n".join(lines)
 
 
 def _place(fault: Row) -> str:
-    line = "" if fault["line"] is None else f", line {fault['line']}"
-    tow = "" if fault["tow_id"] is None else f" (tow {fault['tow_id']})"
-    more = f" and {fault['number'] - 1} more" if fault["number"] > 1 else ""
+    line = "" if fault["line"] is None else tell(", line {}", fault["line"])
+    tow = "" if fault["tow_id"] is None else tell(" (tow {})", fault["tow_id"])
+    more = tell(" and {} more", fault["number"] - 1) if fault["number"] > 1 else ""
     return f"{fault['path']}{line}{tow}{more}"
 
 
@@ -107,9 +116,9 @@ def _by_season(rows: list[Row]) -> str:
         for r in rows
     ]
     head = ("method", "season", "tows", "median", "lowest", "highest")
-    return f"Change of Cw at the declared speed against {rows[0]['compared_with']}:\n" + table(
-        head, lines
-    )
+    return tell(
+        "Change of Cw at the declared speed against {}:\n", rows[0]["compared_with"]
+    ) + table(head, lines)
 
 
 def _biggest(rows: list[Row]) -> str:
@@ -125,7 +134,7 @@ def _biggest(rows: list[Row]) -> str:
         for r in rows
     ]
     head = ("register", "boat", "name", "crew", "Cw", "in 2 h at equal power")
-    return f"Biggest changes against {rows[0]['from_edition']}:\n" + table(head, lines)
+    return tell("Biggest changes against {}:\n", rows[0]["from_edition"]) + table(head, lines)
 
 
 def methods(report: Row) -> str:
@@ -140,8 +149,8 @@ PLOT_RANGE = (0.94, 1.08)
 
 def log_error(report: "LogErrorReport") -> str:
     """The season table with a small plot of each factor and its interval."""
-    parts = [SIMULATED] if report.simulated else []
-    parts.append(f"True speed = log speed x factor, under {report.method} (95 % intervals):")
+    parts = [tell(SIMULATED)] if report.simulated else []
+    parts.append(tell("True speed = log speed x factor, under {} (95 % intervals):", report.method))
     head = (
         "season",
         "factor",
@@ -160,35 +169,41 @@ def log_error(report: "LogErrorReport") -> str:
             _factor(r["factor"]),
             _factor(r["lo"]),
             _factor(r["hi"]),
-            r["source"],
+            code(r["source"]),
             r["n_tows"],
             r["n_links"],
             _factor(r["factor_no_boats"]),
-            "-" if r["agreement"] is None else f"{r['agreement']:+.1f}",
-            r["cause"],
+            "-" if r["agreement"] is None else tell("{:+.1f}", r["agreement"]),
+            code(r["cause"]),
         )
         for r in report.factors
     ]
     parts.append(table(head, rows))
     low, high = PLOT_RANGE
-    scale = (
-        f"{low:<{_place_on_line(1.0)}.2f}{'1':<{PLOT_WIDTH - _place_on_line(1.0) - 4}}{high:.2f}"
-    )
+    place = _place_on_line(1.0)
+    scale = f"{number(low, '.2f'):<{place}}{'1':<{PLOT_WIDTH - place - 4}}{number(high, '.2f')}"
     plots = [f"  {r['season']}  {_plot(r)}" for r in report.factors]
     parts.append("\n".join([f"  {'':4}  {scale}", *plots]))
     parts.append(
-        "links: boats also towed in other seasons; without boats: a second estimate that does not\n"
-        "know which boat is which; sd apart: how far the two are, in standard deviations; step is\n"
-        "of: whether the season differs by its log or by its load cell (force), as the bend of\n"
-        "the same boats' curves tells; prescribed: nothing ties the season to one with dGPS, so\n"
-        "its factor is not determined and the method's prescribed one is used."
+        tell(
+            "links: boats also towed in other seasons; without boats: a second "
+            "estimate that does not\nknow which boat is which; sd apart: how far the "
+            "two are, in standard deviations; step is\nof: whether the season differs "
+            "by its log or by its load cell (force), as the bend of\nthe same boats' "
+            "curves tells; prescribed: nothing ties the season to one with dGPS, "
+            "so\nits factor is not determined and the method's prescribed one is "
+            "used."
+        )
     )
     lacking = _seasons_between([r["season"] for r in report.factors])
     if lacking:
-        parts.append(f"No sound tow in {lacking}: nothing is known of the log there.")
+        parts.append(tell("No sound tow in {}: nothing is known of the log there.", lacking))
     if report.parts:
-        parts += ["Each log, and each part of a season in which one was replaced:", _parts(report)]
-    parts += ["What may be wrong with the instruments of a season:", _diagnosis(report)]
+        parts += [
+            tell("Each log, and each part of a season in which one was replaced:"),
+            _parts(report),
+        ]
+    parts += [tell("What may be wrong with the instruments of a season:"), _diagnosis(report)]
     return "\n\n".join(parts)
 
 
@@ -201,16 +216,16 @@ def _seasons_between(seasons: list[int]) -> str:
 def _diagnosis(report: "LogErrorReport") -> str:
     """Faults that were found, or that cannot be told."""
     if not report.diagnosis:
-        return "  nothing was found, and nothing is in doubt"
+        return tell("  nothing was found, and nothing is in doubt")
     head = ("season", "what", "verdict", "size", "from", "to", "chance", "or else")
     rows = [
         (
             r["season"],
             _what(r),
-            r["verdict"],
+            code(r["verdict"]),
             *(_size(r[name], r["unit"]) for name in ("estimate", "lo", "hi")),
             "-" if r["p_fault"] is None else f"{r['p_fault']:.0%}",
-            (r["confused_with"] or "-").replace("_", " "),
+            code(r["confused_with"] or "-"),
         )
         for r in report.diagnosis
     ]
@@ -219,12 +234,12 @@ def _diagnosis(report: "LogErrorReport") -> str:
 
 def _what(row: Row) -> str:
     """What may be wrong, in words, and from which tow on."""
-    words = str(row["instrument"]).replace("_", " ")
-    return words if row["first_tow"] is None else f"{words}, from {row['first_tow']}"
+    words = code(row["instrument"])
+    return words if row["first_tow"] is None else tell("{}, from {}", words, row["first_tow"])
 
 
 def _size(value: float, unit: str) -> str:
-    return f"{value:+.1f} N" if unit == "N" else f"{value:+.1%}"
+    return number(value, "+.1f") + " N" if unit == "N" else number(value, "+.1%")
 
 
 def _parts(report: "LogErrorReport") -> str:
@@ -235,7 +250,7 @@ def _parts(report: "LogErrorReport") -> str:
             r["log"],
             r["part"] + 1,
             *(_factor(r[name]) for name in ("factor", "lo", "hi")),
-            r["source"],
+            code(r["source"]),
             r["n_tows"],
             r["n_links"],
         )
@@ -245,7 +260,7 @@ def _parts(report: "LogErrorReport") -> str:
 
 
 def _factor(value: float | None) -> str:
-    return "-" if value is None else f"{value:.4f}"
+    return "-" if value is None else number(value, ".4f")
 
 
 def _plot(row: Row) -> str:
@@ -267,10 +282,10 @@ def _place_on_line(factor: float) -> int:
 
 def rebase(report: "RebaseReport") -> str:
     """What a method changes: the ladder per season, and the boats most affected."""
-    parts = [SIMULATED] if report.simulated else []
-    parts.append(f"{report.method} against {report.against}; nothing was stored.")
-    counts = ", ".join(f"{row['count']} {row['change']}" for row in report.changes)
-    parts.append(f"Register lines: {counts}.")
+    parts = [tell(SIMULATED)] if report.simulated else []
+    parts.append(tell("{} against {}; nothing was stored.", report.method, report.against))
+    counts = ", ".join(f"{row['count']} {code(row['change'])}" for row in report.changes)
+    parts.append(tell("Register lines: {}.", counts))
     seasons = report.by_season
     steps = [key for key in seasons[0] if key not in ("season", "tows", "total")]
     head = ("season", "tows", *steps, "total")
@@ -279,8 +294,11 @@ def rebase(report: "RebaseReport") -> str:
         for row in seasons
     ]
     parts.append(
-        "Change of Cw at the declared speed by each step, median of the season's tows; a tow's\n"
-        "own steps multiply to its total, medians need not:\n" + table(head, lines)
+        tell(
+            "Change of Cw at the declared speed by each step, median of the season's "
+            "tows; a tow's\nown steps multiply to its total, medians need not:\n"
+        )
+        + table(head, lines)
     )
     boats = [
         (
@@ -294,5 +312,5 @@ def rebase(report: "RebaseReport") -> str:
         for row in report.boats
     ]
     head = ("boat", "name", "crew", *steps, "Cw", "in 2 h")
-    parts.append("Register lines most affected:\n" + table(head, boats))
+    parts.append(tell("Register lines most affected:\n") + table(head, boats))
     return "\n\n".join(parts)

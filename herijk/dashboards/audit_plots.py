@@ -16,11 +16,11 @@ from markupsafe import Markup
 
 from herijk.dashboards.figures import FIGURES, drop_links
 from herijk.dashboards.site.parts import default_method
-from herijk.dashboards.words import speaker
 from herijk.warehouse.queries.chosen_tows import rows_of
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.store import Store
+from herijk.words.catalogue import speaker
 
 SCATTERS: Final = ("a_weight", "b_weight", "cw_standard_weight", "b_speed", "cw_standard_speed")
 VEGA_LITE: Final = ".".join(alt.SCHEMA_VERSION.removeprefix("v").split(".")[:2])

@@ -9,9 +9,9 @@ import vl_convert
 
 from herijk.dashboards.audit_plots import VEGA_LITE
 from herijk.dashboards.figures.style import HEIGHT, OKABE_ITO, WIDTH, number
-from herijk.dashboards.words import speaker
 from herijk.library.curves import Fit
 from herijk.warehouse.store.files import written_beside
+from herijk.words.catalogue import speaker
 
 BAND_POINTS = 41
 MARGIN = 0.05

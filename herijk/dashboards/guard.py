@@ -94,7 +94,7 @@ def listen(host: str, port: int) -> socket.socket:
     except OSError as error:
         listening.close()
         raise UnavailableError(
-            f"{host}:{port} cannot be used: {error.strerror}. Name another with --port"
+            "{}:{} cannot be used: {}. Name another with --port", host, port, error.strerror
         ) from error
     return listening
 

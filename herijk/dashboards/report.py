@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable
 from typing import Any, Final
 
-from herijk.dashboards.words import Say, speaker
+from herijk.words.catalogue import Say, speaker
 
 Report = dict[str, Any]
 

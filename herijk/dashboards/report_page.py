@@ -18,10 +18,11 @@ from herijk.dashboards.report import (
 )
 from herijk.dashboards.site.parts import Page, Section, Table
 from herijk.dashboards.site.render import Edition
-from herijk.dashboards.words import LANGUAGES, speaker
 from herijk.warehouse.queries.change_report import ChangeReport
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.store import Store
+from herijk.words import LANGUAGES
+from herijk.words.catalogue import speaker
 
 TO_SITE: Final = "../site/"
 

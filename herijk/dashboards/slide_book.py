@@ -21,12 +21,12 @@ from herijk.dashboards.slide_rows import (
     methods_of,
     pair_of_types,
 )
-from herijk.dashboards.words import Say
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.studies.tool_options import AS_READ, SPEEDS, TICKS
 from herijk.warehouse.queries.chosen_tows import ALL, STATED, choices_of_row, rows_of
 from herijk.warehouse.queries.views import Views
+from herijk.words.catalogue import Say
 
 RECOMPUTED: Final = (("cw", "weight"), ("b", "speed"), ("cw", "speed"))
 """What the presentation shows of the recomputed season."""
@@ -111,7 +111,7 @@ class Book:
             like = [t for t in known if t.casefold().startswith(name.casefold())]
             if not like:
                 raise MissingKnowledgeError(
-                    f"there is no type {name!r}; the types are {', '.join(sorted(known))}"
+                    "there is no type {!r}; the types are {}", name, ", ".join(sorted(known))
                 )
             found.append(like[0])
         return found or pair_of_types(self.compared)

@@ -12,10 +12,10 @@ import vl_convert
 from herijk.dashboards.audit_plots import VEGA_LITE, file_name
 from herijk.dashboards.figures import FIGURES
 from herijk.dashboards.slide_book import THE_PRESENTATION, Asked, Slide, slides
-from herijk.dashboards.words import speaker
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.store import Store
+from herijk.words.catalogue import speaker
 
 WIDTH_OF_TEXT: Final = 140
 LOCALES: Final[dict[str, Literal["nl-NL", "en-GB"]]] = {"nl": "nl-NL", "en": "en-GB"}

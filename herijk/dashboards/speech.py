@@ -4,9 +4,9 @@ from typing import Final
 
 from markupsafe import Markup, escape
 
-from herijk.dashboards.words import speaker
+from herijk.words import DECIMALS
+from herijk.words.catalogue import speaker
 
-DECIMALS: Final = {"nl": ",", "en": "."}
 MINUS: Final = "\u2212"
 
 

@@ -136,7 +136,7 @@ def fit(
         raise HerijkError("give force_n or cw_kg_m, and not both")
     values = np.asarray(given, dtype=np.float64)
     if speed.ndim != 1 or speed.shape != values.shape:
-        raise HerijkError(f"{speed.size} speeds and {values.size} values; give as many of each")
+        raise HerijkError("{} speeds and {} values; give as many of each", speed.size, values.size)
     if not (np.isfinite(speed) & np.isfinite(values) & (speed > 0) & (values > 0)).all():
         raise HerijkError("every speed and every force must be a positive number")
     points = hyperbola.Points.of(speed, values / speed**2 if cw_kg_m is None else values)

@@ -32,7 +32,7 @@ class DataFolder:
         """
         if name not in self.tables:
             raise MissingKnowledgeError(
-                f"there is no table {name!r}; the tables are {', '.join(self.tables)}"
+                "there is no table {!r}; the tables are {}", name, ", ".join(self.tables)
             )
         return self.sql(f'FROM "{name}"')
 
@@ -46,7 +46,7 @@ class DataFolder:
         chosen = lines.filter(pl.col("edition") == edition)
         if chosen.is_empty():
             known = ", ".join(lines["edition"].unique().sort())
-            raise MissingKnowledgeError(f"there is no edition {edition!r}; there are {known}")
+            raise MissingKnowledgeError("there is no edition {!r}; there are {}", edition, known)
         return chosen
 
     def samples(self, tow_id: str) -> pl.DataFrame:
@@ -57,7 +57,7 @@ class DataFolder:
         """
         tow = self.sql("SELECT tow_id, season FROM tows").filter(pl.col("tow_id") == tow_id)
         if tow.is_empty():
-            raise MissingKnowledgeError(f"there is no tow {tow_id!r} in the table tows")
+            raise MissingKnowledgeError("there is no tow {!r} in the table tows", tow_id)
         season = int(tow["season"][0])
         index = self._store.read("season_index", str(season))
         key = str(index.filter(pl.col("tow_id") == tow_id)["samples_key"][0])

@@ -95,7 +95,7 @@ def apply_method(
     missing = [name for name in ("tow_date", *REQUIRED) if tow.get(name) is None]
     missing += [name for name in SAMPLE_SCHEMA if name not in samples.columns]
     if missing:
-        raise HerijkError(f"missing: {', '.join(missing)}")
+        raise HerijkError("missing: {}", ", ".join(missing))
     day: dt.date = tow["tow_date"]
     columns = {**Tows.create_empty().schema, "boat_type": pl.String()}
     known = {"season": day.year, "sample_rate_hz": sample_rate_hz, **DEFAULTS, **tow}

@@ -64,17 +64,20 @@ class Points:
     def __post_init__(self) -> None:
         shapes = {self.speed_m_s.shape, self.cw_kg_m.shape, self.used.shape}
         if len(shapes) != 1 or self.speed_m_s.ndim != 2 or self.speed_m_s.shape[1] == 0:
-            message = f"Points need three arrays of one shape (n_fits, n_points), not {shapes}."
-            raise BrokenPromiseError(message)
+            raise BrokenPromiseError(
+                "Points need three arrays of one shape (n_fits, n_points), not {}.", shapes
+            )
         for name, values in (("speed_m_s", self.speed_m_s), ("cw_kg_m", self.cw_kg_m)):
             sound = np.isfinite(values) & (values > 0)
             faulty = np.flatnonzero((self.used & ~sound).any(axis=1))
             if faulty.size:
-                message = (
-                    f"{name}: {faulty.size} curves use a point that is not a positive number, "
-                    f"the first is curve {faulty[0]}. Set such points to unused beforehand."
+                raise BrokenPromiseError(
+                    "{}: {} curves use a point that is not a positive number, the first is curve "
+                    "{}. Set such points to unused beforehand.",
+                    name,
+                    faulty.size,
+                    faulty[0],
                 )
-                raise BrokenPromiseError(message)
 
     @classmethod
     def of(cls, speed_m_s: ArrayLike, cw_kg_m: ArrayLike, used: ArrayLike | None = None) -> Self:

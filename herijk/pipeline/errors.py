@@ -6,9 +6,21 @@ says what, where, what was observed, what the limit is and the way out. Exit sta
 command, not here.
 """
 
+from typing import Any
+
+from herijk.words import Sentence, say
+
 
 class HerijkError(Exception):
-    """Something a user can act on; the text says how."""
+    """Something a user can act on; the text says how.
+
+    Args:
+        message: what is wrong, with braces for the values.
+        values: what is filled in.
+    """
+
+    def __init__(self, message: str, *values: Any) -> None:
+        super().__init__(message if isinstance(message, Sentence) else say(message, *values))
 
 
 class DefectiveInputError(HerijkError):
@@ -42,4 +54,4 @@ class UnavailableError(HerijkError):
 def unexpected(error: BaseException) -> str:
     """One sentence for an error that nobody foresaw."""
     what = " ".join(str(error).split())[:300]
-    return f"something went wrong that was not foreseen: {type(error).__name__}: {what}"
+    return say("something went wrong that was not foreseen: {}: {}", type(error).__name__, what)

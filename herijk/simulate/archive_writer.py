@@ -200,13 +200,14 @@ def write_simulated_archive(
 def _refuse_to_overwrite(directory: Path) -> None:
     if directory.exists() and (not directory.is_dir() or any(directory.iterdir())):
         raise HerijkError(
-            f"{directory} exists and is not an empty folder; nothing was written. "
-            "Choose another folder, or remove it first"
+            "{} exists and is not an empty folder; nothing was written. Choose "
+            "another folder, or remove it first",
+            directory,
         )
     if truth_path(directory).exists():
         raise HerijkError(
-            f"{truth_path(directory)} exists; nothing was written. Remove it, or choose "
-            "another folder"
+            "{} exists; nothing was written. Remove it, or choose another folder",
+            truth_path(directory),
         )
 
 

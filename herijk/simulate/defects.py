@@ -198,7 +198,10 @@ def gps_on_board(season: int) -> bool:
 def _row(season: int) -> SeasonRow:
     if season < FIRST_SEASON:
         raise MissingKnowledgeError(
-            f"season {season} cannot be simulated: the table of instruments begins in "
-            f"{FIRST_SEASON}; ask for {FIRST_SEASON} or later"
+            "season {} cannot be simulated: the table of instruments begins in {}; "
+            "ask for {} or later",
+            season,
+            FIRST_SEASON,
+            FIRST_SEASON,
         )
     return next(row for row in reversed(SEASONS) if row.first_season <= season)

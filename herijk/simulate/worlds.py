@@ -196,6 +196,6 @@ def world_settings(name: str, **size: Any) -> WorldSettings:
         HerijkError: no world has that name.
     """
     if name not in WORLDS:
-        raise HerijkError(f"there is no world {name}; there are: {', '.join(WORLDS)}")
+        raise HerijkError("there is no world {}; there are: {}", name, ", ".join(WORLDS))
     world = WORLDS[name]
     return WorldSettings(defects=world.defects, **world.options, **size)

@@ -3,9 +3,8 @@
 from functools import partial
 from typing import Final
 
-import dataframely as dy
-
 from herijk.tables import column
+from herijk.tables.declare import dy
 
 LOST: Final = partial(
     column.text,
@@ -151,6 +150,8 @@ class Quarantine(dy.Schema):
     line = dy.Int64(description="line in the file", nullable=True, min=1)
     reason_code = column.text("short stable code")
     message = column.text("what is wrong and what to do, in a sentence")
+    message_nl = column.text("the same in Dutch")
+    cause = column.text("what faults of one cause share: the sentence, with what differs left open")
     lost = LOST()
     run = column.run(nullable=True)
     lost_s = column.number("s", "time that is lost", nullable=True, min=0)

@@ -2,7 +2,7 @@
 
 from typing import Any, Final
 
-import dataframely as dy
+from herijk.tables.declare import dy
 
 LOWER_END: Final = (
     "lower end of its 95 % interval; where methods.interval is runs_alone, of the spread of the "

@@ -1,8 +1,7 @@
 """Are equal boats equal: statistics per boat type and of repeat tows."""
 
-import dataframely as dy
-
 from herijk.tables import column
+from herijk.tables.declare import dy
 
 
 class TypeConsistency(dy.Schema):

@@ -2,9 +2,8 @@
 
 from typing import Final
 
-import dataframely as dy
-
 from herijk.tables import column
+from herijk.tables.declare import dy
 from herijk.tables.severity import SEVERITY_PATTERN
 
 STATUSES: Final = ("accepted", "flagged", "rejected")

@@ -1,8 +1,7 @@
 """Published editions, the methods, and the files that lines were made from."""
 
-import dataframely as dy
-
 from herijk.tables import column
+from herijk.tables.declare import dy
 
 
 class Editions(dy.Schema):

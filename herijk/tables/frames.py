@@ -1,10 +1,12 @@
 """Frames made with the dtypes that a table declares."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from functools import cache
 from typing import Any, TypeVar
 
-import dataframely as dy
 import polars as pl
+
+from herijk.tables.declare import dy
 
 S = TypeVar("S", bound=dy.Schema)
 
@@ -15,6 +17,7 @@ def dtypes(schema: type[dy.Schema], without: Collection[str] = ()) -> pl.Schema:
     return pl.Schema({name: column.dtype for name, column in columns if name not in without})
 
 
+@cache  # asked for per cell of a list
 def limits(schema: type[dy.Schema], name: str) -> tuple[Any, Any]:
     """The lowest and highest value that a column declares."""
     column = schema.columns()[name]

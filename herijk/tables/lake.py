@@ -3,10 +3,9 @@
 These tables are not in the database and no other program relies on them.
 """
 
-import dataframely as dy
-
 from herijk.tables import column
 from herijk.tables.archive import LOST, Boats, HandWindows, RunList, TowFacts
+from herijk.tables.declare import dy
 
 
 class AboutArchive(dy.Schema):
@@ -26,6 +25,8 @@ class Faults(dy.Schema):
     line = dy.Int64(description="line in the file", nullable=True, min=1)
     reason_code = column.text("short stable code")
     message = column.text("what is wrong and what to do, in a sentence")
+    message_nl = column.text("the same in Dutch")
+    cause = column.text("what faults of one cause share: the sentence, with what differs left open")
     lost = LOST(nullable=True)
     run = column.run(nullable=True)
     lost_s = column.number("s", "time that is lost", nullable=True, min=0)
@@ -141,6 +142,8 @@ class SeasonIndex(dy.Schema):
     line = dy.Int64(description="line in it", nullable=True, min=1)
     reason_code = column.text("short stable code of the fault", nullable=True)
     message = column.text("what is wrong, in a sentence", nullable=True)
+    message_nl = column.text("the same in Dutch", nullable=True)
+    cause = column.text("what faults of one cause share", nullable=True)
     losses = dy.List(
         dy.Struct(Faults.columns()), nullable=True, description="faults that did not cost the tow"
     )

@@ -2,9 +2,8 @@
 
 from typing import Final
 
-import dataframely as dy
-
 from herijk.tables import column
+from herijk.tables.declare import dy
 
 REMARK: Final = (
     "why there is no power (not_in_register, no_line_that_day, thwart_not_given, "

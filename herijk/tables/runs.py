@@ -1,8 +1,7 @@
 """One point per run, as a method computes it."""
 
-import dataframely as dy
-
 from herijk.tables import column
+from herijk.tables.declare import dy
 
 
 class RunPoints(dy.Schema):

@@ -8,7 +8,6 @@ physically is explained in the module that computes it; how tables are stored is
 
 from typing import Final
 
-import dataframely as dy
 import polars as pl
 
 from herijk.tables import (
@@ -21,6 +20,7 @@ from herijk.tables import (
     season_log,
     studies,
 )
+from herijk.tables.declare import dy
 
 TABLES: Final[dict[str, type[dy.Schema]]] = {
     "boats": archive.Boats,
@@ -85,8 +85,14 @@ ABOUT: Final[dict[str, type[dy.Schema]]] = {"about": archive.About, "contents": 
 """Tables of the database about itself."""
 
 
+def ordered(name: str, frame: pl.DataFrame) -> pl.DataFrame:
+    """The declared columns of a table, in order, sorted by its key."""
+    schema = TABLES[name]
+    return frame.select(schema.column_names()).sort(schema.primary_key() or schema.column_names())
+
+
 def conform(name: str, frame: pl.DataFrame) -> pl.DataFrame:
-    """The declared columns of a table, in order, sorted by its key and checked.
+    """The same, checked.
 
     Whole numbers get the declared width: counts come wider than they are kept.
 
@@ -94,11 +100,9 @@ def conform(name: str, frame: pl.DataFrame) -> pl.DataFrame:
         dataframely.exc.ValidationError, SchemaError: the frame is not what was declared.
     """
     schema = TABLES[name]
-    key = schema.primary_key() or schema.column_names()
-    chosen = frame.select(schema.column_names())
     whole = [
         pl.col(column).cast(declared.dtype)
         for column, declared in schema.columns().items()
-        if declared.dtype.is_integer() and chosen.schema[column].is_integer()
+        if declared.dtype.is_integer() and frame.schema[column].is_integer()
     ]
-    return schema.validate(chosen.with_columns(whole).sort(key))
+    return schema.validate(ordered(name, frame.with_columns(whole)))

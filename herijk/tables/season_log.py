@@ -1,8 +1,7 @@
 """How far each season's speed log was off, and what that rests on."""
 
-import dataframely as dy
-
 from herijk.tables import column
+from herijk.tables.declare import dy
 
 
 class LogFactors(dy.Schema):

@@ -1,8 +1,7 @@
 """What the steps and options of a method change, and counts over many tows."""
 
-import dataframely as dy
-
 from herijk.tables import column
+from herijk.tables.declare import dy
 from herijk.tables.severity import SEVERITY_PATTERN
 
 

@@ -19,9 +19,9 @@ import pytest
 from herijk.assets.notify import Message, Notifier, notifier_of
 from herijk.assets.report import failed_checks, tell
 from herijk.assets.settings import read_settings
-from herijk.dashboards.words import both
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.queries.change_report import change_report, reported_database
+from herijk.words.catalogue import both
 from tests.assets.test_rebuild import samples_files, spoil, tow_of
 from tests.conftest import METHODS
 from tests.warehouse.test_faults import Archive, cells, line_of, times

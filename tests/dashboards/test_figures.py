@@ -9,7 +9,8 @@ import pytest
 import vl_convert
 
 from herijk.dashboards.figures import FIGURES, png, slides
-from herijk.dashboards.words import LANGUAGES, WORDS, both, speaker
+from herijk.words import LANGUAGES
+from herijk.words.catalogue import WORDS, both, speaker
 
 FRAME = pl.DataFrame({"kind": ["line"], "method": ["rebased"], "cw_kg_m": [30.0]})
 

@@ -23,11 +23,11 @@ from herijk.dashboards.site.parts import (
 )
 from herijk.dashboards.site.prose import GUIDES
 from herijk.dashboards.site.render import DRAWN
-from herijk.dashboards.words import WORDS
-from herijk.dashboards.words.tables import TABLES_IN_DUTCH
 from herijk.warehouse.queries.answers import answers, line_changes
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.store import Store
+from herijk.words.catalogue import WORDS
+from herijk.words.tables import TABLES_IN_DUTCH
 from tests.dashboards.conftest import ATTACK, EDITIONS
 from tests.dashboards.test_answer import LINE
 

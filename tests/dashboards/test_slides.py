@@ -10,9 +10,10 @@ from herijk.dashboards import slide_book as book
 from herijk.dashboards import slides as files
 from herijk.dashboards.figures.slides import METHODS
 from herijk.dashboards.site.slides import sentences
-from herijk.dashboards.words import LANGUAGES, speaker
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.queries.views import Views
+from herijk.words import LANGUAGES
+from herijk.words.catalogue import speaker
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,6 @@ from polars.testing import assert_frame_equal
 
 from herijk.dashboards.guard import listen
 from herijk.dashboards.site.cells import KEPT
-from herijk.dashboards.words import LANGUAGES, both
 from herijk.dashboards.workbench import texts
 from herijk.dashboards.workbench.bench import SCENARIO, Base, Bench, Named, Question
 from herijk.dashboards.workbench.form import _kind, controls
@@ -24,6 +23,8 @@ from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.warehouse.queries.history import History
 from herijk.warehouse.queries.rebase import rebase
 from herijk.warehouse.store.store import Store
+from herijk.words import LANGUAGES
+from herijk.words.catalogue import both
 from tests.architecture.repository import ROOT
 from tests.dashboards.conftest import served
 

@@ -11,7 +11,7 @@ NEEDED = {
     "herijk.pipeline.method.definition": set(),
     "herijk.warehouse.queries.reports": {"duckdb", "numpy", "polars"},
     # It computes the statistics of types over the tows that are asked for.
-    "herijk.warehouse.queries.audit": HEAVY - {"altair", "dagster"},
+    "herijk.warehouse.queries.audit": HEAVY - {"altair", "dagster", "sqlalchemy"},
     "herijk.warehouse.editions.lineage": {"numpy", "polars"},
 }
 UNUSED_PARTS = {"scipy.optimize", "scipy.signal", "scipy.sparse", "scipy.special", "scipy.stats"}

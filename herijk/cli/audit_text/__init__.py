@@ -12,11 +12,12 @@ from herijk.cli.audit_text.one_type import one_type
 from herijk.cli.audit_text.two_types import two_types
 from herijk.cli.audit_text.words import Report
 from herijk.cli.text import SIMULATED
+from herijk.words import tell
 
 
 def audit(report: Report) -> str:
     """The page of a boat, of one type, or of two types side by side."""
-    parts = [SIMULATED] if report["simulated"] else []
+    parts = [tell(SIMULATED)] if report["simulated"] else []
     if report["about"] == "boat":
         parts += boat_page(report)
     elif len(report["types"]) == 1:
@@ -24,5 +25,5 @@ def audit(report: Report) -> str:
     else:
         parts += two_types(report)
     if report.get("plots"):
-        parts.append(f"{len(report['plots'])} plots in {Path(report['plots'][0]).parent}")
+        parts.append(tell("{} plots in {}", len(report["plots"]), Path(report["plots"][0]).parent))
     return "\n\n".join(parts)

@@ -19,6 +19,7 @@ from herijk.cli.audit_text.words import (
 )
 from herijk.cli.text import table
 from herijk.pipeline.method.definition import COMPLETE
+from herijk.words import tell
 
 RUNS_ALONE_MEANS: Final = "runs alone: spread of the runs alone: the log's error is not in it"
 LEAST_FELT: Final = 5e-4
@@ -34,29 +35,40 @@ def boat_page(report: Report) -> list[str]:
     parts = [_boat_title(boat, report["tows"])]
     parts += [_tow(tow) for tow in report["tows"]]
     if not report["tows"]:
-        parts.append("No tow of this boat was accepted.")
+        parts.append(tell("No tow of this boat was accepted."))
     sections = [
         (_place_title(report), _place(report)),
-        ("If it shared its type's bend:", [_pooled(row) for row in _not_own(report["pooled"])]),
         (
-            "Slow tow:",
+            tell("If it shared its type's bend:"),
+            [_pooled(row) for row in _not_own(report["pooled"])],
+        ),
+        (
+            tell("Slow tow:"),
             [f"  {r['method']}: {slow_tow(r | {'name': ''})}" for r in report["slow_tows"]],
         ),
         (
-            "Its repeat tows (without an alteration between them; E_n above 1: they disagree):",
-            [_pair(row) for row in report["repeat_pairs"]] or ["  none: n 0"],
+            tell(
+                "Its repeat tows (without an alteration between them; E_n above 1: they disagree):"
+            ),
+            [_pair(row) for row in report["repeat_pairs"]] or [tell("  none: n 0")],
         ),
         (
-            "As predicted from weight, length, beam and type by the other boats:",
-            [_predicted(row) for row in report["predicted"]] or ["  not predicted: n 0"],
+            tell("As predicted from weight, length, beam and type by the other boats:"),
+            [_predicted(row) for row in report["predicted"]] or [tell("  not predicted: n 0")],
         ),
         (
-            "What other choices do to Cw, the largest first (the tool of 2015 let one tick: tool):",
+            tell(
+                "What other choices do to Cw, the largest first (the tool of 2015 let one tick: "
+                "tool):"
+            ),
             list(_options(report["options"])),
         ),
-        ("In the registers:", [_register(row) for row in report["register"]] or ["  no line"]),
         (
-            "Set aside, by its number or the name of its file:",
+            tell("In the registers:"),
+            [_register(row) for row in report["register"]] or [tell("  no line")],
+        ),
+        (
+            tell("Set aside, by its number or the name of its file:"),
             [_set_aside(row) for row in report["set_aside"]] or ["  nothing"],
         ),
     ]
@@ -65,22 +77,28 @@ def boat_page(report: Report) -> list[str]:
 
 
 def _boat_title(boat: Report, tows: list[Report]) -> str:
-    title = f"{boat['fsn_no']} {boat['name']}, type {boat['boat_type'] or 'not known'}"
+    title = tell("{} {}, type {}", boat["fsn_no"], boat["name"], boat["boat_type"] or "not known")
     crews = sorted({f"{tow['rowers']}{tow['crew_class']}" for tow in tows})
     if len(crews) < 2:
         return title
     return wrapped(
-        f"{title}; towed for {len(crews)} crews ({', '.join(crews)}): each has a register line and "
-        "repeats of its own; in the statistics of a type they are one boat",
+        tell(
+            "{}; towed for {} crews ({}): each has a register line and repeats of its "
+            "own; in the statistics of a type they are one boat",
+            title,
+            len(crews),
+            ", ".join(crews),
+        ),
         0,
     )
 
 
 def _place_title(report: Report) -> str:
     size = report["type_size"]
-    return (
-        f"Its place among {size['n_towed']} towed boats of its type ({size['boat_type']}), newest "
-        "tow of each boat and crew:"
+    return tell(
+        "Its place among {} towed boats of its type ({}), newest tow of each boat and crew:",
+        size["n_towed"],
+        size["boat_type"],
     )
 
 
@@ -90,8 +108,17 @@ def _place(report: Report) -> list[str]:
         codes = ", ".join(EXPLANATIONS.get(code, code) for code in row["candidates"])
         place = "outside" if row["outside"] else "within"
         lines.append(
-            f"  {row['method']}, {row['rowers']}{row['crew_class']}, {row['tow_id']}: "
-            f"{distance(row)}, {row['deviation_sd']:+.1f} sd, {place}{codes and f' ({codes})'}"
+            tell(
+                "  {}, {}{}, {}: {}, {:+.1f} sd, {}{}",
+                row["method"],
+                row["rowers"],
+                row["crew_class"],
+                row["tow_id"],
+                distance(row),
+                row["deviation_sd"],
+                place,
+                codes and f" ({codes})",
+            )
         )
     size = report["type_size"]
     unknown = report["boat"]["boat_type"] is None
@@ -109,28 +136,42 @@ def _not_own(pooled: list[Report]) -> Iterator[Report]:
 
 def _pooled(row: Report) -> str:
     own = row["own"]
-    words = {"partial": "in part", "shared": "wholly"}[row["pooling"]]
-    b = [f"{c['b_m_s']:.2f} m/s" if c["b_m_s"] else "not determined" for c in (own, row)]
+    words = {"partial": tell("in part"), "shared": "wholly"}[row["pooling"]]
+    b = [
+        tell("{:.2f} m/s", c["b_m_s"]) if c["b_m_s"] else tell("not determined") for c in (own, row)
+    ]
     at_115 = [c["cw_115_kg_m"] for c in (own, row)]
-    moved = "" if None in at_115 else f", Cw at 115 % {change(at_115[1] / at_115[0])} %"
-    return (
-        f"  {row['method']}, {row['tow_id']}, {words}: B {b[0]} to {b[1]}, Cw at the declared "
-        f"speed {change(row['cw_kg_m'] / own['cw_kg_m'])} %{moved}"
+    moved = "" if None in at_115 else tell(", Cw at 115 % {} %", change(at_115[1] / at_115[0]))
+    return tell(
+        "  {}, {}, {}: B {} to {}, Cw at the declared speed {} %{}",
+        row["method"],
+        row["tow_id"],
+        words,
+        b[0],
+        b[1],
+        change(row["cw_kg_m"] / own["cw_kg_m"]),
+        moved,
     )
 
 
 def _pair(row: Report) -> str:
-    e_n = "not known" if row["e_n"] is None else f"{row['e_n']:+.2f}"
-    return (
-        f"  {row['method']}, {row['rowers']}{row['crew_class']}, {row['tow_id_before']} to "
-        f"{row['tow_id']}: Cw {change(exp(row['ln_ratio']))} %, E_n {e_n}"
+    e_n = tell("not known") if row["e_n"] is None else tell("{:+.2f}", row["e_n"])
+    return tell(
+        "  {}, {}{}, {} to {}: Cw {} %, E_n {}",
+        row["method"],
+        row["rowers"],
+        row["crew_class"],
+        row["tow_id_before"],
+        row["tow_id"],
+        change(exp(row["ln_ratio"])),
+        e_n,
     )
 
 
 def _predicted(row: Report) -> str:
     if row["predicted_cw_kg_m"] is None:
         return f"  {row['method']}: {nothing({'reason': row['reason'] or 'few_boats', 'n': 0})}"
-    verdict = "they disagree" if row["disagrees"] else "they agree"
+    verdict = tell("they disagree") if row["disagrees"] else tell("they agree")
     return f"  {row['method']}, {row['tow_id']}: {second_opinion(row)}; {verdict}"
 
 
@@ -150,25 +191,39 @@ def _register(row: Report) -> str:
     line = f"  {row['edition']}, {row['rowers']}{row['crew_class']}: {row['status']}"
     if row["cw_kg_m"] is None:
         return line
-    b = "B not determined" if row["b_m_s"] is None else f"B {row['b_m_s']:.2f}"
-    return (
-        f"{line}, A {row['a_kg_m']:.2f}, {b}, Cw {row['cw_kg_m']:.2f} at "
-        f"{row['declared_speed_m_s']:.2f} m/s, tow {row['tow_id']}, until {row['valid_until']}"
+    b = tell("B not determined") if row["b_m_s"] is None else tell("B {:.2f}", row["b_m_s"])
+    return tell(
+        "{}, A {:.2f}, {}, Cw {:.2f} at {:.2f} m/s, tow {}, until {}",
+        line,
+        row["a_kg_m"],
+        b,
+        row["cw_kg_m"],
+        row["declared_speed_m_s"],
+        row["tow_id"],
+        row["valid_until"],
     )
 
 
 def _set_aside(row: Report) -> str:
-    tow = "" if row["tow_id"] is None else f" (tow {row['tow_id']})"
-    line = "" if row["line"] is None else f", line {row['line']}"
+    tow = "" if row["tow_id"] is None else tell(" (tow {})", row["tow_id"])
+    line = "" if row["line"] is None else tell(", line {}", row["line"])
     return f"  {row['path']}{line}{tow}: {row['message']}"
 
 
 def _tow(tow: Report) -> str:
-    weight = "weight not known" if tow["weight_kg"] is None else f"{tow['weight_kg']:.0f} kg"
-    head = (
-        f"Tow {tow['tow_id']} of {tow['tow_date']}: {tow['rowers']}{tow['crew_class']}, declared "
-        f"{tow['declared_speed_m_s']:.2f} m/s, {tow['waterline_length_m']:.2f} x "
-        f"{tow['beam_m']:.2f} x {tow['bow_height_m']:.2f} m, {weight}, from {tow['samples_path']}"
+    weight = tell("weight not known") if tow["weight_kg"] is None else f"{tow['weight_kg']:.0f} kg"
+    head = tell(
+        "Tow {} of {}: {}{}, declared {:.2f} m/s, {:.2f} x {:.2f} x {:.2f} m, {}, from {}",
+        tow["tow_id"],
+        tow["tow_date"],
+        tow["rowers"],
+        tow["crew_class"],
+        tow["declared_speed_m_s"],
+        tow["waterline_length_m"],
+        tow["beam_m"],
+        tow["bow_height_m"],
+        weight,
+        tow["samples_path"],
     )
     return "\n".join([head, *_steps(tow["steps"]), *(_curve(curve) for curve in tow["curves"])])
 
@@ -183,7 +238,14 @@ def _steps(steps: list[Report]) -> list[str]:
         ]
         total = change(own[-1]["cw_kg_m"] / own[0]["cw_kg_m"])
         lines.append(
-            f"  {ends[0]} to {ends[1]}: Cw {total} %{' = ' if felt else ''}{', '.join(felt)}"
+            tell(
+                "  {} to {}: Cw {} %{}{}",
+                ends[0],
+                ends[1],
+                total,
+                " = " if felt else "",
+                ", ".join(felt),
+            )
         )
     return lines
 
@@ -236,29 +298,38 @@ def _budget(budget: list[Report]) -> str:
         for row in budget
         if row["u_ratio"] and row["u_ratio"] >= LEAST_TOLD
     ]
-    return wrapped(f"standard uncertainty of Cw: {', '.join(felt)}", 4) if felt else ""
+    return wrapped(tell("standard uncertainty of Cw: {}", ", ".join(felt)), 4) if felt else ""
 
 
 def _result(curve: Report) -> str:
     flags = f" ({', '.join(curve['flags'])})" if curve["flags"] else ""
     if curve["cw_kg_m"] is None:
-        return f"no curve, {curve['status']}{flags}"
-    b = "B not determined" if curve["b_m_s"] is None else f"B {curve['b_m_s']:.2f} m/s"
-    return (
-        f"A {curve['a_kg_m']:.2f} kg/m, {b} ({_interval_of_b(curve)}), Cw "
-        f"{curve['cw_kg_m']:.2f} kg/m ({_named(curve)}: {curve['cw_lo_kg_m']:.2f} to "
-        f"{curve['cw_hi_kg_m']:.2f}), {curve['power_w']:.1f} W per rower, {curve['status']}{flags}"
-        + ("" if curve["interval"] == COMPLETE else f"; {RUNS_ALONE_MEANS}")
-    )
+        return tell("no curve, {}{}", curve["status"], flags)
+    b = tell("B not determined") if curve["b_m_s"] is None else tell("B {:.2f} m/s", curve["b_m_s"])
+    return tell(
+        "A {:.2f} kg/m, {} ({}), Cw {:.2f} kg/m ({}: {:.2f} to {:.2f}), {:.1f} W per rower, {}{}",
+        curve["a_kg_m"],
+        b,
+        _interval_of_b(curve),
+        curve["cw_kg_m"],
+        _named(curve),
+        curve["cw_lo_kg_m"],
+        curve["cw_hi_kg_m"],
+        curve["power_w"],
+        curve["status"],
+        flags,
+    ) + ("" if curve["interval"] == COMPLETE else f"; {RUNS_ALONE_MEANS}")
 
 
 def _interval_of_b(curve: Report) -> str:
     if curve["b_lo_m_s"] is None:
-        return "no interval"
-    upper = "no upper bound" if curve["b_hi_m_s"] is None else f"{curve['b_hi_m_s']:.2f}"
-    return f"{_named(curve)}: {curve['b_lo_m_s']:.2f} to {upper}"
+        return tell("no interval")
+    upper = (
+        tell("no upper bound") if curve["b_hi_m_s"] is None else tell("{:.2f}", curve["b_hi_m_s"])
+    )
+    return tell("{}: {:.2f} to {}", _named(curve), curve["b_lo_m_s"], upper)
 
 
 def _named(curve: Report) -> str:
     """What an interval is called: without the log's error in it, it is not a 95 % interval."""
-    return "95 %" if curve["interval"] == COMPLETE else "runs alone"
+    return "95 %" if curve["interval"] == COMPLETE else tell("runs alone")

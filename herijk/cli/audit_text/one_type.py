@@ -31,6 +31,7 @@ from herijk.cli.audit_text.words import (
 from herijk.cli.text import table
 from herijk.pipeline.consistency import ERAS
 from herijk.pipeline.consistency.tow_speed import SLOW_POWER_W
+from herijk.words import tell
 
 NAMES: Final = {
     "boat": "boats",
@@ -55,23 +56,27 @@ def one_type(report: Report) -> list[str]:
     sections = [
         (_in_short_title(report["statistics_over"]), _each(under, _in_short)),
         (_first_title(under), _lines(under)),
-        ("2. Can all boats have the same bend?", _each(under, _equal_bends)),
+        (tell("2. Can all boats have the same bend?"), _each(under, _equal_bends)),
         (
-            "3. Does the bend q = (v/B)^2 / (1 - (v/B)^2) follow the tow speed? A true "
-            "hyperbola's does not.",
+            tell(
+                "3. Does the bend q = (v/B)^2 / (1 - (v/B)^2) follow the tow speed? A true "
+                "hyperbola's does not."
+            ),
             _each(under, _speed_trend),
         ),
         (
-            "4. If like boats shared one bend: B, and most change of a register's Cw by speed",
+            tell(
+                "4. If like boats shared one bend: B, and most change of a register's Cw by speed"
+            ),
             _shared(under),
         ),
-        ("5. Which boats lie outside their type?", _each(under, _outside)),
+        (tell("5. Which boats lie outside their type?"), _each(under, _outside)),
         (_slow_title(), _each(under, _slow)),
-        ("7. Do repeat tows of unaltered boats agree, before and after correction?", repeats),
-        ("8. Second opinion without towing: Cw from weight, length, beam and type", opinion),
+        (tell("7. Do repeat tows of unaltered boats agree, before and after correction?"), repeats),
+        (tell("8. Second opinion without towing: Cw from weight, length, beam and type"), opinion),
     ]
     top = (
-        f"{of_type['boat_type']}: are equal boats equal?",
+        tell("{}: are equal boats equal?", of_type["boat_type"]),
         heading(of_type),
         note(report["statistics_over"]),
     )
@@ -80,7 +85,7 @@ def one_type(report: Report) -> list[str]:
 
 def _in_short_title(tows: str) -> str:
     whole = tows in ("all", "newest")
-    return f"In short, over all tows of {'all seasons' if whole else tows}"
+    return tell("In short, over all tows of {}", "all seasons" if whole else tows)
 
 
 def _in_short(under: Report) -> list[str]:
@@ -89,35 +94,49 @@ def _in_short(under: Report) -> list[str]:
     if not lines:
         return [nothing(under["bends"] | {"reason": under["bends"]["reason"] or "few_boats"})]
     said = [
-        f"{'; '.join(map(_verdict, lines))} (n {lines[0]['n']} of {lines[0]['n_boats']} boats)."
+        tell(
+            "{} (n {} of {} boats).",
+            "; ".join(map(_verdict, lines)),
+            lines[0]["n"],
+            lines[0]["n_boats"],
+        )
     ]
     said += [_hull(row) for row in under["hull_speed"] if row["b_is_hull_speed"] is not None]
     names = ", ".join(f"{who(row)} {row['season']}" for row in under["tows_outside"])
-    judged = "Outside the type: " + (names or "no tow") + "."
+    judged = tell("Outside the type: ") + (names or tell("no tow")) + "."
     return [" ".join([*said, judged])]
 
 
 def _verdict(line: Report) -> str:
     letter, against = LETTERS[line["quantity"]], AGAINST[line["explaining"]][0]
-    seen = f"{letter} follows {against}" if line["follows"] else f"{letter} and {against} no trend"
-    return f"{seen}, {share(line['r2'])} explained"
+    seen = (
+        tell("{} follows {}", letter, against)
+        if line["follows"]
+        else tell("{} and {} no trend", letter, against)
+    )
+    return tell("{}, {} explained", seen, share(line["r2"]))
 
 
 def _hull(row: Report) -> str:
     """Whether B is hull speed."""
-    is_it = "may be" if row["b_is_hull_speed"] else "is not"
-    ends = f"{row['b_ratio_lo']:.2f} to {row['b_ratio_hi']:.2f}"
-    return (
-        f"B {is_it} hull speed: {row['b_ratio']:.2f} times it ({ends}); towed at "
-        f"{share(row['tow_ratio'])} of it."
+    is_it = tell("may be") if row["b_is_hull_speed"] else tell("is not")
+    ends = tell("{:.2f} to {:.2f}", row["b_ratio_lo"], row["b_ratio_hi"])
+    return tell(
+        "B {} hull speed: {:.2f} times it ({}); towed at {} of it.",
+        is_it,
+        row["b_ratio"],
+        ends,
+        share(row["tow_ratio"]),
     )
 
 
 def _first_title(under: Report) -> str:
     lines = [line_of(figures, "cw_standard_kg_m", "weight_kg") for figures in under.values()]
-    speeds = {f"{x['standard_speed_m_s']:.2f} m/s" for x in lines if "standard_speed_m_s" in x}
-    at = f" at a standard {' or '.join(sorted(speeds))}" if speeds else ""
-    return f"1. Do A [kg/m] and B [m/s] follow weight or tow speed, q weight? Cw [kg/m]{at}?"
+    speeds = {
+        tell("{:.2f} m/s", x["standard_speed_m_s"]) for x in lines if "standard_speed_m_s" in x
+    }
+    at = tell(" at a standard {}", " or ".join(sorted(speeds))) if speeds else ""
+    return tell("1. Do A [kg/m] and B [m/s] follow weight or tow speed, q weight? Cw [kg/m]{}?", at)
 
 
 def _each(under: Report, say: Callable[[Report], list[str]]) -> list[str]:
@@ -136,11 +155,11 @@ def _lines(under: Report) -> list[str]:
     cells, silent = [], []
     for quantity, explaining in LINES:
         letter, against = LETTERS[quantity], AGAINST[explaining][0]
-        label = f"{letter} per {step_of(quantity, explaining)[1]}"
+        label = tell("{} per {}", letter, step_of(quantity, explaining)[1])
         for method, figures in under.items():
             line = line_of(figures, quantity, explaining)
             if line["reason"]:
-                silent.append((method, f"{letter} against {against}", nothing(line)))
+                silent.append((method, tell("{} against {}", letter, against), nothing(line)))
                 continue
             cells.append((label, method, _slope(line), *_line_figures(line)))
             label = ""
@@ -191,16 +210,16 @@ def _closest(under: Report) -> list[str]:
     if closest["reason"]:
         return [nothing(closest)]
     verdict = {
-        True: "Cw lies closer together than both",
-        False: "Cw lies further apart",
-        None: "these differ no more than chance lets them",
+        True: tell("Cw lies closer together than both"),
+        False: tell("Cw lies further apart"),
+        None: tell("these differ no more than chance lets them"),
     }[closest["cw_closest"]]
     by_letter = {letter: line_of(under, q, "weight_kg") for q, letter in QUANTITIES.items()}
     spreads = ", ".join(
         f"{letter} {share(line['residual_sd_ratio'], 1)} (n {line['n']})"
         for letter, line in by_letter.items()
     )
-    return [f"spread about weight: {spreads}: {verdict}."]
+    return [tell("spread about weight: {}: {}.", spreads, verdict)]
 
 
 def _equal_bends(under: Report) -> list[str]:
@@ -208,30 +227,43 @@ def _equal_bends(under: Report) -> list[str]:
     if test["reason"]:
         return [nothing(test)]
     verdict = {
-        True: "yes, equal bends are possible",
-        False: "no, they differ by more than noise",
-        None: "not claimed, too weak a test",
+        True: tell("yes, equal bends are possible"),
+        False: tell("no, they differ by more than noise"),
+        None: tell("not claimed, too weak a test"),
     }[test["equal_possible"]]
-    said = (
-        f"{verdict}: p {test['p_value']:.3f} (F {test['f_value']:.2f} on {test['dof_between']} and "
-        f"{test['dof_within']}, n {test['n']})."
+    said = tell(
+        "{}: p {:.3f} (F {:.2f} on {} and {}, n {}).",
+        verdict,
+        test["p_value"],
+        test["f_value"],
+        test["dof_between"],
+        test["dof_within"],
+        test["n"],
     )
     if test["power_at_5pct"] is None:
-        return [f"{said} The shared curve does not bend upwards: there is no B to compare."]
+        return [tell("{} The shared curve does not bend upwards: there is no B to compare.", said)]
     return [
-        f"{said} Chance to see a true spread of B of 5 %: {share(test['power_at_5pct'])}, of "
-        f"10 %: {share(test['power_at_10pct'])}. {_noise(test)}"
+        tell(
+            "{} Chance to see a true spread of B of 5 %: {}, of 10 %: {}. {}",
+            said,
+            share(test["power_at_5pct"]),
+            share(test["power_at_10pct"]),
+            _noise(test),
+        )
     ]
 
 
 def _noise(test: Report) -> str:
-    noise = f"Noise alone gives {share(test['noise_share'])} of the variance of the bends"
+    noise = tell("Noise alone gives {} of the variance of the bends", share(test["noise_share"]))
     if test["b_sd_ratio"] is None or test["ab_correlation"] is None:
         return f"{noise}."
-    return (
-        f"{noise}, B a spread of {share(test['b_noise_sd_ratio'], 1)} (seen "
-        f"{share(test['b_sd_ratio'], 1)}), A and B a correlation of "
-        f"{test['ab_noise_correlation']:.2f} (seen {test['ab_correlation']:.2f})."
+    return tell(
+        "{}, B a spread of {} (seen {}), A and B a correlation of {:.2f} (seen {:.2f}).",
+        noise,
+        share(test["b_noise_sd_ratio"], 1),
+        share(test["b_sd_ratio"], 1),
+        test["ab_noise_correlation"],
+        test["ab_correlation"],
     )
 
 
@@ -240,7 +272,7 @@ def _speed_trend(under: Report) -> list[str]:
     if trend["reason"]:
         return [nothing(trend)]
     ends = interval(*(0.1 * trend[end] for end in ("slope", "slope_lo", "slope_hi")), digits=3)
-    return [f"{yes(trend['follows'])}: 10 % more tow speed, q {ends}, n {trend['n']}."]
+    return [tell("{}: 10 % more tow speed, q {}, n {}.", yes(trend["follows"]), ends, trend["n"])]
 
 
 def _shared(under: Report) -> list[str]:
@@ -250,13 +282,13 @@ def _shared(under: Report) -> list[str]:
         by_pooling = {row["pooling"]: row for row in figures["shared"]}
         if "shared" not in by_pooling:
             reason = {"reason": figures["bends"]["reason"] or "few_boats"}
-            silent.append((method, "shared bend", nothing(figures["bends"] | reason)))
+            silent.append((method, tell("shared bend"), nothing(figures["bends"] | reason)))
             continue
         own, part, shared = (by_pooling[pooling] for pooling in ("own", "partial", "shared"))
         b = shared["median_b_m_s"]
         spreads = [share(row["b_sd_ratio"], 1) for row in (own, part)]
         moves = [share(shared[f"most_{at}"], 1) for at in ("085", "100", "115")]
-        place = "none" if b is None else f"{b:.2f} m/s"
+        place = "none" if b is None else tell("{:.2f} m/s", b)
         cells.append((method, place, *spreads, *moves, shared["most_fsn_no"], shared["n"]))
     head = ("method", "shared B", "own B spread", "in part", "85 %", "100 %", "115 %", "boat", "n")
     return ([table(head, cells)] if cells else []) + _silent(silent)
@@ -265,8 +297,10 @@ def _shared(under: Report) -> list[str]:
 def _judged(under: Report) -> str:
     counts = {row["quantity"]: row["n"] for row in under["judged"]}
     return ", ".join(
-        f"n {counts[code]} by {words}" if code in counts else f"too few boats to judge {words}"
-        for code, words in (("ln_cw_standard", "Cw"), ("bend", "the bend"))
+        tell("n {} by {}", counts[code], words)
+        if code in counts
+        else tell("too few boats to judge {}", words)
+        for code, words in (("ln_cw_standard", "Cw"), ("bend", tell("the bend")))
     )
 
 
@@ -275,16 +309,16 @@ def _outside(under: Report) -> list[str]:
         reason = under["bends"]["reason"] or "few_boats"
         return [nothing(under["bends"] | {"reason": reason})]
     boats = [outsider(row) for row in under["outside"]]
-    return [f"{len(boats) or 'none'} outside ({_judged(under)}).", *listed(boats)]
+    return [tell("{} outside ({}).", len(boats) or "none", _judged(under)), *listed(boats)]
 
 
 def _slow_title() -> str:
     men, women = SLOW_POWER_W["H"], SLOW_POWER_W["D"]
-    return f"6. Slow tows: under {men:.0f} W (men) or {women:.0f} W (women) a rower"
+    return tell("6. Slow tows: under {:.0f} W (men) or {:.0f} W (women) a rower", men, women)
 
 
 def _slow(under: Report) -> list[str]:
-    counted = f"of n {under['bends']['n']}"
+    counted = tell("of n {}", under["bends"]["n"])
     lines = [slow_tow(row) for row in under["slow_tows"]]
     return [f"{len(lines) or 'none'} {counted}.", *listed(lines)]
 
@@ -293,7 +327,7 @@ def _eras(under: Report, fleet: Report) -> list[str]:
     """Whether the tows of an era stand apart from the next tow of the same boats."""
     cells = []
     for index, era in enumerate(next(iter(under.values()))["eras"]):
-        label = f"{era['era']} to later"
+        label = tell("{} to later", era["era"])
         for method, figures in under.items():
             own, everyone = figures["eras"][index], fleet[method]["eras"].get(era["era"], era)
             cells.append((label, method, *_shift(own), *_shift(everyone)))
@@ -306,18 +340,21 @@ def _shift(era: Report) -> tuple[str, str, int]:
     if era["reason"]:
         return REASONS[era["reason"]], "-", era["n"]
     shift, lo, hi = (change(era[end]) for end in ("shift_ratio", "lo", "hi"))
-    return f"{shift} ({lo} to {hi})", apart(era), era["n"]
+    return tell("{} ({} to {})", shift, lo, hi), apart(era), era["n"]
 
 
 def _ageing(fleet: Report) -> list[str]:
     """How boats age by the pairs of the last era, which is not in the shift of an era."""
     known = [era for era in fleet["eras"].values() if era["ageing_per_year"] is not None]
     if not known:
-        return ["ageing is not taken out: fewer than six pairs within the last era."]
+        return [tell("ageing is not taken out: fewer than six pairs within the last era.")]
     yearly = (100 * known[0][f"ageing_{end}"] for end in ("per_year", "lo", "hi"))
     return [
-        f"ageing taken out: Cw {interval(*yearly, digits=2)} % a year, by n {known[0]['n_ageing']} "
-        "pairs of all types within the last era."
+        tell(
+            "ageing taken out: Cw {} % a year, by n {} pairs of all types within the last era.",
+            interval(*yearly, digits=2),
+            known[0]["n_ageing"],
+        )
     ]
 
 
@@ -348,7 +385,7 @@ def _agreement(fleet: Report) -> list[str]:
         "pairs",
         "classes",
     )
-    meaning = (
+    meaning = tell(
         "s_r: within a tow; s_R: between tows of one boat (ISO 5725); classes: how many classes of "
         "boats of a type can be told apart."
     )
@@ -357,31 +394,38 @@ def _agreement(fleet: Report) -> list[str]:
 
 def _classes(row: Report) -> str:
     """How many classes of boats the test tells apart."""
-    return "-" if row["distinct_categories"] is None else f"{row['distinct_categories']:.1f}"
+    return "-" if row["distinct_categories"] is None else tell("{:.1f}", row["distinct_categories"])
 
 
 def _between(row: Report) -> str:
     if not row["n_pairs"]:
         return "-"
-    return f"{share(row['sd_ratio'], 1)} ({share(row['lo'], 1)} to {share(row['hi'], 1)})"
+    return tell(
+        "{} ({} to {})", share(row["sd_ratio"], 1), share(row["lo"], 1), share(row["hi"], 1)
+    )
 
 
 def _repeats(figures: Report) -> list[str]:
     """How well repeat tows of this type agree."""
     pairs = figures["repeats"]
     if not pairs["n_pairs"]:
-        return ["no repeat pairs of this type (n 0)."]
+        return [tell("no repeat pairs of this type (n 0).")]
     return [
-        f"this type: s_R {share(pairs['sd_ratio'], 1)} (n {pairs['n_pairs']} pairs, "
-        f"{pairs['n_disagree']} of {pairs['n_e_n']} disagree by E_n)."
+        tell(
+            "this type: s_R {} (n {} pairs, {} of {} disagree by E_n).",
+            share(pairs["sd_ratio"], 1),
+            pairs["n_pairs"],
+            pairs["n_disagree"],
+            pairs["n_e_n"],
+        )
     ]
 
 
 def _cause(row: Report) -> str:
     if row["lo"] is None:
         return share(row["sd_ratio"], 1)
-    upper = "no bound" if row["hi"] is None else share(row["hi"], 1)
-    return f"{share(row['sd_ratio'], 1)} ({share(row['lo'], 1)} to {upper})"
+    upper = tell("no bound") if row["hi"] is None else share(row["hi"], 1)
+    return tell("{} ({} to {})", share(row["sd_ratio"], 1), share(row["lo"], 1), upper)
 
 
 def _causes(fleet: Report) -> list[str]:
@@ -389,9 +433,9 @@ def _causes(fleet: Report) -> list[str]:
     by_component = {row["component"]: row for row in fleet["components"]}
     if "boat" not in by_component or by_component["boat"]["reason"]:
         reason = by_component["boat"]["reason"] if "boat" in by_component else "no_curves"
-        return [f"spread by cause: nothing claimed, {REASONS[reason]}."]
+        return [tell("spread by cause: nothing claimed, {}.", REASONS[reason])]
     causes = ", ".join(f"{words} {_cause(by_component[name])}" for name, words in NAMES.items())
-    return [f"within types, at one speed: {causes} (n {by_component['boat']['n']})."]
+    return [tell("within types, at one speed: {} (n {}).", causes, by_component["boat"]["n"])]
 
 
 def _newest_reproducibility(fleet: Report) -> str:
@@ -399,8 +443,10 @@ def _newest_reproducibility(fleet: Report) -> str:
     rows = [row for row in fleet["reproducibility"] if row["scope"] == ERAS[-1].name]
     known = [row for row in rows if row["n_pairs"]]
     if not known:
-        return "not known (n 0 pairs)"
-    return f"{share(known[0]['sd_ratio'], 1)} ({ERAS[-1].name}, n {known[0]['n_pairs']} pairs)"
+        return tell("not known (n 0 pairs)")
+    return tell(
+        "{} ({}, n {} pairs)", share(known[0]["sd_ratio"], 1), ERAS[-1].name, known[0]["n_pairs"]
+    )
 
 
 def _prediction(method: str, under: Report, fleet: Report) -> Iterator[str]:
@@ -409,10 +455,19 @@ def _prediction(method: str, under: Report, fleet: Report) -> Iterator[str]:
         yield wrapped(f"{method}: {nothing({'reason': 'few_boats', 'n': own['n']})}")
         return
     yield wrapped(
-        f"{method}: off by {share(own['rmse_ratio'], 1)} (n {own['n_predicted']}; all types "
-        f"{share(everyone['rmse_ratio'], 1)}, n {everyone['n']}); the tow test itself "
-        f"{share(own['tow_sd_ratio'], 1)}, between seasons {_newest_reproducibility(fleet)}; "
-        f"{own['n_disagree']} of {own['n_predicted']} disagree."
+        tell(
+            "{}: off by {} (n {}; all types {}, n {}); the tow test itself {}, between "
+            "seasons {}; {} of {} disagree.",
+            method,
+            share(own["rmse_ratio"], 1),
+            own["n_predicted"],
+            share(everyone["rmse_ratio"], 1),
+            everyone["n"],
+            share(own["tow_sd_ratio"], 1),
+            _newest_reproducibility(fleet),
+            own["n_disagree"],
+            own["n_predicted"],
+        )
     )
     boats = [f"{who(row)}: {second_opinion(row)}" for row in under["disagreeing"]]
     yield from (wrapped(line, 4) for line in listed(boats))

@@ -18,6 +18,7 @@ from herijk.cli.audit_text.words import (
     wrapped,
 )
 from herijk.cli.text import table
+from herijk.words import tell
 
 Cell = Callable[[Report], str]
 """The words in a cell, from the figures of a type."""
@@ -33,7 +34,11 @@ class Row(NamedTuple):
 
 def _headline(eras: list[str]) -> list[Row]:
     lines = [
-        Row(f"{letter} against {against}", f"{quantity} {explaining}", _line(quantity, explaining))
+        Row(
+            tell("{} against {}", letter, against),
+            f"{quantity} {explaining}",
+            _line(quantity, explaining),
+        )
         for explaining, (against, _, _) in AGAINST.items()
         for quantity, letter in QUANTITIES.items()
     ]
@@ -44,15 +49,15 @@ def _headline(eras: list[str]) -> list[Row]:
         Row("equal bends possible", "bends", _bends),
         Row("q per 10 % tow speed", "speed_trend", _trend),
         Row("boats outside", "", _outside),
-        Row("slow tows", "", lambda u: f"{len(u['slow_tows'])} of n {u['bends']['n']}"),
-        *(Row(f"{era}, next tow", era, _era(i)) for i, era in enumerate(eras)),
+        Row("slow tows", "", lambda u: tell("{} of n {}", len(u["slow_tows"]), u["bends"]["n"])),
+        *(Row(tell("{}, next tow", era), era, _era(i)) for i, era in enumerate(eras)),
         Row("repeats: s_R", "", _repeat),
         Row("off from dimensions", "", _prediction),
     ]
 
 
 def _trend_seen(line: Report) -> str:
-    return "follows" if line["follows"] else "none seen"
+    return "follows" if line["follows"] else tell("none seen")
 
 
 def _nothing(row: Report) -> str:
@@ -64,7 +69,7 @@ def _line(quantity: str, explaining: str) -> Cell:
         line = line_of(under, quantity, explaining)
         if line["reason"]:
             return _nothing(line)
-        slope = f"{step_of(quantity, explaining)[0] * line['slope']:+.2f}"
+        slope = tell("{:+.2f}", step_of(quantity, explaining)[0] * line["slope"])
         return f"{_trend_seen(line)}, {slope}, {share(line['r2'])}, n {line['n']}"
 
     return cell
@@ -76,27 +81,29 @@ def _spread(under: Report) -> str:
         return _nothing(closest)
     lines = [line_of(under, quantity, "weight_kg") for quantity in QUANTITIES]
     b, a, cw = (line["residual_sd_ratio"] for line in lines)
-    return f"B {100 * b:.1f}, A {100 * a:.1f}, Cw {100 * cw:.1f} %, n {closest['n']}"
+    return tell("B {:.1f}, A {:.1f}, Cw {:.1f} %, n {}", 100 * b, 100 * a, 100 * cw, closest["n"])
 
 
 def _bends(under: Report) -> str:
     test = under["bends"]
     if test["reason"]:
         return _nothing(test)
-    word = {True: "yes", False: "no", None: "not claimed"}[test["equal_possible"]]
-    return f"{word}, p {test['p_value']:.3f}, noise {share(test['noise_share'])}, n {test['n']}"
+    word = {True: "yes", False: "no", None: tell("not claimed")}[test["equal_possible"]]
+    return tell(
+        "{}, p {:.3f}, noise {}, n {}", word, test["p_value"], share(test["noise_share"]), test["n"]
+    )
 
 
 def _trend(under: Report) -> str:
     trend = under["speed_trend"]
     if trend["reason"]:
         return _nothing(trend)
-    return f"{_trend_seen(trend)}, {0.1 * trend['slope']:+.3f}, n {trend['n']}"
+    return tell("{}, {:+.3f}, n {}", _trend_seen(trend), 0.1 * trend["slope"], trend["n"])
 
 
 def _outside(under: Report) -> str:
     judged = max((row["n"] for row in under["judged"]), default=0)
-    return f"{len(under['outside'])} of n {judged}"
+    return tell("{} of n {}", len(under["outside"]), judged)
 
 
 def _era(index: int) -> Cell:
@@ -111,7 +118,7 @@ def _era(index: int) -> Cell:
 
 def _repeat(under: Report) -> str:
     pairs = under["repeats"]
-    return f"{share(pairs['sd_ratio'], 1)}, n {pairs['n_pairs']} pairs"
+    return tell("{}, n {} pairs", share(pairs["sd_ratio"], 1), pairs["n_pairs"])
 
 
 def _prediction(under: Report) -> str:
@@ -134,10 +141,15 @@ def two_types(report: Report) -> list[str]:
                 differing.append(wrapped(f"{row.label}, {method}: {said}"))
     intro = [f"{one['boat_type']}: {heading(one)}" for one in types]
     intro.append(
-        f"{note(report['statistics_over'])} Beside a verdict stand the slope, per 100 kg (q: "
-        "1000 kg) or 0.1 m/s, and the share of the spread that the line explains."
+        tell(
+            "{} Beside a verdict stand the slope, per 100 kg (q: 1000 kg) or 0.1 m/s, "
+            "and the share of the spread that the line explains.",
+            note(report["statistics_over"]),
+        )
     )
-    title = "What differs: slopes and shifts by more than both intervals together, and verdicts"
+    title = tell(
+        "What differs: slopes and shifts by more than both intervals together, and verdicts"
+    )
     return [
         "\n".join(wrapped(line, 0, 0) for line in intro),
         table(("", "method", *names), cells),

@@ -9,6 +9,8 @@ import textwrap
 from math import exp
 from typing import Any, Final
 
+from herijk.words import number, tell
+
 Report = dict[str, Any]
 
 REASONS: Final = {
@@ -59,15 +61,20 @@ _NOTE: Final = (
 def note(tows: str) -> str:
     """Over which tows the statistics are, and how to read them."""
     counted = {
-        "newest": "n counts the newest tow of each boat and crew",
-        "all": "lines and outliers over all tows, repeats of a boat taken as such; the other "
-        "statistics over the newest tow of each boat and crew",
+        "newest": tell("n counts the newest tow of each boat and crew"),
+        "all": tell(
+            "lines and outliers over all tows, repeats of a boat taken as such; the other "
+            "statistics over the newest tow of each boat and crew"
+        ),
     }.get(
         tows,
-        f"only tows of {tows}, the newest of each boat and crew among them; eras and agreement of "
-        "all types over all seasons",
+        tell(
+            "only tows of {}, the newest of each boat and crew among them; eras and "
+            "agreement of all types over all seasons",
+            tows,
+        ),
     )
-    return f"{counted[0].upper()}{counted[1:]}; {_NOTE}"
+    return f"{counted[0].upper()}{counted[1:]}; {tell(_NOTE)}"
 
 
 def step_of(quantity: str, explaining: str) -> tuple[float, str]:
@@ -89,29 +96,29 @@ def wrapped(text: str, indent: int = 2, hanging: int = 2) -> str:
 
 def share(ratio: float | None, digits: int = 0) -> str:
     """A ratio in per cent."""
-    return "-" if ratio is None else f"{100 * ratio:.{digits}f} %"
+    return "-" if ratio is None else number(100 * ratio, f".{digits}f") + " %"
 
 
 def change(ratio: float) -> str:
     """How much a ratio differs from 1, in per cent without the sign."""
-    return f"{100 * (ratio - 1):+.1f}"
+    return tell("{:+.1f}", 100 * (ratio - 1))
 
 
 def nothing(row: Report) -> str:
     """That nothing is claimed, why, and from how many boats."""
     n = row.get("n_boats", row["n"])
-    counted = f"{n} boats" if "n_boats" in row else f"n {n}"
-    return f"nothing claimed: {REASONS.get(row['reason'], row['reason'])} ({counted})"
+    counted = tell("{} boats", n) if "n_boats" in row else f"n {n}"
+    return tell("nothing claimed: {} ({})", REASONS.get(row["reason"], row["reason"]), counted)
 
 
 def yes(verdict: bool | None) -> str:
     """The verdict on a slope."""
-    return {True: "follows", False: "no trend seen", None: "-"}[verdict]
+    return {True: tell("follows"), False: tell("no trend seen"), None: "-"}[verdict]
 
 
 def interval(value: float, lo: float, hi: float, *, digits: int) -> str:
     """A number with its interval, signed."""
-    return f"{value:+.{digits}f} ({lo:+.{digits}f} to {hi:+.{digits}f})"
+    return tell("{} ({} to {})", *(number(x, f"+.{digits}f") for x in (value, lo, hi)))
 
 
 def who(row: Report) -> str:
@@ -122,7 +129,7 @@ def who(row: Report) -> str:
 def listed(lines: list[str]) -> list[str]:
     """The first few, and how many more there are."""
     more = len(lines) - MOST_LISTED
-    return lines[:MOST_LISTED] + ([f"and {more} more: see --json"] if more > 0 else [])
+    return lines[:MOST_LISTED] + ([tell("and {} more: see --json", more)] if more > 0 else [])
 
 
 def section(title: str, lines: list[str]) -> str:
@@ -140,60 +147,79 @@ def line_of(under: Report, quantity: str, explaining: str) -> Report:
 
 def heading(report: Report) -> str:
     """How many boats and tows of a type there are, and how they differ."""
-    boats = f"{report['n_boats']} boats, {report['n_towed']} of them towed; {report['n_tows']} tows"
+    boats = tell(
+        "{} boats, {} of them towed; {} tows",
+        report["n_boats"],
+        report["n_towed"],
+        report["n_tows"],
+    )
     if not report["n_tows"]:
-        return f"{boats} accepted."
+        return tell("{} accepted.", boats)
     seasons = f"{report['first_season']}-{report['last_season']}"
     weight = (
-        "weight not known"
+        tell("weight not known")
         if report["lightest_kg"] is None
         else f"{report['lightest_kg']:.0f}-{report['heaviest_kg']:.0f} kg"
     )
-    speeds = f"{report['slowest_m_s']:.2f}-{report['fastest_m_s']:.2f} m/s"
-    return f"{boats}, {seasons}; {weight}; declared speed {speeds}."
+    speeds = tell("{:.2f}-{:.2f} m/s", report["slowest_m_s"], report["fastest_m_s"])
+    return tell("{}, {}; {}; declared speed {}.", boats, seasons, weight, speeds)
 
 
 def apart(era: Report) -> str:
     """The verdict on an era."""
-    return {True: "apart", False: "none seen", None: "-"}[era["apart"]]
+    return {True: "apart", False: tell("none seen"), None: "-"}[era["apart"]]
 
 
 def outsider(row: Report) -> str:
     """A boat outside its type: how far, and what could explain it."""
     codes = ", ".join(EXPLANATIONS.get(code, code) for code in row["candidates"])
-    return (
-        f"{who(row)}, {row['tow_id']}: {distance(row)}, {row['deviation_sd']:+.1f} sd; "
-        f"{codes or 'nothing known explains it'}"
+    return tell(
+        "{}, {}: {}, {:+.1f} sd; {}",
+        who(row),
+        row["tow_id"],
+        distance(row),
+        row["deviation_sd"],
+        codes or tell("nothing known explains it"),
     )
 
 
 def distance(row: Report) -> str:
     """How far a boat lies from what the other boats of its type predict."""
     if row["quantity"] == "bend":
-        return f"(v/B)^2 {row['value']:.2f}, expected {row['expected']:.2f}"
+        return tell("(v/B)^2 {:.2f}, expected {:.2f}", row["value"], row["expected"])
     ratio = exp(row["value"] - row["expected"])
-    return f"Cw at {row['standard_speed_m_s']:.2f} m/s {change(ratio)} % from the expected"
+    return tell("Cw at {:.2f} m/s {} % from the expected", row["standard_speed_m_s"], change(ratio))
 
 
 def slow_tow(row: Report) -> str:
     """A slow tow, and what its own curve asks at the speed that like crews row."""
-    towed = f"{row['declared_speed_m_s']:.2f} m/s, {row['power_w']:.0f} W per rower"
+    towed = tell("{:.2f} m/s, {:.0f} W per rower", row["declared_speed_m_s"], row["power_w"])
     ratios = [row[f"power_ratio_rowed{end}"] for end in ("", "_lo", "_hi")]
     if None in ratios:
-        return f"{who(row)}, {row['tow_id']}: {towed}; no like crews to compare with"
+        return tell("{}, {}: {}; no like crews to compare with", who(row), row["tow_id"], towed)
     power, lo, hi = map(change, ratios)
     rowed, above = row["rowed_speed_m_s"], row["rowed_speed_m_s"] / row["declared_speed_m_s"]
-    return (
-        f"{who(row)}, {row['tow_id']}: {towed}; at {rowed:.2f} m/s, where like crews row "
-        f"({share(above)} of its speed), its curve asks {power} % ({lo} to {hi}) of the power by "
-        "its type's bend"
+    return tell(
+        "{}, {}: {}; at {:.2f} m/s, where like crews row ({} of its speed), its "
+        "curve asks {} % ({} to {}) of the power by its type's bend",
+        who(row),
+        row["tow_id"],
+        towed,
+        rowed,
+        share(above),
+        power,
+        lo,
+        hi,
     )
 
 
 def second_opinion(row: Report) -> str:
     """Cw of the tow and as the other boats predict it."""
-    return (
-        f"Cw at {row['standard_speed_m_s']:.2f} m/s {row['cw_kg_m']:.2f}, predicted "
-        f"{row['predicted_cw_kg_m']:.2f} ({row['predicted_lo_kg_m']:.2f} to "
-        f"{row['predicted_hi_kg_m']:.2f}) kg/m"
+    return tell(
+        "Cw at {:.2f} m/s {:.2f}, predicted {:.2f} ({:.2f} to {:.2f}) kg/m",
+        row["standard_speed_m_s"],
+        row["cw_kg_m"],
+        row["predicted_cw_kg_m"],
+        row["predicted_lo_kg_m"],
+        row["predicted_hi_kg_m"],
     )

@@ -23,7 +23,7 @@ from herijk.dashboards.figures import (
     tool,
     types,
 )
-from herijk.dashboards.words import Say
+from herijk.words.catalogue import Say
 
 alt.data_transformers.disable_max_rows()  # an archive of 1,000 tows has more than 5,000 rows
 

@@ -20,10 +20,10 @@ from herijk.dashboards.figures.style import (
     number,
     tips,
 )
-from herijk.dashboards.words import Say
 from herijk.pipeline.method.definition import COMPLETE
 from herijk.pipeline.steps.window import CUT_REASONS
 from herijk.pipeline.uncertainty.propagation import COMPONENTS
+from herijk.words.catalogue import Say
 
 DIRECTION = "datum.value == 1 ? '{out}' : '{back}'"
 

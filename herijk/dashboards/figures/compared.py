@@ -16,8 +16,8 @@ from herijk.dashboards.figures.style import (
     number,
     tips,
 )
-from herijk.dashboards.words import Say
 from herijk.pipeline.method.definition import COMPLETE
+from herijk.words.catalogue import Say
 
 
 def curves_compared(frame: pl.DataFrame, say: Say) -> Drawing:

@@ -14,9 +14,9 @@ from herijk.dashboards.figures.style import (
     number,
     tips,
 )
-from herijk.dashboards.words import Say
 from herijk.pipeline.studies.ladder import STEP_ORDER
 from herijk.pipeline.studies.options import CHOICES
+from herijk.words.catalogue import Say
 
 
 def _at_one(frame: pl.DataFrame, channel: str) -> alt.Chart:

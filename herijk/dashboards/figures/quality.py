@@ -4,7 +4,7 @@ import altair as alt
 import polars as pl
 
 from herijk.dashboards.figures.style import OKABE_ITO, WIDTH, named, tips
-from herijk.dashboards.words import Say
+from herijk.words.catalogue import Say
 
 STATUSES = ["accepted", "flagged", "rejected"]
 

@@ -19,7 +19,7 @@ from herijk.dashboards.figures.style import (
     tips,
     type_legend,
 )
-from herijk.dashboards.words import Say
+from herijk.words.catalogue import Say
 
 
 def spread(frame: pl.DataFrame, say: Say) -> Drawing:

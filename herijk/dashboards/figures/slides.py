@@ -22,12 +22,12 @@ from herijk.dashboards.figures.style import (
     number,
     tips,
 )
-from herijk.dashboards.words import Say
 from herijk.pipeline.consistency.compared import ROWED_RATIO
 from herijk.pipeline.consistency.tow_speed import HIGH, LOW, MIDDLE
 from herijk.pipeline.studies.claims import CHANNELS
 from herijk.pipeline.studies.options import CHOICES
 from herijk.pipeline.studies.tool_options import SPEED_NAMES, SPEEDS, TICKS
+from herijk.words.catalogue import Say
 
 METHODS: Final = ("as-published", "corrected-2013", "rebased-2015", "rebased")
 """The four that are compared, in the order of history."""

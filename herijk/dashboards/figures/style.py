@@ -6,9 +6,9 @@ from typing import Any, Final
 
 import altair as alt
 
-from herijk.dashboards.words import Say
 from herijk.pipeline.method.definition import COMPLETE, RUNS_ALONE, shipped_method, shipped_methods
 from herijk.pipeline.register.register import draft_name
+from herijk.words.catalogue import Say
 
 OKABE_ITO: Final = (
     "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999",

@@ -7,10 +7,10 @@ import polars as pl
 
 from herijk.dashboards.figures.slides import SIDE, in_words, panels, small
 from herijk.dashboards.figures.style import GREY, OKABE_ITO, Drawing, number, tips
-from herijk.dashboards.words import Say
 from herijk.pipeline.studies.claims import CHANNELS
 from herijk.pipeline.studies.options import CHOICES
 from herijk.pipeline.studies.tool_options import SPEED_NAMES, SPEEDS, TICKS
+from herijk.words.catalogue import Say
 
 MOST_SCATTER: Final = 0.10
 """Sleepproef 2017: "standaard-deviatie < 10% van de meetwaarde"."""

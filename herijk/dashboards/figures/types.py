@@ -18,7 +18,7 @@ from herijk.dashboards.figures.style import (
     tips,
     type_legend,
 )
-from herijk.dashboards.words import Say
+from herijk.words.catalogue import Say
 
 Axes = tuple[tuple[str, str], tuple[str, str]]
 

@@ -12,8 +12,8 @@ from markupsafe import Markup
 
 from herijk.dashboards.site.parts import Page, Table, boat_path, is_chosen, type_path
 from herijk.dashboards.speech import Speech, duration
-from herijk.dashboards.words import LANGUAGES
 from herijk.warehouse.queries.chosen_tows import STATED
+from herijk.words import LANGUAGES
 
 DIGITS: Final = (
     ("_kg_m", 2), ("_m_s", 2), ("_deg", 0), ("_kg", 0), ("_w", 1), ("_s", 0), ("cw_sd", 2),
@@ -35,7 +35,7 @@ CODES: Final = {
 """Columns that hold codes of the warehouse, shown as words."""
 
 LONG: Final = {
-    *("flags", "cut_reason", "reason", "speed_reason", "causes", "message", "decision"),
+    *("flags", "cut_reason", "reason", "speed_reason", "causes", "message", "messages", "decision"),
     *("candidates", "name", "meanings", "confused_with", "old_remark", "new_remark"),
 }
 """Columns of texts that may take several lines."""
@@ -124,7 +124,7 @@ class Cells:
         if name == "boat_type":
             return lambda value: self._type(value, root)
         named = {
-            **dict.fromkeys(("titles", "meanings"), self._titles),
+            **dict.fromkeys(("titles", "meanings", "messages"), self._titles),
             "direction": lambda value: self.text("out" if value == 1 else "back"),
             "causes": self._causes,
             "tows": lambda value: (

@@ -25,10 +25,10 @@ from herijk.dashboards.site.races import race_pages
 from herijk.dashboards.site.slides import slides_page
 from herijk.dashboards.site.start import methods_table, start_page, words_page
 from herijk.dashboards.site.types import type_pages, types_page
-from herijk.dashboards.words.tables import TABLES_IN_DUTCH
 from herijk.warehouse.build.studies import JUDGEMENT
 from herijk.warehouse.queries.answers import line_changes, newest_edition
 from herijk.warehouse.queries.views import Views
+from herijk.words.tables import TABLES_IN_DUTCH
 
 MENU = (
     *("index", "register", "due", "types", "compare", "races", "corrections", "reproducibility"),
@@ -412,9 +412,11 @@ def _flagged_boats(views: Views) -> Table:
 def _set_aside(views: Views) -> Section:
     if not views.has("quarantine"):
         return Section("set_aside", "set_aside_note", empty="nothing_set_aside")
-    columns = ["path", "tow_id", "line", "lost", "run", "lost_s", "reason_code", "message"]
+    columns = ["path", "tow_id", "line", "lost", "run", "lost_s", "reason_code", "messages"]
     columns.append("first_seen")
-    faults = views.table("quarantine").with_columns(lost="lost_" + pl.col("lost"))
+    faults = views.table("quarantine").with_columns(
+        lost="lost_" + pl.col("lost"), messages=pl.concat_list("message_nl", "message")
+    )
     table = Table("quarantine", faults, columns, "set_aside", search=True)
     return Section("set_aside", "set_aside_note", tables=[table])
 

@@ -10,10 +10,10 @@ from herijk.dashboards.markdown import to_html
 from herijk.dashboards.site.downloads import files_of
 from herijk.dashboards.site.parts import Page, Section, edition_page
 from herijk.dashboards.speech import Speech
-from herijk.dashboards.words import LANGUAGES
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.editions import NOTES, NOTES_EN, NOTICE, NOTICE_EN, edition_path
 from herijk.warehouse.store.storage import Place
+from herijk.words import LANGUAGES
 
 GUIDES: Final = ("method", "audit")
 """Documents of the project that have a page, by their name."""

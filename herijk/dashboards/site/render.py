@@ -28,10 +28,11 @@ from herijk.dashboards.site.parts import Page, boat_path, race_path, type_path
 from herijk.dashboards.site.specifications import chart_specifications
 from herijk.dashboards.site.still import still_pictures
 from herijk.dashboards.speech import Speech
-from herijk.dashboards.words import LANGUAGES, WORDS, speaker
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.files import TEMPORARY_PREFIX, put_in_place
 from herijk.warehouse.store.store import Store
+from herijk.words import LANGUAGES
+from herijk.words.catalogue import WORDS, speaker
 
 HERE: Final = Path(__file__).parent
 DRAWN: Final = 5

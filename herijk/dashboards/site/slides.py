@@ -26,9 +26,10 @@ from herijk.dashboards.slide_rows import (
     methods_of,
     pair_of_types,
 )
-from herijk.dashboards.words import LANGUAGES, speaker
 from herijk.warehouse.queries.chosen_tows import ALL, choices_of_row
 from herijk.warehouse.queries.views import Views
+from herijk.words import LANGUAGES
+from herijk.words.catalogue import speaker
 
 PAIR_SELECTORS = ("pair_first", "pair_second")
 WHOLE = {

@@ -12,9 +12,9 @@ from altair.utils.schemapi import debug_mode
 from herijk.dashboards.figures import FIGURES
 from herijk.dashboards.html import as_json
 from herijk.dashboards.kept import kept
-from herijk.dashboards.words import WORDS, speaker
 from herijk.warehouse.store.code import code_hash
 from herijk.warehouse.store.store import fingerprint
+from herijk.words.catalogue import WORDS, speaker
 
 
 @cache

@@ -198,7 +198,7 @@ class Bench:
             HerijkError: another method has that name.
         """
         if wish.name in (*shipped_methods(), SCENARIO):
-            raise HerijkError(f"{wish.name} is the name of another method; choose another")
+            raise HerijkError("{} is the name of another method; choose another", wish.name)
         return variant_text(self._wished(wish, wish.name, wish.title, wish.reason))
 
     def save(self, wish: Named) -> Path:
@@ -212,14 +212,14 @@ class Bench:
         try:
             write_new(path, text)
         except FileExistsError as error:
-            raise HerijkError(f"{path} is there already; choose another name") from error
+            raise HerijkError("{} is there already; choose another name", path) from error
         return path
 
     def _wished(self, wish: Wish, name: str, title: str, reason: str) -> Method:
         base = self._method(wish.base)
         ranges = cut_at(base, self._seasons)
         if len(ranges) != len(wish.steps):
-            raise HerijkError(f"{base.name} has {len(ranges)} ranges, not {len(wish.steps)}")
+            raise HerijkError("{} has {} ranges, not {}", base.name, len(ranges), len(wish.steps))
         steps = (
             SeasonSteps(first=block.first, last=block.last, steps=steps)
             for block, steps in zip(ranges, wish.steps, strict=True)

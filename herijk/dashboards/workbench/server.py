@@ -27,10 +27,11 @@ from herijk.dashboards import fonts
 from herijk.dashboards.html import as_json, environment, in_both
 from herijk.dashboards.site.render import vega_bundle
 from herijk.dashboards.site.specifications import chart_specifications
-from herijk.dashboards.words import LANGUAGES, both
 from herijk.dashboards.workbench.bench import Base, Bench, Named, Question
 from herijk.dashboards.workbench.texts import TEXTS
 from herijk.pipeline.errors import HerijkError
+from herijk.words import LANGUAGES
+from herijk.words.catalogue import both
 
 LOOPBACK: Final = "127.0.0.1"
 HOSTS: Final = (LOOPBACK, "localhost")

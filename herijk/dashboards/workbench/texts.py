@@ -5,7 +5,7 @@ An option or value without a text here is shown by its name in the method file.
 
 from typing import Final
 
-from herijk.dashboards.words import WORDS, Words
+from herijk.words.catalogue import WORDS, Words
 
 TEXTS: Final[Words] = {
     **WORDS,

@@ -131,8 +131,10 @@ def stack_blocks(blocks: pl.DataFrame, runs: pl.DataFrame) -> RunBlocks:
     if missing.height:
         tow, run = missing.row(0, named=True)["tow_id"], missing.row(0, named=True)["run"]
         raise BrokenPromiseError(
-            f"tow {tow}, run {run}: no blocks, though its samples were read; "
-            "rebuild with an empty data folder"
+            "tow {}, run {}: no blocks, though its samples were read; rebuild with "
+            "an empty data folder",
+            tow,
+            run,
         )
     if place.null_count():
         blocks, place = blocks.filter(place.is_not_null()), place.drop_nulls()

@@ -15,7 +15,6 @@ from functools import cached_property
 from typing import Final, NamedTuple, Self
 
 import numpy as np
-from scipy.optimize.elementwise import find_root
 
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.consistency.reml import Problem, Stack, Whitened, search
@@ -208,6 +207,8 @@ class _Profile:
 
     def ends(self, inside: FloatArray, outside: FloatArray, place: IntArray) -> FloatArray:
         """Sds between these at which the deviance is that of a 95 % interval's end."""
+        from scipy.optimize.elementwise import find_root  # noqa: PLC0415 - half a second
+
         if not len(place):
             return inside
         spread = self.stack.problem.spread

@@ -189,9 +189,12 @@ class Method(_Options):
             if block.first <= season <= block.last:
                 return block.steps
         raise MissingKnowledgeError(
-            f"method {self.name} says nothing about season {season}; "
-            f"it covers {self.ranges[0].first} to {_season_text(self.ranges[-1].last)}. "
-            "Leave that season out with --seasons, or widen the method's `seasons`"
+            "method {} says nothing about season {}; it covers {} to {}. Leave that "
+            "season out with --seasons, or widen the method's `seasons`",
+            self.name,
+            season,
+            self.ranges[0].first,
+            _season_text(self.ranges[-1].last),
         )
 
     @property
@@ -226,7 +229,7 @@ def shipped_text(name: str) -> str:
     """
     if name not in shipped_methods():
         raise MissingKnowledgeError(
-            f"there is no method {name!r}; the methods are {', '.join(shipped_methods())}"
+            "there is no method {!r}; the methods are {}", name, ", ".join(shipped_methods())
         )
     return (resources.files("herijk.pipeline.methods") / f"{name}.toml").read_text(encoding="utf-8")
 
@@ -255,8 +258,12 @@ def parse_method(text: str, file_name: str, text_of: Callable[[str], str] = ship
     most = max((line.count(".") for line in text.splitlines()), default=0)
     if len(text) > LONGEST_TEXT or most > MOST_DOTS:
         raise MethodFileError(
-            f"{file_name}: {len(text)} letters, up to {most} dots in a line; a method has at most "
-            f"{LONGEST_TEXT} and {MOST_DOTS}"
+            "{}: {} letters, up to {} dots in a line; a method has at most {} and {}",
+            file_name,
+            len(text),
+            most,
+            LONGEST_TEXT,
+            MOST_DOTS,
         )
     reader = _Reader(text, file_name)
     head = reader.head()
@@ -326,12 +333,12 @@ class _Reader:
         except ValidationError as error:
             raise self.from_validation(error, allowed=_Head) from error
         except (ValueError, RecursionError) as error:
-            raise MethodFileError(f"{self.file_name}: not valid TOML: {error}") from error
+            raise MethodFileError("{}: not valid TOML: {}", self.file_name, error) from error
 
     def error(self, key: str, message: str, where: str | None = None) -> MethodFileError:
         """An error about `key`, on the line of `where`, which is the key unless it is missing."""
         line = self._line(key if where is None else where)
-        return MethodFileError(f"{self.file_name}{line}: {key}: {message}")
+        return MethodFileError("{}{}: {}: {}", self.file_name, line, key, message)
 
     def from_validation(
         self, error: ValidationError, allowed: type[BaseModel], season: str = ""

@@ -73,7 +73,7 @@ def variant(
     """
     seasons = [(block.first, block.last) for block in ranges]
     if seasons != [(block.first, block.last) for block in cut_at(base, (s[0] for s in seasons))]:
-        raise MethodFileError(f"{name}: the seasons {seasons} are not those of {base.name}")
+        raise MethodFileError("{}: the seasons {} are not those of {}", name, seasons, base.name)
     ships = base.name in shipped_methods() and base == shipped_method(base.name)
     return Method(
         name=name,

@@ -53,12 +53,14 @@ def reference_power_share(time_s: ArrayLike, outside: Outside = "refuse") -> Flo
     (first, last), (first_share, last_share) = np.array(FATIGUE_REFERENCE).T
     beyond = (time < first) | (time > last)
     if outside == "refuse" and beyond.any():
-        message = (
-            f"The fatigue reference is known from {first / 3600:g} to {last / 3600:g} h; "
-            f"{int(beyond.sum())} race times lie outside, the first is "
-            f"{time[beyond].flat[0] / 3600:.2f} h. Leave these without correction, or extend it."
+        raise MissingKnowledgeError(
+            "The fatigue reference is known from {:g} to {:g} h; {} race times lie outside, the "
+            "first is {:.2f} h. Leave these without correction, or extend it.",
+            first / 3600,
+            last / 3600,
+            int(beyond.sum()),
+            time[beyond].flat[0] / 3600,
         )
-        raise MissingKnowledgeError(message)
     exponent = np.log(last_share / first_share) / np.log(last / first)
     return np.asarray(first_share * (time / first) ** exponent, dtype=np.float64)
 

@@ -151,8 +151,12 @@ def _refuse_unknown(tows: pl.DataFrame) -> None:
         faulty = tows.filter(~sound.fill_null(False))
         if faulty.height:
             raise BrokenPromiseError(
-                f"season factors: {name} of tow {faulty['tow_id'][0]} is {faulty[name][0]}, and "
-                f"{faulty.height - 1} more; give only tows with a sound curve"
+                "season factors: {} of tow {} is {}, and {} more; give only tows "
+                "with a sound curve",
+                name,
+                faulty["tow_id"][0],
+                faulty[name][0],
+                faulty.height - 1,
             )
 
 

@@ -81,6 +81,7 @@ def _liquid(temperature_c: ArrayLike) -> FloatArray:
     t = np.asarray(temperature_c, dtype=np.float64)
     lowest, highest = LIQUID_RANGE_C
     if not np.all((t >= lowest) & (t <= highest)):
-        message = f"Water temperatures must lie in {lowest:g}-{highest:g} C, in degrees Celsius."
-        raise BrokenPromiseError(message)
+        raise BrokenPromiseError(
+            "Water temperatures must lie in {:g}-{:g} C, in degrees Celsius.", lowest, highest
+        )
     return t

@@ -129,8 +129,9 @@ def _members_of(members: pl.DataFrame, tow_id: str) -> FloatArray:
     mine = members.filter(pl.col("tow_id") == tow_id).sort("member")
     if mine.is_empty():
         raise MissingKnowledgeError(
-            f"tow {tow_id} has no members in the ensemble: there is no curve for it; "
-            "look for its status in the table curves"
+            "tow {} has no members in the ensemble: there is no curve for it; look "
+            "for its status in the table curves",
+            tow_id,
         )
     return mine["cw_kg_m"].to_numpy()
 

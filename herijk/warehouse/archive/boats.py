@@ -12,8 +12,8 @@ from herijk.tables.lake import ListedBoats
 from herijk.warehouse.archive.faults import Fault, fault_from
 from herijk.warehouse.archive.files import BOATS_FILE
 from herijk.warehouse.archive.lists import ListRow, Wording, read_list
-from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.text import Column
+from herijk.words import say
 
 COLUMNS: Final = (
     Column("fsn_no", "fsn_nr"),

@@ -28,12 +28,12 @@ from herijk.warehouse.archive.files import (
     path_inside,
 )
 from herijk.warehouse.archive.index import ArchiveIndex, index_archive, missing_lists, strangers
-from herijk.warehouse.archive.messages import Sentence, innermost, say, spoken
 from herijk.warehouse.archive.plausibility import judge_samples
 from herijk.warehouse.archive.profile import Profiles, SeasonProfile, parse_profiles, profile_text
 from herijk.warehouse.archive.proposals import Proposal, merged, propose
 from herijk.warehouse.archive.published import read_published_registers, read_races
 from herijk.warehouse.archive.samples import check_header, read_samples, read_tow_samples
+from herijk.words import innermost, say, spoken
 
 ROUNDS: Final = 8
 """So often what was proposed is tried, at most."""
@@ -240,9 +240,9 @@ def is_plan(runs: Sequence[int]) -> bool:
 
 def _grouped(seen: Iterable[tuple[Fault, Sequence[Proposal]]]) -> tuple[Cause, ...]:
     """Return the faults by cause, those with most first."""
-    groups: dict[tuple[object, ...], list[tuple[Fault, Sequence[Proposal]]]] = {}
+    groups: dict[tuple[str, str], list[tuple[Fault, Sequence[Proposal]]]] = {}
     for fault, offered in seen:
-        groups.setdefault(_cause_of(fault), []).append((fault, offered))
+        groups.setdefault((fault.reason_code, fault.cause), []).append((fault, offered))
     causes = [
         Cause(
             group[0][0].reason_code,
@@ -252,15 +252,6 @@ def _grouped(seen: Iterable[tuple[Fault, Sequence[Proposal]]]) -> tuple[Cause, .
         for group in groups.values()
     ]
     return tuple(sorted(causes, key=lambda cause: -len(cause.faults)))
-
-
-def _cause_of(fault: Fault) -> tuple[object, ...]:
-    """Return what faults of one cause share: the kind of sentence, and the column it is about."""
-    what = innermost(fault.message)
-    if not isinstance(what, Sentence):
-        return (fault.reason_code,)
-    same = (what.values.get(name) for name in ("column", "names", "unit", "found"))
-    return (fault.reason_code, what.template, *same)
 
 
 def as_report(checked: Checked, language: str) -> Report:

@@ -4,10 +4,11 @@ A reason code is stable: it is in the quarantine table and in `docs/archive.md`.
 fault belongs to the module that reads the thing; this one only says what the codes mean.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final, Literal
 
 from herijk.pipeline.errors import DefectiveInputError
+from herijk.words import cause_of, spoken
 
 Lost = Literal["seconds", "run", "tow", "file", "row"]
 """What a fault costs: seconds of one channel of a run, a run, a tow, or a file; or a row of a list
@@ -35,6 +36,8 @@ class Fault:
         lost: what it costs; None for a tow, a row or a file, as it has a tow, a line or neither.
         run: the run that it costs, or seconds of which.
         lost_s: how many seconds.
+        cause: what faults of one cause share.
+        message_nl: the message in Dutch.
     """
 
     path: str
@@ -45,6 +48,13 @@ class Fault:
     lost: Lost | None = None
     run: int | None = None
     lost_s: float | None = None
+    cause: str = field(init=False)
+    message_nl: str = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Say the message in Dutch too, and what it shares with others."""
+        object.__setattr__(self, "cause", cause_of(self.message))
+        object.__setattr__(self, "message_nl", spoken(self.message, "nl"))
 
 
 class DefectiveFileError(DefectiveInputError):

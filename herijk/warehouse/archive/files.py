@@ -16,8 +16,8 @@ import pyarrow as pa  # type: ignore[import-untyped]
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.faults import DefectiveFileError
 from herijk.warehouse.archive.limits import check_rows
-from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.text import fold_name
+from herijk.words import say
 
 BOATS_FILE: Final = "sloepregister/sloependata.csv"
 LIST_SUFFIXES: Final = (".csv", ".txt", ".tsv", ".xlsx", ".xlsm", ".xls", ".ods")

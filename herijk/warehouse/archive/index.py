@@ -52,11 +52,11 @@ from herijk.warehouse.archive.instruments import (
 )
 from herijk.warehouse.archive.limits import LIST_MAX_BYTES
 from herijk.warehouse.archive.lists import ListRow, read_list
-from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.misfits import misfits
 from herijk.warehouse.archive.profile import Plan, Profiles, read_profiles
 from herijk.warehouse.archive.recognise import recognised
 from herijk.warehouse.archive.text import fold, fold_name, shorten
+from herijk.words import say
 
 _FilesByName = dict[tuple[int, str], list["SamplesFile"]]
 """Samples files by season and the name they answer to."""
@@ -227,7 +227,9 @@ def _fault_order(fault: Fault) -> tuple[str, int, str]:
 def _check_present(root: Path, profiles: Profiles) -> None:
     lacking = missing_lists(root, profiles)
     if lacking:
-        raise MissingKnowledgeError(f"The archive at {root} cannot be read: {lacking[0].message}")
+        raise MissingKnowledgeError(
+            "The archive at {} cannot be read: {}", root, lacking[0].message
+        )
 
 
 def missing_lists(root: Path, profiles: Profiles) -> list[Fault]:
@@ -238,8 +240,10 @@ def missing_lists(root: Path, profiles: Profiles) -> list[Fault]:
     """
     if not root.is_dir():
         raise MissingKnowledgeError(
-            f"There is no archive at {root}: expected a folder with {BOATS_FILE}, "
-            "sleeplijsten/ and meetdata_<jaar>/."
+            "There is no archive at {}: expected a folder with {}, sleeplijsten/ and "
+            "meetdata_<jaar>/.",
+            root,
+            BOATS_FILE,
         )
     named = profiles.wording.files
     lacking = []

@@ -18,10 +18,10 @@ from herijk.tables.lake import ListedForceChecks, ListedLamps
 from herijk.warehouse.archive.faults import Fault
 from herijk.warehouse.archive.files import FORCE_CHECKS, LAMPS, list_files
 from herijk.warehouse.archive.lists import ListRow, Wording
-from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.published import read_lists
 from herijk.warehouse.archive.text import Column
 from herijk.warehouse.archive.tows import run_number
+from herijk.words import say
 
 GRAVITY_M_S2: Final = 9.813
 """In the Netherlands."""

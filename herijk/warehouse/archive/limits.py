@@ -7,6 +7,7 @@ of it. Everything larger is set aside with `too_large`.
 from typing import Final
 
 from herijk.pipeline.errors import DefectiveInputError
+from herijk.words import say
 
 LIST_MAX_BYTES: Final = 20_000_000
 SAMPLES_MAX_BYTES: Final = 250_000_000
@@ -34,8 +35,12 @@ def too_many_rows(rows: int) -> DefectiveInputError:
     """The error for a file with more rows than a tow can have."""
     return DefectiveInputError(
         "too_large",
-        f"The file has {rows} rows or more; at most {MOST_ROWS} can be right, and a tow of six "
-        "runs at 1000 Hz has 300000.",
+        say(
+            "The file has {} rows or more; at most {} can be right, and a tow of six "
+            "runs at 1000 Hz has 300000.",
+            rows,
+            MOST_ROWS,
+        ),
     )
 
 
@@ -48,7 +53,12 @@ def check_header(line: str, columns: int) -> None:
     if len(line) > LONGEST_HEADER or columns > MOST_COLUMNS:
         raise DefectiveInputError(
             "too_large",
-            f"The header has {columns} columns in {len(line)} letters; at most {MOST_COLUMNS} in "
-            f"{LONGEST_HEADER} can be right.",
+            say(
+                "The header has {} columns in {} letters; at most {} in {} can be right.",
+                columns,
+                len(line),
+                MOST_COLUMNS,
+                LONGEST_HEADER,
+            ),
             line=1,
         )

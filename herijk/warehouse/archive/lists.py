@@ -12,12 +12,10 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Final
 
-import dataframely as dy
-
 from herijk.pipeline.errors import DefectiveInputError
+from herijk.tables.declare import dy
 from herijk.tables.frames import limits
 from herijk.warehouse.archive.meaning import Meaning, meanings
-from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.sheets import Sheet, read_sheets
 from herijk.warehouse.archive.text import (
     Column,
@@ -30,6 +28,7 @@ from herijk.warehouse.archive.text import (
 )
 from herijk.warehouse.archive.units import UNITS, Scale, find_scale
 from herijk.warehouse.archive.words import ALL_RUNS, CLASSES, HEADERS, NO, NOTHING, YES
+from herijk.words import say
 
 _ISO_DATE: Final = re.compile(r"([0-9]{4})[-/.]([0-9]{1,2})[-/.]([0-9]{1,2})")
 _DAY_FIRST: Final = re.compile(r"([0-9]{1,2})([-./ ])([0-9]{1,2})\2([0-9]{4}|[0-9]{2})")

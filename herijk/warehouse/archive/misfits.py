@@ -3,11 +3,11 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-import dataframely as dy
 import polars as pl
 
+from herijk.tables.declare import dy
 from herijk.tables.frames import limits
-from herijk.warehouse.archive.messages import Sentence, say
+from herijk.words import Sentence, say
 
 
 def misfits(

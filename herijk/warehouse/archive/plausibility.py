@@ -21,6 +21,7 @@ from herijk.pipeline.arrays import BoolArray
 from herijk.pipeline.channels import SECOND_FILE_OFFSET
 from herijk.warehouse.archive.faults import DefectiveFileError, Fault, Lost
 from herijk.warehouse.archive.samples import OUTPUT_NAMES, run_starts
+from herijk.words import say
 
 SHORTEST_RUN_RATIO: Final = 0.99
 """Of what is planned."""
@@ -86,8 +87,8 @@ class _Run:
     @property
     def name(self) -> str:
         if self.number > SECOND_FILE_OFFSET:
-            return f"Run b{self.number - SECOND_FILE_OFFSET}"
-        return f"Run {self.number}"
+            return say("Run b{}", self.number - SECOND_FILE_OFFSET)
+        return say("Run {}", self.number)
 
 
 @dataclass(frozen=True)
@@ -225,8 +226,11 @@ def _missing_run(run: int, tow: Mapping[str, Any], present: list[int]) -> Fault:
         tow["tow_id"],
         None,
         "missing_run",
-        f"Run {run - offset} is to be used but is not in the file; it holds runs "
-        f"{', '.join(there)}.",
+        say(
+            "Run {} is to be used but is not in the file; it holds runs {}.",
+            run - offset,
+            ", ".join(there),
+        ),
         "run",
         run,
     )
@@ -260,16 +264,20 @@ def _short(run: _Run, tow: Mapping[str, Any]) -> list[Fault]:
         return []
     missing_s = run.planned_s - run.seconds
     lost: Lost = "run" if missing_s > LEFT_OUT_S else "seconds"
-    message = (
-        f"{run.name} lasts {run.seconds:.2f} s at {run.rate_hz} samples per second, "
-        f"{missing_s:.2f} s too short; {_what_then(lost)}."
+    message = say(
+        "{} lasts {:.2f} s at {} samples per second, {:.2f} s too short; {}.",
+        run.name,
+        run.seconds,
+        run.rate_hz,
+        missing_s,
+        _what_then(lost),
     )
     return [_cost("short_run", message, run, tow, 0, lost, missing_s)]
 
 
 def _what_then(lost: Lost) -> str:
     if lost == "run":
-        return f"up to {LEFT_OUT_S:g} s may be missing, so the run is left out"
+        return say("up to {:g} s may be missing, so the run is left out", LEFT_OUT_S)
     return "the run goes on without them"
 
 
@@ -343,7 +351,7 @@ def _check_mix_ups(runs: list[_Run], tow: Mapping[str, Any]) -> None:
     if force < 0 and not _implausible(turned, intended):
         raise _fault(
             "negative_force",
-            f"The force is {force:.0f} N in a typical run; it must be positive.",
+            say("The force is {:.0f} N in a typical run; it must be positive.", force),
             runs[0],
             tow,
             0,
@@ -353,9 +361,14 @@ def _check_mix_ups(runs: list[_Run], tow: Mapping[str, Any]) -> None:
         if (one in wrong or other in wrong) and not _implausible(exchanged, intended):
             raise _fault(
                 "swapped_columns",
-                f"Columns '{_WORDS[one]}' and '{_WORDS[other]}' seem to be exchanged: typically "
-                f"they hold {typical[one].median:.4g} and {typical[other].median:.4g}, and only "
-                "the other way round can that be right.",
+                say(
+                    "Columns '{}' and '{}' seem to be exchanged: typically they hold "
+                    "{:.4g} and {:.4g}, and only the other way round can that be right.",
+                    _WORDS[one],
+                    _WORDS[other],
+                    typical[one].median,
+                    typical[other].median,
+                ),
                 runs[0],
                 tow,
                 1 - runs[0].first_line,
@@ -372,8 +385,13 @@ def _check_speed_unit(runs: list[_Run], tow: Mapping[str, Any]) -> None:
     if _within(ratio, KM_H_RATIO):
         raise _fault(
             "speed_unit",
-            f"The speed by log1 is {ratio:.2f} times the intended one; between {KM_H_RATIO[0]:g} "
-            f"and {KM_H_RATIO[1]:g} times it looks like km/h under another header.",
+            say(
+                "The speed by log1 is {:.2f} times the intended one; between {:g} and "
+                "{:g} times it looks like km/h under another header.",
+                ratio,
+                KM_H_RATIO[0],
+                KM_H_RATIO[1],
+            ),
             runs[0],
             tow,
             1 - runs[0].first_line,
@@ -419,14 +437,18 @@ def _judge_run(
 SPARE: Final = ("log2", "gps")
 """Channels without which a run goes on."""
 
-_NOT_IN_THIS_RUN: Final = f"over {LEFT_OUT_S:g} s, so the run goes on without this column"
+_NOT_IN_THIS_RUN: Final = say("over {:g} s, so the run goes on without this column", LEFT_OUT_S)
 
 
 def _of_rows(run: _Run, tow: Mapping[str, Any], mask: BoolArray, lost: Lost) -> Fault:
     """The fault of rows of which nothing can be read."""
     seconds = float(mask.sum()) / run.rate_hz
-    message = f"{run.name}: rows do not have their fields, {seconds:.3g} s in all"
-    message += f"; {_what_then(lost)}."
+    message = say(
+        "{}: rows do not have their fields, {:.3g} s in all; {}.",
+        run.name,
+        seconds,
+        _what_then(lost),
+    )
     return _cost("broken_row", message, run, tow, int(mask.argmax()), lost, seconds)
 
 
@@ -442,15 +464,19 @@ def _of_samples(
     row = int(mask.argmax())
     value = run.channels[key][row]
     seconds = float(mask.sum()) / run.rate_hz
-    message = (
-        f"{run.name}: column '{_WORDS[key]}' {_seen(value)} and is wrong for {seconds:.3g} s in "
-        f"all; {then}."
+    message = say(
+        "{}: column '{column}' {} and is wrong for {:.3g} s in all; {}.",
+        run.name,
+        _seen(value),
+        seconds,
+        then,
+        column=_WORDS[key],
     )
     return _cost(_reason(run, key, row), message, run, tow, row, lost, seconds)
 
 
 def _seen(value: float) -> str:
-    return f"holds {value:.6g}" if np.isfinite(value) else "holds no ordinary number"
+    return say("holds {:.6g}", value) if np.isfinite(value) else "holds no ordinary number"
 
 
 def _reason(run: _Run, key: str, row: int) -> str:
@@ -549,9 +575,9 @@ def _judge_whole(
                 continue
             reason_code, what, row = said
             if key not in SPARE:
-                message = f"{run.name}: {what}; the run is left out."
+                message = say("{}: {what}; the run is left out.", run.name, what=what)
                 return None, [_cost(reason_code, message, run, tow, row, "run", run.seconds)]
-            message = f"{run.name}: {what}; the run goes on without this column."
+            message = say("{}: {what}; the run goes on without this column.", run.name, what=what)
             faults.append(_cost(reason_code, message, run, tow, row, "seconds", run.seconds))
             run = _without(run, key)
     return run, faults
@@ -606,9 +632,12 @@ def _stuck(run: _Run, key: str) -> Said | None:
     row, length = _longest_hold(values, counts)
     if length < limit_s * run.rate_hz:
         return None
-    what = (
-        f"column '{_WORDS[key]}' holds {values[row]:.6g} for {length / run.rate_hz:.3g} s; less "
-        f"than {limit_s:g} s is normal"
+    what = say(
+        "column '{column}' holds {:.6g} for {:.3g} s; less than {:g} s is normal",
+        values[row],
+        length / run.rate_hz,
+        limit_s,
+        column=_WORDS[key],
     )
     return "stuck_channel", what, row
 
@@ -630,7 +659,13 @@ def _unlikely_mean(run: _Run, key: str) -> Said | None:
         return None
     if key == "force" and mean <= 0:
         reason_code = "negative_force"
-    what = f"the mean of column '{_WORDS[key]}' is {mean:.4g}; {low:.3g} to {high:.3g} can be right"
+    what = say(
+        "the mean of column '{column}' is {:.4g}; {:.3g} to {:.3g} can be right",
+        mean,
+        low,
+        high,
+        column=_WORDS[key],
+    )
     return reason_code, what, 0
 
 
@@ -643,8 +678,12 @@ def _without_stuck_gps(runs: list[_Run], tow: Mapping[str, Any]) -> tuple[list[_
         if why is None:
             kept.append(run)
             continue
-        message = f"{run.name}: gps holds {run.channels['gps'][0]:.6g} throughout, {why}; the run "
-        message += "goes on without this column."
+        message = say(
+            "{}: gps holds {:.6g} throughout, {}; the run goes on without this column.",
+            run.name,
+            run.channels["gps"][0],
+            why,
+        )
         faults.append(_cost("stuck_channel", message, run, tow, 0, "seconds", run.seconds))
         kept.append(_without(run, "gps"))
     return kept, faults
@@ -659,9 +698,9 @@ def _stuck_gps(run: _Run, stuck: dict[float, _Run]) -> str | None:
     span = float(np.nanmax(seconds) - np.nanmin(seconds))
     before = stuck.setdefault(float(gps[0]), run)
     if span > GPS_MUST_MOVE_M_S:
-        return f"while log1 changed by {span:.2f} m/s"
+        return say("while log1 changed by {:.2f} m/s", span)
     if before.intended_m_s != run.intended_m_s:
-        return f"and so in {before.name.lower()}, at another speed"
+        return say("and so in {}, at another speed", before.name.lower())
     return None
 
 

@@ -14,6 +14,7 @@ from herijk.warehouse.archive.text import (
     split_header,
     split_line,
 )
+from herijk.words import say
 
 KNOWN: Final = {
     "speed": ("snelheid", "speed", "v"),
@@ -60,7 +61,7 @@ def _first(names: list[str], key: str, header: str) -> str:
             return name
     raise DefectiveInputError(
         "missing_column",
-        f"no column for {key} in the header {header.strip()!r}; name it with --{key}",
+        say("no column for {} in the header {!r}; name it with --{}", key, header.strip(), key),
     )
 
 

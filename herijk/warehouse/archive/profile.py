@@ -322,7 +322,7 @@ def profile_text(root: Path) -> str:
     except DefectiveInputError as error:
         raise MissingKnowledgeError(error.message) from error
     except ValueError as error:
-        raise MissingKnowledgeError(f"{PROFILE_FILE} is not valid TOML: {error}") from error
+        raise MissingKnowledgeError("{} is not valid TOML: {}", PROFILE_FILE, error) from error
 
 
 def parse_profiles(text: str) -> Profiles:
@@ -334,9 +334,9 @@ def parse_profiles(text: str) -> Profiles:
     try:
         parsed = _File.model_validate(tomllib.loads(text))
     except ValidationError as error:
-        raise MissingKnowledgeError(f"{PROFILE_FILE}: {_explain(error)}") from error
+        raise MissingKnowledgeError("{}: {}", PROFILE_FILE, _explain(error)) from error
     except (ValueError, RecursionError) as error:
-        raise MissingKnowledgeError(f"{PROFILE_FILE} is not valid TOML: {error}") from error
+        raise MissingKnowledgeError("{} is not valid TOML: {}", PROFILE_FILE, error) from error
     return Profiles(
         simulated=parsed.simulated,
         publication=parsed.publication,
@@ -364,7 +364,7 @@ def _profile_path(root: Path) -> Path | None:
         return None
     names = sorted(p.name for p in root.iterdir() if p.name.casefold() == PROFILE_FILE)
     if len(names) > 1:
-        raise MissingKnowledgeError(f"{' and '.join(names)} both are in {root}; keep one")
+        raise MissingKnowledgeError("{} both are in {}; keep one", " and ".join(names), root)
     path = path_inside(root, names[0]) if names else None
     return path if path is not None and path.is_file() else None
 

@@ -14,10 +14,10 @@ from tomlkit.items import InlineTable, Table
 
 from herijk.warehouse.archive.faults import Fault
 from herijk.warehouse.archive.lists import fold_word
-from herijk.warehouse.archive.messages import Sentence, innermost
 from herijk.warehouse.archive.profile import MAY_BE_ABSENT, SAMPLE_COLUMNS
 from herijk.warehouse.archive.text import fold, nearest_column, split_header
 from herijk.warehouse.archive.units import find_scale
+from herijk.words import Sentence, innermost
 
 _SAMPLES: Final = {column.key: column for column in SAMPLE_COLUMNS}
 _ONE_WORD: Final = 30

@@ -8,12 +8,12 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-import dataframely as dy
 import polars as pl
 
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.pipeline.register.register import NO_EMPTY_THWART
 from herijk.tables.archive import TowFacts
+from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of, limits
 from herijk.tables.lake import ListedRaces, PrintedLines
 from herijk.warehouse.archive.faults import Fault, fault_from
@@ -27,10 +27,10 @@ from herijk.warehouse.archive.files import (
 )
 from herijk.warehouse.archive.limits import LIST_MAX_BYTES
 from herijk.warehouse.archive.lists import ListRow, Wording, read_list
-from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.misfits import misfits
 from herijk.warehouse.archive.profile import read_profiles
 from herijk.warehouse.archive.text import Column, shorten
+from herijk.words import say
 
 NEVER_TOWED_CW: Final = (0.995, 1.005)
 """Published Cw of boats without a valid tow: 1, as printed in two decimals. No hull comes near."""

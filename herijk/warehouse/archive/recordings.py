@@ -13,7 +13,7 @@ import polars as pl
 
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.limits import MOST_ROWS, too_many_rows
-from herijk.warehouse.archive.messages import say
+from herijk.words import say
 
 _END_OF_HEADER: Final = "***End_of_Header***"
 _SEPARATORS: Final = {"tab": "\t", "comma": ",", "semicolon": ";", "space": " "}

@@ -31,7 +31,6 @@ from herijk.warehouse.archive.files import (
     too_large,
 )
 from herijk.warehouse.archive.limits import MOST_ROWS, SAMPLES_MAX_BYTES, too_many_rows
-from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.profile import SeasonProfile
 from herijk.warehouse.archive.recordings import is_labview, labview_as_table, read_tdms
 from herijk.warehouse.archive.sheets import find_header
@@ -51,6 +50,7 @@ from herijk.warehouse.archive.text import (
     with_units,
 )
 from herijk.warehouse.archive.units import find_scale
+from herijk.words import say
 
 OUTPUT_NAMES: Final = {
     "run": "run",

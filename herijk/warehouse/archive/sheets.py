@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from herijk.pipeline.errors import DefectiveInputError
-from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.text import (
     HEADER_WITHIN,
     Column,
@@ -26,6 +25,7 @@ from herijk.warehouse.archive.text import (
     split_line,
     with_units,
 )
+from herijk.words import say
 
 SPREADSHEETS: Final = (".xlsx", ".xlsm", ".xls", ".ods")
 MOST_ROWS: Final = 100_000

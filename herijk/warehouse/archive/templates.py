@@ -4,9 +4,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Final
 
-import dataframely as dy
-
 from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.tables.declare import dy
 from herijk.tables.lake import ListedBoats, ListedTows
 from herijk.warehouse.archive import boats as boat_list
 from herijk.warehouse.archive import tows as tow_list
@@ -82,7 +81,7 @@ def write_templates(root: Path) -> None:
         MissingKnowledgeError: there is something in the folder already.
     """
     if root.exists() and any(root.iterdir()):
-        raise MissingKnowledgeError(f"{root} is not empty; name a folder that is new")
+        raise MissingKnowledgeError("{} is not empty; name a folder that is new", root)
     for folder in FOLDERS:
         (root / folder).mkdir(parents=True, exist_ok=True)
     (root / "LEESMIJ.md").write_text(README, encoding="utf-8")

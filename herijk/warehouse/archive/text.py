@@ -18,8 +18,8 @@ from typing import Final
 
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.limits import check_header
-from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.units import UNITS, Scale, find_scale, is_any_unit, is_unit
+from herijk.words import say
 
 DELIMITERS: Final = (";", "\t", ",", "|")
 HEADER_WITHIN: Final = 60

@@ -10,9 +10,9 @@ from typing import Any, Final
 
 from herijk.pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
 from herijk.warehouse.archive.lists import ListRow, fold_word
-from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.text import Column, shorten
 from herijk.warehouse.archive.words import ALL_RUNS
+from herijk.words import say
 
 COLUMNS: Final = (
     Column("tow_id", "sleep_id"),

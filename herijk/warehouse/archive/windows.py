@@ -16,9 +16,9 @@ from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.lake import ListedWindows
 from herijk.warehouse.archive.faults import Fault, fault_from
 from herijk.warehouse.archive.lists import ListRow, Wording, read_list
-from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.text import Column, shorten
 from herijk.warehouse.archive.tows import run_number
+from herijk.words import say
 
 COLUMNS: Final = (
     Column("tow_id", "sleep_id"),

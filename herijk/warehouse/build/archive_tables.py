@@ -14,6 +14,7 @@ from herijk.tables.lake import Faults
 from herijk.warehouse.archive.windows import outside_run
 from herijk.warehouse.build.plausible import gross_faults, judge, with_doubts
 from herijk.warehouse.build.same_samples import same_samples
+from herijk.words import say
 
 if TYPE_CHECKING:
     from herijk.warehouse.build.inputs import Inputs
@@ -132,10 +133,13 @@ def _why_nothing(set_aside: pl.DataFrame) -> str:
     causes = set_aside["reason_code"].value_counts(sort=True).sort("count", descending=True).rows()
     counted = ", ".join(f"{number} x {reason}" for reason, number in causes)
     first = set_aside.row(0, named=True)
-    return (
-        f"no tow can be used: {set_aside.height} rows or files are set aside ({counted}). "
-        f"All are in the table quarantine. See them by cause with: herijk check ARCHIVE. "
-        f"The first: {first['path']}: {first['message']}"
+    return say(
+        "no tow can be used: {} rows or files are set aside ({}). All are in the table "
+        "quarantine. See them by cause with: herijk check ARCHIVE. The first: {}: {}",
+        set_aside.height,
+        counted,
+        first["path"],
+        first["message"],
     )
 
 

@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
-import dataframely as dy
 import polars as pl
 
-from herijk.tables.schemas import ABOUT, TABLES, conform
+from herijk.tables.declare import dy
+from herijk.tables.schemas import ABOUT, TABLES, conform, ordered
 from herijk.tables.views import VIEWS
 from herijk.warehouse.build.version import code_version
 from herijk.warehouse.store.database import build_database, left_wal
@@ -34,7 +34,7 @@ MEANINGS: Final = str(
 
 def warehouse_database(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     """All tables in one DuckDB file, and each as Parquet; both swapped in whole."""
-    tables = {name: conform(name, inputs[name]) for name in inputs.names if name in TABLES}
+    tables = {name: ordered(name, inputs[name]) for name in inputs.names if name in TABLES}
     tables["about"] = _about(inputs.store)
     tables["contents"] = _contents(tables)
     build_database(inputs.store.database, tables)

@@ -18,6 +18,7 @@ from herijk.pipeline.blocks.run_blocks import stack_blocks
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import Faults
 from herijk.warehouse.archive.faults import Fault
+from herijk.words import say
 
 _UNUSUAL: Final = {
     "force": "force_unusual",
@@ -86,23 +87,24 @@ def _sentence(shift: Shift) -> str:
     """What is seen, what it may be, and what to do, for a volunteer."""
     whose = {
         "tow": "This tow",
-        "day": f"All {len(shift.tows)} tows of {shift.key}",
-        "season": f"All {len(shift.tows)} tows of season {shift.key}",
+        "day": say("All {} tows of {}", len(shift.tows), shift.key),
+        "season": say("All {} tows of season {}", len(shift.tows), shift.key),
         "archive": "All tows of the archive",
     }[shift.kind]
-    return f"{whose}: {_seen(shift)}. {_way_out(shift)}"
+    return say("{}: {}. {}", whose, _seen(shift), _way_out(shift))
 
 
 def _seen(shift: Shift) -> str:
     if shift.quantity == "force":
-        return (
-            f"the force is {math.exp(shift.size):.2g} times what the size of the boat and the "
-            "other tows give"
+        return say(
+            "the force is {:.2g} times what the size of the boat and the other tows give",
+            math.exp(shift.size),
         )
     if shift.quantity == "wind":
-        return (
-            f"the wind is {1.0 + shift.size:.2g} times what out and back together give, which is "
-            "the boat's own speed"
+        return say(
+            "the wind is {:.2g} times what out and back together give, which is the "
+            "boat's own speed",
+            1.0 + shift.size,
         )
     return "all wind angles lie between -3.14 and 6.28, as angles in radians do"
 
@@ -110,4 +112,4 @@ def _seen(shift: Shift) -> str:
 def _way_out(shift: Shift) -> str:
     if not shift.cause:
         return "Look whether these are this boat's samples, and what the load cell was set to."
-    return f"It looks like {shift.cause}: correct the unit in the header, or the scale."
+    return say("It looks like {}: correct the unit in the header, or the scale.", shift.cause)

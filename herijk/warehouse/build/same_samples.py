@@ -17,6 +17,7 @@ from herijk.tables.frames import frame_of
 from herijk.tables.keys import LINE
 from herijk.tables.lake import Faults
 from herijk.warehouse.archive.faults import Fault
+from herijk.words import say
 
 _CONTENT: Final = ("n", "force", "log1_v", "log1_cw", "wind_v")
 
@@ -61,8 +62,15 @@ def _faults(same: pl.DataFrame) -> Iterator[Fault]:
             row["tow_id"],
             None,
             "duplicate_tow" if of_one else "samples_listed_twice",
-            f"Run {row['run'] % SECOND_FILE_OFFSET} holds the very samples of tow "
-            f"{other['tow_id']} ({other['samples_path']}) of {other['fsn_no']} "
-            f"{other['rowers']}{other['crew_class']}, packed or written otherwise.",
+            say(
+                "Run {} holds the very samples of tow {} ({}) of {} {}{}, packed or "
+                "written otherwise.",
+                row["run"] % SECOND_FILE_OFFSET,
+                other["tow_id"],
+                other["samples_path"],
+                other["fsn_no"],
+                other["rowers"],
+                other["crew_class"],
+            ),
             lost="tow",
         )

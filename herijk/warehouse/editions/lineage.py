@@ -26,7 +26,7 @@ def lineage(store: Store, edition: str, fsn_no: str) -> Report:
     lines = published.register.filter(pl.col("fsn_no") == fsn_no)
     if lines.is_empty():
         raise MissingKnowledgeError(
-            f"boat {fsn_no} is not in edition {edition}; its register.csv lists the boats"
+            "boat {} is not in edition {}; its register.csv lists the boats", fsn_no, edition
         )
     return {
         "about": published.about.model_dump(mode="json", exclude={"files", "tables"}),

@@ -37,12 +37,12 @@ def printed_path(store: Store, season: int) -> str:
     if paths.is_empty():
         known = ", ".join(str(s) for s in registers["season"].unique().sort()) or "none"
         raise MissingKnowledgeError(
-            f"the archive holds no readable register printed in {season}; it holds: {known}"
+            "the archive holds no readable register printed in {}; it holds: {}", season, known
         )
     path = str(paths[0])
     unread = next((fault for fault in faults if fault.path == path), None)
     if unread is not None:
-        raise MissingKnowledgeError(f"{path}: {unread.message} Mend the line, or take it out")
+        raise MissingKnowledgeError("{}: {} Mend the line, or take it out", path, unread.message)
     return path
 
 
@@ -105,8 +105,12 @@ def _refuse_doubles(printed: pl.DataFrame) -> None:
     if double.height:
         row = double.row(0, named=True)
         raise MissingKnowledgeError(
-            f"{row['path']}, line {row['line']}: {row['fsn_no']} is listed twice for "
-            f"{row['rowers']}{row['crew_class']}; take one of the lines out"
+            "{}, line {}: {} is listed twice for {}{}; take one of the lines out",
+            row["path"],
+            row["line"],
+            row["fsn_no"],
+            row["rowers"],
+            row["crew_class"],
         )
 
 
@@ -123,8 +127,8 @@ def _carried(printed: Edition, log_factors: pl.DataFrame, method: Method) -> pl.
     """
     if printed.about.kind != "as_printed":
         raise MissingKnowledgeError(
-            f"edition {printed.about.edition} was recomputed; only lines of an edition as printed "
-            "can be carried over"
+            "edition {} was recomputed; only lines of an edition as printed can be carried over",
+            printed.about.edition,
         )
     usable = ("tow_date", "declared_speed_m_s", "a_kg_m", "b_m_s")
     lines = printed.register.drop_nulls(usable)

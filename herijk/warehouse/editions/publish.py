@@ -152,8 +152,11 @@ def recomputed_edition(
     """The edition that would be published, not yet written; see `publish`."""
     if store.made_from("tows") is None or METHOD_STEP.is_stale(store, [method]):
         raise MissingKnowledgeError(
-            f"the tables of method {method.name} are not those of the archive and code of today; "
-            f"run: herijk rebuild --archive DIR --data {store.root} --method {method.name}"
+            "the tables of method {} are not those of the archive and code of today; "
+            "run: herijk rebuild --archive DIR --data {} --method {}",
+            method.name,
+            store.root,
+            method.name,
         )
     tows = tows_of_today(store)
     decisions = decided.decision_table(_decisions(store, terms))
@@ -192,9 +195,13 @@ def _check_made(store: Store, method: Method, curves: pl.DataFrame) -> None:
     unequal = pairs.filter(~pl.all_horizontal(*same, *null, status))
     if unequal.height:
         raise BrokenPromiseError(
-            f"the curve of tow {unequal['tow_id'][0]}, and {unequal.height - 1} more, are not what "
-            f"{method.name} makes of its samples: a table of the data folder was changed. Remove "
-            f"{store.root / 'lake'} and run herijk rebuild"
+            "the curve of tow {}, and {} more, are not what {} makes of its samples: "
+            "a table of the data folder was changed. Remove {} and run herijk "
+            "rebuild",
+            unequal["tow_id"][0],
+            unequal.height - 1,
+            method.name,
+            store.root / "lake",
         )
 
 
@@ -231,8 +238,10 @@ def _check_decided_tows(decisions: pl.DataFrame, tows: pl.DataFrame) -> None:
     unknown = decisions.join(tows, on="tow_id", how="anti")["tow_id"].to_list()
     if unknown:
         raise MissingKnowledgeError(
-            f"{decided.FILE_NAME} decides about {', '.join(unknown)}, which is no tow of the "
-            "warehouse; mend the sleep_id, or take the decision out"
+            "{} decides about {}, which is no tow of the warehouse; mend the "
+            "sleep_id, or take the decision out",
+            decided.FILE_NAME,
+            ", ".join(unknown),
         )
 
 

@@ -158,6 +158,8 @@ ENGLISH: Final = Language(
     decimal=".",
 )
 
+LANGUAGES: Final = {"nl": DUTCH, "en": ENGLISH}
+
 
 def table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
     """A table in Markdown."""

@@ -159,8 +159,9 @@ def _check_unchanged(root: Path, tow: Tow, hashes: FileHashes) -> None:
     for path, sha256 in (("samples_path", "samples_sha256"), ("second_path", "second_sha256")):
         if tow[path] is not None and _sha256(root, tow[path], hashes) != tow[sha256]:
             raise ArchiveChangedError(
-                f"{tow[path]} changed while it was read. Try again when nobody is copying files "
-                f"into {root}"
+                "{} changed while it was read. Try again when nobody is copying files into {}",
+                tow[path],
+                root,
             )
 
 

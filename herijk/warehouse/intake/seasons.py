@@ -80,7 +80,7 @@ def listing(root: Path) -> Listing:
                 stat = path.lstat()
                 found[path.relative_to(root).as_posix()] = [stat.st_size, stat.st_mtime_ns]
     if not found:
-        raise MissingKnowledgeError(f"there is no file at {root}: is its disk there?")
+        raise MissingKnowledgeError("there is no file at {}: is its disk there?", root)
     return dict(sorted(found.items()))
 
 
@@ -186,8 +186,9 @@ def archive_root(store: Store) -> Path | None:
     """
     if store.made_from("about_archive") is None:
         raise MissingKnowledgeError(
-            f"{store.root} holds no warehouse; make it with: herijk rebuild --archive DIR "
-            f"--data {store.root}"
+            "{} holds no warehouse; make it with: herijk rebuild --archive DIR --data {}",
+            store.root,
+            store.root,
         )
     root = Path(store.read("about_archive")["root"][0])
     return root if root.is_dir() else None

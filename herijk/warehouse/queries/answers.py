@@ -63,7 +63,7 @@ def compared(views: Views, old: str, new: str) -> pl.DataFrame:
     for edition, side in ((old, before), (new, after)):
         if side.is_empty():
             known = choice_of(register["edition"].unique())
-            raise MissingKnowledgeError(f"there is no edition {edition}; {known}")
+            raise MissingKnowledgeError("there is no edition {}; {}", edition, known)
     names = views.table("boats").select("fsn_no", "name", "boat_type")
     steps = steps_of_lines(after, _steps(views, before, after))
     side_by_side = _side_by_side(before, after, register_changes(before, after, steps))

@@ -40,7 +40,7 @@ def lay_over(db: duckdb.DuckDBPyConnection, store: Store, day: dt.date) -> None:
         for name in ("register", "register_history", "boats", "tows", "methods", "race_changes")
     }
     if not (read["tows"]["tow_date"] <= day).any():
-        raise MissingKnowledgeError(f"the archive has no tow of {day} or before")
+        raise MissingKnowledgeError("the archive has no tow of {} or before", day)
     register = register_on(read["register"], read["register_history"], read["tows"], day)
     made = {
         "register": register,

@@ -61,7 +61,7 @@ def _methods(db: duckdb.DuckDBPyConnection, method: str | None) -> list[str]:
         return known
     if method not in known:
         raise MissingKnowledgeError(
-            f"the tables hold no method {method!r}; they hold {', '.join(known)}"
+            "the tables hold no method {!r}; they hold {}", method, ", ".join(known)
         )
     return [method]
 
@@ -92,14 +92,18 @@ def _type_named(db: duckdb.DuckDBPyConnection, name: str) -> str:
     boat = _boat_named(db, name)
     if boat:
         raise MissingKnowledgeError(
-            f"{boat['fsn_no']} is a boat, not a type; a boat has a page of its own: "
-            f"herijk audit {boat['fsn_no']}"
+            "{} is a boat, not a type; a boat has a page of its own: herijk audit {}",
+            boat["fsn_no"],
+            boat["fsn_no"],
         )
     example = rows(db, "SELECT min(fsn_no) AS fsn_no FROM tows")[0]["fsn_no"]
     known = ", ".join(f"{row['boat_type']} ({row['n']} boats)" for row in types)
     raise MissingKnowledgeError(
-        f"there is no boat and no type {name!r}; the types are {known}; boats are named by FSN "
-        f"number or name, for example {example}"
+        "there is no boat and no type {!r}; the types are {}; boats are named by FSN "
+        "number or name, for example {}",
+        name,
+        known,
+        example,
     )
 
 

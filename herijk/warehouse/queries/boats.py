@@ -34,10 +34,12 @@ def the_boat(boats: pl.DataFrame, name: str) -> str:
         return found[0]
     if found:
         raise MissingKnowledgeError(
-            f"{len(found)} boats are called {name!r}: {', '.join(found)}; give the FSN number"
+            "{} boats are called {!r}: {}; give the FSN number", len(found), name, ", ".join(found)
         )
     number, called = boats.sort("fsn_no").select("fsn_no", "name").row(0)
     raise MissingKnowledgeError(
-        f"there is no boat {name!r}; boats go by FSN number or name, for example {number} or "
-        f"{called}"
+        "there is no boat {!r}; boats go by FSN number or name, for example {} or {}",
+        name,
+        number,
+        called,
     )

@@ -45,7 +45,7 @@ def choose(db: duckdb.DuckDBPyConnection, tows: str, methods: Sequence[str]) -> 
     if tows == ALL:
         made = _over_all(db, observed)
     elif observed.table.is_empty():
-        raise MissingKnowledgeError(f"no tow of {tows} has a curve that can be compared")
+        raise MissingKnowledgeError("no tow of {} has a curve that can be compared", tows)
     else:
         made = _over(observed) | _of_seasons(db, _seasons(tows))
     for name, frame in made.items():
@@ -87,7 +87,7 @@ def _seasons(tows: str) -> list[int]:
     match = re.fullmatch(r"(\d{4})(?::(\d{4}))?", tows)
     if match is None:
         raise MissingKnowledgeError(
-            f"there are no tows {tows!r}; write all, newest, a season 2014 or a range 2012:2015"
+            "there are no tows {!r}; write all, newest, a season 2014 or a range 2012:2015", tows
         )
     return list(range(int(match[1]), int(match[2] or match[1]) + 1))
 

@@ -32,13 +32,13 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[di
     lines = answers(views, edition)
     if lines.is_empty():
         known = choice_of(views.table("register")["edition"].unique())
-        raise MissingKnowledgeError(f"there is no edition {edition}; {known}")
+        raise MissingKnowledgeError("there is no edition {}; {}", edition, known)
     wanted = lines.filter(pl.col("cw_kg_m").is_not_null())
     if fsn_no is not None:
         wanted = wanted.filter(pl.col("fsn_no").str.to_lowercase() == fsn_no.lower())
     if wanted.is_empty():
         raise MissingKnowledgeError(
-            f"edition {edition} has no valid line of {fsn_no or 'any boat'}"
+            "edition {} has no valid line of {}", edition, fsn_no or "any boat"
         )
     about = views.table("editions").filter(edition=edition)
     terms = about.select("decision", "valid_from", "published_on").to_dicts() or [

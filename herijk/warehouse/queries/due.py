@@ -56,8 +56,11 @@ def due_report(store: Store, method: str, as_of: dt.date | None = None) -> DueRe
         simulated = is_simulated(db)
     if not lines:
         raise MissingKnowledgeError(
-            f"there is no due list of method {method}; make it with: herijk rebuild --archive DIR "
-            f"--data {store.root} --method {method}"
+            "there is no due list of method {}; make it with: herijk rebuild "
+            "--archive DIR --data {} --method {}",
+            method,
+            store.root,
+            method,
         )
     urgent = [line | {"urgency": _urgency(line)} for line in lines]
     asked = as_of is not None

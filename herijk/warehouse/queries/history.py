@@ -62,8 +62,9 @@ class History:
         """
         if store.made_from("tows") is None:
             raise MissingKnowledgeError(
-                f"{store.root} holds no tows; make it with: herijk rebuild --archive DIR "
-                f"--data {store.root}"
+                "{} holds no tows; make it with: herijk rebuild --archive DIR --data {}",
+                store.root,
+                store.root,
             )
         return cls(
             tows=typed_tows(store),

@@ -29,7 +29,7 @@ def register_report(
     of_edition = lines.filter(edition=chosen)
     if of_edition.is_empty():
         known = ", ".join(lines["edition"].unique().sort())
-        raise MissingKnowledgeError(f"there is no edition {chosen}; there are {known}")
+        raise MissingKnowledgeError("there is no edition {}; there are {}", chosen, known)
     return {
         "edition": chosen,
         "simulated": simulated,

@@ -16,9 +16,14 @@ SELECT lost, reason_code, count(*) AS number FROM quarantine GROUP BY lost, reas
 ORDER BY list_position(['file', 'tow', 'row', 'run', 'seconds'], lost), number DESC, reason_code
 """
 _FIRST_FAULTS = """
-SELECT min(path) AS path, min(tow_id) AS tow_id, min(line) AS line, message, count(*) AS number
-FROM quarantine GROUP BY lost, reason_code, message
-ORDER BY list_position(['file', 'tow', 'row', 'run', 'seconds'], lost), number DESC, path, line
+WITH causes AS (
+    SELECT lost, reason_code, count(*) AS number,
+           first(quarantine ORDER BY path, line, tow_id) AS one
+    FROM quarantine GROUP BY lost, reason_code, cause
+)
+SELECT one.path, one.tow_id, one.line, reason_code, one.message, one.message_nl, number FROM causes
+ORDER BY list_position(['file', 'tow', 'row', 'run', 'seconds'], lost), number DESC,
+         one.path, one.line
 LIMIT ?
 """
 
@@ -32,7 +37,7 @@ class RebuildReport:
         simulated: whether the archive is.
         seasons: `season` and `tows`.
         set_aside: `lost`, `reason_code` and their `number`.
-        first_faults: some of them, with file, line and sentence.
+        first_faults: one line per cause: its first place and sentence, and how many there are.
         curves: `method`, `status` and their `number`.
         by_season, biggest_changes: what the newest method changes.
     """

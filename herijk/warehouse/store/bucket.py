@@ -142,12 +142,14 @@ def _explained(path: BucketPath) -> Iterator[None]:
     except FileNotFoundError as error:
         if "NoSuchBucket" in str(error):
             raise UnavailableError(
-                f"{path}: there is no bucket {path.bucket}; make it, or mend opslag.toml"
+                "{}: there is no bucket {}; make it, or mend opslag.toml", path, path.bucket
             ) from error
         raise
     except BaseError as error:
         said = str(error).splitlines()[0]
         raise UnavailableError(
-            f"{path} cannot be reached: {said}. Look at the network, at AWS_ENDPOINT_URL, and at "
-            "AWS_ACCESS_KEY_ID and the rights that go with it"
+            "{} cannot be reached: {}. Look at the network, at AWS_ENDPOINT_URL, and "
+            "at AWS_ACCESS_KEY_ID and the rights that go with it",
+            path,
+            said,
         ) from error

@@ -17,7 +17,7 @@ from herijk.tables.views import VIEWS
 from herijk.warehouse.store.files import written_beside
 
 if TYPE_CHECKING:
-    import dataframely as dy
+    from herijk.tables.declare import dy
 
 STORAGE: Final = "v1.0.0"
 """Any DuckDB since 1.0 opens the file; the newest form would shut out programs of last year."""
@@ -128,14 +128,16 @@ def open_database(path: Path) -> duckdb.DuckDBPyConnection:
     """
     if not path.exists():
         raise MissingKnowledgeError(
-            f"{path} is not there; make it with: herijk rebuild --archive DIR --data {path.parent}"
+            "{} is not there; make it with: herijk rebuild --archive DIR --data {}",
+            path,
+            path.parent,
         )
     try:
         return duckdb.connect(path, read_only=True)
     except duckdb.Error as error:
         locked = isinstance(error, duckdb.IOException) and "lock" in str(error).casefold()
         raise UnavailableError(
-            f"{path} cannot be opened: {_HELD if locked else _SPOILT}"
+            "{} cannot be opened: {}", path, _HELD if locked else _SPOILT
         ) from error
 
 
@@ -149,7 +151,7 @@ def open_results(path: Path) -> duckdb.DuckDBPyConnection:
     connection = open_database(path)
     if not connection.execute("SELECT 1 FROM tows LIMIT 1").fetchall():
         connection.close()
-        raise MissingKnowledgeError(f"{path} has no tow: {NO_TOW}")
+        raise MissingKnowledgeError("{} has no tow: {}", path, NO_TOW)
     return connection
 
 

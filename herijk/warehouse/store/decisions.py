@@ -53,15 +53,18 @@ def read_decisions(path: Path) -> tuple[Decision, ...]:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])
         raise MissingKnowledgeError(
-            f"{path}: {where}: {first['msg']}; a decision has sleep_id, oordeel (uitsluiten or "
-            "voorkeur), reden, wie and datum"
+            "{}: {}: {}; a decision has sleep_id, oordeel (uitsluiten or voorkeur), "
+            "reden, wie and datum",
+            path,
+            where,
+            first["msg"],
         ) from error
     except (ValueError, RecursionError) as error:
-        raise MissingKnowledgeError(f"{path}: not valid TOML: {error}") from error
+        raise MissingKnowledgeError("{}: not valid TOML: {}", path, error) from error
     tows = [decision.sleep_id for decision in decisions]
     twice = sorted({tow for tow in tows if tows.count(tow) > 1})
     if twice:
-        raise MissingKnowledgeError(f"{path}: more than one decision about {', '.join(twice)}")
+        raise MissingKnowledgeError("{}: more than one decision about {}", path, ", ".join(twice))
     return tuple(sorted(decisions, key=lambda decision: (decision.datum, decision.sleep_id)))
 
 

@@ -156,7 +156,7 @@ def edition_path(store: Store, edition: str) -> Place:
     """
     if edition not in edition_names(store):
         known = ", ".join(edition_names(store)) or "none yet"
-        raise MissingKnowledgeError(f"there is no edition {edition}; published: {known}")
+        raise MissingKnowledgeError("there is no edition {}; published: {}", edition, known)
     return store.editions / edition
 
 
@@ -169,13 +169,16 @@ def check_new_name(store: Store, edition: str) -> None:
     """
     if not _NAME.fullmatch(edition) or edition.startswith("concept-"):
         raise MissingKnowledgeError(
-            f"{edition!r} cannot name an edition: use letters, digits, '.', '_' and '-', begin "
-            "with a letter or digit, and not with 'concept-', which marks drafts"
+            "{!r} cannot name an edition: use letters, digits, '.', '_' and '-', "
+            "begin with a letter or digit, and not with 'concept-', which marks "
+            "drafts",
+            edition,
         )
     if _is_published(store.editions / edition):
         raise BrokenPromiseError(
-            f"edition {edition} was already published and is never changed; "
-            "publish under another name, for example with a higher number"
+            "edition {} was already published and is never changed; publish under "
+            "another name, for example with a higher number",
+            edition,
         )
 
 
@@ -190,8 +193,10 @@ def read_about(path: Place) -> About:
     except (OSError, UnicodeDecodeError, ValidationError) as error:
         reason = str(error).splitlines()[0]
         raise BrokenPromiseError(
-            f"edition {path.name}: {ABOUT} is missing or damaged ({reason}); put the folder back "
-            "from a copy"
+            "edition {}: {} is missing or damaged ({}); put the folder back from a copy",
+            path.name,
+            ABOUT,
+            reason,
         ) from error
 
 
@@ -224,8 +229,10 @@ def method_of_edition(store: Store, edition: str) -> Method:
     method = read_edition(store, edition).method
     if method is None:
         raise MissingKnowledgeError(
-            f"edition {edition} was taken over from print and has no method; compare it with "
-            f"another edition: herijk diff {edition} EDITION"
+            "edition {} was taken over from print and has no method; compare it with "
+            "another edition: herijk diff {} EDITION",
+            edition,
+            edition,
         )
     return method
 
@@ -240,8 +247,9 @@ def read_table(path: Place, name: str) -> pl.DataFrame:
         return pl.read_parquet((path / f"{name}.parquet").read_bytes())
     except (OSError, pl.exceptions.PolarsError) as error:
         raise BrokenPromiseError(
-            f"edition {path.name}: {name}.parquet is missing or damaged; put the folder back from "
-            "a copy"
+            "edition {}: {}.parquet is missing or damaged; put the folder back from a copy",
+            path.name,
+            name,
         ) from error
 
 
@@ -267,8 +275,10 @@ def write_folder(store: Store, edition: str, contents: Mapping[str, bytes]) -> P
             _create_in_order(target, contents)
     except OSError as error:
         raise BrokenPromiseError(
-            f"edition {edition} could not be written: {error.strerror or error}. Nothing was "
-            "published; make room or mend the folder, and publish again"
+            "edition {} could not be written: {}. Nothing was published; make room "
+            "or mend the folder, and publish again",
+            edition,
+            error.strerror or error,
         ) from error
     return target
 
@@ -280,9 +290,11 @@ def _create_in_order(target: "BucketPath", contents: Mapping[str, bytes]) -> Non
             (target / name).create_bytes(content)
         except FileExistsError as error:
             raise BrokenPromiseError(
-                f"{error} is there already: somebody publishes under this name just now, or did "
-                f"not finish. Nothing was published; publish under another name, or remove what "
-                f"lies under {target} when nobody is publishing"
+                "{} is there already: somebody publishes under this name just now, "
+                "or did not finish. Nothing was published; publish under another "
+                "name, or remove what lies under {} when nobody is publishing",
+                error,
+                target,
             ) from error
 
 

@@ -28,7 +28,9 @@ def read_ensemble(store: Store, method: str) -> pl.DataFrame:
     path = store.table_path(ENSEMBLE, method)
     if not path.exists():
         raise MissingKnowledgeError(
-            f"{path} is not there; make it with: "
-            f"herijk rebuild --archive DIR --data {store.root} --method {method}"
+            "{} is not there; make it with: herijk rebuild --archive DIR --data {} --method {}",
+            path,
+            store.root,
+            method,
         )
     return store.read(ENSEMBLE, method)

@@ -19,6 +19,7 @@ from filelock import FileLock, Timeout
 
 from herijk.pipeline.errors import UnavailableError
 from herijk.warehouse.store.files import TEMPORARY_PREFIX
+from herijk.words import say
 
 LOCK_FILE: Final = "rebuild.lock"
 SERVER_LOCK_FILE: Final = "serve.lock"
@@ -47,7 +48,7 @@ def only_writer(root: Path, wait: bool = False) -> Iterator[None]:
     if folder in _held:
         yield
         return
-    with _locked(folder / LOCK_FILE, wait, f"{folder} is being rebuilt already", WAIT):
+    with _locked(folder / LOCK_FILE, wait, say("{} is being rebuilt already", folder), WAIT):
         _held.add(folder)
         try:
             remove_leftovers(folder)
@@ -66,7 +67,7 @@ def only_server(root: Path) -> Iterator[None]:
     root.mkdir(parents=True, exist_ok=True)
     file = root.resolve() / SERVER_LOCK_FILE
     with _locked(
-        file, wait=False, taken=f"{root} is served already", way_out="Stop that one first"
+        file, wait=False, taken=say("{} is served already", root), way_out="Stop that one first"
     ):
         yield
 
@@ -91,7 +92,7 @@ def _locked(file: Path, wait: bool, taken: str, way_out: str) -> Iterator[None]:
     try:
         lock.acquire(blocking=wait)
     except Timeout as error:
-        raise UnavailableError(f"{taken}, by {_owner(signature)}. {way_out}") from error
+        raise UnavailableError("{}, by {}. {}", taken, _owner(signature), way_out) from error
     try:
         since = dt.datetime.now().astimezone().isoformat(timespec="seconds")
         owner = {"pid": os.getpid(), "host": socket.gethostname(), "since": since}
@@ -106,7 +107,7 @@ def _owner(signature: Path) -> str:
     """Who holds the lock, in words; it may have just begun and not have signed yet."""
     try:
         owner: dict[str, Any] = json.loads(signature.read_text(encoding="utf-8"))
-        return f"process {owner['pid']} on {owner['host']} since {owner['since']}"
+        return say("process {} on {} since {}", owner["pid"], owner["host"], owner["since"])
     except (OSError, ValueError, KeyError, TypeError):
         return "a process that has just begun"
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Final
 
 from herijk.pipeline.errors import HerijkError, UnavailableError
+from herijk.words import say
 
 _FULL: Final = (
     "there is no room left to write in {root}. Free some, or move the data folder; "
@@ -97,7 +98,7 @@ def machine_faults_explained(root: Path) -> Iterator[None]:
         if explanation is None:
             raise
         said = _said(explanation, error, root)
-        raise UnavailableError(f"{said}. {REASSURANCE}") from error
+        raise UnavailableError("{}. {}", said, REASSURANCE) from error
 
 
 def _said(found: str, error: BaseException, root: Path) -> str:
@@ -106,10 +107,10 @@ def _said(found: str, error: BaseException, root: Path) -> str:
         names = (str(e.filename) for e in _causes(error) if isinstance(e, OSError) and e.filename)
         path = next(names, None)
         if path is not None and not Path(path).absolute().is_relative_to(root.absolute()):
-            return _ELSEWHERE.format(path=path)
+            return say(_ELSEWHERE, path=path)
     if found == _BROKEN_DISK and _is_full(root):
         found = _FULL
-    return found.format(root=root)
+    return say(found, root=root)
 
 
 def _is_full(root: Path) -> bool:

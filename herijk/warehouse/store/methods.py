@@ -61,7 +61,9 @@ class KnownMethods:
         file = self.folder / f"{name}{SUFFIX}"
         method = parse_method(self.text(name), str(file), self.text)
         if method.name != name:
-            raise MethodFileError(f"{file}: name: {method.name!r}, and the file is called {name!r}")
+            raise MethodFileError(
+                "{}: name: {!r}, and the file is called {!r}", file, method.name, name
+            )
         return method
 
     def text(self, name: str) -> str:
@@ -74,7 +76,7 @@ class KnownMethods:
             return shipped_text(name)
         if name not in self.own:
             raise MissingKnowledgeError(
-                f"there is no method {name!r}; the methods are {', '.join(self.names)}"
+                "there is no method {!r}; the methods are {}", name, ", ".join(self.names)
             )
         return text_of_file(self.folder / f"{name}{SUFFIX}")
 
@@ -100,7 +102,9 @@ class KnownMethods:
             return method.name
         if method.name in shipped_methods():
             raise MethodFileError(
-                f"{name_or_file}: name: {method.name!r} is a method that ships; choose another name"
+                "{}: name: {!r} is a method that ships; choose another name",
+                name_or_file,
+                method.name,
             )
         with written_beside(self.folder / f"{method.name}{SUFFIX}") as beside:
             beside.write_text(text_of_file(Path(name_or_file)), encoding="utf-8")
@@ -115,10 +119,10 @@ def text_of_file(file: Path) -> str:
         MethodFileError: it is not UTF-8.
     """
     if not file.is_file():
-        raise MissingKnowledgeError(f"there is no method file {file}")
+        raise MissingKnowledgeError("there is no method file {}", file)
     try:
         return file.read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
         raise MethodFileError(
-            f"{file}: byte {error.start} is not UTF-8; save the file as UTF-8"
+            "{}: byte {} is not UTF-8; save the file as UTF-8", file, error.start
         ) from error

@@ -21,7 +21,7 @@ from herijk.warehouse.store.files import TEMPORARY_PREFIX, file_sha256, put_in_p
 from herijk.warehouse.store.store import Store
 
 if TYPE_CHECKING:
-    import dataframely as dy
+    from herijk.tables.declare import dy
 
 FOLDER: Final = "tables"
 DESCRIPTOR: Final = "datapackage.json"

@@ -32,7 +32,7 @@ def read_settings_file(path: Path, model: type[Model], may_hold: str) -> Model:
         first = error.errors(include_input=False)[0]
         where = ".".join(str(part) for part in first["loc"])
         raise MissingKnowledgeError(
-            f"{path}: {where}: {first['msg']}; it may hold {may_hold}"
+            "{}: {}: {}; it may hold {}", path, where, first["msg"], may_hold
         ) from error
     except (ValueError, RecursionError) as error:  # also numbers too large, tables too deep
-        raise MissingKnowledgeError(f"{path}: not valid TOML: {error}") from error
+        raise MissingKnowledgeError("{}: not valid TOML: {}", path, error) from error

@@ -62,7 +62,7 @@ def place(url: str | None, otherwise: Path) -> Place:
         from herijk.warehouse.store.bucket import BucketPath  # noqa: PLC0415 - needs the extra s3
     except ImportError as error:
         raise MissingKnowledgeError(
-            f"{url} needs a library that is not there; install it with: pip install 'herijk[s3]'"
+            "{} needs a library that is not there; install it with: pip install 'herijk[s3]'", url
         ) from error
     return BucketPath.parse(url)
 

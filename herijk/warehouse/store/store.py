@@ -138,8 +138,9 @@ class DamagedFileError(BrokenPromiseError):
 
     def __init__(self, path: Place) -> None:
         super().__init__(
-            f"{path} is damaged. It can be made again: run herijk rebuild; when that comes back, "
-            "look at the disk"
+            "{} is damaged. It can be made again: run herijk rebuild; when that comes back, look "
+            "at the disk",
+            path,
         )
         self.path = path
 

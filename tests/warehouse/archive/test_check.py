@@ -1,20 +1,16 @@
 """`herijk check`: every fault by cause in one round, and a profile that settles what it can."""
 
-import ast
 import json
 from pathlib import Path
-from string import Formatter
 
 import pytest
 
 from herijk.cli.archive import check_text
 from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.warehouse import archive as package
 from herijk.warehouse.archive.check import as_report, check_archive
-from herijk.warehouse.archive.dutch import DUTCH
-from herijk.warehouse.archive.messages import say
 from herijk.warehouse.archive.profile import parse_profiles
 from herijk.warehouse.archive.templates import write_templates
+from herijk.words import LANGUAGE, say
 from tests.warehouse.archive.conftest import BOATS, FIRST, TOWS, Archive, Scan
 
 THIRD = "meetdata_2014/derde boot 12h 2014.csv"
@@ -51,7 +47,9 @@ def test_one_round_finds_every_cause_and_its_profile_settles_them(
         *("bad_list_row", "bad_boat_row", "unknown_column", "ambiguous_date", "missing_column")
     }
     assert checked.tows == 3
-    text = check_text(report | {"archive": "archief"}, "nl")
+    before = LANGUAGE.set("nl")
+    text = check_text(report | {"archive": "archief"})
+    LANGUAGE.reset(before)
     assert "; H of D wordt verwacht." in text
     assert "druk" not in str(checked.profile)
     json.dumps(report)
@@ -136,21 +134,3 @@ def test_an_empty_archive_to_begin_with(tmp_path: Path) -> None:
     assert cause["reason_code"] == "samples_missing"  # of the example that is to be removed
     with pytest.raises(MissingKnowledgeError, match="not empty"):
         write_templates(root)
-
-
-def templates() -> set[str]:
-    """Every sentence that `say` is given in the package, as far as it is written in place."""
-    found = set()
-    for file in Path(str(package.__file__)).parent.glob("*.py"):
-        for node in ast.walk(ast.parse(file.read_text("utf-8"))):
-            if isinstance(node, ast.Call) and ast.unparse(node.func) == "say":
-                given = node.args[0]
-                found |= {given.value} if isinstance(given, ast.Constant) else set()
-    return found
-
-
-def test_every_sentence_exists_in_dutch_with_the_same_values() -> None:
-    assert templates() - DUTCH.keys() == set()
-    for english, dutch in DUTCH.items():
-        names = [{name for _, name, _, _ in Formatter().parse(t) if name} for t in (english, dutch)]
-        assert names[0] == names[1], english

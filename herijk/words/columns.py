@@ -153,6 +153,7 @@ COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "column.causes": ("Oorzaken", "Causes"),
     "column.reason_code": ("Code", "Code"),
     "column.message": ("Reden", "Reason"),
+    "column.messages": ("Reden", "Reason"),
     "column.line": ("Regel", "Line"),
     "column.first_seen": ("Voor het eerst", "First seen"),
     "column.quantity": ("Grootheid", "Quantity"),

@@ -1,4 +1,4 @@
-"""Every text that people read, in Dutch and English, in one table.
+"""Texts of pages and documents, in Dutch and English, in one table by key.
 
 A code of the warehouse (a status, a flag, a step) has a line too; a code without one is shown as
 it is. Names of boats, methods and editions are data and never translated.
@@ -8,15 +8,14 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Final, TypeAlias
 
-from herijk.dashboards.words.answers import ANSWERS
-from herijk.dashboards.words.codes import CODES
-from herijk.dashboards.words.columns import COLUMNS
-from herijk.dashboards.words.documents import DOCUMENTS
-from herijk.dashboards.words.pages import PAGES
-from herijk.dashboards.words.report import REPORT
-from herijk.dashboards.words.slides import SLIDES
-
-LANGUAGES: Final = ("nl", "en")
+from herijk.words.answers import ANSWERS
+from herijk.words.codes import CODES
+from herijk.words.columns import COLUMNS
+from herijk.words.documents import DOCUMENTS
+from herijk.words.pages import PAGES
+from herijk.words.report import REPORT
+from herijk.words.sentences import LANGUAGES
+from herijk.words.slides import SLIDES
 
 Say = Callable[[str], str]
 """Gives the text of a key in one language."""

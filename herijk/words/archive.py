@@ -2,10 +2,9 @@
 
 from typing import Final
 
-DUTCH: Final[dict[str, str]] = {
+ARCHIVE: Final[dict[str, str]] = {
     # Lists
     "Line {line}: {what}": "Regel {line}: {what}",
-    "Row {row}: {what}": "Rij {row}: {what}",
     "line {line} of {path}": "regel {line} van {path}",
     "sheet '{sheet}': {what}": "blad '{sheet}': {what}",
     "The name of '{name}' has letters that cannot be read; give it another name.": (
@@ -84,9 +83,6 @@ DUTCH: Final[dict[str, str]] = {
     ),
     "the row has {fields} fields where the header has {width}.": (
         "de rij heeft {fields} velden en de kop {width}."
-    ),
-    "the row has {fields} fields where the header has {width}: '{line}'.": (
-        "de rij heeft {fields} velden en de kop {width}: '{line}'."
     ),
     "a quotation mark is not closed, or in mid-field.": (
         "een aanhalingsteken is niet gesloten, of staat midden in een veld."
@@ -241,5 +237,91 @@ DUTCH: Final[dict[str, str]] = {
         "Run {run}: volgens de tijden heeft hij {observed:.4g} metingen per seconde, volgens de "
         "lijst of het profiel {rate}; dat mag {most:.0%} verschillen."
     ),
-    "the number for {name} is too large.": "het getal voor {name} is te groot.",
+    # Judging samples
+    "The file has {} rows or more; at most {} can be right, and a tow of six runs at 1000 "
+    "Hz has 300000.": (
+        "Het bestand heeft {} rijen of meer; hoogstens {} kan kloppen, en een proef van "
+        "zes runs bij 1000 Hz heeft er 300000."
+    ),
+    "The header has {} columns in {} letters; at most {} in {} can be right.": (
+        "De kop heeft {} kolommen in {} letters; hoogstens {} in {} kan kloppen."
+    ),
+    "Run b{}": "Run b{}",
+    "Run {}": "Run {}",
+    "Run {} is to be used but is not in the file; it holds runs {}.": (
+        "Run {} moet meetellen maar staat niet in het bestand; wel de runs {}."
+    ),
+    "{} lasts {:.2f} s at {} samples per second, {:.2f} s too short; {}.": (
+        "{} duurt {:.2f} s bij {} metingen per seconde, {:.2f} s te kort; {}."
+    ),
+    "up to {:g} s may be missing, so the run is left out": (
+        "er mag hoogstens {:g} s ontbreken, dus de run valt af"
+    ),
+    "the run goes on without them": "de run gaat verder zonder die seconden",
+    "over {:g} s, so the run goes on without this column": (
+        "meer dan {:g} s, dus de run gaat verder zonder deze kolom"
+    ),
+    "The force is {:.0f} N in a typical run; it must be positive.": (
+        "De kracht is {:.0f} N in een gewone run; zij moet positief zijn."
+    ),
+    "Columns '{}' and '{}' seem to be exchanged: typically they hold {:.4g} and {:.4g}, "
+    "and only the other way round can that be right.": (
+        "Kolommen '{}' en '{}' lijken verwisseld: gewoonlijk staat er {:.4g} en {:.4g}, en "
+        "alleen andersom kan dat kloppen."
+    ),
+    "The speed by log1 is {:.2f} times the intended one; between {:g} and {:g} times it "
+    "looks like km/h under another header.": (
+        "De snelheid volgens log1 is {:.2f} keer de bedoelde; tussen {:g} en {:g} keer "
+        "lijkt het km/u onder een andere kop."
+    ),
+    "{}: rows do not have their fields, {:.3g} s in all; {}.": (
+        "{}: rijen hebben niet al hun velden, samen {:.3g} s; {}."
+    ),
+    "{}: column '{column}' {} and is wrong for {:.3g} s in all; {}.": (
+        "{}: kolom '{column}' {} en klopt samen {:.3g} s niet; {}."
+    ),
+    "holds {:.6g}": "bevat {:.6g}",
+    "holds no ordinary number": "bevat geen gewoon getal",
+    "{}: {what}; the run is left out.": "{}: {what}; de run valt af.",
+    "{}: {what}; the run goes on without this column.": (
+        "{}: {what}; de run gaat verder zonder deze kolom."
+    ),
+    "column '{column}' holds {:.6g} for {:.3g} s; less than {:g} s is normal": (
+        "kolom '{column}' staat op {:.6g}, {:.3g} s lang; minder dan {:g} s is gewoon"
+    ),
+    "the mean of column '{column}' is {:.4g}; {:.3g} to {:.3g} can be right": (
+        "het gemiddelde van kolom '{column}' is {:.4g}; {:.3g} tot {:.3g} kan kloppen"
+    ),
+    "{}: gps holds {:.6g} throughout, {}; the run goes on without this column.": (
+        "{}: gps staat de hele tijd op {:.6g}, {}; de run gaat verder zonder deze kolom."
+    ),
+    "while log1 changed by {:.2f} m/s": "terwijl log1 {:.2f} m/s veranderde",
+    "and so in {}, at another speed": "en net zo in {}, bij een andere snelheid",
+    "no column for {} in the header {!r}; name it with --{}": (
+        "geen kolom voor {} in de kop {!r}; noem hem met --{}"
+    ),
+    "All {} tows of {}": "Alle {} proeven van {}",
+    "All {} tows of season {}": "Alle {} proeven van seizoen {}",
+    "This tow": "Deze proef",
+    "All tows of the archive": "Alle proeven van het archief",
+    "{}: {}. {}": "{}: {}. {}",
+    "the force is {:.2g} times what the size of the boat and the other tows give": (
+        "de kracht is {:.2g} keer wat de grootte van de sloep en de andere proeven geven"
+    ),
+    "the wind is {:.2g} times what out and back together give, which is the boat's own speed": (
+        "de wind is {:.2g} keer wat heen en terug samen geven, de eigen snelheid van de sloep"
+    ),
+    "all wind angles lie between -3.14 and 6.28, as angles in radians do": (
+        "alle windhoeken liggen tussen -3,14 en 6,28, zoals hoeken in radialen"
+    ),
+    "Look whether these are this boat's samples, and what the load cell was set to.": (
+        "Kijk of dit de metingen van deze sloep zijn, en hoe de krachtmeter was ingesteld."
+    ),
+    "It looks like {}: correct the unit in the header, or the scale.": (
+        "Het lijkt op {}: verbeter de eenheid in de kop, of de schaal."
+    ),
+    "Run {} holds the very samples of tow {} ({}) of {} {}{}, packed or written otherwise.": (
+        "Run {} bevat precies de metingen van proef {} ({}) van {} {}{}, anders verpakt of "
+        "geschreven."
+    ),
 }

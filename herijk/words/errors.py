@@ -1,0 +1,393 @@
+"""What could not be done, in Dutch, by its English text."""
+
+from typing import Final
+
+ERRORS: Final[dict[str, str]] = {
+    # The machine, the data folder
+    "the Dask cluster at {} did not finish: {}. Look whether its scheduler and workers are "
+    "up, and run it again: what was finished is kept": (
+        "het Dask-cluster op {} kwam niet klaar: {}. Kijk of de scheduler en de workers "
+        "draaien en start opnieuw: wat af is, blijft bewaard"
+    ),
+    "{}, named by smtp_password_file, cannot be read": (
+        "{}, genoemd bij smtp_password_file, is niet te lezen"
+    ),
+    "the archive {} lies in the data folder {}, or is the same; name a data folder outside "
+    "the archive with --data": (
+        "het archief {} ligt in de datamap {}, of is dezelfde map; kies met --data een "
+        "datamap buiten het archief"
+    ),
+    "{} cannot be understood: {}. Mend it, or remove it: it is made again with the usual "
+    "settings": (
+        "{} is niet te begrijpen: {}. Herstel het, of haal het weg: het wordt dan opnieuw "
+        "gemaakt met de gewone instellingen"
+    ),
+    "to read on {} a library is needed that is not there; install it with: pip install "
+    "'herijk[dask]'": (
+        "om op {} te lezen is een bibliotheek nodig die ontbreekt; installeer haar met: "
+        "pip install 'herijk[dask]'"
+    ),
+    "{} needs a library that is not there; install it with: pip install 'herijk[s3]'": (
+        "voor {} is een bibliotheek nodig die ontbreekt; installeer haar met: pip install "
+        "'herijk[s3]'"
+    ),
+    "{} cannot be reached: {}. Look at the network, at AWS_ENDPOINT_URL, and at "
+    "AWS_ACCESS_KEY_ID and the rights that go with it": (
+        "{} is niet te bereiken: {}. Kijk naar het netwerk, naar AWS_ENDPOINT_URL, en naar "
+        "AWS_ACCESS_KEY_ID en de rechten die daarbij horen"
+    ),
+    "{}: there is no bucket {}; make it, or mend opslag.toml": (
+        "{}: er is geen bucket {}; maak hem, of verbeter opslag.toml"
+    ),
+    "{} ended by itself with status {}; what it said stands above": (
+        "{} stopte vanzelf met status {}; wat het meldde staat hierboven"
+    ),
+    "{}:{} cannot be used: {}. Name another with --port": (
+        "{}:{} is niet te gebruiken: {}. Kies een andere met --port"
+    ),
+    "{}, by {}. {}": "{}, door {}. {}",
+    "{} is being rebuilt already": "{} wordt al herberekend",
+    "{} is served already": "{} wordt al bediend door een andere herijk serve",
+    "Wait until that is done, or stop that process; its lock goes with it": (
+        "Wacht tot dat klaar is, of stop dat proces; zijn slot verdwijnt dan mee"
+    ),
+    "Stop that one first": "Stop die eerst",
+    "process {} on {} since {}": "proces {} op {} sinds {}",
+    "a process that has just begun": "een proces dat net begonnen is",
+    "What was there before is whole, and what was finished is kept.": (
+        "Wat er al was is heel, en wat af is blijft bewaard."
+    ),
+    "there is no room left to write in {root}. Free some, or move the data folder; "
+    "lake/samples in it is the largest part and is made again when needed": (
+        "er is geen ruimte meer om in {root} te schrijven. Maak ruimte, of verplaats de "
+        "datamap; lake/samples is daarin het grootst en wordt zo nodig opnieuw gemaakt"
+    ),
+    "{root} cannot be written. Give the user who runs this the right to write in all of "
+    "it, or name another folder with --data": (
+        "{root} is niet te beschrijven. Geef de gebruiker die dit draait overal in die map "
+        "schrijfrecht, of kies met --data een andere map"
+    ),
+    "{path} cannot be read or written. Give the user who runs this the right to it, or "
+    "name another": (
+        "{path} is niet te lezen of te beschrijven. Geef de gebruiker die dit draait daar "
+        "recht op, of kies iets anders"
+    ),
+    "this process may not open more files. Allow more (ulimit -n 1024; in systemd "
+    "LimitNOFILE=1024) and run it again": (
+        "dit proces mag niet meer bestanden openen. Sta er meer toe (ulimit -n 1024; in "
+        "systemd LimitNOFILE=1024) en start opnieuw"
+    ),
+    "the disk under {root} gives errors. Look in the system's log, and replace it": (
+        "de schijf onder {root} geeft fouten. Kijk in het logboek van het systeem en vervang haar"
+    ),
+    "Dagster's records in {root}/dagster are damaged. Remove that folder: it holds no "
+    "table, only the history of runs": (
+        "de gegevens van Dagster in {root}/dagster zijn beschadigd. Haal die map weg: er "
+        "staat geen tabel in, alleen welke runs er waren"
+    ),
+    "Dagster's records in {root}/dagster cannot be opened: this process may not open more "
+    "files (allow more: ulimit -n 1024; in systemd LimitNOFILE=1024), or has no right to "
+    "that folder": (
+        "de gegevens van Dagster in {root}/dagster zijn niet te openen: dit proces mag "
+        "niet meer bestanden openen (sta er meer toe: ulimit -n 1024; in systemd "
+        "LimitNOFILE=1024), of heeft geen recht op die map"
+    ),
+    "a figure could not be drawn: the drawing library stopped, most often because this "
+    "process may not open more files (allow more: ulimit -n 1024; in systemd "
+    "LimitNOFILE=1024)": (
+        "een figuur kon niet getekend worden: het tekenprogramma stopte, meestal omdat dit "
+        "proces niet meer bestanden mag openen (sta er meer toe: ulimit -n 1024; in "
+        "systemd LimitNOFILE=1024)"
+    ),
+    "{} cannot be opened: {}": "{} is niet te openen: {}",
+    "another program has it open to write in it. Close that program, or let it open the "
+    "file to read only, and try again": (
+        "een ander programma heeft het open om erin te schrijven. Sluit dat programma, of "
+        "open het bestand daar alleen om te lezen, en probeer opnieuw"
+    ),
+    "it is damaged, or another program wrote in it. Make it again with herijk rebuild, "
+    "which knows the archive": (
+        "het is beschadigd, of een ander programma schreef erin. Maak het opnieuw met "
+        "herijk rebuild, dat het archief kent"
+    ),
+    "{} is damaged. It can be made again: run herijk rebuild; when that comes back, look "
+    "at the disk": (
+        "{} is beschadigd. Het is opnieuw te maken: draai herijk rebuild; komt dit terug, "
+        "kijk dan naar de schijf"
+    ),
+    "{} changed while it was read. Try again when nobody is copying files into {}": (
+        "{} veranderde tijdens het lezen. Probeer opnieuw wanneer niemand bestanden naar "
+        "{} kopieert"
+    ),
+    "{} is not there; make it with: herijk rebuild --archive DIR --data {}": (
+        "{} is er niet; maak het met: herijk rebuild --archive MAP --data {}"
+    ),
+    "{} is not there; make it with: herijk rebuild --archive DIR --data {} --method {}": (
+        "{} is er niet; maak het met: herijk rebuild --archive MAP --data {} --method {}"
+    ),
+    "{} has no tow: {}": "{} bevat geen sleepproef: {}",
+    "the last rebuild found none that it could use; `herijk check ARCHIVE` and the table "
+    "quarantine say why": (
+        "de laatste herberekening vond er geen die bruikbaar was; `herijk check ARCHIEF` "
+        "en de tabel quarantine zeggen waarom"
+    ),
+    "{} holds no warehouse; make it with: herijk rebuild --archive DIR --data {}": (
+        "{} bevat geen uitkomsten; maak ze met: herijk rebuild --archive MAP --data {}"
+    ),
+    "{} holds no tows; make it with: herijk rebuild --archive DIR --data {}": (
+        "{} bevat geen sleepproeven; maak het met: herijk rebuild --archive MAP --data {}"
+    ),
+    "there is no warehouse to make it from; run herijk rebuild": (
+        "er zijn geen uitkomsten om het uit te maken; draai herijk rebuild"
+    ),
+    "a check failed: {}": "een controle is niet geslaagd: {}",
+    "something went wrong that was not foreseen: {}: {}": (
+        "er ging iets mis dat niet voorzien was: {}: {}"
+    ),
+    "{}. Nothing was published. Details are in {}; please send it to whoever maintains Herijk": (
+        "{}. Er is niets uitgegeven. Bijzonderheden staan in {}; stuur dat bestand naar "
+        "wie Herijk onderhoudt"
+    ),
+    # Files and settings
+    "there is no file {}": "er is geen bestand {}",
+    "{} is there already; choose another name": "{} bestaat al; kies een andere naam",
+    "{} is there and holds no pages; give a new folder": (
+        "{} bestaat al en bevat geen pagina's; geef een nieuwe map"
+    ),
+    '{}: {!r}: it may hold archive = "folder" and data = "folder"': (
+        '{}: {!r}: er mag alleen archive = "map" en data = "map" in staan'
+    ),
+    "{} cannot be read: {}": "{} is niet te lezen: {}",
+    "{}: not valid TOML: {}": "{}: geen geldige TOML: {}",
+    "{} is not valid TOML: {}": "{} is geen geldige TOML: {}",
+    "{}: {}: {}; it may hold {}": "{}: {}: {}; er mag in staan: {}",
+    "{}: {}: {}; a decision has sleep_id, oordeel (uitsluiten or voorkeur), reden, wie and datum": (
+        "{}: {}: {}; een besluit heeft sleep_id, oordeel (uitsluiten of voorkeur), reden, "
+        "wie en datum"
+    ),
+    "{}: more than one decision about {}": "{}: meer dan een besluit over {}",
+    "{}: byte {} is not UTF-8; save the file as UTF-8": (
+        "{}: byte {} is geen UTF-8; bewaar het bestand als UTF-8"
+    ),
+    "{} both are in {}; keep one": "{} staan allebei in {}; houd er een",
+    "{} is not empty; name a folder that is new": "{} is niet leeg; geef een nieuwe map",
+    "{} exists and is not an empty folder; nothing was written. Choose another folder, or "
+    "remove it first": (
+        "{} bestaat en is geen lege map; er is niets geschreven. Kies een andere map, of "
+        "haal deze eerst weg"
+    ),
+    "{} exists; nothing was written. Remove it, or choose another folder": (
+        "{} bestaat al; er is niets geschreven. Haal het weg, of kies een andere map"
+    ),
+    # The archive
+    "The archive at {} cannot be read: {}": "Het archief in {} is niet te lezen: {}",
+    "There is no archive at {}: expected a folder with {}, sleeplijsten/ and meetdata_<jaar>/.": (
+        "Er is geen archief in {}: verwacht wordt een map met {}, sleeplijsten/ en "
+        "meetdata_<jaar>/."
+    ),
+    "the archive is not where it was at the last rebuild; rebuild with --archive DIR": (
+        "het archief staat niet meer waar het bij de laatste herberekening stond; "
+        "herbereken met --archive MAP"
+    ),
+    "the archive has no tow of {} or before": "het archief heeft geen sleepproef van {} of eerder",
+    "the archive holds no readable register printed in {}; it holds: {}": (
+        "het archief bevat geen leesbaar register dat in {} gedrukt is; wel: {}"
+    ),
+    "{}: {} Mend the line, or take it out": "{}: {} Verbeter de regel, of haal hem weg",
+    "{}, line {}: {} is listed twice for {}{}; take one of the lines out": (
+        "{}, regel {}: {} staat twee keer in de lijst voor {}{}; haal een van de regels weg"
+    ),
+    "there is no file at {}: is its disk there?": (
+        "er is geen bestand {}: is de schijf aangesloten?"
+    ),
+    "no tow can be used: the tow lists hold none in the seasons that were read; fill "
+    "sleeplijsten/sleeplijst_<jaar>.csv, or widen --seasons": (
+        "geen sleepproef is bruikbaar: de sleeplijsten hebben er geen in de gelezen "
+        "seizoenen; vul sleeplijsten/sleeplijst_<jaar>.csv, of geef --seasons ruimer op"
+    ),
+    "no tow can be used: {} rows or files are set aside ({}). All are in the table "
+    "quarantine. See them by cause with: herijk check ARCHIVE. The first: {}: {}": (
+        "geen sleepproef is bruikbaar: {} rijen of bestanden zijn terzijde gelegd ({}). Ze "
+        "staan allemaal in de tabel quarantine. Bekijk ze per oorzaak met: herijk check "
+        "ARCHIEF. De eerste: {}: {}"
+    ),
+    "tow {}, run {}: no blocks, though its samples were read; rebuild with an empty data folder": (
+        "sleepproef {}, run {}: geen blokken, terwijl de metingen gelezen zijn; herbereken "
+        "met een lege datamap"
+    ),
+    # Boats, tows, types
+    "there is no boat {!r}; boats go by FSN number or name, for example {} or {}": (
+        "er is geen sloep {!r}; noem een FSN-nummer of een naam, bijvoorbeeld {} of {}"
+    ),
+    "{} boats are called {!r}: {}; give the FSN number": (
+        "{} sloepen heten {!r}: {}; geef het FSN-nummer"
+    ),
+    "there is no boat and no type {!r}; the types are {}; boats are named by FSN number or "
+    "name, for example {}": (
+        "er is geen sloep en geen type {!r}; de types zijn {}; een sloep heeft een "
+        "FSN-nummer of een naam, bijvoorbeeld {}"
+    ),
+    "{} is a boat, not a type; a boat has a page of its own: herijk audit {}": (
+        "{} is een sloep, geen type; een sloep heeft een eigen pagina: herijk audit {}"
+    ),
+    "there is no type {!r}; the types are {}": "er is geen type {!r}; de types zijn {}",
+    "there are no tows {!r}; write all, newest, a season 2014 or a range 2012:2015": (
+        "er zijn geen proeven {!r}; schrijf all, newest, een seizoen 2014 of een reeks 2012:2015"
+    ),
+    "no tow of {} has a curve that can be compared": (
+        "geen proef van {} heeft een kromme die te vergelijken is"
+    ),
+    "no type of boat has curves to compare: there are no slides": (
+        "geen type sloep heeft krommen om te vergelijken: er zijn geen dia's"
+    ),
+    "there is no table {!r}; the tables are {}": "er is geen tabel {!r}; de tabellen zijn {}",
+    "there is no tow {!r} in the table tows": "er is geen sleepproef {!r} in de tabel tows",
+    "tow {} has no members in the ensemble: there is no curve for it; look for its status "
+    "in the table curves": (
+        "sleepproef {} staat niet in het ensemble: hij heeft geen kromme; kijk naar zijn "
+        "status in de tabel curves"
+    ),
+    "missing: {}": "ontbreekt: {}",
+    "give force_n or cw_kg_m, and not both": "geef force_n of cw_kg_m, en niet allebei",
+    "{} speeds and {} values; give as many of each": (
+        "{} snelheden en {} waarden; geef er van elk evenveel"
+    ),
+    "every speed and every force must be a positive number": (
+        "elke snelheid en elke kracht moet een positief getal zijn"
+    ),
+    "the points determine no curve; two different speeds are the least": (
+        "de punten bepalen geen kromme; twee verschillende snelheden zijn het minste"
+    ),
+    "{}: {} curves use a point that is not a positive number, the first is curve {}. Set "
+    "such points to unused beforehand.": (
+        "{}: {} krommen gebruiken een punt dat geen positief getal is, de eerste is kromme "
+        "{}. Zet zulke punten vooraf op niet gebruikt."
+    ),
+    "Points need three arrays of one shape (n_fits, n_points), not {}.": (
+        "Punten vragen drie reeksen van een vorm (n_fits, n_points), niet {}."
+    ),
+    "Water temperatures must lie in {:g}-{:g} C, in degrees Celsius.": (
+        "Watertemperaturen moeten tussen {:g} en {:g} graden Celsius liggen."
+    ),
+    "The fatigue reference is known from {:g} to {:g} h; {} race times lie outside, the "
+    "first is {:.2f} h. Leave these without correction, or extend it.": (
+        "De vermoeidheid is bekend van {:g} tot {:g} uur; {} wedstrijdtijden liggen "
+        "daarbuiten, de eerste is {:.2f} uur. Corrigeer die niet, of trek de lijn door."
+    ),
+    # Methods
+    "there is no method {!r}; the methods are {}": "er is geen methode {!r}; de methoden zijn {}",
+    "there is no method file {}": "er is geen methodebestand {}",
+    "the tables hold no method {!r}; they hold {}": (
+        "de tabellen bevatten geen methode {!r}; wel {}"
+    ),
+    "{} is the name of another method; choose another": (
+        "{} is de naam van een andere methode; kies een andere naam"
+    ),
+    "{}: name: {!r}, and the file is called {!r}": "{}: name: {!r}, en het bestand heet {!r}",
+    "{}: name: {!r} is a method that ships; choose another name": (
+        "{}: name: {!r} is een meegeleverde methode; kies een andere naam"
+    ),
+    "{}{}: {}: {}": "{}{}: {}: {}",
+    "{}: {}": "{}: {}",
+    "{}: {} letters, up to {} dots in a line; a method has at most {} and {}": (
+        "{}: {} letters, tot {} punten in een regel; een methode heeft er hoogstens {} en {}"
+    ),
+    "{}: the seasons {} are not those of {}": "{}: de seizoenen {} zijn niet die van {}",
+    "{} has {} ranges, not {}": "{} heeft {} reeksen seizoenen, niet {}",
+    "method {} says nothing about season {}; it covers {} to {}. Leave that season out "
+    "with --seasons, or widen the method's `seasons`": (
+        "methode {} zegt niets over seizoen {}; zij geldt van {} tot {}. Laat dat seizoen "
+        "weg met --seasons, of maak `seasons` van de methode ruimer"
+    ),
+    "season factors: {} of tow {} is {}, and {} more; give only tows with a sound curve": (
+        "seizoensfactoren: {} van sleepproef {} is {}, en nog {}; geef alleen proeven met "
+        "een deugdelijke kromme"
+    ),
+    "there is no due list of method {}; make it with: herijk rebuild --archive DIR --data "
+    "{} --method {}": (
+        "er is geen lijst van te slepen sloepen volgens methode {}; maak hem met: herijk "
+        "rebuild --archive MAP --data {} --method {}"
+    ),
+    # Editions
+    "there is no edition {}; published: {}": "er is geen editie {}; uitgegeven: {}",
+    "there is no edition {}; there are {}": "er is geen editie {}; er zijn {}",
+    "there is no edition {!r}; there are {}": "er is geen editie {!r}; er zijn {}",
+    "there is no edition {}; {}": "er is geen editie {}; {}",
+    "none yet": "nog geen",
+    "edition {} has no valid line of {}": "editie {} heeft geen geldige regel van {}",
+    "any boat": "enige sloep",
+    "boat {} is not in edition {}; its register.csv lists the boats": (
+        "sloep {} staat niet in editie {}; register.csv noemt de sloepen"
+    ),
+    "a register as printed has no lineage": (
+        "van een register zoals gedrukt is geen herkomst bekend"
+    ),
+    "edition {} was recomputed; only lines of an edition as printed can be carried over": (
+        "editie {} is herberekend; alleen regels van een editie zoals gedrukt kunnen "
+        "overgenomen worden"
+    ),
+    "edition {} was taken over from print and has no method; compare it with another "
+    "edition: herijk diff {} EDITION": (
+        "editie {} is overgenomen zoals gedrukt en heeft geen methode; vergelijk haar met "
+        "een andere editie: herijk diff {} EDITIE"
+    ),
+    "the tables of method {} are not those of the archive and code of today; run: herijk "
+    "rebuild --archive DIR --data {} --method {}": (
+        "de tabellen van methode {} horen niet bij het archief en het programma van "
+        "vandaag; draai: herijk rebuild --archive MAP --data {} --method {}"
+    ),
+    "the curve of tow {}, and {} more, are not what {} makes of its samples: a table of "
+    "the data folder was changed. Remove {} and run herijk rebuild": (
+        "de kromme van sleepproef {}, en nog {}, zijn niet wat {} van de metingen maakt: "
+        "een tabel van de datamap is veranderd. Haal {} weg en draai herijk rebuild"
+    ),
+    "an edition needs a decision: say who decided it and where, with --decision": (
+        "een editie vraagt een besluit: zeg met --decision wie het nam en waar"
+    ),
+    "{} decides about {}, which is no tow of the warehouse; mend the sleep_id, or take the "
+    "decision out": (
+        "{} besluit over {}, en die sleepproef is er niet; verbeter de sleep_id, of haal "
+        "het besluit weg"
+    ),
+    "{!r} cannot name an edition: use letters, digits, '.', '_' and '-', begin with a "
+    "letter or digit, and not with 'concept-', which marks drafts": (
+        "{!r} kan geen naam van een editie zijn: gebruik letters, cijfers, '.', '_' en "
+        "'-', begin met een letter of cijfer, en niet met 'concept-', dat een concept "
+        "aanduidt"
+    ),
+    "edition {} was already published and is never changed; publish under another name, "
+    "for example with a higher number": (
+        "editie {} is al uitgegeven en verandert nooit; geef uit onder een andere naam, "
+        "bijvoorbeeld met een hoger nummer"
+    ),
+    "edition {}: {} is missing or damaged ({}); put the folder back from a copy": (
+        "editie {}: {} ontbreekt of is beschadigd ({}); zet de map terug uit een kopie"
+    ),
+    "edition {}: {}.parquet is missing or damaged; put the folder back from a copy": (
+        "editie {}: {}.parquet ontbreekt of is beschadigd; zet de map terug uit een kopie"
+    ),
+    "edition {} could not be written: {}. Nothing was published; make room or mend the "
+    "folder, and publish again": (
+        "editie {} kon niet geschreven worden: {}. Er is niets uitgegeven; maak ruimte of "
+        "herstel de map, en geef opnieuw uit"
+    ),
+    "{} is there already: somebody publishes under this name just now, or did not finish. "
+    "Nothing was published; publish under another name, or remove what lies under {} when "
+    "nobody is publishing": (
+        "{} bestaat al: iemand geeft op dit moment onder deze naam uit, of is niet "
+        "klaargekomen. Er is niets uitgegeven; kies een andere naam, of haal weg wat onder "
+        "{} ligt wanneer niemand uitgeeft"
+    ),
+    # Simulated archives
+    "there is no world {}; there are: {}": "er is geen wereld {}; er zijn: {}",
+    "season {} cannot be simulated: the table of instruments begins in {}; ask for {} or later": (
+        "seizoen {} is niet te simuleren: de tabel van instrumenten begint in {}; vraag {} of later"
+    ),
+    "seasons must ascend and be at least one; got {}": (
+        "seizoenen moeten oplopen en er moet er een zijn; gegeven: {}"
+    ),
+    "at least one tow a season is needed; got {}": (
+        "per seizoen is minstens een sleepproef nodig; gegeven: {}"
+    ),
+    "the rate must be 4 to 10000 Hz; got {}": "de frequentie moet 4 tot 10000 Hz zijn; gegeven: {}",
+}

@@ -1,0 +1,112 @@
+"""Every text of faults and of the command line exists in Dutch, with the same values in it."""
+
+import ast
+from functools import cache
+from pathlib import Path
+from string import Formatter
+
+from typer.main import get_command
+
+import herijk
+from herijk.cli.main import app
+from herijk.cli.overview import SECTIONS, USAGE
+from herijk.pipeline import errors
+from herijk.words import LANGUAGE, dutch, say, spoken, tell
+
+DUTCH = dutch()
+ROOT = Path(str(herijk.__file__)).parent
+SPEAKERS = {"say", "tell", "MethodFileError"} | {n for n in dir(errors) if n.endswith("Error")}
+OF_LIBRARY = {
+    *("Arguments", "Options", "Commands", "default", "required", "env var"),
+    *("Show this message and exit.", *USAGE),
+}
+"""What the library of the command line says itself."""
+
+SAME = {"A", "B", "Cw", "W", "kg", "m", "n", "p", "run", "s"}
+"""Words that are no others in Dutch."""
+
+
+@cache
+def sources():
+    """Module and room of each file outside the catalogue."""
+    files = [file for file in ROOT.rglob("*.py") if file.relative_to(ROOT).parts[0] != "words"]
+    return [(ast.parse(file.read_text("utf-8")), file.relative_to(ROOT).parts[0]) for file in files]
+
+
+def texts(node):
+    """The texts that an expression can be, as far as they are written in it."""
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        yield node.value
+    for inner in (getattr(node, name, None) for name in ("body", "orelse", "value")):
+        if isinstance(inner, ast.AST):
+            yield from texts(inner)
+    for element in getattr(node, "elts", ()):
+        yield from texts(element)
+
+
+def head_of_table(node):
+    """The head of a table where it is written in place."""
+    if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) in ("head", "columns"):
+        return node.value
+    is_table = isinstance(node, ast.Call) and ast.unparse(node.func) in ("table", "text.table")
+    return node.args[0] if is_table else None
+
+
+def said_in_code():
+    for tree, room in sources():
+        for node in ast.walk(tree):
+            name = ast.unparse(node.func) if isinstance(node, ast.Call) and node.args else ""
+            if name in SPEAKERS - {"DefectiveInputError"} and (name, room) != ("say", "dashboards"):
+                yield from texts(node.args[0])
+            if room == "cli":
+                yield from texts(head_of_table(node))
+
+
+def said_in_help(command):
+    yield " ".join(command.help.split())
+    for parameter in command.params:
+        yield " ".join((parameter.help or "").split())
+    for inner in getattr(command, "commands", {}).values():
+        yield from said_in_help(inner)
+
+
+def has_words(text):
+    literals = "".join(literal for literal, *_ in Formatter().parse(text))
+    return any(word.isalpha() and word not in SAME for word in literals.split())
+
+
+def test_every_text_exists_in_dutch():
+    said = {*said_in_code(), *said_in_help(get_command(app)), *SECTIONS, *OF_LIBRARY}
+    assert {text for text in said if has_words(text)} - DUTCH.keys() == set()
+
+
+def test_every_dutch_text_is_of_something_that_is_said():
+    written = {text for tree, _ in sources() for node in ast.walk(tree) for text in texts(node)}
+    assert DUTCH.keys() - written - OF_LIBRARY - set(said_in_help(get_command(app))) == set()
+
+
+def values(text):
+    return sorted(
+        f"{name}{form}" for _, name, form, _ in Formatter().parse(text) if name is not None
+    )
+
+
+def test_dutch_has_the_same_values():
+    assert [english for english, dutch in DUTCH.items() if values(english) != values(dutch)] == []
+
+
+def test_numbers_have_the_decimal_mark_of_the_language():
+    english = "{}, n {} pairs"
+    said = say(english, 0.25, 3)
+    assert said == "0.25, n 3 pairs"
+    assert said.spoken("nl") == "0,25, n 3 paren"
+    before = LANGUAGE.set("nl")
+    assert tell(english, 0.25, 3) == "0,25, n 3 paren"
+    LANGUAGE.reset(before)
+
+
+def test_an_error_within_a_sentence_is_said_in_its_language():
+    inner = errors.MissingKnowledgeError("there is no file {}", "a.csv")
+    outer = errors.HerijkError("{}: {}", "b.toml", inner)
+    assert str(outer) == "b.toml: there is no file a.csv"
+    assert spoken(outer, "nl") == "b.toml: er is geen bestand a.csv"
