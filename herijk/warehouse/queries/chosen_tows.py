@@ -16,7 +16,7 @@ import polars as pl
 
 from herijk.pipeline import consistency
 from herijk.pipeline.consistency import ERAS, Observed
-from herijk.pipeline.consistency.observed import newest
+from herijk.pipeline.consistency.observed import newest, of_trusted
 from herijk.pipeline.errors import MissingKnowledgeError
 
 ALL, NEWEST = "all", "newest"
@@ -97,9 +97,8 @@ def _observed(db: duckdb.DuckDBPyConnection, methods: Sequence[str]) -> Observed
         db.sql(f"SELECT * FROM {name}").pl()  # noqa: S608
         for name in ("curves", "run_points", "tows", "boats")
     )
-    trusted = tows.filter(pl.col("doubts").list.len() == 0)
     own = [
-        frame.filter(pl.col("method").is_in(methods)).join(trusted, on="tow_id", how="semi")
+        of_trusted(frame.filter(pl.col("method").is_in(methods)), tows)
         for frame in (curves, run_points)
     ]
     return consistency.observe(own[0], tows, boats, own[1])

@@ -19,6 +19,7 @@ from herijk.pipeline.consistency import (
     reproducibility,
     type_homogeneity,
 )
+from herijk.pipeline.consistency.observed import of_trusted
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.recompute.recompute import recompute
@@ -114,13 +115,16 @@ class Draft:
     @cached_property
     def observed(self) -> Observed:
         """Tows with their curves, boats and measuring errors."""
-        history = self.history
-        return observe(self.made.curves, history.tows, history.boats, self.made.run_points)
+        tows = self.history.tows
+        curves, run_points = (
+            of_trusted(frame, tows) for frame in (self.made.curves, self.made.run_points)
+        )
+        return observe(curves, tows, self.history.boats, run_points)
 
     @cached_property
     def repeat_pairs(self) -> pl.DataFrame:
         """Rows of the table `repeat_pairs`."""
-        return repeat_pairs(self.made.curves, self.history.tows)
+        return repeat_pairs(of_trusted(self.made.curves, self.history.tows), self.history.tows)
 
     @cached_property
     def reproducibility(self) -> pl.DataFrame:
