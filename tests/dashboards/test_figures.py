@@ -49,7 +49,7 @@ AXES = {
     "slide_tick_effects": {"median_ratio", "lo_ratio", "option"},
     "run_statistics": {"run", "sd_ratio"},
 } | {
-    f"slide_{y}_{x}": {"x", "y", "lo", *slides.QUANTITIES[y][:2], slides.EXPLAINING[x]}
+    f"slide_{y}_{x}": {"x", "y", "seen_lo", slides.QUANTITIES[y][0], slides.EXPLAINING[x]}
     for y in slides.QUANTITIES
     for x in slides.EXPLAINING
 }
