@@ -398,7 +398,7 @@ def test_dragging_over_the_scatter_fills_the_list_and_a_point_leads_to_its_boat(
 
 def test_what_a_chart_says_follows_the_selectors(visitor):
     page = visitor.open("slides.html")
-    figure = page.locator("figure[data-figure=slide_cw_weight]")
+    figure = page.locator("#slides-weight figure[data-figure=slide_cw_weight]")
     figure.scroll_into_view_if_needed()
     figure.locator(".drawn svg").wait_for()
     said = figure.locator("xpath=preceding-sibling::p[1]")

@@ -159,7 +159,7 @@ def sentences(views: Views) -> pl.DataFrame:
     for tows in books[0].choices:
         for figure, told in WHOLE.items():
             rows.append((figure, tows, None, *(told(book, tows) for book in books)))
-        for y, x, boat_type in product(QUANTITIES, EXPLAINING, by_tows(books[0].compared)):
+        for y, x, boat_type in product(QUANTITIES, EXPLAINING, sorted(by_tows(books[0].compared))):
             said = (book.line((y, x), boat_type, tows, book.ends()) for book in books)
             rows.append((f"slide_{y}_{x}", tows, boat_type, *said))
     return pl.DataFrame(rows, schema=dict.fromkeys(SAID, pl.String), orient="row")
