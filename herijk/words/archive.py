@@ -32,6 +32,14 @@ ARCHIVE: Final[dict[str, str]] = {
         "Geen run duurt langer dan {lasts:.1f} s bij {rate} metingen per seconde, en {planned:.0f} "
         "s is gepland: is de frequentie {observed:.0f}?"
     ),
+    "Column {number} has no name and holds '{cell}'. Give it its name; one that is not needed can "
+    "be put under ignore in archief.toml.": (
+        "Kolom {number} heeft geen naam en bevat '{cell}'. Geef de kolom zijn naam; een kolom die "
+        "niet nodig is, kan in archief.toml bij ignore."
+    ),
+    "[[{table}]] is for {what}, and no tow list has that: is it mistyped?": (
+        "[[{table}]] is voor {what}, en dat staat in geen sleeplijst: is het een tikfout?"
+    ),
     "column '{column}' is empty.": "kolom '{column}' is leeg.",
     "{names} must be there, here or in the boat list.": (
         "{names} moet er zijn, hier of in de lijst van sloepen."

@@ -173,6 +173,14 @@ CHECKS: Final = (
         "inferred, as force_unusual",
         highest=0.0,
     ),
+    Check(
+        "season_in_doubt",
+        "whether an instrument of the season has a fault or may have one (1) or not (0): the table "
+        "`season_diagnosis` says which",
+        "1",
+        "inferred: a fault that the season log finds, or cannot rule out, concerns all its tows",
+        highest=0.0,
+    ),
     # The runs
     Check(
         "log2_differs",
@@ -218,6 +226,14 @@ CHECKS: Final = (
         "Cw-kromme 2015, 'Hyperbool als beste benadering': never over 5 % from a measured speed",
         highest=0.05,
         severity="note",
+    ),
+    Check(
+        "declared_speed_not_covered",
+        "how far the declared speed lies outside those of the runs, as a part of it: Cw at it is "
+        "then extrapolated",
+        "1",
+        "Cw-kromme 2015, 'Hyperbool als beste benadering': never over 5 % from a measured speed",
+        highest=0.05,
     ),
     # Instruments, and the declared speed
     Check(
@@ -351,11 +367,21 @@ CHECKS: Final = (
     ),
     Check(
         "curve_change_unexplained",
-        "the same after taking off what weight and length explain, without a reported alteration",
+        "the same after taking off what weight and length explain, and, where nothing calibrates "
+        "the logs, what all boats of the seasons share; without a reported alteration",
         "1",
         "as curve_changed; Sleepproef 2017, 'Eerste beoordeling'",
         lowest=-0.05,
         highest=0.05,
+    ),
+    Check(
+        "curve_change_significant",
+        "the same / the standard uncertainty of both curves together, where the method estimates "
+        "the logs, so that it knows that uncertainty",
+        "1",
+        "inferred: chance exceeds 3 standard deviations in one tow of 400",
+        lowest=-3.0,
+        highest=3.0,
     ),
     Check(
         "pulled_askew",

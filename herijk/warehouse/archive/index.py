@@ -4,6 +4,7 @@ Reads the lists and hashes the files; reading samples belongs to `samples`. Rows
 are compared with each other here, one question after the other; a tow falls out at the first.
 """
 
+import datetime as dt
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
@@ -201,6 +202,7 @@ def index_archive(
     _hash_files(sample_files, hashes, faults)
     by_name = _by_name(sample_files, entries)
     faults += _not_listed(entries, sample_files, unread_seasons, by_name)
+    faults += [] if unread_seasons else _idle(profiles, entries)
     good = _keep(_unique_ids(entries), entries, faults)
     good = _keep(lambda entry: _read_values(entry, profiles), good, faults)
     good = _keep(lambda entry: _find_files(entry, by_name, hashes), good, faults)
@@ -334,10 +336,41 @@ def _read_tow_lists(
 
 def _year_of(row: ListRow) -> int:
     """Return the season of a row in a list of all years; 0 where its date cannot be read."""
+    day = _day_of(row)
+    return 0 if day is None else day.year
+
+
+def _day_of(row: ListRow) -> dt.date | None:
     try:
-        return row.date("tow_date").year
+        return row.date("tow_date")
     except DefectiveInputError:
-        return 0
+        return None
+
+
+def _idle(profiles: Profiles, entries: list[_Entry]) -> list[Fault]:
+    """Return what `archief.toml` says of days, seasons or tows that no list has: mistyped ones."""
+    days = {_day_of(entry.row) for entry in entries}
+    seasons = {entry.season for entry in entries}
+    tows = {entry.tow_id for entry in entries}
+    idle = [
+        *(("set_aside", str(one.date)) for one in profiles.set_aside if one.date not in days),
+        *(
+            ("log_replaced", str(one.date))
+            for one in profiles.log_replaced
+            if one.date.year not in seasons
+        ),
+        *(("plan", tow) for plan in profiles.plans for tow in plan.tows if tow not in tows),
+        *(
+            (name, f"{first}:{last}")
+            for name, (first, last) in profiles.season_ranges
+            if not any(first <= season <= last for season in seasons)
+        ),
+    ]
+    message = "[[{table}]] is for {what}, and no tow list has that: is it mistyped?"
+    return [
+        Fault(PROFILE_FILE, None, None, "idle_setting", say(message, table=table, what=what))
+        for table, what in idle
+    ]
 
 
 def _read_windows(

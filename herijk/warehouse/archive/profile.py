@@ -6,7 +6,6 @@ Reading the samples with it belongs to `samples`.
 """
 
 import datetime as dt
-import tomllib
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
@@ -23,6 +22,7 @@ from herijk.pipeline.channels import (
     TARGET_SPEED_RATIOS,
 )
 from herijk.pipeline.errors import DefectiveInputError, MissingKnowledgeError
+from herijk.pipeline.toml_text import parse_toml
 from herijk.warehouse.archive.files import PROFILE_FILE, STANDS_FOR, path_inside
 from herijk.warehouse.archive.lists import Wording, fold_word
 from herijk.warehouse.archive.text import Column, fold, split_header
@@ -277,6 +277,12 @@ class Profiles:
         ways = _ways(profile.directions)
         return Plan(tuple(TARGET_SPEED_RATIOS[i % 3] for i in range(len(ways))), ways)
 
+    @property
+    def season_ranges(self) -> list[tuple[str, tuple[int, int]]]:
+        """Return the seasons of every profile and plan, by the name of their table."""
+        plans = [("plan", plan.seasons) for plan in self.plans if plan.seasons is not None]
+        return [("profile", table.seasons) for table in self.tables] + plans
+
     def _table(self, season: int) -> _ProfileTable | None:
         return next((t for t in self.tables if t.seasons[0] <= season <= t.seasons[1]), None)
 
@@ -338,10 +344,10 @@ def parse_profiles(text: str) -> Profiles:
         MissingKnowledgeError: it cannot be understood; the message names the key.
     """
     try:
-        parsed = _File.model_validate(tomllib.loads(text))
+        parsed = _File.model_validate(parse_toml(text))
     except ValidationError as error:
         raise MissingKnowledgeError("{}: {}", PROFILE_FILE, _explain(error)) from error
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         raise MissingKnowledgeError("{} is not valid TOML: {}", PROFILE_FILE, error) from error
     return Profiles(
         simulated=parsed.simulated,
