@@ -9,6 +9,7 @@ from herijk.cli.audit_text.words import (
     EXPLANATIONS,
     Report,
     change,
+    codes,
     distance,
     nothing,
     second_opinion,
@@ -105,7 +106,7 @@ def _place_title(report: Report) -> str:
 def _place(report: Report) -> list[str]:
     lines = []
     for row in report["in_type"]:
-        codes = ", ".join(tell(EXPLANATIONS.get(name, name)) for name in row["candidates"])
+        why = ", ".join(tell(EXPLANATIONS.get(name, name)) for name in row["candidates"])
         place = tell("outside") if row["outside"] else tell("within")
         lines.append(
             tell(
@@ -117,7 +118,7 @@ def _place(report: Report) -> list[str]:
                 distance(row),
                 row["deviation_sd"],
                 place,
-                codes and f" ({codes})",
+                why and f" ({why})",
             )
         )
     size = report["type_size"]
@@ -274,7 +275,7 @@ def _curve(curve: Report) -> str:
             "-"
             if p["window_start_s"] is None
             else f"{p['window_start_s']:.0f}-{p['window_end_s']:.0f}",
-            p["cut_reason"],
+            codes(p["cut_reason"].split(",")),
             p["speed_factor"],
             p["speed_m_s"],
             p["gross_cw_kg_m"],
@@ -284,7 +285,7 @@ def _curve(curve: Report) -> str:
             p["temperature_cw_kg_m"],
             p["cw_kg_m"],
             p["fitted_cw_kg_m"],
-            p["reason"],
+            codes([p["reason"]]),
         )
         for p in curve["run_points"]
     ]
@@ -296,7 +297,7 @@ def _budget(budget: list[Report]) -> str:
     """What makes Cw uncertain, the largest first; with whom it is shared where it is."""
     felt = [
         f"{code(row['component'])} {share(row['u_ratio'], 2)}"
-        + ("" if row["shared"] == "single" else f" ({row['shared']})")
+        + ("" if row["shared"] == "single" else f" ({code(row['shared'])})")
         for row in budget
         if row["u_ratio"] and row["u_ratio"] >= LEAST_TOLD
     ]
@@ -304,7 +305,7 @@ def _budget(budget: list[Report]) -> str:
 
 
 def _result(curve: Report) -> str:
-    flags = f" ({', '.join(curve['flags'])})" if curve["flags"] else ""
+    flags = f" ({codes(curve['flags'])})" if curve["flags"] else ""
     if curve["cw_kg_m"] is None:
         return tell("no curve, {}{}", code(curve["status"]), flags)
     b = tell("B not determined") if curve["b_m_s"] is None else tell("B {:.2f} m/s", curve["b_m_s"])

@@ -6,10 +6,11 @@ here: what is on which page.
 
 import re
 import textwrap
+from collections.abc import Iterable
 from math import exp
 from typing import Any, Final
 
-from herijk.words import number, tell
+from herijk.words import code, number, tell
 
 Report = dict[str, Any]
 
@@ -92,6 +93,11 @@ def wrapped(text: str, indent: int = 2, hanging: int = 2) -> str:
         bound, WIDTH, initial_indent=" " * indent, subsequent_indent=" " * (indent + hanging)
     )
     return lines.replace("\xa0", " ")
+
+
+def codes(names: Iterable[str]) -> str:
+    """Codes of the tables in words; an empty one says nothing."""
+    return ", ".join(code(name) for name in names if name)
 
 
 def share(ratio: float | None, digits: int = 0) -> str:
