@@ -289,8 +289,8 @@ ERRORS: Final[dict[str, str]] = {
     ),
     "{}{}: {}: {}": "{}{}: {}: {}",
     "{}: {}": "{}: {}",
-    "{}: {} letters, up to {} dots in a line; a method has at most {} and {}": (
-        "{}: {} letters, tot {} punten in een regel; een methode heeft er hoogstens {} en {}"
+    "{}: {} letters; a method has at most {}": (
+        "{}: {} letters; een methode heeft er hoogstens {}"
     ),
     "{}: the seasons {} are not those of {}": "{}: de seizoenen {} zijn niet die van {}",
     "{} has {} ranges, not {}": "{} heeft {} reeksen seizoenen, niet {}",
