@@ -178,7 +178,7 @@ def apart(era: Report) -> str:
 
 def outsider(row: Report) -> str:
     """A boat outside its type: how far, and what could explain it."""
-    codes = ", ".join(EXPLANATIONS.get(code, code) for code in row["candidates"])
+    codes = ", ".join(tell(EXPLANATIONS.get(name, name)) for name in row["candidates"])
     return tell(
         "{}, {}: {}, {:+.1f} sd; {}",
         who(row),

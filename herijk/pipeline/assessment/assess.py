@@ -15,7 +15,6 @@ import polars as pl
 from herijk.pipeline.assessment.checks import CHECKS, CODES, DOUBTS, UNUSUAL
 from herijk.pipeline.assessment.freeboard import by_freeboard
 from herijk.pipeline.assessment.season_levels import season_levels
-from herijk.pipeline.channels import TARGET_SPEED_RATIOS
 from herijk.pipeline.choice import SAME_SHARE
 from herijk.tables.keys import LINE
 
@@ -173,15 +172,19 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
     speed, cw, way = pl.col("speed_m_s"), pl.col("cw_kg_m"), pl.col("direction")
     declared = pl.col("declared_speed_m_s")
     on_curve = cw / pl.col("fitted_cw_kg_m")
-    lowest, highest = min(TARGET_SPEED_RATIOS), max(TARGET_SPEED_RATIOS)
+    target = pl.col("target_speed_ratio")
     shortfall = pl.max_horizontal(
-        (speed / declared).min() - lowest, highest - (speed / declared).max()
+        (speed / declared).min() - pl.col("lowest_target").first(),
+        pl.col("highest_target").first() - (speed / declared).max(),
     )
     beyond = pl.max_horizontal((speed / declared).min() - 1, 1 - (speed / declared).max())
     log1 = speed / pl.col("speed_factor")
-    on_target = speed / (pl.col("target_speed_ratio") * declared)
+    on_target = speed / (target * declared)
     return (
-        run_points.filter("used")
+        run_points.with_columns(
+            lowest_target=target.min().over("tow_id"), highest_target=target.max().over("tow_id")
+        )
+        .filter("used")
         .join(curves.select("tow_id", "declared_speed_m_s"), on="tow_id")
         .group_by("tow_id")
         .agg(
@@ -309,6 +312,7 @@ def _of_previous_curve(
     changed = _with_boats(curves, tows).select(
         "tow_id",
         "season",
+        other_tows=pl.len().over(LINE) - 1,
         before=_before("season", LINE),
         curve_changed=change - 1,
         ln=pl.when(~pl.col("altered")).then((change / by_size).log()),
@@ -323,6 +327,7 @@ def _of_previous_curve(
     ln = pl.col("ln") - now + then
     return changed.select(
         "tow_id",
+        "other_tows",
         "curve_changed",
         curve_change_unexplained=ln.exp() - 1,
         curve_change_significant=ln / pl.col("sd"),

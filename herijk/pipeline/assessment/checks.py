@@ -219,8 +219,9 @@ CHECKS: Final = (
     ),
     Check(
         "range_not_covered",
-        "how far the runs fall short of 90 or 110 % of the declared speed, as a part of it: used "
-        "from 85 to 115 %, the curve is then extrapolated",
+        "how far the runs that count fall short of the lowest or highest speed of the tow's plan, "
+        "by default 90 and 110 % of the declared speed, as a part of that; used from 85 to 115 %, "
+        "the curve is then extrapolated",
         "1",
         "Cw-kromme 2015, 'Hyperbool als beste benadering': never over 5 % from a measured speed",
         highest=0.05,
@@ -355,6 +356,15 @@ CHECKS: Final = (
         severity="note",
     ),
     # The curve against others
+    Check(
+        "other_tows",
+        "other tows of the boat and crew: without one only size and type say whether the force can "
+        "be right, and an error of a sixth can pass",
+        "1",
+        "inferred: docs/operations.md, what a volunteer can rely on being told",
+        lowest=1.0,
+        severity="note",
+    ),
     Check(
         "curve_changed",
         "Cw / that of the boat and crew's previous tow at its declared speed, less 1",

@@ -76,6 +76,7 @@ class ArchiveIndex:
         faults: what is set aside, and why.
         files: every file that was looked at: path, sha256, size_bytes.
         profiles: `archief.toml`.
+        seasons: season of each samples file that a row names, whatever is wrong with the row.
     """
 
     boats: pl.DataFrame
@@ -85,6 +86,7 @@ class ArchiveIndex:
     faults: tuple[Fault, ...]
     files: pl.DataFrame
     profiles: Profiles
+    seasons: dict[str, int]
 
 
 @dataclass(frozen=True)
@@ -219,6 +221,13 @@ def index_archive(
         faults=tuple(sorted(faults, key=_fault_order)),
         files=hashes.frame(),
         profiles=profiles,
+        seasons={
+            part.path: entry.season
+            for entry in entries
+            for name in _names(entry.row)
+            for file in _candidates(name, entry.season, by_name)
+            for part in file.parts
+        },
     )
 
 
@@ -493,7 +502,11 @@ def _not_listed(
         if not file.inside:
             faults.append(fault_from(outside_archive(file.path), file.path))
         elif not unread_seasons & {file.season, 0} and (file.season or not unread_seasons):
-            message = say("No row of the tow list of {season} names this file.", season=file.season)
+            message = (
+                say("No row of the tow list of {season} names this file.", season=file.season)
+                if file.season
+                else say("No row of a tow list names this file.")
+            )
             faults.append(Fault(file.path, None, None, "samples_not_listed", message))
     return faults
 
@@ -550,7 +563,7 @@ def _unique_ids(entries: Iterable[_Entry]) -> Callable[[_Entry], None]:
 def _read_values(entry: _Entry, profiles: Profiles) -> None:
     rate_hz = profiles.for_season(entry.season).sample_rate_hz
     entry.tow = tow_list.read_tow(entry.row, entry.season, rate_hz)
-    entry.selection = tow_list.read_selection(entry.row, entry.plan.runs)
+    entry.selection = tow_list.read_selection(entry.row, entry.plan)
     entry.row.text("file")
     day = entry.tow["tow_date"]
     if day.year != entry.season:
@@ -695,16 +708,17 @@ def _place_day(entry: _Entry, profiles: Profiles) -> None:
 
 def _runs(entry: _Entry) -> list[Mapping[str, Any]]:
     plan = entry.plan
-    offsets = (0, SECOND_FILE_OFFSET)[: len(entry.files)]
+    ways_of = {0: plan.directions, SECOND_FILE_OFFSET: plan.second_directions or plan.directions}
+    files = list(ways_of.items())[: len(entry.files)]
     return [
         {
             "tow_id": entry.tow["tow_id"],
             "run": offset + number,
-            "direction": plan.directions[number - 1],
+            "direction": ways[number - 1],
             "target_speed_ratio": plan.targets[number - 1],
             "selected": offset + number in entry.selection,
             "planned_s": plan.seconds,
         }
-        for offset in offsets
+        for offset, ways in files
         for number in plan.runs
     ]

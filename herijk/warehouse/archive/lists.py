@@ -295,6 +295,7 @@ class ListRow:
             return cell in YES
         message = say(
             "column '{column}' is '{cell}', not ja, nee or empty.",
+            choice="ja",
             column=self.named(key),
             cell=shorten(cell),
         )

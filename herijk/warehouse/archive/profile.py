@@ -107,11 +107,14 @@ class Plan:
         targets: intended speed / declared speed of each run.
         directions: `OUT` or `BACK`, of each run.
         seconds: how long a run is meant to last.
+        second_directions: of the runs of a second file, where these belong to the tow; empty where
+            a second file is another tow, of which the list names the runs to use.
     """
 
     targets: tuple[float, ...] = TARGET_SPEED_RATIOS * 2
     directions: tuple[int, ...] = (OUT, OUT, OUT, BACK, BACK, BACK)
     seconds: float = RUN_SECONDS
+    second_directions: tuple[int, ...] = ()
 
     @property
     def runs(self) -> range:
@@ -154,13 +157,15 @@ class _PlanTable(_Strict):
     tows: list[str] = []
     targets: _Targets = list(STANDARD.targets)
     directions: _Directions = ["out", "out", "out", "back", "back", "back"]
+    second_directions: _Directions | None = None
     seconds: Annotated[float, Field(ge=5, le=600)] = RUN_SECONDS
 
     @model_validator(mode="after")
     def _is_whole(self) -> "_PlanTable":
         if (self.seasons is None) == (not self.tows):
             raise ValueError("a plan is for seasons or for tows: give one of the two")
-        if len(self.targets) != len(self.directions):
+        second = self.second_directions or self.directions
+        if not len(self.targets) == len(self.directions) == len(second):
             raise ValueError(
                 "targets and directions must have one entry per run, so as many of both"
             )
@@ -168,7 +173,8 @@ class _PlanTable(_Strict):
 
     @property
     def plan(self) -> "Plan":
-        return Plan(tuple(self.targets), _ways(self.directions), self.seconds)
+        second = _ways(self.second_directions or [])
+        return Plan(tuple(self.targets), _ways(self.directions), self.seconds, second)
 
 
 class Publication(_Strict):
