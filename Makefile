@@ -13,7 +13,7 @@ unexport PYTHONDONTWRITEBYTECODE
 export DAGSTER_DISABLE_TELEMETRY = 1
 export DAGSTER_DG_UPDATE_CHECK_ENABLED = 0
 
-.PHONY: help env demo test slow lint wheel docs bench scale accuracy accuracy-parts survive fuzz full-scale clean
+.PHONY: help env demo test slow lint wheel docs bench scale accuracy accuracy-parts survive fuzz plausible full-scale clean
 
 help:
 	@echo "make demo   simulate an archive of ten seasons and rebuild its history"
@@ -26,7 +26,8 @@ help:
 	@echo "make scale  measure one Dask worker against two, with an S3 server on this machine"
 	@echo "make accuracy  how near the truth the rebased history comes in every simulated world; it can be stopped"
 	@echo "make accuracy-parts  the same for season factors, methods and the consistency analysis apart"
-	@echo "make survive  kill $(KILLS) rebuilds at random moments and compare the tables after each"
+	@echo "make survive  kill $(KILLS) rebuilds, and other commands, at random moments and look what is lost"
+	@echo "make plausible  put wrong units, scales and mix-ups in simulated archives: which are told"
 	@echo "make fuzz   throw $(INPUTS) damaged files at the readers, and put 300 faults in an archive"
 	@echo "make full-scale  memory and time of a rebuild of 1,000 tows; needs 20 GB and an hour"
 	@echo "make env    make the environment in .venv, and nothing more"
@@ -117,9 +118,18 @@ accuracy-parts: $(DEVELOP)
 # Both are long. Shorter: make survive KILLS=10, make fuzz INPUTS=2000
 KILLS ?= 1000
 INPUTS ?= 100000
+WORLDS ?= 201 202 203
+TRIED ?= benchmarks/data/plausible
 
 survive: $(DEVELOP)
 	@OPENBLAS_NUM_THREADS=1 PYTHONPATH=. $(BIN)/python -u benchmarks/robustness/survive.py $(KILLS)
+	@PYTHONPATH=. $(BIN)/python -u benchmarks/robustness/survive_commands.py $$(( ($(KILLS) + 3) / 4 ))
+
+plausible: $(DEVELOP)
+	@mkdir -p $(TRIED)
+	@for seed in $(WORLDS); do for part in 0 1 2 3 4 5 6 7; do PYTHONPATH=. $(BIN)/python \
+	benchmarks/robustness/plausible.py try $$seed $$part $(TRIED)/$$seed-$$part.parquet || exit 1; done; done
+	@PYTHONPATH=. $(BIN)/python benchmarks/robustness/plausible.py table $(TRIED)/*.parquet
 
 fuzz: $(DEVELOP)
 	@PYTHONPATH=. $(BIN)/python benchmarks/robustness/fuzz.py $(INPUTS)

@@ -46,7 +46,7 @@ def due(report: "DueReport") -> str:
         )
     )
     parts += [
-        f"{title}\n{_lines([line for line in report.lines if line['urgency'] == urgency])}"
+        f"{tell(title)}\n{_lines([line for line in report.lines if line['urgency'] == urgency])}"
         for urgency, title in URGENCIES.items()
         if counts[urgency]
     ]

@@ -260,7 +260,6 @@ def audit(
 ) -> None:
     """Where a boat's numbers come from, step by step; or whether boats of a type are equal."""
     from herijk.cli import audit_text
-    from herijk.dashboards.audit_plots import file_name
     from herijk.warehouse.queries.audit import audit as audit_report
     from herijk.warehouse.store.store import Store
 
@@ -270,9 +269,13 @@ def audit(
         methods.known_methods(data).text(method)
     store = Store(data)
     report = audit_report(store, names, method, tows)
-    folder = plots or store.root / "audit" / file_name(" ".join(names))
-    drawn = _plots(store, report, folder)
-    show(report | {"plots": [str(path) for path in drawn]}, audit_text.audit, as_json)
+    if not as_json:
+        show(report, audit_text.audit, as_json)  # the plots take longer than the text
+    drawn = _plots(store, report, plots, " ".join(names))
+    if as_json:
+        show(report | {"plots": [str(path) for path in drawn]}, audit_text.audit, as_json)
+    elif drawn:
+        typer.echo("\n" + tell("{} plots in {}", len(drawn), drawn[0].parent))
 
 
 @app.command()
@@ -286,7 +289,7 @@ def slides(
         typer.Option("--type", help="Type of boat; repeat for two together."),
     ] = None,
     tows: Annotated[
-        str, typer.Option(metavar="all|newest|SEASON", help="Which tows are drawn.")
+        str, typer.Option(metavar="all|newest|SEASON|A:B", help="Which tows are drawn.")
     ] = "all",
     boat: Annotated[
         list[str] | None,
@@ -307,10 +310,11 @@ def slides(
     show_files(written, as_json)
 
 
-def _plots(store: "Store", report: dict[str, Any], folder: Path) -> list[Path]:
+def _plots(store: "Store", report: dict[str, Any], asked: Path | None, name: str) -> list[Path]:
     """The plots of an audit; none, and said so, where they cannot be written: the page stands."""
-    from herijk.dashboards.audit_plots import write_audit_plots
+    from herijk.dashboards.audit_plots import file_name, write_audit_plots
 
+    folder = asked or store.root / "audit" / file_name(name)
     try:
         return write_audit_plots(store, report, folder)
     except OSError as error:

@@ -9,7 +9,6 @@ import inspect
 import os
 import re
 import sys
-import tomllib
 from collections.abc import Mapping, Sequence
 from functools import partial
 from itertools import pairwise
@@ -23,6 +22,7 @@ from typer.core import TyperGroup
 from typer.main import get_command
 
 from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.toml_text import parse_toml
 from herijk.words import LANGUAGE, LANGUAGES, spoken, tell
 
 if TYPE_CHECKING:
@@ -221,7 +221,7 @@ def folders_here(start: Path) -> dict[str, str]:
 
 def _read(file: Path) -> dict[str, Any]:
     try:
-        settings = tomllib.loads(file.read_text(encoding="utf-8"))
+        settings = parse_toml(file.read_text(encoding="utf-8"))
     except (ValueError, OSError) as error:
         raise MissingKnowledgeError("{} cannot be read: {}", file, error) from error
     wrong = [k for k, value in settings.items() if k not in FOLDERS or not isinstance(value, str)]

@@ -71,14 +71,14 @@ def _blocks(tokens: Iterable[Token]) -> Iterator[dict[str, Any]]:
 
 
 def _runs(inline: Token) -> list[dict[str, Any]]:
-    found, strong = [], False
+    spans, strong = [], False
     for token in inline.children or ():
         if token.type in ("strong_open", "strong_close"):
             strong = token.type == "strong_open"
         elif token.type in ("softbreak", "hardbreak"):
-            found.append({"text": " ", "strong": strong, "code": False})
+            spans.append({"text": " ", "strong": strong, "code": False})
         elif token.content:
-            found.append(
+            spans.append(
                 {"text": token.content, "strong": strong, "code": token.type == "code_inline"}
             )
-    return found
+    return spans

@@ -12,8 +12,14 @@ REMARK: Final = (
 )
 
 
-class Register(dy.Schema):
-    """One line per edition, boat and crew."""
+def _flags() -> dy.List:
+    return dy.List(
+        dy.String(), description="codes of what a person should look at in its tow", nullable=True
+    )
+
+
+class _Line(dy.Schema):
+    """What every line of a register has."""
 
     edition = column.text("edition; a draft is called concept-<method>", primary_key=True)
     method = column.method()
@@ -22,7 +28,7 @@ class Register(dy.Schema):
     crew_class = column.crew_class(primary_key=True)
     empty_thwart = column.empty_thwart(primary_key=True)
     tow_id = column.tow_id(nullable=True)
-    tow_date = dy.Date(description="day of the tow", nullable=True)
+    tow_date = dy.Date(description="day of the tow: from then on the line counts", nullable=True)
     valid_until = dy.Date(description="last day the line counts", nullable=True)
     declared_speed_m_s = column.speed("speed v0 the crew declared", nullable=True)
     a_kg_m = column.number("kg/m", "A", nullable=True)
@@ -30,6 +36,11 @@ class Register(dy.Schema):
     cw_kg_m = column.number("kg/m", "Cw at the declared speed", nullable=True)
     cw_lo_kg_m = column.number("kg/m", column.LOWER_END, nullable=True)
     cw_hi_kg_m = column.number("kg/m", "upper end", nullable=True)
+
+
+class Register(_Line):
+    """One line per edition, boat and crew."""
+
     status = column.text("valid, or why there is no valid curve")
     as_of = dy.Date(
         description="day on which validity was judged: that of the archive's last tow, or from "
@@ -40,41 +51,22 @@ class Register(dy.Schema):
     beam_m = column.beam("breadth that day", nullable=True)
     bow_height_m = column.bow_height("height of the bow that day", nullable=True)
     weight_kg = column.boat_weight("empty boat with oars that day", nullable=True)
-    flags = dy.List(
-        dy.String(), description="codes of what a person should look at in its tow", nullable=True
-    )
+    flags = _flags()
     verification_code = column.text(
         "ten letters and digits that follow from all that made the line; drafts have none",
         nullable=True,
     )
 
 
-class RegisterHistory(dy.Schema):
+class RegisterHistory(_Line):
     """Every line that an edition's register had at some time, by the tow it rests on.
 
     On a day counts, of the lines whose tow was made by then, the one with the highest position; it
     is valid up to its last day.
     """
 
-    edition = column.text("edition; a draft is called concept-<method>", primary_key=True)
-    method = column.method()
-    fsn_no = column.fsn_no(primary_key=True)
-    rowers = column.rowers(primary_key=True)
-    crew_class = column.crew_class(primary_key=True)
-    empty_thwart = column.empty_thwart(primary_key=True)
     position = dy.Int32(primary_key=True, description="the highest goes before", min=1)
-    tow_id = column.tow_id(nullable=True)
-    tow_date = dy.Date(description="day of the tow: from then on the line counts", nullable=True)
-    valid_until = dy.Date(description="last day the line counts", nullable=True)
-    declared_speed_m_s = column.speed("speed v0 the crew declared", nullable=True)
-    a_kg_m = column.number("kg/m", "A", nullable=True)
-    b_m_s = column.number("m/s", "B; empty where it is not determined", nullable=True)
-    cw_kg_m = column.number("kg/m", "Cw at the declared speed", nullable=True)
-    cw_lo_kg_m = column.number("kg/m", column.LOWER_END, nullable=True)
-    cw_hi_kg_m = column.number("kg/m", "upper end", nullable=True)
-    flags = dy.List(
-        dy.String(), description="codes of what a person should look at in its tow", nullable=True
-    )
+    flags = _flags()
 
 
 class DueList(dy.Schema):

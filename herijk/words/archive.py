@@ -32,9 +32,17 @@ ARCHIVE: Final[dict[str, str]] = {
         "Geen run duurt langer dan {lasts:.1f} s bij {rate} metingen per seconde, en {planned:.0f} "
         "s is gepland: is de frequentie {observed:.0f}?"
     ),
+    "Column {number} has no name and holds '{cell}'. Give it its name; one that is not needed can "
+    "be put under ignore in archief.toml.": (
+        "Kolom {number} heeft geen naam en bevat '{cell}'. Geef de kolom zijn naam; een kolom die "
+        "niet nodig is, kan in archief.toml bij ignore."
+    ),
+    "[[{table}]] is for {what}, and no tow list has that: is it mistyped?": (
+        "[[{table}]] is voor {what}, en dat staat in geen sleeplijst: is het een tikfout?"
+    ),
     "column '{column}' is empty.": "kolom '{column}' is leeg.",
-    "column '{column}' is empty, here and in the boat list.": (
-        "kolom '{column}' is leeg, hier en in de lijst van sloepen."
+    "{names} must be there, here or in the boat list.": (
+        "{names} moet er zijn, hier of in de lijst van sloepen."
     ),
     "column '{column}' is {cell}; {low} to {high} can be right.": (
         "kolom '{column}' is {cell}; {low} tot {high} kan kloppen."
@@ -160,6 +168,7 @@ ARCHIVE: Final[dict[str, str]] = {
     "'{name}' is a path; only the name of a file in {folder} can stand here.": (
         "'{name}' is een pad; hier kan alleen de naam staan van een bestand in {folder}."
     ),
+    "No row of a tow list names this file.": "Geen rij van een sleeplijst noemt dit bestand.",
     "No row of the tow list of {season} names this file.": (
         "Geen rij van de sleeplijst van {season} noemt dit bestand."
     ),

@@ -82,6 +82,7 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.force_unusual": ("kracht valt op", "force stands out"),
     "code.wind_unusual": ("wind valt op", "wind stands out"),
     "code.speed_unusual": ("snelheid valt op", "speed stands out"),
+    "code.season_in_doubt": ("instrument van het seizoen onzeker", "season's instrument in doubt"),
     "code.correction_not_used": (
         "correctie uit de sleeplijst niet gebruikt",
         "correction of the tow list not used",
@@ -156,6 +157,10 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.b_not_determined": ("B niet bepaald", "B not determined"),
     "code.pulled_askew": ("scheef gesleept", "pulled askew"),
     "code.range_not_covered": ("snelheden te dicht bijeen", "range not covered"),
+    "code.declared_speed_not_covered": (
+        "opgegeven snelheid ligt buiten de runs",
+        "declared speed outside the runs",
+    ),
     "code.slow_tow": ("te langzaam gesleept", "slow tow"),
     "code.unbalanced_runs": ("heen en terug niet evenveel", "unbalanced runs"),
     "code.beam_changed": ("breedte veranderd", "beam changed"),
@@ -178,6 +183,11 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.weight_changed": ("gewicht veranderd", "weight changed"),
     "code.curve_changed": ("kromme veranderd", "curve changed"),
     "code.curve_change_unexplained": ("kromme onverklaard veranderd", "unexplained curve change"),
+    "code.other_tows": ("geen andere proef van sloep en ploeg", "no other tow of boat and crew"),
+    "code.curve_change_significant": (
+        "kromme meer veranderd dan de onzekerheid",
+        "curve changed beyond its uncertainty",
+    ),
     "code.b_at_cap": ("B op zijn bovengrens", "B at its cap"),
     "code.heavier_after": ("na de proef zwaarder", "heavier after"),
     "code.log2_differs": ("log 2 wijkt af", "log 2 differs"),

@@ -106,7 +106,7 @@ COMMAND: Final[dict[str, str]] = {
         "Een methode in woorden, met wat verschilt van die waar zij op voortbouwt."
     ),
     "Read a method file and say in words what it does; an error is told with its line.": (
-        "Lees een methodebestand en zeg in woorden wat het doet; een fout komt met haar regel."
+        "Lees een methodebestand en zeg in woorden wat het doet; bij een fout staat de regel."
     ),
     "Begin a method file NAME.toml here, which extends another; every option is listed in it.": (
         "Begin hier een methodebestand NAAM.toml dat op een ander voortbouwt; elke optie "
@@ -1068,4 +1068,5 @@ COMMAND: Final[dict[str, str]] = {
     "Cw at {:.2f} m/s {:.2f}, predicted {:.2f} ({:.2f} to {:.2f}) kg/m": (
         "Cw bij {:.2f} m/s {:.2f}, voorspeld {:.2f} ({:.2f} tot {:.2f}) kg/m"
     ),
+    "Cw, power of m": "Cw, macht van m",
 }

@@ -231,7 +231,6 @@ ERRORS: Final[dict[str, str]] = {
         "{} is een sloep, geen type; een sloep heeft een eigen pagina: herijk audit {}"
     ),
     "there is no type {!r}; the types are {}": "er is geen type {!r}; de types zijn {}",
-    "there are no tows {!r}; {}": "er zijn geen proeven {!r}; {}",
     "there are no tows {!r}; write all, newest, a season 2014 or a range 2012:2015": (
         "er zijn geen proeven {!r}; schrijf all, newest, een seizoen 2014 of een reeks 2012:2015"
     ),
@@ -290,8 +289,8 @@ ERRORS: Final[dict[str, str]] = {
     ),
     "{}{}: {}: {}": "{}{}: {}: {}",
     "{}: {}": "{}: {}",
-    "{}: {} letters, up to {} dots in a line; a method has at most {} and {}": (
-        "{}: {} letters, tot {} punten in een regel; een methode heeft er hoogstens {} en {}"
+    "{}: {} letters; a method has at most {}": (
+        "{}: {} letters; een methode heeft er hoogstens {}"
     ),
     "{}: the seasons {} are not those of {}": "{}: de seizoenen {} zijn niet die van {}",
     "{} has {} ranges, not {}": "{} heeft {} reeksen seizoenen, niet {}",

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 from herijk.cli.audit_text import audit as page_of
 from herijk.cli.main import app
 from herijk.warehouse.queries.audit import audit
+from herijk.words import code
 
 WIDTH = 100
 
@@ -120,7 +121,7 @@ def test_a_boats_page_has_its_uncertainty_budget(built):
     )
     assert felt.height >= 3
     for component, u_ratio in felt.select("component", "u_ratio").iter_rows():
-        assert f"{component.replace('_', ' ')} {100 * u_ratio:.2f} %" in text
+        assert f"{code(component)} {100 * u_ratio:.2f} %" in text
 
 
 def test_the_steps_of_a_boats_tow_multiply_to_the_total_printed(built):

@@ -5,8 +5,6 @@ None of a
 verdict are three different things: yes, not seen, and not claimed.
 """
 
-from pathlib import Path
-
 from herijk.cli.audit_text.boat import boat_page
 from herijk.cli.audit_text.one_type import one_type
 from herijk.cli.audit_text.two_types import two_types
@@ -24,6 +22,4 @@ def audit(report: Report) -> str:
         parts += one_type(report)
     else:
         parts += two_types(report)
-    if report.get("plots"):
-        parts.append(tell("{} plots in {}", len(report["plots"]), Path(report["plots"][0]).parent))
     return "\n\n".join(parts)

@@ -9,6 +9,7 @@ from herijk.cli.audit_text.words import (
     EXPLANATIONS,
     Report,
     change,
+    codes,
     distance,
     nothing,
     second_opinion,
@@ -19,7 +20,7 @@ from herijk.cli.audit_text.words import (
 )
 from herijk.cli.text import table
 from herijk.pipeline.method.definition import COMPLETE
-from herijk.words import tell
+from herijk.words import code, tell
 
 RUNS_ALONE_MEANS: Final = "runs alone: spread of the runs alone: the log's error is not in it"
 LEAST_FELT: Final = 5e-4
@@ -69,7 +70,7 @@ def boat_page(report: Report) -> list[str]:
         ),
         (
             tell("Set aside, by its number or the name of its file:"),
-            [_set_aside(row) for row in report["set_aside"]] or ["  nothing"],
+            [_set_aside(row) for row in report["set_aside"]] or [tell("  nothing")],
         ),
     ]
     laid = [(title, [wrapped(line.strip()) for line in lines]) for title, lines in sections]
@@ -105,8 +106,8 @@ def _place_title(report: Report) -> str:
 def _place(report: Report) -> list[str]:
     lines = []
     for row in report["in_type"]:
-        codes = ", ".join(EXPLANATIONS.get(code, code) for code in row["candidates"])
-        place = "outside" if row["outside"] else "within"
+        why = ", ".join(tell(EXPLANATIONS.get(name, name)) for name in row["candidates"])
+        place = tell("outside") if row["outside"] else tell("within")
         lines.append(
             tell(
                 "  {}, {}{}, {}: {}, {:+.1f} sd, {}{}",
@@ -117,7 +118,7 @@ def _place(report: Report) -> list[str]:
                 distance(row),
                 row["deviation_sd"],
                 place,
-                codes and f" ({codes})",
+                why and f" ({why})",
             )
         )
     size = report["type_size"]
@@ -136,7 +137,7 @@ def _not_own(pooled: list[Report]) -> Iterator[Report]:
 
 def _pooled(row: Report) -> str:
     own = row["own"]
-    words = {"partial": tell("in part"), "shared": "wholly"}[row["pooling"]]
+    words = {"partial": tell("in part"), "shared": tell("wholly")}[row["pooling"]]
     b = [
         tell("{:.2f} m/s", c["b_m_s"]) if c["b_m_s"] else tell("not determined") for c in (own, row)
     ]
@@ -188,7 +189,7 @@ def _options(effects: list[Report]) -> Iterator[str]:
 
 
 def _register(row: Report) -> str:
-    line = f"  {row['edition']}, {row['rowers']}{row['crew_class']}: {row['status']}"
+    line = f"  {row['edition']}, {row['rowers']}{row['crew_class']}: {code(row['status'])}"
     if row["cw_kg_m"] is None:
         return line
     b = tell("B not determined") if row["b_m_s"] is None else tell("B {:.2f}", row["b_m_s"])
@@ -234,7 +235,9 @@ def _steps(steps: list[Report]) -> list[str]:
     for ends in dict.fromkeys((step["from_method"], step["to_method"]) for step in steps):
         own = [s for s in steps if (s["from_method"], s["to_method"]) == ends]
         felt = [
-            f"{s['step']} {change(s['factor'])} %" for s in own if abs(s["factor"] - 1) > LEAST_FELT
+            f"{code(s['step'])} {change(s['factor'])} %"
+            for s in own
+            if abs(s["factor"] - 1) > LEAST_FELT
         ]
         total = change(own[-1]["cw_kg_m"] / own[0]["cw_kg_m"])
         lines.append(
@@ -272,7 +275,7 @@ def _curve(curve: Report) -> str:
             "-"
             if p["window_start_s"] is None
             else f"{p['window_start_s']:.0f}-{p['window_end_s']:.0f}",
-            p["cut_reason"],
+            codes(p["cut_reason"].split(",")),
             p["speed_factor"],
             p["speed_m_s"],
             p["gross_cw_kg_m"],
@@ -282,7 +285,7 @@ def _curve(curve: Report) -> str:
             p["temperature_cw_kg_m"],
             p["cw_kg_m"],
             p["fitted_cw_kg_m"],
-            p["reason"],
+            codes([p["reason"]]),
         )
         for p in curve["run_points"]
     ]
@@ -293,8 +296,8 @@ def _curve(curve: Report) -> str:
 def _budget(budget: list[Report]) -> str:
     """What makes Cw uncertain, the largest first; with whom it is shared where it is."""
     felt = [
-        f"{row['component'].replace('_', ' ')} {share(row['u_ratio'], 2)}"
-        + ("" if row["shared"] == "single" else f" ({row['shared']})")
+        f"{code(row['component'])} {share(row['u_ratio'], 2)}"
+        + ("" if row["shared"] == "single" else f" ({code(row['shared'])})")
         for row in budget
         if row["u_ratio"] and row["u_ratio"] >= LEAST_TOLD
     ]
@@ -302,9 +305,9 @@ def _budget(budget: list[Report]) -> str:
 
 
 def _result(curve: Report) -> str:
-    flags = f" ({', '.join(curve['flags'])})" if curve["flags"] else ""
+    flags = f" ({codes(curve['flags'])})" if curve["flags"] else ""
     if curve["cw_kg_m"] is None:
-        return tell("no curve, {}{}", curve["status"], flags)
+        return tell("no curve, {}{}", code(curve["status"]), flags)
     b = tell("B not determined") if curve["b_m_s"] is None else tell("B {:.2f} m/s", curve["b_m_s"])
     return tell(
         "A {:.2f} kg/m, {} ({}), Cw {:.2f} kg/m ({}: {:.2f} to {:.2f}), {:.1f} W per rower, {}{}",
@@ -316,9 +319,9 @@ def _result(curve: Report) -> str:
         curve["cw_lo_kg_m"],
         curve["cw_hi_kg_m"],
         curve["power_w"],
-        curve["status"],
+        code(curve["status"]),
         flags,
-    ) + ("" if curve["interval"] == COMPLETE else f"; {RUNS_ALONE_MEANS}")
+    ) + ("" if curve["interval"] == COMPLETE else f"; {tell(RUNS_ALONE_MEANS)}")
 
 
 def _interval_of_b(curve: Report) -> str:

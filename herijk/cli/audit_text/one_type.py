@@ -163,7 +163,7 @@ def _lines(under: Report) -> list[str]:
                 continue
             cells.append((label, method, _slope(line), *_line_figures(line)))
             label = ""
-    label = "Cw, power of m"
+    label = tell("Cw, power of m")
     for method, figures in under.items():
         line = line_of(figures, "ln_cw_standard", "ln_displacement")
         if not line["reason"]:

@@ -153,5 +153,5 @@ def two_types(report: Report) -> list[str]:
     return [
         "\n".join(wrapped(line, 0, 0) for line in intro),
         table(("", "method", *names), cells),
-        section(title, differing or ["  nothing"]),
+        section(title, differing or [tell("  nothing")]),
     ]

@@ -6,10 +6,11 @@ here: what is on which page.
 
 import re
 import textwrap
+from collections.abc import Iterable
 from math import exp
 from typing import Any, Final
 
-from herijk.words import number, tell
+from herijk.words import code, number, tell
 
 Report = dict[str, Any]
 
@@ -94,6 +95,11 @@ def wrapped(text: str, indent: int = 2, hanging: int = 2) -> str:
     return lines.replace("\xa0", " ")
 
 
+def codes(names: Iterable[str]) -> str:
+    """Codes of the tables in words; an empty one says nothing."""
+    return ", ".join(code(name) for name in names if name)
+
+
 def share(ratio: float | None, digits: int = 0) -> str:
     """A ratio in per cent."""
     return "-" if ratio is None else number(100 * ratio, f".{digits}f") + " %"
@@ -172,7 +178,7 @@ def apart(era: Report) -> str:
 
 def outsider(row: Report) -> str:
     """A boat outside its type: how far, and what could explain it."""
-    codes = ", ".join(EXPLANATIONS.get(code, code) for code in row["candidates"])
+    codes = ", ".join(tell(EXPLANATIONS.get(name, name)) for name in row["candidates"])
     return tell(
         "{}, {}: {}, {:+.1f} sd; {}",
         who(row),

@@ -1,5 +1,7 @@
 """Figures of agreement: repeat tows, causes of spread, prediction, and editions compared."""
 
+from collections.abc import Mapping
+
 import altair as alt
 import polars as pl
 
@@ -100,48 +102,44 @@ def predicted(frame: pl.DataFrame, say: Say) -> Drawing:
         .mark_line(color=GREY, strokeDash=[4, 3])
         .encode(number(alt.X, "cw_kg_m", say("tow_cw")), number(alt.Y, "cw_kg_m", ""))
     )
-    points = (
-        alt.Chart(frame)
-        .mark_point(size=60, filled=True, opacity=0.85, cursor="pointer")
-        .encode(
-            number(alt.X, "cw_kg_m", say("tow_cw")),
-            number(alt.Y, "predicted_cw_kg_m", say("predicted_cw")),
-            colour("boat_type", say("type"), legend=type_legend(say)),
-            shape("boat_type", say("type"), legend=type_legend(say)),
-            href="page:N",
-            tooltip=tips(
-                ("name:N", say("name")),
-                ("fsn_no:N", "FSN"),
-                ("cw_kg_m:Q", say("tow_cw")),
-                ("predicted_cw_kg_m:Q", say("predicted_cw")),
-            ),
-        )
-    )
+    places = {"cw_kg_m": say("tow_cw"), "predicted_cw_kg_m": say("predicted_cw")}
+    by = ("boat_type", say("type"), type_legend(say))
+    points = _boats(frame, say, places, by)
     return alt.layer(equal, points).properties(width=480, height=360)
 
 
 def register_changes(frame: pl.DataFrame, say: Say) -> Drawing:
     """Time and Cw of every changed register line, new / old; `frame` has `page`."""
     one = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3])
-    points = (
+    places = {"cw_ratio": say("column.cw_ratio"), "time_ratio": say("time_ratio")}
+    points = _boats(frame, say, places, ("to_edition", say("edition"), editions_legend(say)))
+    return alt.layer(one.encode(x=alt.datum(1.0)), one.encode(y=alt.datum(1.0)), points).properties(
+        width=WIDTH, height=HEIGHT
+    )
+
+
+def _boats(
+    frame: pl.DataFrame, say: Say, places: Mapping[str, str], by: tuple[str, str, alt.Legend]
+) -> alt.Chart:
+    """A point per boat that leads to its page, at two named columns, in colour and shape by one."""
+    (x, x_title), (y, y_title) = places.items()
+    column, title, legend = by
+    return (
         alt.Chart(frame)
         .mark_point(size=60, filled=True, opacity=0.85, cursor="pointer")
         .encode(
-            number(alt.X, "cw_ratio", say("column.cw_ratio")),
-            number(alt.Y, "time_ratio", say("time_ratio")),
-            colour("to_edition", say("edition"), legend=editions_legend(say)),
-            shape("to_edition", say("edition"), legend=editions_legend(say)),
+            number(alt.X, x, x_title),
+            number(alt.Y, y, y_title),
+            colour(column, title, legend=legend),
+            shape(column, title, legend=legend),
             href="page:N",
             tooltip=tips(
                 ("name:N", say("name")),
                 ("fsn_no:N", "FSN"),
-                ("cw_ratio:Q", say("column.cw_ratio")),
-                ("time_ratio:Q", say("time_ratio")),
+                (f"{x}:Q", x_title),
+                (f"{y}:Q", y_title),
             ),
         )
-    )
-    return alt.layer(one.encode(x=alt.datum(1.0)), one.encode(y=alt.datum(1.0)), points).properties(
-        width=WIDTH, height=HEIGHT
     )
 
 

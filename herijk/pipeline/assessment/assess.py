@@ -14,13 +14,16 @@ import polars as pl
 
 from herijk.pipeline.assessment.checks import CHECKS, CODES, DOUBTS, UNUSUAL
 from herijk.pipeline.assessment.freeboard import by_freeboard
-from herijk.pipeline.channels import TARGET_SPEED_RATIOS
+from herijk.pipeline.assessment.season_levels import season_levels
 from herijk.pipeline.choice import SAME_SHARE
 from herijk.tables.keys import LINE
 
 LIKE: Final = ("boat_type", "rowers", "crew_class")
 FEWEST_LIKE_BOATS: Final = 4
 """A type needs so many boats before one of them can stick out (inferred)."""
+
+NORMAL_WIDTH: Final = 3.92
+"""Standard deviations in a 95 % interval."""
 
 FREEBOARDS: Final = ("freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m")
 SIZES: Final = {
@@ -33,13 +36,16 @@ SIZES: Final = {
 _LAST_SEASON: Final = {check.code: check.last_season for check in CHECKS}
 
 
-def assess(curves: pl.DataFrame, run_points: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+def assess(
+    curves: pl.DataFrame, run_points: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame
+) -> pl.DataFrame:
     """Every check of every tow with what was observed and what it is compared with.
 
     Args:
         curves, run_points: the tables of one method, curves without `status` and `flags`.
         tows: rows of `tows`, with `boat_type` where it is known; without the column no tow is
             compared with like boats.
+        diagnosis: rows of `season_diagnosis` of that method.
 
     Returns:
         Rows of the table `assessments`. A check that could not be made (nothing to compare with,
@@ -52,7 +58,8 @@ def assess(curves: pl.DataFrame, run_points: pl.DataFrame, tows: pl.DataFrame) -
         _of_correction(run_points, tows),
         _of_sizes(tows),
         _of_freeboards(tows),
-        _of_previous_curve(curves, tows),
+        _of_season(tows, diagnosis),
+        _of_previous_curve(curves, tows, diagnosis),
         _of_like_boats(curves, tows),
     ]
     long = pl.concat([_long(frame) for frame in observed])
@@ -165,14 +172,19 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
     speed, cw, way = pl.col("speed_m_s"), pl.col("cw_kg_m"), pl.col("direction")
     declared = pl.col("declared_speed_m_s")
     on_curve = cw / pl.col("fitted_cw_kg_m")
-    lowest, highest = min(TARGET_SPEED_RATIOS), max(TARGET_SPEED_RATIOS)
+    target = pl.col("target_speed_ratio")
     shortfall = pl.max_horizontal(
-        (speed / declared).min() - lowest, highest - (speed / declared).max()
+        (speed / declared).min() - pl.col("lowest_target").first(),
+        pl.col("highest_target").first() - (speed / declared).max(),
     )
+    beyond = pl.max_horizontal((speed / declared).min() - 1, 1 - (speed / declared).max())
     log1 = speed / pl.col("speed_factor")
-    on_target = speed / (pl.col("target_speed_ratio") * declared)
+    on_target = speed / (target * declared)
     return (
-        run_points.filter("used")
+        run_points.with_columns(
+            lowest_target=target.min().over("tow_id"), highest_target=target.max().over("tow_id")
+        )
+        .filter("used")
         .join(curves.select("tow_id", "declared_speed_m_s"), on="tow_id")
         .group_by("tow_id")
         .agg(
@@ -184,6 +196,7 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
             off_target_speed=(on_target / on_target.median() - 1).abs().max(),
             ends_differ=pl.col("ends_ratio").max(),
             range_not_covered=shortfall,
+            declared_speed_not_covered=beyond,
         )
     )
 
@@ -255,17 +268,20 @@ def _with_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
 
     `size` is sqrt(displacement x waterline length): wetted surface follows it (docs of
     `pipeline.steps.resistance`), and friction, most of Cw, follows wetted surface. `s_s2_m2` is
-    1/B^2, also of a flat or falling curve, from A and Cw at the declared speed.
+    1/B^2, also of a flat or falling curve, from A and Cw at the declared speed. `ln_sd` is that of
+    ln Cw, where the method estimates the logs: the interval of others holds the runs alone.
     """
     kept = ("tow_date", "altered", "waterline_length_m", "weight_kg", "crew_weight_kg")
     types = [c for c in ("boat_type",) if c in tows.columns]
     displacement = pl.col("weight_kg") + pl.col("crew_weight_kg")
+    ln_width = (pl.col("cw_hi_kg_m") / pl.col("cw_lo_kg_m")).log()
     return (
         curves.filter(pl.col("a_kg_m").is_not_null())
         .join(tows.select("tow_id", *kept, *types), on="tow_id")
         .with_columns(
             size=(displacement * pl.col("waterline_length_m")).sqrt(),
             s_s2_m2=(1 - pl.col("a_kg_m") / pl.col("cw_kg_m")) / pl.col("declared_speed_m_s") ** 2,
+            ln_sd=pl.when(pl.col("cw_others_kg_m").is_not_null()).then(ln_width / NORMAL_WIDTH),
         )
         .sort("tow_date", "tow_id")
     )
@@ -277,15 +293,52 @@ def _cw_at(speed: pl.Expr) -> pl.Expr:
     return pl.when(below_b > 0).then(pl.col("a_kg_m") / below_b)
 
 
-def _of_previous_curve(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
-    """Against the previous tow of boat and crew that has a curve, at its declared speed."""
+def _of_season(tows: pl.DataFrame, diagnosis: pl.DataFrame) -> pl.DataFrame:
+    """Whether an instrument of the tow's season is in doubt, where the season was diagnosed."""
+    seasons = diagnosis.group_by("season").agg(season_in_doubt=pl.col("alarm").any())
+    return tows.join(seasons, on="season").select("tow_id", "season_in_doubt")
+
+
+def _of_previous_curve(
+    curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame
+) -> pl.DataFrame:
+    """Against the previous tow of boat and crew that has a curve, at its declared speed.
+
+    Between seasons whose logs are not on one scale, what all boats changed together is no change of
+    this one.
+    """
     change = _cw_at(_before("declared_speed_m_s", LINE)) / _before("cw_kg_m", LINE)
     by_size = (pl.col("size") / _before("size", LINE)).fill_null(1.0)
-    return _with_boats(curves, tows).select(
+    changed = _with_boats(curves, tows).select(
         "tow_id",
+        "season",
+        other_tows=pl.len().over(LINE) - 1,
+        before=_before("season", LINE),
         curve_changed=change - 1,
-        curve_change_unexplained=pl.when(~pl.col("altered")).then(change / by_size - 1),
+        ln=pl.when(~pl.col("altered")).then((change / by_size).log()),
+        sd=(pl.col("ln_sd") ** 2 + _before("ln_sd", LINE) ** 2).sqrt(),
     )
+    level = season_levels(changed.drop_nulls("ln"), _seasons_to_scale(curves, diagnosis))
+    shared = (
+        pl.col(column).replace_strict(level, default=0.0, return_dtype=pl.Float64)
+        for column in ("season", "before")
+    )
+    now, then = shared
+    ln = pl.col("ln") - now + then
+    return changed.select(
+        "tow_id",
+        "other_tows",
+        "curve_changed",
+        curve_change_unexplained=ln.exp() - 1,
+        curve_change_significant=ln / pl.col("sd"),
+    )
+
+
+def _seasons_to_scale(curves: pl.DataFrame, diagnosis: pl.DataFrame) -> set[int]:
+    """Seasons whose logs GPS or the other seasons bring to one scale."""
+    by_gps = curves.drop_nulls("calibration_factor")["season"]
+    estimated = diagnosis.filter(verdict="estimated")["season"]
+    return {*by_gps, *estimated}
 
 
 # Against like boats

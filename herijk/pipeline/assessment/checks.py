@@ -173,6 +173,14 @@ CHECKS: Final = (
         "inferred, as force_unusual",
         highest=0.0,
     ),
+    Check(
+        "season_in_doubt",
+        "whether an instrument of the season has a fault or may have one (1) or not (0): the table "
+        "`season_diagnosis` says which",
+        "1",
+        "inferred: a fault that the season log finds, or cannot rule out, concerns all its tows",
+        highest=0.0,
+    ),
     # The runs
     Check(
         "log2_differs",
@@ -211,12 +219,21 @@ CHECKS: Final = (
     ),
     Check(
         "range_not_covered",
-        "how far the runs fall short of 90 or 110 % of the declared speed, as a part of it: used "
-        "from 85 to 115 %, the curve is then extrapolated",
+        "how far the runs that count fall short of the lowest or highest speed of the tow's plan, "
+        "by default 90 and 110 % of the declared speed, as a part of that; used from 85 to 115 %, "
+        "the curve is then extrapolated",
         "1",
         "Cw-kromme 2015, 'Hyperbool als beste benadering': never over 5 % from a measured speed",
         highest=0.05,
         severity="note",
+    ),
+    Check(
+        "declared_speed_not_covered",
+        "how far the declared speed lies outside those of the runs, as a part of it: Cw at it is "
+        "then extrapolated",
+        "1",
+        "Cw-kromme 2015, 'Hyperbool als beste benadering': never over 5 % from a measured speed",
+        highest=0.05,
     ),
     # Instruments, and the declared speed
     Check(
@@ -340,6 +357,15 @@ CHECKS: Final = (
     ),
     # The curve against others
     Check(
+        "other_tows",
+        "other tows of the boat and crew: without one only size and type say whether the force can "
+        "be right, and an error of a sixth can pass",
+        "1",
+        "inferred: docs/operations.md, what a volunteer can rely on being told",
+        lowest=1.0,
+        severity="note",
+    ),
+    Check(
         "curve_changed",
         "Cw / that of the boat and crew's previous tow at its declared speed, less 1",
         "1",
@@ -350,11 +376,21 @@ CHECKS: Final = (
     ),
     Check(
         "curve_change_unexplained",
-        "the same after taking off what weight and length explain, without a reported alteration",
+        "the same after taking off what weight and length explain, and, where nothing calibrates "
+        "the logs, what all boats of the seasons share; without a reported alteration",
         "1",
         "as curve_changed; Sleepproef 2017, 'Eerste beoordeling'",
         lowest=-0.05,
         highest=0.05,
+    ),
+    Check(
+        "curve_change_significant",
+        "the same / the standard uncertainty of both curves together, where the method estimates "
+        "the logs, so that it knows that uncertainty",
+        "1",
+        "inferred: chance exceeds 3 standard deviations in one tow of 400",
+        lowest=-3.0,
+        highest=3.0,
     ),
     Check(
         "pulled_askew",

@@ -162,12 +162,12 @@ def _tested(boats: Observed, boat_type: str) -> dict[str, Any]:
         return counts | {"reason": "no_type"}
     if n_boats < FEWEST_BOATS:
         return counts | {"reason": "few_boats"}
-    found = _same_or_own_slopes(boats)
-    if found.within <= 1e-20 * boats.table.height:
+    slopes = _same_or_own_slopes(boats)
+    if slopes.within <= 1e-20 * boats.table.height:
         return counts | {"reason": "no_scatter"}
-    dof = found.dof_between, found.dof_within
-    f = found.between / dof[0] / (found.within / dof[1])
-    sigma = float(np.sqrt(found.within / dof[1]))
+    dof = slopes.dof_between, slopes.dof_within
+    f = slopes.between / dof[0] / (slopes.within / dof[1])
+    sigma = float(np.sqrt(slopes.within / dof[1]))
     return (
         counts
         | {"dof_between": dof[0], "dof_within": dof[1], "f_value": f, "run_sd_ratio": sigma}

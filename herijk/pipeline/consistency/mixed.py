@@ -145,8 +145,8 @@ class Fit:
             inverse = np.diag(weight) - shared[boat[rows[0]]] * np.outer(weight, weight)
             block = inverse - known[rows] @ known[rows].T
             if np.linalg.eigvalsh(block)[0] > 1e-9 * np.diag(inverse).max():
-                found = np.linalg.inv(block)
-                error[rows], variance[rows] = found @ py[rows], np.diag(found)
+                covariance = np.linalg.inv(block)
+                error[rows], variance[rows] = covariance @ py[rows], np.diag(covariance)
         return LeftOut(error, variance)
 
     def intervals(self) -> dict[str, tuple[float, float | None]]:
@@ -212,13 +212,13 @@ class _Profile:
         if not len(place):
             return inside
         spread = self.stack.problem.spread
-        found = find_root(
+        roots = find_root(
             self.excess,
             (inside, outside),
             args=(place,),
             tolerances={"xatol": PROFILE_PRECISION * spread, "xrtol": 0.0},
         )
-        return np.asarray(found.x)
+        return np.asarray(roots.x)
 
 
 def fit(problem: Problem, free: tuple[str, ...]) -> Fit:
@@ -245,13 +245,13 @@ def _most_likely(problems: Sequence[Problem], free: tuple[str, ...]) -> FloatArr
     # What the errors leave of the spread, in equal parts.
     left = [p.spread**2 - float(p.variance.mean()) for p in problems]
     start = loose * (np.maximum(left, 0.1 * stack.unit) / max(len(free), 1))[:, None]
-    found, least = search(stack, loose, start)
+    variances, least = search(stack, loose, start)
     for place in np.flatnonzero(loose[0]):
-        without = found.copy()
+        without = variances.copy()
         without[:, place] = 0.0
         idle = stack.likelihood(without).deviance <= least + NO_GAIN
-        idle &= found[:, place] > 0.0
+        idle &= variances[:, place] > 0.0
         loose[idle, place] = False
         if idle.any():
-            found[idle], least[idle] = search(stack.take(idle), loose[idle], without[idle])
-    return found
+            variances[idle], least[idle] = search(stack.take(idle), loose[idle], without[idle])
+    return variances

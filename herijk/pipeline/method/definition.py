@@ -11,7 +11,6 @@ import hashlib
 import itertools
 import json
 import re
-import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from importlib import resources
 from typing import Annotated, Any, Final, Literal
@@ -28,6 +27,7 @@ from pydantic_core import PydanticCustomError
 
 from herijk.pipeline.assessment.checks import CODES
 from herijk.pipeline.errors import HerijkError, MissingKnowledgeError
+from herijk.pipeline.toml_text import parse_toml
 
 LAST_SEASON: Final = 9999
 """End of a range written as `2015:`, which holds until a later method says otherwise."""
@@ -240,8 +240,7 @@ def shipped_method(name: str) -> Method:
 
 
 LONGEST_TEXT: Final = 100_000
-MOST_DOTS: Final = 200
-"""More than any method has; a key of 100,000 parts takes minutes and gigabytes."""
+"""More than any method has."""
 
 
 def parse_method(text: str, file_name: str, text_of: Callable[[str], str] = shipped_text) -> Method:
@@ -255,15 +254,9 @@ def parse_method(text: str, file_name: str, text_of: Callable[[str], str] = ship
     Raises:
         MethodFileError: with file, line, key and what is allowed.
     """
-    most = max((line.count(".") for line in text.splitlines()), default=0)
-    if len(text) > LONGEST_TEXT or most > MOST_DOTS:
+    if len(text) > LONGEST_TEXT:
         raise MethodFileError(
-            "{}: {} letters, up to {} dots in a line; a method has at most {} and {}",
-            file_name,
-            len(text),
-            most,
-            LONGEST_TEXT,
-            MOST_DOTS,
+            "{}: {} letters; a method has at most {}", file_name, len(text), LONGEST_TEXT
         )
     reader = _Reader(text, file_name)
     head = reader.head()
@@ -329,10 +322,10 @@ class _Reader:
 
     def head(self) -> _Head:
         try:
-            return _Head.model_validate(tomllib.loads(self.text))
+            return _Head.model_validate(parse_toml(self.text))
         except ValidationError as error:
             raise self.from_validation(error, allowed=_Head) from error
-        except (ValueError, RecursionError) as error:
+        except ValueError as error:
             raise MethodFileError("{}: not valid TOML: {}", self.file_name, error) from error
 
     def error(self, key: str, message: str, where: str | None = None) -> MethodFileError:

@@ -31,8 +31,8 @@ def with_anemometer(prepared: Sequence[Prepared]) -> list[Prepared]:
     asking = [p for p in prepared if _asks(p)]
     if not asking:
         return list(prepared)
-    found = _found(asking)
-    return [_corrected(p, found) if _asks(p) else p for p in prepared]
+    anemometer = _found(asking)
+    return [_corrected(p, anemometer) if _asks(p) else p for p in prepared]
 
 
 def _asks(prepared: Prepared) -> bool:
@@ -52,8 +52,8 @@ def _found(prepared: Sequence[Prepared]) -> Anemometer:
     )
 
 
-def _corrected(prepared: Prepared, found: Anemometer) -> Prepared:
-    ln_scale, sd = found.of_tows(prepared.batch.of_tow("season"))
+def _corrected(prepared: Prepared, anemometer: Anemometer) -> Prepared:
+    ln_scale, sd = anemometer.of_tows(prepared.batch.of_tow("season"))
     means = prepared.means.with_wind(np.exp(ln_scale)[prepared.batch.tow])
     return replace(prepared, means=means, wind_ln_scale=ln_scale, wind_ln_sd=sd)
 

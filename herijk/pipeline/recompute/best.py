@@ -78,7 +78,7 @@ def with_best(
     )
 
 
-def _to_declared(found: SeasonFactors) -> pl.DataFrame:
+def _to_declared(factors: SeasonFactors) -> pl.DataFrame:
     """From the line's usual speed to the declared one along the boat's bend, not the tow's own.
 
     Returns:
@@ -89,8 +89,8 @@ def _to_declared(found: SeasonFactors) -> pl.DataFrame:
     own, boat = (
         (1.0 - q * away).clip(lower_bound=LEAST_MARGIN) for q in (r / (1.0 - r), pl.col("bend"))
     )
-    return found.tows.join(
-        found.instruments.select("tow_id", "factor", "bend").drop_nulls(), on="tow_id"
+    return factors.tows.join(
+        factors.instruments.select("tow_id", "factor", "bend").drop_nulls(), on="tow_id"
     ).select(
         "tow_id",
         (own.log() - boat.log()).alias("by_bend"),

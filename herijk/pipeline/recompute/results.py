@@ -85,7 +85,8 @@ def as_tables(
     curves = together([_curves(o, bounds.filter(at_declared), pooled) for o in outcomes])
     misfit = misfit_of(outcomes, estimated, (DECLARED,))
     curves = with_best(curves, estimated, budget.filter(at_declared), misfit)
-    assessments = assess(curves, run_points, tows)
+    diagnosis = _diagnosis(estimated, outcomes)
+    assessments = assess(curves, run_points, tows, diagnosis)
     rejecting = [
         (season, check)
         for season in tows["season"].unique().sort()
@@ -107,7 +108,7 @@ def as_tables(
         season_links=_season_links(estimated).select(name, pl.all()),
         retow_choice=_retow_choice(estimated).select(name, pl.all()),
         season_steps=_season_steps(estimated).select(name, pl.all()),
-        season_diagnosis=_diagnosis(estimated, outcomes).select(name, pl.all()),
+        season_diagnosis=diagnosis.select(name, pl.all()),
         tow_instruments=_instruments(estimated).select(name, pl.all()),
         best_estimate_weights=_weights(estimated).select(name, pl.all()),
         factors=estimated,

@@ -352,7 +352,7 @@ def _reasons(present: BoolArray, mask: BoolArray, faults: _Faults) -> list[str]:
     """What was wrong in the part that was cut, as codes joined by commas."""
     cut = present & ~mask
     seen = (faults.ramp, faults.force_peak > 1.0, faults.gust > 1.0)
-    found = [(cut & fault).any(axis=1) for fault in seen]
-    rest = cut.any(axis=1) & ~np.any(found, axis=0)
-    rows = np.stack([*found, rest], axis=1).tolist()
+    explained = [(cut & fault).any(axis=1) for fault in seen]
+    rest = cut.any(axis=1) & ~np.any(explained, axis=0)
+    rows = np.stack([*explained, rest], axis=1).tolist()
     return [",".join(compress(CUT_REASONS, row)) for row in rows]

@@ -82,20 +82,20 @@ def _tells(used: BoolArray, direction: FloatArray, target: FloatArray) -> BoolAr
     return np.asarray((used.sum(axis=1) > SHAPE) & (distinct >= SHAPE - 1) & both)
 
 
-def departure_of_boats(found: Departure, boat: IntArray) -> tuple[FloatArray, FloatArray]:
+def departure_of_boats(departure: Departure, boat: IntArray) -> tuple[FloatArray, FloatArray]:
     """What all tows say of the departure of each tow's hull, and its variance, (tows, speeds).
 
     Args:
-        found: departures of all tows of an archive.
+        departure: departures of all tows of an archive.
         boat: index of each tow's boat.
     """
-    tells = np.isfinite(found.variance)
-    beyond = np.where(tells, found.ratio**2 - found.variance, 0.0).sum(axis=0)
+    tells = np.isfinite(departure.variance)
+    beyond = np.where(tells, departure.ratio**2 - departure.variance, 0.0).sum(axis=0)
     between = (USUAL_TOWS * USUAL_RATIO**2 + beyond) / (USUAL_TOWS + tells.sum(axis=0))
     between = np.maximum(between, 0.0)
     boats = int(boat.max(initial=-1)) + 1
-    precision, pull = (np.zeros((boats, found.ratio.shape[1])) for _ in range(2))
-    np.add.at(precision, boat, 1.0 / found.variance)
-    np.add.at(pull, boat, found.ratio / found.variance)
+    precision, pull = (np.zeros((boats, departure.ratio.shape[1])) for _ in range(2))
+    np.add.at(precision, boat, 1.0 / departure.variance)
+    np.add.at(pull, boat, departure.ratio / departure.variance)
     variance = between / (1.0 + between * precision)
     return (variance * pull)[boat], variance[boat]

@@ -14,7 +14,7 @@ from typing import Any, Final
 
 import polars as pl
 
-from herijk.pipeline.channels import FEWEST_RUNS, MOST_RUNS
+from herijk.pipeline.channels import FEWEST_RUNS, MOST_RUNS, SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import ListedTows
@@ -29,7 +29,7 @@ from herijk.warehouse.archive.files import (
 )
 from herijk.warehouse.archive.index import ArchiveIndex, index_archive, missing_lists, strangers
 from herijk.warehouse.archive.plausibility import judge_samples
-from herijk.warehouse.archive.profile import Profiles, SeasonProfile, parse_profiles, profile_text
+from herijk.warehouse.archive.profile import STANDARD, Profiles, parse_profiles, profile_text
 from herijk.warehouse.archive.proposals import Proposal, merged, propose
 from herijk.warehouse.archive.published import read_published_registers, read_races
 from herijk.warehouse.archive.samples import check_header, read_samples, read_tow_samples
@@ -89,9 +89,9 @@ def check_archive(root: Path) -> Checked:
         index, faults = _faults(root, profiles)
         new: dict[Proposal, None] = {}
         for fault in faults:
-            offered = propose(fault, profiles.wording.files)
+            offered = propose(fault, profiles.wording.files, index.seasons if index else {})
             key = (fault.path, fault.line, fault.tow_id, fault.reason_code, fault.message)
-            seen.setdefault(key, (fault, offered))
+            seen[key] = (fault, seen.get(key, (fault, ()))[1] or offered)
             new |= dict.fromkeys(p for p in offered if p not in proposals)
         if not new:
             break
@@ -103,13 +103,23 @@ def check_archive(root: Path) -> Checked:
 
 
 def _doubted(
-    proposals: Iterable[Proposal],
+    proposals: Mapping[Proposal, None],
     seen: Iterable[tuple[Fault, Sequence[Proposal]]],
     listed: pl.DataFrame,
 ) -> Iterator[Proposal]:
-    """Give the proposals; what only some files of a season lack is not to be declared absent."""
+    """Give the proposals; what only some files of a season lack is not to be declared absent.
+
+    A rate that the files say themselves leaves no question about it.
+    """
     lacking = Counter(p for _, offered in seen for p in offered if p.section == "absent")
+    known = {p.season for p in proposals if p.section == "sample_rate_hz" and p.is_active}
     for proposal in proposals:
+        if (
+            proposal.section == "sample_rate_hz"
+            and not proposal.is_active
+            and proposal.season in known
+        ):
+            continue
         tows = listed.filter(season=proposal.season).height
         is_sure = proposal.section != "absent" or lacking[proposal] >= tows
         yield replace(proposal, is_active=proposal.is_active and is_sure)
@@ -121,7 +131,7 @@ def _faults(root: Path, profiles: Profiles) -> tuple[ArchiveIndex | None, list[F
     Files that nobody reads come first, and alone: they can be the lists.
     """
     unread = strangers(root, profiles)
-    if any(propose(fault, profiles.wording.files) for fault in unread):
+    if any(propose(fault, profiles.wording.files, {}) for fault in unread):
         return None, unread
     lacking = missing_lists(root, profiles)
     if lacking:
@@ -147,8 +157,9 @@ def quick_hash(path: Path) -> str:
 def _in_headers(root: Path, index: ArchiveIndex) -> Iterator[Fault]:
     """Read the header of every samples file, whatever is wrong with the row that names it."""
     for file in list_sample_files(root, index.profiles.wording.files):
+        season = index.seasons.get(file.path, file.season)
         try:
-            check_header(path_inside(root, file.path), index.profiles.for_season(file.season))
+            check_header(path_inside(root, file.path), index.profiles.for_season(season))
         except DefectiveInputError as error:
             yield fault_from(error, file.path)
 
@@ -167,22 +178,25 @@ def _in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Iterator[Fa
         done.add(key)
         try:
             samples = read_tow_samples(root, tow, index.profiles.for_season(tow["season"]))
-            other = _other_rate(samples, tow, index) or _other_plan(samples, tow, index)
-            yield from [other] if other else judge_samples(samples, tow, index.runs).faults
+            others = (_other_rate(samples, tow, index), _other_plan(samples, tow, index))
+            found = [fault for fault in others if fault is not None]
+            yield from found or judge_samples(samples, tow, index.runs).faults
         except DefectiveInputError as error:
             yield fault_from(error, tow["samples_path"], tow["tow_id"])
     for file in list_sample_files(root, index.profiles.wording.files):
-        key = (file.season, kind_of(file.full_path))
+        season = index.seasons.get(file.path, file.season)
+        key = (season, kind_of(file.full_path))
         if key not in done and file.path not in wrong:
             done.add(key)
-            yield from _in_form(root, file, index.profiles.for_season(file.season))
+            yield from _in_form(root, file, index.profiles, season)
 
 
-def _in_form(root: Path, file: ArchiveFile, profile: SeasonProfile) -> Iterator[Fault]:
-    """Read a samples file that no sound row names."""
+def _in_form(root: Path, file: ArchiveFile, profiles: Profiles, season: int) -> Iterator[Fault]:
+    """Read a samples file that no sound row names, and look which runs are in it."""
+    profile = profiles.for_season(season)
     named = as_one_run(file.full_path.name)
     try:
-        read_samples(
+        samples = read_samples(
             path_inside(root, file.path),
             profile,
             sample_rate_hz=profile.sample_rate_hz,
@@ -190,6 +204,11 @@ def _in_form(root: Path, file: ArchiveFile, profile: SeasonProfile) -> Iterator[
         )
     except DefectiveInputError as error:
         yield fault_from(error, file.path)
+        return
+    planned = list(profiles.plan_of("", season).runs)
+    found = _mean_speeds(samples)
+    if season and named is None and found["run"].to_list() != planned:
+        yield _not_planned(file.path, found, planned, found["log1_m_s"].mean())
 
 
 def _other_rate(samples: pl.DataFrame, tow: Mapping[str, Any], index: ArchiveIndex) -> Fault | None:
@@ -201,7 +220,7 @@ def _other_rate(samples: pl.DataFrame, tow: Mapping[str, Any], index: ArchiveInd
     assert isinstance(planned, float)  # noqa: S101 - a tow has runs
     rate = tow["sample_rate_hz"]
     lasts = float(samples.group_by("run").len()["len"].max() or 0) / rate  # type: ignore[arg-type]
-    if lasts > planned / 2:
+    if lasts >= planned / 2:
         return None
     said = say(
         "No run lasts longer than {lasts:.1f} s at {rate} samples a second, and {planned:.0f} s is "
@@ -216,21 +235,53 @@ def _other_rate(samples: pl.DataFrame, tow: Mapping[str, Any], index: ArchiveInd
 
 def _other_plan(samples: pl.DataFrame, tow: Mapping[str, Any], index: ArchiveIndex) -> Fault | None:
     """Return that the file has other runs than are planned, with what their targets can be."""
-    found = samples.group_by("run").agg(pl.col("log1_m_s").mean()).sort("run")
+    found = _mean_speeds(samples)
     runs = index.runs.filter(tow_id=tow["tow_id"])
-    present = found["run"].to_list()
-    lacking = set(runs.filter("selected")["run"]) - set(present)
-    if tow["second_path"] or not (lacking or set(present) - set(runs["run"])):
+    present = set(found["run"])
+    lacking = set(runs.filter("selected")["run"]) - present
+    if not (lacking or present - set(runs["run"])):
         return None
-    ratios = found["log1_m_s"] / tow["declared_speed_m_s"]
+    first = pl.col("run") < SECOND_FILE_OFFSET
+    planned, speed = runs.filter(first)["run"], tow["declared_speed_m_s"]
+    in_two = tow["second_path"] is not None
+    lasts = float(found["rows"].min() or 0) / tow["sample_rate_hz"]  # type: ignore[arg-type]
+    return _not_planned(tow["samples_path"], found.filter(first), planned, speed, in_two, lasts)
+
+
+def _mean_speeds(samples: pl.DataFrame) -> pl.DataFrame:
+    return samples.group_by("run").agg(pl.col("log1_m_s").mean(), rows=pl.len()).sort("run")
+
+
+def _not_planned(
+    path: str,
+    found: pl.DataFrame,
+    planned: Iterable[int],
+    speed: Any,
+    in_two: bool = False,
+    lasts: float = STANDARD.seconds,
+) -> Fault:
+    """The fault of other runs than are planned.
+
+    Args:
+        path: the file.
+        found: its runs and their speeds.
+        planned: runs of one file.
+        speed: that of a target of 1.
+        in_two: the tow has a second file.
+        lasts: seconds of the shortest run.
+    """
+    present = found["run"].to_list()
+    ratios = found["log1_m_s"] / speed
     said = say(
         "Runs {present} are in the file and runs {planned} are planned. Give the targets and "
         "directions of all runs under [[plan]] in archief.toml.",
         present=", ".join(map(str, present)),
-        planned=", ".join(map(str, runs["run"])),
+        planned=", ".join(map(str, planned)),
         targets=tuple(round(20 * ratio) / 20 for ratio in ratios) if is_plan(present) else (),
+        in_two=in_two,
+        seconds=int(lasts),
     )
-    return Fault(tow["samples_path"], None, None, "run_not_planned", said)
+    return Fault(path, None, None, "run_not_planned", said)
 
 
 def is_plan(runs: Sequence[int]) -> bool:

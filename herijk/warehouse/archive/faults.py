@@ -96,6 +96,10 @@ REASONS: Final[dict[str, Reason]] = {
         "A file in a folder of lists has a name that is not one of the lists.",
         "Rename it, e.g. `sleeplijst_2014.csv`, or move it out of the folder.",
     ),
+    "idle_setting": Reason(
+        "`archief.toml` says something of a day, a season or a tow that no tow list has.",
+        "Look whether it is mistyped: what it was meant for is read as if it were not there.",
+    ),
     "missing_list": Reason(
         "The list of boats, or every list of tows, is not there.",
         "Put it into its folder, or name it under `[files]` in `archief.toml`.",

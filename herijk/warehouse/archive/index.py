@@ -4,6 +4,7 @@ Reads the lists and hashes the files; reading samples belongs to `samples`. Rows
 are compared with each other here, one question after the other; a tow falls out at the first.
 """
 
+import datetime as dt
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
@@ -75,6 +76,7 @@ class ArchiveIndex:
         faults: what is set aside, and why.
         files: every file that was looked at: path, sha256, size_bytes.
         profiles: `archief.toml`.
+        seasons: season of each samples file that a row names, whatever is wrong with the row.
     """
 
     boats: pl.DataFrame
@@ -84,6 +86,7 @@ class ArchiveIndex:
     faults: tuple[Fault, ...]
     files: pl.DataFrame
     profiles: Profiles
+    seasons: dict[str, int]
 
 
 @dataclass(frozen=True)
@@ -199,6 +202,7 @@ def index_archive(
     _hash_files(sample_files, hashes, faults)
     by_name = _by_name(sample_files, entries)
     faults += _not_listed(entries, sample_files, unread_seasons, by_name)
+    faults += [] if unread_seasons else _idle(profiles, entries)
     good = _keep(_unique_ids(entries), entries, faults)
     good = _keep(lambda entry: _read_values(entry, profiles), good, faults)
     good = _keep(lambda entry: _find_files(entry, by_name, hashes), good, faults)
@@ -217,6 +221,13 @@ def index_archive(
         faults=tuple(sorted(faults, key=_fault_order)),
         files=hashes.frame(),
         profiles=profiles,
+        seasons={
+            part.path: entry.season
+            for entry in entries
+            for name in _names(entry.row)
+            for file in _candidates(name, entry.season, by_name)
+            for part in file.parts
+        },
     )
 
 
@@ -325,10 +336,41 @@ def _read_tow_lists(
 
 def _year_of(row: ListRow) -> int:
     """Return the season of a row in a list of all years; 0 where its date cannot be read."""
+    day = _day_of(row)
+    return 0 if day is None else day.year
+
+
+def _day_of(row: ListRow) -> dt.date | None:
     try:
-        return row.date("tow_date").year
+        return row.date("tow_date")
     except DefectiveInputError:
-        return 0
+        return None
+
+
+def _idle(profiles: Profiles, entries: list[_Entry]) -> list[Fault]:
+    """Return what `archief.toml` says of days, seasons or tows that no list has: mistyped ones."""
+    days = {_day_of(entry.row) for entry in entries}
+    seasons = {entry.season for entry in entries}
+    tows = {entry.tow_id for entry in entries}
+    idle = [
+        *(("set_aside", str(one.date)) for one in profiles.set_aside if one.date not in days),
+        *(
+            ("log_replaced", str(one.date))
+            for one in profiles.log_replaced
+            if one.date.year not in seasons
+        ),
+        *(("plan", tow) for plan in profiles.plans for tow in plan.tows if tow not in tows),
+        *(
+            (name, f"{first}:{last}")
+            for name, (first, last) in profiles.season_ranges
+            if not any(first <= season <= last for season in seasons)
+        ),
+    ]
+    message = "[[{table}]] is for {what}, and no tow list has that: is it mistyped?"
+    return [
+        Fault(PROFILE_FILE, None, None, "idle_setting", say(message, table=table, what=what))
+        for table, what in idle
+    ]
 
 
 def _read_windows(
@@ -460,7 +502,11 @@ def _not_listed(
         if not file.inside:
             faults.append(fault_from(outside_archive(file.path), file.path))
         elif not unread_seasons & {file.season, 0} and (file.season or not unread_seasons):
-            message = say("No row of the tow list of {season} names this file.", season=file.season)
+            message = (
+                say("No row of the tow list of {season} names this file.", season=file.season)
+                if file.season
+                else say("No row of a tow list names this file.")
+            )
             faults.append(Fault(file.path, None, None, "samples_not_listed", message))
     return faults
 
@@ -517,7 +563,7 @@ def _unique_ids(entries: Iterable[_Entry]) -> Callable[[_Entry], None]:
 def _read_values(entry: _Entry, profiles: Profiles) -> None:
     rate_hz = profiles.for_season(entry.season).sample_rate_hz
     entry.tow = tow_list.read_tow(entry.row, entry.season, rate_hz)
-    entry.selection = tow_list.read_selection(entry.row, entry.plan.runs)
+    entry.selection = tow_list.read_selection(entry.row, entry.plan)
     entry.row.text("file")
     day = entry.tow["tow_date"]
     if day.year != entry.season:
@@ -662,16 +708,17 @@ def _place_day(entry: _Entry, profiles: Profiles) -> None:
 
 def _runs(entry: _Entry) -> list[Mapping[str, Any]]:
     plan = entry.plan
-    offsets = (0, SECOND_FILE_OFFSET)[: len(entry.files)]
+    ways_of = {0: plan.directions, SECOND_FILE_OFFSET: plan.second_directions or plan.directions}
+    files = list(ways_of.items())[: len(entry.files)]
     return [
         {
             "tow_id": entry.tow["tow_id"],
             "run": offset + number,
-            "direction": plan.directions[number - 1],
+            "direction": ways[number - 1],
             "target_speed_ratio": plan.targets[number - 1],
             "selected": offset + number in entry.selection,
             "planned_s": plan.seconds,
         }
-        for offset in offsets
+        for offset, ways in files
         for number in plan.runs
     ]

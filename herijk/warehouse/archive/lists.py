@@ -7,7 +7,7 @@ modules that read those.
 import datetime as dt
 import re
 import unicodedata
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Final
@@ -295,6 +295,7 @@ class ListRow:
             return cell in YES
         message = say(
             "column '{column}' is '{cell}', not ja, nee or empty.",
+            choice="ja",
             column=self.named(key),
             cell=shorten(cell),
         )
@@ -430,11 +431,29 @@ def _columns_of(
     places = find_columns(sheet.header, optional, sheet.line)
     strange = [h for h in unknown_headers(sheet.header, places) if fold(h) not in wording.ignore]
     free = [column for column in wanted if column.key not in places]
+    _check_named(sheet, {column.index for column in places.values()})
     if strange:
         raise DefectiveInputError(
             "unknown_column", _strange(_meanings(strange, free, sheet, table)), sheet.line
         )
     return find_columns(sheet.header, wanted, sheet.line)
+
+
+def _check_named(sheet: Sheet, known: Collection[int]) -> None:
+    """Raise where a column without a name holds something: its header may have been lost."""
+    for place, header in enumerate(sheet.header):
+        if place in known or fold(header):
+            continue
+        cells = (row.fields[place].strip() for row in sheet.rows if place < len(row.fields))
+        held = next((cell for cell in cells if cell and fold_word(cell) not in NOTHING), None)
+        if held is not None:
+            said = say(
+                "Column {number} has no name and holds '{cell}'. Give it its name; one that is not "
+                "needed can be put under ignore in archief.toml.",
+                number=place + 1,
+                cell=shorten(held),
+            )
+            raise DefectiveInputError("unknown_column", said, sheet.line)
 
 
 def _meanings(

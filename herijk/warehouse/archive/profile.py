@@ -6,7 +6,6 @@ Reading the samples with it belongs to `samples`.
 """
 
 import datetime as dt
-import tomllib
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
@@ -23,6 +22,7 @@ from herijk.pipeline.channels import (
     TARGET_SPEED_RATIOS,
 )
 from herijk.pipeline.errors import DefectiveInputError, MissingKnowledgeError
+from herijk.pipeline.toml_text import parse_toml
 from herijk.warehouse.archive.files import PROFILE_FILE, STANDS_FOR, path_inside
 from herijk.warehouse.archive.lists import Wording, fold_word
 from herijk.warehouse.archive.text import Column, fold, split_header
@@ -107,11 +107,14 @@ class Plan:
         targets: intended speed / declared speed of each run.
         directions: `OUT` or `BACK`, of each run.
         seconds: how long a run is meant to last.
+        second_directions: of the runs of a second file, where these belong to the tow; empty where
+            a second file is another tow, of which the list names the runs to use.
     """
 
     targets: tuple[float, ...] = TARGET_SPEED_RATIOS * 2
     directions: tuple[int, ...] = (OUT, OUT, OUT, BACK, BACK, BACK)
     seconds: float = RUN_SECONDS
+    second_directions: tuple[int, ...] = ()
 
     @property
     def runs(self) -> range:
@@ -154,13 +157,15 @@ class _PlanTable(_Strict):
     tows: list[str] = []
     targets: _Targets = list(STANDARD.targets)
     directions: _Directions = ["out", "out", "out", "back", "back", "back"]
+    second_directions: _Directions | None = None
     seconds: Annotated[float, Field(ge=5, le=600)] = RUN_SECONDS
 
     @model_validator(mode="after")
     def _is_whole(self) -> "_PlanTable":
         if (self.seasons is None) == (not self.tows):
             raise ValueError("a plan is for seasons or for tows: give one of the two")
-        if len(self.targets) != len(self.directions):
+        second = self.second_directions or self.directions
+        if not len(self.targets) == len(self.directions) == len(second):
             raise ValueError(
                 "targets and directions must have one entry per run, so as many of both"
             )
@@ -168,7 +173,8 @@ class _PlanTable(_Strict):
 
     @property
     def plan(self) -> "Plan":
-        return Plan(tuple(self.targets), _ways(self.directions), self.seconds)
+        second = _ways(self.second_directions or [])
+        return Plan(tuple(self.targets), _ways(self.directions), self.seconds, second)
 
 
 class Publication(_Strict):
@@ -271,6 +277,12 @@ class Profiles:
         ways = _ways(profile.directions)
         return Plan(tuple(TARGET_SPEED_RATIOS[i % 3] for i in range(len(ways))), ways)
 
+    @property
+    def season_ranges(self) -> list[tuple[str, tuple[int, int]]]:
+        """Return the seasons of every profile and plan, by the name of their table."""
+        plans = [("plan", plan.seasons) for plan in self.plans if plan.seasons is not None]
+        return [("profile", table.seasons) for table in self.tables] + plans
+
     def _table(self, season: int) -> _ProfileTable | None:
         return next((t for t in self.tables if t.seasons[0] <= season <= t.seasons[1]), None)
 
@@ -332,10 +344,10 @@ def parse_profiles(text: str) -> Profiles:
         MissingKnowledgeError: it cannot be understood; the message names the key.
     """
     try:
-        parsed = _File.model_validate(tomllib.loads(text))
+        parsed = _File.model_validate(parse_toml(text))
     except ValidationError as error:
         raise MissingKnowledgeError("{}: {}", PROFILE_FILE, _explain(error)) from error
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         raise MissingKnowledgeError("{} is not valid TOML: {}", PROFILE_FILE, error) from error
     return Profiles(
         simulated=parsed.simulated,

@@ -13,8 +13,9 @@ import tomlkit
 from tomlkit.items import InlineTable, Table
 
 from herijk.warehouse.archive.faults import Fault
+from herijk.warehouse.archive.files import PARTS
 from herijk.warehouse.archive.lists import fold_word
-from herijk.warehouse.archive.profile import MAY_BE_ABSENT, SAMPLE_COLUMNS
+from herijk.warehouse.archive.profile import MAY_BE_ABSENT, SAMPLE_COLUMNS, STANDARD
 from herijk.warehouse.archive.text import fold, nearest_column, split_header
 from herijk.warehouse.archive.units import find_scale
 from herijk.words import Sentence, innermost
@@ -56,7 +57,8 @@ class Proposal:
     def line(self) -> str:
         """The line as it is in the file, its section first."""
         if self.section == "plan":
-            plan = f"targets = {self.key}, directions = {self.value}"
+            directions = self.value.replace("\n", ", ")
+            plan = f"targets = {self.key}, directions = {directions}"
             return f'[[plan]] seasons = "{self.season}": {plan}'
         if self.section in {"ignore", "absent"}:
             body = f'{self.section} = ["{self.value}"]'
@@ -69,18 +71,21 @@ class Proposal:
         return f'[[profile]] seasons = "{self.season}": {body}' if self.season else body
 
 
-def propose(fault: Fault, named: Mapping[str, str]) -> tuple[Proposal, ...]:
+def propose(
+    fault: Fault, named: Mapping[str, str], seasons: Mapping[str, int]
+) -> tuple[Proposal, ...]:
     """Return what would settle a fault; nothing where only a person can.
 
     Args:
         fault: what is wrong.
         named: what files and folders stand for, by their path (`[files]`).
+        seasons: of samples files, by the rows that name them.
     """
     what = innermost(fault.message)
     if not isinstance(what, Sentence):
         return ()
     rule = _RULES.get(fault.reason_code)
-    season = _season(fault.path, named)
+    season = seasons.get(fault.path.split(PARTS)[0]) or _season(fault.path, named)
     return () if rule is None else tuple(rule(fault.path, what.values, season))
 
 
@@ -99,7 +104,9 @@ def _of_value(_: str, values: Any, __: int) -> Iterator[Proposal]:
     if not cell or len(cell) > _ONE_WORD or any(letter.isdigit() for letter in cell):
         return
     word = fold_word(cell)
-    if "expected" in values:
+    if "choice" in values:
+        yield Proposal("words", word, str(values["choice"]), is_active=False)
+    elif "expected" in values:
         meant = next(
             (
                 v
@@ -149,14 +156,23 @@ def _of_times(_: str, values: Any, season: int) -> Iterator[Proposal]:
 
 
 def _of_plan(_: str, values: Any, season: int) -> Iterator[Proposal]:
-    """Runs of another plan; equal neighbours go out and back, otherwise the first half goes out."""
+    """Runs of another plan; equal neighbours go out and back, otherwise the first half goes out.
+
+    Of two files the first goes out and the second back.
+    """
     targets = values.get("targets", ())
     if not season or not targets:
         return
     half = (len(targets) + 1) // 2
     in_pairs = targets[::2] == targets[1::2]
     ways = ["back" if (i % 2 if in_pairs else i >= half) else "out" for i in range(len(targets))]
-    yield Proposal("plan", json.dumps(list(targets)), json.dumps(ways), season, is_active=False)
+    directions = json.dumps(ways)
+    if values.get("in_two"):
+        out, back = (json.dumps([way] * len(targets)) for way in ("out", "back"))
+        directions = f"{out}\nsecond_directions = {back}"
+    if 5 <= values["seconds"] < STANDARD.seconds:
+        directions += f"\nseconds = {values['seconds']}"
+    yield Proposal("plan", json.dumps(list(targets)), directions, season, is_active=False)
 
 
 def _of_stranger(path: str, values: Any, _: int) -> Iterator[Proposal]:
@@ -237,7 +253,7 @@ def _add_plan(document: Any, proposal: Proposal) -> None:
         "[[plan]]",
         f'seasons = "{proposal.season}"',
         f"targets = {proposal.key}",
-        f"directions = {proposal.value}",
+        *f"directions = {proposal.value}".split("\n"),
     )
     if proposal.is_active:
         document.setdefault("plan", tomlkit.aot()).append(tomlkit.parse("\n".join(lines[1:])))

@@ -106,8 +106,13 @@ def _is_number(cell: str) -> bool:
     return bool(re.fullmatch(r"\s*[+-]?[0-9.,]+(?:[eE][+-]?[0-9]+)?\s*", cell)) or not cell.strip()
 
 
-def read_tdms(path: Path, max_bytes: int) -> pl.DataFrame:
+def read_tdms(path: Path, max_bytes: int, most_rows: int | None = None) -> pl.DataFrame:
     """Return the channels of a TDMS file as columns; each group is a run where none is named.
+
+    Args:
+        path: the file.
+        max_bytes: so large it may be.
+        most_rows: of each group, to see the columns only; all when left out.
 
     Raises:
         DefectiveInputError: `unreadable_file` or `too_large`.
@@ -119,7 +124,9 @@ def read_tdms(path: Path, max_bytes: int) -> pl.DataFrame:
             raise ValueError(f"larger than {max_bytes} bytes")
         with path.open("rb") as raw, nptdms.TdmsFile.open(raw) as file:
             groups = [group for group in file.groups() if group.channels()]
-            frames = [_group(group, place) for place, group in enumerate(groups, start=1)]
+            frames = [
+                _group(group, place, most_rows) for place, group in enumerate(groups, start=1)
+            ]
     except DefectiveInputError:
         raise
     except Exception as error:  # npTDMS raises whatever a damaged file makes Python raise
@@ -130,7 +137,7 @@ def read_tdms(path: Path, max_bytes: int) -> pl.DataFrame:
     return pl.concat(frames, how="diagonal_relaxed")
 
 
-def _group(group: Any, place: int) -> pl.DataFrame:
+def _group(group: Any, place: int, most_rows: int | None) -> pl.DataFrame:
     columns = {}
     for channel in group.channels():
         if len(channel) > MOST_ROWS:  # said by the file, and not by its size
@@ -139,7 +146,7 @@ def _group(group: Any, place: int) -> pl.DataFrame:
             channel.properties.get("unit_string", "")
             or channel.properties.get("NI_UnitDescription", "")
         )
-        values = np.asarray(channel[:])
+        values = np.asarray(channel[:most_rows])
         columns[_with_unit(channel.name, unit)] = pl.Series(
             values if values.dtype != object else values.astype(str)
         )

@@ -154,7 +154,10 @@ def check_header(path: Path, profile: SeasonProfile) -> None:
         except (OSError, pa.ArrowException) as error:
             raise _not_parquet(path, error) from error
         _check_nothing_misspelt(names, find_columns(names, profile.columns), profile)
-    elif kind != ".tdms":
+    elif kind == ".tdms":
+        names = read_tdms(path, SAMPLES_MAX_BYTES, most_rows=0).columns
+        _check_nothing_misspelt(names, find_columns(names, profile.columns), profile)
+    else:
         _split_header(read_start(path, _HEAD_BYTES), profile)
 
 

@@ -10,6 +10,7 @@ from typing import Any, Final
 
 from herijk.pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
 from herijk.warehouse.archive.lists import ListRow, fold_word
+from herijk.warehouse.archive.profile import Plan
 from herijk.warehouse.archive.text import Column, shorten
 from herijk.warehouse.archive.words import ALL_RUNS
 from herijk.words import say
@@ -41,6 +42,12 @@ COLUMNS: Final = (
     Column("freeboard_stern_m", "vrijboord achter", "length", "m", required=False),
     Column("remark", "opmerking", required=False),
 )
+_DIMENSIONS: Final = {
+    column.key: column
+    for column in COLUMNS
+    if column.key in {"waterline_length_m", "beam_m", "bow_height_m"}
+}
+"""What a tow or else its boat must have."""
 _RUN: Final = re.compile(r"(b?)([1-9][0-9]?)", re.IGNORECASE)
 _RANGE: Final = re.compile(r"(b?[0-9]+)\s*(?:-|\.\.|:|t/m|tm|tot en met|to|bis)\s*(b?[0-9]+)")
 _TOW_ID: Final = re.compile(r"[^/\\\x00-\x1f]{1,64}")
@@ -91,29 +98,29 @@ def fill_dimensions(
     Raises:
         DefectiveInputError: `bad_list_row` when the boat list does not have them either.
     """
-    filled = dict(tow)
-    for key in ("waterline_length_m", "beam_m", "bow_height_m"):
-        if filled[key] is None:
-            filled[key] = boat[key]
-        if filled[key] is None:
-            message = "column '{column}' is empty, here and in the boat list."
-            raise row.fault(say(message, column=row.named(key)))
+    filled = dict(tow) | {key: boat[key] for key in _DIMENSIONS if tow[key] is None}
+    lacking = [column for key, column in _DIMENSIONS.items() if filled[key] is None]
+    if lacking:
+        message = "{names} must be there, here or in the boat list."
+        raise row.fault(say(message, names=", ".join(f"'{column.named}'" for column in lacking)))
     return filled
 
 
-def read_selection(row: ListRow, planned: Collection[int]) -> frozenset[int]:
+def read_selection(row: ListRow, plan: Plan) -> frozenset[int]:
     """Return the runs to use; runs of the second file are 21 and on.
 
     Args:
         row: row of a tow list.
-        planned: the runs of one file by its plan: all of the first file when the cell is empty.
+        plan: its runs; when the cell is empty all of the first file, and of the second where the
+            plan has them.
 
     Raises:
         DefectiveInputError: `bad_list_row` with the line.
     """
-    cell = row.optional_text("use_runs")
+    cell, planned = row.optional_text("use_runs"), plan.runs
     if cell is None or fold_word(cell) in ALL_RUNS:
-        return frozenset(planned)
+        both = plan.second_directions and row.optional_text("second_file") is not None
+        return frozenset(planned) | {SECOND_FILE_OFFSET + run for run in planned if both}
     parts = re.split(r"[\s,;+&]+", _spelled_out(fold_word(cell)).strip(" ,;"))
     runs = [run_number(part, row, row.named("use_runs"), planned) for part in parts]
     values = {"column": row.named("use_runs"), "cell": shorten(cell)}

@@ -45,7 +45,7 @@ def archive_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     present = _present_runs(inputs["blocks"])
     listed = inputs["season_tows"].join(sound, on="tow_id", how="semi")
     runs_read = inputs["season_runs"].join(present, on=["tow_id", "run"], how="semi")
-    tows, contradicted = _judged(
+    tows, contradicted = judged_tows(
         with_boat_types(listed, inputs["listed_boats"]), runs_read, inputs["blocks"]
     )
     sound, runs = (frame.join(tows, on="tow_id", how="semi") for frame in (sound, runs_read))
@@ -93,7 +93,7 @@ def _with_lost_seconds(runs: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame
     )
 
 
-def _judged(
+def judged_tows(
     tows: pl.DataFrame, runs: pl.DataFrame, blocks: pl.DataFrame
 ) -> tuple[pl.DataFrame, pl.DataFrame]:
     """The tows with their doubts, and the faults of those that the other tows contradict."""

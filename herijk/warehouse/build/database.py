@@ -43,11 +43,11 @@ def warehouse_database(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     return {DATABASE_TABLE: tables["contents"].select("table", "rows", sha256)}
 
 
-def database_without_tows(store: Store, found: Mapping[str, pl.DataFrame]) -> None:
+def database_without_tows(store: Store, tables: Mapping[str, pl.DataFrame]) -> None:
     """A first database where no tow can be used, so that readers see what was set aside."""
     if not store.database.exists():
         empty = {name: schema.create_empty() for name, schema in TABLES.items()}
-        known = {name: conform(name, frame) for name, frame in found.items()}
+        known = {name: conform(name, frame) for name, frame in tables.items()}
         build_database(store.database, {**empty, **known, "about": _about(store)})
 
 
@@ -61,14 +61,14 @@ def _about(store: Store) -> pl.DataFrame:
     return pl.DataFrame({"key": list(about), "value": list(about.values())})
 
 
-def _origin(found: Mapping[str, pl.DataFrame]) -> Origin:
+def _origin(tables: Mapping[str, pl.DataFrame]) -> Origin:
     """Where the tables come from: the archive's files, and the methods."""
-    about = dict(found["about"].rows())
-    tows = found["tows"]
+    about = dict(tables["about"].rows())
+    tows = tables["tows"]
     hashes = sorted({*tows["samples_sha256"], *tows["second_sha256"].drop_nulls()})
     seasons = tows["season"].to_list()
     archive = f"samples of {tows.height} tows, {min(seasons)} to {max(seasons)}"
-    methods = found["methods"].select(pl.format("method {}", "method"), "content_hash").rows()
+    methods = tables["methods"].select(pl.format("method {}", "method"), "content_hash").rows()
     return Origin(
         version=about["code_version"],
         simulated=about["simulated"] == "true",
@@ -77,13 +77,13 @@ def _origin(found: Mapping[str, pl.DataFrame]) -> Origin:
     )
 
 
-def _contents(found: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
+def _contents(tables: Mapping[str, pl.DataFrame]) -> pl.DataFrame:
     """Every table with its rows and meaning, for those who open the database."""
-    names = sorted(set(found) & set(TABLES))
+    names = sorted(set(tables) & set(TABLES))
     return pl.DataFrame(
         {
             "table": names,
-            "rows": [found[name].height for name in names],
+            "rows": [tables[name].height for name in names],
             "meaning": [TABLES[name].__doc__ for name in names],
         }
     )

@@ -1,17 +1,22 @@
 """Samples that were measured once and are in the archive twice.
 
 A file that was packed again, saved with other line ends or in another format has another hash and
-the same content: a run whose sums are equal to the last bit was measured once. Whose it is nobody
-can know, so between boats or crews it costs all of them; of one boat and crew the first tow keeps
-it. Files equal byte by byte are found before, in `warehouse.archive.index`.
+the same content: a run whose sums are equal to the last bit was measured once. One that was written
+with fewer decimals or in another unit has nearly the same sums; two such runs of one tow, both like
+runs of the same other tow, are no chance either. Whose it is nobody can know, so between boats or
+crews it costs all of them; of one boat and crew the first tow keeps it. Files equal byte by byte
+are found before, in `warehouse.archive.index`.
 """
 
 import dataclasses
 from collections.abc import Iterator
 from typing import Final
 
+import numpy as np
 import polars as pl
+import scipy
 
+from herijk.pipeline.arrays import FloatArray, IntArray
 from herijk.pipeline.channels import SECOND_FILE_OFFSET
 from herijk.tables.frames import frame_of
 from herijk.tables.keys import LINE
@@ -19,7 +24,10 @@ from herijk.tables.lake import Faults
 from herijk.warehouse.archive.faults import Fault
 from herijk.words import say
 
-_CONTENT: Final = ("n", "force", "log1_v", "log1_cw", "wind_v")
+_CONTENT: Final = ("n", "force", "log1_v", "log2_v", "log1_cw", "log1_cw2", "wind_v")
+
+ROUNDING: Final = 2e-4
+"""Relative: what rounding to two decimals leaves of a mean over a thousand samples, and more."""
 
 
 def same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
@@ -36,15 +44,48 @@ def same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
         blocks.join(facts, on="tow_id", how="semi")
         .group_by("tow_id", "run", maintain_order=True)
         .agg(pl.col(_CONTENT).sum())
-        .filter(pl.struct(_CONTENT).is_duplicated())
+        .pipe(_with_content)
         .join(facts, on="tow_id")
         .sort("tow_date", "tow_id", "run")
     )
     faults = [
-        fault for _, same in runs.group_by(_CONTENT, maintain_order=True) for fault in _faults(same)
+        fault
+        for _, same in runs.group_by("content", maintain_order=True)
+        if same.height > 1
+        for fault in _faults(same)
     ]
     rows = frame_of(Faults, map(dataclasses.asdict, faults))
     return rows.unique("tow_id", keep="first", maintain_order=True)
+
+
+def _with_content(runs: pl.DataFrame) -> pl.DataFrame:
+    """The runs with `content`, a number that runs which were measured once have in common."""
+    sums = runs.select(_CONTENT).to_numpy()
+    means = sums[:, 1:] / np.maximum(sums[:, :1], 1.0)
+    one, other = _near(means)
+    tow = runs["tow_id"].rank("dense").to_numpy().astype(np.int64)
+    between = np.sort(np.column_stack([tow[one], tow[other]]), axis=1)
+    _, pair, often = np.unique(between, axis=0, return_inverse=True, return_counts=True)
+    same = (sums[one] == sums[other]).all(axis=1) | (often[pair.reshape(-1)] > 1)
+    links = scipy.sparse.coo_array(
+        (np.ones(same.sum()), (one[same], other[same])), shape=(runs.height, runs.height)
+    )
+    _, content = scipy.sparse.csgraph.connected_components(links, directed=False)
+    return runs.with_columns(pl.Series("content", content))
+
+
+def _near(means: FloatArray) -> tuple[IntArray, IntArray]:
+    """Pairs of rows that differ by rounding at most, found in the order of the first column."""
+    order = np.argsort(means[:, 0], kind="stable")
+    ordered, pairs = means[order], []
+    for step in range(1, len(order)):
+        close = np.abs(ordered[step:] - ordered[:-step]) <= ROUNDING * np.abs(ordered[step:])
+        if not close[:, 0].any():
+            break
+        first = np.flatnonzero(close.all(axis=1))
+        pairs.append((order[first], order[first + step]))
+    one, other = zip(*pairs, strict=True) if pairs else ([np.zeros(0, int)], [np.zeros(0, int)])
+    return np.concatenate(one), np.concatenate(other)
 
 
 def _faults(same: pl.DataFrame) -> Iterator[Fault]:

@@ -125,19 +125,19 @@ class Step:
             database_without_tows(store, error.tables)
             raise
         partition = self._partition(methods)
-        found = {
+        tables = {
             name: conform(name, made[name]) if name in TABLES else made[name]
             for name in self.outputs
             if wanted is None or name in wanted
         }
-        for name, frame in found.items():
+        for name, frame in tables.items():
             store.write(name, frame, made_from, partition)
         faults = {
-            check: list(check.faults(inputs, found))
+            check: list(check.faults(inputs, tables))
             for check in self.checks
-            if check.table in found
+            if check.table in tables
         }
-        return Made(found, faults)
+        return Made(tables, faults)
 
     def _partition(self, methods: Sequence[Method]) -> str | None:
         return methods[0].name if self.per_method else None

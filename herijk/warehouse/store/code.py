@@ -63,14 +63,14 @@ class Sources:
 
     def closure(self, modules: Iterable[str]) -> set[str]:
         """The given modules and all that they import from the package."""
-        found: set[str] = set()
+        closure: set[str] = set()
         to_do = list(modules)
         while to_do:
             name = to_do.pop()
-            if name not in found and not name.startswith(LEFT_OUT):
-                found.add(name)
+            if name not in closure and not name.startswith(LEFT_OUT):
+                closure.add(name)
                 to_do += filter(None, map(self._module, self._facts(name)[1]))
-        return found
+        return closure
 
     def _module(self, imported: str) -> str | None:
         """The module that an imported name is, or is in; None for other packages."""

@@ -6,7 +6,6 @@ verdict does to a register is in `pipeline.register.register`.
 """
 
 import datetime as dt
-import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Final, Literal
@@ -16,6 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.register.register import DECISION_SCHEMA, EXCLUDE, PREFER
+from herijk.pipeline.toml_text import parse_toml
 
 FILE_NAME: Final = "besluiten.toml"
 VERDICTS: Final = {"uitsluiten": EXCLUDE, "voorkeur": PREFER}
@@ -48,7 +48,7 @@ def read_decisions(path: Path) -> tuple[Decision, ...]:
     if not path.exists():
         return ()
     try:
-        decisions = _File.model_validate(tomllib.loads(path.read_text(encoding="utf-8"))).besluit
+        decisions = _File.model_validate(parse_toml(path.read_text(encoding="utf-8"))).besluit
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])
@@ -59,7 +59,7 @@ def read_decisions(path: Path) -> tuple[Decision, ...]:
             where,
             first["msg"],
         ) from error
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         raise MissingKnowledgeError("{}: not valid TOML: {}", path, error) from error
     tows = [decision.sleep_id for decision in decisions]
     twice = sorted({tow for tow in tows if tows.count(tow) > 1})

@@ -1,12 +1,12 @@
 """Files of settings in the data folder: TOML, written by whoever runs Herijk, read into a model."""
 
-import tomllib
 from pathlib import Path
 from typing import TypeVar
 
 from pydantic import BaseModel, ValidationError
 
 from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.toml_text import parse_toml
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -27,12 +27,12 @@ def read_settings_file(path: Path, model: type[Model], may_hold: str) -> Model:
     if not path.exists():
         return model()
     try:
-        return model.model_validate(tomllib.loads(path.read_text(encoding="utf-8")))
+        return model.model_validate(parse_toml(path.read_text(encoding="utf-8")))
     except ValidationError as error:
         first = error.errors(include_input=False)[0]
         where = ".".join(str(part) for part in first["loc"])
         raise MissingKnowledgeError(
             "{}: {}: {}; it may hold {}", path, where, first["msg"], may_hold
         ) from error
-    except (ValueError, RecursionError) as error:  # also numbers too large, tables too deep
+    except ValueError as error:  # also numbers too large, tables too deep
         raise MissingKnowledgeError("{}: not valid TOML: {}", path, error) from error

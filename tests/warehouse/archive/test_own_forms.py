@@ -137,7 +137,38 @@ def cells_with_words(archive: Archive) -> None:
         archive.replace(TOWS, old, new)
 
 
-SETTLED = (other_names, other_headers, other_channels, no_rate, cells_with_words)
+def folder_without_a_year(archive: Archive) -> None:
+    """The season of a file is that of the row that names it, also for what its profile lacks."""
+    other_channels(archive)
+    shutil.move(archive.root / "meetdata_2014", archive.root / "metingen")
+
+
+SETTLED = (
+    *(other_names, other_headers, other_channels, no_rate, cells_with_words),
+    folder_without_a_year,
+)
+
+
+def test_out_and_back_in_a_file_each(archive: Archive) -> None:
+    """Three runs out in one file, the three back in another, each numbered from 1."""
+    for path in sorted((archive.root / "meetdata_2014").glob("*.csv")):
+        header, *lines = path.read_text("utf-8").splitlines()
+        back = [f"{int(line[0]) - 3}{line[1:]}" for line in lines if line[0] in "456"]
+        path.write_text("\n".join([header, *(line for line in lines if line[0] in "123"), ""]))
+        path.with_name(f"terug {path.name}").write_text("\n".join([header, *back, ""]))
+    for name in ("eerste boot 8h 2014", "tweede boot 6d 2014", "derde boot 12h 2014"):
+        archive.replace(TOWS, f"{name};;", f"{name};terug {name};")
+    archive.edit(TOWS, lambda t: t.replace(";1,2,3,4,5,6;", ";;"))
+    checked = settled(archive)
+    (proposal,) = checked.causes[0].proposals
+    assert proposal.line == (
+        '[[plan]] seasons = "2014": targets = [0.9, 1.0, 1.1], '
+        'directions = ["out", "out", "out"], second_directions = ["back", "back", "back"]'
+    )
+    scan = archive.scan()
+    assert scan.faults == []
+    assert scan.index.runs.filter("selected").height == 18
+    assert scan.index.runs.group_by("direction").len()["len"].to_list() == [9, 9]
 
 
 def test_another_plan_is_proposed_and_asked(archive: Archive) -> None:

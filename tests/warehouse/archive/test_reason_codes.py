@@ -312,6 +312,19 @@ MANY_CASES: dict[str, tuple[Spoil, list[tuple[str, str, str | None, int | None]]
     "tow list without boats": (
         text("fsn_nr", "boot"), [("missing_column", TOWS, None, 1)], ALL,
     ),
+    "header lost": (
+        text("gebruik runs", ""), [("unknown_column", TOWS, None, 1)], ALL,
+    ),
+    "header of signs": (
+        text("gebruik runs", "--"), [("unknown_column", TOWS, None, 1)], ALL,
+    ),
+    "settings for what no list has": (
+        lambda a: (a.root / "archief.toml").write_text(
+            '[[set_aside]]\ndate = 2014-03-30\nreason = "x"\n'
+            '[[profile]]\nseasons = "1999:2001"\n[[plan]]\ntows = ["2014-999"]\n'
+        ),
+        [("idle_setting", "archief.toml", None, None)] * 3, set(),
+    ),
     "copy of a list": (
         copy(TOWS, "sleeplijsten/sleeplijst_2014 (2).csv"),
         [("unrecognised_file", "sleeplijsten/sleeplijst_2014 (2).csv", None, None)], set(),

@@ -92,9 +92,10 @@ function cell(row, column, isOfCounts) {
 // Text that a spreadsheet would take for a formula is kept text.
 function csvCell(value) {
   if (value === null || value === undefined) return "";
-  let text = Array.isArray(value) ? value.join(" ") : String(value);
-  if (/^[=+\-@\t\r]/.test(text) && !Number.isFinite(Number(text))) text = `'${text}`;
-  return /[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+  if (typeof value === "number") return String(value);
+  const text = (Array.isArray(value) ? value.join(" ") : String(value))
+    .replace(/(^|[;,\t\r\n])(\s*)([=+\-@])/g, "$1$2'$3");
+  return /[",;\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 }
 
 export function download(name, text, type) {
