@@ -86,9 +86,13 @@ def factor_of_tows(batch: Batch, steps: Steps, factors: pl.DataFrame | None) -> 
     if factors is None:
         nothing, none, one = (np.full(batch.size, x) for x in (np.nan, 0.0, 1.0))
         return TowFactor(nothing, nothing, nothing, one, none, nothing, nothing)
-    corrections = batch.tows.select("tow_id", pl.lit(steps.speed.source).alias("log")).join(
+    season, part, log = log_group(steps)
+    own = batch.tows.select("tow_id", season, part.alias("part"), log).join(
         factors, on=["tow_id", "log"], how="left", maintain_order="left"
     )
+    # A tow that takes no part in the estimate had the instruments of its season all the same.
+    of_season = pl.col("factor", "force_factor", "force_zero_n", "ln_sd", "dof")
+    corrections = own.with_columns(of_season.fill_null(of_season.mean().over("season", "part")))
     if not is_estimated(steps):
         corrections = corrections.with_columns(pl.lit(None, pl.Float64).alias("factor"))
     corrections = corrections.with_columns(
