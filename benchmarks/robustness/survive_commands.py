@@ -180,7 +180,7 @@ def survive(root: Path, kills: int, seed: int, tell: Callable[[str], None] = pri
         }[command]()
         if wrong:
             found.lost.append(f"{command}: {wrong}")
-        tell(f"{found.kills.total()} of {kills} kills, {len(found.lost)} with a loss")
+        tell(f"{found.kills.total()} of {kills} kills, {command}: {wrong or 'nothing lost'}")
     return found
 
 

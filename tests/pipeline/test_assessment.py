@@ -218,6 +218,7 @@ CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
     "freeboard_changed": (
         "tows", LATER, {"freeboard_lowest_m": 0.36}, 0.04, 0.03, set(),
     ),
+    "other_tows": ("curves", SUBJECT, {"rowers": 6}, 0, 1, set()),
     "curve_changed": (
         "curves", LATER, heavier, 0.08, 0.05, {"curve_change_unexplained"},
     ),
@@ -266,6 +267,7 @@ def test_a_plan_of_its_own_is_the_range_to_cover(sound: World) -> None:
 
 def test_women_have_their_own_power_and_weight(sound: World) -> None:
     women = sound.changed("curves", SUBJECT, crew_class="D", power_w=45.0)
+    women = women.changed("curves", LATER, crew_class="D", power_w=45.0)
     assert women.flagged(SUBJECT) == {"crew_weight"}  # of men: 95 kg each
     women = women.changed("tows", SUBJECT, rowers=10)
     assert women.flagged(SUBJECT) == set()

@@ -312,6 +312,7 @@ def _of_previous_curve(
     changed = _with_boats(curves, tows).select(
         "tow_id",
         "season",
+        other_tows=pl.len().over(LINE) - 1,
         before=_before("season", LINE),
         curve_changed=change - 1,
         ln=pl.when(~pl.col("altered")).then((change / by_size).log()),
@@ -326,6 +327,7 @@ def _of_previous_curve(
     ln = pl.col("ln") - now + then
     return changed.select(
         "tow_id",
+        "other_tows",
         "curve_changed",
         curve_change_unexplained=ln.exp() - 1,
         curve_change_significant=ln / pl.col("sd"),

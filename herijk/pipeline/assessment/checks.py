@@ -357,6 +357,15 @@ CHECKS: Final = (
     ),
     # The curve against others
     Check(
+        "other_tows",
+        "other tows of the boat and crew: without one only size and type say whether the force can "
+        "be right, and an error of a sixth can pass",
+        "1",
+        "inferred: docs/operations.md, what a volunteer can rely on being told",
+        lowest=1.0,
+        severity="note",
+    ),
+    Check(
         "curve_changed",
         "Cw / that of the boat and crew's previous tow at its declared speed, less 1",
         "1",
