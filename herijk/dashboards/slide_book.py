@@ -287,9 +287,9 @@ class Book:
         key = "slide.is_apart" if row["apart"] else "slide.not_apart"
         return self.say(key).format(
             method=self.method(row["method"]),
-            shift=_signed(1.0 / row["shift_ratio"] - 1.0),
-            lo=_signed(ends[0]),
-            hi=_signed(ends[-1]),
+            shift=self._signed(1.0 / row["shift_ratio"] - 1.0),
+            lo=self._signed(ends[0]),
+            hi=self._signed(ends[-1]),
         )
 
     def boat(self, fsn_no: str) -> Iterator[Slide]:
@@ -334,7 +334,7 @@ class Book:
         """What ticks and speeds do to Cw, the largest first."""
         known = {o: e - 1.0 for o, e in of.items() if e is not None and o in (*TICKS, *SPEEDS)}
         largest = sorted(known, key=lambda option: -abs(known[option]))
-        return ", ".join(f"{self.say(f'code.{o}')} {self._signed_fine(known[o])}" for o in largest)
+        return ", ".join(f"{self.say(f'code.{o}')} {self._signed(known[o])}" for o in largest)
 
     def tick_effects(self) -> Iterator[Slide]:
         """What the ticks do to all boats."""
@@ -381,7 +381,7 @@ class Book:
         text = "-" if value is None else f"{value:.2f}"
         return text.replace(".", self.say("decimal_mark"))
 
-    def _signed_fine(self, ratio: float) -> str:
+    def _signed(self, ratio: float) -> str:
         """A change in per cent with one decimal, as this language writes it."""
         return f"{100 * ratio:+z.1f} %".replace(".", self.say("decimal_mark"))
 
@@ -401,7 +401,3 @@ def _direction(line: dict[str, Any]) -> str:
 
 def _share(ratio: float | None) -> str:
     return "-" if ratio is None else f"{100 * ratio:.0f} %"
-
-
-def _signed(ratio: float) -> str:
-    return f"{100 * ratio:+z.0f} %".replace("+0 %", "0 %")

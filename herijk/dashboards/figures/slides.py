@@ -45,6 +45,9 @@ CODES: Final = (
 """Codes that the charts of the slides show in words."""
 
 SIDE: Final = 190
+SPACING: Final = 30
+"""Between panels [px]: the last label of an axis keeps clear of the first of the next."""
+
 QUANTITIES: Final = {
     "b": ("b_m_s", "b_lo_m_s", "b_hi_m_s"),
     "a": ("a_kg_m", "a_lo_kg_m", "a_hi_kg_m"),
@@ -82,8 +85,10 @@ def panels(chart: Any, say: Say, of: str = "", **look: Any) -> Drawing:
         label = f"{in_words(first, say)} + ' · ' + ({label})"
     header = alt.Header(labelExpr=label, labelLimit=260)
     sized = chart.properties(width=look["width"], height=look["height"])
-    drawn: Drawing = sized.transform_calculate(panel=key).facet(
-        alt.Facet("panel:N", title=None, header=header), columns=look["columns"]
+    drawn: Drawing = (
+        sized.transform_calculate(panel=key)
+        .facet(alt.Facet("panel:N", title=None, header=header), columns=look["columns"])
+        .properties(spacing=SPACING)
     )
     return drawn
 
