@@ -289,7 +289,7 @@ def slides(
         typer.Option("--type", help="Type of boat; repeat for two together."),
     ] = None,
     tows: Annotated[
-        str, typer.Option(metavar="all|newest|SEASON", help="Which tows are drawn.")
+        str, typer.Option(metavar="all|newest|SEASON|A:B", help="Which tows are drawn.")
     ] = "all",
     boat: Annotated[
         list[str] | None,

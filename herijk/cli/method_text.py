@@ -20,10 +20,14 @@ from herijk.words import LANGUAGE, tell
 DIFFERS = "*"
 
 
+def title_of(method: Method) -> str:
+    """The title of a method, in the language of this command."""
+    return method.title if LANGUAGE.get() == "nl" else method.title_en
+
+
 def method_in_words(shown: Method, parent: Method | None) -> str:
     """The whole method; sentences that differ from those of `parent` are marked."""
-    title = shown.title if LANGUAGE.get() == "nl" else shown.title_en
-    lines = [f"{shown.name}: {title}", "", shown.description.strip(), ""]
+    lines = [f"{shown.name}: {title_of(shown)}", "", shown.description.strip(), ""]
     if parent is not None:
         lines += [tell("Extends {}; what differs from it is marked {}.", parent.name, DIFFERS), ""]
     for block in shown.ranges:

@@ -38,13 +38,14 @@ def methods(
 ) -> None:
     """List the methods: those that ship, and those in the folder `methods` of --data."""
     from herijk.cli import text
+    from herijk.cli.method_text import title_of
 
     if context.invoked_subcommand is None:
         known = known_methods(data)
         rows = [
             {
                 "method": method.name,
-                "title": method.title_en,
+                "title": title_of(method),
                 "content_hash": method.content_hash,
                 "ships": name not in known.own,
             }
@@ -122,12 +123,12 @@ def diff(
 
 def _one(method: "Method", known: "KnownMethods") -> dict[str, Any]:
     """A method with its words."""
-    from herijk.cli.method_text import method_in_words
+    from herijk.cli.method_text import method_in_words, title_of
 
     parent = None if method.extends is None else known.get(method.extends)
     return {
         "method": method.name,
-        "title": method.title_en,
+        "title": title_of(method),
         "content_hash": method.content_hash,
         "extends": method.extends,
         "words": method_in_words(method, parent),

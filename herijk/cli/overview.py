@@ -155,7 +155,8 @@ class Overview(TyperGroup):
     def __init__(self, **settings: Any) -> None:
         super().__init__(**settings)
         lang = _lang_option()
-        for command in (self, *self.commands.values()):
+        others = (c for c in self.commands.values() if not isinstance(c, Overview))  # they did so
+        for command in (self, *others):
             command.context_class = SpokenContext
             command.params.append(lang)
 

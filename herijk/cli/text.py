@@ -288,7 +288,7 @@ def rebase(report: "RebaseReport") -> str:
     parts.append(tell("Register lines: {}.", counts))
     seasons = report.by_season
     steps = [key for key in seasons[0] if key not in ("season", "tows", "total")]
-    head = ("season", "tows", *steps, "total")
+    head = ("season", "tows", *map(code, steps), "total")
     lines = [
         (row["season"], row["tows"], *(_per_cent(row[step]) for step in (*steps, "total")))
         for row in seasons
@@ -311,6 +311,6 @@ def rebase(report: "RebaseReport") -> str:
         )
         for row in report.boats
     ]
-    head = ("boat", "name", "crew", *steps, "Cw", "in 2 h")
+    head = ("boat", "name", "crew", *map(code, steps), "Cw", "in 2 h")
     parts.append(tell("Register lines most affected:\n") + table(head, boats))
     return "\n\n".join(parts)

@@ -16,6 +16,7 @@ from markupsafe import Markup
 
 from herijk.dashboards.figures import FIGURES, drop_links
 from herijk.dashboards.site.parts import default_method
+from herijk.warehouse.queries.chosen_tows import rows_of
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.store import Store
@@ -73,7 +74,7 @@ def _of_types(views: Views, report: dict[str, Any]) -> Iterator[Plot]:
     shifts = views.table("era_shifts").filter(own, pl.col("shift_ratio").is_not_null())
     for boat_type in types:
         yield Plot("eras", shifts.filter(boat_type=boat_type), boat_type)
-    boats = views.type_boats().filter(own)
+    boats = views.type_tows().filter(own, rows_of(report["statistics_over"]))
     yield Plot(
         "repeats",
         boats.select("method", "fsn_no")
@@ -94,7 +95,9 @@ def _of_boat(views: Views, report: dict[str, Any]) -> Iterator[Plot]:
     tow = pl.format("{} {}{}", "tow_id", "rowers", "crew_class")
     yield Plot("history", views.curves().filter(own).with_columns(tow=tow))
     yield Plot("repeats", views.repeat_pairs().filter(own))
-    like = views.type_boats().filter(pl.col("boat_type") == (boat["boat_type"] or ""))
+    like = views.type_tows().filter(
+        rows_of(report["statistics_over"]), pl.col("boat_type") == (boat["boat_type"] or "")
+    )
     yield from _scatters(like, default_method(methods))
 
 

@@ -6,6 +6,7 @@ the statistics behind a sentence (`pipeline.consistency`), and files (`dashboard
 """
 
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 from typing import Any, Final, NamedTuple
 
 import polars as pl
@@ -23,31 +24,37 @@ from herijk.dashboards.slide_rows import (
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.studies.tool_options import AS_READ, SPEEDS, TICKS
+from herijk.warehouse.queries.chosen_tows import ALL, STATED, choices_of_row, rows_of
 from herijk.warehouse.queries.views import Views
-from herijk.warehouse.store.database import choice_of
 from herijk.words.catalogue import Say
 
-ALL_TOWS: Final = "all"
+RECOMPUTED: Final = (("cw", "weight"), ("b", "speed"), ("cw", "speed"))
+"""What the presentation shows of the recomputed season."""
 
 CLEAR_R2: Final = 0.3
 """From here on a line without a clear slope is not called "no link": too few boats tell."""
 
 
 class Slide(NamedTuple):
-    """A figure by name, its rows, and what is said above it."""
+    """A figure by name, its rows, and what is said above it, in one part per line."""
 
     name: str
     figure: str
     rows: pl.DataFrame
     title: str
-    sentence: str
+    said: Sequence[str]
+
+    @property
+    def sentence(self) -> str:
+        """What is said, as one text."""
+        return " ".join(self.said)
 
 
 class Asked(NamedTuple):
     """What the slides are about: types, those of the presentation when none; tows; boats."""
 
     types: Sequence[str] = ()
-    tows: str = ALL_TOWS
+    tows: str = ALL
     boats: Sequence[str] = ()
 
 
@@ -56,15 +63,19 @@ THE_PRESENTATION: Final = Asked()
 
 
 def slides(views: Views, say: Say, asked: Asked = THE_PRESENTATION) -> Iterator[Slide]:
-    """Every slide of which the archive has something to show."""
-    about = Book(views, say)
-    types, tows = about.types(asked.types), about.tows(asked.tows)
+    """Every slide of which the archive has something to show.
+
+    Raises:
+        MissingKnowledgeError: there is no such type, boat or choice of tows.
+    """
+    about = Book(views, say, asked.tows)
+    types = about.types(asked.types)
     for quantity in QUANTITIES:
         for explaining in EXPLAINING:
-            yield about.against(quantity, explaining, types, tows)
-    if RECOMPUTED_SEASON in about.choices and tows == ALL_TOWS:
-        for explaining in ("weight", "speed"):
-            yield about.against("cw", explaining, types, RECOMPUTED_SEASON)
+            yield about.against(quantity, explaining, types, about.tows)
+    if RECOMPUTED_SEASON in about.choices and about.tows == ALL:
+        for quantity, explaining in RECOMPUTED:
+            yield about.against(quantity, explaining, types, RECOMPUTED_SEASON)
     yield about.hull_speed()
     yield about.towed_at()
     yield from about.raced_beyond()
@@ -75,14 +86,22 @@ def slides(views: Views, say: Say, asked: Asked = THE_PRESENTATION) -> Iterator[
 
 
 class Book:
-    """The slides of an archive in one language."""
+    """The slides of an archive in one language, over a choice of tows."""
 
-    def __init__(self, views: Views, say: Say) -> None:
-        self.views, self.say = views, say
-        self.compared = compared_frame(views)
-        self.lines = views.table("type_lines")
-        self.held = self.compared["method"].unique().to_list()
-        self.choices = self.lines["tows"].unique().to_list()
+    def __init__(self, views: Views, say: Say, tows: str = ALL) -> None:
+        self.views, self.say, self.tows = views, say, tows
+        held = views.table("compared_tows")["method"].unique().to_list()
+        if not held and not views.table("tows").is_empty():
+            raise MissingKnowledgeError(
+                "no type of boat has curves to compare: there are no slides"
+            )
+        if tows not in STATED:
+            views.choose(tows, list({*methods_of(held), *methods_of(held, tows)}))
+        self.held, self.compared = held, compared_frame(views)
+        lines = views.table("type_lines")
+        self.choices = lines["tows"].unique().to_list()
+        keys = ("boat_type", "tows", "quantity", "explaining", "method")
+        self._lines = {tuple(row[k] for k in keys): row for row in lines.iter_rows(named=True)}
 
     def types(self, wanted: Sequence[str]) -> list[str]:
         """The types asked for, or those of the presentation."""
@@ -97,19 +116,7 @@ class Book:
             found.append(like[0])
         return found or pair_of_types(self.compared)
 
-    def tows(self, wanted: str) -> str:
-        """The choice of tows, if there is such a one."""
-        if not self.choices and not self.views.table("tows").is_empty():
-            raise MissingKnowledgeError(
-                "no type of boat has curves to compare: there are no slides"
-            )
-        if wanted not in self.choices:
-            raise MissingKnowledgeError(
-                "there are no tows {!r}; {}", wanted, choice_of(self.choices)
-            )
-        return wanted
-
-    def ends(self, tows: str = ALL_TOWS) -> tuple[str, str]:
+    def ends(self, tows: str = ALL) -> tuple[str, str]:
         """The methods before and after all corrections."""
         methods = methods_of(self.held, tows)
         return methods[0], methods[-1]
@@ -122,50 +129,49 @@ class Book:
         """A quantity against an explaining variable, of some types and tows."""
         own = pl.col("boat_type").is_in(types)
         own &= pl.col("method").is_in(methods_of(self.held, tows))
-        rows = pl.concat(
-            [
-                _of_choice(self.compared, tows).filter(own),
-                lines_frame(self.views).filter(own, tows=tows),
-            ],
-            how="diagonal_relaxed",
-        )
+        drawn = lines_frame(self.views).filter(own, tows=self._stated(tows))
+        rows = pl.concat([self.compared.filter(rows_of(tows), own), drawn], how="diagonal_relaxed")
         title = self.say(f"slide.{explaining}").format(
             y=self.say(f"slide.{quantity}"), types=" / ".join(types)
         )
-        if tows != ALL_TOWS:
-            words = self.say("newest_only") if tows == "newest" else tows
+        if tows != ALL:
+            words = self.say(f"code.{tows}") if tows in STATED else tows
             title += self.say("slide.of_season").format(tows=words)
-        said = [self._line(quantity, explaining, name, tows) for name in types]
-        name = f"{quantity} {explaining} {tows}"
-        sentence = " ".join(said) + self._outside(rows, tows)
-        return Slide(name, f"slide_{quantity}_{explaining}", rows, title, sentence)
-
-    def _line(self, quantity: str, explaining: str, boat_type: str, tows: str) -> str:
-        """What the line of a type says after all corrections, and its share before."""
-        own = self.lines.filter(
-            boat_type=boat_type,
-            tows=tows,
-            quantity=QUANTITIES[quantity][0],
-            explaining=EXPLAINING[explaining],
+        said = [self.line((quantity, explaining), name, tows, self.ends(tows)) for name in types]
+        return Slide(
+            f"{quantity} {explaining} {tows}", f"slide_{quantity}_{explaining}", rows, title, said
         )
-        found = {row["method"]: row for row in own.iter_rows(named=True)}
-        before, after = (found.get(name) for name in self.ends(tows))
+
+    def _stated(self, tows: str) -> str:
+        """The choice as tables have it: statistics of a range of seasons are over all its tows."""
+        return tows if tows in self.choices else ALL
+
+    def line(self, of: tuple[str, str], boat_type: str, tows: str, ends: tuple[str, str]) -> str:
+        """What the line of a type says under the methods at both ends, and its outliers.
+
+        `of` are quantity and explaining variable.
+        """
+        (quantity, *_), explaining = QUANTITIES[of[0]], EXPLAINING[of[1]]
+        key = (boat_type, self._stated(tows), quantity, explaining)
+        before, after = (self._lines.get((*key, method)) for method in ends)
         counted = self._counted(after)
         if after is None or after["slope"] is None:
             return self.say("slide.no_line").format(type=boat_type, counted=counted)
         words = {
-            "y": self.say(f"slide.{quantity}"),
-            "x": self.say(f"slide.x.{explaining}"),
+            "y": self.say(f"slide.{of[0]}"),
+            "x": self.say(f"slide.x.{of[1]}"),
         }
-        return self.say("slide.line").format(
+        said = self.say("slide.line").format(
             type=boat_type,
             verdict=self.say(f"slide.{_direction(after)}").format(**words),
-            before=self.method(self.ends(tows)[0]),
-            after=self.method(self.ends(tows)[1]),
+            before=self.method(ends[0]),
+            after=self.method(ends[1]),
             r2_before=_share(before["r2"] if before else None),
             r2_after=_share(after["r2"]),
             counted=counted,
         )
+        names = self._outliers.get((boat_type, self._stated(tows)))
+        return f"{said} {self.say('slide.outside').format(names=names)}" if names else said
 
     def _counted(self, line: dict[str, Any] | None) -> str:
         """How many tows of how many boats."""
@@ -177,22 +183,30 @@ class Book:
     def _number(self, n: int, what: str) -> str:
         return self.say(f"slide.{'one' if n == 1 else 'many'}_{what}").format(n=n)
 
-    def _outside(self, rows: pl.DataFrame, tows: str) -> str:
-        """The tows outside their type after correction, by boat, crew and season."""
-        after = self.ends(tows)[1]
-        names = rows.filter(pl.col("outside"), method=after)["label"].to_list()
-        key = "slide.outside" if names else "slide.none_outside"
-        return " " + self.say(key).format(after=self.method(after), names=", ".join(names))
+    @cached_property
+    def _outliers(self) -> dict[tuple[str, str], str]:
+        """Tows outside their type after correction, by type and choice: boat, crew and season."""
+        own = self.compared.filter(pl.col("outside"), method=self.ends()[1])
+        names = (
+            own.with_columns(choices_of_row())
+            .explode("tows")
+            .group_by("boat_type", "tows")
+            .agg(pl.col("label").str.join(", "))
+        )
+        return {(boat_type, tows): label for boat_type, tows, label in names.iter_rows()}
 
     def hull_speed(self) -> Slide:
         """B against length, and against hull speed."""
-        after = self.ends()[1]
-        row = self.views.table("hull_speed").filter(
-            method=self.ends()[1], tows=ALL_TOWS, boat_type=ALL_TOWS
-        )
-        found = row.row(0, named=True)
+        own = rows_of(self.tows) & (pl.col("boat_type") != UNKNOWN_TYPE)
+        known = self._compared_methods().filter(own)
+        said = [self.b_and_hull_speed(self.tows)]
+        return Slide("hull speed", "slide_hull_speed", known, self.say("slide.hull_speed"), said)
+
+    def b_and_hull_speed(self, tows: str) -> str:
+        """Whether B is hull speed."""
+        after, found = self.ends()[1], self._hull_speed(tows)
         key = {None: "b_unknown", True: "b_is", False: "b_is_not"}[found["b_is_hull_speed"]]
-        sentence = self.say(f"slide.{key}").format(
+        return self.say(f"slide.{key}").format(
             after=self.method(after),
             ratio=self._digits(found["b_ratio"]),
             lo=self._digits(found["b_ratio_lo"]),
@@ -200,25 +214,32 @@ class Book:
             boats=self._number(found["n_boats"], "boat"),
             share=_share(found["b_share_within_5pct"]),
         )
-        known = self._compared_methods().filter(pl.col("boat_type") != UNKNOWN_TYPE)
-        return Slide(
-            "hull speed", "slide_hull_speed", known, self.say("slide.hull_speed"), sentence
-        )
+
+    def _hull_speed(self, tows: str) -> dict[str, Any]:
+        """The statistics of all types together."""
+        return self._hull_speeds.row(by_predicate=pl.col("tows") == self._stated(tows), named=True)
+
+    @cached_property
+    def _hull_speeds(self) -> pl.DataFrame:
+        return self.views.table("hull_speed").filter(method=self.ends()[1], boat_type=ALL)
 
     def _compared_methods(self) -> pl.DataFrame:
         return self.compared.filter(pl.col("method").is_in(methods_of(self.held)))
 
     def towed_at(self) -> Slide:
         """Tow speed as part of hull speed."""
-        row = self.views.table("hull_speed").filter(
-            method=self.ends()[1], tows=ALL_TOWS, boat_type=ALL_TOWS
-        )
-        found = row.row(0, named=True)
-        sentence = self.say("slide.towed").format(
+        after = pl.col("method") == self.ends()[1]
+        rows = self.compared.filter(rows_of(self.tows), after)
+        rows = rows.with_columns(newest_method="method")
+        said = [self.part_of_hull_speed(self.tows)]
+        return Slide("towed at", "slide_towed_at", rows, self.say("slide.towed_at"), said)
+
+    def part_of_hull_speed(self, tows: str) -> str:
+        """At what part of hull speed boats are towed."""
+        found = self._hull_speed(tows)
+        return self.say("slide.towed").format(
             ratio=_share(found["tow_ratio"]), share=_share(found["tow_share_60_70"])
         )
-        rows = self.compared.filter(method=self.ends()[1]).with_columns(newest_method="method")
-        return Slide("towed at", "slide_towed_at", rows, self.say("slide.towed_at"), sentence)
 
     def raced_beyond(self) -> Iterator[Slide]:
         """Race power by curves that are used where they do not count."""
@@ -239,14 +260,14 @@ class Book:
             both=", ".join(both["label"]) or self.say("slide.no_tow"),
         )
         title = self.say("slide.raced_beyond")
-        yield Slide("raced beyond", "slide_raced_beyond", rows, title, sentence)
+        yield Slide("raced beyond", "slide_raced_beyond", rows, title, [sentence])
 
     def eras(self) -> Iterator[Slide]:
         """Seasons that stand apart, before and after."""
         rows = self.views.table("era_shifts").filter(
             pl.col("shift_ratio").is_not_null(),
             pl.col("method").is_in(methods_of(self.held)),
-            boat_type=ALL_TOWS,
+            boat_type=ALL,
         )
         of = {(r["method"], r["era"]): r for r in rows.iter_rows(named=True)}
         ends = self.ends()
@@ -258,7 +279,7 @@ class Book:
             if all((name, era) in of for name in ends)
         ]
         if said:
-            yield Slide("eras", "eras", rows, self.say("slide.eras"), " ".join(said))
+            yield Slide("eras", "eras", rows, self.say("slide.eras"), said)
 
     def _apart(self, row: dict[str, Any]) -> str:
         """Whether an era's tows stand apart from the next of the same boats, and by how much."""
@@ -266,9 +287,9 @@ class Book:
         key = "slide.is_apart" if row["apart"] else "slide.not_apart"
         return self.say(key).format(
             method=self.method(row["method"]),
-            shift=_signed(1.0 / row["shift_ratio"] - 1.0),
-            lo=_signed(ends[0]),
-            hi=_signed(ends[-1]),
+            shift=self._signed(1.0 / row["shift_ratio"] - 1.0),
+            lo=self._signed(ends[0]),
+            hi=self._signed(ends[-1]),
         )
 
     def boat(self, fsn_no: str) -> Iterator[Slide]:
@@ -302,7 +323,7 @@ class Book:
             effects=self._effects(dict(effects.select("option", "cw_effect_ratio").rows())),
         )
         title = self.say("slide.ticks").format(tow=tow["label"])
-        yield Slide(f"ticks {tow['name']}", "slide_ticks", rows, title, sentence)
+        yield Slide(f"ticks {tow['name']}", "slide_ticks", rows, title, [sentence])
 
     def _ticked(self) -> str:
         """The method under which the ticks are shown: the last of those studied."""
@@ -313,7 +334,7 @@ class Book:
         """What ticks and speeds do to Cw, the largest first."""
         known = {o: e - 1.0 for o, e in of.items() if e is not None and o in (*TICKS, *SPEEDS)}
         largest = sorted(known, key=lambda option: -abs(known[option]))
-        return ", ".join(f"{self.say(f'code.{o}')} {self._signed_fine(known[o])}" for o in largest)
+        return ", ".join(f"{self.say(f'code.{o}')} {self._signed(known[o])}" for o in largest)
 
     def tick_effects(self) -> Iterator[Slide]:
         """What the ticks do to all boats."""
@@ -327,9 +348,9 @@ class Book:
             effects=self._effects(dict(own.select("option", "median_ratio").rows())),
         )
         title = self.say("slide.tick_effects")
-        yield Slide("ticks fleet", "slide_tick_effects", rows, title, sentence)
+        yield Slide("ticks fleet", "slide_tick_effects", rows, title, [sentence])
 
-    def _years(self, own: pl.DataFrame) -> str:
+    def _years(self, own: pl.DataFrame) -> list[str]:
         """How far the tows of each crew lie apart at the common speed."""
         before, after = self.ends()
         cw = pl.col("cw_standard_kg_m")
@@ -353,25 +374,16 @@ class Book:
             for (method, crew), (n, value) in spread.items()
             if method == after
         ]
-        return " ".join(said) or self.say("slide.one_tow_a_crew")
+        return said or [self.say("slide.one_tow_a_crew")]
 
     def _digits(self, value: float | None) -> str:
         """A number with two decimals, as this language writes it."""
         text = "-" if value is None else f"{value:.2f}"
         return text.replace(".", self.say("decimal_mark"))
 
-    def _signed_fine(self, ratio: float) -> str:
+    def _signed(self, ratio: float) -> str:
         """A change in per cent with one decimal, as this language writes it."""
         return f"{100 * ratio:+z.1f} %".replace(".", self.say("decimal_mark"))
-
-
-def _of_choice(compared: pl.DataFrame, tows: str) -> pl.DataFrame:
-    """The tows of a choice: all, the newest of each boat and crew, or a season."""
-    if tows == ALL_TOWS:
-        return compared
-    if tows == "newest":
-        return compared.filter("newest")
-    return compared.filter(pl.col("season") == int(tows))
 
 
 def _low_power() -> pl.Expr:
@@ -389,7 +401,3 @@ def _direction(line: dict[str, Any]) -> str:
 
 def _share(ratio: float | None) -> str:
     return "-" if ratio is None else f"{100 * ratio:.0f} %"
-
-
-def _signed(ratio: float) -> str:
-    return f"{100 * ratio:+z.0f} %".replace("+0 %", "0 %")

@@ -1,6 +1,7 @@
 """The slide book as files: every slide as SVG and PNG, and all of them as one PDF."""
 
 import io
+import textwrap
 from pathlib import Path
 from typing import Final, Literal
 
@@ -30,7 +31,8 @@ def write_slides(
         store: where the database lies.
         folder: where they go; made if it is not there.
         language: nl or en.
-        asked: types, one or two; tows, `all`, `newest` or a season; boats by number or name.
+        asked: types, one or two; tows, `all`, `newest`, a season or a
+            range of them; boats by number or name.
 
     Raises:
         MissingKnowledgeError: there is no such type, boat or choice of tows, or no database.
@@ -60,19 +62,10 @@ def _put(path: Path, content: bytes) -> Path:
 
 def _svg(slide: Slide, language: str, simulated: bool) -> str:
     say = speaker(language)
-    lines = [*_wrapped(slide.sentence), *([say("simulated")] if simulated else [])]
+    said = [*slide.said, *([say("simulated")] if simulated else [])]
+    lines = [line for text in said for line in textwrap.wrap(text, WIDTH_OF_TEXT)]
     title = alt.Title(slide.title, subtitle=lines, anchor="start", offset=12)
     chart = FIGURES[slide.figure](slide.rows, say).properties(title=title)
     spec = chart.to_dict(validate=False)
     locale = LOCALES[language]
     return str(vl_convert.vegalite_to_svg(spec, vl_version=VEGA_LITE, format_locale=locale))
-
-
-def _wrapped(text: str) -> list[str]:
-    """Lines of a chart's subtitle, one or more a sentence."""
-    lines = [""]
-    for word in text.split():
-        if len(lines[-1]) + len(word) > WIDTH_OF_TEXT:
-            lines.append("")
-        lines[-1] = f"{lines[-1]} {word}".strip()
-    return lines

@@ -116,7 +116,7 @@ class HullSpeed(dy.Schema):
     """Is B hull speed, and at what part of hull speed are boats towed? Medians over boats."""
 
     method = column.method(primary_key=True)
-    tows = column.text("all, or newest of each boat and crew", primary_key=True)
+    tows = column.text("all, newest (of each boat and crew), or a season", primary_key=True)
     boat_type = column.text("type of boat, or all", primary_key=True)
     n = dy.Int32(description="tows", min=0)
     n_boats = dy.Int32(description="boats", min=0)

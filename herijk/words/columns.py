@@ -236,7 +236,7 @@ COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "column.factor_sd_after_ratio": ("sd na", "sd after"),
     "column.level_step": ("Stap", "Step"),
     "column.level_step_sd": ("sd", "sd"),
-    "column.force_step": ("waarvan kracht", "of it force"),
+    "column.force_step": ("waarvan kracht", "of which force"),
     "column.force_step_sd": ("sd", "sd"),
     "column.instrument": ("Wat", "What"),
     "column.verdict": ("Oordeel", "Verdict"),

@@ -231,7 +231,6 @@ ERRORS: Final[dict[str, str]] = {
         "{} is een sloep, geen type; een sloep heeft een eigen pagina: herijk audit {}"
     ),
     "there is no type {!r}; the types are {}": "er is geen type {!r}; de types zijn {}",
-    "there are no tows {!r}; {}": "er zijn geen proeven {!r}; {}",
     "there are no tows {!r}; write all, newest, a season 2014 or a range 2012:2015": (
         "er zijn geen proeven {!r}; schrijf all, newest, een seizoen 2014 of een reeks 2012:2015"
     ),

@@ -86,8 +86,8 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "Who has to tow again, by when, and at what speed?",
     ),
     "about_types": (
-        "Zijn gelijke sloepen gelijk? B en Cw tegen gewicht en sleepsnelheid, voor en na.",
-        "Are equal boats equal? B and Cw against weight and tow speed, before and after.",
+        "Zijn gelijke sloepen gelijk? A, B en Cw tegen gewicht en sleepsnelheid, voor en na.",
+        "Are equal boats equal? A, B and Cw against weight and tow speed, before and after.",
     ),
     "about_corrections": (
         "Logfactoren per seizoen, en wat elke stap van een methode met Cw doet.",
@@ -147,18 +147,15 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     ),
     "type_verdict": ("Zijn deze sloepen gelijk?", "Are these boats equal?"),
     "type_note": (
-        "De nieuwste proef van elke sloep en ploeg. Standaardsnelheid: de middelste opgegeven "
-        "snelheid van het type, waarbij Cw te vergelijken is; de opgegeven snelheid verschilt per "
-        "ploeg. De stippellijn is de best passende rechte.",
-        "The newest tow of each boat and crew. Standard speed: the median declared speed of the "
-        "type, at which Cw can be compared; the declared speed differs by crew. The dashed line is "
-        "the best straight fit.",
+        "Het oordeel gaat over de nieuwste proef van elke sloep en ploeg, grafieken en tabellen "
+        "over de proeven die u kiest. Standaardsnelheid: de middelste opgegeven snelheid van het "
+        "type, waarbij Cw te vergelijken is; de opgegeven snelheid verschilt per ploeg. De lijn is "
+        "de best passende rechte met haar 95 %-interval.",
+        "The verdict is about the newest tow of each boat and crew, charts and tables about the "
+        "tows that you choose. Standard speed: the median declared speed of the type, at which Cw "
+        "can be compared; the declared speed differs by crew. The line is the best straight fit "
+        "with its 95 % interval.",
     ),
-    "type_cw_weight": (
-        "Cw bij standaardsnelheid tegen gewicht",
-        "Cw at standard speed against weight",
-    ),
-    "type_cw_speed": ("Cw bij opgegeven snelheid", "Cw at declared speed"),
     "flagged_boats": ("Om welke proeven het gaat", "Which tows they are about"),
     "boat_runs_note": (
         "Hoe elke run op zijn Cw komt, van links naar rechts: bruto F/v², min versnelling, min "
@@ -422,44 +419,61 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     # Types
     "types_charts": ("B en Cw per type", "B and Cw per type"),
     "types_note": (
-        "De nieuwste proef van elke sloep en ploeg onder twee methoden, op dezelfde assen. Sloepen "
-        "zonder type staan er niet bij. Sleep over een grafiek om sloepen te kiezen: de lijst "
-        "eronder toont ze. Klik op een punt om naar de sloep te gaan.",
-        "The newest tow of each boat and crew under two methods, on the same axes. Boats without "
-        "a type are left out. Drag over a chart to select boats: the list below shows them. Click "
-        "a point to go to the boat.",
+        "De gekozen proeven onder twee methoden, op dezelfde assen. Sloepen zonder type staan er "
+        "niet bij. Standaardsnelheid: de middelste opgegeven snelheid van het type. Sleep over een "
+        "grafiek om sloepen te kiezen: de lijst eronder toont ze, elk met de nieuwste proef. Klik "
+        "op een punt om naar de sloep te gaan. Twee typen onder vier methoden staan onder "
+        "Presentatie 2015.",
+        "The chosen tows under two methods, on the same axes. Boats without a type are left out. "
+        "Standard speed: the median declared speed of the type. Drag over a chart to select boats: "
+        "the list below shows them, each with its newest tow. Click a point to go to the boat. Two "
+        "types under four methods are on the page Presentation 2015.",
     ),
     "b_weight": ("B tegen gewicht", "B against weight"),
     "b_speed": ("B tegen opgegeven snelheid", "B against declared speed"),
-    "cw_weight": ("Cw tegen gewicht", "Cw against weight"),
-    "cw_speed": ("Cw tegen opgegeven snelheid", "Cw against declared speed"),
+    "a_weight": ("A tegen gewicht", "A against weight"),
+    "cw_standard_weight": (
+        "Cw bij standaardsnelheid tegen gewicht",
+        "Cw at the standard speed against weight",
+    ),
+    "cw_standard_speed": (
+        "Cw bij standaardsnelheid tegen opgegeven snelheid",
+        "Cw at the standard speed against declared speed",
+    ),
     "types_list": ("Sloepen", "Boats"),
     "before": ("Voor", "Before"),
     "after": ("Na", "After"),
     "pair_first": ("Vergelijk", "Compare"),
     "pair_second": ("met", "with"),
     "types_lines": ("Hangt het af van gewicht of snelheid?", "Does it follow weight or speed?"),
+    "types_lines_newest": (
+        "Hangt het af van gewicht of snelheid? De nieuwste proef van elke ploeg",
+        "Does it follow weight or speed? The newest tow of each crew",
+    ),
     "types_lines_note": (
-        "Een rechte lijn per type, door de nieuwste proef van elke sloep en ploeg (n). De helling "
+        "Een rechte lijn per type door n proeven; proeven van een sloep tellen als herhaling. De "
+        "pagina van een type heeft ook die door alle proeven en per seizoen. De helling "
         "is de verandering van de grootheid per kg of per m/s (van ln tegen ln: de macht); een "
         "helling waarvan het interval 0 bevat, is niet aangetoond. R²: deel van de spreiding dat "
         "de lijn verklaart. q is (v/B)²/(1 - (v/B)²) bij de standaardsnelheid, de middelste "
         "opgegeven snelheid van het type.",
-        "A straight line per type, through the newest tow of each boat and crew (n). The slope is "
+        "A straight line per type through n tows; tows of one boat count as repeats. The page of a "
+        "type also has those through all tows and per season. The slope is "
         "the change of the quantity per kg or per m/s (of ln against ln: the power); a slope whose "
         "interval holds 0 is not shown to exist. R²: share of the spread that the line explains. q "
         "is (v/B)²/(1 - (v/B)²) at the standard speed, the median declared speed of the type.",
     ),
     "types_homogeneity": ("Kan één B voor het type?", "Could one B serve the type?"),
     "types_homogeneity_note": (
-        "p: kans op zoveel verschil tussen de bochten van n proeven als alle sloepen dezelfde B "
+        "Van de nieuwste proef van elke sloep en ploeg (n). p: kans op zoveel verschil tussen de "
+        "bochten als alle sloepen dezelfde B "
         "hebben; een kleine p zegt dat ze die niet hebben. Kans 10 % te zien: hoe waarschijnlijk "
         "een echte spreiding van 10 % in B hier was opgemerkt. Deel ruis: deel van de spreiding "
         "dat de runs alleen al geven.",
-        "p: chance of so large a difference between the bends of n tows if all boats have the same "
-        "B; a small p says that they have not. Chance to see 10 %: how likely a true spread of B "
-        "of 10 % would have been noticed here. Share of noise: share of the spread that the runs "
-        "alone give.",
+        "Of the newest tow of each boat and crew (n). p: chance of so large a difference between "
+        "the bends if all boats have the same B; a small p says that they have not. Chance to see "
+        "10 %: how likely a true spread of B of 10 % would have been noticed here. Share of noise: "
+        "share of the spread that the runs alone give.",
     ),
     "types_outliers_note": (
         "Ver van wat de andere sloepen van het type voorspellen, in standaardafwijkingen (sd) van "
@@ -467,7 +481,14 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "Far from what the other boats of the type predict, in standard deviations (sd) of that "
         "prediction. A possible cause is something to look at, not proven.",
     ),
-    "types_outliers": ("Sloepen die afwijken van hun type", "Boats that differ from their type"),
+    "types_outliers": (
+        "Nieuwste proeven die afwijken van hun type",
+        "Newest tows that differ from their type",
+    ),
+    "types_outliers_tows": (
+        "Gekozen proeven die in Cw afwijken van hun type",
+        "Chosen tows whose Cw differs from their type",
+    ),
     # Corrections
     "log_factors": ("Logfactor per seizoen", "Log factor per season"),
     "log_factors_note": (
@@ -593,11 +614,6 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "toelichting in twee talen.",
         "The register of every edition as published, with the notice to the members and the "
         "release notes in Dutch and English.",
-    ),
-    "types_pair": ("Twee typen naast elkaar", "Two types side by side"),
-    "types_pair_note": (
-        "Dezelfde assen voor beide typen, en voor de methoden onder Voor en Na.",
-        "The same axes for both types, and for the methods under Before and After.",
     ),
     "season_links": ("Waar een logfactor op rust", "What a log factor rests on"),
     "season_links_note": (

@@ -10,16 +10,20 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     ),
     "slides_note": (
         "De methoden staan naast elkaar op gelijke assen. Cirkels zijn heren, driehoeken dames. "
-        "Een open teken is een proef die te langzaam of te snel was voor de standaardsnelheid. De "
-        "lijn is de best passende rechte met een 95 %-interval; bij gewicht en lengte een per "
-        "ploegklasse. Een proef die van het type afwijkt, is genoemd. Een streep is het "
+        "Een open teken is een proef die te langzaam of te snel was voor de standaardsnelheid, een "
+        "zwarte stip een proef met te weinig vermogen. De lijn is de best passende rechte met een "
+        "95 %-interval; bij gewicht en lengte een per ploegklasse. R2 is het deel van de spreiding "
+        "dat de lijn verklaart, met elke proef gewogen naar haar fout en proeven van een sloep als "
+        "herhaling. Een proef waarvan Cw van het type afwijkt, is genoemd. Een streep is het "
         "95 %-interval van een proef; een streepjeslijn de spreiding van de runs alleen: de fout "
         "van de log zit er niet in.",
         "The methods stand side by side on equal axes. Circles are men, triangles women. An open "
-        "mark is a tow too slow or too fast for the standard speed. The line is the straight line "
-        "that fits best, with its 95 % interval; against weight and length one per crew class. A "
-        "tow that is an outlier of its type is named. A bar is a tow's 95 % interval; a dashed "
-        "one the spread of the runs alone: the log's error is not in it.",
+        "mark is a tow too slow or too fast for the standard speed, a black dot one with too "
+        "little power. The line is the straight line that fits best, with its 95 % interval; "
+        "against weight and length one per crew class. R2 is the share of the spread that the line "
+        "explains, each tow weighted by its error and tows of one boat as repeats. A tow whose Cw "
+        "is an outlier of its type is named. A bar is a tow's 95 % interval; a dashed one the "
+        "spread of the runs alone: the log's error is not in it.",
     ),
     # Charts
     "men": ("heren", "men"),
@@ -28,15 +32,17 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     "crew": ("Ploeg", "Crew"),
     "waterline_length": ("Lengte waterlijn [m]", "Waterline length [m]"),
     "tow_hull_ratio": ("Sleepsnelheid / rompsnelheid", "Tow speed / hull speed"),
+    "speed_short": ("Snelheid [m/s]", "Speed [m/s]"),
     "speed_case": ("Sleepsnelheid t.o.v. rompsnelheid", "Tow speed by hull speed"),
     "power": ("Vermogen bij slepen [W]", "Power when towed [W]"),
     "raced_power": ("Vermogen in wedstrijd [W]", "Power in the race [W]"),
     "power_ratio_raced": (
-        "Vermogen in wedstrijd: eigen kromme / kromme van het type",
-        "Race power: own curve / type's curve",
+        "Vermogen: eigen kromme / die van het type",
+        "Power: own curve / type's curve",
     ),
     "tows": ("Proeven", "Tows"),
-    "newest_only": ("nieuwste per ploeg", "newest per crew"),
+    "all_tows": ("alle proeven", "all tows"),
+    "code.newest": ("de nieuwste van elke ploeg", "the newest of each crew"),
     "ticked": ("Aangevinkt", "Ticked"),
     "log_speed": ("Snelheid", "Speed"),
     "code.as_read": ("log zoals gelezen", "log as read"),
@@ -109,14 +115,7 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     "slide.x.weight": ("gewicht", "weight"),
     "slide.x.speed": ("sleepsnelheid", "tow speed"),
     "slide.x.length": ("lengte", "length"),
-    "slide.outside": (
-        "Uitschieters van hun type, {after}: {names}.",
-        "Outliers of their type, {after}: {names}.",
-    ),
-    "slide.none_outside": (
-        "Geen proef is een uitschieter van haar type, {after}.",
-        "No tow is an outlier of its type, {after}.",
-    ),
+    "slide.outside": ("Uitschieters in Cw: {names}.", "Outliers in Cw: {names}."),
     "slide.b_is_not": (
         "Nee: B ligt op {ratio} keer de rompsnelheid ({lo} tot {hi}; {boats}, {after}); {share} "
         "ligt er binnen 5 % van.",
@@ -138,11 +137,11 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
         "the presentation puts rowing.",
     ),
     "slide.raced": (
-        "De eigen kromme geeft {up} keer te veel en {down} keer te weinig vermogen (interval "
-        "zonder 1), bij {n} die met weinig vermogen zijn gesleept of buiten hun kromme geroeid. "
+        "Gesleept met weinig vermogen of geroeid buiten de eigen kromme: {n}. Daarvan geeft de "
+        "eigen kromme {up} keer te veel en {down} keer te weinig vermogen (interval zonder 1). "
         "Gesleept onder 70 W (dames 40) en geroeid boven 100 W (dames 57): {both}.",
-        "A tow's own curve gives too much power {up} times and too little {down} times (interval "
-        "without 1), among {n} made with little power or raced off their curve. Towed under 70 W "
+        "Towed with little power or raced off their own curve: {n}. The own curve of {up} of these "
+        "gives too much power, of {down} too little (interval without 1). Towed under 70 W "
         "(women 40) and raced above 100 W (women 57): {both}.",
     ),
     "slide.years": (
@@ -191,6 +190,9 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     ),
     "decimal_mark": (",", "."),
     # Columns and codes
+    "code.low": ("laag (onder 67 %)", "low (under 67 %)"),
+    "code.middle": ("midden (67 tot 80 %)", "middle (67 to 80 %)"),
+    "code.high": ("hoog (vanaf 80 %)", "high (80 % and above)"),
     "code.waterline_length_m": ("lengte waterlijn", "waterline length"),
     "column.a_lo_kg_m": ("A laagste [kg/m]", "A lowest [kg/m]"),
     "column.a_hi_kg_m": ("A hoogste [kg/m]", "A highest [kg/m]"),
@@ -204,6 +206,7 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     ),
     "column.cw_standard_lo_kg_m": ("Laagste [kg/m]", "Lowest [kg/m]"),
     "column.cw_standard_hi_kg_m": ("Hoogste [kg/m]", "Highest [kg/m]"),
+    "column.expected_cw_kg_m": ("Verwacht [kg/m]", "Expected [kg/m]"),
     "column.hull_speed_m_s": ("Romp\u00adsnelheid [m/s]", "Hull speed [m/s]"),
     "column.b_from_length": ("B uit sloep\u00adlengte", "B from length"),
     "column.channel": ("Kanaal", "Channel"),
@@ -322,6 +325,15 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
         "The presentation: a large majority within 2 %, after the improvements all within 1 %. "
         "First what the tows state themselves (half the 95 % interval; under the old methods the "
         "spread of the runs alone), then what repeat tows show.",
+    ),
+    "claim_season_changes": ("Is 6 % snelheid 20-30 % in Cw?", "Is 6 % in speed 20-30 % in Cw?"),
+    "claim_season_changes_note": (
+        "De presentatie: de logs van 2009-2011 tot 6 % gecorrigeerd, 20-30 % in Cw. Hier Cw bij de "
+        "opgegeven snelheid onder de gekozen methode gedeeld door die zoals gepubliceerd: de "
+        "mediaan van het seizoen en de uitersten.",
+        "The presentation: the logs of 2009-2011 corrected by up to 6 %, 20-30 % in Cw. Here Cw at "
+        "the declared speed under the chosen method over that as published: the median of the "
+        "season and the extremes.",
     ),
     "claim_print_summary": ("Komt de druk er weer uit?", "Does print come out again?"),
     "claim_print_summary_note": (

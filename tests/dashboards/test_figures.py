@@ -23,20 +23,12 @@ AXES = {
     "wind": {"centred_deg", "wind_m_s"},
     "b_weight": {"weight_kg", "b_m_s"},
     "b_speed": {"declared_speed_m_s", "b_m_s"},
-    "cw_weight": {"weight_kg", "cw_kg_m"},
-    "cw_speed": {"declared_speed_m_s", "cw_kg_m"},
     "a_weight": {"weight_kg", "a_kg_m"},
     "cw_standard_weight": {"weight_kg", "cw_standard_kg_m"},
     "cw_standard_speed": {"declared_speed_m_s", "cw_standard_kg_m"},
     "shared_bend": {"b_m_s", "crew"},
     "eras": {"era", "shift_ratio", "lo"},
-    "type_cw_weight": {"weight_kg", "cw_standard_kg_m"},
-    "type_cw_speed": {"declared_speed_m_s", "cw_kg_m", "cw_lo_kg_m"},
     "boats_compared": {"speed_m_s", "cw_kg_m", "cw_lo_kg_m"},
-    "pair_b_weight": {"weight_kg", "b_m_s"},
-    "pair_b_speed": {"declared_speed_m_s", "b_m_s"},
-    "pair_cw_weight": {"weight_kg", "cw_kg_m"},
-    "pair_cw_speed": {"declared_speed_m_s", "cw_kg_m"},
     "budget": {"u_ratio", "component"},
     "race_ranks": {"old_rank", "new_rank"},
     "log_factors": {"season", "factor", "lo"},
@@ -57,7 +49,7 @@ AXES = {
     "slide_tick_effects": {"median_ratio", "lo_ratio", "option"},
     "run_statistics": {"run", "sd_ratio"},
 } | {
-    f"slide_{y}_{x}": {"x", "y", "lo", *slides.QUANTITIES[y][:2], slides.EXPLAINING[x]}
+    f"slide_{y}_{x}": {"x", "y", "seen_lo", slides.QUANTITIES[y][0], slides.EXPLAINING[x]}
     for y in slides.QUANTITIES
     for x in slides.EXPLAINING
 }

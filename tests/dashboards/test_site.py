@@ -226,7 +226,6 @@ def warehouse_numbers(store, digits):
     with Views(store) as views:
         frames = [views.table(name) for name in views.row_counts()]
         frames.append(line_changes(views))  # of `pipeline.register.changes`, as `diff` has it
-        frames.append(views.type_boats())  # Cw of a table that holds ln Cw
     numbers = set()
     for frame in frames:
         for column in frame.iter_columns():

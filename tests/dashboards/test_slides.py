@@ -1,6 +1,7 @@
 """The slide book: what each slide holds and says, and the files."""
 
 import itertools
+import re
 
 import pypdf
 import pytest
@@ -8,6 +9,7 @@ import pytest
 from herijk.dashboards import slide_book as book
 from herijk.dashboards import slides as files
 from herijk.dashboards.figures.slides import METHODS
+from herijk.dashboards.site.slides import sentences
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.queries.views import Views
 from herijk.words import LANGUAGES
@@ -44,6 +46,29 @@ def test_the_tows_of_all_seasons_are_drawn_under_every_method(made, built):
     assert set(tows["method"]) == set(METHODS) & set(built.table("methods")["method"])
     of_2014 = next(s.rows for s in made["nl"] if s.name == "cw weight 2014")
     assert of_2014.filter(kind="tow")["season"].unique().to_list() == [2014]
+
+
+def test_a_range_of_seasons_draws_its_tows_alone(built):
+    with Views(built.store) as views:
+        first = next(book.slides(views, speaker("en"), book.Asked(tows="2014:2015")))
+    assert first.rows.filter(kind="tow")["season"].unique().to_list() == [2014]
+    assert first.rows.filter(kind="line").height
+    assert "2014:2015" in first.title
+
+
+def test_pages_say_of_every_choice_and_type_how_many_tows_it_rests_on(built):
+    with Views(built.store) as views:
+        said = sentences(views).filter(figure="slide_cw_weight")
+        lines = views.table("type_lines").filter(
+            method=book.Book(views, speaker("en")).ends()[1],
+            quantity="cw_standard_kg_m",
+            explaining="weight_kg",
+        )
+    both = said.join(lines, on=["tows", "boat_type"])
+    assert {"all", "newest", "2009", "2014"} == set(both["tows"])
+    for row in both.iter_rows(named=True):
+        assert re.search(rf"\b{row['n']} tows? of {row['n_boats']} boats?\b", row["en"])
+        assert re.search(rf"\b{row['n']} (proef|proeven) van {row['n_boats']} sloep", row["nl"])
 
 
 def test_a_type_or_choice_of_tows_that_is_not_there_is_told(built):

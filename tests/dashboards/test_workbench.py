@@ -147,6 +147,17 @@ def test_an_answer_is_plain_data_for_json(bench, history):
     assert SCENARIO in text
 
 
+def test_types_are_judged_by_the_tows_that_are_chosen(bench):
+    asked = question(bench).model_copy(update={"tows": "2014"})
+    answer = bench.answer(asked)
+    assert {row["season"] for row in answer["types"]} == {2014}
+    every = bench.answer(question(bench))
+    assert len(every["types"]) > len(answer["types"])
+    assert sum(r["n_boats"] for r in every["homogeneity"]) > sum(
+        r["n_boats"] for r in answer["homogeneity"]
+    )
+
+
 def test_a_method_against_itself_shows_no_change(bench):
     summary = bench.answer(question(bench, against=PARENT))["summary"]
     assert summary["same"] == summary["lines"]

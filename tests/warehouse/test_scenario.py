@@ -51,6 +51,17 @@ def test_statistics_are_those_of_the_warehouse(scenario, built, table):
     assert_frame_equal(found, built.table(table).select(found.columns), check_row_order=False)
 
 
+def test_tows_of_types_are_those_of_the_warehouse(scenario, built):
+    found = scenario.type_tows()
+    stored = built.table("compared_tows").filter(
+        pl.col("method").is_in(METHODS), pl.col("boat_type") != "unknown"
+    )
+    columns = [c for c in found.columns if c in stored.columns]
+    assert_frame_equal(found.select(columns), stored.select(columns), check_row_order=False)
+    for tows, own in (("newest", pl.col("newest")), ("2014", pl.col("season") == 2014)):
+        assert set(scenario.type_tows(tows)["tow_id"]) == set(stored.filter(own)["tow_id"])
+
+
 def test_remembered_windows_change_nothing(history):
     method = shipped_method("rebased")
     fresh = History(
@@ -109,4 +120,4 @@ def test_a_method_that_no_tow_survives_is_shown_too(history, scenario, base):
         assert isinstance(frame, pl.DataFrame)
     fsn_no = history.tows["fsn_no"][0]
     assert set(both.boat_figure(fsn_no)["method"]) == {scenario.before.method.name}
-    assert both.type_boats().filter(method="none").is_empty()
+    assert both.type_tows().filter(method="none").is_empty()

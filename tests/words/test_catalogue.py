@@ -5,11 +5,12 @@ from functools import cache
 from pathlib import Path
 from string import Formatter
 
+import pytest
 from typer.main import get_command
 
 import herijk
-from herijk.cli.main import app
-from herijk.cli.overview import SECTIONS, USAGE
+from herijk.cli.main import app, main
+from herijk.cli.overview import SECTIONS, USAGE, language_of
 from herijk.pipeline import errors
 from herijk.words import LANGUAGE, dutch, say, spoken, tell
 
@@ -110,3 +111,42 @@ def test_an_error_within_a_sentence_is_said_in_its_language():
     outer = errors.HerijkError("{}: {}", "b.toml", inner)
     assert str(outer) == "b.toml: there is no file a.csv"
     assert spoken(outer, "nl") == "b.toml: er is geen bestand a.csv"
+
+
+def commands(command):
+    yield command
+    for inner in getattr(command, "commands", {}).values():
+        yield from commands(inner)
+
+
+def test_every_command_takes_a_language_once():
+    for command in commands(get_command(app)):
+        options = [option for parameter in command.params for option in parameter.opts]
+        assert options.count("--lang") == 1, command.name
+
+
+@pytest.mark.parametrize(
+    ("arguments", "environment", "language"),
+    [
+        ([], {}, "en"), ([], {"LANG": "nl_NL.UTF-8"}, "nl"), ([], {"LANG": "de_DE"}, "en"),
+        ([], {"LC_ALL": "C", "LANG": "nl_NL"}, "en"), (["--lang", "nl", "due"], {}, "nl"),
+        (["due", "--lang=en"], {"LANG": "nl_BE"}, "en"), (["due", "--lang", "fr"], {}, "en"),
+    ],
+)  # fmt: skip
+def test_the_language_is_that_asked_for_or_that_of_the_system(arguments, environment, language):
+    assert language_of(arguments, environment) == language
+
+
+def test_wrong_arguments_are_told_in_dutch(monkeypatch, capsys):
+    for arguments, said in (
+        (["rebuild"], "Optie '--archive' (env var: 'HERIJK_ARCHIVE') ontbreekt."),
+        (["due", "--as-of", "gisteren"], "schrijf een dag als 2026-05-08"),
+        (["frob"], "Er is geen opdracht 'frob'."),
+        (["due", "--frob"], "Er is geen optie --frob"),
+    ):
+        monkeypatch.setattr("sys.argv", ["herijk", "--lang", "nl", *arguments])
+        with pytest.raises(SystemExit) as stopped:
+            main()
+        assert stopped.value.code == 2
+        assert said in capsys.readouterr().err
+    LANGUAGE.set("en")

@@ -23,6 +23,7 @@ from herijk.dashboards.figures.style import (
     tips,
 )
 from herijk.pipeline.consistency.compared import ROWED_RATIO
+from herijk.pipeline.consistency.tow_speed import HIGH, LOW, MIDDLE
 from herijk.pipeline.studies.claims import CHANNELS
 from herijk.pipeline.studies.options import CHOICES
 from herijk.pipeline.studies.tool_options import SPEED_NAMES, SPEEDS, TICKS
@@ -37,13 +38,16 @@ OF_2014: Final = ("as-published-2014", "as-published", "rebased-2015", "rebased"
 _ORDER: Final = ("as-published-2014", *METHODS)
 
 CODES: Final = (
-    *("unknown", *TICKS, *SPEEDS, *SPEED_NAMES),
+    *("unknown", *TICKS, *SPEEDS, *SPEED_NAMES, LOW, MIDDLE, HIGH),
     *(choice.name for choice in CHOICES),
     *(f"channel.{name}" for name in CHANNELS),
 )
 """Codes that the charts of the slides show in words."""
 
 SIDE: Final = 190
+SPACING: Final = 30
+"""Between panels [px]: the last label of an axis keeps clear of the first of the next."""
+
 QUANTITIES: Final = {
     "b": ("b_m_s", "b_lo_m_s", "b_hi_m_s"),
     "a": ("a_kg_m", "a_lo_kg_m", "a_hi_kg_m"),
@@ -81,15 +85,17 @@ def panels(chart: Any, say: Say, of: str = "", **look: Any) -> Drawing:
         label = f"{in_words(first, say)} + ' · ' + ({label})"
     header = alt.Header(labelExpr=label, labelLimit=260)
     sized = chart.properties(width=look["width"], height=look["height"])
-    drawn: Drawing = sized.transform_calculate(panel=key).facet(
-        alt.Facet("panel:N", title=None, header=header), columns=look["columns"]
+    drawn: Drawing = (
+        sized.transform_calculate(panel=key)
+        .facet(alt.Facet("panel:N", title=None, header=header), columns=look["columns"])
+        .properties(spacing=SPACING)
     )
     return drawn
 
 
 def small(field: str, title: str) -> alt.X:
     """A quantity along a narrow panel: labels that keep apart."""
-    axis = alt.Axis(tickCount=5, labelOverlap=True)
+    axis = alt.Axis(tickCount=4, labelOverlap=True, labelFlush=False)
     return alt.X(f"{field}:Q", title=title, scale=alt.Scale(zero=False), axis=axis)
 
 
@@ -130,13 +136,20 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Dra
         at, value = small(x, x_title), number(alt.Y, y, y_title)
         by_class = alt.Detail("crew_class:N")
         ink, form = _crew(say)
-        band = line.mark_area(color=GREY, opacity=0.18, clip=True).encode(
-            small("x", x_title), alt.Y("lo:Q", title=y_title), alt.Y2("hi:Q"), by_class
+        low, high = number(alt.Y, "seen_lo", y_title), alt.Y2("seen_hi:Q")
+        band = (
+            _within_reach(line, "lo", "hi")
+            .mark_area(color=GREY, opacity=0.18)
+            .encode(small("x", x_title), low, high, by_class)
         )
         drawn = line.mark_line(color=GREY, clip=True).encode(
             small("x", x_title), number(alt.Y, "y", y_title), by_class
         )
-        bar = tow.transform_filter(f"isValid(datum.{hi})").mark_rule(opacity=0.35, clip=True)
+        bars = (
+            _within_reach(tow.transform_filter(f"isValid(datum.{lo})"), lo, hi)
+            .mark_rule(opacity=0.35)
+            .encode(at, low, high, ink, strokeDash=interval_kind())
+        )
         point = tow.mark_point(size=38, strokeWidth=1.2).encode(
             at,
             value,
@@ -148,25 +161,68 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Dra
                 ("label:N", say("tow")),
                 (f"{x}:Q", x_title),
                 (f"{y}:Q", y_title),
+                (f"{lo}:Q", say("lowest")),
+                (f"{hi}:Q", say("highest")),
                 ("deviation_sd:Q", say("column.deviation_sd")),
             ),
         )
-        name = (
-            tow.transform_filter("datum.outside")
-            .mark_text(dy=-9, fontSize=9, limit=110)
-            .encode(at, value, text="label:N")
+        slow = tow.transform_filter("datum.slow").mark_circle(size=9, color="black", opacity=1)
+        names = [
+            name.encode(at, value, text="label:N")
+            for name in _names(tow.transform_filter("datum.outside"), x, y)
+        ]
+        drawing = (
+            alt.layer(band, bars, drawn, point, slow.encode(at, value), *names, data=frame)
+            .transform_joinaggregate(top=f"max({y})", bottom=f"min({y})", groupby=["boat_type"])
+            .transform_calculate(
+                room=f"max({ROOM} * (datum.top - datum.bottom), {ROOM_OF_ONE} * datum.top)"
+            )
         )
-        bars = bar.encode(
-            at,
-            alt.Y(f"{lo}:Q", title=y_title),
-            alt.Y2(f"{hi}:Q"),
-            ink,
-            strokeDash=interval_kind(),
-        )
-        drawing = alt.layer(band, bars, drawn, point, name, data=frame)
         return panels(drawing, say, "boat_type")
 
     return figure
+
+
+LETTER: Final = 4.8
+"""Mean width of a letter of a name [px]: its true width is not known before it is drawn."""
+
+
+def _names(outliers: alt.Chart, x: str, y: str) -> list[alt.Chart]:
+    """Names within their panel: the highest above its point, the lowest below, others beside."""
+    placed = outliers.transform_window(
+        place="row_number()", sort=[alt.SortField(y, order="descending")], groupby=["panel"]
+    ).transform_joinaggregate(named="count()", groupby=["panel"])
+    at, end, wide = f"scale('x', datum.{x})", "range('x')[1]", f"{LETTER} * length(datum.label)"
+    right, left = f"{at} + 7", f"{at} - 7 - {wide}"
+    beside = "datum.place > 1 && datum.place < datum.named"
+    begin = f"{beside} ? ({right} + {wide} < {end} ? {right} : {left}) : {at} - {wide} / 2"
+    look: dict[str, Any] = {
+        "fontSize": 9,
+        "align": "left",
+        "dx": alt.ExprRef(f"clamp({begin}, 0, max(0, {end} - {wide})) - {at}"),
+        "dy": alt.ExprRef(f"{beside} ? 0 : datum.place > 1 ? 11 : -9"),
+    }
+    return [
+        placed.mark_text(stroke="white", strokeWidth=3, opacity=0.8, **look),
+        placed.mark_text(color="black", **look),
+    ]
+
+
+ROOM: Final = 0.25
+"""How far an interval is drawn beyond the outermost points, of their range: one without an upper
+end, as of B, would leave no room for the points."""
+
+ROOM_OF_ONE: Final = 0.02
+"""The same where there is no range, of the value."""
+
+
+def _within_reach(chart: alt.Chart, lo: str, hi: str) -> alt.Chart:
+    """With the ends of an interval as far as they are drawn; one without an upper end goes on."""
+    top, bottom = "datum.top + datum.room", "datum.bottom - datum.room"
+    return chart.transform_calculate(
+        seen_lo=f"clamp(datum.{lo}, {bottom}, {top})",
+        seen_hi=f"isValid(datum.{hi}) ? clamp(datum.{hi}, {bottom}, {top}) : {top}",
+    )
 
 
 def b_and_hull_speed(frame: pl.DataFrame, say: Say) -> Drawing:
@@ -225,14 +281,15 @@ def raced_beyond(frame: pl.DataFrame, say: Say) -> Drawing:
     base = alt.Chart().transform_filter("isValid(datum.power_ratio_raced)")
     y = alt.Y("label:N", title=say("tow"))
     ratio = say("power_ratio_raced")
+    legend = alt.Legend(orient="bottom", labelExpr=in_words("datum.value", say))
     bar = base.mark_rule().encode(
-        number(alt.X, "power_ratio_raced_lo", ratio), alt.X2("power_ratio_raced_hi:Q"), y
+        small("power_ratio_raced_lo", ratio), alt.X2("power_ratio_raced_hi:Q"), y
     )
     point = base.mark_point(filled=True, size=60).encode(
-        number(alt.X, "power_ratio_raced", ratio),
+        small("power_ratio_raced", ratio),
         y,
-        colour("speed_case", say("speed_case"), legend=alt.Legend(orient="bottom")),
-        alt.Shape("speed_case:N", title=say("speed_case")),
+        colour("speed_case", say("speed_case"), legend=legend),
+        alt.Shape("speed_case:N", title=say("speed_case"), legend=legend),
         tooltip=tips(
             ("label:N", say("tow")),
             ("power_w:Q", say("power")),
@@ -241,7 +298,8 @@ def raced_beyond(frame: pl.DataFrame, say: Say) -> Drawing:
         ),
     )
     one = alt.Chart().mark_rule(color=GREY, strokeDash=[3, 3]).encode(x=alt.datum(1.0))
-    return panels(alt.layer(one, bar, point, data=frame), say, height=alt.Step(16))
+    drawing = alt.layer(one, bar, point, data=frame)
+    return panels(drawing, say, columns=2, width=300, height=alt.Step(16))
 
 
 def boat_years(frame: pl.DataFrame, say: Say) -> Drawing:
@@ -256,7 +314,7 @@ def boat_years(frame: pl.DataFrame, say: Say) -> Drawing:
         legend=alt.Legend(orient="bottom"),
     )  # fmt: skip
     curve = base.mark_line(strokeWidth=2).encode(
-        small("speed_m_s", say("speed")),
+        small("speed_m_s", say("speed_short")),
         number(alt.Y, "cw_kg_m", say("cw")),
         ink,
         alt.StrokeDash("crew:N", title=say("crew"), legend=alt.Legend(orient="bottom")),
@@ -264,6 +322,6 @@ def boat_years(frame: pl.DataFrame, say: Say) -> Drawing:
         tooltip=tips(("tow_id:N", say("tow")), ("season:O", say("season"))),
     )
     common = base.mark_rule(color=GREY, strokeDash=[3, 3]).encode(
-        alt.X("mean(standard_speed_m_s):Q", title=say("speed"))
+        alt.X("mean(standard_speed_m_s):Q", title=say("speed_short"))
     )
     return panels(alt.layer(common, curve, data=frame), say, "name")

@@ -40,7 +40,7 @@ def ticks(frame: pl.DataFrame, say: Say) -> Drawing:
         )
         .mark_line(strokeWidth=1.2, opacity=0.8)
         .encode(
-            small("speed_m_s", say("speed")),
+            small("speed_m_s", say("speed_short")),
             number(alt.Y, "cw_curve_kg_m", say("cw")),
             alt.Color(
                 "on:N",
@@ -51,9 +51,8 @@ def ticks(frame: pl.DataFrame, say: Say) -> Drawing:
             alt.StrokeDash(
                 "speed:N",
                 title=say("log_speed"),
-                scale=alt.Scale(
-                    domain=list(SPEED_NAMES), range=[[1, 0], [5, 2], [5, 2], [2, 2], [5, 2, 1, 2]]
-                ),
+                scale=alt.Scale(range=[[1, 0], [5, 2], [2, 2]]),
+                sort=list(SPEED_NAMES),
                 legend=alt.Legend(labelExpr=used, orient="bottom"),
             ),
             alt.Detail("curve:N"),
@@ -88,10 +87,10 @@ def tick_effects(frame: pl.DataFrame, say: Say) -> Drawing:
     )
     ratio = say("ratio_cw")
     bar = base.mark_rule(strokeWidth=3, color=OKABE_ITO[0]).encode(
-        number(alt.X, "lo_ratio", ratio), alt.X2("hi_ratio:Q")
+        small("lo_ratio", ratio), alt.X2("hi_ratio:Q")
     )
     point = base.mark_point(filled=True, size=70, color="black", opacity=1).encode(
-        number(alt.X, "median_ratio", ratio),
+        small("median_ratio", ratio),
         tooltip=tips(("option:N", say("option")), ("median_ratio:Q", ratio), ("tows:Q", "n")),
     )
     one = alt.Chart().mark_rule(color=GREY, strokeDash=[3, 3]).encode(x=alt.datum(1.0))

@@ -10,8 +10,9 @@ from typing import Any, Final
 import polars as pl
 from markupsafe import Markup
 
-from herijk.dashboards.site.parts import Page, Table, boat_path, type_path
+from herijk.dashboards.site.parts import Page, Table, boat_path, is_chosen, type_path
 from herijk.dashboards.speech import Speech, duration
+from herijk.warehouse.queries.chosen_tows import STATED
 from herijk.words import LANGUAGES
 
 DIGITS: Final = (
@@ -43,7 +44,7 @@ METHODS: Final = {"method", "from_method", "to_method"}
 EDITIONS: Final = {"edition", "from_edition", "to_edition", "previous"}
 
 Show = Callable[[Any], Markup]
-Key = tuple[str, ...]
+Key = tuple[Any, ...]
 
 _EMPTY = Markup("<td class=t>")
 _SHORT = Markup("<td class=t>{}")
@@ -79,14 +80,14 @@ class Cells:
             *(self._cells(frame[c], page.root, table.exact) for c in table.columns), strict=True
         )
         boats = [_BOAT.format(n) for n in frame["fsn_no"]] if table.linked else repeat("")
-        keys = zip(*(frame[name].to_list() for name in follows), strict=True)
+        keys = zip(*(hashable(frame[name]) for name in follows), strict=True)
         places: dict[Key, int] = {}
 
         @cache
         def marked(key: Key) -> tuple[list[str], str]:
             """Where rows of a key stand, and how they name it."""
             own = zip(follows, key, strict=True)
-            is_first = all(page.chosen[name] in ("", value) for name, value in own)
+            is_first = all(is_chosen(value, page.chosen[name]) for name, value in own)
             place = places.setdefault(key, len(places))
             return first if is_first else others, _KEYED.format(place) if follows else ""
 
@@ -106,10 +107,7 @@ class Cells:
             return self._numbers(column.to_list(), digits, exact)
         if column.dtype.is_integer() and name != "direction":
             return ["<td>" if v is None else f"<td>{v}" for v in column.to_list()]
-        values = column.to_list()
-        if isinstance(column.dtype, pl.List):
-            values = [None if v is None else tuple(v) for v in values]
-        return [_EMPTY if v is None else self._text(name, root, v) for v in values]
+        return [_EMPTY if v is None else self._text(name, root, v) for v in hashable(column)]
 
     def _numbers(self, values: Sequence[float | None], digits: int, exact: bool) -> list[str]:
         number = self.speech.number
@@ -129,6 +127,9 @@ class Cells:
             **dict.fromkeys(("titles", "meanings", "messages"), self._titles),
             "direction": lambda value: self.text("out" if value == 1 else "back"),
             "causes": self._causes,
+            "tows": lambda value: (
+                self.text(f"code.{value}") if value in STATED else self._plain(value)
+            ),
             "unit": lambda value: self._plain("" if value == "1" else value),
             **dict.fromkeys(("sha256", "content_hash", "method_hash", "seal"), _hash),
             **dict.fromkeys(METHODS, lambda value: self.text(f"method.{value}")),
@@ -171,6 +172,12 @@ class Cells:
     def _titles(self, value: Any) -> Markup:
         """The title in this language, of one in Dutch and one in English."""
         return Markup("{}").format(value[LANGUAGES.index(self.speech.language)])
+
+
+def hashable(column: pl.Series) -> list[Any]:
+    """Its values; lists as tuples."""
+    values = column.to_list()
+    return [tuple(v) if isinstance(v, list) else v for v in values]
 
 
 def _exact(value: float, shown: str) -> str:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import polars as pl
 from markupsafe import Markup
@@ -15,6 +15,7 @@ from herijk.dashboards.answer import Answer
 from herijk.dashboards.speech import Speech
 from herijk.pipeline.register.register import draft_name
 from herijk.warehouse.build.studies import STUDIED_METHOD
+from herijk.warehouse.queries.chosen_tows import ALL, NEWEST
 
 Headline: TypeAlias = Callable[[Speech], str]
 """What a section shows in one sentence, in the language of a page."""
@@ -61,8 +62,11 @@ class Chart:
         data: name of the page's data it draws.
         caption: key of its caption; also what a screen reader says.
         follows: selector, or several, by data column: only rows that hold what one of them says
-            are drawn, and rows where the column is empty.
+            are drawn, and rows where the column is empty. A column may hold lists: then one of
+            its values has to be chosen.
         says: what it shows, in one sentence.
+        said: name of the page's data that holds such a sentence, in `nl` and `en`, for what the
+            selectors say: rows of this `figure`, with the columns that it follows.
     """
 
     figure: str
@@ -70,6 +74,7 @@ class Chart:
     caption: str
     follows: Mapping[str, str | Sequence[str]] = field(default_factory=dict)
     says: Headline | None = None
+    said: str = ""
 
 
 def _as_it_is(option: str, _: Speech) -> str:
@@ -169,6 +174,13 @@ class Page:
         return self.site or "../" * self.path.count("/")
 
 
+def is_chosen(value: Any, *wanted: str) -> bool:
+    """Whether selectors that say `wanted` show a value, or one of a list; "all" says nothing."""
+    values = value if isinstance(value, (list, tuple)) else (value,)
+    said = [text for text in wanted if text]
+    return not said or any(str(one) in said for one in values)
+
+
 def default_method(names: Sequence[str]) -> str:
     """What is shown first: the default method or its draft, else the last."""
     wanted = [n for n in names if n in (STUDIED_METHOD, draft_name(STUDIED_METHOD))]
@@ -189,6 +201,16 @@ def methods_select(methods: Sequence[str], name: str = "method", chosen: str = "
 def editions_select(name: str, editions: Sequence[str], chosen: str) -> Select:
     """A selector of editions; drafts by the name of their method."""
     return Select(name, "edition", editions, chosen, named=lambda e, speech: speech.edition(e))
+
+
+def tows_select(compared: pl.DataFrame) -> Select:
+    """A selector of tows: all, the newest of each crew, or those of a season."""
+    seasons = [str(season) for season in compared["season"].unique().sort()]
+    words = {ALL: "all_tows", NEWEST: "code.newest"}
+    return Select(
+        "tows", "tows", [*words, *seasons], ALL,
+        named=lambda tows, speech: speech.say(words[tows]) if tows in words else tows,
+    )  # fmt: skip
 
 
 def boat_path(fsn_no: str) -> str:

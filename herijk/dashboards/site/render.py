@@ -21,7 +21,7 @@ from herijk.dashboards import fonts
 from herijk.dashboards.answer import told
 from herijk.dashboards.html import as_json, environment
 from herijk.dashboards.kept import kept
-from herijk.dashboards.site.cells import Cells
+from herijk.dashboards.site.cells import Cells, hashable
 from herijk.dashboards.site.downloads import copy_sheets
 from herijk.dashboards.site.pages import MENU, all_pages
 from herijk.dashboards.site.parts import Page, boat_path, race_path, type_path
@@ -224,7 +224,7 @@ def _column(column: pl.Series) -> str:
         known = column.fill_nan(None).to_list()
         numbers = ("null" if v is None else f"{v:.{DRAWN}g}" for v in known)
         return f"[{','.join(numbers)}]"
-    values = column.to_list()
+    values = hashable(column)
     stretches = [(value, len(list(same))) for value, same in groupby(values)]
     if column.dtype != pl.String and 2 * len(stretches) >= len(values):
         return as_json(values)

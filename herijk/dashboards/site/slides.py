@@ -1,7 +1,8 @@
 """The page with every chart of the presentation of 2015, over all tows or a choice of them."""
 
-from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import product
+from typing import Any, NamedTuple
 
 import polars as pl
 
@@ -14,32 +15,46 @@ from herijk.dashboards.site.parts import (
     Select,
     Table,
     methods_select,
+    tows_select,
 )
-from herijk.dashboards.slide_book import Slide, slides
-from herijk.dashboards.slide_rows import compared_frame, lines_frame, methods_of, pair_of_types
-from herijk.dashboards.speech import Speech
-from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
+from herijk.dashboards.slide_book import RECOMPUTED, Book, Slide, slides
+from herijk.dashboards.slide_rows import (
+    RECOMPUTED_SEASON,
+    by_tows,
+    compared_frame,
+    lines_frame,
+    methods_of,
+    pair_of_types,
+)
+from herijk.warehouse.queries.chosen_tows import ALL, choices_of_row
 from herijk.warehouse.queries.views import Views
 from herijk.words import LANGUAGES
 from herijk.words.catalogue import speaker
 
 PAIR_SELECTORS = ("pair_first", "pair_second")
-ALL_TOWS = "all"
+WHOLE = {
+    "slide_hull_speed": Book.b_and_hull_speed,
+    "slide_towed_at": Book.part_of_hull_speed,
+}
+"""Figures that are not of a type, with what says what they show."""
+SAID = ("figure", "tows", "boat_type", *LANGUAGES)
 TOW_COLUMNS = (
-    *("kind", "method", "boat_type", "crew_class", "label", "outside", "beyond_curve"),
+    *("kind", "method", "boat_type", "crew_class", "label", "outside", "beyond_curve", "slow"),
     *("weight_kg", "declared_speed_m_s", "waterline_length_m", "deviation_sd"),
     *("hull_speed_m_s", "tow_hull_ratio", "b_hull_ratio"),
     *(column for columns in QUANTITIES.values() for column in columns),
 )
 NOT_DRAWN = (
-    *("fsn_no", "tow_id", "rowers", "candidates", "reason", "study", "newest", "slow"),
+    *("fsn_no", "tow_id", "rowers", "candidates", "reason", "study", "newest"),
     *("displacement_kg", "expected_cw_kg_m"),
 )
+OF_2014 = tuple(f"{y} {x} {RECOMPUTED_SEASON}" for y, x in RECOMPUTED)
 CLAIMS = {
     "hull_speed": "boat_type tows n n_boats tow_ratio tow_share_60_70 b_ratio b_ratio_lo "
     "b_ratio_hi",
     "promise": "season tows share_stated_1pct share_stated_2pct n_pairs share_seen_1pct "
     "share_seen_2pct",
+    "season_changes": "season tows median_ratio lowest_ratio highest_ratio",
     "print_summary": "season tows median_ratio lowest_ratio highest_ratio share_within_1pct",
 }
 """Tables that hold a claim of the texts against the archive, with the columns shown."""
@@ -52,25 +67,22 @@ def slides_page(views: Views, methods: Sequence[str]) -> Page:
     said = [{s.name: s for s in slides(views, speaker(language))} for language in LANGUAGES]
     book = Drawn(said[0], said[1])
     compared = compared_frame(views)
-    held = methods_of(compared["method"].unique().to_list())
-    known = compared.filter(pl.col("method").is_in(held))
-    typed = known.filter(pl.col("boat_type") != UNKNOWN_TYPE)
-    drawn = (typed if typed.height else known).with_columns(newest_method=pl.lit(held[-1]))
-    types = drawn["boat_type"].unique().sort().to_list()
-    pair = pair_of_types(compared)
+    types, pair = sorted(by_tows(compared)), pair_of_types(compared)
+    told = sentences(views)
+    follows = {"tows": "tows", "boat_type": PAIR_SELECTORS}
     sections = [
-        Section(f"slides_{x}", "slides_note" if x == "weight" else None, _charts(x, book))
+        Section(
+            f"slides_{x}",
+            "slides_note" if x == "weight" else None,
+            told_charts([f"slide_{y}_{x}" for y in QUANTITIES], told, pair, follows),
+        )
         for x in EXPLAINING
     ]
-    chosen = {"tows": "tows"}
     sections += [
-        Section("slides_2014", "slides_2014_note", book.of("cw weight 2014", "cw speed 2014")),
+        Section("slides_2014", "slides_2014_note", book.of(*OF_2014)),
         Section(
             "slides_hull_speed",
-            charts=[
-                Chart("slide_hull_speed", "slides", "slide_hull_speed", chosen, book("hull speed")),
-                Chart("slide_towed_at", "slides", "slide_towed_at", chosen, book("towed at")),
-            ],
+            charts=told_charts(WHOLE, told, [], {"tows": "tows"}),
         ),
         Section("slides_raced", charts=book.of("raced beyond")),
         Section("slides_eras", charts=book.of("eras")),
@@ -78,19 +90,17 @@ def slides_page(views: Views, methods: Sequence[str]) -> Page:
         Section("slides_ticks", "slides_ticks_note", book.of("ticks")),
         *_claims(views),
     ]
-    tows = [ALL_TOWS, "newest", *map(str, drawn["season"].unique().sort())]
-    lines = lines_frame(views).filter(pl.col("method").is_in(held))
     return Page(
         "slides.html",
         "slides",
         [section for section in sections if section.charts or section.tables],
         selects=[
-            Select("tows", "tows", tows, ALL_TOWS, named=_tows_named),
+            tows_select(compared),
             Select("pair_first", "pair_first", types, pair[0]),
             Select("pair_second", "pair_second", types, pair[-1]),
             methods_select(methods),
         ],
-        data={"slides": [*_by_choice(drawn), lines]} | book.data(),
+        data={"slides": drawn_rows(views), "said": [told]} | book.data(),
     )
 
 
@@ -114,7 +124,7 @@ class Drawn(NamedTuple):
 
     def data(self) -> dict[str, list[pl.DataFrame]]:
         """The rows of slides that no selector changes."""
-        own = ("cw weight 2014", "cw speed 2014", "raced beyond", "eras", "years", "ticks")
+        own = (*OF_2014, "raced beyond", "eras", "years", "ticks")
         return {_data_name(s): [_thin(s.rows)] for s in self.nl.values() if s.name.startswith(own)}
 
 
@@ -122,40 +132,52 @@ def _data_name(slide: Slide) -> str:
     return slide.name.replace(" ", "_")
 
 
-def _tows_named(tows: str, speech: Speech) -> str:
-    """A choice of tows in words; a season as it is."""
-    words = {ALL_TOWS: "code.all", "newest": "newest_only"}
-    return speech.say(words[tows]) if tows in words else tows
-
-
 def _thin(rows: pl.DataFrame) -> pl.DataFrame:
     """Without columns that no chart draws."""
     return rows.select(pl.exclude(NOT_DRAWN))
 
 
-def _charts(explaining: str, book: Drawn) -> list[Chart]:
-    follows = {"tows": "tows", "boat_type": PAIR_SELECTORS}
+def drawn_rows(views: Views) -> list[pl.DataFrame]:
+    """The tows that charts of types draw, with the choices each belongs to, and the lines."""
+    compared = compared_frame(views)
+    methods = methods_of(compared["method"].unique().to_list())
+    own = pl.col("method").is_in(methods)
+    tows = compared.filter(own, pl.col("boat_type").is_in(by_tows(compared))).select(
+        *TOW_COLUMNS, choices_of_row(), newest_method=pl.lit(methods[-1])
+    )
+    return [tows, lines_frame(views).filter(own).with_columns(pl.concat_list("tows"))]
+
+
+def sentences(views: Views) -> pl.DataFrame:
+    """What each figure shows of every choice of tows, and of every type where it is of a type.
+
+    Returns:
+        `figure, tows, boat_type` (empty: of all), and the sentence in each language.
+    """
+    books = [Book(views, speaker(language)) for language in LANGUAGES]
+    rows: list[tuple[str | None, ...]] = []
+    for tows in books[0].choices:
+        for figure, told in WHOLE.items():
+            rows.append((figure, tows, None, *(told(book, tows) for book in books)))
+        for y, x, boat_type in product(QUANTITIES, EXPLAINING, sorted(by_tows(books[0].compared))):
+            said = (book.line((y, x), boat_type, tows, book.ends()) for book in books)
+            rows.append((f"slide_{y}_{x}", tows, boat_type, *said))
+    return pl.DataFrame(rows, schema=dict.fromkeys(SAID, pl.String), orient="row")
+
+
+def told_charts(
+    figures: Iterable[str], said: pl.DataFrame, types: Sequence[str], follows: Mapping[str, Any]
+) -> list[Chart]:
+    """Charts of the page's tows, each below what it shows; at first all tows of these types."""
+    own = said.filter(pl.col("boat_type").is_null() | pl.col("boat_type").is_in(types), tows=ALL)
     return [
-        Chart(
-            f"slide_{quantity}_{explaining}",
-            "slides",
-            f"slide_{quantity}_{explaining}",
-            follows,
-            book(f"{quantity} {explaining} {ALL_TOWS}"),
-        )
-        for quantity in QUANTITIES
+        Chart(figure, "slides", figure, follows, _told(own.filter(figure=figure)), "said")
+        for figure in figures
     ]
 
 
-def _by_choice(compared: pl.DataFrame) -> list[pl.DataFrame]:
-    """The tows once for every choice that they belong to."""
-    chosen = compared.select(*TOW_COLUMNS, "newest_method", "newest", "season")
-    parts = [
-        chosen.with_columns(tows=pl.lit(ALL_TOWS)),
-        chosen.filter("newest").with_columns(tows=pl.lit("newest")),
-        chosen.with_columns(tows=pl.col("season").cast(pl.String)),
-    ]
-    return [part.drop("newest", "season") for part in parts]
+def _told(said: pl.DataFrame) -> Headline:
+    return lambda speech: " ".join(said[speech.language])
 
 
 def _claims(views: Views) -> list[Section]:
@@ -163,6 +185,7 @@ def _claims(views: Views) -> list[Section]:
     for name, columns in CLAIMS.items():
         if views.has(name):
             frame = views.table(name)
-            table = Table(name, frame, ["method", *columns.split()], f"claim_{name}", ["method"])
+            follows = ["method", *(["tows"] if frame["tows"].dtype == pl.String else [])]
+            table = Table(name, frame, ["method", *columns.split()], f"claim_{name}", follows)
             sections.append(Section(f"claim_{name}", f"claim_{name}_note", tables=[table]))
     return sections

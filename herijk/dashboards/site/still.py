@@ -12,7 +12,7 @@ from markupsafe import Markup
 
 from herijk.dashboards import fonts
 from herijk.dashboards.figures import drop_links
-from herijk.dashboards.site.parts import Chart, Page
+from herijk.dashboards.site.parts import Chart, Page, is_chosen
 from herijk.dashboards.site.specifications import chart_specifications
 from herijk.dashboards.speech import Speech
 
@@ -68,9 +68,5 @@ def _shown(page: Page, chart: Chart) -> pl.DataFrame:
     rows = pl.concat(page.data[chart.data], how="diagonal_relaxed")
     for column, names in chart.follows.items():
         wanted = [page.chosen[name] for name in ([names] if isinstance(names, str) else names)]
-        chosen = [value for value in wanted if value != ""]
-        if chosen:
-            rows = rows.filter(
-                pl.col(column).is_null() | pl.col(column).cast(pl.String).is_in(chosen)
-            )
+        rows = rows.filter([v is None or is_chosen(v, *wanted) for v in rows[column].to_list()])
     return rows

@@ -23,6 +23,7 @@ from herijk.pipeline.method.definition import (
     shipped_methods,
 )
 from herijk.pipeline.method.variant import cut_at, differences, variant, variant_text
+from herijk.warehouse.queries.chosen_tows import ALL, STATED
 from herijk.warehouse.queries.history import History
 from herijk.warehouse.queries.scenario import CURVE_COLUMNS, Scenario
 from herijk.warehouse.store.editions import edition_names, method_of_edition, read_edition
@@ -85,10 +86,17 @@ class Wish(_Question):
 
 
 class Question(Wish):
-    """What a wish does to all boats, compared with a method or edition, and to one boat."""
+    """What a wish does to all boats, compared with a method or edition, and to one boat.
+
+    Attributes:
+        against: the method or edition.
+        boat: its number.
+        tows: which tows types are judged by; see `chosen_tows`.
+    """
 
     against: str
     boat: str
+    tows: str = ALL
 
 
 class Named(Wish):
@@ -126,6 +134,7 @@ class Bench:
             "editions": self._editions(),
             "boats": _rows(boats.select("fsn_no", "name").sort("name", "fsn_no")),
             "types": boats["boat_type"].drop_nulls().unique().sort().to_list(),
+            "choices": [*STATED, *map(str, self._seasons)],
             "digits": DIGITS,
             "long": sorted(LONG),
             "base": DEFAULT_BASE,
@@ -169,8 +178,10 @@ class Bench:
             "register": _rows(lines.select(REGISTER_COLUMNS)),
             "season_change": _rows(scenario.season_change()),
             "log_factors": _rows(scenario.log_factors()),
-            "types": _rows(scenario.type_boats()),
-            "homogeneity": _rows(scenario.type_homogeneity().select(HOMOGENEITY_COLUMNS)),
+            "types": _rows(scenario.type_tows(question.tows)),
+            "homogeneity": _rows(
+                scenario.type_homogeneity(question.tows).select(HOMOGENEITY_COLUMNS)
+            ),
             "reproducibility": _rows(scenario.reproducibility()),
             "boat_curves": _rows(scenario.boat_curves(question.boat)),
             "boat_figure": _rows(scenario.boat_figure(question.boat)),

@@ -136,10 +136,11 @@ TEXTS: Final[Words] = {
     ),
     "in_types": ("Typen: zijn gelijke sloepen gelijk?", "Types: are equal boats equal?"),
     "in_types_note": (
-        "De nieuwste proef van elke sloep. De tabel toetst of sloepen van een type één B kunnen "
-        "delen: een kleine p zegt van niet.",
-        "The newest tow of each boat. The table tests whether boats of a type can share one B: a "
-        "small p says no.",
+        "De gekozen proeven, Cw bij de standaardsnelheid van het type. De tabel toetst of sloepen "
+        "van een type één B kunnen delen, met van elke ploeg de nieuwste van die proeven: een "
+        "kleine p zegt van niet.",
+        "The chosen tows, Cw at the standard speed of the type. The table tests whether boats of a "
+        "type can share one B, with the newest of those tows of each crew: a small p says no.",
     ),
     "in_repeats": (
         "Herhaalbaarheid: dezelfde sloep nog eens",

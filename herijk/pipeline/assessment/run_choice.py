@@ -20,9 +20,9 @@ KIND: Final = ("tow_id", "target_speed_ratio", "direction")
 def with_run_choice(run_points: pl.DataFrame) -> pl.DataFrame:
     """Run points with `choice`, for runs of which there are more at one target and direction.
 
-    Of these comes first what has a steady window, then the one whose ends agree within the method's
-    limits, then the one of which least was left out, then the one with the least standard error of
-    its mean Cw (`cw_sd` over the root of the window's length).
+    They are ranked by, in this order: a steady window; ends that agree within the method's limits;
+    how little was left out; the standard error of the mean Cw (`cw_sd` over the root of the
+    window's length).
 
     Returns:
         The rows as they were, with `choice`: `most_reliable`, or for the others the first of these

@@ -50,7 +50,6 @@ def compared_tows(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
         not below B, and what outliers say where the type has too few boats.
     """
     last = newest(observed).table.select("method", "tow_id", newest=pl.lit(value=True))
-    parts = [_of_type(tows) for _, tows in observed.groups("method", "boat_type")]
     outliers = tow_outliers(observed, eras).select(
         "method",
         "tow_id",
@@ -59,15 +58,21 @@ def compared_tows(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
         "outside",
         "candidates",
     )
-    others = ("newest", "expected_cw_kg_m", "deviation_sd", "outside", "candidates")
-    empty = ComparedTows.create_empty().drop(others)
     return (
-        pl.concat([empty, *parts], how="diagonal")
+        beside_their_type(observed)
         .join(last, on=["method", "tow_id"], how="left")
         .join(outliers, on=["method", "tow_id"], how="left")
         .with_columns(pl.col("newest").fill_null(value=False))
         .sort("method", "tow_id")
     )
+
+
+def beside_their_type(observed: Observed) -> pl.DataFrame:
+    """The columns of `compared_tows` that follow from a tow and the standard speed of its type."""
+    others = ("newest", "expected_cw_kg_m", "deviation_sd", "outside", "candidates")
+    empty = ComparedTows.create_empty().drop(others)
+    parts = [_of_type(tows) for _, tows in observed.groups("method", "boat_type")]
+    return pl.concat([empty, *parts], how="diagonal")
 
 
 _FROM_CURVES: Final = (
@@ -124,7 +129,7 @@ def hull_speed_statistics(compared: pl.DataFrame) -> pl.DataFrame:
 
     Of a boat with several tows the median counts, so that it counts once. The interval of the
     median rests on order statistics; the slope is that of ln B on ln waterline length, 0.5 if B
-    went with hull speed.
+    went with hull speed. Of a single season only all types together.
 
     Args:
         compared: rows of `compared_tows`.
@@ -132,14 +137,16 @@ def hull_speed_statistics(compared: pl.DataFrame) -> pl.DataFrame:
     Returns:
         Rows of the table `hull_speed`, per method, choice of tows, and boat type or all.
     """
+    stated = {ALL_TOWS.tows: compared, NEWEST.tows: compared.filter("newest")}
+    seasons = {str(season): tows for (season,), tows in compared.group_by("season")}
     rows = []
-    for choice, tows in ((ALL_TOWS, compared), (NEWEST, compared.filter("newest"))):
-        groups = [
-            *tows.filter(pl.col("boat_type") != UNKNOWN_TYPE).group_by("method", "boat_type"),
-            *(((m, ALL_TYPES), group) for (m,), group in tows.group_by("method")),
-        ]
+    for choice, tows in (stated | seasons).items():
+        groups = [((m, ALL_TYPES), group) for (m,), group in tows.group_by("method")]
+        if choice in stated:
+            typed = tows.filter(pl.col("boat_type") != UNKNOWN_TYPE)
+            groups += typed.group_by("method", "boat_type")
         rows += [
-            {"method": m, "tows": choice.tows, "boat_type": t} | _hull_row(group, t)
+            {"method": m, "tows": choice, "boat_type": t} | _hull_row(group, t)
             for (m, t), group in groups
         ]
     return frame_of(HullSpeed, rows).sort("method", "tows", "boat_type")

@@ -62,6 +62,12 @@ class Observed:
         return sorted(groups, key=lambda item: tuple(map(str, item[0])))
 
 
+def of_trusted(frame: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+    """Rows by `tow_id` of tows that nothing is doubted about: others compare with nothing."""
+    trusted = tows.filter(pl.col("doubts").list.len() == 0)
+    return frame.join(trusted, on="tow_id", how="semi", maintain_order="left")
+
+
 def observe(
     curves: pl.DataFrame, tows: pl.DataFrame, boats: pl.DataFrame, run_points: pl.DataFrame
 ) -> Observed:

@@ -60,9 +60,10 @@ def due_list(
 
     Returns:
         Per line `as_of`, `status`, `tow_id`, `tow_date`, `valid_until`, `declared_speed_m_s`,
-        `power_w` (a rower, there), `raced_speed_m_s` (fastest of the past year), `lowest_speed_m_s`
-        and `highest_speed_m_s` (the realistic range), `tow_speed_m_s`, `speed_reason` and
-        `beyond_curve` (that speed lies outside 85-115 % of the last one); sorted by line.
+        `power_w` (per rower, there), `raced_speed_m_s` (fastest of the past year),
+        `lowest_speed_m_s` and `highest_speed_m_s` (the realistic range), `tow_speed_m_s`,
+        `speed_reason` and `beyond_curve` (that speed lies outside 85-115 % of the last one); sorted
+        by line.
     """
     lines = (
         register.join(boats.select("fsn_no", "boat_type"), on="fsn_no", how="left")

@@ -71,7 +71,7 @@ def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.D
 
     Returns:
         The results with `tow_id` and `declared_cw_kg_m` (Cw at the declared speed) of the line that
-        counted, `speed_m_s`, `cw_kg_m`, `fatigue_factor`, `power_w` (a rower, corrected,
+        counted, `speed_m_s`, `cw_kg_m`, `fatigue_factor`, `power_w` (per rower, corrected,
         less the penalty), `rank` within the race and class, and `remark`: why there is no power
         (`not_in_register`, `no_line_that_day`, `thwart_not_given`, `speed_not_below_b`), or that
         the speed lies outside 85-115 % of the declared one, where the curve does not hold

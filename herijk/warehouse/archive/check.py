@@ -28,7 +28,7 @@ from herijk.warehouse.archive.files import (
     path_inside,
 )
 from herijk.warehouse.archive.index import ArchiveIndex, index_archive, missing_lists, strangers
-from herijk.warehouse.archive.plausibility import judge_samples
+from herijk.warehouse.archive.plausibility import judge_in_files
 from herijk.warehouse.archive.profile import STANDARD, Profiles, parse_profiles, profile_text
 from herijk.warehouse.archive.proposals import Proposal, merged, propose
 from herijk.warehouse.archive.published import read_published_registers, read_races
@@ -177,10 +177,11 @@ def _in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Iterator[Fa
             continue
         done.add(key)
         try:
-            samples = read_tow_samples(root, tow, index.profiles.for_season(tow["season"]))
+            profile = index.profiles.for_season(tow["season"])
+            samples = read_tow_samples(root, tow, profile)
             others = (_other_rate(samples, tow, index), _other_plan(samples, tow, index))
             found = [fault for fault in others if fault is not None]
-            yield from found or judge_samples(samples, tow, index.runs).faults
+            yield from found or judge_in_files(samples, tow, index.runs, root, profile).faults
         except DefectiveInputError as error:
             yield fault_from(error, tow["samples_path"], tow["tow_id"])
     for file in list_sample_files(root, index.profiles.wording.files):

@@ -1,4 +1,4 @@
-"""What a column that nobody knows can mean: by its name, by its unit, and by what stands in it.
+"""What a column that nobody knows can mean: by its name, by its unit, and by what is in it.
 
 A guess for a person to look at: `check` proposes it, and nothing is read by it.
 """

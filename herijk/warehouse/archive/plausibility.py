@@ -10,6 +10,7 @@ agreement of out and back) is measuring method and belongs to `pipeline`.
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations
+from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
@@ -20,7 +21,8 @@ from numpy.typing import NDArray
 from herijk.pipeline.arrays import BoolArray
 from herijk.pipeline.channels import SECOND_FILE_OFFSET
 from herijk.warehouse.archive.faults import DefectiveFileError, Fault, Lost
-from herijk.warehouse.archive.samples import OUTPUT_NAMES, run_starts
+from herijk.warehouse.archive.profile import SeasonProfile
+from herijk.warehouse.archive.samples import OUTPUT_NAMES, place_in_file, run_starts
 from herijk.words import say
 
 SHORTEST_RUN_RATIO: Final = 0.99
@@ -113,6 +115,38 @@ class Judged:
     faults: tuple[Fault, ...]
 
 
+def judge_in_files(
+    samples: pl.DataFrame,
+    tow: Mapping[str, Any],
+    runs: pl.DataFrame,
+    root: Path,
+    profile: SeasonProfile,
+) -> Judged:
+    """As `judge_samples`, and each fault names the file of the archive and the line in it.
+
+    The files are looked at again for that, and only where there is a fault.
+    """
+
+    def place(path: str, line: int | None) -> tuple[str, int | None]:
+        if line is None:
+            return path, None
+        row = line - FIRST_ROW
+        return place_in_file(root, tow, profile, samples["run"], path, row)
+
+    try:
+        judged = judge_samples(samples, tow, runs)
+    except DefectiveFileError as error:
+        path, line = place(error.path, error.line)
+        raise DefectiveFileError(error.reason_code, error.message, line, path) from error
+    placed = ((fault, place(fault.path, fault.line)) for fault in judged.faults)
+    faults = tuple(replace(fault, path=path, line=line) for fault, (path, line) in placed)
+    return replace(judged, faults=faults)
+
+
+FIRST_ROW: Final = 2
+"""Line of the first row of a tow's samples where nothing but a header stands above it."""
+
+
 def judge_samples(samples: pl.DataFrame, tow: Mapping[str, Any], runs: pl.DataFrame) -> Judged:
     """What of the selected runs of a tow can be used; runs that are not selected stay as they are.
 
@@ -120,6 +154,9 @@ def judge_samples(samples: pl.DataFrame, tow: Mapping[str, Any], runs: pl.DataFr
         samples: frame of `SAMPLE_SCHEMA`, as `read_tow_samples` returns it.
         tow: a row of `ArchiveIndex.tows`.
         runs: `ArchiveIndex.runs`; rows of other tows are ignored.
+
+    Returns:
+        Lines of faults are counted over the rows of the tow, the first in line `FIRST_ROW`.
 
     Raises:
         DefectiveFileError: the tow is lost: the most specific cause comes first.
@@ -207,7 +244,7 @@ def _selected_runs(
         selected.append(
             _Run(
                 row["run"],
-                int(start) - offset + 2,
+                int(start) - offset + FIRST_ROW,
                 tow["sample_rate_hz"],
                 tow["declared_speed_m_s"] * row["target_speed_ratio"],
                 row["planned_s"],

@@ -7,7 +7,7 @@ a careful one that knows lines; the fast one is trusted only where it gives the 
 
 import re
 import unicodedata
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -81,7 +81,8 @@ class _Body:
 
     Attributes:
         above: lines of the data above it.
-        first_line: line in the file of the first row.
+        header_line: line in the file of the header.
+        first_line: that of the first row.
         places: lines of the rows where they do not follow each other, else empty.
         clock: the time is written as a time of day.
     """
@@ -92,12 +93,15 @@ class _Body:
     width: int
     columns: Mapping[str, FoundColumn]
     above: int
+    header_line: int
     first_line: int
     places: Sequence[int] = ()
     clock: bool = False
 
     def line(self, row: int) -> int:
-        """Line in the file of a row."""
+        """Line in the file of a row, counted from 0; of the header where it is negative."""
+        if row < 0:
+            return self.header_line
         return self.places[row] if row < len(self.places) else self.first_line + row
 
 
@@ -128,16 +132,53 @@ def read_samples(
     """
     kind = kind_of(path)
     if kind == ".parquet":
-        raw = _from_table(_read_parquet(path, profile, max_bytes), profile)
+        raw, line_of = _from_table(_read_parquet(path, profile, max_bytes), profile), _next_line
     elif kind == ".tdms":
-        raw = _from_table(read_tdms(path, max_bytes), profile)
+        raw, line_of = _from_table(read_tdms(path, max_bytes), profile), _next_line
     else:
-        raw = _read_text(read_bytes(path, max_bytes), profile)
-    samples = _to_schema(_with_runs(raw, run))
-    _check_runs(samples["run"])
+        body = _split_header(read_bytes(path, max_bytes), profile)
+        raw, line_of = _read_text(body), body.line
+    samples = _to_schema(_with_runs(raw, run), line_of)
+    _check_runs(samples["run"], line_of)
     if "time" in raw.columns:
-        _check_time(samples["run"], raw["time"].to_numpy(), sample_rate_hz)
+        _check_time(samples["run"], raw["time"].to_numpy(), sample_rate_hz, line_of)
     return samples
+
+
+LineOf = Callable[[int], int]
+"""The line in a file of a row of samples, counted from 0; of the header where it is negative."""
+
+
+def _next_line(row: int) -> int:
+    """The line of a row where nothing but the header stands above the first."""
+    return max(row + 2, 1)
+
+
+def place_in_file(
+    root: Path, tow: Mapping[str, Any], profile: SeasonProfile, runs: pl.Series, path: str, row: int
+) -> tuple[str, int]:
+    """Return the file of a row of a tow's samples, and the line in it.
+
+    Args:
+        root: the archive.
+        tow: a row of `ArchiveIndex.tows`.
+        profile: the profile of its season.
+        runs: the run of each sample, as `read_tow_samples` returns them.
+        path: the file, or the files that are a run each.
+        row: counted over these files from 0; negative for the header.
+    """
+    in_second = runs > SECOND_FILE_OFFSET
+    own = runs.filter(in_second if path == tow["second_path"] else ~in_second).to_numpy()
+    files = path.split(PARTS)
+    file = files[0]
+    if len(files) > 1:
+        starts = run_starts(own)
+        begun = int(np.searchsorted(starts, max(row, 0), "right")) - 1
+        file, row = files[begun], row - int(starts[begun])
+    full = path_inside(root, file)
+    if kind_of(full) in {".parquet", ".tdms"}:
+        return file, _next_line(row)
+    return file, _split_header(read_bytes(full, SAMPLES_MAX_BYTES), profile).line(row)
 
 
 def check_header(path: Path, profile: SeasonProfile) -> None:
@@ -228,9 +269,8 @@ def _with_runs(raw: pl.DataFrame, run: int | None) -> pl.DataFrame:
 # Text
 
 
-def _read_text(data: bytes, profile: SeasonProfile) -> pl.DataFrame:
+def _read_text(body: _Body) -> pl.DataFrame:
     """Return the wanted columns as Float64, in SI units; an absent or empty gps is left out."""
-    body = _split_header(data, profile)
     fast = _read_fast(body)
     columns = _read_carefully(body) if fast is None else fast
     return _to_si(columns, body.columns)
@@ -271,6 +311,7 @@ def _split_header(data: bytes, profile: SeasonProfile) -> _Body:
         len(header),
         columns,
         above,
+        places[0] if places else place + 1,
         below + 1,
         places[1:],
         _is_clock(data, start, delimiter, columns.get("time")),
@@ -523,11 +564,11 @@ def _to_si(frame: pl.DataFrame, columns: Mapping[str, FoundColumn]) -> pl.DataFr
     return frame.with_columns(scaled)
 
 
-def _to_schema(raw: pl.DataFrame) -> pl.DataFrame:
+def _to_schema(raw: pl.DataFrame, line_of: LineOf) -> pl.DataFrame:
     """Return the frame of `SAMPLE_SCHEMA` from Float64 columns in SI units."""
     if raw["run"].is_nan().any():
         raw = _with_known_runs(raw)
-    _check_run_numbers(raw["run"])
+    _check_run_numbers(raw["run"], line_of)
     absent = (key for key in OUTPUT_NAMES if key not in raw.columns)
     raw = raw.with_columns(pl.lit(None, pl.Float64).alias(key) for key in absent)
     angle = pl.col("wind_angle")
@@ -554,7 +595,7 @@ def _with_known_runs(raw: pl.DataFrame) -> pl.DataFrame:
     return raw.with_columns(run, pl.when(unread).then(float("nan")).otherwise(others).name.keep())
 
 
-def _check_run_numbers(run: pl.Series) -> None:
+def _check_run_numbers(run: pl.Series, line_of: LineOf) -> None:
     known = run.is_in([float(number) for number in range(1, MOST_RUNS + 1)])
     if not known.all():
         row = int((~known).arg_max() or 0)
@@ -563,17 +604,18 @@ def _check_run_numbers(run: pl.Series) -> None:
             run=run[row],
             last=MOST_RUNS,
         )
-        said = say("Line {line}: {what}", line=row + 2, what=what)
-        raise DefectiveInputError("unknown_run", said, line=row + 2)
+        line = line_of(row)
+        said = say("Line {line}: {what}", line=line, what=what)
+        raise DefectiveInputError("unknown_run", said, line=line)
 
 
-def _check_runs(run: pl.Series) -> None:
+def _check_runs(run: pl.Series, line_of: LineOf) -> None:
     """Every run must be one piece."""
     starts = run_starts(run.to_numpy())
     numbers = run.to_numpy()[starts]
     for position, number in enumerate(numbers):
         if number in numbers[:position]:
-            line = int(starts[position]) + 2
+            line = line_of(int(starts[position]))
             what = say("run {run} begins again; its rows must stand together.", run=int(number))
             said = say("Line {line}: {what}", line=line, what=what)
             raise DefectiveInputError("split_run", said, line=line)
@@ -584,13 +626,15 @@ def run_starts(run: NDArray[np.int8]) -> NDArray[np.intp]:
     return np.flatnonzero(np.concatenate(([True], run[1:] != run[:-1])))
 
 
-def _check_time(run: pl.Series, time_s: NDArray[np.float64], rate_hz: int | None) -> None:
+def _check_time(
+    run: pl.Series, time_s: NDArray[np.float64], rate_hz: int | None, line_of: LineOf
+) -> None:
     starts = run_starts(run.to_numpy())
     ends = np.append(starts[1:], len(run))
     step = np.diff(time_s)
     step[starts[1:] - 1] = np.inf
     if (step <= 0).any():
-        line = int(np.argmax(step <= 0)) + 3
+        line = line_of(int(np.argmax(step <= 0)) + 1)
         what = say("the time does not increase within the run.")
         said = say("Line {line}: {what}", line=line, what=what)
         raise DefectiveInputError("bad_time", said, line=line)
@@ -611,4 +655,4 @@ def _check_time(run: pl.Series, time_s: NDArray[np.float64], rate_hz: int | None
                 rate=rate_hz,
                 most=TIME_TOLERANCE,
             )
-            raise DefectiveInputError("bad_time", said, line=int(start) + 2)
+            raise DefectiveInputError("bad_time", said, line=line_of(int(start)))

@@ -213,7 +213,7 @@ def _spreadsheet(data: bytes, columns: Sequence[Column]) -> Iterator[Sheet]:
 
 
 def _cells_of(grid: Any) -> list[list[str]]:
-    """Return the cells of a sheet as text; what stands in merged cells stands in each of them."""
+    """Return the cells of a sheet as text; what is in merged cells is in each of them."""
     rows = [[_as_text(cell) for cell in row] for row in grid.iter_rows()]
     top, left = grid.start or (0, 0)
     for (first_row, first), (last_row, last) in grid.merged_cell_ranges or ():

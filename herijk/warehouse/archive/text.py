@@ -179,7 +179,7 @@ def split_header(cell: str) -> tuple[str, str | None]:
 
 
 def _last_part(group: re.Match[str]) -> tuple[str, str]:
-    """Return what stands in brackets before the last comma, and behind it: `(richting, graden)`."""
+    """Return what is in brackets before the last comma, and behind it: `(richting, graden)`."""
     more, _, unit = (group[1] or group[2] or "").rpartition(",")
     return more, unit.strip()
 

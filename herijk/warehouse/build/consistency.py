@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 from herijk.pipeline import consistency
+from herijk.pipeline.consistency.observed import of_trusted
 
 if TYPE_CHECKING:
     from herijk.warehouse.build.inputs import Inputs
@@ -12,9 +13,8 @@ if TYPE_CHECKING:
 
 def consistency_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     """Are equal boats equal: the statistics of every boat type under every method."""
-    trusted = inputs["tows"].filter(pl.col("doubts").list.len() == 0)
     curves, run_points = (
-        inputs[name].join(trusted, on="tow_id", how="semi") for name in ("curves", "run_points")
+        of_trusted(inputs[name], inputs["tows"]) for name in ("curves", "run_points")
     )
     return consistency.consistency_tables(
         curves,

@@ -22,7 +22,7 @@ from herijk.warehouse.archive import (
     FileHashes,
     SeasonProfile,
     fault_from,
-    judge_samples,
+    judge_in_files,
     read_tow_samples,
 )
 from herijk.warehouse.archive.files import PARTS, hash_of_parts
@@ -130,7 +130,8 @@ def _bring_in(
     try:
         samples = None
         if losses is None or not path.exists():
-            judged = judge_samples(read_tow_samples(root, tow, profile), tow, runs)
+            whole = read_tow_samples(root, tow, profile)
+            judged = judge_in_files(whole, tow, runs, root, profile)
             samples, losses = judged.samples, [dataclasses.asdict(f) for f in judged.faults]
             _check_unchanged(root, tow, hashes)
             write_parquet(samples, path, form=LAKE_FORM)

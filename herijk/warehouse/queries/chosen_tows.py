@@ -1,4 +1,4 @@
-"""Statistics of types over other tows than the newest of each boat and crew.
+"""Which tows: all, the newest of each boat and crew, or those of some seasons; and what they say.
 
 The tables hold the newest tow of each boat and crew, and for lines and outliers all tows too. Here
 those of a connection are replaced, for that connection alone, by what the same functions make of
@@ -16,9 +16,13 @@ import polars as pl
 
 from herijk.pipeline import consistency
 from herijk.pipeline.consistency import ERAS, Observed
+from herijk.pipeline.consistency.observed import newest, of_trusted
 from herijk.pipeline.errors import MissingKnowledgeError
 
 ALL, NEWEST = "all", "newest"
+
+STATED: Final = (ALL, NEWEST)
+"""Choices that are no seasons."""
 
 BY_SEASON: Final = ("tows", "slow_tows")
 PAIRS: Final = ("season", "season_before")
@@ -37,18 +41,46 @@ def choose(db: duckdb.DuckDBPyConnection, tows: str, methods: Sequence[str]) -> 
     """
     if tows == NEWEST:
         return
-    observed = _observed(db, methods)
+    observed = chosen(_observed(db, methods), tows)
     if tows == ALL:
         made = _over_all(db, observed)
+    elif observed.table.is_empty():
+        raise MissingKnowledgeError("no tow of {} has a curve that can be compared", tows)
     else:
-        seasons = _seasons(tows)
-        own = observed.table["season"].is_in(seasons).to_numpy()
-        if not own.any():
-            raise MissingKnowledgeError("no tow of {} has a curve that can be compared", tows)
-        made = _over(observed.take(np.flatnonzero(own))) | _of_seasons(db, seasons)
+        made = _over(observed) | _of_seasons(db, _seasons(tows))
     for name, frame in made.items():
         db.register(f"made_{name}", frame)
         db.execute(f"CREATE TEMP TABLE {name} AS SELECT * FROM made_{name}")  # noqa: S608
+
+
+def chosen(observed: Observed, tows: str) -> Observed:
+    """The tows of a choice.
+
+    Raises:
+        MissingKnowledgeError: there is no such choice.
+    """
+    if tows in STATED:
+        return newest(observed) if tows == NEWEST else observed
+    own = observed.table["season"].is_in(_seasons(tows)).to_numpy()
+    return observed.take(np.flatnonzero(own))
+
+
+def rows_of(tows: str) -> pl.Expr:
+    """Which rows, with `season` and `newest`, belong to a choice of tows.
+
+    Raises:
+        MissingKnowledgeError: there is no such choice.
+    """
+    if tows == ALL:
+        return pl.lit(value=True)
+    return pl.col("newest") if tows == NEWEST else pl.col("season").is_in(_seasons(tows))
+
+
+def choices_of_row() -> pl.Expr:
+    """The choices that a row with `season` and `newest` belongs to, as a list."""
+    newest = pl.when("newest").then(pl.lit([NEWEST])).otherwise(pl.lit([], pl.List(pl.String)))
+    season = pl.concat_list(pl.col("season").cast(pl.String))
+    return pl.concat_list(pl.lit([ALL]), newest, season).alias("tows")
 
 
 def _seasons(tows: str) -> list[int]:
@@ -65,9 +97,8 @@ def _observed(db: duckdb.DuckDBPyConnection, methods: Sequence[str]) -> Observed
         db.sql(f"SELECT * FROM {name}").pl()  # noqa: S608
         for name in ("curves", "run_points", "tows", "boats")
     )
-    trusted = tows.filter(pl.col("doubts").list.len() == 0)
     own = [
-        frame.filter(pl.col("method").is_in(methods)).join(trusted, on="tow_id", how="semi")
+        of_trusted(frame.filter(pl.col("method").is_in(methods)), tows)
         for frame in (curves, run_points)
     ]
     return consistency.observe(own[0], tows, boats, own[1])
@@ -82,8 +113,10 @@ def _over(observed: Observed) -> dict[str, pl.DataFrame]:
     """Every statistic of a type, of these tows alone."""
     compared = consistency.compared_tows(observed, ERAS)
     predicted = consistency.predicted_cw(observed)
+    lines, line_points = consistency.type_lines(observed)
     return {
-        "type_lines": consistency.type_lines(observed)[0],
+        "type_lines": lines,
+        "type_line_points": line_points,
         "compared_tows": compared,
         "hull_speed": consistency.hull_speed_statistics(compared),
         "type_consistency": consistency.type_consistency(observed),

@@ -19,6 +19,7 @@ from herijk.pipeline.consistency import (
     reproducibility,
     type_homogeneity,
 )
+from herijk.pipeline.consistency.observed import of_trusted
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.recompute.recompute import recompute
@@ -26,6 +27,7 @@ from herijk.pipeline.recompute.results import Recomputed
 from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.pipeline.register.register import draft_name, draft_register
 from herijk.warehouse.intake.seasons import run_blocks, typed_tows
+from herijk.warehouse.queries.chosen_tows import chosen
 from herijk.warehouse.store.store import Store
 
 MOST_CACHED: Final = 200
@@ -108,24 +110,29 @@ class Draft:
     method: Method
     made: Recomputed
     register: pl.DataFrame
+    _tested: dict[str, pl.DataFrame] = field(default_factory=dict)
 
     @cached_property
     def observed(self) -> Observed:
         """Tows with their curves, boats and measuring errors."""
-        history = self.history
-        return observe(self.made.curves, history.tows, history.boats, self.made.run_points)
+        tows = self.history.tows
+        curves, run_points = (
+            of_trusted(frame, tows) for frame in (self.made.curves, self.made.run_points)
+        )
+        return observe(curves, tows, self.history.boats, run_points)
 
     @cached_property
     def repeat_pairs(self) -> pl.DataFrame:
         """Rows of the table `repeat_pairs`."""
-        return repeat_pairs(self.made.curves, self.history.tows)
+        return repeat_pairs(of_trusted(self.made.curves, self.history.tows), self.history.tows)
 
     @cached_property
     def reproducibility(self) -> pl.DataFrame:
         """Rows of the table `reproducibility`."""
         return reproducibility(self.repeat_pairs, self.observed)
 
-    @cached_property
-    def type_homogeneity(self) -> pl.DataFrame:
-        """Rows of the table `type_homogeneity`."""
-        return type_homogeneity(self.observed)
+    def type_homogeneity(self, tows: str) -> pl.DataFrame:
+        """Rows of the table `type_homogeneity`, of the newest of these tows."""
+        if tows not in self._tested:
+            self._tested[tows] = type_homogeneity(chosen(self.observed, tows))
+        return self._tested[tows]

@@ -12,10 +12,12 @@ import numpy as np
 import polars as pl
 
 from herijk.pipeline import curve
-from herijk.pipeline.consistency.observed import UNKNOWN_TYPE, bend_of_curve, newest
+from herijk.pipeline.consistency.compared import beside_their_type
+from herijk.pipeline.consistency.observed import UNKNOWN_TYPE, bend_of_curve
 from herijk.pipeline.curve import VALID_RATIO
 from herijk.pipeline.register.changes import register_changes, side_by_side
 from herijk.pipeline.register.register import LINE
+from herijk.warehouse.queries.chosen_tows import ALL, chosen
 from herijk.warehouse.queries.history import Draft
 
 LINE_RATIOS: Final = np.linspace(*VALID_RATIO, 13)
@@ -23,7 +25,7 @@ LINE_RATIOS: Final = np.linspace(*VALID_RATIO, 13)
 
 TYPE_COLUMNS: Final = (
     *("method", "fsn_no", "name", "boat_type", "rowers", "crew_class", "tow_id", "season"),
-    *("weight_kg", "declared_speed_m_s", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),
+    *("weight_kg", "declared_speed_m_s", "a_kg_m", "b_m_s", "cw_standard_kg_m"),
 )
 CURVE_COLUMNS: Final = (
     *("method", "tow_id", "declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m"),
@@ -95,19 +97,23 @@ class Scenario:
             .sort("season")
         )
 
-    def type_boats(self) -> pl.DataFrame:
-        """The newest tow of each boat and crew of a known type, under both methods."""
+    def type_tows(self, tows: str = ALL) -> pl.DataFrame:
+        """Tows of boats of a known type under both methods, as `compared_tows` has them.
+
+        Args:
+            tows: which; see `chosen_tows`.
+        """
         return pl.concat(
-            newest(draft.observed)
-            .table.filter(pl.col("boat_type") != UNKNOWN_TYPE)
+            beside_their_type(chosen(draft.observed, tows))
+            .filter(pl.col("boat_type") != UNKNOWN_TYPE)
             .join(self._names.drop("boat_type"), on="fsn_no", how="left", maintain_order="left")
             .select(TYPE_COLUMNS)
             for draft in (self.before, self.after)
         )
 
-    def type_homogeneity(self) -> pl.DataFrame:
-        """Rows of the table `type_homogeneity` under both methods."""
-        return pl.concat(draft.type_homogeneity for draft in (self.before, self.after))
+    def type_homogeneity(self, tows: str = ALL) -> pl.DataFrame:
+        """Rows of the table `type_homogeneity` under both methods, of the newest of these tows."""
+        return pl.concat(draft.type_homogeneity(tows) for draft in (self.before, self.after))
 
     def reproducibility(self) -> pl.DataFrame:
         """Rows of the table `reproducibility` under both methods."""

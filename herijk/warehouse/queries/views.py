@@ -4,12 +4,14 @@ Reads the database; writes and computes nothing: every number here is in a table
 """
 
 import datetime as dt
+from collections.abc import Sequence
 from types import TracebackType
 from typing import Self
 
 import polars as pl
 
 from herijk.warehouse.queries.as_of import lay_over
+from herijk.warehouse.queries.chosen_tows import choose
 from herijk.warehouse.queries.due import RETOW_CHOICE
 from herijk.warehouse.store.database import open_database
 from herijk.warehouse.store.store import Store
@@ -92,9 +94,13 @@ class Views:
             "JOIN tows AS t USING (tow_id) ORDER BY method, tow_id, run"
         )
 
-    def type_boats(self) -> pl.DataFrame:
-        """The newest tow of each boat and crew of a known type, under every method."""
-        return self.frame(_TYPE_BOATS)
+    def choose(self, tows: str, methods: Sequence[str]) -> None:
+        """From now on the statistics of types are over these tows: see `chosen_tows.choose`."""
+        choose(self._db, tows, methods)
+
+    def type_tows(self) -> pl.DataFrame:
+        """Every tow of a boat of a known type, under every method, with the boat's name."""
+        return self.frame(_TYPE_TOWS)
 
     def compared_tows(self) -> pl.DataFrame:
         """Every tow next to its type under every method, with the boat's name."""
@@ -246,14 +252,10 @@ LEFT JOIN boats AS b ON b.fsn_no = c.fsn_no
 ORDER BY c.method, c.flag, lower(b.name), c.fsn_no, t.tow_date
 """
 
-_TYPE_BOATS = """
-SELECT p.method, p.fsn_no, b.name, p.boat_type, p.rowers, p.crew_class, p.tow_id, c.season,
-       t.weight_kg, c.declared_speed_m_s, c.a_kg_m, c.b_m_s, c.b_lo_m_s, c.b_hi_m_s, c.cw_kg_m,
-       c.cw_lo_kg_m, c.cw_hi_kg_m, exp(o.value) AS cw_standard_kg_m
-FROM pooled_curves AS p JOIN curves AS c USING (method, tow_id) JOIN tows AS t USING (tow_id)
-LEFT JOIN boats AS b ON b.fsn_no = p.fsn_no
-LEFT JOIN type_outliers AS o
-       ON o.method = p.method AND o.tow_id = p.tow_id AND o.quantity = 'ln_cw_standard'
-WHERE p.pooling = 'own' AND p.boat_type != 'unknown'
-ORDER BY p.method, p.boat_type, lower(b.name), p.fsn_no, p.rowers, p.crew_class
+_TYPE_TOWS = """
+SELECT c.*, b.name, v.cw_kg_m, v.cw_lo_kg_m, v.cw_hi_kg_m
+FROM compared_tows AS c JOIN curves AS v USING (method, tow_id)
+LEFT JOIN boats AS b ON b.fsn_no = c.fsn_no
+WHERE c.boat_type != 'unknown'
+ORDER BY c.method, c.boat_type, lower(b.name), c.fsn_no, c.rowers, c.crew_class, c.tow_id
 """

@@ -16,7 +16,7 @@ from herijk.warehouse.archive import (
     FileHashes,
     fault_from,
     index_archive,
-    judge_samples,
+    judge_in_files,
     read_tow_samples,
 )
 
@@ -78,7 +78,7 @@ class Archive:
             try:
                 profile = index.profiles.for_season(tow["season"])
                 samples = read_tow_samples(self.root, tow, profile)
-                judged = judge_samples(samples, tow, index.runs)
+                judged = judge_in_files(samples, tow, index.runs, self.root, profile)
             except DefectiveInputError as error:
                 faults.append(fault_from(error, tow["samples_path"], tow["tow_id"]))
             else:

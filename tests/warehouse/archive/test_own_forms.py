@@ -259,3 +259,34 @@ def test_names_that_are_no_text_and_links_to_themselves_are_told(
     }
     assert scan.good.keys() == good_scan.good.keys()
     assert {c.reason_code for c in check_archive(archive.root).causes} >= {"unrecognised_file"}
+
+
+def line_of(archive: Archive, path: str, text: str) -> int:
+    """The line of a file in which a text stands, from 1, as an editor counts."""
+    lines = (archive.root / path).read_text("utf-8").split("\n")
+    (line,) = (number for number, line in enumerate(lines, start=1) if text in line)
+    return line
+
+
+@pytest.mark.parametrize("above", ["", "sep=;\n", "Meting van zaterdag\n\nmet mooi weer\n\n"])
+def test_lines_are_counted_from_the_top_of_the_file(archive: Archive, above: str) -> None:
+    """Titles and blank lines above a header, a second row of it, and rows that are no number."""
+    archive.replace(TOWS, ";2,10;", ";schuin;")
+    archive.replace(FIRST, HEADER, "run;log1;log2;gps;kracht;wind;windvaan\n-;m/s;m/s;m/s;N;m/s;°")
+    place = (archive.root / FIRST).read_text("utf-8").index("\n3;")
+    archive.edit(FIRST, lambda t: f"{t[: place + 3]}mistig{t[place + 4 :]}")
+    for path in (FIRST, TOWS):
+        archive.edit(path, lambda t: above + t)
+    expected = {
+        (FIRST, line_of(archive, FIRST, "mistig")),
+        (TOWS, line_of(archive, TOWS, "schuin")),
+    }
+    assert {(fault.path, fault.line) for fault in archive.scan().faults} == expected
+
+
+def test_a_fault_of_a_tow_of_several_files_names_its_file(archive: Archive) -> None:
+    runs_in_a_folder(archive)
+    path = f"{FIRST.removesuffix('.csv')}/vaart 4.csv"
+    archive.edit(path, lambda t: f"Vierde vaart\n\n{t.replace('4;2', '4;mist', 1)}")
+    (fault,) = archive.scan().faults
+    assert (fault.path, fault.line) == (path, line_of(archive, path, "mist"))

@@ -157,7 +157,7 @@
 
   function matches(names, value) {
     const wanted = chosenOf(names);
-    return wanted.length === 0 || wanted.includes(String(value));
+    return wanted.length === 0 || [value].flat().some((one) => wanted.includes(String(one)));
   }
 
   // The number in a cell, or "" where there is none.
@@ -236,10 +236,19 @@
     return frames.get(name);
   }
 
-  function shownRows(figure) {
+  function chosenRows(name, figure) {
     const follows = Object.entries(JSON.parse(figure.dataset.follows));
-    return rowsOf(figure.dataset.data).filter((row) => follows.every(([column, names]) =>
+    return rowsOf(name).filter((row) => follows.every(([column, names]) =>
       (row[column] ?? null) === null || matches(names, row[column])));
+  }
+
+  const shownRows = (figure) => chosenRows(figure.dataset.data, figure);
+
+  // What a chart shows of what the selectors say.
+  function tell(figure) {
+    if (!figure.dataset.said) return;
+    const said = chosenRows(figure.dataset.said, figure).filter((row) => row.figure === figure.dataset.figure);
+    figure.previousElementSibling.textContent = said.map((row) => row[language]).join(" ");
   }
 
   // What the selectors say, so that a chart names its tow and method, also in print.
@@ -266,6 +275,7 @@
     place.hidden = rows.length === 0;
     figure.querySelector(".picked").textContent =
       picked(figure) + (place.hidden ? `: ${window.HERIJK_WORDS.no_values}` : "");
+    tell(figure);
     tabulate(figure);
     views.get(figure)?.finalize();
     views.delete(figure);
@@ -281,7 +291,7 @@
           mark: { aria: false },
           font: "Open Sans",
           axis: { labelFontSize: 12, titleFontSize: 12, labelLimit: 200 },
-          legend: { labelFontSize: 12, titleFontSize: 12, labelLimit: 220 },
+          legend: { labelFontSize: 12, titleFontSize: 12, labelLimit: 220, titleLimit: 300 },
           header: { labelFontSize: 12, titleFontSize: 12 },
         },
       });

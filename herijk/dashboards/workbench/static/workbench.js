@@ -54,7 +54,7 @@ async function ask() {
   while (asked) {
     asked = false;
     const found = await post("answer", { base: state.source, steps: state.steps, against: byId("against").value,
-      boat: byId("boat").value });
+      boat: byId("boat").value, tows: byId("tows").value });
     if (asked) continue;
     if (found) { state.answer = found; writeAddress(); await show(); }
     const seconds = (performance.now() - since) / 1000;
@@ -237,6 +237,7 @@ byId("against").addEventListener("change", ask);
 byId("boat").addEventListener("change", ask);
 byId("tow").addEventListener("change", redrawCharts);
 byId("boat_type").addEventListener("change", redrawCharts);
+byId("tows").addEventListener("change", ask);
 all("[data-language]").forEach((button) =>
   button.addEventListener("click", () => setLanguage(button.dataset.language)));
 
@@ -247,6 +248,11 @@ fillSelect(byId("boat"), start.boats.map((b) => b.fsn_no),
 const anyType = make("option", { value: "" });
 [anyType.dataset.nl, anyType.dataset.en] = pair("all");
 byId("boat_type").append(anyType, ...start.types.map((type) => make("option", { value: type }, type)));
+byId("tows").append(...start.choices.map((value) => {
+  const option = make("option", { value }, value);
+  if (start.words[`code.${value}`]) [option.dataset.nl, option.dataset.en] = pair(`code.${value}`);
+  return option;
+}));
 fillSources();
 const linked = readAddress();
 byId("base").value = linked.base?.name ?? start.base;
