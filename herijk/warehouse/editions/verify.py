@@ -116,7 +116,6 @@ def _altered(path: Place, about: About) -> Iterator[Finding]:
             yield Finding(name, "altered", where, message)
     if "register.parquet" in present:
         yield from _codes(path, about)
-    if "register.parquet" in intact:
         yield from _sheets(path, about, intact)
 
 
@@ -147,7 +146,7 @@ def _sheets(path: Place, about: About, intact: set[str]) -> Iterator[Finding]:
 
     Those of an earlier form, with other columns, cannot be compared cell by cell.
     """
-    for file in sorted(intact & {CSV, XLSX}):
+    for file in sorted(intact & {CSV, XLSX} if "register.parquet" in intact else ()):
         try:
             stated = sheets.read_csv_cells((path / CSV).read_bytes()) if CSV in intact else [[]]
             if stated[0] != _expected_csv(path)[0]:
