@@ -134,7 +134,7 @@ def after_serve(ground: Ground) -> str | None:
     if digests(ground.data) != ground.tables:
         return "other tables"
     arguments = ground.arguments("serve")
-    page = f"http://127.0.0.1:{int(arguments[arguments.index('--port') + 1]) + 1}/site/"
+    page = f"http://127.0.0.1:{int(arguments[arguments.index('--port') + 1]) + 1}/site/index.html"
     process = subprocess.Popen(
         arguments, cwd=ROOT, start_new_session=True,
         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
