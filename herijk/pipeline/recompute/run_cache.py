@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from herijk.pipeline.blocks.batch import Batch
-from herijk.pipeline.method.definition import RunPoint, Steps, Wind, Window
+from herijk.pipeline.method.definition import RunPoint, Steps, Window
 from herijk.pipeline.steps.resistance import RunMeans, run_means
 from herijk.pipeline.steps.window import Windows, choose_windows
 
@@ -23,7 +23,7 @@ class RunCache:
     """
 
     _windows: dict[tuple[Seasons, Window], Windows] = field(default_factory=dict)
-    _means: dict[tuple[Seasons, Window, str, RunPoint, Wind], RunMeans] = field(
+    _means: dict[tuple[Seasons, Window, str, RunPoint, str, int], RunMeans] = field(
         default_factory=dict
     )
 
@@ -35,8 +35,9 @@ class RunCache:
         return self._windows[key]
 
     def means(self, batch: Batch, steps: Steps) -> RunMeans:
-        """The means of every run of a batch over its window."""
-        key = (batch.seasons, steps.window, steps.speed.source, steps.run_point, steps.wind)
+        """The means of every run of a batch over its window: coefficients are not in them yet."""
+        of_wind = (steps.wind.model, steps.wind.averaging_s)
+        key = (batch.seasons, steps.window, steps.speed.source, steps.run_point, *of_wind)
         if key not in self._means:
             self._means[key] = run_means(batch, self.windows(batch, steps).mask, steps)
         return self._means[key]

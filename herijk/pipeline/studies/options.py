@@ -53,7 +53,11 @@ CHOICES: Final = (
 
 
 def option_effects(
-    method: Method, tows: pl.DataFrame, blocks: RunBlocks, links: pl.DataFrame | None = None
+    method: Method,
+    tows: pl.DataFrame,
+    blocks: RunBlocks,
+    links: pl.DataFrame | None = None,
+    cache: RunCache | None = None,
 ) -> pl.DataFrame:
     """Spread of Cw and B over all combinations of `CHOICES`, and the effect of each choice.
 
@@ -63,6 +67,7 @@ def option_effects(
         blocks: their runs.
         links: log factors of the method, where they were estimated before: its rows of the table
             `tow_instruments`.
+        cache: what was found before of the same tows; added to.
 
     Returns:
         Sorted rows per tow and option that can matter to it: `tow_id`, `option`, `cw_effect_ratio`
@@ -72,7 +77,7 @@ def option_effects(
     """
     pairs = batches([method], tows, blocks)
     choices = [c for c in CHOICES if any(c.applies(steps) for _, (steps,) in pairs)]
-    cache = RunCache()
+    cache = RunCache() if cache is None else cache
     factors = links
     if factors is None:
         factors = log_factors([(batch, steps) for batch, (steps,) in pairs], cache)

@@ -40,13 +40,17 @@ SPEEDS: Final = {
 
 
 def option_curves(
-    method: Method, tows: pl.DataFrame, blocks: RunBlocks, links: pl.DataFrame | None = None
+    method: Method,
+    tows: pl.DataFrame,
+    blocks: RunBlocks,
+    links: pl.DataFrame | None = None,
+    cache: RunCache | None = None,
 ) -> pl.DataFrame:
     """Curves of every tow under all combinations of `TICKS` and the speeds of its season.
 
     Args:
         method: the method whose other options hold.
-        tows, blocks, links: as `options.option_effects` takes them.
+        tows, blocks, links, cache: as `options.option_effects` takes them.
 
     Returns:
         Sorted rows per tow, speed and combination: `tow_id, speed`, a column for each tick,
@@ -54,7 +58,7 @@ def option_curves(
         combinations that give no curve are left out.
     """
     pairs = batches([method], tows, blocks)
-    cache = RunCache()
+    cache = RunCache() if cache is None else cache
     factors = links
     if factors is None:
         factors = log_factors([(batch, steps) for batch, (steps,) in pairs], cache)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final
 import polars as pl
 
 from herijk.pipeline.method.definition import Method
+from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.pipeline.studies.ladder import ladder
 from herijk.pipeline.studies.options import beside_uncertainty, option_effects
 from herijk.pipeline.studies.tool_options import option_curves, tick_effects
@@ -38,19 +39,22 @@ def study_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     """The ladder from the first method to each other, and the studies of options."""
     blocks, tows, (first, *others) = blocks_of(inputs), inputs["tows"], inputs.methods
     links = {m.name: _of(m, inputs["tow_instruments"]) for m in inputs.methods}
+    cache = RunCache()
     ladders = [
-        ladder(old, new, tows, blocks, (links[old.name], links[new.name])).with_columns(
+        ladder(old, new, tows, blocks, (links[old.name], links[new.name]), cache).with_columns(
             pl.lit(old.name).alias("from_method"), pl.lit(new.name).alias("to_method")
         )
         for old, new in (_in_order(first, other) for other in others)
     ]
     ticked = {
-        m: option_curves(m, tows, blocks, links[m.name]) for m in inputs.methods if m.name in TICKED
+        m: option_curves(m, tows, blocks, links[m.name], cache)
+        for m in inputs.methods
+        if m.name in TICKED
     }
     effects = [
         *((m, TOOL, tick_effects(curves)) for m, curves in ticked.items()),
         *(
-            (m, JUDGEMENT, option_effects(m, tows, blocks, links[m.name]))
+            (m, JUDGEMENT, option_effects(m, tows, blocks, links[m.name], cache))
             for m in inputs.methods
             if m.name in JUDGED
         ),
