@@ -107,7 +107,7 @@ scale: $(DEVELOP)
 # Every named world: two hours on two cores for 20 archives each. A first look: make accuracy SEEDS=2
 SEEDS ?= 20
 PROCESSES ?= 2
-PARTS = calibration factors methods consistency season finding_2015
+PARTS = calibration factors foreign methods consistency season finding_2015
 
 accuracy: $(DEVELOP)
 	@PYTHONPATH=. $(BIN)/python -m benchmarks.accuracy.worlds --seeds $(SEEDS) --processes $(PROCESSES)

@@ -23,7 +23,7 @@ import numpy as np
 import scipy
 
 from herijk.pipeline.season_log.assumed import USUAL
-from herijk.pipeline.season_log.likelihood import LEVEL_SD
+from herijk.pipeline.season_log.likelihood import LEVEL, LEVEL_SD
 from herijk.pipeline.season_log.network import Network
 from herijk.pipeline.season_log.posterior import Fit, Problem, _own, _variance_prior, fit, solve
 from tests.pipeline.season_worlds import CLEAN, simulate
@@ -68,9 +68,16 @@ def drawn(seed: int) -> Truth:
     )
     state = np.zeros((len(own), 2))
     s = problem.settings
-    share = rng.beta(s.changed_share * s.changed_gaps, (1.0 - s.changed_share) * s.changed_gaps)
+    share, askew_share = (
+        rng.beta(mean * count, (1.0 - mean) * count)
+        for mean, count in ((s.changed_share, s.changed_gaps), (s.askew_share, s.askew_tows))
+    )
     for group in problem.groups:
         for tows in group.tow:
+            early = tows[: group.early]
+            askew = rng.random(len(early)) < askew_share
+            excess = s.askew_excess.mean + s.askew_excess.sd * rng.standard_normal(len(early))
+            noise[early, LEVEL] += askew * excess
             altered = rng.random(len(tows) - 1) < share
             for place, (first, step) in enumerate(
                 ((LEVEL_SD, s.changed_sd), (s.bend_sd, s.changed_bend_sd))
@@ -132,18 +139,20 @@ def ln_density(problem: Problem, found: Fit, place: np.ndarray) -> float:
     for group in problem.groups:
         boats, tows = group.tow.shape
         z = held.state[group.tow]
-        full = np.zeros((boats, len(group.steps), tows, 3, tows, 3))
+        full = np.zeros((boats, len(group.askew), tows, 3, tows, 3))
         for n, prior in enumerate((group.level, group.bend)):
             full += np.einsum("bki,blj,pkl->bpkilj", z[..., n], z[..., n], prior)
         for tow in range(tows):
             full[:, :, tow, :, tow, :] += own[group.tow[:, tow]][:, None]
+            full[:, :, tow, LEVEL, tow, LEVEL] += group.excess_variance * group.askew[:, tow]
         full = full.reshape(boats, -1, 3 * tows, 3 * tows)
         root = np.linalg.cholesky(full)
-        off = residual[group.tow].reshape(boats, 1, 3 * tows, 1)
-        white = np.linalg.solve(root, np.broadcast_to(off, (*full.shape[:3], 1)))[..., 0]
+        off = np.repeat(residual[group.tow][:, None], len(group.askew), axis=1)
+        off[..., LEVEL] -= group.excess
+        white = np.linalg.solve(root, off.reshape(*full.shape[:3], 1))[..., 0]
         each = -0.5 * (white**2).sum(-1)
         each -= np.log(np.diagonal(root, axis1=-2, axis2=-1)).sum(-1)
-        total += scipy.special.logsumexp(each + group.prior(found.state.share), axis=1).sum()
+        total += scipy.special.logsumexp(each + group.prior(found.state.shares), axis=1).sum()
     return float(total)
 
 

@@ -60,7 +60,7 @@ def score(world: str, tables: Mapping[str, pl.DataFrame], truth: pl.DataFrame) -
     ]
     return [
         *records,
-        *_factors(tables["log_factors"], truth, doubted),
+        *_factors(tables["log_factors"], truth, doubted, _not_told_apart(tables)),
         _alarms(truth, faulty, seasons_said(tables, NAMED)),
         *_equal_boats(tables),
     ]
@@ -85,7 +85,9 @@ def _sums(tows: pl.DataFrame, cw: str, lo: str, hi: str) -> Record:
     return dict(zip(SUMS, map(float, numbers), strict=True))
 
 
-def _factors(factors: pl.DataFrame, truth: pl.DataFrame, doubted: set[int]) -> Iterator[Record]:
+def _factors(
+    factors: pl.DataFrame, truth: pl.DataFrame, doubted: set[int], not_told_apart: set[int]
+) -> Iterator[Record]:
     """Season log factors in the seasons without dGPS, against the mean of what the days had."""
     days = truth.group_by("season").agg(
         pl.col("log_factor_of_day").log().mean().exp().alias("true")
@@ -95,7 +97,7 @@ def _factors(factors: pl.DataFrame, truth: pl.DataFrame, doubted: set[int]) -> I
     error = held["factor"] / held["true"] - 1.0
     covered = held["true"].is_between(held["lo"], held["hi"]).fill_null(False)
     half = ((held["hi"] - held["lo"]) / (2.0 * held["factor"])).drop_nulls()
-    flagged = held["season"].is_in(doubted)
+    flagged = held["season"].is_in(doubted | not_told_apart)
     sums = (error.sum(), (error**2).sum(), covered.sum(), half.sum(), flagged.sum())
     silent = (~covered & ~flagged).sum()
     numbers = map(float, (held.height, half.len(), *sums, silent))
@@ -112,6 +114,14 @@ def seasons_said(tables: Mapping[str, pl.DataFrame], verdicts: tuple[str, ...]) 
         said = pl.col("verdict").is_in(verdicts)
         return set(tables["season_diagnosis"].filter(said)["season"])
     return set(tables["season_steps"].filter(pl.col("cause") == "force")["season"])
+
+
+def _not_told_apart(tables: Mapping[str, pl.DataFrame]) -> set[int]:
+    """Seasons of which the tables say that a fault of the load cell would pass for the log."""
+    if "season_diagnosis" not in tables:
+        return set()
+    said = (pl.col("instrument") == "force_scale") & (pl.col("verdict") == "would not show")
+    return set(tables["season_diagnosis"].filter(said)["season"])
 
 
 def _alarms(truth: pl.DataFrame, faulty: set[int], alarmed: set[int]) -> Record:

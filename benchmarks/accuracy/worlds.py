@@ -32,11 +32,14 @@ import numpy as np
 import polars as pl
 
 from benchmarks.accuracy.score import EQUAL_BOATS, Record, score, table
+from herijk.pipeline.assessment.plausibility import implausible
+from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.consistency import observe, type_homogeneity
 from herijk.pipeline.method.definition import shipped_method
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import WORLDS, simulate_world, world_settings
 from herijk.simulate.archive_writer import write_simulated_archive
+from herijk.warehouse.build.plausible import with_doubts
 from herijk.warehouse.build.version import code_version
 from herijk.warehouse.store.code import code_hash
 from tests.worlds import Measured, measure, truth_rows
@@ -113,17 +116,23 @@ def measured(world: str, seed: int, files: bool) -> list[Record]:
 
 
 def _by_blocks(world: str, seed: int) -> tuple[dict[str, pl.DataFrame], pl.DataFrame]:
-    archive = _simulated(world, seed)
-    made = recompute(shipped_method(METHOD), archive.tows, archive.blocks, with_bands=False)
+    archive = simulated(world, seed)
+    return recomputed(archive, WORLDS[world].options.get("spread") == 0.0), archive.truth
+
+
+def recomputed(archive: Measured, equal_boats: bool) -> dict[str, pl.DataFrame]:
+    """Tables of an archive as a rebuild makes them; where asked, whether equal boats are alike."""
+    tows = with_doubts(archive.tows, implausible(Batch.of(archive.tows, archive.blocks)))
+    made = recompute(shipped_method(METHOD), tows, archive.blocks, with_bands=False)
     tables = {name: getattr(made, name) for name in TABLES if hasattr(made, name)}
-    if WORLDS[world].options.get("spread") == 0.0:
+    if equal_boats:
         boats = archive.tows.select("fsn_no", "boat_type").unique()
         seen = observe(made.curves, archive.tows, boats, made.run_points)
         tables[EQUAL_BOATS] = type_homogeneity(seen)
-    return tables, archive.truth
+    return tables
 
 
-def _simulated(world: str, seed: int) -> Measured:
+def simulated(world: str, seed: int) -> Measured:
     """Simulated once for every version of the simulator; sums are kept with seven digits."""
     version = code_hash("herijk.simulate.worlds", "herijk.pipeline.blocks.sums")
     kept = FOLDER / "blocks" / version / f"{world}-{seed}.pickle"

@@ -88,9 +88,10 @@ class SeasonDiagnosis(dy.Schema):
         "1", "what is seen against what is assumed, in standard deviations", nullable=True
     )
     verdict = column.text(
-        "sound, fault (likelier than not), cannot be told (10 to 50 %), alarm (4 standard "
-        "deviations apart); of a log's factor estimated or not determined",
-        regex="^(sound|fault|cannot be told|alarm|estimated|not determined)$",
+        "sound, would not show (one of the usual size would not be found), fault (likelier than "
+        "not), cannot be told (10 to 50 %), alarm (4 standard deviations apart); of a log's factor "
+        "estimated or not determined",
+        regex="^(sound|would not show|fault|cannot be told|alarm|estimated|not determined)$",
     )
     alarm = dy.Bool(description="a person should look: fault, cannot be told, or alarm")
     first_tow = column.text("likeliest first tow after a log changed", nullable=True)
@@ -110,6 +111,9 @@ class TowInstruments(dy.Schema):
     force_factor = column.number("1", "force read / true force; 1 where no fault was found")
     force_zero_n = column.number("N", "force read without any; 0 where no fault was found")
     bend = column.number("1", "q = r / (1 - r) of the boat, r = (v/B)^2 at its usual speed")
+    askew_ratio = column.number(
+        "1", "of Cw, by being pulled askew: root mean square; 0 where that is unlikely", min=0
+    )
     ln_sd = column.number("1", "their standard deviation in ln Cw / the elasticity 2 + 2 q", min=0)
     dof = column.number("1", "its degrees of freedom", nullable=True)
 

@@ -170,7 +170,7 @@ class RunStatistics(dy.Schema):
     """What the tool of 2014 showed of a run, per channel, over means of a second."""
 
     tow_id = column.tow_id(primary_key=True)
-    run = dy.Int8(primary_key=True, description="run", min=1, max=16)
+    run = column.run(primary_key=True)
     channel = column.text("log1, log2, gps, force, wind or cw", primary_key=True)
     mean = column.number("as channel", "mean")
     sd = column.number("as channel", "standard deviation of the means of a second", min=0)

@@ -641,12 +641,13 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "season_diagnosis_note": (
         "Wat er in een seizoen mis kan zijn met log, GPS, krachtmeter, windmeter of temperatuur. "
         "Fout: waarschijnlijker wel dan niet. Niet te zeggen: 10 tot 50 %. Alarm: 4 "
-        "standaardafwijkingen van wat gewoon is. Grootte: logaritme van een factor (0,04 is "
+        "standaardafwijkingen van wat gewoon is. Zou niet opvallen: een gewone fout zou voor iets "
+        "anders worden aangezien. Grootte: logaritme van een factor (0,04 is "
         "4 %), of in N. Wat niet in de tabel staat, is in orde.",
         "What may be wrong in a season with log, GPS, load cell, anemometer or temperature. Fault: "
         "likelier than not. Cannot be told: 10 to 50 %. Alarm: 4 standard deviations from what is "
-        "usual. Size: logarithm of a factor (0.04 is 4 %), or in N. What is not in the table is "
-        "sound.",
+        "usual. Would not show: a fault of the usual size would be taken for something else. "
+        "Size: logarithm of a factor (0.04 is 4 %), or in N. What is not in the table is sound.",
     ),
     "eras": ("Wijkt een tijdvak af?", "Does an era differ?"),
     "eras_note": (

@@ -8,6 +8,7 @@ import re
 
 import pytest
 
+from herijk.pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
 from herijk.tables.schemas import TABLES
 
 PROMISED = {
@@ -65,3 +66,8 @@ def test_a_unit_in_a_name_is_the_declared_unit():
         if ending and declared not in (None, "1", UNITS[ending[1]]):
             wrong.append(f"{name} is in {declared}")
     assert wrong == []
+
+
+def test_every_run_that_a_plan_or_a_second_file_can_have_fits_every_table():
+    most = {name: t.columns()["run"].max for name, t in TABLES.items() if "run" in t.columns()}
+    assert set(most.values()) == {SECOND_FILE_OFFSET + MOST_RUNS}, most

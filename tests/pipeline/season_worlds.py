@@ -176,6 +176,7 @@ def register(world):
         pl.lit(200.0).alias("random_dof"),
         pl.lit(0.0).alias("misfit_ratio"),
         pl.lit(None, pl.Float64).alias("wind_ln_sd"),
+        pl.lit(None, pl.Float64).alias("askew_ratio"),
         pl.lit(1.0).alias("speed_ratio"),
         pl.lit(0.025).alias("air_ratio"),
         pl.lit(0.05).alias("air_per_coefficient"),

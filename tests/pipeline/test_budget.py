@@ -6,7 +6,7 @@ import pytest
 from herijk.pipeline.method.definition import shipped_method
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.pipeline.recompute.results import Recomputed
-from herijk.simulate import WorldSettings
+from herijk.simulate import WorldSettings, world_settings
 from tests.worlds import measure
 
 
@@ -49,3 +49,15 @@ def test_the_interval_is_widest_at_an_end(points):
     assert wide.height > 0
     ends = wide.select(pl.max_horizontal("0.85", "1.15")).to_series()
     assert (ends >= wide.select(pl.max_horizontal(pl.exclude("tow_id"))).to_series()).all()
+
+
+def test_two_files_with_logs_that_differ_widen_the_interval_where_nothing_calibrates_them():
+    world = measure(
+        world_settings("two-files", seasons=(2010, 2014), tows_per_season=8, rate_hz=10, seed=3)
+    )
+    made = recompute(shipped_method("rebased"), world.tows, world.blocks, with_bands=False)
+    by_log = made.uncertainty_budget.filter(component="calibration").join(world.truth, on="tow_id")
+    two, old = pl.col("second_log_factor").is_not_null(), pl.col("season") == 2010
+    u = [by_log.filter(two == files, old)["u_ratio"].mean() for files in (True, False)]
+    assert u[0] > u[1] + 0.01
+    assert by_log.filter(~old)["u_ratio"].max() < u[0]

@@ -274,17 +274,41 @@ def test_a_log_factor_does_not_depend_on_whether_the_wind_is_taken_off(measured)
     assert without == pytest.approx(with_wind, abs=0.0015)
 
 
-def test_wind_that_was_not_measured_is_said_and_in_the_budget():
+def three_tows_without(*channels):
+    """Tows and blocks of one season in which channels were not measured."""
     settings = WorldSettings((2015,), 3, 20, 11)
     world = simulate_world(settings)
     tows, frames = tow_rows(world), []
     for tow in world.tows:
-        no_wind = simulate_tow(world, tow)[0].with_columns(
-            pl.lit(None, pl.Float32).alias(name) for name in ("wind_speed_m_s", "wind_angle_deg")
-        )
-        sums = block_sums(no_wind, settings.rate_hz)
+        absent = (pl.lit(None, pl.Float32).alias(name) for name in channels)
+        sums = block_sums(simulate_tow(world, tow)[0].with_columns(absent), settings.rate_hz)
         frames.append(sums.select(pl.lit(tow.tow_id).alias("tow_id"), pl.all()))
-    blocks = stack_blocks(pl.concat(frames), run_rows(tows))
+    return tows, stack_blocks(pl.concat(frames), run_rows(tows))
+
+
+def test_without_log_2_log_1_is_used_alone():
+    tows, blocks = three_tows_without("log2_m_s")
+    said = tows.with_columns(log2_measured=pl.lit(False))
+    alone, mean = (
+        recompute(method(speed=f'{{ source = "{source}", correction = "none" }}'), said, blocks)
+        for source in ("log1", "mean")
+    )
+    assert alone.curves["cw_kg_m"].null_count() == 0
+    assert mean.curves["cw_kg_m"].to_list() == pytest.approx(alone.curves["cw_kg_m"].to_list())
+
+
+def test_without_gps_a_method_that_calibrates_on_it_has_no_curve():
+    tows, blocks = three_tows_without("gps_m_s")
+    by_gps, by_log = (
+        recompute(method(calibration=f'{{ rule = "{rule}" }}'), tows, blocks).curves
+        for rule in ("gps_per_tow", "none")
+    )
+    assert by_gps["cw_kg_m"].null_count() == tows.height
+    assert by_log["cw_kg_m"].null_count() == 0
+
+
+def test_wind_that_was_not_measured_is_said_and_in_the_budget():
+    tows, blocks = three_tows_without("wind_speed_m_s", "wind_angle_deg")
     said = tows.with_columns(wind_measured=pl.lit(False))
     found = recompute(method(wind='{ model = "oblique" }'), said, blocks)
     points = found.run_points.drop_nulls("cw_kg_m")

@@ -307,6 +307,31 @@ def test_a_fault_of_the_load_cell_is_found_beside_dgps_and_corrected():
     assert corrected.height == found.tows.filter(pl.col("season") == 2016).height
 
 
+def test_a_tow_pulled_askew_is_told_from_an_altered_boat():
+    straight = simulate(CLEAN, 4).tows
+    early = straight.filter(pl.col("season") < ANCHORED_FROM)["tow_id"]
+    hit = pl.col("tow_id").is_in(early.gather_every(6).to_list())
+    found = estimate_season_factors(
+        straight.with_columns(pl.col("ln_cw") + pl.when(hit).then(0.08).otherwise(0.0))
+    )
+    before = estimate_season_factors(straight).best.select("tow_id", straight="ln_cw")
+    moved = (pl.col("ln_cw") - pl.col("straight")).abs()
+    tows = found.best.join(before, on="tow_id").with_columns(moved=moved)
+    tows = tows.join(found.instruments.select("tow_id", "askew_ratio"), on="tow_id")
+    assert tows.filter(hit)["moved"].median() < 0.01
+    assert tows.filter(hit)["askew_ratio"].median() == pytest.approx(0.08, abs=0.02)
+    assert (tows.filter(~hit)["askew_ratio"] == 0.0).mean() > 0.8
+
+
+def test_where_logs_alone_tell_a_load_cell_a_little_off_would_not_show():
+    found = estimate_season_factors(simulate(replace(CLEAN, force_step=(2010, 0.04)), 1).tows)
+    rows = found.diagnosis.select("season", "instrument", "verdict", "confused_with").rows()
+    told = {row[:2]: row[2:] for row in rows}
+    assert told[2010, "force_scale"] == ("would not show", "log_scale 2010")
+    assert "force_scale 2010" in told[2010, "log_scale"][1]
+    assert told[2016, "force_scale"][0] == "sound"
+
+
 def test_what_a_best_estimate_rests_on_sums_to_one_and_needs_no_other_boat():
     found = estimate_season_factors(simulate(HARD, 4).tows)
     total = found.weights.group_by("tow_id").agg(pl.col("weight").sum())["weight"]

@@ -236,6 +236,8 @@ def _of_force(seen: Seen) -> list[Shift]:
     for group in _groups(tows, _GROUPS):
         mine = np.isin(np.arange(tows.height), group[2]).astype(np.float64)
         columns.append(("force", group, np.concatenate([mine, np.zeros(tows.height)])))
+        if group[0] == "archive":  # a shape of hulls looks so; load cells are not off for ever
+            continue
         zero = mine * per_newton
         columns.append(("zero", group, np.concatenate([zero, -(2.0 + USUAL_BEND) * zero])))
     return _named(tows, observed, columns)

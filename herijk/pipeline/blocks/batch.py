@@ -6,6 +6,7 @@ tow spread over its runs. No formula of the method.
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Final
 
 import numpy as np
 import polars as pl
@@ -13,6 +14,9 @@ import polars as pl
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.pipeline.channels import SECOND_FILE_OFFSET
+
+DOUBTED_SPEED: Final = "speed_not_plausible"
+"""Doubt that costs a tow nothing but a look."""
 
 
 @dataclass(frozen=True)
@@ -64,10 +68,14 @@ class Batch:
 
     @property
     def trusted(self) -> BoolArray:
-        """Tows that the rest of the archive does not rule out, shape (tows,)."""
+        """Tows that the rest of the archive does not rule out, shape (tows,).
+
+        A speed that is off counts: it may be the log's, which only the tows it is off in can tell.
+        """
         if "doubts" not in self.tows.columns:
             return np.ones(self.size, dtype=bool)
-        return (self.tows["doubts"].list.len() == 0).to_numpy()
+        others = pl.col("doubts").list.set_difference(pl.lit([DOUBTED_SPEED]))
+        return self.tows.select(others.list.len() == 0).to_series().to_numpy()
 
     @property
     def direction(self) -> IntArray:

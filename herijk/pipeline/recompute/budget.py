@@ -83,6 +83,26 @@ def _departure(o: Outcome, speed_ratios: Sequence[float]) -> Departure:
     )
 
 
+def files_log_sd(o: Outcome) -> FloatArray:
+    """Standard deviation of a combined tow's mean ln log factor, by how its files differ; (tows,).
+
+    Each file has a log of its own. What two of them differ by says how far their mean may be off:
+    half as far. Pooled over the season's combined tows; 0 for others, and where each is calibrated.
+    """
+    ratio, used, _ = _residuals(o)
+    second = o.batch.by_tow(o.batch.in_second_file.astype(np.float64)) > 0
+    files = [used & ~second, used & second]
+    combined = files[0].any(axis=1) & files[1].any(axis=1) & ~o.calibrated
+    of_first, of_second = (
+        np.where(mine, ratio, 0.0).sum(axis=1) / np.maximum(mine.sum(axis=1), 1) for mine in files
+    )
+    r = np.clip(o.free.s_s2_m2 * o.batch.of_tow("declared_speed_m_s") ** 2, -1.0, MOST_BENT)
+    apart = np.where(combined, of_second - of_first, 0.0) * (1.0 - r) / 2.0
+    season = np.unique(o.batch.of_tow("season"), return_inverse=True)[1]
+    square = np.bincount(season, apart**2) / np.maximum(np.bincount(season, combined), 1)
+    return np.where(combined, 0.5 * np.sqrt(square[season]), 0.0)
+
+
 def run_point_ratio(o: Outcome) -> FloatArray:
     """Relative uncertainty of each run point from within the runs of its season, shape (runs,)."""
     season = o.batch.of_tow("season").astype(np.int64)[o.batch.tow]
@@ -244,9 +264,10 @@ def _terms_of_tows(o: Outcome, found: SeasonFactors | None, scatter: curve.Scatt
         pl.Series("random_dof", scatter.dof),
         pl.Series("bend", bend),
         pl.Series("calibrated", o.calibrated),
+        pl.Series("askew_ratio", o.estimated.askew_ratio).fill_nan(None),
         pl.Series("log_sd", np.where(estimated, o.estimated.ln_sd, 0.0)),
         pl.Series("log_dof", np.where(estimated, o.estimated.dof, np.inf)),
-        pl.Series("tow_log_sd", np.where(o.calibrated, 0.0, _tow_log_sd(o, found))),
+        pl.Series("tow_log_sd", _tow_log_sd(o, found)),
         pl.Series("net_air_kg_m", net_air),
         pl.Series("wind_ln_sd", o.wind_ln_sd).fill_nan(None),
         pl.Series("air_per_coefficient_kg_m", per_coefficient),
@@ -277,19 +298,21 @@ def _median_bend(o: Outcome) -> float:
 
 
 def _tow_log_sd(o: Outcome, estimated: SeasonFactors | None) -> FloatArray:
-    """Standard deviation of ln of the log factor from tow to tow, by era."""
+    """Standard deviation of ln of the log factor from tow to tow, by era; 0 where calibrated."""
     if estimated is None:
         return np.zeros(o.batch.size)
     season = o.batch.of_tow("season")
     log_sd = np.zeros(o.batch.size)
     for first, sd in sorted(estimated.tow_log_sd.items()):
         log_sd = np.where(season >= first, sd, log_sd)
-    return log_sd
+    return np.where(o.calibrated, 0.0, np.hypot(log_sd, files_log_sd(o)))
 
 
 def _assumed(o: Outcome, estimated: SeasonFactors | None) -> Assumed:
     """What is assumed, or shown by repeat tows: of Cw at the declared speed, whatever is asked."""
-    assumed = Assumed() if estimated is None else Assumed().beside_repeats(estimated.tow_sd)
+    assumed = Assumed()
+    if estimated is not None:
+        assumed = assumed.beside_repeats(estimated.tow_sd, estimated.calibration_sd)
     if o.steps.wind.coefficients == "archive":
         assumed = replace(assumed, wind_coefficient=o.coefficient_sd)
     return assumed

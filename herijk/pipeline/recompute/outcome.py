@@ -30,6 +30,7 @@ class TowFactor:
             of freedom.
         force_factor, force_zero_n: of the load cell, where one was found faulty; else 1 and 0.
         bend: q of the boat at its usual speed, by all that is known of it.
+        askew_ratio: what being pulled askew may have added to Cw.
     """
 
     factor: FloatArray
@@ -38,6 +39,7 @@ class TowFactor:
     force_factor: FloatArray
     force_zero_n: FloatArray
     bend: FloatArray
+    askew_ratio: FloatArray
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from herijk.pipeline import curve
 from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.method.definition import Steps, Wind
-from herijk.pipeline.recompute.budget import force_uncertainty, pooled_scatter
+from herijk.pipeline.recompute.budget import files_log_sd, force_uncertainty, pooled_scatter
 from herijk.pipeline.recompute.outcome import Outcome, TowFactor
 from herijk.pipeline.season_log import (
     GROUP,
@@ -85,10 +85,14 @@ def factor_of_tows(batch: Batch, steps: Steps, factors: pl.DataFrame | None) -> 
     """
     if factors is None:
         nothing, none, one = (np.full(batch.size, x) for x in (np.nan, 0.0, 1.0))
-        return TowFactor(nothing, nothing, nothing, one, none, nothing)
-    corrections = batch.tows.select("tow_id", pl.lit(steps.speed.source).alias("log")).join(
+        return TowFactor(nothing, nothing, nothing, one, none, nothing, nothing)
+    season, part, log = log_group(steps)
+    own = batch.tows.select("tow_id", season, part.alias("part"), log).join(
         factors, on=["tow_id", "log"], how="left", maintain_order="left"
     )
+    # A tow that takes no part in the estimate had the instruments of its season all the same.
+    of_season = pl.col("factor", "force_factor", "force_zero_n", "ln_sd", "dof")
+    corrections = own.with_columns(of_season.fill_null(of_season.mean().over("season", "part")))
     if not is_estimated(steps):
         corrections = corrections.with_columns(pl.lit(None, pl.Float64).alias("factor"))
     corrections = corrections.with_columns(
@@ -109,7 +113,9 @@ def tow_instruments(estimated: SeasonFactors) -> pl.DataFrame:
         .select("tow_id", "season", part="other_part", log="other_log")
         .join(other_log_factors(estimated).select(*GROUP, "factor", "ln_sd", "dof"), on=GROUP)
     )
-    shared = estimated.instruments.select("tow_id", "force_factor", "force_zero_n", "bend")
+    shared = estimated.instruments.select(
+        "tow_id", "force_factor", "force_zero_n", "bend", "askew_ratio"
+    )
     return pl.concat(
         [
             estimated.instruments.drop("others_ln_ratio"),
@@ -139,15 +145,20 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
     safe, safe_r = np.where(sound, cw, 1.0), np.where(sound, r, 0.0)
     calibrated = steps.calibration.rule == GPS
     gps, gps_sd, has_gps = _gps_ratio(o)
+    files_sd, q = files_log_sd(o), safe_r / (1.0 - safe_r)
+    by_log = (2.0 + 2.0 * q, 2.0 * q * (1.0 + q))
     numbers = {
         "ln_cw": np.where(sound, np.log(safe), np.nan),
-        "ln_cw_sd": np.where(sure, np.sqrt(errors.c0_variance_kg2_m2) / safe, 1.0),
-        "q": safe_r / (1.0 - safe_r),
-        "q_sd": np.where(sure, np.sqrt(errors.q_variance), 1.0),
-        "ln_cw_q_cov": np.where(sure, errors.c0_q_covariance_kg_m / safe, 0.0),
+        "ln_cw_sd": np.hypot(
+            np.where(sure, np.sqrt(errors.c0_variance_kg2_m2) / safe, 1.0), by_log[0] * files_sd
+        ),
+        "q": q,
+        "q_sd": np.hypot(np.where(sure, np.sqrt(errors.q_variance), 1.0), by_log[1] * files_sd),
+        "ln_cw_q_cov": np.where(sure, errors.c0_q_covariance_kg_m / safe, 0.0)
+        + by_log[0] * by_log[1] * files_sd**2,
         "other_ln_ratio": _other_ln_ratio(o),
         "gps_ln_ratio": np.where(has_gps & (not calibrated), gps, np.nan),
-        "gps_sd": np.where(has_gps & (not calibrated), gps_sd, np.nan),
+        "gps_sd": np.where(has_gps & (not calibrated), np.hypot(gps_sd, files_sd), np.nan),
     }
     names = ("tow_id", *LINE, "altered", "declared_speed_m_s")
     return batch.tows.select(

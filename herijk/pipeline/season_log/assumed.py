@@ -21,9 +21,11 @@ class Settings:
         log_sd: ln factor of a log of which nothing is known: the worst log was 6 % wrong.
         ageing_per_year: change of ln Cw per year; half a per cent has been seen.
         weight_elasticity, length_elasticity: dlnCw / dln of the empty boat's weight, of its length.
-        tow_sd, bend_sd_tow, gps_sd, tow_log_sd: between tows, each with `spread`: ln Cw beyond its
-            random part, the same of the bend, ln(GPS / log) beyond its given uncertainty, and the
-            ln factor of the log. `spread` is of the logarithm of a variance.
+        tow_sd, bend_sd_tow, gps_sd, tow_log_sd, calibration_sd: between tows, each with `spread`:
+            ln Cw beyond its random part, the same of the bend, ln(GPS / log) beyond its given
+            uncertainty, the ln factor of the log, and that of a log calibrated on dGPS: by the
+            calibration itself and by a stream that changes meanwhile. `spread` is of the logarithm
+            of a variance: what is said here counts as one repeat tow.
         season_spread: of the logarithm of a season's variances, against those of the archive.
         bend_sd, type_bend_sd: bend of boats about that of their type, of a type about its pooled
             value.
@@ -34,6 +36,9 @@ class Settings:
             report.
         changed_share: of gaps between two tows with such an alteration, as `changed_gaps` gaps
             would show it.
+        straight_from: first season in which steering straight was aided (presentation 2015).
+        askew_excess: of ln Cw of a tow that was pulled askew before: 5 to 10 % (presentation 2015).
+        askew_share: of these tows, as `askew_tows` tows would show it.
         gps_season_sd: a season's mean ln(GPS / log) that does not average out.
         gps_noise_m_s: sideways noise of a fix; the length of a noisy velocity is too long by up to
             noise^2 / (2 v^2). How much of that a receiver smooths away is unknown: half is taken.
@@ -54,11 +59,12 @@ class Settings:
     ageing_per_year: Prior = Prior(0.0, 0.005)
     weight_elasticity: Prior = Prior(0.4, 0.4)
     length_elasticity: Prior = Prior(0.0, 1.0)
-    tow_sd: float = 0.008
+    tow_sd: float = 0.0065
     bend_sd_tow: float = 0.01
     gps_sd: float = 0.008
     tow_log_sd: float = 0.004
-    spread: float = 1.2
+    calibration_sd: float = 0.0036
+    spread: float = 1.5
     season_spread: float = 0.3
     bend_sd: float = 0.08
     type_bend_sd: float = 0.15
@@ -67,6 +73,10 @@ class Settings:
     changed_bend_sd: float = 0.02
     changed_share: float = 0.08
     changed_gaps: float = 20.0
+    straight_from: int = 2014
+    askew_excess: Prior = Prior(0.075, 0.03)
+    askew_share: float = 0.05
+    askew_tows: float = 20.0
     gps_season_sd: float = 0.003
     gps_noise_m_s: float = 0.1
     force_sd: float = 0.002

@@ -24,10 +24,13 @@ FOUND: Final = 0.5
 POSSIBLE: Final = 0.1
 """One of this probability cannot be told."""
 ALARM_SD: Final = 4.0
+USUAL_SIZES: Final = 2.0
+"""Faults beyond so many standard deviations of their prior are not usual."""
 FAULT: Final = "fault"
 ALARM: Final = "alarm"
 SOUND: Final = "sound"
 CANNOT_BE_TOLD: Final = "cannot be told"
+WOULD_NOT_SHOW: Final = "would not show"
 NOT_DETERMINED: Final = "not determined"
 FORCES: Final = (FORCE, ZERO, ZERO_DRIFT)
 _VERDICT: Final = ("season", "part", "instrument", "verdict")
@@ -43,8 +46,10 @@ def season_diagnosis(problem: Problem, posterior: Posterior, network: Network) -
         Rows of `DIAGNOSIS_SCHEMA`. `estimate` with its 95 % interval is the logarithm of a factor,
         or newtons; `p_fault` the probability that there is such a fault, null for what there always
         is; `distance_sd` how far what is seen lies from what is assumed, in standard deviations;
-        `verdict` is `sound`, `cannot be told`, `fault` or, for the factor of a log, `estimated` or
-        `not determined`; a distance of 4 is an `alarm`. `alarm`: a person should look.
+        `verdict` is `sound`, `would not show` (a fault of the usual size would most likely not be
+        found: something else would be taken for it), `cannot be told`, `fault` or, for the factor
+        of a log, `estimated` or `not determined`; a distance of 4 is an `alarm`. `alarm`: a person
+        should look.
     """
     keys: dict[tuple[int, int, str], list[int]] = {}
     for column, place in enumerate(posterior.places):
@@ -67,7 +72,8 @@ def season_steps(
         Rows of `STEP_SCHEMA`: `level_step`, what log and load cell together do to ln Cw, and
         `force_step`, the part of the load cell, with standard deviations; `cause` is `force` where
         a fault of the load cell is likelier than not, `not told` where one cannot be told or the
-        season is not determined, `log` where the level differs by more than twice its standard
+        season is not determined, or where a load cell fault would not show and one no larger than
+        usual could be the whole step; `log` where the level differs by more than twice its standard
         deviation, else `none`.
     """
     names = np.array([problem.unknowns[i].name for i in posterior.places])
@@ -84,6 +90,8 @@ def season_steps(
         season = int(str(key[0]))
         of_force = {verdicts.get((season, 0, name)) for name in FORCES}
         lost = verdicts.get((season, int(str(key[1])), LOG)) == NOT_DETERMINED
+        hidden = verdicts.get((season, 0, FORCE)) == WOULD_NOT_SHOW
+        lost |= hidden and 2.0 * step_sd < abs(step) < USUAL_SIZES * problem.settings.force_fault_sd
         rows.append(
             dict(zip(GROUP, key, strict=True))
             | {
@@ -129,7 +137,7 @@ def _row(
     half = float(scipy.special.ndtri(0.5 * (1.0 + LEVEL))) * np.sqrt(max(variance, 0.0))
     chance = min(float(posterior.chance[faults].sum()), 1.0) if faults else None
     distance = _distance(problem, posterior, columns)
-    verdict = _verdict(network, key, chance, distance)
+    verdict = _verdict(network, key, chance, distance, bool(posterior.shows[faults].any()))
     return {
         "season": season,
         "part": part,
@@ -144,7 +152,7 @@ def _row(
         "alarm": verdict in (FAULT, ALARM, CANNOT_BE_TOLD),
         "first_tow": _first_tow(problem, posterior, network, faults, chance),
         "rests_on": _rests_on(network, season),
-        "confused_with": _confused_with(problem, posterior, faults),
+        "confused_with": _confused_with(problem, posterior, columns),
     }
 
 
@@ -164,6 +172,7 @@ def _verdict(
     key: tuple[int, int, str],
     chance: float | None,
     distance: float | None,
+    shows: bool,
 ) -> str:
     season, part, name = key
     if name == LOG:
@@ -173,7 +182,11 @@ def _verdict(
         return FAULT
     if distance is not None and abs(distance) >= ALARM_SD:
         return ALARM
-    return CANNOT_BE_TOLD if chance is not None and chance >= POSSIBLE else SOUND
+    if chance is None:
+        return SOUND
+    if chance >= POSSIBLE:
+        return CANNOT_BE_TOLD
+    return SOUND if shows else WOULD_NOT_SHOW
 
 
 def _first_tow(
@@ -209,14 +222,26 @@ def _rests_on(network: Network, season: int) -> str:
     return ", ".join(told)
 
 
-def _confused_with(problem: Problem, posterior: Posterior, faults: list[int]) -> str | None:
-    """Other faults that would explain as much, likeliest first."""
+def _confused_with(problem: Problem, posterior: Posterior, columns: list[int]) -> str | None:
+    """Other faults that would explain as much, likeliest first; then what would pass for them."""
+    k = len(posterior.fit.active)
+    faults = [c - k for c in columns if c >= k]
+    mine = [c for c in columns if c < k]
     chance: FloatArray = posterior.instead[faults].sum(axis=0) + posterior.instead[:, faults].sum(
         axis=1
     )
     named: dict[str, float] = {}
     for fault, p in zip(problem.faults.tolist(), chance.tolist(), strict=True):
-        other = problem.unknowns[fault]
-        named[f"{other.name} {other.season}"] = named.get(f"{other.name} {other.season}", 0.0) + p
-    likely = sorted((-p, name) for name, p in named.items() if p >= POSSIBLE)
-    return ", ".join(name for _, name in likely) or None
+        named[_name(problem, fault)] = named.get(_name(problem, fault), 0.0) + p
+    likely = [name for _, name in sorted((-p, n) for n, p in named.items() if p >= POSSIBLE)]
+    hidden = ~posterior.shows
+    passes = [posterior.fit.active[posterior.taken_for[f]] for f in faults if hidden[f]]
+    passes += problem.faults[hidden & np.isin(posterior.taken_for, mine)].tolist()
+    names = [*likely, *(_name(problem, unknown) for unknown in passes)]
+    return ", ".join(dict.fromkeys(names)) or None
+
+
+def _name(problem: Problem, unknown: int) -> str:
+    """An unknown with its season, if it is of one."""
+    season = problem.unknowns[unknown].season
+    return problem.unknowns[unknown].name + ("" if season is None else f" {season}")

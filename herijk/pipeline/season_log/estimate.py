@@ -35,6 +35,7 @@ class SeasonFactors:
         covariance: covariance of ln factor between the rows of `factors` that are determined, in
             their order.
         tow_log_sd: standard deviation of ln factor from tow to tow, by first season of the era.
+        calibration_sd: the same of tows calibrated on dGPS.
         tow_sd: standard deviation of ln Cw of a tow beyond its random part and its log.
         ageing_per_year: change of ln Cw per year, with `ageing_sd`.
         weakest_mode_sd: standard deviation of the combination of ln factors that is known worst.
@@ -48,6 +49,7 @@ class SeasonFactors:
     factors: pl.DataFrame
     covariance: FloatArray
     tow_log_sd: dict[int, float]
+    calibration_sd: float
     tow_sd: float
     ageing_per_year: float
     ageing_sd: float
@@ -124,13 +126,14 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
     instruments = instrument_errors(problem, posterior, network, change)
     best, weights = best_estimates(problem, posterior, network, instruments)
     eras = len(settings.era_starts)
-    tow_log_sd = np.exp(0.5 * fit.state.ln_variance[3 : 3 + eras]).tolist()
+    *tow_log_sd, calibration_sd = np.exp(0.5 * fit.state.ln_variance[3 : 4 + eras]).tolist()
     diagnosis = season_diagnosis(problem, posterior, network)
     numbers = _numbers(network, posterior, along, mode, change)
     return SeasonFactors(
         factors=_described(numbers, network, second),
         covariance=covariance,
         tow_log_sd=dict(zip(settings.era_starts, tow_log_sd, strict=True)),
+        calibration_sd=calibration_sd,
         tow_sd=float(np.exp(0.5 * fit.state.ln_variance[0])),
         ageing_per_year=ageing_per_year,
         ageing_sd=ageing_sd,

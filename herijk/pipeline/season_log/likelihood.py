@@ -1,8 +1,9 @@
-"""What the tows of a boat say together: their joint normal density, unreported alterations summed.
+"""What the tows of a boat say together: their joint normal density, unreported changes summed.
 
 Each tow gives three numbers: ln Cw and the bend q of its own curve, and ln(GPS / log). The boat's
-level and bend are random and integrated out; where it may have been altered without a report, every
-pattern of at most `MOST_ALTERATIONS` steps between its tows is a component of a normal mixture.
+level and bend are random and integrated out. It may have been altered between two tows without a
+report, and any tow of the years before steering was aided may have been pulled askew: every pattern
+of at most `MOST_CHANGES` of these is a component of a normal mixture.
 Belongs here: that density with its slopes, per boat, as arrays. Does not: what moves the numbers of
 a tow (`effects`) and the search for the unknowns (`posterior`).
 """
@@ -15,13 +16,13 @@ from typing import Final
 import numpy as np
 import scipy
 
-from herijk.pipeline.arrays import FloatArray, IntArray
+from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.season_log.assumed import Settings
 
 LEVEL, BEND, GPS = range(3)
 """The numbers of a tow."""
 
-MOST_ALTERATIONS: Final = 2
+MOST_CHANGES: Final = 2
 
 LEVEL_SD: Final = 1.0
 """Of ln Cw between boats: so wide that a boat's level is its own."""
@@ -29,55 +30,79 @@ LEVEL_SD: Final = 1.0
 
 @dataclass(frozen=True)
 class Patterns:
-    """Patterns of alterations of boats with the same number of tows.
+    """Patterns of changes of boats with the same number of tows, as many of them early.
 
     Attributes:
         tow: (boats, tows) index of each tow.
-        boat: (boats,) index of each boat.
-        steps: (patterns,) number of alterations.
+        altered: (patterns, gaps) whether the boat was altered between two tows.
+        askew: (patterns, tows) whether a tow was pulled askew.
+        early: number of tows, the first ones, that may have been.
         level, bend: (patterns, tows, tows) prior covariance of the boat's level and bend.
+        excess: (patterns, tows) mean of what being pulled askew adds to ln Cw.
+        excess_variance: of that.
     """
 
     tow: IntArray
-    boat: IntArray
-    steps: IntArray
+    altered: BoolArray
+    askew: BoolArray
+    early: int
     level: FloatArray
     bend: FloatArray
+    excess: FloatArray
+    excess_variance: float
 
-    def prior(self, share: float) -> FloatArray:
-        """Ln prior of each pattern, where a boat is altered between two tows in that share."""
-        gaps = self.tow.shape[1] - 1
-        ln_prior = self.steps * np.log(share) + (gaps - self.steps) * np.log1p(-share)
+    @property
+    def found(self) -> IntArray:
+        """Number of alterations and of tows pulled askew, (patterns, 2)."""
+        return np.stack([self.altered.sum(axis=1), self.askew.sum(axis=1)], axis=1)
+
+    @property
+    def possible(self) -> IntArray:
+        """How many of each a boat may have, (2,)."""
+        return np.array([self.altered.shape[1], self.early])
+
+    def prior(self, shares: FloatArray) -> FloatArray:
+        """Ln prior of each pattern, given the shares of gaps with an alteration and tows askew."""
+        not_found = self.possible - self.found
+        ln_prior = self.found @ np.log(shares) + not_found @ np.log1p(-shares)
         return np.asarray(ln_prior - scipy.special.logsumexp(ln_prior))
 
 
-def patterns_of(boat: IntArray, settings: Settings) -> list[Patterns]:
-    """Boats by their number of tows, each with every pattern of alterations.
+def patterns_of(boat: IntArray, early: BoolArray, settings: Settings) -> list[Patterns]:
+    """Boats by their number of tows and of early ones, with every pattern of changes.
 
     Args:
         boat: index of the boat as it was until a reported alteration, (tows,), sorted by time.
+        early: whether a tow may have been pulled askew, (tows,).
     """
     order = np.argsort(boat, kind="stable")
-    boats, first, count = np.unique(boat[order], return_index=True, return_counts=True)
+    first, count = np.unique(boat[order], return_index=True, return_counts=True)[1:]
+    kinds = np.stack([count, np.bincount(boat, early).astype(np.int64)], axis=1)
     return [
-        Patterns(order[first[count == n][:, None] + np.arange(n)], boats[count == n], *steps)
-        for n in np.unique(count).tolist()
-        for steps in [_steps(n, settings)]
+        _patterns(order[first[mine][:, None] + np.arange(kind[0])], int(kind[1]), settings)
+        for kind in np.unique(kinds, axis=0)
+        for mine in [(kinds == kind).all(axis=1)]
     ]
 
 
-def _steps(tows: int, settings: Settings) -> tuple[IntArray, FloatArray, FloatArray]:
-    most = min(MOST_ALTERATIONS, tows - 1)
-    chosen = [c for n in range(most + 1) for c in combinations(range(1, tows), n)]
-    place = np.arange(tows)
-    step = np.zeros((len(chosen), tows, tows))
-    for number, places in enumerate(chosen):
-        for first in places:
-            after = (place >= first).astype(np.float64)
-            step[number] += np.outer(after, after)
-    level = LEVEL_SD**2 + settings.changed_sd**2 * step
-    bend = settings.bend_sd**2 + settings.changed_bend_sd**2 * step
-    return np.array([len(c) for c in chosen]), level, bend
+def _patterns(tow: IntArray, early: int, settings: Settings) -> Patterns:
+    tows = tow.shape[1]
+    gaps = tows - 1
+    chosen = [c for n in range(MOST_CHANGES + 1) for c in combinations(range(gaps + early), n)]
+    there = np.array([np.isin(np.arange(gaps + tows), places) for places in chosen])
+    altered, askew = there[:, :gaps], there[:, gaps:]
+    after = np.tri(tows, gaps, -1)
+    step = np.einsum("pg,kg,lg->pkl", altered, after, after)
+    return Patterns(
+        tow,
+        altered,
+        askew,
+        early,
+        LEVEL_SD**2 + settings.changed_sd**2 * step,
+        settings.bend_sd**2 + settings.changed_bend_sd**2 * step,
+        settings.askew_excess.mean * askew,
+        settings.askew_excess.sd**2,
+    )
 
 
 @dataclass(frozen=True)
@@ -125,7 +150,7 @@ def tell(
     covariance: FloatArray,
     state: FloatArray,
     slope: FloatArray,
-    share: float,
+    shares: FloatArray,
 ) -> Iterator[Told]:
     """The density of all boats.
 
@@ -135,7 +160,8 @@ def tell(
         covariance: (tows, 3, 3) of what is a tow's own.
         state: (tows, 3, 2) slope of the numbers by the boat's level and bend.
         slope: (tows, 3, unknowns).
-        share: of gaps between tows in which a boat was altered without a report.
+        shares: of gaps between tows in which a boat was altered without a report, and of early tows
+            that were pulled askew.
     """
     for group in groups:
         boats, tows = group.tow.shape
@@ -145,12 +171,15 @@ def tell(
         each = np.arange(tows)
         # Indexing twice with one array puts that axis first.
         full[:, :, each, :, each, :] += covariance[group.tow].swapaxes(0, 1)[:, :, None]
+        full[:, :, each, LEVEL, each, LEVEL] += group.excess_variance * group.askew
         full = full.reshape(boats, -1, n, n)
         precision = np.linalg.inv(full)
-        own = residual[group.tow].reshape(boats, 1, n)
-        pull = np.einsum("bpij,bqj->bpi", precision, own)
+        own = np.repeat(residual[group.tow][:, None], len(group.askew), axis=1)
+        own[..., LEVEL] -= group.excess
+        own = own.reshape(boats, -1, n)
+        pull = np.einsum("bpij,bpj->bpi", precision, own)
         ln_density = -0.5 * ((pull * own).sum(axis=2) + np.linalg.slogdet(full)[1])
-        weight = scipy.special.softmax(ln_density + group.prior(share), axis=1)
+        weight = scipy.special.softmax(ln_density + group.prior(shares), axis=1)
         yield Told(
             group,
             weight,

@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 import scipy
 
-from herijk.pipeline.arrays import FloatArray, IntArray
+from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.choice import first_largest
 from herijk.pipeline.season_log.assumed import Settings
 from herijk.pipeline.season_log.effects import (
@@ -30,10 +30,11 @@ from herijk.pipeline.season_log.network import Network
 MAX_ITERATIONS: Final = 100
 TOLERANCE: Final = 1e-10
 UNTROUBLED: Final = 4
-"""First iterations, in which no boat is taken for altered: logs may be far off yet."""
+"""First iterations, in which no boat is taken for changed: logs may be far off yet."""
 LEAST_SD: Final = 0.001
 """No number of a tow is ever better known: keeps the search finite where all tows agree."""
-NO_ALTERATION: Final = 1e-9
+NO_CHANGE: Final = np.full(2, 1e-9)
+"""Shares of alterations and of tows pulled askew, where there are none."""
 ACCELERATED: Final = 8
 MODEST: Final = 0.1
 """Steps are accelerated after so many, when they are no larger than this."""
@@ -60,8 +61,8 @@ class Problem:
         q, force_n: (n,) usual bend and force.
         unknowns: what there always is, then possible faults.
         share: (n, unknowns) how much of each a tow has.
-        season, era: (n,) index; era -1 for calibrated tows.
-        groups: boats by their number of tows.
+        season, era: (n,) index; the last era is that of calibrated tows, whenever.
+        groups: boats by their number of tows, with what may have changed between these.
     """
 
     observed: FloatArray
@@ -111,8 +112,8 @@ class Problem:
             unknowns,
             np.stack([u.share for u in unknowns], axis=1),
             np.unique(season, return_inverse=True)[1],
-            np.where(network.group >= 0, np.maximum(era, 0), -1),
-            patterns_of(network.boat, settings),
+            np.where(network.group >= 0, np.maximum(era, 0), len(settings.era_starts)),
+            patterns_of(network.boat, season < settings.straight_from, settings),
             settings,
         )
 
@@ -145,19 +146,23 @@ class Problem:
 
 @dataclass(frozen=True)
 class _State:
-    """What is searched: the active unknowns, ln variances, and the share of alterations."""
+    """What is searched: the active unknowns, ln variances, and the shares of what changes.
+
+    `shares` are those of gaps between tows with an alteration that was not reported, and of tows of
+    the early years that were pulled askew.
+    """
 
     value: FloatArray
     ln_variance: FloatArray
-    share: float
+    shares: FloatArray
 
     @property
     def array(self) -> FloatArray:
-        return np.concatenate([self.value, self.ln_variance, [scipy.special.logit(self.share)]])
+        return np.concatenate([self.value, self.ln_variance, scipy.special.logit(self.shares)])
 
     def of(self, array: FloatArray) -> "_State":
         k = len(self.value)
-        return _State(array[:k], array[k:-1], float(scipy.special.expit(array[-1])))
+        return _State(array[:k], array[k:-2], scipy.special.expit(array[-2:]))
 
 
 @dataclass(frozen=True)
@@ -166,9 +171,8 @@ class Fit:
 
     Attributes:
         active: (k,) unknowns in the model.
-        state: their values, the ln variances (between tows, of bend, of GPS, of the log per era,
-            then the factor of each season) and the share of gaps between tows with an alteration
-            that was not reported.
+        state: their values, the ln variances (between tows, of bend, of GPS, of the log per era
+            and where calibrated, then the factor of each season) and the shares of what changes.
         covariance: (k, k) of those.
         ln_variance_covariance: of the ln variances.
         told: what the boats say there.
@@ -224,7 +228,8 @@ def fit(
     mean = _prior(problem, active)[0]
     if start is None:
         prior = _variance_prior(problem)[0]
-        now = _State(mean, prior, problem.settings.changed_share)
+        s = problem.settings
+        now = _State(mean, prior, np.array([s.changed_share, s.askew_share]))
     else:
         before = dict(zip(start.active.tolist(), start.state.value.tolist(), strict=True))
         kept = [before.get(i, m) for i, m in zip(active.tolist(), mean.tolist(), strict=True)]
@@ -252,20 +257,21 @@ def _step(
     tangent, residual = problem.slopes(now.value, active)
     own, parts = _own(problem, tangent, now.ln_variance)
     design = problem.design(tangent, active)
-    share = NO_ALTERATION if untroubled else now.share
-    told = list(tell(problem.groups, residual, own, tangent.state, design, share))
+    shares = NO_CHANGE if untroubled else now.shares
+    told = list(tell(problem.groups, residual, own, tangent.state, design, shares))
     full = np.sum([t.complete_information.sum(axis=0) for t in told], axis=0)
     seen = np.sum([t.information.sum(axis=0) for t in told], axis=0)
     covariance: FloatArray = np.linalg.inv(_positive(seen, full, precision)).astype(np.float64)
     score = np.sum([t.score for t in told], axis=0)
     step = covariance @ (score - precision * (now.value - mean))
     slope, fisher = _variance_slopes(told, covariance, parts)
-    fisher += np.diag(prior_precision)
+    # A variance that shrinks takes its own slope with it: that bends the density of its logarithm.
+    fisher += np.diag(prior_precision + np.maximum(-slope, 0.0))
     ln_variance_covariance: FloatArray = np.linalg.inv(fisher).astype(np.float64)
     move = ln_variance_covariance @ (slope - prior_precision * (now.ln_variance - prior))
-    gain = scipy.special.logit(_share(told, problem.settings)) - scipy.special.logit(now.share)
+    gain = scipy.special.logit(_shares(told, problem.settings)) - scipy.special.logit(now.shares)
     fitted = Fit(active, now, covariance, ln_variance_covariance, told, tangent, own, parts)
-    return fitted, np.concatenate([step, np.clip(move, -1.0, 1.0), [gain]])
+    return fitted, np.concatenate([step, np.clip(move, -1.0, 1.0), gain])
 
 
 def _accelerated(places: list[FloatArray], steps: list[FloatArray]) -> FloatArray:
@@ -296,11 +302,10 @@ def _variance_prior(problem: Problem) -> tuple[FloatArray, FloatArray]:
     """Mean and precision of every ln variance."""
     s = problem.settings
     eras = [s.tow_log_sd] * len(s.era_starts)
+    between = [s.tow_sd, s.bend_sd_tow, s.gps_sd, *eras, s.calibration_sd]
     seasons = int(problem.season.max()) + 1
-    mean = np.concatenate(
-        [2.0 * np.log([s.tow_sd, s.bend_sd_tow, s.gps_sd, *eras]), np.zeros(seasons)]
-    )
-    sd = np.concatenate([np.full(3 + len(eras), s.spread), np.full(seasons, s.season_spread)])
+    mean = np.concatenate([2.0 * np.log(between), np.zeros(seasons)])
+    sd = np.concatenate([np.full(len(between), s.spread), np.full(seasons, s.season_spread)])
     return mean, sd**-2.0
 
 
@@ -308,7 +313,7 @@ def _own(
     problem: Problem, tangent: Slopes, ln_variance: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Covariance of what is a tow's own, (n, 3, 3), and its slopes by each ln variance."""
-    n, eras = len(problem.q), len(problem.settings.era_starts)
+    n, eras = len(problem.q), len(problem.settings.era_starts) + 1
     variance = np.exp(ln_variance)
     own_factor = variance[3 + eras :][problem.season]
     parts = np.zeros((len(ln_variance), n, 3, 3))
@@ -346,13 +351,15 @@ def _variance_slopes(
     return slope, fisher
 
 
-def _share(told: list[Told], settings: Settings) -> float:
-    """Share of gaps with an alteration: those found and those held of it beforehand."""
-    steps, gaps = settings.changed_share * settings.changed_gaps, settings.changed_gaps
+def _shares(told: list[Told], settings: Settings) -> FloatArray:
+    """Shares of what changes: what was found and what is held of it beforehand."""
+    s = settings
+    possible = np.array([s.changed_gaps, s.askew_tows])
+    found = possible * [s.changed_share, s.askew_share]
     for t in told:
-        steps += float((t.weight @ t.patterns.steps).sum())
-        gaps += t.patterns.tow.size - len(t.patterns.tow)
-    return steps / gaps
+        found += (t.weight @ t.patterns.found).sum(axis=0)
+        possible += len(t.patterns.tow) * t.patterns.possible
+    return np.asarray(found / possible)
 
 
 @dataclass(frozen=True)
@@ -366,6 +373,8 @@ class Posterior:
         chance: (faults,) probability of each fault, in the order of `Problem.faults`.
         instead: (faults, faults) probability that the one is there and would have been taken for
             the other: what it could be confused with.
+        shows: (faults,) whether a fault of the usual size would be likelier than not.
+        taken_for: (faults,) unknown of the fit that would move most, in standard deviations.
     """
 
     fit: Fit
@@ -374,6 +383,8 @@ class Posterior:
     covariance: FloatArray
     chance: FloatArray
     instead: FloatArray
+    shows: BoolArray
+    taken_for: IntArray
 
 
 def solve(problem: Problem) -> Posterior:
@@ -399,6 +410,19 @@ class _More:
     value: FloatArray
     variance: FloatArray
     shift: FloatArray
+
+    def shows(self, problem: Problem) -> BoolArray:
+        """Whether a fault of one standard deviation of its prior would be likelier than not."""
+        prior, chance = _faults_prior(problem)
+        known = prior / self.variance - 1.0
+        gain = 0.5 * (known**2 / (1.0 + known) - np.log1p(known))
+        return np.asarray(gain + scipy.special.logit(chance) > 0.0)
+
+
+def _faults_prior(problem: Problem) -> tuple[FloatArray, FloatArray]:
+    """Variance of every fault if it is there, and the chance that it is."""
+    faults = [problem.unknowns[i] for i in problem.faults]
+    return np.array([u.sd for u in faults]) ** 2, np.array([u.chance for u in faults])
 
 
 def _candidates(problem: Problem, fitted: Fit) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -426,15 +450,13 @@ def _more(
 ) -> _More:
     """Every fault added to a normal posterior whose mean is `away` from the fit's."""
     across, itself, score = candidates
-    faults = [problem.unknowns[i] for i in problem.faults]
-    prior = np.array([u.sd for u in faults]) ** 2
-    chance = np.array([u.chance for u in faults])
+    prior, chance = _faults_prior(problem)
     shift = covariance @ across
     information = np.maximum(itself - (across * shift).sum(axis=0), 0.0)
     pull = score - across.T @ away
     variance = prior / (1.0 + prior * information)
     ln_odds = 0.5 * (pull**2 * variance + np.log(variance / prior))
-    ln_odds += np.log(chance / (1.0 - chance))
+    ln_odds += scipy.special.logit(chance)
     return _More(ln_odds, variance * pull, variance, shift)
 
 
@@ -529,4 +551,6 @@ def _averaged(problem: Problem, fitted: Fit) -> Posterior:
         second - np.outer(mean, mean),
         chance,
         instead,
+        models[0].shows(problem),
+        first_largest(np.abs(models[0].shift) / np.sqrt(np.diag(fitted.covariance))[:, None]),
     )

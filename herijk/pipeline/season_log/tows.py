@@ -15,7 +15,7 @@ from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.season_log.effects import FORCE, OF_BOATS, WAYS, ZERO, ZERO_DRIFT, slopes
 from herijk.pipeline.season_log.likelihood import LEVEL, Told
 from herijk.pipeline.season_log.network import Network
-from herijk.pipeline.season_log.posterior import Posterior, Problem
+from herijk.pipeline.season_log.posterior import WINDOW, Posterior, Problem
 
 LEVEL_OF_INTERVALS: Final = 0.95
 BISECTIONS: Final = 40
@@ -39,9 +39,10 @@ def instrument_errors(
     Returns:
         `tow_id, log`, `factor` of the log (null where the season is not determined; 1 with dGPS),
         `force_factor` and `force_zero_n` of the load cell: read = true x factor + zero; `bend`, q
-        of the boat; `ln_sd` and `dof` of what all of them do to ln Cw, per unit of the elasticity
-        2 + 2 q; `others_ln_ratio`, change of ln Cw with the instruments as the other boats alone
-        show them. In the order of the network.
+        of the boat; `askew_ratio`, what being pulled askew may have added to ln Cw (root mean
+        square; not corrected, and 0 where it is unlikely); `ln_sd` and `dof` of what the
+        instruments do to ln Cw, per unit of the elasticity 2 + 2 q; `others_ln_ratio`, change of ln
+        Cw with the instruments as the other boats alone show them. In the order of the network.
     """
     design, of_boats, speed = _design(problem, posterior)
     level = np.where(of_boats, 0.0, design[:, LEVEL])
@@ -67,10 +68,27 @@ def instrument_errors(
         pl.Series("force_factor", np.exp(share[:, force] @ posterior.mean[force])),
         pl.Series("force_zero_n", share[:, zero] @ posterior.mean[zero]),
         pl.Series("bend", problem.q),
+        pl.Series("askew_ratio", _askew(posterior.fit.told, len(problem.q))),
         pl.Series("ln_sd", np.where(determined, known, problem.settings.log_sd)),
         pl.Series("dof", posterior.fit.dof(level[:, :k])),
         _where(determined, "others_ln_ratio", others),
     )
+
+
+def _askew(told: list[Told], tows: int) -> FloatArray:
+    """Root mean square of what being pulled askew added to ln Cw of each tow."""
+    square = np.zeros(tows)
+    for t in told:
+        boats, of_boat = t.patterns.tow.shape
+        pull = t.pull.reshape(boats, -1, of_boat, 3)[..., LEVEL]
+        own = np.einsum("bpkk->bpk", t.precision)[..., LEVEL::3]
+        variance = t.patterns.excess_variance
+        mean = t.patterns.excess + variance * pull
+        weight = t.weight[:, :, None] * t.patterns.askew
+        weight *= weight.sum(axis=1, keepdims=True) * WINDOW > 1.0
+        there = (weight * (mean**2 + variance - variance**2 * own)).sum(axis=1)
+        square[t.patterns.tow] = there
+    return np.sqrt(square)
 
 
 def _where(known: BoolArray, name: str, values: FloatArray) -> pl.Series:

@@ -73,8 +73,8 @@ def without_boats(network: Network, ageing: tuple[float, float], settings: Setti
         variance = float(np.mean((value - design @ solution) ** 2)) + VARIANCE_FLOOR
         if moved < TOLERANCE:
             break
-    weight = np.full(len(value), 1.0 / variance)
-    left = leave_out(design, value, weight, network.cluster[sound], (mean, precision), 1.0)
+    noise, residual = np.sqrt(variance), value - design @ solution
+    left = leave_out(design / noise, residual / noise, network.cluster[sound], precision)
     by_ageing = np.linalg.solve(normal, design.T @ year / variance)[:groups] * ageing[1]
     sd = np.sqrt(np.diag(left.covariance)[:groups] + by_ageing**2)
     return Second(ln_factor, sd, left.dof[:groups], counts > 0)

@@ -180,22 +180,24 @@ class Assumed:
     mass_standard_ratio: float = 0.002
     between_tows_ratio: float = 0.0
 
-    def beside_repeats(self, tow_sd: float) -> "Assumed":
+    def beside_repeats(self, tow_sd: float, calibration_sd: float) -> "Assumed":
         """What remains assumed where repeat tows show how far tows scatter.
 
-        Calibration, stream drift, recorded temperature, straightness and the weighing of the crew
-        differ from tow to tow: repeat tows show their sum. What repeat tows share cancels in their
-        difference, so they never shrink it (ISO 5725-1; GUM, type B).
+        Calibration with stream drift, which move speed, and recorded temperature, straightness and
+        the weighing of the crew, which do not, differ from tow to tow: repeat tows show both sums.
+        What repeat tows share cancels in their difference, so they never shrink it (ISO 5725-1;
+        GUM, type B).
 
         Args:
             tow_sd: standard deviation of ln Cw of a tow beyond its random part and its log, from
                 the network of repeat tows (`season_log`).
+            calibration_sd: of the ln speed of tows calibrated on dGPS, from there too.
         """
         return replace(
             self,
             between_tows_ratio=tow_sd,
             force_ratio=self.force_standard_ratio,
-            calibration_speed_ratio=0.0,
+            calibration_speed_ratio=calibration_sd,
             stream_drift_speed_ratio=0.0,
             mass_ratio=self.mass_standard_ratio,
             temperature_known_c=0.0,
@@ -218,8 +220,8 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
             correction / Cw, and `air_per_coefficient`, change of ln Cw per unit of drag coefficient
             (both signed); `wind_ln_sd`, of the anemometer's ln scale, null where it is taken as it
             reads; `wind_measured`, and where it was not `still_air_ratio`, still-air part / Cw;
-            `temperature_known`; `force_sd`, of the load cell by its record, null or absent without
-            one.
+            `temperature_known`; `askew_ratio`, by being pulled askew, null where repeat tows do not
+            tell; `force_sd`, of the load cell by its record, null or absent without one.
         assumed: what the archive cannot show; give `wind_coefficient` what the archive-wide search
             came to where that was used.
 
@@ -255,7 +257,7 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
             (assumed.temperature_ratio_per_c * temperature_c) ** 2
             + assumed.temperature_formula_ratio**2
         ).sqrt(),
-        "straightness": pl.lit(assumed.straightness_ratio),
+        "straightness": pl.col("askew_ratio").fill_null(assumed.straightness_ratio),
         "season_log": kappa * pl.col("log_sd"),
     }
     shared = {

@@ -225,7 +225,7 @@ REASONS: Final[dict[str, Reason]] = {
         "and remove its rows.",
     ),
     "unknown_run": Reason(
-        "A run has a number other than 1 to 6.",
+        "A run has a number other than 1 to 20.",
         "Correct the `run` column.",
     ),
     "run_not_planned": Reason(
@@ -246,7 +246,7 @@ REASONS: Final[dict[str, Reason]] = {
         "Name the runs that are there in `gebruik runs`, or mend the file.",
     ),
     "short_run": Reason(
-        "A run that is to be used is shorter than 50 s.",
+        "A run that is to be used is shorter than planned, by default 50 s.",
         "Leave the run out in `gebruik runs`, or correct `meetfrequentie`.",
     ),
     "swapped_columns": Reason(

@@ -1,8 +1,10 @@
 """Tows that the rest of the archive rules out: set aside, or doubted.
 
 What is judged, and how, is in `pipeline.assessment.plausibility`. A wrong unit costs the tow,
-or the season, as any fault of a file does. A smaller shift keeps its tow, which then needs a look
-and takes no part in what tows share.
+or the season, as any fault of a file does. A smaller shift keeps its tow, which then needs a look.
+Where it is of single tows or of a day, these take no part in what tows share. What a whole season
+or archive has in common is for the joint model to say (`pipeline.season_log`), which knows such
+faults and needs these tows for it.
 """
 
 import dataclasses
@@ -28,6 +30,9 @@ _UNUSUAL: Final = {
     "speed": "speed_unusual",
 }
 """Check of a tow that is only unusual."""
+
+_SINGLED_OUT: Final = ("tow", "day")
+"""Kinds of shifts that cost their tows the part in what tows share."""
 
 _CODES: Final = {
     "force": "force_not_plausible",
@@ -71,15 +76,15 @@ def gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> pl.DataFrame:
 def with_doubts(tows: pl.DataFrame, shifts: Sequence[Shift]) -> pl.DataFrame:
     """The tows with `doubts` and `unusual`: checks that the rest of the archive makes of them."""
 
-    def named(codes: Mapping[str, str], clear: bool) -> pl.Series:
+    def named(codes: Mapping[str, str], doubted: bool) -> pl.Series:
+        mine = [s for s in shifts if (s.clear and s.kind in _SINGLED_OUT) is doubted]
         found = [
-            sorted({codes[s.quantity] for s in shifts if s.clear is clear and tow in s.tows})
-            for tow in tows["tow_id"]
+            sorted({codes[s.quantity] for s in mine if tow in s.tows}) for tow in tows["tow_id"]
         ]
         return pl.Series(found, dtype=pl.List(pl.String))
 
     return tows.with_columns(
-        named(_CODES, clear=True).alias("doubts"), named(_UNUSUAL, clear=False).alias("unusual")
+        named(_CODES, doubted=True).alias("doubts"), named(_UNUSUAL, doubted=False).alias("unusual")
     )
 
 

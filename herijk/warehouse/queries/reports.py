@@ -140,7 +140,7 @@ _DIAGNOSIS = """
 SELECT season, part, instrument, unit, estimate, lo, hi, p_fault, distance_sd, verdict, first_tow,
        rests_on, confused_with
 FROM season_diagnosis
-WHERE method = ? AND verdict IN ('fault', 'cannot be told', 'alarm', 'not determined')
+WHERE method = ? AND verdict NOT IN ('sound', 'estimated')
 ORDER BY season, part, instrument
 """
 
