@@ -134,10 +134,11 @@ def after_serve(ground: Ground) -> str | None:
     if digests(ground.data) != ground.tables:
         return "other tables"
     arguments = ground.arguments("serve")
-    page = f"http://127.0.0.1:{int(arguments[arguments.index('--port') + 1]) + 1}/site/"
+    page = f"http://127.0.0.1:{int(arguments[arguments.index('--port') + 1]) + 1}/site/index.html"
     process = subprocess.Popen(
-        arguments, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-    )
+        arguments, cwd=ROOT, start_new_session=True,
+        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+    )  # fmt: skip
     try:
         return None if _answers(page) else "serve does not come back"
     finally:

@@ -31,6 +31,11 @@ from herijk.words.catalogue import Say
 RECOMPUTED: Final = (("cw", "weight"), ("b", "speed"), ("cw", "speed"))
 """What the presentation shows of the recomputed season."""
 
+RACED_COLUMNS: Final = (
+    *("method", "label", "speed_case", "power_w", "raced_power_w"),
+    *("power_ratio_raced", "power_ratio_raced_lo", "power_ratio_raced_hi"),
+)
+
 CLEAR_R2: Final = 0.3
 """From here on a line without a clear slope is not called "no link": too few boats tell."""
 
@@ -260,7 +265,8 @@ class Book:
             both=", ".join(both["label"]) or self.say("slide.no_tow"),
         )
         title = self.say("slide.raced_beyond")
-        yield Slide("raced beyond", "slide_raced_beyond", rows, title, [sentence])
+        drawn = rows.select(RACED_COLUMNS)
+        yield Slide("raced beyond", "slide_raced_beyond", drawn, title, [sentence])
 
     def eras(self) -> Iterator[Slide]:
         """Seasons that stand apart, before and after."""

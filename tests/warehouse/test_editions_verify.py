@@ -368,8 +368,13 @@ def resealed(bench, edition, **changes):
         pl.lit(value).alias(name) for name, value in changes.items()
     )
     register.write_parquet(path / "register.parquet")
+    sealed_anew(path)
+
+
+def sealed_anew(path):
+    """The hashes of what lies there now, under a new seal."""
     about = read_about(path)
-    files = about.files | {"register.parquet": file_sha256(path / "register.parquet")}
+    files = {file: file_sha256(path / file) for file in about.files}
     sealed = about.model_copy(update={"files": files}).sealed()
     (path / "edition.json").write_text(sealed.model_dump_json())
 
@@ -393,6 +398,17 @@ def test_a_line_changed_and_sealed_anew_comes_out_otherwise(published_copy, chan
     findings, wrong = found(published_copy, kind="differs", edition=name)
     assert wrong
     assert any(next(iter(change)) in finding["message"] for finding in findings)
+
+
+def test_a_sheet_that_says_something_else_is_told_whatever_its_seal(published_copy):
+    path = min((published_copy.data / "editions").glob("[!.]*"))
+    first, line, *rest = (path / "register.csv").read_bytes().split(b"\n")
+    changed = b"\n".join([first, line.replace(b"FSN", b"FSN9", 1), *rest])
+    (path / "register.csv").write_bytes(changed)
+    sealed_anew(path)
+    findings, wrong = found(published_copy, kind="altered", edition=path.name)
+    assert wrong
+    assert {finding["where"].split(",")[0] for finding in findings} == {"register.csv"}
 
 
 def test_an_edition_that_is_gone_breaks_the_chain(published_copy):
