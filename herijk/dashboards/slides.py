@@ -13,6 +13,7 @@ from herijk.dashboards.audit_plots import VEGA_LITE, file_name
 from herijk.dashboards.figures import FIGURES
 from herijk.dashboards.slide_book import THE_PRESENTATION, Asked, Slide, slides
 from herijk.warehouse.queries.views import Views
+from herijk.warehouse.store.database import open_results
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.store import Store
 from herijk.words.catalogue import speaker
@@ -38,6 +39,7 @@ def write_slides(
         MissingKnowledgeError: there is no such type, boat or choice of tows, or no database.
     """
     say = speaker(language)
+    open_results(store.database).close()  # says so where there is no tow
     with Views(store) as views:
         simulated = views.about().get("simulated") == "true"
         made = list(slides(views, say, asked))
