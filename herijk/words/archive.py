@@ -193,6 +193,9 @@ ARCHIVE: Final[dict[str, str]] = {
     "The file is not a spreadsheet that can be read: {error}.": (
         "Het bestand is geen leesbaar rekenblad: {error}."
     ),
+    "The workbook has no sheet '{name}'; it has {names}.": (
+        "Het rekenblad heeft geen werkblad '{name}'; wel {names}."
+    ),
     "Sheet '{name}' has too many rows or columns for a list.": (
         "Blad '{name}' heeft te veel rijen of kolommen voor een lijst."
     ),

@@ -7,7 +7,7 @@ import hashlib
 import os
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import IO, Final
 
@@ -16,6 +16,7 @@ import pyarrow as pa  # type: ignore[import-untyped]
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.faults import DefectiveFileError
 from herijk.warehouse.archive.limits import check_rows
+from herijk.warehouse.archive.sheets import split_sheet
 from herijk.warehouse.archive.text import fold_name
 from herijk.words import say
 
@@ -99,7 +100,7 @@ def list_files(root: Path, kind: ListKind, named: Mapping[str, str]) -> list[Arc
     Args:
         root: the archive.
         kind: which lists.
-        named: what other files and folders stand for, by their path (`[files]`).
+        named: what other files, sheets and folders stand for, by their path (`[files]`).
     """
     matches = ((e, _match_list(kind, e.name)) for e in _entries_of(root, kind.folder))
     files = [
@@ -108,8 +109,9 @@ def list_files(root: Path, kind: ListKind, named: Mapping[str, str]) -> list[Arc
         if match is not None and (entry.is_file() or entry.is_symlink())
     ]
     for path, name, season in _named(named):
-        if name == kind.stands_for and (root / path).is_file():
-            files.append(_archive_file(root, root / path, season))
+        file = root / split_sheet(path)[0]
+        if name == kind.stands_for and file.is_file():
+            files.append(replace(_archive_file(root, file, season), path=path))
     return sorted(files, key=lambda file: file.path)
 
 
@@ -152,7 +154,7 @@ def list_strangers(root: Path, named: Mapping[str, str]) -> list[str]:
     sample_folders = {folder for _, folder in _sample_folders(root, named)}
     for folder in sample_folders:
         strangers += [entry for entry in _files_of_tows(folder) if not sample_suffix(entry.name)]
-    known = {*folders.values(), *sample_folders, *(root / path for path in named)}
+    known = {*folders.values(), *sample_folders, *(root / split_sheet(path)[0] for path in named)}
     strangers += [
         entry
         for entry in _entries(root)
@@ -276,7 +278,7 @@ def path_inside(root: Path, relative: str) -> Path:
     Raises:
         DefectiveInputError: `path_outside_archive`.
     """
-    pure = PurePosixPath(relative)
+    pure = PurePosixPath(split_sheet(relative)[0])
     full = root / pure
     if pure.is_absolute() or ".." in pure.parts or not _is_inside(root, full):
         raise outside_archive(relative)

@@ -16,7 +16,7 @@ from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.declare import dy
 from herijk.tables.frames import limits
 from herijk.warehouse.archive.meaning import Meaning, meanings
-from herijk.warehouse.archive.sheets import Sheet, read_sheets
+from herijk.warehouse.archive.sheets import Sheet, read_sheets, split_sheet
 from herijk.warehouse.archive.text import (
     Column,
     FoundColumn,
@@ -402,7 +402,8 @@ def read_list(
             it can be a misspelt one, and left out in silence would change numbers.
     """
     wanted = wording.with_names(columns)
-    sheets = read_sheets(data, wanted, path[path.rfind(".") :].casefold())
+    file, sheet = split_sheet(path)
+    sheets = read_sheets(data, wanted, file[file.rfind(".") :].casefold(), sheet)
     cells = [cell.strip() for sheet in sheets for row in sheet.rows for cell in row.fields]
     order = wording.dates.get(path, wording.dates.get("*", "")) or date_order(cells)
     return [

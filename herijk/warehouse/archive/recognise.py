@@ -30,7 +30,7 @@ from herijk.warehouse.archive.lists import Wording
 from herijk.warehouse.archive.meaning import likeness
 from herijk.warehouse.archive.profile import SAMPLE_COLUMNS
 from herijk.warehouse.archive.recordings import is_labview
-from herijk.warehouse.archive.sheets import SPREADSHEETS, read_sheets
+from herijk.warehouse.archive.sheets import SPREADSHEETS, read_sheets, sheets_of_workbook
 from herijk.warehouse.archive.text import Column
 
 MOST_FILES: Final = 2000
@@ -68,14 +68,19 @@ def recognised(root: Path, path: str) -> Iterator[tuple[str, str]]:
     for file in files:
         if any(folder in file.parents for folder in folders):
             continue
+        relative = file.relative_to(root).as_posix()
+        sheets = _kinds_of_sheets(file)
+        if len(set(sheets.values())) > 1:
+            for sheet, kind in sheets.items():
+                yield f"{relative}#{sheet}", _list_of_year(kind, sheet, file.stem)
+            continue
         what = _kind(file)
         if what == SAMPLES and full != file:
             folder = _folder_of_season(full, file)
             folders.add(folder)
             yield folder.relative_to(root).as_posix(), _with_year(SAMPLES, folder.name)
         elif what and what != SAMPLES:
-            relative = file.relative_to(root).as_posix()
-            yield relative, _with_year(what, file.stem) if what != BOAT_LIST.stands_for else what
+            yield relative, _list_of_year(what, file.stem)
 
 
 def _folder_of_season(top: Path, file: Path) -> Path:
@@ -83,6 +88,14 @@ def _folder_of_season(top: Path, file: Path) -> Path:
     inside = [parent for parent in file.parents if parent.is_relative_to(top)]
     dated = [folder for folder in inside if _YEAR.search(folder.name)]
     return dated[-1] if dated else inside[-1]
+
+
+def _list_of_year(kind: str, *names: str) -> str:
+    """Return a kind of list with the year in the first of these names that has one."""
+    if kind == BOAT_LIST.stands_for:
+        return kind
+    dated = (_with_year(kind, name) for name in names)
+    return next((name for name in dated if name != kind), kind)
 
 
 def _with_year(kind: str, name: str) -> str:
@@ -103,6 +116,24 @@ def _kind(file: Path) -> str | None:
     except DefectiveInputError:
         return None
     return None
+
+
+def _kinds_of_sheets(file: Path) -> dict[str, str]:
+    """Return what each sheet of a workbook can be, for the sheets that can be a list."""
+    if file.suffix.casefold() not in SPREADSHEETS:
+        return {}
+    best: dict[str, tuple[int, str]] = {}
+    try:
+        data = read_bytes(file, LIST_MAX_BYTES)
+        for kind, columns in _KINDS:
+            wanted = Wording().with_names(columns)
+            for sheet in sheets_of_workbook(data, wanted):
+                score = _named(sheet.header, wanted)
+                if score > best.get(sheet.name, (0, ""))[0]:
+                    best[sheet.name] = score, kind.stands_for
+    except DefectiveInputError:
+        return {}
+    return {sheet: kind for sheet, (_, kind) in best.items()}
 
 
 def _is_samples(start: bytes) -> bool:

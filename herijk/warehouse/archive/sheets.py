@@ -58,7 +58,15 @@ class Sheet:
     name: str = ""
 
 
-def read_sheets(data: bytes, columns: Sequence[Column], suffix: str = ".csv") -> list[Sheet]:
+def split_sheet(path: str) -> tuple[str, str]:
+    """Return file and sheet of `Lijsten.xlsx#Proeven`; an empty sheet where none is named."""
+    file, mark, sheet = path.rpartition("#")
+    return (file, sheet) if mark and file.casefold().endswith(SPREADSHEETS) else (path, "")
+
+
+def read_sheets(
+    data: bytes, columns: Sequence[Column], suffix: str = ".csv", only: str = ""
+) -> list[Sheet]:
     """Return the tables in a file: of a workbook the sheets that name the columns.
 
     A sheet that names less than half as many columns as the best is about something else. Only
@@ -68,12 +76,15 @@ def read_sheets(data: bytes, columns: Sequence[Column], suffix: str = ".csv") ->
         data: content of the file.
         columns: the columns that are looked for; the header is the line that names most of them.
         suffix: kind of file, in lower case.
+        only: name of the sheet to read; empty for all.
 
     Raises:
-        DefectiveInputError: the file cannot be read, or a quotation mark in its header is open.
+        DefectiveInputError: the file cannot be read, it has no such sheet, or a quotation mark in
+            its header is open.
     """
     if suffix in SPREADSHEETS:
-        return _alike(list(_spreadsheet(data, columns)), columns)
+        sheets = list(sheets_of_workbook(data, columns))
+        return _named(sheets, only) if only else _alike(sheets, columns)
     lines = decode(data).removeprefix("\ufeff").split("\n")
     lines = [line.rstrip("\r") for line in lines]
     place = find_header(lines, columns)
@@ -85,6 +96,15 @@ def read_sheets(data: bytes, columns: Sequence[Column], suffix: str = ".csv") ->
         for number, line in enumerate(lines[place + 1 :], start=place + 2)
     ]
     return [Sheet(header, place + 1, _without_totals(rows))]
+
+
+def _named(sheets: Sequence[Sheet], name: str) -> list[Sheet]:
+    named = [replace(sheet, name="") for sheet in sheets if fold(sheet.name) == fold(name)]
+    if not named:
+        names = joined(sheet.name for sheet in sheets)
+        said = say("The workbook has no sheet '{name}'; it has {names}.", name=name, names=names)
+        raise DefectiveInputError("unreadable_file", said)
+    return named
 
 
 def _alike(sheets: Sequence[Sheet], columns: Sequence[Column]) -> list[Sheet]:
@@ -194,7 +214,7 @@ def _text_row(number: int, line: str, delimiter: str, width: int) -> Row:
     return Row(number, fields)
 
 
-def _spreadsheet(data: bytes, columns: Sequence[Column]) -> Iterator[Sheet]:
+def sheets_of_workbook(data: bytes, columns: Sequence[Column]) -> Iterator[Sheet]:
     """Give the sheets of a workbook, each from its header on."""
     import python_calamine  # noqa: PLC0415 - only where there is a spreadsheet
 

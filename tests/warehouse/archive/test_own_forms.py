@@ -98,6 +98,17 @@ def test_forms_that_are_read_as_they_are(
     assert_same(archive.scan(), good_scan)
 
 
+def lists_in_one_workbook(archive: Archive) -> None:
+    book = xlsxwriter.Workbook(str(archive.root / "Vereniging.xlsx"))
+    book.add_worksheet("Toelichting").write(0, 0, "Van de commissie")
+    for name, path in (("Sloepen", BOATS), ("Proeven 2014", TOWS)):
+        sheet = book.add_worksheet(name)
+        for place, row in enumerate(cells_of(archive, path)):
+            sheet.write_row(place, 0, row)
+        (archive.root / path).unlink()
+    book.close()
+
+
 def other_names(archive: Archive) -> None:
     root = archive.root
     shutil.move(root / "sloepregister/sloependata.csv", root / "Onze boten.csv")
@@ -145,7 +156,7 @@ def folder_without_a_year(archive: Archive) -> None:
 
 SETTLED = (
     *(other_names, other_headers, other_channels, no_rate, cells_with_words),
-    folder_without_a_year,
+    *(folder_without_a_year, lists_in_one_workbook),
 )
 
 
@@ -231,6 +242,16 @@ def test_a_row_of_data_is_no_second_row_of_the_header() -> None:
     (sheet,) = read_sheets(b"fsn_nr;sloep;breedte\nFSN1;m;2,1\n", COLUMNS)
     assert sheet.header == ["fsn_nr", "sloep", "breedte"]
     assert [row.fields for row in sheet.rows] == [["FSN1", "m", "2,1"]]
+
+
+def test_a_sheet_that_is_not_there_is_told_with_those_that_are(archive: Archive) -> None:
+    lists_in_one_workbook(archive)
+    (archive.root / "archief.toml").write_text(
+        '[files]\n"Vereniging.xlsx#Boten" = "sloependata"\n'
+        '"Vereniging.xlsx#proeven 2014" = "sleeplijst_2014"\n'
+    )
+    said = [f.message for cause in check_archive(archive.root).causes for f in cause.faults]
+    assert any("no sheet 'Boten'; it has 'Toelichting', 'Sloepen'" in text for text in said), said
 
 
 def test_a_workbook_of_photographs_is_nothing(tmp_path: Path, archive: Archive) -> None:
