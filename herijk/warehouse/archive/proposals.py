@@ -16,11 +16,14 @@ from herijk.warehouse.archive.faults import Fault
 from herijk.warehouse.archive.files import PARTS
 from herijk.warehouse.archive.lists import fold_word
 from herijk.warehouse.archive.profile import MAY_BE_ABSENT, SAMPLE_COLUMNS, STANDARD
-from herijk.warehouse.archive.text import fold, nearest_column, split_header
+from herijk.warehouse.archive.text import Column, fold, nearest_column, split_header
 from herijk.warehouse.archive.units import find_scale
 from herijk.words import Sentence, innermost
 
 _SAMPLES: Final = {column.key: column for column in SAMPLE_COLUMNS}
+_SHORTEST_STEM: Final = 4
+"""Letters of a name by which a longer one can begin."""
+
 _ONE_WORD: Final = 30
 """A cell longer than that is no word that stands for something."""
 
@@ -133,8 +136,8 @@ def _of_samples(_: str, values: Any, season: int) -> Iterator[Proposal]:
     free, unmatched = list(header), list[str]()
     for key in keys:
         column = _SAMPLES[key]
-        fitting = [cell for cell in header if _can_be(cell, column)]
-        near = [cell for cell in fitting if nearest_column(cell, [column])] or fitting
+        fitting = [cell for cell in header if _can_be(cell, column) and not _anothers(cell, key)]
+        near = [cell for cell in fitting if _is_like(cell, column)] or fitting
         left = [cell for cell in near if cell in free]
         if left:
             free.remove(left[0])  # of several, only a person can tell which is which
@@ -192,7 +195,22 @@ def _of_strange_headers(path: str, values: Any, season: int) -> Iterator[Proposa
     return (_of_headers if "meant" in values else _of_unknown_samples)(path, values, season)
 
 
-def _can_be(cell: str, column: Any) -> bool:
+def _is_like(cell: str, column: Column) -> bool:
+    """Whether a header's name is like a column's, or begins with it: `Windgeschw.`."""
+    name = split_header(cell)[0]
+    names = (fold(own) for own in (column.header, *column.also))
+    begins = any(len(own) >= _SHORTEST_STEM and name.startswith(own) for own in names)
+    return begins or nearest_column(cell, [column]) is not None
+
+
+def _anothers(cell: str, key: str) -> bool:
+    """Whether a header is by its name another column's: wind is no log, also in knots."""
+    others = (column for other, column in _SAMPLES.items() if other != key)
+    like_another = any(_is_like(cell, c) and _can_be(cell, c) for c in others)
+    return like_another and not _is_like(cell, _SAMPLES[key])
+
+
+def _can_be(cell: str, column: Column) -> bool:
     name, unit = split_header(cell)
     taken = any(other.answers_to(name) for other in _SAMPLES.values())
     if taken:

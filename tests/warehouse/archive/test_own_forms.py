@@ -136,6 +136,18 @@ def other_channels(archive: Archive) -> None:
         archive.replace(name, HEADER, "run;SB (m/s);BB (m/s);gps;Dynamometer [N];wind;windvaan")
 
 
+def test_a_wind_in_knots_is_taken_for_no_log(archive: Archive) -> None:
+    for path in sorted((archive.root / "meetdata_2014").glob("*.csv")):
+        archive.replace(
+            path.relative_to(archive.root).as_posix(),
+            HEADER,
+            "run;log1 [m/s];x;gps [m/s];kracht [N];Windgeschw. [kn];windvaan [gra]",
+        )
+    lines = [p.line for c in check_archive(archive.root).causes for p in c.proposals]
+    assert any('wind_speed = "Windgeschw"' in line for line in lines), lines
+    assert not any("log2 =" in line for line in lines), lines
+
+
 def no_rate(archive: Archive) -> None:
     archive.edit(TOWS, lambda t: t.replace(";20;", ";;"))
 
