@@ -9,6 +9,14 @@ from herijk.words import LANGUAGE, tell
 
 Report = dict[str, Any]
 KINDS = {"recomputed": "recomputed", "as_printed": "as printed"}
+FINDINGS = {
+    "altered": "altered",
+    "missing": "missing",
+    "swapped": "swapped",
+    "differs": "differs",
+    "unchecked": "unchecked",
+    "notice": "notice",
+}
 
 
 def _words() -> Language:
@@ -284,7 +292,13 @@ def verify(report: Report) -> str:
     ]
     if report["findings"]:
         rows = [
-            (f["edition"], "WRONG" if f["wrong"] else "notice", f["kind"], f["where"], f["message"])
+            (
+                f["edition"],
+                "WRONG" if f["wrong"] else "notice",
+                FINDINGS[f["kind"]],
+                f["where"],
+                f["message"],
+            )
             for f in report["findings"]
         ]
         parts.append(table(("edition", "", "kind", "where", "what"), rows))

@@ -6,7 +6,7 @@ The pages of `herijk audit` are in `cli.audit_text`.
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from herijk.words import LANGUAGE, code, number, tell
+from herijk.words import LANGUAGE, code, number, spoken, tell
 
 if TYPE_CHECKING:
     from herijk.warehouse.queries.rebase import RebaseReport
@@ -39,7 +39,7 @@ def _cell(value: Any) -> str:
         return "-"
     if isinstance(value, float):
         return number(value, ".3f")
-    return tell(value) if isinstance(value, str) else str(value)
+    return str(spoken(value, LANGUAGE.get()))
 
 
 def _per_cent(ratio: float | None) -> str:

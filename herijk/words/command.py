@@ -1069,4 +1069,10 @@ COMMAND: Final[dict[str, str]] = {
         "Cw bij {:.2f} m/s {:.2f}, voorspeld {:.2f} ({:.2f} tot {:.2f}) kg/m"
     ),
     "Cw, power of m": "Cw, macht van m",
+    # Kinds of findings of verify
+    "altered": "gewijzigd",
+    "missing": "ontbreekt",
+    "swapped": "verwisseld",
+    "differs": "verschilt",
+    "unchecked": "niet gecontroleerd",
 }

@@ -390,4 +390,65 @@ ERRORS: Final[dict[str, str]] = {
         "per seizoen is minstens een sleepproef nodig; gegeven: {}"
     ),
     "the rate must be 4 to 10000 Hz; got {}": "de frequentie moet 4 tot 10000 Hz zijn; gegeven: {}",
+    # What verify finds
+    "edition {} was published and is gone": "editie {} is uitgegeven en is weg",
+    "it is number {} of the editions, and {} is expected here: another was taken out, or put in": (
+        "het is nummer {} van de edities, en hier wordt {} verwacht: er is een uitgehaald of "
+        "tussengevoegd"
+    ),
+    "the edition before it has another seal than when this one was published": (
+        "de editie ervoor heeft een ander zegel dan toen deze werd uitgegeven"
+    ),
+    "the folder was renamed; it is {}": "de map is hernoemd; het is {}",
+    "{} was changed: its seal does not fit": "{} is gewijzigd: het zegel past niet",
+    "{} is a link to somewhere else; an edition holds its files itself": (
+        "{} verwijst naar elders; een editie bevat haar bestanden zelf"
+    ),
+    "{} was added after publication": "{} is na de uitgave toegevoegd",
+    "{} is gone; put it back from a copy": "{} is weg; zet het terug uit een kopie",
+    "{} was changed after publication": "{} is na de uitgave gewijzigd",
+    "verification code {} does not fit the line: inputs or numbers were changed": (
+        "controlecode {} past niet bij de regel: invoer of getallen zijn gewijzigd"
+    ),
+    "it was written anew; its values are the same": (
+        "het is opnieuw geschreven; de waarden zijn gelijk"
+    ),
+    "it cannot be read any more: {}": "het is niet meer te lezen: {}",
+    "it has {} lines; there were {}": "het heeft {} regels; het waren er {}",
+    "it has another number of cells": "het aantal cellen is anders",
+    "it says {!r}; it was {!r}": "er staat {!r}; het was {!r}",
+    "and {} more places differ": "en nog {} plaatsen verschillen",
+    "the archive is not where the last rebuild found it; run herijk rebuild --archive DIR": (
+        "het archief is niet waar de laatste herberekening het vond; draai herijk rebuild "
+        "--archive DIR"
+    ),
+    "{} is gone from the archive; put it back": "{} is weg uit het archief; zet het terug",
+    "{} is not the file that the edition was made from": (
+        "{} is niet het bestand waaruit de editie gemaakt is"
+    ),
+    "tow {} is no longer in the tow lists": "proef {} staat niet meer in de sleeplijsten",
+    "{}: {} is {}; it was {}": "{}: {} is {}; het was {}",
+    "it cannot be made again: {}": "hij is niet opnieuw te maken: {}",
+    "made again, there is a line that the edition has not: {}": (
+        "opnieuw gemaakt is er een regel die de editie niet heeft: {}"
+    ),
+    "made again, {}: {}": "opnieuw gemaakt, {}: {}",
+    "the boat list changed": "de lijst van sloepen is gewijzigd",
+    "the code changed": "de code is gewijzigd",
+    "this should not happen": "dit zou niet mogen gebeuren",
+    "made again, its members come out otherwise: {}": (
+        "opnieuw gemaakt komen de leden anders uit: {}"
+    ),
+    "the printed register in the archive says so now": (
+        "het gedrukte register in het archief zegt het nu zo"
+    ),
+    "tow {} is no longer in the warehouse": "proef {} is niet meer in de tabellen",
+    "the files or the list row of tow {} changed": (
+        "de bestanden of de rij in de lijst van proef {} zijn gewijzigd"
+    ),
+    "other tows that went into it changed": "andere proeven die meetellen, zijn gewijzigd",
+    "the code changed, from {} to {}": "de code is gewijzigd, van {} naar {}",
+    "inputs, method and code are the same; this should not happen": (
+        "invoer, methode en code zijn gelijk; dit zou niet mogen gebeuren"
+    ),
 }

@@ -11,6 +11,7 @@ from herijk.warehouse.editions.finding import Finding
 from herijk.warehouse.store.database import open_database
 from herijk.warehouse.store.editions import About, edition_names, read_about
 from herijk.warehouse.store.store import Store
+from herijk.words import say
 
 
 def chain_head(store: Store) -> About | None:
@@ -22,7 +23,7 @@ def chain_findings(store: Store) -> tuple[list[Finding], str | None]:
     """Editions that are gone or were made anew, and the seal of the last."""
     chained = sorted(_chained(store), key=lambda about: (about.number or 0, about.edition))
     findings = [
-        Finding(name, "missing", name, f"edition {name} was published and is gone")
+        Finding(name, "missing", name, say("edition {} was published and is gone", name))
         for name in sorted(_known(store) - set(edition_names(store)))
     ]
     seal: str | None = None
@@ -33,8 +34,12 @@ def chain_findings(store: Store) -> tuple[list[Finding], str | None]:
                     about.edition,
                     "missing",
                     "chain",
-                    f"it is number {about.number} of the editions, and {number} is expected here: "
-                    "another was taken out, or put in",
+                    say(
+                        "it is number {} of the editions, and {} is expected here: another was "
+                        "taken out, or put in",
+                        about.number,
+                        number,
+                    ),
                 )
             )
             break
@@ -44,7 +49,7 @@ def chain_findings(store: Store) -> tuple[list[Finding], str | None]:
                     about.edition,
                     "altered",
                     "chain",
-                    "the edition before it has another seal than when this one was published",
+                    say("the edition before it has another seal than when this one was published"),
                 )
             )
         seal = about.seal

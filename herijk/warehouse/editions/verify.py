@@ -41,6 +41,7 @@ from herijk.warehouse.store.editions import (
 )
 from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import Store, table_digest
+from herijk.words import say
 
 NEVER_TOWED: Final = "never_towed"
 
@@ -94,26 +95,30 @@ def verify(store: Store, afresh: bool = True) -> Report:
 def _altered(path: Place, about: About) -> Iterator[Finding]:
     name = path.name
     if about.edition != name:
-        yield Finding(name, "altered", ABOUT, f"the folder was renamed; it is {about.edition}")
+        yield Finding(
+            name, "altered", ABOUT, say("the folder was renamed; it is {}", about.edition)
+        )
     if about.seal != about.expected_seal:
-        yield Finding(name, "altered", ABOUT, f"{ABOUT} was changed: its seal does not fit")
+        yield Finding(name, "altered", ABOUT, say("{} was changed: its seal does not fit", ABOUT))
     if isinstance(path, Path):
         for link in sorted(f.name for f in (path, *path.iterdir()) if f.is_symlink()):
-            message = f"{link} is a link to somewhere else; an edition holds its files itself"
+            message = say("{} is a link to somewhere else; an edition holds its files itself", link)
             yield Finding(name, "altered", link, message)
     present = {f.name for f in path.iterdir()}
     for file in sorted(present - {*about.files, ABOUT}):
-        yield Finding(name, "notice", file, f"{file} was added after publication", wrong=False)
+        yield Finding(
+            name, "notice", file, say("{} was added after publication", file), wrong=False
+        )
     for file in sorted(about.files.keys() - present):
-        yield Finding(name, "missing", file, f"{file} is gone; put it back from a copy")
+        yield Finding(name, "missing", file, say("{} is gone; put it back from a copy", file))
     changed = [
         f for f in sorted(about.files.keys() & present) if _sha256(path / f) != about.files[f]
     ]
     intact = (about.files.keys() & present) - set(changed)
     for file in changed:
-        yield Finding(name, "altered", file, f"{file} was changed after publication")
-        for where, message in _where(path, about, file, intact):
-            yield Finding(name, "altered", where, message)
+        yield Finding(name, "altered", file, say("{} was changed after publication", file))
+        for where, said in _where(path, about, file, intact):
+            yield Finding(name, "altered", where, said)
     if "register.parquet" in present:
         yield from _codes(path, about)
         yield from _sheets(path, about, intact)
@@ -137,7 +142,10 @@ def _codes(path: Place, about: About) -> Iterator[Finding]:
                 path.name,
                 "altered",
                 f"register.parquet, {_line_name(row)}",
-                f"verification code {code} does not fit the line: inputs or numbers were changed",
+                say(
+                    "verification code {} does not fit the line: inputs or numbers were changed",
+                    code,
+                ),
             )
 
 
@@ -175,9 +183,9 @@ def _where(path: Place, about: About, file: str, intact: set[str]) -> list[tuple
         if table in about.tables and table_digest(read_table(path, table)) == (
             about.tables[table].digest
         ):
-            return [(file, "it was written anew; its values are the same")]
+            return [(file, say("it was written anew; its values are the same"))]
     except (HerijkError, OSError, ValueError, pl.exceptions.PolarsError) as error:
-        return [(file, f"it cannot be read any more: {str(error).splitlines()[0]}")]
+        return [(file, say("it cannot be read any more: {}", str(error).splitlines()[0]))]
     return []
 
 
@@ -191,15 +199,15 @@ def _cells(file: str, was: sheets.Cells, now: sheets.Cells) -> list[tuple[str, s
     """The cells that differ, each with its line, boat and column."""
     problems: list[tuple[str, str]] = []
     if len(was) != len(now):
-        problems.append((file, f"it has {len(now) - 1} lines; there were {len(was) - 1}"))
+        problems.append((file, say("it has {} lines; there were {}", len(now) - 1, len(was) - 1)))
     for number, (before, after) in enumerate(zip(was, now, strict=False), 1):
         if len(before) != len(after):
-            problems.append((f"{file}, line {number}", "it has another number of cells"))
+            problems.append((f"{file}, line {number}", say("it has another number of cells")))
             continue
         problems += [
             (
                 f"{file}, line {number} ({before[0]}), column {header}",
-                f"it says {b!r}; it was {a!r}",
+                say("it says {!r}; it was {!r}", b, a),
             )
             for header, a, b in zip(was[0], before, after, strict=True)
             if a != b
@@ -213,8 +221,8 @@ def _xlsx_cells(path: Place, about: About) -> list[tuple[str, str]]:
     was = sheets.read_xlsx_cells(sheets.xlsx_bytes(register, fields, about))
     now = sheets.read_xlsx_cells((path / XLSX).read_bytes())
     places = sorted(p for p in was.keys() | now.keys() if was.get(p) != now.get(p))
-    problems = [
-        (f"{XLSX}, cell {place}", f"it says {now.get(place)!r}; it was {was.get(place)!r}")
+    problems: list[tuple[str, str]] = [
+        (f"{XLSX}, cell {place}", say("it says {!r}; it was {!r}", now.get(place), was.get(place)))
         for place in places
     ]
     return _not_too_many(XLSX, problems)
@@ -224,7 +232,7 @@ def _not_too_many(file: str, found: list[tuple[str, str]]) -> list[tuple[str, st
     if len(found) <= MOST_CELLS:
         return found
     more = len(found) - MOST_CELLS
-    return [*found[:MOST_CELLS], (file, f"and {more} more places differ")]
+    return [*found[:MOST_CELLS], (file, say("and {} more places differ", more))]
 
 
 def _line_name(row: dict[str, Any]) -> str:
@@ -242,7 +250,10 @@ def _archive(store: Store, path: Place, about: About, hashes: FileHashes) -> Ite
             name,
             "unchecked",
             "archive",
-            "the archive is not where the last rebuild found it; run herijk rebuild --archive DIR",
+            say(
+                "the archive is not where the last rebuild found it; run herijk rebuild --archive "
+                "DIR"
+            ),
         )
         return
     if not (path / INPUTS).exists():
@@ -253,13 +264,15 @@ def _archive(store: Store, path: Place, about: About, hashes: FileHashes) -> Ite
         file, kind, sha256 = row
         at = root / file
         if not at.is_file():
-            yield Finding(name, "missing", file, f"{file} is gone from the archive; put it back")
+            yield Finding(
+                name, "missing", file, say("{} is gone from the archive; put it back", file)
+            )
         elif hashes.hash_file(at) != sha256:
             yield Finding(
                 name,
                 "notice" if kind == LIST else "swapped",
                 file,
-                f"{file} is not the file that the edition was made from",
+                say("{} is not the file that the edition was made from", file),
                 wrong=kind != LIST,
             )
     if about.kind == "recomputed" and (path / "tows.parquet").exists():
@@ -277,7 +290,7 @@ def _list_rows(path: Place, root: Path, hashes: FileHashes) -> Iterator[Finding]
     runs = with_hand_windows(index.runs, index.windows)
     faulty = {fault.tow_id for fault in index.faults}  # listed, and told with its files
     for tow in sorted(set(was["tows"]["tow_id"]) - set(index.tows["tow_id"]) - faulty):
-        yield Finding(path.name, "missing", tow, f"tow {tow} is no longer in the tow lists")
+        yield Finding(path.name, "missing", tow, say("tow {} is no longer in the tow lists", tow))
     yield from _changed_facts(path.name, was["tows"], index.tows, ["tow_id"])
     yield from _changed_facts(path.name, was["tow_runs"], runs, ["tow_id", "run"])
 
@@ -295,7 +308,7 @@ def _changed_facts(
         name = "tow " + ", run ".join(str(row[k]) for k in key)
         for fact in facts:
             if row[f"{fact}_now"] != row[fact]:
-                message = f"{name}: {fact} is {row[f'{fact}_now']}; it was {row[fact]}"
+                message = say("{}: {} is {}; it was {}", name, fact, row[f"{fact}_now"], row[fact])
                 yield Finding(edition, "swapped", name, message)
 
 
@@ -321,7 +334,7 @@ def _made_again(store: Store, name: str) -> tuple[dict[str, int | None], list[Fi
 
 def _not_made(name: str, error: Exception) -> Finding:
     reason = str(error).splitlines()[0]
-    return Finding(name, "unchecked", "register", f"it cannot be made again: {reason}")
+    return Finding(name, "unchecked", "register", say("it cannot be made again: {}", reason))
 
 
 def _differing(
@@ -337,7 +350,7 @@ def _differing(
     reasons = _Reasons.of(store, edition)
     for row in now.join(edition.register, on=LINE, how="anti").iter_rows(named=True):
         why, wrong = reasons.why(row | {"basis": None})
-        message = f"made again, there is a line that the edition has not: {why}"
+        message = say("made again, there is a line that the edition has not: {}", why)
         yield Finding(edition.about.edition, "differs", _line_name(row), message, wrong)
     for row in pairs.sort(LINE).iter_rows(named=True):
         unequal = [n for n in known if not _same(row[n], row[f"{n}_now"])]
@@ -345,11 +358,10 @@ def _differing(
             continue
         why, wrong = reasons.why(row)
         if set(unequal) <= set(BOAT_FACTS) and reasons.boats_changed:
-            why, wrong = "the boat list changed", False
-        what = ", ".join(f"{n} {_text(row[n])} becomes {_text(row[f'{n}_now'])}" for n in unequal)
-        yield Finding(
-            edition.about.edition, "differs", _line_name(row), f"made again, {what}: {why}", wrong
-        )
+            why, wrong = say("the boat list changed"), False
+        what = ", ".join(f"{n} {_text(row[n])} > {_text(row[f'{n}_now'])}" for n in unequal)
+        message = say("made again, {}: {}", what, why)
+        yield Finding(edition.about.edition, "differs", _line_name(row), message, wrong)
 
 
 def _other_members(edition: Edition, again: Again, explained: bool) -> Iterator[Finding]:
@@ -361,8 +373,8 @@ def _other_members(edition: Edition, again: Again, explained: bool) -> Iterator[
     differ = (pairs["cw_kg_m"] / pairs["cw_kg_m_now"] - 1.0).abs() > SAME_NUMBER
     if differ.fill_null(True).any():
         new_code = edition.about.code_version != code_version()
-        why = "the code changed" if new_code else "this should not happen"
-        message = f"made again, its members come out otherwise: {why}"
+        why = say("the code changed") if new_code else say("this should not happen")
+        message = say("made again, its members come out otherwise: {}", why)
         yield Finding(edition.about.edition, "differs", "ensemble.parquet", message, not new_code)
 
 
@@ -389,17 +401,18 @@ class _Reasons:
     def why(self, row: dict[str, Any]) -> tuple[str, bool]:
         """Why a line comes out otherwise, and whether that breaks a promise."""
         if row["basis"] == AS_PRINTED and self.about.kind == "as_printed":
-            return "the printed register in the archive says so now", True
+            return say("the printed register in the archive says so now"), True
         tow = row.get("tow_id")
         if tow is not None and tow not in self.present:
-            return f"tow {tow} is no longer in the warehouse", True
+            return say("tow {} is no longer in the warehouse", tow), True
         if tow is not None and tow not in self.unchanged:
-            return f"the files or the list row of tow {tow} changed", True
+            return say("the files or the list row of tow {} changed", tow), True
         if not self.same_inputs:
-            return "other tows that went into it changed", True
+            return say("other tows that went into it changed"), True
         if self.about.code_version != code_version():
-            return f"the code changed, from {self.about.code_version} to {code_version()}", False
-        return "inputs, method and code are the same; this should not happen", True
+            was, now = self.about.code_version, code_version()
+            return say("the code changed, from {} to {}", was, now), False
+        return say("inputs, method and code are the same; this should not happen"), True
 
 
 def _boats_changed(store: Store, edition: Edition) -> bool:
