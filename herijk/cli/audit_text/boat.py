@@ -20,7 +20,7 @@ from herijk.cli.audit_text.words import (
 )
 from herijk.cli.text import table
 from herijk.pipeline.method.definition import COMPLETE
-from herijk.words import code, tell
+from herijk.words import LANGUAGE, code, tell
 
 RUNS_ALONE_MEANS: Final = "runs alone: spread of the runs alone: the log's error is not in it"
 LEAST_FELT: Final = 5e-4
@@ -208,7 +208,8 @@ def _register(row: Report) -> str:
 def _set_aside(row: Report) -> str:
     tow = "" if row["tow_id"] is None else tell(" (tow {})", row["tow_id"])
     line = "" if row["line"] is None else tell(", line {}", row["line"])
-    return f"  {row['path']}{line}{tow}: {row['message']}"
+    said = row["message_nl" if LANGUAGE.get() == "nl" else "message"]
+    return f"  {row['path']}{line}{tow}: {said}"
 
 
 def _tow(tow: Report) -> str:
