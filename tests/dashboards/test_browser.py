@@ -412,8 +412,8 @@ def test_what_a_chart_says_follows_the_selectors(visitor):
 
 def test_the_list_marks_its_boat_in_the_scatter(visitor):
     page = visitor.open("types.html")
+    visitor.draw_all()  # a chart that is drawn again meanwhile would lose the mark
     chart = page.locator("figure[data-figure=b_weight] .drawn svg").first
-    chart.wait_for()
     before = chart.inner_html()
     shown(page, "type_boats").first.locator("td").first.click()
     page.wait_for_function(
