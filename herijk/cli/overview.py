@@ -101,7 +101,7 @@ class SpokenContext(Context):
 
 
 def _help_in_words(text: str) -> str:
-    """A text of the help, and what stands behind it in brackets: a default, `required`."""
+    """A text of the help, and the brackets behind it: a default, `required`."""
     said, bracket, note = " ".join(text.split(" ")).partition("  [")
     for word in ("default", "required", "env var") if bracket else ():
         note = note.replace(word, tell(word))

@@ -352,7 +352,7 @@ def _variance_slopes(
 
 
 def _shares(told: list[Told], settings: Settings) -> FloatArray:
-    """Shares of what changes: what was found and what is held of it beforehand."""
+    """Shares of gaps with an alteration and of tows askew: their priors and what was found."""
     s = settings
     possible = np.array([s.changed_gaps, s.askew_tows])
     found = possible * [s.changed_share, s.askew_share]

@@ -74,7 +74,7 @@ def recognised(root: Path, path: str) -> Iterator[tuple[str, str]]:
             for sheet, kind in sheets.items():
                 yield f"{relative}#{sheet}", _list_of_year(kind, sheet, file.stem)
             continue
-        what = _kind(file)
+        what = next(iter(sheets.values()), None) or _kind(file)
         if what == SAMPLES and full != file:
             folder = _folder_of_season(full, file)
             folders.add(folder)
@@ -109,7 +109,9 @@ def _kind(file: Path) -> str | None:
         return SAMPLES
     suffix = file.suffix.casefold()
     try:
-        if suffix in LIST_SUFFIXES and (list_kind := _list_kind(file, suffix)):
+        if suffix in SPREADSHEETS:
+            return None  # looked at sheet by sheet
+        if suffix in LIST_SUFFIXES and (list_kind := _list_kind(file)):
             return list_kind
         if sample_suffix(file.name) and _is_samples(read_start(file, 1 << 14)):
             return SAMPLES
@@ -143,17 +145,14 @@ def _is_samples(start: bytes) -> bool:
     return _named(sheet.header, Wording().with_names(SAMPLE_COLUMNS)) > 0
 
 
-def _list_kind(file: Path, suffix: str) -> str | None:
-    """Return the kind of list whose columns a file has most of, if it has enough."""
-    data = read_bytes(file, LIST_MAX_BYTES) if suffix in SPREADSHEETS else read_start(file, 1 << 14)
+def _list_kind(file: Path) -> str | None:
+    """Return the kind of list whose columns a text has most of, if it has enough."""
+    data = read_start(file, 1 << 14)
+    kinds = {kind.stands_for: columns for kind, columns in _KINDS} | {SAMPLES: SAMPLE_COLUMNS}
     scores = {}
-    for kind, columns in _KINDS:
+    for kind, columns in kinds.items():
         wanted = Wording().with_names(columns)
-        found = [_named(sheet.header, wanted) for sheet in read_sheets(data, wanted, suffix)]
-        scores[kind.stands_for] = max(found, default=0)
-    samples = Wording().with_names(SAMPLE_COLUMNS)
-    if suffix not in SPREADSHEETS:
-        scores[SAMPLES] = _named(read_sheets(data, samples)[0].header, samples)
+        scores[kind] = _named(read_sheets(data, wanted)[0].header, wanted)
     best = max(scores, key=lambda name: scores[name])
     return best if scores[best] > 0 else None
 
