@@ -133,6 +133,7 @@ class _ProfileTable(_Strict):
     units: dict[Channel, str] = {}
     sample_rate_hz: Annotated[int, Field(gt=0, le=100_000)] = 1000
     absent: list[Absent] = []
+    reversed: list[Literal["force"]] = []
     header: Annotated[str, Field(min_length=1)] | None = None
     ignore: list[str] = []
     directions: _Directions | None = None
@@ -297,6 +298,7 @@ class Profiles:
                 header=table.columns.get(column.key, column.header),  # type: ignore[call-overload]
                 also=(*column.also, column.header),
                 unit=table.units.get(column.key, column.unit),  # type: ignore[call-overload]
+                reversed=column.key in table.reversed,
             )
             for column in known
             if column.key not in absent
