@@ -717,7 +717,9 @@ def _join_boat(entry: _Entry, boats: Boats) -> None:
     if boat is None:
         message = say("boat {boat} is not in the boat list.", boat=shorten(fsn_no))
         raise entry.fault("unknown_boat", message)
-    entry.tow = tow_list.fill_dimensions(entry.tow, boat, entry.row) | {"fsn_no": boat["fsn_no"]}
+    has_wind = "wind" not in entry.profiles.for_season(entry.season).absent
+    filled = tow_list.fill_dimensions(entry.tow, boat, entry.row, has_wind)
+    entry.tow = filled | {"fsn_no": boat["fsn_no"]}
 
 
 def _place_day(entry: _Entry, profiles: Profiles) -> None:

@@ -86,6 +86,7 @@ class Wording:
         headers: the project's name of a column by a folded other one.
         ignore: folded names of columns that are known and not used.
         dates: `dmy` or `mdy` by the path of a list, or `*` for all: how 1/3/2015 is meant.
+        decimals: the mark before decimals, `.` or `,`, by the path of a list, or `*` for all.
         files: what a file or folder stands for, by its path in the archive: `sleeplijst_2014`.
     """
 
@@ -93,6 +94,7 @@ class Wording:
     headers: Mapping[str, str] = field(default_factory=dict)
     ignore: tuple[str, ...] = ()
     dates: Mapping[str, str] = field(default_factory=dict)
+    decimals: Mapping[str, str] = field(default_factory=dict)
     files: Mapping[str, str] = field(default_factory=dict)
 
     def with_names(self, columns: Iterable[Column]) -> tuple[Column, ...]:
@@ -118,6 +120,7 @@ class Reading:
         words: the value that a folded word stands for.
         date_order: `dmy` or `mdy` where dates with slashes are settled, else empty.
         decimal: the decimal marks that this list surely uses, comma, point, or both.
+        is_told: `archief.toml` says which mark that is.
         limits: the lowest and highest value of a column that can be right.
         sheet: the sheet, where a workbook has several.
     """
@@ -129,6 +132,7 @@ class Reading:
     decimal: str
     limits: Limits
     sheet: str = ""
+    is_told: bool = False
 
 
 @dataclass(frozen=True)
@@ -233,6 +237,8 @@ class ListRow:
             return False
         mark = _THOUSAND.fullmatch(cell)
         if mark and self.reading.decimal not in {"", mark[1]}:
+            if self.reading.is_told:
+                return False
             other = self.reading.decimal.replace(mark[1], "")
             raise self.fault(
                 say(
@@ -442,6 +448,7 @@ def read_list(
     sheets = read_sheets(data, wanted, file[file.rfind(".") :].casefold(), sheet)
     cells = [cell.strip() for sheet in sheets for row in sheet.rows for cell in row.fields]
     order = wording.dates.get(path, wording.dates.get("*", "")) or date_order(cells)
+    told = wording.decimals.get(path, wording.decimals.get("*", ""))
     return [
         row
         for sheet in sheets
@@ -452,9 +459,10 @@ def read_list(
                 reason_code,
                 wording.words,
                 order,
-                _decimal_mark(cells),
+                told or _decimal_mark(cells),
                 partial(limits, table),
                 sheet.name,
+                bool(told),
             ),
         )
     ]

@@ -194,6 +194,7 @@ class _File(_Strict):
     headers: dict[str, str] = {}
     ignore: list[str] = []
     dates: dict[str, Literal["dmy", "mdy"]] = {}
+    decimals: dict[str, Literal[".", ","]] = {}
     files: dict[str, Annotated[str, Field(pattern=f"^{STANDS_FOR.pattern}$")]] = {}
     set_aside: list[SetAside] = []
     log_replaced: list[LogReplaced] = []
@@ -363,6 +364,7 @@ def parse_profiles(text: str) -> Profiles:
             headers={split_header(name)[0]: key for name, key in parsed.headers.items()},
             ignore=tuple(fold(name) for name in parsed.ignore),
             dates=dict(parsed.dates),
+            decimals=dict(parsed.decimals),
             files=dict(parsed.files),
         ),
     )

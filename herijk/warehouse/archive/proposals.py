@@ -39,7 +39,8 @@ class Proposal:
     """One line for `archief.toml`.
 
     Attributes:
-        section: `words`, `headers`, `ignore`, `dates`, `files`, `plan`, or `columns`, `absent`,
+        section: `words`, `headers`, `ignore`, `dates`, `decimals`, `files`, `plan`, or `columns`,
+            `absent`,
             `reversed`, `sample_rate_hz` of a season.
         key: its key there; empty for `ignore`, `absent` and `reversed`.
         value: its value.
@@ -132,6 +133,11 @@ def _of_value(_: str, values: Any, __: int) -> Iterator[Proposal]:
 
 def _of_date(path: str, _: Any, __: int) -> Iterator[Proposal]:
     yield Proposal("dates", path, "dmy", is_active=False)
+
+
+def _of_decimals(path: str, values: Any, _: int) -> Iterator[Proposal]:
+    if len(values.get("mark", "")) == 1:
+        yield Proposal("decimals", path, values["mark"], is_active=False)
 
 
 def _of_samples(_: str, values: Any, season: int) -> Iterator[Proposal]:
@@ -276,6 +282,7 @@ _RULES: Final = {
     ),
     "missing_column": _of_samples,
     "ambiguous_date": _of_date,
+    "ambiguous_number": _of_decimals,
     "bad_time": _of_times,
     "short_run": _of_times,
     "run_not_planned": _of_plan,

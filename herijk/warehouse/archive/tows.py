@@ -51,7 +51,7 @@ _DIMENSIONS: Final = {
     for column in COLUMNS
     if column.key in {"waterline_length_m", "beam_m", "bow_height_m"}
 }
-"""What a tow or else its boat must have."""
+"""What a tow or else its boat must have; the height of the bow only where wind was measured."""
 _OF_A_RUN: Final = frozenset({"run", "file", "use_runs", "remark"})
 """What may differ between the rows of one tow, in a list with a row for each run."""
 _RUN: Final = re.compile(r"(b?)([1-9][0-9]?)", re.IGNORECASE)
@@ -164,15 +164,22 @@ def read_tow(row: ListRow, season: int, default_rate_hz: int) -> dict[str, Any]:
 
 
 def fill_dimensions(
-    tow: Mapping[str, Any], boat: Mapping[str, Any], row: ListRow
+    tow: Mapping[str, Any], boat: Mapping[str, Any], row: ListRow, has_wind: bool
 ) -> dict[str, Any]:
     """Return the tow with the boat's dimensions where that day's were not written down.
+
+    Args:
+        tow: what the row says.
+        boat: its boat.
+        row: the row.
+        has_wind: wind was measured, so that the boat's front has to be known.
 
     Raises:
         DefectiveInputError: `bad_list_row` when the boat list does not have them either.
     """
     filled = dict(tow) | {key: boat[key] for key in _DIMENSIONS if tow[key] is None}
-    lacking = [column for key, column in _DIMENSIONS.items() if filled[key] is None]
+    needed = {*_DIMENSIONS} - (set() if has_wind else {"bow_height_m"})
+    lacking = [c for key, c in _DIMENSIONS.items() if key in needed and filled[key] is None]
     if lacking:
         message = "{names} must be there, here or in the boat list."
         raise row.fault(say(message, names=", ".join(f"'{column.named}'" for column in lacking)))

@@ -434,3 +434,27 @@ def test_a_fault_of_a_tow_of_several_files_names_its_file(archive: Archive) -> N
     archive.edit(path, lambda t: f"Vierde vaart\n\n{t.replace('4;2', '4;mist', 1)}")
     (fault,) = archive.scan().faults
     assert (fault.path, fault.line) == (path, line_of(archive, path, "mist"))
+
+
+def test_the_height_of_the_bow_is_asked_for_where_wind_was_measured_only(
+    archive: Archive, good_scan: Scan
+) -> None:
+    archive.replace(BOATS, ";2,10;0,80;", ";2,10;;")
+    (fault,) = archive.scan().faults
+    assert (fault.reason_code, fault.tow_id) == ("bad_list_row", "2014-002")
+    assert "'hoogte [m]' must be there" in fault.message
+    profile = archive.root / "archief.toml"
+    profile.write_text('[[profile]]\nseasons = "2014"\nabsent = ["wind"]\n')
+    scan = archive.scan()
+    assert scan.faults == []
+    assert scan.index.tows["bow_height_m"].to_list() == [0.9, None, 1.05]
+
+
+def test_a_mark_that_is_told_settles_what_1_140_means(archive: Archive) -> None:
+    archive.replace(TOWS, ";870;1140;", ";870;1.140;")
+    checked = check_archive(archive.root)
+    assert [p.line for cause in checked.causes for p in cause.proposals] == [
+        f'[decimals] "{TOWS}" = ","'
+    ]
+    settled(archive)
+    assert archive.scan().index.tows["crew_weight_kg"].to_list() == [760, None, 1140]
