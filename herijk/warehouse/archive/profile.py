@@ -135,6 +135,7 @@ class _ProfileTable(_Strict):
     units: dict[Channel, str] = {}
     sample_rate_hz: Annotated[int, Field(gt=0, le=100_000)] = 1000
     absent: list[Absent] = []
+    reversed: list[Literal["force"]] = []
     header: Annotated[str, Field(min_length=1)] | None = None
     ignore: list[str] = []
     directions: _Directions | None = None
@@ -195,6 +196,7 @@ class _File(_Strict):
     headers: dict[str, str] = {}
     ignore: list[str] = []
     dates: dict[str, Literal["dmy", "mdy"]] = {}
+    decimals: dict[str, Literal[".", ","]] = {}
     files: dict[str, Annotated[str, Field(pattern=f"^{STANDS_FOR.pattern}$")]] = {}
     set_aside: list[SetAside] = []
     log_replaced: list[LogReplaced] = []
@@ -299,6 +301,7 @@ class Profiles:
                 header=table.columns.get(column.key, column.header),  # type: ignore[call-overload]
                 also=(*column.also, column.header),
                 unit=table.units.get(column.key, column.unit),  # type: ignore[call-overload]
+                reversed=column.key in table.reversed,
             )
             for column in known
             if column.key not in absent
@@ -363,6 +366,7 @@ def parse_profiles(text: str) -> Profiles:
             headers={split_header(name)[0]: key for name, key in parsed.headers.items()},
             ignore=tuple(fold(name) for name in parsed.ignore),
             dates=dict(parsed.dates),
+            decimals=dict(parsed.decimals),
             files=dict(parsed.files),
         ),
     )
