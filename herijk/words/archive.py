@@ -252,6 +252,11 @@ ARCHIVE: Final[dict[str, str]] = {
         "run {run} begint opnieuw; zijn rijen moeten bij elkaar staan."
     ),
     "the time does not increase within the run.": "de tijd loopt niet op binnen de run.",
+    "By its times it has {own:.4g} samples per second, other than the first tow of its season: "
+    "write that into the tow list, in a column 'meetfrequentie [Hz]'.": (
+        "Volgens de tijden heeft hij {own:.4g} metingen per seconde, anders dan de eerste sleep "
+        "van het seizoen: schrijf dat in de sleeplijst, in een kolom 'meetfrequentie [Hz]'."
+    ),
     "Run {run}: by its times it has {observed:.4g} samples per second, by the list or the profile "
     "{rate}; they may differ by {most:.0%}.": (
         "Run {run}: volgens de tijden heeft hij {observed:.4g} metingen per seconde, volgens de "
