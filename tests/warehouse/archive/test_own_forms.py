@@ -1,6 +1,7 @@
 """Archives in forms of their own: other headers, units, sheets, files and folders."""
 
 import os
+import re
 import shutil
 import sys
 from collections.abc import Callable
@@ -13,8 +14,8 @@ import xlsxwriter
 from herijk.warehouse.archive.check import Checked, check_archive
 from herijk.warehouse.archive.sheets import read_sheets
 from herijk.warehouse.archive.text import Column, split_header
-from tests.warehouse.archive.conftest import BOATS, FIRST, HEADER, TOWS, Archive, Scan
-from tests.warehouse.archive.test_formats import assert_same, cells_of
+from tests.warehouse.archive.conftest import BOATS, FIRST, HEADER, ROWS, TOWS, Archive, Scan
+from tests.warehouse.archive.test_formats import assert_same, cells_of, lvm
 
 BEAM = Column("beam_m", "breedte", "length", "m")
 COLUMNS = (Column("fsn_no", "fsn_nr"), Column("name", "sloep"), BEAM)
@@ -434,6 +435,26 @@ def test_a_fault_of_a_tow_of_several_files_names_its_file(archive: Archive) -> N
     archive.edit(path, lambda t: f"Vierde vaart\n\n{t.replace('4;2', '4;mist', 1)}")
     (fault,) = archive.scan().faults
     assert (fault.path, fault.line) == (path, line_of(archive, path, "mist"))
+
+
+def test_lines_of_labview_text_are_counted_over_its_headers(archive: Archive) -> None:
+    """One cell that is no number, and one run of which the log was stuck."""
+    lvm(archive)
+    path = FIRST.replace(".csv", ".lvm")
+    lines = (archive.root / path).read_text("utf-8").split("\n")
+    begins = [number for number, line in enumerate(lines) if line.startswith("X_Value")]
+    stuck = slice(begins[4] + 1, begins[4] + 1 + ROWS)
+    lines[stuck] = [re.sub(r"^(\S+)\t\S+", r"\1\t2,40", line) for line in lines[stuck]]
+    archive.edit(path, lambda _: "\n".join(lines))
+    (fault,) = archive.scan().faults
+    assert (fault.reason_code, fault.run, fault.path) == ("stuck_channel", 5, path)
+    assert fault.line == begins[4] + 2
+    lines[begins[2] + 7] = lines[begins[2] + 7].replace("\t2,", "\tmistig 2,", 1)
+    archive.edit(path, lambda _: "\n".join(lines))
+    assert {(fault.reason_code, fault.line) for fault in archive.scan().faults} == {
+        ("bad_number", line_of(archive, path, "mistig")),
+        ("stuck_channel", begins[4] + 2),
+    }
 
 
 def test_the_height_of_the_bow_is_asked_for_where_wind_was_measured_only(
