@@ -46,7 +46,7 @@ from herijk.warehouse.archive.samples import (
     read_samples,
     read_tow_samples,
 )
-from herijk.warehouse.archive.text import fold
+from herijk.warehouse.archive.text import split_header
 from herijk.words import Sentence, innermost, say, spoken
 
 ROUNDS: Final = 8
@@ -126,7 +126,7 @@ def _doubted(
     A rate that the files say themselves leaves no question about it.
     """
     lacking = Counter(p for _, offered in seen for p in offered if p.section == "absent")
-    named = {fold(p.key) for p in proposals if p.section == "headers"}
+    named = {split_header(p.key)[0] for p in proposals if p.section == "headers"}
     known = {p.season for p in proposals if p.section == "sample_rate_hz" and p.is_active}
     for proposal in proposals:
         if (
@@ -135,7 +135,7 @@ def _doubted(
             and proposal.season in known
         ):
             continue
-        if proposal.section == "ignore" and fold(proposal.value) in named:
+        if proposal.section == "ignore" and split_header(proposal.value)[0] in named:
             continue  # another list has it
         tows = listed.filter(season=proposal.season).height
         is_sure = proposal.section != "absent" or lacking[proposal] >= tows

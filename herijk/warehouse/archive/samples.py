@@ -234,17 +234,17 @@ def rate_in_times(path: Path, profile: SeasonProfile) -> float | None:
     return 1.0 / step if step > 0 else None
 
 
-def columns_of_runs(path: Path, profile: SeasonProfile) -> tuple[str, ...]:
-    """Return the columns that nobody knows with which as its runs a samples file can be read."""
+def columns_of_runs(path: Path, profile: SeasonProfile) -> tuple[tuple[str, str], ...]:
+    """Return `run` or `time` with a column nobody knows as which it tells the runs of a file."""
     header = _header_of(path, profile)
     unknown = unknown_headers(header, find_columns(header, profile.columns))
-    return tuple(name for name in unknown if _can_be_run(path, profile, name))
+    pairs = [(key, name) for key in ("run", "time") for name in unknown]
+    return tuple(pair for pair in pairs if _tells_runs(path, profile, *pair))
 
 
-def _can_be_run(path: Path, profile: SeasonProfile, name: str) -> bool:
+def _tells_runs(path: Path, profile: SeasonProfile, key: str, name: str) -> bool:
     columns = tuple(
-        replace(column, header=name) if column.key == "run" else column
-        for column in profile.columns
+        replace(column, header=name) if column.key == key else column for column in profile.columns
     )
     try:
         runs = read_samples(path, replace(profile, columns=columns))["run"]

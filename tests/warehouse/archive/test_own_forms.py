@@ -209,6 +209,14 @@ def runs_of_another_name(archive: Archive) -> None:
         archive.replace(path.relative_to(archive.root).as_posix(), "run;", "rondje;")
 
 
+def times_of_another_name(archive: Archive) -> None:
+    """No column of runs, and only the name of the time is unknown."""
+    for path in sorted((archive.root / "meetdata_2014").glob("*.csv")):
+        header, *lines = path.read_text("utf-8").splitlines()
+        rows = [f"{i % 1000 / 20:.2f}{line[1:]}" for i, line in enumerate(lines)]
+        path.write_text("\n".join([header.replace("run;", "Tid;", 1), *rows, ""]))
+
+
 def in_a_language_nobody_knows(archive: Archive) -> None:
     """Only what stands in the columns says what files and columns are."""
     root = archive.root
@@ -233,7 +241,7 @@ def folder_without_a_year(archive: Archive) -> None:
 
 
 SETTLED = (
-    *(force_with_a_minus, runs_of_another_name),
+    *(force_with_a_minus, runs_of_another_name, times_of_another_name),
     *(other_names, other_headers, other_channels, no_rate, cells_with_words),
     *(folder_without_a_year, lists_in_one_workbook),
 )
@@ -469,6 +477,44 @@ def test_the_height_of_the_bow_is_asked_for_where_wind_was_measured_only(
     scan = archive.scan()
     assert scan.faults == []
     assert scan.index.tows["bow_height_m"].to_list() == [0.9, None, 1.05]
+
+
+def test_beaufort_is_no_speed(archive: Archive) -> None:
+    """The wind is left out on request; the column is never read as m/s."""
+    for path in sorted((archive.root / "meetdata_2014").glob("*.csv")):
+        archive.replace(path.relative_to(archive.root).as_posix(), "wind [m/s]", "wind (Bft)")
+    (cause,) = check_archive(archive.root).causes
+    assert cause.reason_code == "unknown_unit"
+    assert "Beaufort" in cause.faults[0].message
+    settled(archive)
+    assert not archive.scan().index.tows["wind_measured"].any()
+
+
+def test_brackets_that_are_no_unit_leave_a_question(archive: Archive) -> None:
+    archive.replace(TOWS, "roeisnelheid [m/s]", "roeisnelhd (zeemijl per etmaal)")
+    profile = str(check_archive(archive.root).profile)
+    assert '# "roeisnelhd (zeemijl per etmaal)" = "roeisnelheid"' in profile
+
+
+def test_a_column_that_another_list_needs_is_not_ignored(archive: Archive) -> None:
+    """By its unit it can be the weight of either list."""
+    archive.replace(TOWS, "gewicht [kg]", "Vekt (kg)")
+    archive.replace(BOATS, "gewicht [kg]", "Vekt (kg)")
+    profile = str(check_archive(archive.root).profile)
+    assert '"Vekt" = "gewicht"' in profile
+    assert "ignore" not in profile
+
+
+def test_tows_at_a_rate_of_their_own_are_told_before_a_rebuild(archive: Archive) -> None:
+    for number, path in enumerate(sorted((archive.root / "meetdata_2014").glob("*.csv"))):
+        header, *lines = path.read_text("utf-8").splitlines()
+        rate = 40 if number == 0 else 20
+        rows = [f"{i % 1000 / rate:.3f};{line}" for i, line in enumerate(lines)]
+        path.write_text("\n".join([f"tijd;{header}", *rows, ""]))
+    (cause,) = check_archive(archive.root).causes
+    assert (cause.reason_code, len(cause.faults)) == ("bad_time", 1)
+    assert cause.proposals == ()
+    assert "40 samples per second" in cause.faults[0].message
 
 
 def test_a_mark_that_is_told_settles_what_1_140_means(archive: Archive) -> None:
