@@ -12,7 +12,10 @@ Report = dict[str, Any]
 
 
 def check(
-    archive: Annotated[Path, typer.Argument(metavar="ARCHIVE", help="The archive folder.")],
+    archive: Annotated[
+        Path,
+        typer.Argument(metavar="ARCHIVE", envvar="HERIJK_ARCHIVE", help="The archive folder."),
+    ],
     write_profile: Annotated[
         bool, typer.Option("--write-profile", help="Write what is proposed to archief.toml.")
     ] = False,

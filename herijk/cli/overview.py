@@ -22,7 +22,7 @@ from typer.core import TyperGroup
 from typer.main import get_command
 
 from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.pipeline.toml_text import parse_toml
+from herijk.pipeline.toml_text import decoded, parse_toml
 from herijk.words import LANGUAGE, LANGUAGES, spoken, tell
 
 if TYPE_CHECKING:
@@ -222,7 +222,7 @@ def folders_here(start: Path) -> dict[str, str]:
 
 def _read(file: Path) -> dict[str, Any]:
     try:
-        settings = parse_toml(file.read_text(encoding="utf-8"))
+        settings = parse_toml(decoded(file.read_bytes()))
     except (ValueError, OSError) as error:
         raise MissingKnowledgeError("{} cannot be read: {}", file, error) from error
     wrong = [k for k, value in settings.items() if k not in FOLDERS or not isinstance(value, str)]

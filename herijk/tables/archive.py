@@ -48,7 +48,9 @@ class TowFacts(dy.Schema):
     declared_speed_m_s = column.declared_speed()
     waterline_length_m = column.waterline_length("length on the waterline that day")
     beam_m = column.beam("breadth that day")
-    bow_height_m = column.bow_height("height of the bow that day")
+    bow_height_m = column.bow_height(
+        "height of the bow that day; empty only where no wind was measured", nullable=True
+    )
     weight_kg = column.boat_weight("empty boat with oars, before", nullable=True)
     weight_after_kg = column.boat_weight("the same, after", nullable=True)
     crew_weight_kg = column.number(

@@ -125,6 +125,14 @@ ARCHIVE: Final[dict[str, str]] = {
         "m/s; een ervan klopt niet, of er zijn er twee verwisseld."
     ),
     # Rows compared with each other
+    "the rows of the runs of one tow differ in column '{column}': '{one}' and '{other}'.": (
+        "de rijen van de runs van één sleep verschillen in kolom '{column}': '{one}' en '{other}'."
+    ),
+    "the rows of one tow are for runs {numbers}; each run has one row, and where each has a file "
+    "of its own they are 1, 2, 3 and on.": (
+        "de rijen van één sleep zijn voor de runs {numbers}; elke run heeft één rij, en waar elke "
+        "run een eigen bestand heeft zijn ze 1, 2, 3 en verder."
+    ),
     "boat {boat} is in the list twice and the rows differ in {key} ({one} and {other}).": (
         "sloep {boat} staat twee keer in de lijst en de rijen verschillen in {key} ({one} en "
         "{other})."

@@ -869,9 +869,10 @@ COMMAND: Final[dict[str, str]] = {
         "{}, A {:.2f}, {}, Cw {:.2f} bij {:.2f} m/s, proef {}, tot {}"
     ),
     "weight not known": "gewicht niet bekend",
-    "Tow {} of {}: {}{}, declared {:.2f} m/s, {:.2f} x {:.2f} x {:.2f} m, {}, from {}": (
-        "Proef {} van {}: {}{}, opgegeven {:.2f} m/s, {:.2f} x {:.2f} x {:.2f} m, {}, uit {}"
+    "Tow {} of {}: {}{}, declared {:.2f} m/s, {} m, {}, from {}": (
+        "Proef {} van {}: {}{}, opgegeven {:.2f} m/s, {} m, {}, uit {}"
     ),
+    "{:.2f}": "{:.2f}",
     "  {} to {}: Cw {} %{}{}": "  {} naar {}: Cw {} %{}{}",
     "standard uncertainty of Cw: {}": "standaardonzekerheid van Cw: {}",
     "no curve, {}{}": "geen kromme, {}{}",

@@ -166,8 +166,51 @@ ERRORS: Final[dict[str, str]] = {
         "wie en datum"
     ),
     "{}: more than one decision about {}": "{}: meer dan een besluit over {}",
-    "{}: byte {} is not UTF-8; save the file as UTF-8": (
-        "{}: byte {} is geen UTF-8; bewaar het bestand als UTF-8"
+    # TOML that people write
+    "a letter in line {} is not in UTF-8; save the file as UTF-8": (
+        "een letter in regel {} is geen UTF-8; bewaar het bestand als UTF-8"
+    ),
+    "{} letters, up to {} dots in a line; at most {} and {} can be right": (
+        "{} letters, tot {} punten in een regel; hoogstens {} en {} kan kloppen"
+    ),
+    "line {} cannot be read; a number has a decimal point, a text stands between quotes, and a key "
+    "stands once in its table": (
+        "regel {} is niet te lezen; een getal heeft een decimale punt, een tekst staat tussen "
+        "aanhalingstekens, en een sleutel staat een keer in zijn tabel"
+    ),
+    "tables within tables, too deep to read": "tabellen in tabellen, te diep om te lezen",
+    "unknown key": "onbekende sleutel",
+    "must be one of {expected}": "moet een zijn van {expected}",
+    "must be one of {}": "moet een zijn van {}",
+    "must be more than {gt}": "moet meer zijn dan {gt}",
+    "must be at least {ge}": "moet minstens {ge} zijn",
+    "must be less than {lt}": "moet minder zijn dan {lt}",
+    "must be at most {le}": "mag hoogstens {le} zijn",
+    "must be a number": "moet een getal zijn",
+    "must be a whole number": "moet een heel getal zijn",
+    "must be true or false": "moet true of false zijn",
+    "must be a text between quotes": "moet een tekst tussen aanhalingstekens zijn",
+    "must have the form {pattern}": "moet de vorm {pattern} hebben",
+    "must be a list between [ and ]": "moet een lijst tussen [ en ] zijn",
+    "must be a table": "moet een tabel zijn",
+    "must be of small letters, digits and hyphens": (
+        "mag alleen kleine letters, cijfers en streepjes hebben"
+    ),
+    "{}, not {!r}": "{}, niet {!r}",
+    "{}, line {}": "{}, regel {}",
+    "{}; allowed here: {}": "{}; hier kan: {}",
+    "{} (season {})": "{} (seizoen {})",
+    "{!r} is no season range; write 2009:2011, 2015: or 2014": (
+        "{!r} is geen reeks seizoenen; schrijf 2009:2011, 2015: of 2014"
+    ),
+    "range {!r} ends before it begins": "reeks {!r} eindigt voor zij begint",
+    "a method cannot build on itself: {}; change its name or this one": (
+        "een methode kan niet op zichzelf voortbouwen: {}; verander haar naam of deze"
+    ),
+    "unknown step; allowed here: {}": "onbekende stap; hier kan: {}",
+    "a table of options is needed, not {!r}": "hier hoort een tabel met opties, niet {!r}",
+    "given twice for season {}; ranges overlap": (
+        "twee keer gegeven voor seizoen {}; de reeksen overlappen"
     ),
     "{} both are in {}; keep one": "{} staan allebei in {}; houd er een",
     "{} is not empty; name a folder that is new": "{} is niet leeg; geef een nieuwe map",
@@ -287,7 +330,6 @@ ERRORS: Final[dict[str, str]] = {
     "{}: name: {!r} is a method that ships; choose another name": (
         "{}: name: {!r} is een meegeleverde methode; kies een andere naam"
     ),
-    "{}{}: {}: {}": "{}{}: {}: {}",
     "{}: {}": "{}: {}",
     "{}: {} letters; a method has at most {}": (
         "{}: {} letters; een methode heeft er hoogstens {}"

@@ -8,7 +8,9 @@ from packaging.specifiers import SpecifierSet
 
 from tests.architecture.repository import ROOT, read, tracked_files
 
-PROJECT = tomllib.loads(read("pyproject.toml"))["project"]
+SETTINGS = tomllib.loads(read("pyproject.toml"))
+PROJECT = SETTINGS["project"]
+IN_THE_WHEEL = SETTINGS["tool"]["hatch"]["build"]["targets"]["wheel"]
 ONE_SYSTEM = {"fcntl", "grp", "msvcrt", "posix", "pwd", "resource", "termios", "winreg"}
 
 
@@ -19,7 +21,9 @@ def test_the_image_copies_and_starts_what_is_there():
     assert all((ROOT / source).exists() for source in sources)
     let_in = {line[1:] for line in read(".dockerignore").splitlines() if line.startswith("!")}
     assert sources <= let_in
-    assert {PROJECT["readme"], *PROJECT["license-files"], "pyproject.toml"} <= sources  # to build
+    to_build = {PROJECT["readme"], *PROJECT["license-files"], "pyproject.toml"}
+    to_build |= {*IN_THE_WHEEL["packages"], *IN_THE_WHEEL["force-include"]}
+    assert to_build <= sources
     assert re.findall(r'^ENTRYPOINT \["(.+)"\]', text, re.MULTILINE) == [*PROJECT["scripts"]]
     for python in re.findall(r"^FROM python:([\d.]+)", text, re.MULTILINE):
         assert python in SpecifierSet(PROJECT["requires-python"])

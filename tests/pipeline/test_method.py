@@ -13,6 +13,7 @@ from herijk.pipeline.method.definition import (
     shipped_method,
     shipped_methods,
 )
+from herijk.words import spoken
 from tests.pipeline.methods import PLAIN, method_text
 
 LINE_OF = {step: number for number, step in enumerate(PLAIN, 4)}
@@ -40,10 +41,14 @@ FIRST_OVERRIDE = len(method_text().splitlines()) + 1
 
 WRONG = {
     "no TOML": ("name = \n", ["own.toml", "line 1", "not valid TOML"]),
+    "a misspelt title": (
+        method_text().replace('title = ', 'titel = '), ["line 2", "titel", "unknown key", "title"],
+    ),
+    "decimal comma": (method_text() + "x = 0,3\n", ["not valid TOML", "decimal point"]),
     "no name": (method_text().split("\n", 1)[1], ["own.toml", "name", "missing"]),
     "name with capitals": (method_text("Own"), ["line 1", "name", "'Own'"]),
     "title of a wrong type": (
-        method_text().replace('title = "Test"', "title = 3"), ["line 2", "title", "string", "3"],
+        method_text().replace('title = "Test"', "title = 3"), ["line 2", "title", "text between quotes", "3"],
     ),
     "unknown key at the top": (
         'titel = "x"\n' + method_text(), ["line 1", "titel", "unknown key", "title", "overrides"],
@@ -64,7 +69,7 @@ WRONG = {
     ),
     "unknown option": (
         changed("wind", '{ model = "sideways" }'),
-        [f"line {LINE_OF['wind']}", "wind.model", "'none', 'head' or 'oblique'", "'sideways'"],
+        [f"line {LINE_OF['wind']}", "wind.model", "'none', 'head', 'oblique'", "'sideways'"],
     ),
     "wrong type": (
         changed("wind", '{ model = "head", ahead = "half" }'),
@@ -72,17 +77,17 @@ WRONG = {
     ),
     "impossible value": (
         changed("wind", '{ model = "head", ahead = -0.5 }'),
-        [f"line {LINE_OF['wind']}", "wind.ahead", "greater than or equal to 0", "-0.5"],
+        [f"line {LINE_OF['wind']}", "wind.ahead", "at least 0", "-0.5"],
     ),
     "not a number": (
-        changed("wind", '{ model = "head", ahead = nan }'), ["wind.ahead", "finite number", "nan"],
+        changed("wind", '{ model = "head", ahead = nan }'), ["wind.ahead", "must be a number", "nan"],
     ),
     "too many per cent": (
         changed("speed", '{ source = "log1", correction = "prescribed", correction_ratio = 6.0 }'),
-        [f"line {LINE_OF['speed']}", "speed.correction_ratio", "less than or equal to 0.15", "6.0"],
+        [f"line {LINE_OF['speed']}", "speed.correction_ratio", "at most 0.15", "6.0"],
     ),
     "half a second": (
-        changed("wind", '{ model = "head", averaging_s = 2.5 }'), ["wind.averaging_s", "integer", "2.5"],
+        changed("wind", '{ model = "head", averaging_s = 2.5 }'), ["wind.averaging_s", "whole number", "2.5"],
     ),
     "range that is no range": (
         with_override('wind = { ahead = 0.4 }', '"2010-2012"'),
@@ -102,7 +107,7 @@ WRONG = {
     ),
     "impossible value in an override": (
         with_override("wind = { ahead = 4.0 }"),
-        [f"line {FIRST_OVERRIDE + 2}", "wind.ahead", "less than or equal to 2", "season 2010"],
+        [f"line {FIRST_OVERRIDE + 2}", "wind.ahead", "at most 2", "season 2010"],
     ),
     "overlap": (
         with_override("wind = { ahead = 0.4 }")
@@ -112,7 +117,7 @@ WRONG = {
     "unknown parent": (
         'extends = "parent"\n' + method_text(), ["line 1", "extends", "there is no method 'parent'"],
     ),
-    "its own parent": ('extends = "test"\n' + method_text(), ["line 1", "extends", "circle", "test"]),
+    "its own parent": ('extends = "test"\n' + method_text(), ["line 1", "extends", "itself", "test"]),
 }  # fmt: skip
 
 
@@ -126,6 +131,9 @@ def test_every_error_says_where_what_and_what_is_allowed(case):
     assert [part for part in expected if part not in message] == [], message
     assert "\n" not in message
     assert "pydantic" not in message
+    dutch = spoken(caught.value, "nl")
+    english = {"line", "missing", "must", "not", "key", "allowed", "season", "ranges"}
+    assert not english & set(re.findall(r"[a-z]+", re.sub(r"'[^']*'", "", dutch))), dutch
 
 
 def test_a_very_long_line_is_refused_at_once():
@@ -137,13 +145,13 @@ def test_a_very_long_line_is_refused_at_once():
 
 def test_a_circle_over_two_files_is_found():
     one, two = (f'extends = "{o}"\n' + method_text(n) for n, o in (("one", "two"), ("two", "one")))
-    with pytest.raises(MethodFileError, match="one extends two extends one"):
+    with pytest.raises(MethodFileError, match="one > two > one"):
         parse(one, one=one, two=two)
 
 
 def test_an_error_in_the_parent_names_the_parents_file():
     parent = changed("wind", '{ model = "head" }').replace("[steps]", "[steps]\nwinds = {}")
-    with pytest.raises(MethodFileError, match=r"^parent\.toml, line 4: steps\.winds"):
+    with pytest.raises(MethodFileError, match=r"^parent\.toml, line 4: 'steps\.winds'"):
         parse('name = "own"\ntitle = "x"\nextends = "parent"\n', parent=parent)
 
 

@@ -321,3 +321,7 @@ def test_wind_that_was_not_measured_is_said_and_in_the_budget():
     )
     assert (u > 0.01).all()
     assert (unsaid < 0.001).all()
+    unsized = said.with_columns(bow_height_m=pl.lit(None, pl.Float64))
+    without_bow = recompute(method(wind='{ model = "oblique" }'), unsized, blocks).curves
+    ratio = (without_bow["cw_kg_m"] / found.curves["cw_kg_m"]).to_numpy()
+    assert ratio == pytest.approx(1.0, abs=0.002)

@@ -90,7 +90,9 @@ def test_a_method_takes_the_rule_of_the_one_it_extends():
 
 def test_an_unknown_key_of_the_rule_is_named():
     text = 'name = "own"\ntitle = "own"\nextends = "rebased"\n[register]\nyears = 2\n'
-    with pytest.raises(MethodFileError, match=r"own.toml, line 5: years: unknown key.*valid_years"):
+    with pytest.raises(
+        MethodFileError, match=r"own.toml, line 5: 'years': unknown key.*valid_years"
+    ):
         parse_method(text, "own.toml")
 
 

@@ -121,6 +121,20 @@ def test_readers_never_see_an_error_or_half_of_a_database(tmp_path):
     assert len({version for version, _ in seen}) > ENOUGH_VERSIONS
 
 
+def test_lists_without_an_element_keep_their_rows(tmp_path):
+    """They are written in a way of their own, for DuckDB 1.0; `.ci/wheel` reads them with it."""
+    path = tmp_path / "warehouse.duckdb"
+    nothing = pl.List(pl.String)
+    frame = pl.DataFrame(
+        {"x": [1, 2], "empty": [[], []], "unknown": [None, []]},
+        schema_overrides={"empty": nothing, "unknown": nothing},
+    )
+    build_database(path, {"t": frame, "u": frame.clear()})
+    with duckdb.connect(path, read_only=True) as db:
+        assert db.table("t").pl().equals(frame)
+        assert db.table("u").pl().equals(frame.clear())
+
+
 def test_a_reader_that_has_the_old_database_open_keeps_it(tmp_path):
     path = tmp_path / "warehouse.duckdb"
     build_database(path, {"t": pl.DataFrame({"x": [1]})})

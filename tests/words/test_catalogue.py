@@ -12,6 +12,7 @@ import herijk
 from herijk.cli.main import app, main
 from herijk.cli.overview import SECTIONS, USAGE, language_of
 from herijk.pipeline import errors
+from herijk.pipeline.toml_text import PROBLEMS
 from herijk.words import LANGUAGE, dutch, say, spoken, tell
 
 DUTCH = dutch()
@@ -78,6 +79,7 @@ def has_words(text):
 
 def test_every_text_exists_in_dutch():
     said = {*said_in_code(), *said_in_help(get_command(app)), *SECTIONS, *OF_LIBRARY}
+    said |= {*PROBLEMS.values()}
     assert {text for text in said if has_words(text)} - DUTCH.keys() == set()
 
 

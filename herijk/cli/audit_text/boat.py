@@ -214,16 +214,15 @@ def _set_aside(row: Report) -> str:
 
 def _tow(tow: Report) -> str:
     weight = tell("weight not known") if tow["weight_kg"] is None else f"{tow['weight_kg']:.0f} kg"
+    sizes = (tow[key] for key in ("waterline_length_m", "beam_m", "bow_height_m"))
     head = tell(
-        "Tow {} of {}: {}{}, declared {:.2f} m/s, {:.2f} x {:.2f} x {:.2f} m, {}, from {}",
+        "Tow {} of {}: {}{}, declared {:.2f} m/s, {} m, {}, from {}",
         tow["tow_id"],
         tow["tow_date"],
         tow["rowers"],
         tow["crew_class"],
         tow["declared_speed_m_s"],
-        tow["waterline_length_m"],
-        tow["beam_m"],
-        tow["bow_height_m"],
+        " x ".join("-" if size is None else tell("{:.2f}", size) for size in sizes),
         weight,
         tow["samples_path"],
     )

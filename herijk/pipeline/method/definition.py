@@ -23,11 +23,11 @@ from pydantic import (
     ValidationError,
     WithJsonSchema,
 )
-from pydantic_core import PydanticCustomError
 
 from herijk.pipeline.assessment.checks import CODES
 from herijk.pipeline.errors import HerijkError, MissingKnowledgeError
-from herijk.pipeline.toml_text import parse_toml
+from herijk.pipeline.toml_text import parse_toml, problem_in_words
+from herijk.words import Sentence, say
 
 LAST_SEASON: Final = 9999
 """End of a range written as `2015:`, which holds until a later method says otherwise."""
@@ -113,7 +113,7 @@ class Curve(_Options):
 
 def _known_check(code: str) -> str:
     if code not in CODES:
-        raise PydanticCustomError("unknown_check", f"Must be one of {', '.join(CODES)}")
+        raise ValueError(say("must be one of {}", ", ".join(CODES)))
     return code
 
 
@@ -273,10 +273,16 @@ def parse_method(text: str, file_name: str, text_of: Callable[[str], str] = ship
     )
 
 
+def _fit_for_a_name(text: str) -> str:
+    if not re.fullmatch(r"[a-z0-9][a-z0-9-]*", text):
+        raise ValueError(say("must be of small letters, digits and hyphens"))
+    return text
+
+
 class _Head(_Options):
     """The part of a method file outside the steps."""
 
-    name: str = Field(pattern=r"^[a-z0-9][a-z0-9-]*$")
+    name: Annotated[str, AfterValidator(_fit_for_a_name)]
     title: str
     title_en: str = ""
     description: str = ""
@@ -295,11 +301,12 @@ class _Range(_Options):
     def parse(cls, text: object, reader: "_Reader", key: str) -> "_Range":
         match = re.fullmatch(r"(\d{4})(:(\d{4})?)?", text) if isinstance(text, str) else None
         if match is None:
-            raise reader.error(key, f"{text!r} is no season range; write 2009:2011, 2015: or 2014")
+            wrong = say("{!r} is no season range; write 2009:2011, 2015: or 2014", text)
+            raise reader.error(key, wrong)
         first = int(match[1])
         last = int(match[3]) if match[3] else (LAST_SEASON if match[2] else first)
         if last < first:
-            raise reader.error(key, f"range {text!r} ends before it begins")
+            raise reader.error(key, say("range {!r} ends before it begins", text))
         return cls(first=first, last=last)
 
 
@@ -328,34 +335,34 @@ class _Reader:
         except ValueError as error:
             raise MethodFileError("{}: not valid TOML: {}", self.file_name, error) from error
 
-    def error(self, key: str, message: str, where: str | None = None) -> MethodFileError:
+    def error(self, key: str, message: Sentence, where: str | None = None) -> MethodFileError:
         """An error about `key`, on the line of `where`, which is the key unless it is missing."""
         line = self._line(key if where is None else where)
-        return MethodFileError("{}{}: {}: {}", self.file_name, line, key, message)
+        file = self.file_name if line is None else say("{}, line {}", self.file_name, line)
+        return MethodFileError("{}: {}: {}", file, f"'{key}'", message)
 
     def from_validation(
-        self, error: ValidationError, allowed: type[BaseModel], season: str = ""
+        self, error: ValidationError, allowed: type[BaseModel], season: int | None = None
     ) -> MethodFileError:
-        first = error.errors()[0]
+        # An unknown key first: a misspelt one is also missing.
+        first = min(error.errors(), key=lambda problem: problem["type"] != "extra_forbidden")
         path = [part for part in first["loc"] if isinstance(part, str)]
-        message = first["msg"]
+        message = problem_in_words(first)
         if first["type"] == "extra_forbidden":
-            message = f"unknown key; allowed here: {', '.join(_keys_at(allowed, path[:-1]))}"
-        elif first["type"] == "missing":
-            message = "missing"
-        else:
-            message = f"{message[0].lower()}{message[1:]}, not {first['input']!r}"
+            message = say("{}; allowed here: {}", message, ", ".join(_keys_at(allowed, path[:-1])))
+        if season is not None:
+            message = say("{} (season {})", message, season)
         where = path[:-1] if first["type"] == "missing" else path
-        return self.error(".".join(path), message + season, where=".".join(where))
+        return self.error(".".join(path), message, where=".".join(where))
 
-    def _line(self, key: str) -> str:
+    def _line(self, key: str) -> int | None:
         """Where the key stands: the last line that holds it, or else the step it belongs to."""
         parts = key.split(".")
         for wanted in (parts[-2:], parts[-1:], parts[-2:-1]):
             lines = [number for number, held in self._keys_of_lines() if set(wanted) <= held]
-            if lines:
-                return f", line {lines[-1]}"
-        return ""
+            if wanted and lines:
+                return lines[-1]
+        return None
 
     def _keys_of_lines(self) -> list[tuple[int, set[str]]]:
         """The keys named on each line, with those of the table it is in."""
@@ -385,11 +392,13 @@ def _layers(
     layers: list[_Layer] = []
     if head.extends is not None:
         if head.extends in seen:
-            raise reader.error("extends", f"circle: {' extends '.join((*seen, head.extends))}")
+            circle = " > ".join((*seen, head.extends))
+            wrong = say("a method cannot build on itself: {}; change its name or this one", circle)
+            raise reader.error("extends", wrong)
         try:
             parent_text = text_of(head.extends)
         except MissingKnowledgeError as error:
-            raise reader.error("extends", str(error)) from error
+            raise reader.error("extends", say("{}", error)) from error
         parent = _Reader(parent_text, f"{head.extends}.toml")
         layers += _layers(parent, parent.head(), text_of, (*seen, head.extends))
     everywhere = _Range(first=0, last=LAST_SEASON)
@@ -412,7 +421,7 @@ def _register_rule(reader: _Reader, head: _Head, text_of: Callable[[str], str]) 
     try:
         return RegisterRule.model_validate(table)
     except ValidationError as error:
-        raise reader.from_validation(error, RegisterRule, " ([register])") from error
+        raise reader.from_validation(error, RegisterRule) from error
 
 
 def _step_tables(
@@ -421,9 +430,11 @@ def _step_tables(
     for step, table in options.items():
         if step not in Steps.model_fields:
             allowed = ", ".join(Steps.model_fields)
-            raise reader.error(f"{where}.{step}", f"unknown step; allowed here: {allowed}")
+            wrong = say("unknown step; allowed here: {}", allowed)
+            raise reader.error(f"{where}.{step}", wrong)
         if not isinstance(table, dict):
-            raise reader.error(f"{where}.{step}", f"a table of options is needed, not {table!r}")
+            wrong = say("a table of options is needed, not {!r}", table)
+            raise reader.error(f"{where}.{step}", wrong)
     return dict(options)
 
 
@@ -435,9 +446,8 @@ def _refuse_overlap(reader: _Reader, layers: list[_Layer]) -> None:
                 continue
             for step in one.options.keys() & other.options.keys():
                 for key in one.options[step].keys() & other.options[step].keys():
-                    raise reader.error(
-                        f"overrides.{step}.{key}", f"given twice for season {first}; ranges overlap"
-                    )
+                    wrong = say("given twice for season {}; ranges overlap", first)
+                    raise reader.error(f"overrides.{step}.{key}", wrong)
 
 
 def _ranges(reader: _Reader, layers: list[_Layer], seasons: _Range) -> tuple[SeasonSteps, ...]:
@@ -472,7 +482,7 @@ def _steps_of_season(reader: _Reader, layers: list[_Layer], season: int) -> Step
     try:
         return Steps.model_validate(merged)
     except ValidationError as error:
-        raise reader.from_validation(error, Steps, f" (season {season})") from error
+        raise reader.from_validation(error, Steps, season) from error
 
 
 def _season_text(season: int) -> str:

@@ -20,6 +20,10 @@ CREW_FRONT_AREA_M2: Final = 0.5
 CREW_SIDE_AREA_M2: Final = 1.0
 """Added to length x height in the oblique-wind formula of 2015."""
 
+USUAL_BOW_HEIGHT_M: Final = 1.0
+"""Of a bow that nobody measured (inferred): only boats towed without an anemometer may have one,
+of which it moves the interval and not Cw."""
+
 
 def hull_speed_m_s(waterline_length_m: ArrayLike) -> FloatArray:
     """Speed [m/s] whose wave is as long as the waterline: 1.25 sqrt(L)."""
@@ -28,14 +32,19 @@ def hull_speed_m_s(waterline_length_m: ArrayLike) -> FloatArray:
 
 def front_area_m2(beam_m: ArrayLike, bow_height_m: ArrayLike) -> FloatArray:
     """Area [m2] seen by a head wind: b h + 0.5."""
-    beam, height = (np.asarray(x, dtype=np.float64) for x in (beam_m, bow_height_m))
-    return beam * height + CREW_FRONT_AREA_M2
+    return np.asarray(beam_m, dtype=np.float64) * _known_height_m(bow_height_m) + CREW_FRONT_AREA_M2
 
 
 def side_area_m2(length_m: ArrayLike, bow_height_m: ArrayLike) -> FloatArray:
     """Area [m2] seen by a beam wind: l h + 1.0."""
-    length, height = (np.asarray(x, dtype=np.float64) for x in (length_m, bow_height_m))
-    return length * height + CREW_SIDE_AREA_M2
+    return (
+        np.asarray(length_m, dtype=np.float64) * _known_height_m(bow_height_m) + CREW_SIDE_AREA_M2
+    )
+
+
+def _known_height_m(bow_height_m: ArrayLike) -> FloatArray:
+    height = np.asarray(bow_height_m, dtype=np.float64)
+    return np.where(np.isnan(height), USUAL_BOW_HEIGHT_M, height)
 
 
 def still_air_coefficient_kg_m(area_m2: ArrayLike, drag_coefficient: ArrayLike) -> FloatArray:

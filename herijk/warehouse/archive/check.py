@@ -29,11 +29,23 @@ from herijk.warehouse.archive.files import (
 )
 from herijk.warehouse.archive.index import ArchiveIndex, index_archive, missing_lists, strangers
 from herijk.warehouse.archive.plausibility import judge_in_files
-from herijk.warehouse.archive.profile import STANDARD, Profiles, parse_profiles, profile_text
+from herijk.warehouse.archive.profile import (
+    STANDARD,
+    Profiles,
+    SeasonProfile,
+    parse_profiles,
+    profile_text,
+)
 from herijk.warehouse.archive.proposals import Proposal, merged, propose
 from herijk.warehouse.archive.published import read_published_registers, read_races
-from herijk.warehouse.archive.samples import check_header, read_samples, read_tow_samples
-from herijk.words import innermost, say, spoken
+from herijk.warehouse.archive.samples import (
+    check_header,
+    columns_of_runs,
+    read_samples,
+    read_tow_samples,
+)
+from herijk.warehouse.archive.text import fold
+from herijk.words import Sentence, innermost, say, spoken
 
 ROUNDS: Final = 8
 """So often what was proposed is tried, at most."""
@@ -112,6 +124,7 @@ def _doubted(
     A rate that the files say themselves leaves no question about it.
     """
     lacking = Counter(p for _, offered in seen for p in offered if p.section == "absent")
+    named = {fold(p.key) for p in proposals if p.section == "headers"}
     known = {p.season for p in proposals if p.section == "sample_rate_hz" and p.is_active}
     for proposal in proposals:
         if (
@@ -120,6 +133,8 @@ def _doubted(
             and proposal.season in known
         ):
             continue
+        if proposal.section == "ignore" and fold(proposal.value) in named:
+            continue  # another list has it
         tows = listed.filter(season=proposal.season).height
         is_sure = proposal.section != "absent" or lacking[proposal] >= tows
         yield replace(proposal, is_active=proposal.is_active and is_sure)
@@ -183,7 +198,8 @@ def _in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Iterator[Fa
             found = [fault for fault in others if fault is not None]
             yield from found or judge_in_files(samples, tow, index.runs, root, profile).faults
         except DefectiveInputError as error:
-            yield fault_from(error, tow["samples_path"], tow["tow_id"])
+            fault = fault_from(error, tow["samples_path"], tow["tow_id"])
+            yield _with_columns_of_runs(fault, root, profile)
     for file in list_sample_files(root, index.profiles.wording.files):
         season = index.seasons.get(file.path, file.season)
         key = (season, kind_of(file.full_path))
@@ -204,12 +220,21 @@ def _in_form(root: Path, file: ArchiveFile, profiles: Profiles, season: int) -> 
             run=named[1] if named else None,
         )
     except DefectiveInputError as error:
-        yield fault_from(error, file.path)
+        yield _with_columns_of_runs(fault_from(error, file.path), root, profile)
         return
     planned = list(profiles.plan_of("", season).runs)
     found = _mean_speeds(samples)
     if season and named is None and found["run"].to_list() != planned:
         yield _not_planned(file.path, found, planned, found["log1_m_s"].mean())
+
+
+def _with_columns_of_runs(fault: Fault, root: Path, profile: SeasonProfile) -> Fault:
+    """Return a fault with the columns that can be that of the runs, where only that is missing."""
+    what = innermost(fault.message)
+    if not isinstance(what, Sentence) or what.values.get("keys") != ("run",):
+        return fault
+    columns = columns_of_runs(path_inside(root, fault.path), profile)
+    return replace(fault, message=say(what.template, **{**what.values, "header": columns}))
 
 
 def _other_rate(samples: pl.DataFrame, tow: Mapping[str, Any], index: ArchiveIndex) -> Fault | None:

@@ -140,7 +140,8 @@ REASONS: Final[dict[str, Reason]] = {
     ),
     "ambiguous_number": Reason(
         "A number can be read in two ways: 1.140 where other decimals of the list have a comma.",
-        "Write 1140 or 1,140.",
+        "Write 1140 or 1,140, or say under `[decimals]` in `archief.toml` what the mark before "
+        "decimals is in this list.",
     ),
     "date_outside_season": Reason(
         "The date of a tow is not in the year of its list.",

@@ -252,6 +252,12 @@ def sample_suffix(name: str) -> str:
     return next((suffix for suffix in SAMPLE_SUFFIXES if folded.endswith(suffix)), "")
 
 
+def can_hold_data(path: Path) -> bool:
+    """Whether a file has the suffix of a list or of samples, or a folder has such a file."""
+    files = path.rglob("*") if path.is_dir() else [path]
+    return any(f.suffix.casefold() in LIST_SUFFIXES or sample_suffix(f.name) for f in files)
+
+
 def match_key(name: str) -> str:
     """Return the name of a samples file for comparing: folded, without suffix."""
     folded = fold_name(name)

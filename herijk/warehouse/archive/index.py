@@ -6,7 +6,7 @@ are compared with each other here, one question after the other; a tow falls out
 
 import datetime as dt
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -34,6 +34,7 @@ from herijk.warehouse.archive.files import (
     WINDOWS,
     ArchiveFile,
     as_one_run,
+    can_hold_data,
     find_boats_file,
     hash_of_parts,
     list_files,
@@ -55,7 +56,7 @@ from herijk.warehouse.archive.limits import LIST_MAX_BYTES
 from herijk.warehouse.archive.lists import ListRow, read_list
 from herijk.warehouse.archive.misfits import misfits
 from herijk.warehouse.archive.profile import Plan, Profiles, read_profiles
-from herijk.warehouse.archive.recognise import recognised
+from herijk.warehouse.archive.recognise import guessed, recognised
 from herijk.warehouse.archive.text import fold, fold_name, shorten
 from herijk.words import say
 
@@ -224,7 +225,7 @@ def index_archive(
         seasons={
             part.path: entry.season
             for entry in entries
-            for name in _names(entry.row)
+            for name in _names_of_files(entry.row)
             for file in _candidates(name, entry.season, by_name)
             for part in file.parts
         },
@@ -289,22 +290,31 @@ def _read_boats(root: Path, profiles: Profiles, hashes: _Hashes, faults: list[Fa
 
 def strangers(root: Path, profiles: Profiles) -> list[Fault]:
     """Return what lies in the archive and is not read; what it can be, where that can be told."""
+    is_lacking = root.is_dir() and bool(missing_lists(root, profiles))
     message = "The name of '{name}' has letters that cannot be read; give it another name."
     misnamed = [
         Fault(path, None, None, "unrecognised_file", say(message, name=path))
         for path in list_misnamed(root)
     ]
     return misnamed + [
-        Fault(path, None, None, "unrecognised_file", _about_stranger(root, path))
+        Fault(path, None, None, "unrecognised_file", _about_stranger(root, path, is_lacking))
         for path in list_strangers(root, profiles.wording.files)
         if fold(path) not in profiles.wording.ignore
     ]
 
 
-def _about_stranger(root: Path, path: str) -> str:
+def _about_stranger(root: Path, path: str, is_lacking: bool) -> str:
+    """Return the sentence about what is not read; while a list is lacking it can be anything."""
     can_be = dict(recognised(root, path))
     if not can_be:
-        return say("'{path}' is not read, as nobody knows what it is.", path=path)
+        guesses = tuple(sorted(guessed(root, path)))
+        return say(
+            "'{path}' is not read, as nobody knows what it is.",
+            path=path,
+            guesses=guesses,
+            is_other=not guesses
+            and not ((is_lacking or (root / path).is_dir()) and can_hold_data(root / path)),
+        )
     return say(
         "'{path}' is not read: it has another name than the archive's files. It can be {kinds}; "
         "say so under [files] in archief.toml.",
@@ -330,7 +340,10 @@ def _read_tow_lists(
             faults.append(fault_from(error, file.path))
             unread_seasons.add(file.season)
             continue
-        entries += [_Entry(row, file.path, file.season or _year_of(row), profiles) for row in rows]
+        entries += [
+            _Entry(row, file.path, file.season or _year_of(row), profiles)
+            for row in tow_list.per_tow(rows)
+        ]
     return entries, unread_seasons
 
 
@@ -443,8 +456,14 @@ def _hash_files(files: Iterable[ArchiveFile], hashes: _Hashes, faults: list[Faul
 
 
 def _names(row: ListRow) -> list[str]:
+    """Return the names of the files in a row; of a file per run with `PARTS` between them."""
     cells = (row.optional_text("file"), row.optional_text("second_file"))
     return [cell for cell in cells if cell is not None]
+
+
+def _names_of_files(row: ListRow) -> Iterator[str]:
+    for name in _names(row):
+        yield from name.split(PARTS)
 
 
 def _by_name(sample_files: Iterable[ArchiveFile], entries: Iterable[_Entry]) -> _FilesByName:
@@ -453,7 +472,9 @@ def _by_name(sample_files: Iterable[ArchiveFile], entries: Iterable[_Entry]) -> 
     Files that are a run each answer together to what their names have in common, unless a row
     names one of them by itself.
     """
-    named = {(entry.season, match_key(name)) for entry in entries for name in _names(entry.row)}
+    named = {
+        (entry.season, match_key(name)) for entry in entries for name in _names_of_files(entry.row)
+    }
     by_name: _FilesByName = defaultdict(list)
     by_run: dict[tuple[int, str], dict[int, list[ArchiveFile]]] = defaultdict(dict)
     for file in sample_files:
@@ -490,7 +511,7 @@ def _not_listed(
     named = {
         part.path
         for entry in entries
-        for name in _names(entry.row)
+        for name in _names_of_files(entry.row)
         for season in (entry.season, 0)
         for file in by_name.get((season, match_key(name)), [])
         for part in file.parts
@@ -572,7 +593,7 @@ def _read_values(entry: _Entry, profiles: Profiles) -> None:
 
 
 def _find_files(entry: _Entry, by_name: _FilesByName, hashes: _Hashes) -> None:
-    entry.files = [_find_file(entry, name, by_name) for name in _names(entry.row)]
+    entry.files = [_find_files_of(entry, names, by_name) for names in _names(entry.row)]
     first, second = entry.files[0], entry.files[1] if len(entry.files) > 1 else None
     entry.tow |= {
         "samples_path": first.path,
@@ -582,6 +603,12 @@ def _find_files(entry: _Entry, by_name: _FilesByName, hashes: _Hashes) -> None:
         "list_path": entry.list_path,
         "list_line": entry.row.line,
     }
+
+
+def _find_files_of(entry: _Entry, names: str, by_name: _FilesByName) -> SamplesFile:
+    """Return the samples of a cell: of one name, or of one for each run."""
+    found = [_find_file(entry, name, by_name) for name in names.split(PARTS)]
+    return SamplesFile(tuple(part for file in found for part in file.parts))
 
 
 def _find_file(entry: _Entry, name: str, by_name: _FilesByName) -> SamplesFile:
@@ -690,7 +717,9 @@ def _join_boat(entry: _Entry, boats: Boats) -> None:
     if boat is None:
         message = say("boat {boat} is not in the boat list.", boat=shorten(fsn_no))
         raise entry.fault("unknown_boat", message)
-    entry.tow = tow_list.fill_dimensions(entry.tow, boat, entry.row) | {"fsn_no": boat["fsn_no"]}
+    has_wind = "wind" not in entry.profiles.for_season(entry.season).absent
+    filled = tow_list.fill_dimensions(entry.tow, boat, entry.row, has_wind)
+    entry.tow = filled | {"fsn_no": boat["fsn_no"]}
 
 
 def _place_day(entry: _Entry, profiles: Profiles) -> None:

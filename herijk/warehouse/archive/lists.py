@@ -33,6 +33,9 @@ from herijk.words import say
 _ISO_DATE: Final = re.compile(r"([0-9]{4})[-/.]([0-9]{1,2})[-/.]([0-9]{1,2})")
 _DAY_FIRST: Final = re.compile(r"([0-9]{1,2})([-./ ])([0-9]{1,2})\2([0-9]{4}|[0-9]{2})")
 _MONTH_NAMED: Final = re.compile(r"([0-9]{1,2})[. -]+([a-zäé]{3,9})[. -]+([0-9]{4})")
+_SERIAL_DATE: Final = re.compile(r"(?:3[3-9]|4[0-9]|5[0-4])[0-9]{3}")
+"""What a spreadsheet shows of a date in a cell that is not set to show dates: 1990 to 2050."""
+_EXCEL_DAY_0: Final = dt.date(1899, 12, 30)
 _WEEKDAY: Final = re.compile(r"^[a-z]{2,10}[.,]*\s+(?=[0-9])")
 _TIME_OF_DAY: Final = re.compile(r"[ T]+[0-9]{1,2}:[0-9]{2}(:[0-9]{2}([.,][0-9]+)?)?$")
 _MONTHS: Final = {
@@ -43,10 +46,30 @@ _MONTHS: Final = {
     )
     for name in names.split()
 }  # fmt: skip
-_WITH_UNIT: Final = re.compile(r"([+-]?[0-9.,]+(?:[eE][+-]?[0-9]+)?)\s*([^0-9\s.,+-].*)")
-_THOUSAND: Final = re.compile(r"[+-]?[0-9]{1,3}([.,])[0-9]{3}")
+_GAPS: Final = "'\u2019 \u00a0\u202f"
+"""What stands between thousands and never before decimals."""
+_WITH_UNIT: Final = re.compile(
+    rf"([+-]?[0-9.,]+(?:[{_GAPS}][0-9]{{3}})*(?:[.,][0-9]+)?(?:[eE][+-]?[0-9]+)?)"
+    r"\s*([^0-9\s.,+-].*)"
+)
+_THOUSAND: Final = re.compile(r"[+-]?[1-9][0-9]{0,2}([.,])[0-9]{3}")
+_GROUPED: Final = re.compile(
+    rf"[+-]?[1-9][0-9]{{0,2}}(?P<mark>[.,{_GAPS}])[0-9]{{3}}(?P<more>(?:(?P=mark)[0-9]{{3}})*)"
+    r"(?P<decimals>(?!(?P=mark))[.,][0-9]+)?"
+)
 _DECIMAL: Final = re.compile(r"[+-]?[0-9]*([.,])([0-9]{1,2}|[0-9]{4,})")
 _BOAT: Final = re.compile(r"(?:fsn)?[\s._-]*([0-9]{1,6}[a-z]?)", re.IGNORECASE)
+
+
+def ungrouped(cell: str) -> str:
+    """Return a number without the marks between its thousands, where they can be nothing else.
+
+    `1.140,50`, `1,234,567`, `1 140` and `1'140` are; `1.140` can be little more than one.
+    """
+    match = _GROUPED.fullmatch(cell)
+    if match is None or not (match["more"] or match["decimals"] or match["mark"] in _GAPS):
+        return cell
+    return cell.replace(match["mark"], "")
 
 
 def fold_word(text: str) -> str:
@@ -63,6 +86,7 @@ class Wording:
         headers: the project's name of a column by a folded other one.
         ignore: folded names of columns that are known and not used.
         dates: `dmy` or `mdy` by the path of a list, or `*` for all: how 1/3/2015 is meant.
+        decimals: the mark before decimals, `.` or `,`, by the path of a list, or `*` for all.
         files: what a file or folder stands for, by its path in the archive: `sleeplijst_2014`.
     """
 
@@ -70,6 +94,7 @@ class Wording:
     headers: Mapping[str, str] = field(default_factory=dict)
     ignore: tuple[str, ...] = ()
     dates: Mapping[str, str] = field(default_factory=dict)
+    decimals: Mapping[str, str] = field(default_factory=dict)
     files: Mapping[str, str] = field(default_factory=dict)
 
     def with_names(self, columns: Iterable[Column]) -> tuple[Column, ...]:
@@ -95,6 +120,7 @@ class Reading:
         words: the value that a folded word stands for.
         date_order: `dmy` or `mdy` where dates with slashes are settled, else empty.
         decimal: the decimal marks that this list surely uses, comma, point, or both.
+        is_told: `archief.toml` says which mark that is.
         limits: the lowest and highest value of a column that can be right.
         sheet: the sheet, where a workbook has several.
     """
@@ -106,6 +132,7 @@ class Reading:
     decimal: str
     limits: Limits
     sheet: str = ""
+    is_told: bool = False
 
 
 @dataclass(frozen=True)
@@ -160,14 +187,15 @@ class ListRow:
         cell = self.optional_text(key)
         if cell is None:
             return None
-        number, (numerator, denominator) = self._number_and_scale(key, cell)
-        value = number * numerator / denominator
+        digits, scale = self._digits_and_scale(key, cell)
+        value = scale.to_si(parse_number(digits))
         lowest, highest = self.reading.limits(key)
-        if not lowest <= value <= highest or lowest <= 1000 * value <= highest:
-            self._check_one_meaning(key, cell)
+        if _THOUSAND.fullmatch(digits):
+            thousands = scale.to_si(1000 * parse_number(digits))
+            if lowest <= thousands <= highest:
+                value = value if self._is_in_ones(key, digits, value) else thousands
         if not lowest <= value <= highest:
-            limits = (limit * denominator / numerator for limit in (lowest, highest))
-            low, high = (f"{limit:g}" for limit in limits)
+            low, high = (f"{scale.from_si(limit):g}" for limit in (lowest, highest))
             raise self.fault(
                 say(
                     "column '{column}' is {cell}; {low} to {high} can be right.",
@@ -179,7 +207,7 @@ class ListRow:
             )
         return value
 
-    def _number_and_scale(self, key: str, cell: str) -> tuple[float, Scale]:
+    def _digits_and_scale(self, key: str, cell: str) -> tuple[str, Scale]:
         """Return the number in a cell and its scale: its own unit goes before the header's."""
         column = self.columns[key]
         own = _WITH_UNIT.fullmatch(cell)
@@ -187,7 +215,8 @@ class ListRow:
             cell, own = own[1], None
         scale = find_scale(column.dimension, own[2]) if own and UNITS[column.dimension] else None
         try:
-            return parse_number(own[1] if own and scale else cell), scale or column.scale
+            digits = ungrouped(own[1] if own and scale else cell)
+            parse_number(digits)
         except ValueError as error:
             raise self.fault(
                 say(
@@ -196,11 +225,20 @@ class ListRow:
                     cell=shorten(cell),
                 )
             ) from error
+        return digits, scale or column.scale
 
-    def _check_one_meaning(self, key: str, cell: str) -> None:
-        """Raise where 1.140 can be a thousand: this list writes decimals with the other mark."""
+    def _is_in_ones(self, key: str, cell: str, value: float) -> bool:
+        """Return whether 1.140 is little more than one, where 1140 can be right as well.
+
+        Raises where both can be right and this list writes its decimals with the other mark.
+        """
+        lowest, highest = self.reading.limits(key)
+        if not lowest <= value <= highest:
+            return False
         mark = _THOUSAND.fullmatch(cell)
         if mark and self.reading.decimal not in {"", mark[1]}:
+            if self.reading.is_told:
+                return False
             other = self.reading.decimal.replace(mark[1], "")
             raise self.fault(
                 say(
@@ -214,6 +252,7 @@ class ListRow:
                 ),
                 "ambiguous_number",
             )
+        return True
 
     def number(self, key: str) -> float:
         """Return a number that must be there."""
@@ -321,7 +360,8 @@ def parse_date(text: str, order: str = "") -> dt.date:
     """Return the date in a text, the year first or the day first; a time of day is left out.
 
     Args:
-        text: `2014-03-01`, `1-3-2014`, `01.03.14`, `1/3/2014`, `za 1 maart 2014`.
+        text: `2014-03-01`, `1-3-2014`, `01.03.14`, `1/3/2014`, `za 1 maart 2014`, or the number of
+            days that a spreadsheet holds.
         order: `dmy` or `mdy` for dates with slashes; without, only one meaning may be possible.
 
     Raises:
@@ -333,6 +373,8 @@ def parse_date(text: str, order: str = "") -> dt.date:
     named = _MONTH_NAMED.fullmatch(text)
     if iso:
         return dt.date(int(iso[1]), int(iso[2]), int(iso[3]))
+    if _SERIAL_DATE.fullmatch(text):
+        return _EXCEL_DAY_0 + dt.timedelta(days=int(text))
     if named and named[2][:3] in _MONTHS:
         return dt.date(int(named[3]), _MONTHS[named[2][:3]], int(named[1]))
     if not day_first:
@@ -406,6 +448,7 @@ def read_list(
     sheets = read_sheets(data, wanted, file[file.rfind(".") :].casefold(), sheet)
     cells = [cell.strip() for sheet in sheets for row in sheet.rows for cell in row.fields]
     order = wording.dates.get(path, wording.dates.get("*", "")) or date_order(cells)
+    told = wording.decimals.get(path, wording.decimals.get("*", ""))
     return [
         row
         for sheet in sheets
@@ -416,9 +459,10 @@ def read_list(
                 reason_code,
                 wording.words,
                 order,
-                _decimal_mark(cells),
+                told or _decimal_mark(cells),
                 partial(limits, table),
                 sheet.name,
+                bool(told),
             ),
         )
     ]
@@ -480,7 +524,7 @@ def _can_stand(table: type[dy.Schema], column: Column, cell: str) -> bool:
         return _LOOKS[column.key](cell)
     schema = table.columns().get(column.key)
     if isinstance(schema, dy.Date):
-        return bool(_LIKE_A_DATE.search(cell))
+        return is_like_a_date(cell)
     if isinstance(schema, dy.Bool):
         return fold_word(cell) in YES | NO
     if isinstance(schema, dy.Float64 | dy.Int8 | dy.Int16 | dy.Int32 | dy.Int64):
@@ -488,9 +532,20 @@ def _can_stand(table: type[dy.Schema], column: Column, cell: str) -> bool:
     return True
 
 
+def is_like_a_date(cell: str) -> bool:
+    """Return whether there is a date in a cell, in whatever order."""
+    return _LIKE_A_DATE.search(cell) is not None or _SERIAL_DATE.fullmatch(cell) is not None
+
+
+def is_number(cell: str) -> bool:
+    """Return whether a cell is a number without a unit, or a time of day."""
+    match = _LIKE_A_NUMBER.fullmatch(ungrouped(cell))
+    return match is not None and not match[2]
+
+
 def _can_be_number(table: type[dy.Schema], column: Column, cell: str) -> bool:
     """Return whether a cell is a number with a unit of the column, a whole one where it must."""
-    match = _LIKE_A_NUMBER.fullmatch(cell)
+    match = _LIKE_A_NUMBER.fullmatch(ungrouped(cell))
     if match is None or not (not match[2] or _is_own_unit(column.key, column.dimension, match[2])):
         return False
     if isinstance(table.columns()[column.key], dy.Float64):
@@ -505,23 +560,30 @@ def _is_own_unit(key: str, dimension: str, text: str) -> bool:
     return find_scale(dimension, text) is not None or fold(text) in map(fold, names)
 
 
+def _can_be_file(cell: str) -> bool:
+    """Return whether a cell can be the name of a file: neither a number, nor a date, nor a time."""
+    patterns = (_LIKE_A_NUMBER, _LIKE_A_DATE, _LIKE_A_TIME)
+    return len(cell) > 3 and not any(pattern.fullmatch(cell) for pattern in patterns)
+
+
 _LIKE_A_DATE: Final = re.compile(r"[0-9]{1,4}[-/. ]+([0-9]{1,2}|[^\W\d]{3,9})[-/. ]+[0-9]{2,4}")
-_LIKE_A_NUMBER: Final = re.compile(r"([+-]?[0-9]+(?:[.,][0-9]+)?)\s*([^0-9\s].*)?")
+_LIKE_A_NUMBER: Final = re.compile(r"([+-]?[0-9]+(?:[.,][0-9]+)?)\s*([^0-9\s_].*)?")
 _LIKE_A_TIME: Final = re.compile(r"[0-9]{1,2}\s*[:.uhUH]\s*[0-9]{2}.*")
 _LIKE_RUNS: Final = re.compile(
-    r"b?[0-9]{1,2}(\s*([,;+&\s.-]|en|and|und|t/m|tm|bis|to)\s*b?[0-9]{1,2}){2,}"
-    r"|[0-9]{1,2}\s*(-|t/m|tm|bis|to)\s*[0-9]{1,2}"
+    r"b?[0-9]{1,2}(\s*([,;+&\s.-]|en|and|und|et|t/m|tm|bis|to|à)\s*b?[0-9]{1,2}){2,}"
+    r"|[0-9]{1,2}\s*(-|t/m|tm|bis|to|à)\s*[0-9]{1,2}"
 )
 _LOOKS: Final[Mapping[str, Callable[[str], bool]]] = {
     "crew_class": lambda cell: fold_word(cell) in {*CLASSES, *"mvwf"},
+    "run": lambda cell: cell.isdigit() and len(cell) <= 2,
     "tow_id": lambda cell: _LIKE_A_DATE.fullmatch(cell) is None,
     "fsn_no": lambda cell: _BOAT.fullmatch(cell) is not None,
     "use_runs": lambda cell: (
         fold_word(cell) in ALL_RUNS or _LIKE_RUNS.fullmatch(fold_word(cell)) is not None
     ),
     "rowing_time_s": lambda cell: _LIKE_A_TIME.fullmatch(cell) is not None,
-    "file": lambda cell: any(map(str.isalpha, cell)) and len(cell) > 3,
-    "second_file": lambda cell: any(map(str.isalpha, cell)) and len(cell) > 3,
+    "file": _can_be_file,
+    "second_file": _can_be_file,
     "name": lambda cell: any(map(str.isalpha, cell)),
     "boat_type": lambda cell: any(map(str.isalpha, cell)),
 }
@@ -554,11 +616,14 @@ def _rows(sheet: Sheet, reading: Reading) -> list[ListRow]:
 
 
 def _cells(fields: Sequence[str], reading: Reading) -> dict[str, str]:
-    return {
+    cells = {
         key: _meant(fields[column.index].strip(), reading.words)
         for key, column in reading.columns.items()
         if column.index < len(fields)
     }
+    if "tow_id" in cells:  # 2014/17 would be a folder in names of pages and files
+        cells["tow_id"] = cells["tow_id"].replace("/", "-")
+    return cells
 
 
 def _meant(cell: str, words: Mapping[str, str]) -> str:

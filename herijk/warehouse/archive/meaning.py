@@ -26,9 +26,13 @@ _STOP_WORDS: Final = frozenset(
     {"de", "het", "een", "van", "der", "den", "the", "of", "a", "an", "das", "die", "dem"}
     | {"wel", "niet"}
 )
-_BY_CONTENT: Final = frozenset({"use_runs"})
+_BY_CONTENT: Final = frozenset({"use_runs", "crew_class"})
 """Columns that need not be there, and that are recognised by their content."""
 _DISTINCT: Final = frozenset({"tow_id", "file"})
+_NUMBER_SIGN: Final = re.compile(
+    r"(?:#|\b(?:n[°º]|num(?:[ée]ro|ber|mer)?|no)(?!\w)|(?:nummer|nr)\b)\.?", re.IGNORECASE
+)
+"""Ways to write that a number follows; all count as `nr`."""
 _SHORTEST_START: Final = 3
 """Letters of an abbreviation: `opm.` is `opmerking`."""
 
@@ -86,7 +90,9 @@ def _by_name(
         (likeness(header, column), header, column)
         for header, cells in strange.items()
         for column in free
-        if _may_hold(column, header) and _share(column, cells, fits) >= FITS
+        if _may_hold(column, header)
+        and _share(column, cells, fits) >= FITS
+        and (column.key not in _DISTINCT or _differ(cells))
     ]
     found: dict[str, Meaning] = {}
     taken: set[str] = set()
@@ -161,7 +167,8 @@ def likeness(header: str, column: Column) -> float:
 
 
 def _words(name: str) -> list[str]:
-    plain = unicodedata.normalize("NFKD", re.sub(r"\[[^\]]*\]|\([^)]*\)", " ", name)).casefold()
+    bare = _NUMBER_SIGN.sub(" nr", re.sub(r"\[[^\]]*\]|\([^)]*\)", " ", name))
+    plain = unicodedata.normalize("NFKD", bare).casefold()
     words = re.findall(r"[a-z]+|[0-9]+", "".join(c for c in plain if not unicodedata.combining(c)))
     return [word for word in words if word not in _STOP_WORDS] or words
 

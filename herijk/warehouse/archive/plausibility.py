@@ -388,7 +388,7 @@ def _check_mix_ups(runs: list[_Run], tow: Mapping[str, Any]) -> None:
     if force < 0 and not _implausible(turned, intended):
         raise _fault(
             "negative_force",
-            say("The force is {:.0f} N in a typical run; it must be positive.", force),
+            say("The force is {:.0f} N in a typical run; it must be positive.", force, turned=True),
             runs[0],
             tow,
             0,

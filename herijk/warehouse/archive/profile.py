@@ -7,6 +7,7 @@ Reading the samples with it belongs to `samples`.
 
 import datetime as dt
 from dataclasses import dataclass, field, replace
+from functools import reduce
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Final, Literal
@@ -22,11 +23,12 @@ from herijk.pipeline.channels import (
     TARGET_SPEED_RATIOS,
 )
 from herijk.pipeline.errors import DefectiveInputError, MissingKnowledgeError
-from herijk.pipeline.toml_text import parse_toml
+from herijk.pipeline.toml_text import decoded, parse_toml, problem_in_words
 from herijk.warehouse.archive.files import PROFILE_FILE, STANDS_FOR, path_inside
 from herijk.warehouse.archive.lists import Wording, fold_word
 from herijk.warehouse.archive.text import Column, fold, split_header
 from herijk.warehouse.archive.units import UNITS, find_scale
+from herijk.words import Sentence, say
 
 SAMPLE_COLUMNS: Final = (
     Column("run", "run", required=False),
@@ -133,6 +135,7 @@ class _ProfileTable(_Strict):
     units: dict[Channel, str] = {}
     sample_rate_hz: Annotated[int, Field(gt=0, le=100_000)] = 1000
     absent: list[Absent] = []
+    reversed: list[Literal["force"]] = []
     header: Annotated[str, Field(min_length=1)] | None = None
     ignore: list[str] = []
     directions: _Directions | None = None
@@ -193,6 +196,7 @@ class _File(_Strict):
     headers: dict[str, str] = {}
     ignore: list[str] = []
     dates: dict[str, Literal["dmy", "mdy"]] = {}
+    decimals: dict[str, Literal[".", ","]] = {}
     files: dict[str, Annotated[str, Field(pattern=f"^{STANDS_FOR.pattern}$")]] = {}
     set_aside: list[SetAside] = []
     log_replaced: list[LogReplaced] = []
@@ -297,6 +301,7 @@ class Profiles:
                 header=table.columns.get(column.key, column.header),  # type: ignore[call-overload]
                 also=(*column.also, column.header),
                 unit=table.units.get(column.key, column.unit),  # type: ignore[call-overload]
+                reversed=column.key in table.reversed,
             )
             for column in known
             if column.key not in absent
@@ -330,7 +335,7 @@ def profile_text(root: Path) -> str:
     """
     try:
         path = _profile_path(root)
-        return "" if path is None else path.read_bytes().decode("utf-8-sig")
+        return "" if path is None else decoded(path.read_bytes())
     except DefectiveInputError as error:
         raise MissingKnowledgeError(error.message) from error
     except ValueError as error:
@@ -361,6 +366,7 @@ def parse_profiles(text: str) -> Profiles:
             headers={split_header(name)[0]: key for name, key in parsed.headers.items()},
             ignore=tuple(fold(name) for name in parsed.ignore),
             dates=dict(parsed.dates),
+            decimals=dict(parsed.decimals),
             files=dict(parsed.files),
         ),
     )
@@ -381,10 +387,12 @@ def _profile_path(root: Path) -> Path | None:
     return path if path is not None and path.is_file() else None
 
 
-def _explain(error: ValidationError) -> str:
+def _explain(error: ValidationError) -> Sentence:
     """Return one clause per problem, each with its key."""
-    return "; ".join(
-        f"{'.'.join(str(part) for part in problem['loc']) or 'file'}: "
-        + ("unknown key" if problem["type"] == "extra_forbidden" else problem["msg"])
-        for problem in error.errors()
-    )
+    clauses = [
+        say(
+            "{}: {}", f"'{'.'.join(map(str, problem['loc'])) or 'file'}'", problem_in_words(problem)
+        )
+        for problem in error.errors(include_input=False)
+    ]
+    return reduce(lambda said, clause: say("{}; {}", said, clause), clauses)

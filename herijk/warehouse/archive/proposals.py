@@ -5,6 +5,7 @@ written as a comment, with its choices.
 """
 
 import json
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
@@ -14,13 +15,14 @@ from tomlkit.items import InlineTable, Table
 
 from herijk.warehouse.archive.faults import Fault
 from herijk.warehouse.archive.files import PARTS
-from herijk.warehouse.archive.lists import fold_word
+from herijk.warehouse.archive.lists import Wording, fold_word
 from herijk.warehouse.archive.profile import MAY_BE_ABSENT, SAMPLE_COLUMNS, STANDARD
 from herijk.warehouse.archive.text import Column, fold, nearest_column, split_header
 from herijk.warehouse.archive.units import find_scale
 from herijk.words import Sentence, innermost
 
-_SAMPLES: Final = {column.key: column for column in SAMPLE_COLUMNS}
+_SAMPLES: Final = {column.key: column for column in Wording().with_names(SAMPLE_COLUMNS)}
+_OF_THE_SECOND: Final = re.compile(r"(2|b|ii|stb|sb|starboard|stuurboord)$", re.IGNORECASE)
 _SHORTEST_STEM: Final = 4
 """Letters of a name by which a longer one can begin."""
 
@@ -28,14 +30,19 @@ _ONE_WORD: Final = 30
 """A cell longer than that is no word that stands for something."""
 
 
+_OF_NAMES: Final = frozenset({"ignore", "absent", "reversed"})
+"""Keys of `archief.toml` that hold a list of names."""
+
+
 @dataclass(frozen=True)
 class Proposal:
     """One line for `archief.toml`.
 
     Attributes:
-        section: `words`, `headers`, `ignore`, `dates`, `files`, `plan`, or `columns`, `absent`,
-            `sample_rate_hz` of a season.
-        key: its key there; empty for `ignore` and `absent`.
+        section: `words`, `headers`, `ignore`, `dates`, `decimals`, `files`, `plan`, or `columns`,
+            `absent`,
+            `reversed`, `sample_rate_hz` of a season.
+        key: its key there; empty for `ignore`, `absent` and `reversed`.
         value: its value.
         season: the season of a profile, else 0.
         is_active: it is no guess; otherwise it is written as a comment.
@@ -53,7 +60,7 @@ class Proposal:
         if self.section == "sample_rate_hz":
             return f"sample_rate_hz = {self.value}"
         key = f"columns.{self.key}" if self.section == "columns" else self.section
-        value = f'["{self.value}"]' if self.section == "absent" else f'"{self.value}"'
+        value = f'["{self.value}"]' if self.section in _OF_NAMES else f'"{self.value}"'
         return f"{key} = {value}"
 
     @property
@@ -63,7 +70,7 @@ class Proposal:
             directions = self.value.replace("\n", ", ")
             plan = f"targets = {self.key}, directions = {directions}"
             return f'[[plan]] seasons = "{self.season}": {plan}'
-        if self.section in {"ignore", "absent"}:
+        if self.section in _OF_NAMES:
             body = f'{self.section} = ["{self.value}"]'
         elif self.section == "sample_rate_hz":
             body = f"sample_rate_hz = {self.value}"
@@ -128,27 +135,52 @@ def _of_date(path: str, _: Any, __: int) -> Iterator[Proposal]:
     yield Proposal("dates", path, "dmy", is_active=False)
 
 
+def _of_decimals(path: str, values: Any, _: int) -> Iterator[Proposal]:
+    if len(values.get("mark", "")) == 1:
+        yield Proposal("decimals", path, values["mark"], is_active=False)
+
+
 def _of_samples(_: str, values: Any, season: int) -> Iterator[Proposal]:
     """Columns that a samples file lacks: the one column that can be it, or declared absent."""
     keys, header = values.get("keys", ()), values.get("header", ())
     if not season or not set(keys) <= set(_SAMPLES):
         return
     free, unmatched = list(header), list[str]()
+    if keys == ("run",):  # every one of these can be it
+        yield from (Proposal("columns", "run", name, season, len(header) == 1) for name in header)
+        return
     for key in keys:
         column = _SAMPLES[key]
         fitting = [cell for cell in header if _can_be(cell, column) and not _anothers(cell, key)]
         near = [cell for cell in fitting if _is_like(cell, column)] or fitting
-        left = [cell for cell in near if cell in free]
+        left = _own_log_first(key, [cell for cell in near if cell in free])
         if left:
             free.remove(left[0])  # of several, only a person can tell which is which
             name = _without_unit(left[0])
             yield Proposal("columns", key, name, season, is_active=len(near) == 1)
         elif not near:
             absent = [name for name, channels in MAY_BE_ABSENT.items() if key in channels]
-            yield from (Proposal("absent", "", name, season) for name in absent)
+            is_sure = not any(_is_open(cell, column) for cell in free)
+            yield from (Proposal("absent", "", name, season, is_sure) for name in absent)
             unmatched += [] if absent else [key]
     if len(unmatched) == len(free) == 1:
         yield Proposal("columns", unmatched[0], _without_unit(free[0]), season, is_active=False)
+
+
+def _own_log_first(key: str, cells: list[str]) -> list[str]:
+    """Return headers that can be a log: of the second log first those that say so."""
+    if key not in {"log1", "log2"}:
+        return cells
+    is_second = [bool(_OF_THE_SECOND.search(_without_unit(cell).strip())) for cell in cells]
+    order = sorted(range(len(cells)), key=lambda i: is_second[i] != (key == "log2"))
+    return [cells[i] for i in order]
+
+
+def _is_open(cell: str, column: Column) -> bool:
+    """Whether a header that nobody knows can be a column: its unit does not rule it out."""
+    unit = split_header(cell)[1]
+    is_it = unit is None or find_scale(column.dimension, unit) is not None
+    return is_it and not _anothers(cell, column.key)
 
 
 def _of_times(_: str, values: Any, season: int) -> Iterator[Proposal]:
@@ -156,6 +188,12 @@ def _of_times(_: str, values: Any, season: int) -> Iterator[Proposal]:
     if season and "observed" in values:
         rate = f"{values['observed']:.0f}"
         yield Proposal("sample_rate_hz", "", rate, season, is_active="planned" not in values)
+
+
+def _of_sign(_: str, values: Any, season: int) -> Iterator[Proposal]:
+    """A force that is right but for its sign: of this tow, and maybe of its season."""
+    if season and values.get("turned"):
+        yield Proposal("reversed", "", "force", season, is_active=False)
 
 
 def _of_plan(_: str, values: Any, season: int) -> Iterator[Proposal]:
@@ -179,10 +217,12 @@ def _of_plan(_: str, values: Any, season: int) -> Iterator[Proposal]:
 
 
 def _of_stranger(path: str, values: Any, _: int) -> Iterator[Proposal]:
-    """A file or folder of another name: what it can be, else to be ignored."""
+    """A file or folder of another name: what it can be; what can hold no data is to be ignored."""
     for file, stands_for in values.get("can_be", ()):
         yield Proposal("files", file, stands_for)
-    if "path" in values and not values.get("can_be"):
+    for file, stands_for in values.get("guesses", ()):
+        yield Proposal("files", file, stands_for, is_active=False)
+    if values.get("is_other"):
         yield Proposal("ignore", "", path)
 
 
@@ -222,7 +262,9 @@ def _can_be(cell: str, column: Column) -> bool:
 
 def _without_unit(cell: str) -> str:
     """Return the name in a header cell as it is written."""
-    name = split_header(cell)[0]
+    name, unit = split_header(cell)
+    if unit is None:
+        return cell
     return next((cell[:end] for end in range(1, len(cell)) if fold(cell[:end]) == name), cell)
 
 
@@ -240,9 +282,11 @@ _RULES: Final = {
     ),
     "missing_column": _of_samples,
     "ambiguous_date": _of_date,
+    "ambiguous_number": _of_decimals,
     "bad_time": _of_times,
     "short_run": _of_times,
     "run_not_planned": _of_plan,
+    "negative_force": _of_sign,
     "unrecognised_file": _of_stranger,
     "bad_list_row": _of_value,
     "bad_boat_row": _of_value,
@@ -317,8 +361,8 @@ def _in_profile(document: Any, proposal: Proposal) -> None:
     if not proposal.is_active:
         _loosen(mine)
         mine.add(tomlkit.comment(proposal.question))
-    elif proposal.section == "absent":
-        _add(mine, "absent", proposal.value)
+    elif proposal.section in _OF_NAMES:
+        _add(mine, proposal.section, proposal.value)
     elif proposal.section == "sample_rate_hz":
         mine.setdefault("sample_rate_hz", int(proposal.value))
     elif proposal.key not in mine.get("columns", {}):

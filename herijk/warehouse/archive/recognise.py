@@ -4,7 +4,8 @@ A guess for a person to look at: `check` proposes it under `[files]`, and nothin
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import lru_cache
 from itertools import islice
 from pathlib import Path
 from typing import Final
@@ -26,18 +27,21 @@ from herijk.warehouse.archive.files import (
     sample_suffix,
 )
 from herijk.warehouse.archive.limits import LIST_MAX_BYTES
-from herijk.warehouse.archive.lists import Wording
-from herijk.warehouse.archive.meaning import likeness
+from herijk.warehouse.archive.lists import Wording, is_like_a_date, is_number
+from herijk.warehouse.archive.meaning import FITS, likeness
 from herijk.warehouse.archive.profile import SAMPLE_COLUMNS
 from herijk.warehouse.archive.recordings import is_labview
-from herijk.warehouse.archive.sheets import SPREADSHEETS, read_sheets, sheets_of_workbook
+from herijk.warehouse.archive.sheets import SPREADSHEETS, Sheet, read_sheets, sheets_of_workbook
 from herijk.warehouse.archive.text import Column
 
 MOST_FILES: Final = 2000
 """Of a folder of another name; photographs can be many."""
 
 FEWEST_COLUMNS: Final = 3
-"""So many columns must have names that are known."""
+"""So many columns must have names that are known, or hold numbers."""
+
+FEWEST_SAMPLES: Final = 50
+"""So many rows of numbers must be at the start of a file for it to hold samples."""
 
 _KINDS: Final[tuple[tuple[ListKind, Sequence[Column]], ...]] = (
     (TOW_LISTS, tows.COLUMNS),
@@ -57,15 +61,8 @@ def recognised(root: Path, path: str) -> Iterator[tuple[str, str]]:
         path: a file or folder in it.
     """
     full = root / path
-    if full.is_symlink():
-        return
-    if full.is_file():
-        files = [full]
-    else:
-        inner = (file for file in sorted(full.rglob("*")) if file.is_file())
-        files = [file for file in islice(inner, MOST_FILES) if not file.is_symlink()]
     folders: set[Path] = set()
-    for file in files:
+    for file in _files_under(full):
         if any(folder in file.parents for folder in folders):
             continue
         relative = file.relative_to(root).as_posix()
@@ -81,6 +78,77 @@ def recognised(root: Path, path: str) -> Iterator[tuple[str, str]]:
             yield folder.relative_to(root).as_posix(), _with_year(SAMPLES, folder.name)
         elif what and what != SAMPLES:
             yield relative, _list_of_year(what, file.stem)
+
+
+def guessed(root: Path, path: str) -> Iterator[tuple[str, str]]:
+    """Give what files of which nobody knows the words can stand for, by what is in their columns.
+
+    A list with a column of dates can be of tows, one without of boats, and long rows of numbers
+    samples.
+
+    Args:
+        root: the archive.
+        path: a file or folder in it.
+    """
+    full = root / path
+    folders: set[Path] = set()
+    for file in _files_under(full):
+        relative = file.relative_to(root).as_posix()
+        if any(folder in file.parents for folder in folders):
+            continue
+        kinds = dict(_guessed_kinds(file))
+        if full != file and SAMPLES in kinds.values():
+            folder = _folder_of_season(full, file)
+            folders.add(folder)
+            yield folder.relative_to(root).as_posix(), _with_year(SAMPLES, folder.name)
+            continue
+        for sheet, kind in kinds.items():
+            place = f"{relative}#{sheet}" if len(kinds) > 1 else relative
+            if kind != SAMPLES:
+                yield place, _list_of_year(kind, sheet, file.stem)
+
+
+def _guessed_kinds(file: Path) -> Iterator[tuple[str, str]]:
+    suffix = file.suffix.casefold()
+    if suffix not in LIST_SUFFIXES and not sample_suffix(file.name):
+        return
+    try:
+        if suffix in SPREADSHEETS:
+            sheets = list(sheets_of_workbook(read_bytes(file, LIST_MAX_BYTES), tows.COLUMNS))
+        else:
+            sheets = read_sheets(read_start(file, 1 << 14), tows.COLUMNS)
+    except DefectiveInputError:
+        return
+    for sheet in sheets:
+        if kind := _kind_by_content(sheet):
+            yield sheet.name, kind
+
+
+def _kind_by_content(sheet: Sheet) -> str | None:
+    columns = list(zip(*(row.fields for row in sheet.rows if row.problem is None), strict=False))
+    numbers = sum(_mostly(is_number, cells) for cells in columns)
+    if numbers < FEWEST_COLUMNS:
+        return None
+    others = [cells for cells in columns if not _mostly(is_number, cells)]
+    if len(sheet.rows) >= FEWEST_SAMPLES and len(others) <= 1:
+        return SAMPLES
+    has_dates = any(_mostly(is_like_a_date, cells) for cells in columns)
+    return (TOW_LISTS if has_dates else BOAT_LIST).stands_for if others else None
+
+
+def _mostly(is_one: Callable[[str], bool], cells: Sequence[str]) -> bool:
+    filled = [cell for cell in map(str.strip, cells) if cell]
+    return bool(filled) and sum(map(is_one, filled)) >= FITS * len(filled)
+
+
+def _files_under(full: Path) -> list[Path]:
+    """Return a file, or the first files in a folder; links are left out."""
+    if full.is_symlink():
+        return []
+    if full.is_file():
+        return [full]
+    inner = (file for file in sorted(full.rglob("*")) if file.is_file())
+    return [file for file in islice(inner, MOST_FILES) if not file.is_symlink()]
 
 
 def _folder_of_season(top: Path, file: Path) -> Path:
@@ -159,6 +227,11 @@ def _list_kind(file: Path) -> str | None:
 
 def _named(header: Sequence[str], columns: Sequence[Column]) -> int:
     """Return how many cells of a header are names of columns, less the columns it lacks."""
+    return _named_once(tuple(header), tuple(columns))
+
+
+@lru_cache(1000)
+def _named_once(header: tuple[str, ...], columns: tuple[Column, ...]) -> int:
     cells = [cell for cell in header if cell.strip()]
     named = sum(any(likeness(cell, column) > 0 for column in columns) for cell in cells)
     lacking = [c for c in columns if c.required and not any(likeness(x, c) > 0 for x in cells)]

@@ -8,7 +8,7 @@ a careful one that knows lines; the fast one is trusted only where it gives the 
 import re
 import unicodedata
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -18,7 +18,7 @@ import pyarrow as pa  # type: ignore[import-untyped]
 import pyarrow.parquet as pq  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
-from herijk.pipeline.channels import MOST_RUNS, SAMPLE_SCHEMA, SECOND_FILE_OFFSET
+from herijk.pipeline.channels import FEWEST_RUNS, MOST_RUNS, SAMPLE_SCHEMA, SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.faults import DefectiveFileError
 from herijk.warehouse.archive.files import (
@@ -49,7 +49,7 @@ from herijk.warehouse.archive.text import (
     unknown_headers,
     with_units,
 )
-from herijk.warehouse.archive.units import find_scale
+from herijk.warehouse.archive.units import Scale, find_scale
 from herijk.words import say
 
 OUTPUT_NAMES: Final = {
@@ -62,6 +62,8 @@ OUTPUT_NAMES: Final = {
     "wind_angle": "wind_angle_deg",
 }
 TIME_TOLERANCE: Final = 0.01
+PAUSE_S: Final = 10.0
+"""After so long without a sample a new run begins, where nothing else says so."""
 _BLANKS: Final = " \t"
 _ROW: Final = re.compile(rb"[^\r\n]")
 _BLANKS_OUTSIDE: Final = re.compile(rb"^[ \t]+|[ \t]+(?=\r?$)", re.MULTILINE)
@@ -90,13 +92,18 @@ class _Body:
     data: bytes
     start: int
     delimiter: str
-    width: int
+    header: Sequence[str]
     columns: Mapping[str, FoundColumn]
     above: int
     header_line: int
     first_line: int
     places: Sequence[int] = ()
     clock: bool = False
+
+    @property
+    def width(self) -> int:
+        """Number of columns."""
+        return len(self.header)
 
     def line(self, row: int) -> int:
         """Line in the file of a row, counted from 0; of the header where it is negative."""
@@ -187,19 +194,40 @@ def check_header(path: Path, profile: SeasonProfile) -> None:
     Raises:
         DefectiveInputError: as `read_samples`, for a fault of the header.
     """
+    names = _header_of(path, profile)
+    _check_nothing_misspelt(names, find_columns(names, profile.columns), profile)
+
+
+def _header_of(path: Path, profile: SeasonProfile) -> Sequence[str]:
     kind = kind_of(path)
     if kind == ".parquet":
         try:
             with pq.ParquetFile(path) as file:
-                names = file.schema_arrow.names
+                return list(file.schema_arrow.names)
         except (OSError, pa.ArrowException) as error:
             raise _not_parquet(path, error) from error
-        _check_nothing_misspelt(names, find_columns(names, profile.columns), profile)
-    elif kind == ".tdms":
-        names = read_tdms(path, SAMPLES_MAX_BYTES, most_rows=0).columns
-        _check_nothing_misspelt(names, find_columns(names, profile.columns), profile)
-    else:
-        _split_header(read_start(path, _HEAD_BYTES), profile)
+    if kind == ".tdms":
+        return read_tdms(path, SAMPLES_MAX_BYTES, most_rows=0).columns
+    return _split_header(read_start(path, _HEAD_BYTES), profile).header
+
+
+def columns_of_runs(path: Path, profile: SeasonProfile) -> tuple[str, ...]:
+    """Return the columns that nobody knows with which as its runs a samples file can be read."""
+    header = _header_of(path, profile)
+    unknown = unknown_headers(header, find_columns(header, profile.columns))
+    return tuple(name for name in unknown if _can_be_run(path, profile, name))
+
+
+def _can_be_run(path: Path, profile: SeasonProfile, name: str) -> bool:
+    columns = tuple(
+        replace(column, header=name) if column.key == "run" else column
+        for column in profile.columns
+    )
+    try:
+        runs = read_samples(path, replace(profile, columns=columns))["run"]
+    except DefectiveInputError:
+        return False
+    return runs.n_unique() >= FEWEST_RUNS
 
 
 def read_tow_samples(root: Path, tow: Mapping[str, Any], profile: SeasonProfile) -> pl.DataFrame:
@@ -231,17 +259,23 @@ def _read_parts(
     several = paths.split(PARTS)
     if len(several) == 1:
         return [_read_part(root, tow, paths, profile, None)]
-    return [_read_part(root, tow, path, profile, as_one_run(Path(path).name)) for path in several]
+    runs = runs_of_parts([Path(path).name for path in several])
+    parts = zip(several, runs, strict=True)
+    return [_read_part(root, tow, path, profile, run) for path, run in parts]
+
+
+def runs_of_parts(names: Sequence[str]) -> list[int]:
+    """Return the run that each file of a tow is: by the number in its name, else by their order."""
+    named = [one for name in names if (one := as_one_run(name)) is not None]
+    numbers = [run for _, run in named]
+    if len({tow for tow, _ in named}) == 1 and len(set(numbers)) == len(names):
+        return numbers
+    return list(range(1, len(names) + 1))
 
 
 def _read_part(
-    root: Path,
-    tow: Mapping[str, Any],
-    path: str,
-    profile: SeasonProfile,
-    named: tuple[str, int] | None,
+    root: Path, tow: Mapping[str, Any], path: str, profile: SeasonProfile, run: int | None
 ) -> pl.DataFrame:
-    run = None if named is None else named[1]
     try:
         full = path_inside(root, path)
         return read_samples(full, profile, sample_rate_hz=tow["sample_rate_hz"], run=run)
@@ -255,15 +289,16 @@ def _with_runs(raw: pl.DataFrame, run: int | None) -> pl.DataFrame:
         return raw.with_columns(pl.lit(float(run)).alias("run"))
     if "run" in raw.columns:
         return raw
-    restarts = (raw["time"].diff() < 0).sum() if "time" in raw.columns else 0
-    if not restarts:
+    step = pl.col("time").diff()
+    begins = ((step < 0) | (step >= PAUSE_S)).fill_null(value=False)
+    if "time" not in raw.columns or not raw.select(begins.any()).item():
         said = say(
             "Nothing says which run a row is of: there is no column 'run', the time does not start "
-            "again, and the file is not one of several that end in a number."
+            "again, and the file is not one of several that end in a number.",
+            keys=("run",),
         )
         raise DefectiveInputError("missing_column", said, line=1)
-    begun = (pl.col("time").diff() < 0).fill_null(value=False).cum_sum()
-    return raw.with_columns((begun + 1).cast(pl.Float64).alias("run"))
+    return raw.with_columns((begins.cum_sum() + 1).cast(pl.Float64).alias("run"))
 
 
 # Text
@@ -308,7 +343,7 @@ def _split_header(data: bytes, profile: SeasonProfile) -> _Body:
         data,
         start,
         delimiter,
-        len(header),
+        header,
         columns,
         above,
         places[0] if places else place + 1,
@@ -557,9 +592,9 @@ def _only_numbers(cells: pl.Series, found: FoundColumn) -> pl.Series:
 
 def _to_si(frame: pl.DataFrame, columns: Mapping[str, FoundColumn]) -> pl.DataFrame:
     scaled = (
-        pl.col(key) * columns[key].scale[0] / columns[key].scale[1]
+        (pl.col(key) + scale.shift) * scale.numerator / scale.denominator
         for key in frame.columns
-        if columns[key].scale != (1, 1)
+        if (scale := columns[key].scale) != Scale()
     )
     return frame.with_columns(scaled)
 

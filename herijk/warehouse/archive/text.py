@@ -31,7 +31,7 @@ NUMBER_PATTERN: Final = r"^[+-]?([0-9]+([.,][0-9]*)?|[.,][0-9]+)([eE][+-]?[0-9]+
 _NUMBER: Final = re.compile(NUMBER_PATTERN)
 _BRACKETS: Final = re.compile(r"\[([^\[\]]*)\]|\(([^()]*)\)")
 _UNIT_BEHIND: Final = re.compile(r"^(.*?[^\s_,])(?:\s*,\s+|\s+in\s+|[\s_]+)(m_s|[^\s_]+)$")
-_NO_UNIT_BEHIND: Final = frozenset("cgsw")
+_NO_UNIT_BEHIND: Final = frozenset("cfgksw")
 """Single letters that mean something else behind a name: `log C`, `meetfile s`."""
 
 
@@ -46,6 +46,7 @@ class Column:
         unit: unit of a header that names none; empty for dimension `none`.
         required: whether a file without it is defective.
         also: other names for it.
+        reversed: what is in it has the other sign.
     """
 
     key: str
@@ -54,6 +55,7 @@ class Column:
     unit: str = ""
     required: bool = True
     also: tuple[str, ...] = ()
+    reversed: bool = False
 
     @property
     def named(self) -> str:
@@ -244,7 +246,8 @@ def find_columns(
             if not namesakes or (unit is not None or len(namesakes) == 1) != is_clear:
                 continue
             column = _choose(namesakes, unit, header[index], places, line)
-            scale = find_scale(column.dimension, unit or column.unit) or (1, 1)
+            scale = find_scale(column.dimension, unit or column.unit) or Scale()
+            scale = scale.turned() if column.reversed else scale
             places[column.key] = FoundColumn(index, header[index].strip(), scale, column.dimension)
     missing = [column for column in wanted if column.required and column.key not in places]
     if missing:

@@ -5,10 +5,13 @@ One row at a time: text to values. What rows, boats and files say about each oth
 """
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, Final
 
 from herijk.pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
+from herijk.pipeline.errors import DefectiveInputError
+from herijk.warehouse.archive.files import PARTS
 from herijk.warehouse.archive.lists import ListRow, fold_word
 from herijk.warehouse.archive.profile import Plan
 from herijk.warehouse.archive.text import Column, shorten
@@ -16,7 +19,7 @@ from herijk.warehouse.archive.words import ALL_RUNS
 from herijk.words import say
 
 COLUMNS: Final = (
-    Column("tow_id", "sleep_id"),
+    Column("tow_id", "sleep_id", required=False),
     Column("tow_date", "datum"),
     Column("fsn_no", "fsn_nr"),
     Column("name", "sloep", required=False),
@@ -33,6 +36,7 @@ COLUMNS: Final = (
     Column("crew_weight_kg", "bemanning", "mass", "kg", required=False),
     Column("water_temperature_c", "watertemperatuur", "temperature", "C", required=False),
     Column("speed_correction_ratio", "correctie", "ratio", "%", required=False),
+    Column("run", "run", required=False),
     Column("use_runs", "gebruik runs", required=False),
     Column("altered", "verbouwd", required=False),
     Column("sample_rate_hz", "meetfrequentie", "rate", "Hz", required=False),
@@ -47,10 +51,79 @@ _DIMENSIONS: Final = {
     for column in COLUMNS
     if column.key in {"waterline_length_m", "beam_m", "bow_height_m"}
 }
-"""What a tow or else its boat must have."""
+"""What a tow or else its boat must have; the height of the bow only where wind was measured."""
+_OF_A_RUN: Final = frozenset({"run", "file", "use_runs", "remark"})
+"""What may differ between the rows of one tow, in a list with a row for each run."""
 _RUN: Final = re.compile(r"(b?)([1-9][0-9]?)", re.IGNORECASE)
-_RANGE: Final = re.compile(r"(b?[0-9]+)\s*(?:-|\.\.|:|t/m|tm|tot en met|to|bis)\s*(b?[0-9]+)")
+_RANGE: Final = re.compile(r"(b?[0-9]+)\s*(?:-|\.\.|:|t/m|tm|tot en met|to|bis|à)\s*(b?[0-9]+)")
 _TOW_ID: Final = re.compile(r"[^/\\\x00-\x1f]{1,64}")
+
+
+def per_tow(rows: Sequence[ListRow]) -> list[ListRow]:
+    """Return one row for each tow, with its id, also of a list with a row for each run.
+
+    Where there is no column of ids, day, boat and crew are the id.
+    """
+    runs_of: dict[str, list[ListRow]] = {}
+    tows: list[ListRow] = []
+    for row in rows:
+        own = row if "tow_id" in row.columns else _with_id(row)
+        if "run" not in row.columns:
+            tows.append(own)
+            continue
+        runs = runs_of.setdefault(own.cells.get("tow_id", ""), [])
+        runs.append(own)
+    return tows + [_joined(runs) for runs in runs_of.values()]
+
+
+def _with_id(row: ListRow) -> ListRow:
+    cells = row.cells
+    try:
+        day = row.date("tow_date").isoformat()
+    except DefectiveInputError:  # said when the date is read
+        day = cells.get("tow_date", "")
+    crew = f"{cells.get('rowers', '')}{cells.get('crew_class', '')}"
+    tow_id = f"{day} {cells.get('fsn_no', '')} {crew}".replace("/", "-")
+    return replace(row, cells=cells | {"tow_id": tow_id})
+
+
+def _joined(runs: Sequence[ListRow]) -> ListRow:
+    """Return the rows of a tow's runs as one; its files are in the order of the runs."""
+    runs = sorted(runs, key=lambda row: row.cells.get("run", "").zfill(2))
+    numbers = [row.cells.get("run", "") for row in runs]
+    files = list(dict.fromkeys(row.cells.get("file", "") for row in runs))
+    first = runs[0]
+    cells = first.cells | {"file": PARTS.join(files)}
+    if not cells.get("use_runs"):
+        cells["use_runs"] = ",".join(numbers)
+    return replace(first, cells=cells, row_problem=_why_not_one(runs, numbers, files))
+
+
+def _why_not_one(
+    runs: Sequence[ListRow], numbers: Sequence[str], files: Sequence[str]
+) -> str | None:
+    """Return what is wrong with the rows of one tow's runs together, None where nothing is."""
+    first = runs[0]
+    for row in runs:
+        if row.row_problem is not None:
+            return row.row_problem
+        for key in set(first.cells) - _OF_A_RUN:
+            if row.cells.get(key) != first.cells[key]:
+                return say(
+                    "the rows of the runs of one tow differ in column '{column}': '{one}' and "
+                    "'{other}'.",
+                    column=first.named(key),
+                    one=shorten(first.cells[key]),
+                    other=shorten(row.cells.get(key, "")),
+                )
+    in_order = [str(number) for number in range(1, len(runs) + 1)]
+    if len(set(numbers)) < len(runs) or (len(files) > 1 and list(numbers) != in_order):
+        return say(
+            "the rows of one tow are for runs {numbers}; each run has one row, and where each has "
+            "a file of its own they are 1, 2, 3 and on.",
+            numbers=", ".join(numbers),
+        )
+    return None
 
 
 def read_tow(row: ListRow, season: int, default_rate_hz: int) -> dict[str, Any]:
@@ -91,15 +164,22 @@ def read_tow(row: ListRow, season: int, default_rate_hz: int) -> dict[str, Any]:
 
 
 def fill_dimensions(
-    tow: Mapping[str, Any], boat: Mapping[str, Any], row: ListRow
+    tow: Mapping[str, Any], boat: Mapping[str, Any], row: ListRow, has_wind: bool
 ) -> dict[str, Any]:
     """Return the tow with the boat's dimensions where that day's were not written down.
+
+    Args:
+        tow: what the row says.
+        boat: its boat.
+        row: the row.
+        has_wind: wind was measured, so that the boat's front has to be known.
 
     Raises:
         DefectiveInputError: `bad_list_row` when the boat list does not have them either.
     """
     filled = dict(tow) | {key: boat[key] for key in _DIMENSIONS if tow[key] is None}
-    lacking = [column for key, column in _DIMENSIONS.items() if filled[key] is None]
+    needed = {*_DIMENSIONS} - (set() if has_wind else {"bow_height_m"})
+    lacking = [c for key, c in _DIMENSIONS.items() if key in needed and filled[key] is None]
     if lacking:
         message = "{names} must be there, here or in the boat list."
         raise row.fault(say(message, names=", ".join(f"'{column.named}'" for column in lacking)))
@@ -139,7 +219,7 @@ def _spelled_out(cell: str) -> str:
         first, last = (int(end.lstrip("b")) for end in match.groups())
         return ",".join(f"{letter}{run}" for run in range(first, min(last, first + MOST_RUNS) + 1))
 
-    return _RANGE.sub(numbers, cell).replace(" en ", ",").replace(" and ", ",")
+    return _RANGE.sub(numbers, cell).replace(" en ", ",").replace(" and ", ",").replace(" et ", ",")
 
 
 def run_number(part: str, row: ListRow, header: str, planned: Collection[int]) -> int:

@@ -8,23 +8,53 @@ import math
 import tokenize
 import unicodedata
 from functools import cache
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
-Scale = tuple[float, float]
-"""Numerator and denominator: 871 / 100 is exactly 8.71, and 871 * 0.01 need not be."""
 
-UNITS: Final[dict[str, dict[str, Scale]]] = {
+class Scale(NamedTuple):
+    """What brings a number to its SI unit.
+
+    871 / 100 is exactly 8.71, and 871 * 0.01 need not be: so a numerator and a denominator.
+
+    Attributes:
+        numerator: after the shift the number is multiplied by it,
+        denominator: and divided by it.
+        shift: what is added first: to degrees Fahrenheit -32.
+    """
+
+    numerator: float = 1.0
+    denominator: float = 1.0
+    shift: float = 0.0
+
+    def to_si(self, number: float) -> float:
+        """Return a number in the SI unit."""
+        return (number + self.shift) * self.numerator / self.denominator
+
+    def turned(self) -> "Scale":
+        """Return the scale of what has the other sign."""
+        return self._replace(numerator=-self.numerator)
+
+    def from_si(self, value: float) -> float:
+        """Return a value in the SI unit in this one."""
+        return value * self.denominator / self.numerator - self.shift
+
+
+_USUAL: Final[dict[str, dict[str, tuple[float, ...]]]] = {
     "none": {},
     "speed": {"m/s": (1, 1), "km/h": (1, 3.6), "kn": (1852, 3600)},
     "force": {"n": (1, 1), "kn": (1000, 1), "kgf": (9.80665, 1)},
     "angle": {"gra": (1, 1), "deg": (1, 1), "rad": (180, math.pi)},
     "length": {"m": (1, 1), "cm": (1, 100), "mm": (1, 1000), "km": (1000, 1), "nmi": (1852, 1)},
     "mass": {"kg": (1, 1), "g": (1, 1000)},
-    "temperature": {"c": (1, 1)},
+    "temperature": {"c": (1, 1), "f": (5, 9, -32), "k": (1, 1, -273.15)},
     "ratio": {"%": (1, 100)},
     "rate": {"hz": (1, 1), "khz": (1000, 1)},
     "power": {"w": (1, 1)},
     "time": {"s": (1, 1), "ms": (1, 1000), "min": (60, 1)},
+}
+UNITS: Final = {
+    dimension: {unit: Scale(*numbers) for unit, numbers in units.items()}
+    for dimension, units in _USUAL.items()
 }
 """Per dimension the usual units, folded; the SI unit (degrees for angles) comes first."""
 
@@ -45,7 +75,8 @@ SPELLINGS: Final[dict[str, dict[str, str]]] = {
                "seemeile": "nmi", "seemeilen": "nmi"},
     "mass": {"kilo": "kg", "kilogram": "kg", "kgs": "kg", "gram": "g"},
     "temperature": {"°c": "c", "ºc": "c", "gradenc": "c", "celsius": "c", "degc": "c",
-                    "gr": "c", "graden": "c", "°": "c", "º": "c", "grad": "c"},
+                    "gr": "c", "graden": "c", "°": "c", "º": "c", "grad": "c", "°f": "f",
+                    "ºf": "f", "degf": "f", "fahrenheit": "f", "kelvin": "k"},
     "ratio": {"procent": "%", "percent": "%", "pct": "%", "prozent": "%"},
     "rate": {"hertz": "hz", "1/s": "hz", "s/s": "hz", "samples/s": "hz"},
     "power": {"watt": "w"},
@@ -106,7 +137,7 @@ def _looked_up(dimension: str, unit: str) -> Scale | None:
         quantity: Any = _registry().Quantity(1.0, unit).to(_PINT[dimension])
     except (pint.PintError, *_NO_UNIT):
         return None
-    return float(quantity.magnitude), 1.0
+    return Scale(float(quantity.magnitude))
 
 
 @cache

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import duckdb
 import polars as pl
+import polars.selectors as cs
 
 from herijk.pipeline.errors import MissingKnowledgeError, UnavailableError
 from herijk.tables.views import VIEWS
@@ -57,8 +58,23 @@ def build_database(path: Path, tables: Mapping[str, pl.DataFrame]) -> None:
                 connection.unregister("frame")
                 _describe(connection, name)
             _add_views(connection, tables)
+            bare = _bare_lists(tables)
+            for name, column in bare:
+                connection.execute(f'INSERT INTO "{name}" ("{column}") VALUES ([NULL])')  # noqa: S608
             connection.execute("COMMIT")
+            for name, column in bare:
+                connection.execute(f'DELETE FROM "{name}" WHERE len("{column}") > 0')  # noqa: S608
         left_wal(path).unlink(missing_ok=True)
+
+
+def _bare_lists(tables: Mapping[str, pl.DataFrame]) -> list[tuple[str, str]]:
+    """Columns of lists without any element: DuckDB 1.0 fails on one, unless it once had one."""
+    return [
+        (name, column.name)
+        for name, frame in sorted(tables.items())
+        for column in frame.select(cs.list())
+        if len(column) and not column.list.len().sum()
+    ]
 
 
 def _describe(connection: duckdb.DuckDBPyConnection, name: str) -> None:

@@ -15,7 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.register.register import DECISION_SCHEMA, EXCLUDE, PREFER
-from herijk.pipeline.toml_text import parse_toml
+from herijk.pipeline.toml_text import decoded, parse_toml, problem_in_words
 
 FILE_NAME: Final = "besluiten.toml"
 VERDICTS: Final = {"uitsluiten": EXCLUDE, "voorkeur": PREFER}
@@ -48,7 +48,7 @@ def read_decisions(path: Path) -> tuple[Decision, ...]:
     if not path.exists():
         return ()
     try:
-        decisions = _File.model_validate(parse_toml(path.read_text(encoding="utf-8"))).besluit
+        decisions = _File.model_validate(parse_toml(decoded(path.read_bytes()))).besluit
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])
@@ -57,7 +57,7 @@ def read_decisions(path: Path) -> tuple[Decision, ...]:
             "reden, wie and datum",
             path,
             where,
-            first["msg"],
+            problem_in_words(first),
         ) from error
     except ValueError as error:
         raise MissingKnowledgeError("{}: not valid TOML: {}", path, error) from error

@@ -17,6 +17,7 @@ from herijk.pipeline.method.definition import (
     shipped_methods,
     shipped_text,
 )
+from herijk.pipeline.toml_text import decoded
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.store import Store
 
@@ -121,8 +122,6 @@ def text_of_file(file: Path) -> str:
     if not file.is_file():
         raise MissingKnowledgeError("there is no method file {}", file)
     try:
-        return file.read_text(encoding="utf-8")
-    except UnicodeDecodeError as error:
-        raise MethodFileError(
-            "{}: byte {} is not UTF-8; save the file as UTF-8", file, error.start
-        ) from error
+        return decoded(file.read_bytes())
+    except ValueError as error:
+        raise MethodFileError("{}: {}", file, error) from error

@@ -6,7 +6,7 @@ from typing import TypeVar
 from pydantic import BaseModel, ValidationError
 
 from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.pipeline.toml_text import parse_toml
+from herijk.pipeline.toml_text import decoded, parse_toml, problem_in_words
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -27,12 +27,12 @@ def read_settings_file(path: Path, model: type[Model], may_hold: str) -> Model:
     if not path.exists():
         return model()
     try:
-        return model.model_validate(parse_toml(path.read_text(encoding="utf-8")))
+        return model.model_validate(parse_toml(decoded(path.read_bytes())))
     except ValidationError as error:
         first = error.errors(include_input=False)[0]
         where = ".".join(str(part) for part in first["loc"])
         raise MissingKnowledgeError(
-            "{}: {}: {}; it may hold {}", path, where, first["msg"], may_hold
+            "{}: {}: {}; it may hold {}", path, where, problem_in_words(first), may_hold
         ) from error
     except ValueError as error:  # also numbers too large, tables too deep
         raise MissingKnowledgeError("{}: not valid TOML: {}", path, error) from error

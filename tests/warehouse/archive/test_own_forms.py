@@ -85,8 +85,44 @@ def runs_in_a_folder(archive: Archive) -> None:
     (archive.root / FIRST).unlink()
 
 
+def thousands(archive: Archive) -> None:
+    """Marks between thousands, where a number can mean nothing else."""
+    for old, new in (
+        (";1400;1405;", ";1.400,00;1 405;"),
+        (";864;870;1140;", ";864,0;870;1.140,0;"),
+    ):
+        archive.replace(TOWS, old, new)
+    archive.replace(BOATS, ";1417;", ";1.417 kg;")
+
+
+def days_as_numbers(archive: Archive) -> None:
+    """Dates in cells that are not set to show dates, and tows numbered a year and a slash."""
+    for old, new in (("2014-03-01", "41699"), ("02-03-2014", "41700"), ("2014-03-03", "41701")):
+        archive.replace(TOWS, old, new)
+    archive.edit(TOWS, lambda text: text.replace("2014-00", "2014/00"))
+
+
+def in_french(archive: Archive) -> None:
+    archive.edit(FIRST, lambda text: text.replace(
+        HEADER, "Passage;Vitesse eau 1 [m/s];Vitesse eau 2 [m/s];Vitesse GPS [m/s];Traction [N];"
+        "Vent vitesse [m/s];Vent direction [°]"))  # fmt: skip
+    for old, new in (("sleep_id", "N° essai"), ("roeiers", "Rameurs"), ("klasse", "Classe"),
+                     ("gebruik runs", "Passages"), ("1,2,3,4,5,6", "1 à 6"), (";H;", ";Hommes;"),
+                     ("meetfile;", "Fichier;"), ("nee", "non"), (";ja;", ";oui;")):  # fmt: skip
+        archive.replace(TOWS, old, new)
+
+
+def a_clock_that_goes_on(archive: Archive) -> None:
+    """No column of runs, and a pause between them."""
+    path = archive.root / FIRST
+    header, *lines = path.read_text("utf-8").splitlines()
+    rows = [f"{60 * (i // 1000) + i % 1000 / 20:.2f}{line[1:]}" for i, line in enumerate(lines)]
+    path.write_text("\n".join([header.replace("run;", "tijd;", 1), *rows, ""]))
+
+
 READ_AS_THEY_ARE = (
     *(units_below, totals_and_notes, units_last, blanks_before, a_sheet_a_year, runs_in_a_folder),
+    *(thousands, days_as_numbers, in_french, a_clock_that_goes_on),
 )
 
 
@@ -96,6 +132,14 @@ def test_forms_that_are_read_as_they_are(
 ) -> None:
     form(archive)
     assert_same(archive.scan(), good_scan)
+
+
+def test_degrees_fahrenheit_are_converted(archive: Archive) -> None:
+    archive.replace(TOWS, "watertemperatuur [C]", "watertemperatuur (°F)")
+    archive.replace(TOWS, ";8,7;", ";47,66;")
+    archive.replace(TOWS, ";5,2;", ";41,36;")
+    found = archive.scan().index.tows["water_temperature_c"].to_list()
+    assert found == [pytest.approx(8.7), None, pytest.approx(5.2)]
 
 
 def lists_in_one_workbook(archive: Archive) -> None:
@@ -152,6 +196,27 @@ def no_rate(archive: Archive) -> None:
     archive.edit(TOWS, lambda t: t.replace(";20;", ";;"))
 
 
+def force_with_a_minus(archive: Archive) -> None:
+    for path in sorted((archive.root / "meetdata_2014").glob("*.csv")):
+        name = path.relative_to(archive.root).as_posix()
+        lines = path.read_text("utf-8").count("\n")
+        archive.cells(4, lambda cell, _: f"-{cell}".replace("--", ""), 2, lines, name)
+
+
+def runs_of_another_name(archive: Archive) -> None:
+    for path in sorted((archive.root / "meetdata_2014").glob("*.csv")):
+        archive.replace(path.relative_to(archive.root).as_posix(), "run;", "rondje;")
+
+
+def in_a_language_nobody_knows(archive: Archive) -> None:
+    """Only what stands in the columns says what files and columns are."""
+    root = archive.root
+    header = "Nummer;Alus;Nimi;Tyyppi;Pituus [m];Leveys [m];Korkeus [m];Paino [kg];Soutajat;Luokka"
+    archive.edit(BOATS, lambda text: "\n".join([header, *text.split("\n")[1:]]))
+    shutil.move(root / BOATS, root / "Veneet.csv")
+    shutil.move(root / "meetdata_2014", root / "mittaukset 2014")
+
+
 def cells_with_words(archive: Archive) -> None:
     """What is counted or measured is behind the numbers, and headers are of few letters."""
     for old, new in ((";roeiers;", ";Team;"), ("meetfrequentie [Hz]", "Meetfreq."),
@@ -167,6 +232,7 @@ def folder_without_a_year(archive: Archive) -> None:
 
 
 SETTLED = (
+    *(force_with_a_minus, runs_of_another_name),
     *(other_names, other_headers, other_channels, no_rate, cells_with_words),
     *(folder_without_a_year, lists_in_one_workbook),
 )
@@ -225,6 +291,51 @@ def test_forms_that_one_round_settles(
     columns = [c for c in good_scan.index.tows.columns if not c.endswith(("path", "sha256"))]
     assert scan.index.tows.select(columns).equals(good_scan.index.tows.select(columns))
     assert all(scan.good[tow].equals(samples) for tow, samples in good_scan.good.items())
+
+
+def test_a_list_may_have_a_row_for_each_run_and_a_file_each(
+    archive: Archive, good_scan: Scan
+) -> None:
+    header, *rows = cells_of(archive, TOWS)
+    file, tow = header.index("meetfile"), header.index("sleep_id")
+    long = [[*header, "vaart", "richting"]]
+    for row in rows:
+        path = archive.root / "meetdata_2014" / f"{row[file]}.csv"
+        first, *lines = path.read_text("utf-8").splitlines()
+        for run in "654321":
+            name = f"{row[tow]} {'abcdef'[int(run) - 1]}"
+            own = [line[2:] for line in lines if line.startswith(run)]
+            path.with_name(f"{name}.csv").write_text("\n".join([first[4:], *own, ""]))
+            long.append(
+                [*row[:file], name, *row[file + 1 :], run, "heen" if run < "4" else "terug"]
+            )
+        path.unlink()
+    (archive.root / TOWS).write_text("\n".join(";".join(row) for row in long))
+    settled(archive)
+    scan = archive.scan()
+    assert scan.faults == []
+    assert all(scan.good[tow].equals(samples) for tow, samples in good_scan.good.items())
+    archive.replace(TOWS, ";5;terug", ";4;terug")
+    (fault,) = archive.scan().faults[:1]
+    assert fault.reason_code == "bad_list_row"
+    assert "for runs 1, 2, 3, 4, 4, 6" in fault.message
+
+
+def test_without_a_column_of_ids_day_boat_and_crew_are_the_id(archive: Archive) -> None:
+    header, *rows = cells_of(archive, TOWS)
+    (archive.root / TOWS).write_text("\n".join(";".join(row[1:]) for row in [header, *rows]))
+    assert archive.scan().index.tows["tow_id"].to_list() == [
+        *("2014-03-01 FSN1 8H", "2014-03-02 FSN2 6D", "2014-03-03 FSN3 12H")
+    ]
+
+
+def test_files_in_a_language_nobody_knows_are_guessed_by_what_is_in_them(archive: Archive) -> None:
+    in_a_language_nobody_knows(archive)
+    checked = check_archive(archive.root)
+    lines = [p.line for cause in checked.causes for p in cause.proposals]
+    assert '[files] "Veneet.csv" = "sloependata"' in lines
+    assert '# "Veneet.csv" = "sloependata"' in str(checked.profile)
+    assert not any("ignore" in line for line in lines if "Veneet" in line)
 
 
 def test_faults_behind_a_fault_come_out_in_the_same_round(archive: Archive) -> None:
@@ -323,3 +434,27 @@ def test_a_fault_of_a_tow_of_several_files_names_its_file(archive: Archive) -> N
     archive.edit(path, lambda t: f"Vierde vaart\n\n{t.replace('4;2', '4;mist', 1)}")
     (fault,) = archive.scan().faults
     assert (fault.path, fault.line) == (path, line_of(archive, path, "mist"))
+
+
+def test_the_height_of_the_bow_is_asked_for_where_wind_was_measured_only(
+    archive: Archive, good_scan: Scan
+) -> None:
+    archive.replace(BOATS, ";2,10;0,80;", ";2,10;;")
+    (fault,) = archive.scan().faults
+    assert (fault.reason_code, fault.tow_id) == ("bad_list_row", "2014-002")
+    assert "'hoogte [m]' must be there" in fault.message
+    profile = archive.root / "archief.toml"
+    profile.write_text('[[profile]]\nseasons = "2014"\nabsent = ["wind"]\n')
+    scan = archive.scan()
+    assert scan.faults == []
+    assert scan.index.tows["bow_height_m"].to_list() == [0.9, None, 1.05]
+
+
+def test_a_mark_that_is_told_settles_what_1_140_means(archive: Archive) -> None:
+    archive.replace(TOWS, ";870;1140;", ";870;1.140;")
+    checked = check_archive(archive.root)
+    assert [p.line for cause in checked.causes for p in cause.proposals] == [
+        f'[decimals] "{TOWS}" = ","'
+    ]
+    settled(archive)
+    assert archive.scan().index.tows["crew_weight_kg"].to_list() == [760, None, 1140]
