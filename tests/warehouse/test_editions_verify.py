@@ -446,7 +446,7 @@ def test_a_text_that_says_something_else_is_told_whatever_its_seal(published_cop
         sealed_anew(file.parent)
         findings, wrong = found(published_copy, kind="altered", edition=edition)
         assert wrong
-        assert [finding.where for finding in findings][0] == name
+        assert findings[0].where == name
 
 
 def test_an_edition_that_is_gone_breaks_the_chain(published_copy):
