@@ -14,9 +14,11 @@ from herijk.pipeline.season_log import (
     Settings,
     estimate_season_factors,
     other_log_factors,
+    posterior,
     retow_choice,
     scale_effect,
 )
+from herijk.pipeline.season_log.network import Network
 from tests.numbers import SAME, jittered, unequal
 from tests.pipeline.season_worlds import ANCHORED_FROM, CLEAN, HARD, simulate
 
@@ -98,6 +100,16 @@ def test_hard_worlds_recover_2009_to_2011():
     assert np.sqrt((errors[:, :3] ** 2).mean(axis=0)) == pytest.approx(0.0, abs=0.008)
     low, high = binom.ppf([0.001, 0.999], covered.size, 0.95)
     assert low <= covered.sum() <= high
+
+
+@pytest.mark.parametrize("steps", [1, 2, 3])
+def test_the_search_begins_without_leaps(steps, monkeypatch):
+    """Of some unknown next to nothing may be known at its start: steps of 26 and 70 were made."""
+    setup = replace(CLEAN, boats=24, tows_a_season=8, tow_noise=0.003, run_noise=0.004)
+    tows = simulate(replace(setup, log_factors=((2010, 1.06),)), 6).tows
+    problem = posterior.Problem.of(Network.of(tows), USUAL)
+    monkeypatch.setattr(posterior, "MAX_ITERATIONS", steps + 1)
+    assert np.abs(posterior.fit(problem, problem.always).value).max() < 1.0
 
 
 def test_ageing_is_told_from_log_errors():

@@ -30,7 +30,11 @@ from herijk.pipeline.season_log.network import Network
 MAX_ITERATIONS: Final = 100
 TOLERANCE: Final = 1e-10
 UNTROUBLED: Final = 4
-"""First iterations, in which no boat is taken for changed: logs may be far off yet."""
+"""First iterations, in which no boat is taken for changed: logs may be far off yet.
+
+They step by the information as if that were certain. What is seen may tell next to nothing there,
+and a step by it can leap to where the search finds no way back.
+"""
 LEAST_SD: Final = 0.001
 """No number of a tow is ever better known: keeps the search finite where all tows agree."""
 NO_CHANGE: Final = np.full(2, 1e-9)
@@ -260,7 +264,7 @@ def _step(
     shares = NO_CHANGE if untroubled else now.shares
     told = list(tell(problem.groups, residual, own, tangent.state, design, shares))
     full = np.sum([t.complete_information.sum(axis=0) for t in told], axis=0)
-    seen = np.sum([t.information.sum(axis=0) for t in told], axis=0)
+    seen = full if untroubled else np.sum([t.information.sum(axis=0) for t in told], axis=0)
     covariance: FloatArray = np.linalg.inv(_positive(seen, full, precision)).astype(np.float64)
     score = np.sum([t.score for t in told], axis=0)
     step = covariance @ (score - precision * (now.value - mean))
