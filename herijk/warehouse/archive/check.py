@@ -159,7 +159,8 @@ def _faults(root: Path, profiles: Profiles) -> tuple[ArchiveIndex | None, list[F
     in_headers = list(_in_headers(root, index))
     wrong = {fault.path for fault in in_headers}
     in_samples = list(_in_samples(root, index, wrong))
-    return index, [*index.faults, *in_races, *in_registers, *in_headers, *in_samples]
+    in_lists = [*index.faults, *index.more]
+    return index, [*in_lists, *in_races, *in_registers, *in_headers, *in_samples]
 
 
 def quick_hash(path: Path) -> str:

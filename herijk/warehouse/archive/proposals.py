@@ -126,7 +126,7 @@ def _of_value(_: str, values: Any, __: int) -> Iterator[Proposal]:
             ),
             "",
         )
-        sure = bool(meant) and len(word) > 1
+        sure = bool(meant) and len(word) > 1 and not word.startswith("mi")  # mixed, mixte
         yield Proposal("words", word, meant or "H", is_active=sure)
     else:
         yield Proposal("words", word, "")

@@ -11,7 +11,7 @@ import polars as pl
 import pytest
 import xlsxwriter
 
-from herijk.warehouse.archive.check import Checked, check_archive
+from herijk.warehouse.archive.check import Checked, as_report, check_archive
 from herijk.warehouse.archive.sheets import read_sheets
 from herijk.warehouse.archive.text import Column, split_header
 from tests.warehouse.archive.conftest import BOATS, FIRST, HEADER, ROWS, TOWS, Archive, Scan
@@ -525,3 +525,28 @@ def test_a_mark_that_is_told_settles_what_1_140_means(archive: Archive) -> None:
     ]
     settled(archive)
     assert archive.scan().index.tows["crew_weight_kg"].to_list() == [760, None, 1140]
+
+
+def test_every_fault_of_a_row_is_told_at_once(archive: Archive) -> None:
+    """Also where the row falls out for another reason; it is set aside once all the same."""
+    archive.replace(
+        TOWS, "FSN2;tweede boot 6d 2014;;6;D;2,10;", "FSN2;tweede boot 6d 2014;;zes;?;21;"
+    )
+    archive.edit(TOWS, lambda text: text + text.splitlines()[2] + "!\n")
+    archive.replace(BOATS, "10,05;2,73;", "1005;273;")
+    found = {
+        (cause.reason_code, cause.faults[0].line): len(cause.faults)
+        for cause in check_archive(archive.root).causes
+    }
+    assert found == {
+        ("duplicate_tow_id", 3): 2, ("bad_list_row", 3): 2, ("bad_boat_row", 4): 1,
+    }  # fmt: skip
+    set_aside = [fault.line for fault in archive.scan().faults if fault.path == TOWS]
+    assert len(set_aside) == len(set(set_aside)) == 3
+
+
+def test_a_setting_for_what_no_list_has_is_told_as_a_sentence(archive: Archive) -> None:
+    profile = archive.root / "archief.toml"
+    profile.write_text('[[profile]]\nseasons = "1999"\nsample_rate_hz = 20\n')
+    report = as_report(check_archive(archive.root), "nl")
+    assert "[[profile]]" in report["causes"][0]["sentence"]
