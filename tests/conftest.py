@@ -2,7 +2,7 @@
 
 import os
 import shutil
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +13,7 @@ import dagster as dg
 import duckdb
 import polars as pl
 import pytest
+from filelock import FileLock
 from hypothesis import settings
 
 import herijk.assets.rebuild
@@ -141,14 +142,38 @@ class Workbench:
         }
 
 
+@pytest.fixture(autouse=True, scope="session")
+def _disks_need_not_sync() -> Iterator[None]:
+    """No test loses power; a rebuild waits for the disk two hundred times."""
+    with mock.patch("os.fsync"):
+        yield
+
+
+def shared(factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:
+    """A folder for all workers, made by the first that asks; read only."""
+    root = factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        root = root.parent  # that of the worker itself
+    folder, done = root / name, root / f"{name}.done"
+    with FileLock(root / f"{name}.lock"):
+        if not done.exists():
+            shutil.rmtree(folder, ignore_errors=True)
+            folder.mkdir()
+            make(folder)
+            done.touch()
+    return folder
+
+
+def _build(root: Path) -> None:
+    write_simulated_archive(root / "archive", simulate_world(SMALL))
+    Workbench(root / "archive", root / "data").rebuild(whole=True)
+
+
 @pytest.fixture(scope="session")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Workbench:
     """The small archive, rebuilt once; read only."""
-    root = tmp_path_factory.mktemp("built")
-    bench = Workbench(root / "archive", root / "data")
-    write_simulated_archive(bench.archive, simulate_world(SMALL))
-    bench.rebuild(whole=True)
-    return bench
+    root = shared(tmp_path_factory, "built", _build)
+    return Workbench(root / "archive", root / "data")
 
 
 @pytest.fixture

@@ -78,10 +78,10 @@ def editions_can_be_made_again(setup: Setup) -> dg.AssetCheckResult:
 
     A file of the archive may be mended after publication, so only a changed edition is an error.
     """
-    wrong = [f for f in verify(setup.store, afresh=False)["findings"] if f["wrong"]]
-    changed = any(f["kind"] == "altered" for f in wrong)
+    wrong = [f for f in verify(setup.store, afresh=False).findings if f.wrong]
+    changed = any(f.kind == "altered" for f in wrong)
     severity = dg.AssetCheckSeverity.ERROR if changed else dg.AssetCheckSeverity.WARN
-    return _result([f"{f['edition']}: {f['message']}" for f in wrong], severity)
+    return _result([f"{f.edition}: {f.message}" for f in wrong], severity)
 
 
 ALL = [

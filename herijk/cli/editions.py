@@ -141,7 +141,7 @@ def verify(data: DataFolder = Path("data"), as_json: AsJson = False) -> None:
 
     report = verify_editions(Store(data))
     show(report, text.verify, as_json)
-    if report["wrong"]:
+    if report.wrong:
         raise typer.Exit(1)
 
 

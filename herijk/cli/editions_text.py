@@ -1,11 +1,15 @@
 """Results of the commands about editions as text for a person."""
 
 from collections import Counter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from herijk.cli.text import SIMULATED, table
 from herijk.warehouse.editions.words import LANGUAGES, Language
 from herijk.words import LANGUAGE, tell
+
+if TYPE_CHECKING:
+    from herijk.warehouse.editions.finding import Finding
+    from herijk.warehouse.editions.verify import Verification
 
 Report = dict[str, Any]
 KINDS = {"recomputed": "recomputed", "as_printed": "as printed"}
@@ -272,14 +276,11 @@ def _moved(moved: list[Report]) -> str:
     return table(columns, rows)
 
 
-def verify(report: Report) -> str:
+def verify(report: "Verification") -> str:
     """What was checked and what is wrong."""
-    if not report["editions"] and not report["findings"]:
+    if not report.editions and not report.findings:
         return tell("No edition was published yet; nothing to verify.")
-    rows = [
-        (e["edition"], KINDS[e["kind"]], e["lines"], e["made_again"], e["equal"])
-        for e in report["editions"]
-    ]
+    rows = [(e.edition, KINDS[e.kind], e.lines, e.made_again, e.equal) for e in report.editions]
     head = ("edition", "kind", "lines", "made again", "equal")
     parts = [
         tell(
@@ -290,36 +291,36 @@ def verify(report: Report) -> str:
             table(head, rows),
         )
     ]
-    if report["findings"]:
-        rows = [
+    if report.findings:
+        findings = [
             (
-                f["edition"],
-                "WRONG" if f["wrong"] else "notice",
-                FINDINGS[f["kind"]],
-                f["where"],
-                f["message"],
+                f.edition,
+                "WRONG" if f.wrong else "notice",
+                FINDINGS[f.kind],
+                f.where,
+                f.message,
             )
-            for f in report["findings"]
+            for f in report.findings
         ]
-        parts.append(table(("edition", "", "kind", "where", "what"), rows))
-    if report["head"] is not None:
+        parts.append(table(("edition", "", "kind", "where", "what"), findings))
+    if report.head is not None:
         parts.append(
             tell(
                 "Head: {}\nThe seal of the last edition. Keep it, for example in the "
                 "minutes: whoever has it can tell later whether\nany edition was made "
                 "anew.",
-                report["head"],
+                report.head,
             )
         )
-    parts.append(_verdict(report["findings"]))
+    parts.append(_verdict(report.findings))
     return "\n\n".join(parts)
 
 
-def _verdict(findings: list[Report]) -> str:
-    wrong = sum(f["wrong"] for f in findings)
+def _verdict(findings: list["Finding"]) -> str:
+    wrong = sum(f.wrong for f in findings)
     if wrong:
         return tell("{} {} wrong.", wrong, "thing is" if wrong == 1 else "things are")
-    otherwise = sum(f["kind"] == "differs" for f in findings)
+    otherwise = sum(f.kind == "differs" for f in findings)
     if otherwise:
         return tell(
             "Nothing was altered. The code of today makes {} of these otherwise; "

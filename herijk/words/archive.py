@@ -124,6 +124,11 @@ ARCHIVE: Final[dict[str, str]] = {
         "Cw is {cw_kg_m}, maar A {a_kg_m} en B {b_m_s} geven {given:.2f} bij {declared_speed_m_s} "
         "m/s; een ervan klopt niet, of er zijn er twee verwisseld."
     ),
+    "Column '{header}' is in Beaufort, which is a range of winds and no speed. Without a wind in "
+    "m/s put wind under absent in the season's profile in archief.toml.": (
+        "Kolom '{header}' is in Beaufort, en dat is een klasse van wind en geen snelheid. Zet "
+        "zonder wind in m/s wind onder absent in het profiel van het seizoen in archief.toml."
+    ),
     # Rows compared with each other
     "the rows of the runs of one tow differ in column '{column}': '{one}' and '{other}'.": (
         "de rijen van de runs van één sleep verschillen in kolom '{column}': '{one}' en '{other}'."
@@ -252,6 +257,11 @@ ARCHIVE: Final[dict[str, str]] = {
         "run {run} begint opnieuw; zijn rijen moeten bij elkaar staan."
     ),
     "the time does not increase within the run.": "de tijd loopt niet op binnen de run.",
+    "By its times it has {own:.4g} samples per second, other than the first tow of its season: "
+    "write that into the tow list, in a column 'meetfrequentie [Hz]'.": (
+        "Volgens de tijden heeft hij {own:.4g} metingen per seconde, anders dan de eerste sleep "
+        "van het seizoen: schrijf dat in de sleeplijst, in een kolom 'meetfrequentie [Hz]'."
+    ),
     "Run {run}: by its times it has {observed:.4g} samples per second, by the list or the profile "
     "{rate}; they may differ by {most:.0%}.": (
         "Run {run}: volgens de tijden heeft hij {observed:.4g} metingen per seconde, volgens de "

@@ -452,6 +452,11 @@ ERRORS: Final[dict[str, str]] = {
     "verification code {} does not fit the line: inputs or numbers were changed": (
         "controlecode {} past niet bij de regel: invoer of getallen zijn gewijzigd"
     ),
+    "{} does not say what the tables of the edition say": (
+        "{} zegt iets anders dan de tabellen van de uitgave"
+    ),
+    "{} says something else of {} than the tows do": "{} zegt iets anders over {} dan de slepen",
+    "made again, it comes out otherwise in {}: {}": "opnieuw gemaakt komt het anders uit in {}: {}",
     "it was written anew; its values are the same": (
         "het is opnieuw geschreven; de waarden zijn gelijk"
     ),
@@ -478,9 +483,6 @@ ERRORS: Final[dict[str, str]] = {
     "the boat list changed": "de lijst van sloepen is gewijzigd",
     "the code changed": "de code is gewijzigd",
     "this should not happen": "dit zou niet mogen gebeuren",
-    "made again, its members come out otherwise: {}": (
-        "opnieuw gemaakt komen de leden anders uit: {}"
-    ),
     "the printed register in the archive says so now": (
         "het gedrukte register in het archief zegt het nu zo"
     ),

@@ -120,7 +120,7 @@ def spoken(text: Any, language: str) -> Any:
 
 def innermost(text: str) -> str:
     """Return what a sentence says of its line: the sentence within `Line 3: ...`."""
-    while isinstance(text, Sentence) and isinstance(text.values.get("what"), str):
+    while isinstance(text, Sentence) and isinstance(text.values.get("what"), Sentence):
         text = text.values["what"]
     return text
 

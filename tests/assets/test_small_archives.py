@@ -59,7 +59,7 @@ def test_one_tow_without_runs_that_are_not_asked_for_is_computed(one_tow, monkey
 
 OF_TABLES = (
     *(["audit", "FSN101"], ["due"], ["log-error"], ["slides"], ["certificate", "FSN101"]),
-    *(["proposal", "rebased"], ["audit", "Kuikensloep"]),
+    *(["proposal", "rebased"], ["audit", "Kuikensloep"], ["register"], ["pages", "--out", "p"]),
 )
 
 

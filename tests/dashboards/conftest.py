@@ -14,7 +14,7 @@ from herijk.dashboards.workbench.server import LOOPBACK, address, serving
 from herijk.pipeline.method.definition import shipped_method
 from herijk.warehouse.editions.publish import Terms, publish
 from herijk.warehouse.store.store import Store
-from tests.conftest import METHODS, Workbench
+from tests.conftest import METHODS, Workbench, shared
 
 ATTACK = "</script><script>alert(1)</script>"
 ACCENT = "Tréwes"
@@ -32,7 +32,11 @@ def store(built, tmp_path_factory):
 
     The first boat towed is called `ATTACK`, the last one `FORMULA`.
     """
-    data = tmp_path_factory.mktemp("site") / "data"
+    return Store(shared(tmp_path_factory, "site", lambda root: _attack(built, root)) / "data")
+
+
+def _attack(built, root):
+    data = root / "data"
     shutil.copytree(built.data, data)
     store = Store(data)
     for edition, method in zip(EDITIONS, METHODS, strict=True):
@@ -59,7 +63,6 @@ def store(built, tmp_path_factory):
         db.execute("UPDATE contents SET rows = 3 WHERE \"table\" = 'season_links'")
         db.execute("UPDATE contents SET rows = 1 WHERE \"table\" = 'season_steps'")
     build_site(store)
-    return store
 
 
 @pytest.fixture(scope="session")

@@ -1,7 +1,7 @@
 """The site in a real browser, opened from disk: no error, no request, everything works.
 
 Needs Chromium. Where it is not installed the tests are skipped, except in CI (`HERIJK_CI` set),
-where that is a failure. Screenshots go to `ci-output/`.
+where that is a failure, and screenshots go to `ci-output/`.
 """
 
 import csv
@@ -28,7 +28,7 @@ FLAGS = [
 HIDDEN_BARS = ["--hide-scrollbars"]
 """What a browser without a window is told by itself: people's windows have bars."""
 SHOTS = ROOT / "ci-output"
-WIDTHS = {"desktop": (1280, 900), "phone": (390, 844)}
+WIDTHS = {"desktop": {"width": 1280, "height": 900}, "phone": {"width": 390, "height": 844}}
 
 pytestmark = pytest.mark.skipif(
     CHROMIUM is None and "HERIJK_CI" not in os.environ,
@@ -91,7 +91,7 @@ class Visitor:
 
 @pytest.fixture
 def visitor(browser, site):
-    with browser.new_context(accept_downloads=True, viewport={"width": 1280, "height": 900}) as c:
+    with browser.new_context(accept_downloads=True, viewport=WIDTHS["desktop"]) as c:
         visitor = Visitor(c.new_page(), site)
         visitor.page.set_default_timeout(10_000)
         yield visitor
@@ -142,6 +142,28 @@ def barriers(page):
     ]
 
 
+class Pictures:
+    """Pictures of a page in `ci-output/`, for people to look at; taken in CI alone."""
+
+    def __init__(self, page, name):
+        self.page, self.name, self.taken = page, name, "HERIJK_CI" in os.environ
+        if self.taken:
+            SHOTS.mkdir(exist_ok=True)
+
+    def at_first(self):
+        """The print, and what is seen first."""
+        if self.taken:
+            self.page.pdf(path=SHOTS / f"{self.name}.pdf", print_background=True)
+            for width, size in WIDTHS.items():
+                self.page.set_viewport_size(size)
+                self.page.screenshot(path=SHOTS / f"{self.name}-{width}-first.png")
+
+    def whole(self, width):
+        """The whole page, unfolded."""
+        if self.taken:
+            self.page.screenshot(path=SHOTS / f"{self.name}-{width}.png", full_page=True)
+
+
 def shown(page, table):
     return page.locator(f"[data-table={table}] tbody tr:visible")
 
@@ -168,33 +190,23 @@ def path_of(name, store, attacked):
     return f"{name}.html"
 
 
-@pytest.mark.parametrize("width", WIDTHS)
 @pytest.mark.parametrize("name", KINDS)
-def test_every_page_opens_and_draws(visitor, store, attacked, name, width):
-    columns, rows = WIDTHS[width]
-    visitor.page.set_viewport_size({"width": columns, "height": rows})
+def test_every_page_opens_draws_and_keeps_nobody_out(visitor, store, attacked, name):
     path = path_of(name, store, attacked)
-    SHOTS.mkdir(exist_ok=True)
     for folder, language in (("", "nl"), ("en/", "en")):
         page = visitor.open(folder + path)
-        shot = f"{name}-{language}"
-        if width == "desktop":
-            page.pdf(path=SHOTS / f"{shot}.pdf", print_background=True)
-        page.screenshot(path=SHOTS / f"{shot}-{width}-first.png")
+        pictures = Pictures(page, f"{name}-{language}")
+        pictures.at_first()
         visitor.unfold()
         visitor.draw_all()
-        assert page.evaluate("document.documentElement.scrollWidth") <= columns
-        assert scrolled(page, NOT_SIDEWAYS[width]) == []
-        assert page.locator(".broken").count() == 0
-        page.screenshot(path=SHOTS / f"{shot}-{width}.png", full_page=True)
-
-
-@pytest.mark.parametrize("name", KINDS)
-def test_nothing_keeps_people_out(visitor, store, attacked, name):
-    page = visitor.open(path_of(name, store, attacked))
-    visitor.unfold()
-    for columns, rows in WIDTHS.values():
-        page.set_viewport_size({"width": columns, "height": rows})
+        for width, size in WIDTHS.items():
+            page.set_viewport_size(size)
+            assert page.evaluate("document.documentElement.scrollWidth") <= size["width"]
+            assert scrolled(page, NOT_SIDEWAYS[width]) == []
+            assert page.locator(".broken").count() == 0
+            pictures.whole(width)
+    for size in WIDTHS.values():
+        page.set_viewport_size(size)
         assert barriers(page) == []
 
 
@@ -246,7 +258,7 @@ def test_the_address_keeps_what_is_chosen(visitor):
 
 
 def test_a_phone_shows_numbers_without_scrolling_aside(visitor):
-    visitor.page.set_viewport_size({"width": 390, "height": 844})
+    visitor.page.set_viewport_size(WIDTHS["phone"])
     page = visitor.open("register.html")
     cells = page.locator("[data-table=register] tbody td:visible").all_inner_texts()
     assert any(re.fullmatch(r"\d+,\d\d", text) for text in cells)

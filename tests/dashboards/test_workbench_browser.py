@@ -1,6 +1,6 @@
 """The workbench in a real browser: no error, no request elsewhere, and the last change wins.
 
-Needs Chromium, like the tests of the site. Screenshots go to `ci-output/`.
+Needs Chromium, like the tests of the site.
 """
 
 import pytest
@@ -95,20 +95,19 @@ def expected_median(bench, **changes):
     return f"{bench.answer(asked)['summary']['median_ratio']:.4f}".replace(".", ",")
 
 
-@pytest.mark.parametrize("width", site.WIDTHS)
-def test_it_opens_and_draws_everything(page, width):
-    columns, rows = site.WIDTHS[width]
-    page.set_viewport_size({"width": columns, "height": rows})
-    page.reload()
-    page.wait_for_function(IDLE)
+def test_it_opens_and_draws_everything(page):
+    pictures = site.Pictures(page, "workbench")
     assert "GESIMULEERD" in page.locator(".simulated").inner_text()
     draw_all(page)
     assert page.locator("figure").count() == page.locator("figure svg[role=img]").count() > 0
-    assert page.evaluate("document.documentElement.scrollWidth") <= columns
-    assert site.scrolled(page, ".chart, .scroll" if width == "desktop" else ".chart") == []
-    site.SHOTS.mkdir(exist_ok=True)
-    page.screenshot(path=site.SHOTS / f"workbench-{width}.png", full_page=True)
-    assert site.barriers(page) == []
+    for width, size in site.WIDTHS.items():
+        page.set_viewport_size(size)
+        assert page.evaluate("document.documentElement.scrollWidth") <= size["width"]
+        assert site.scrolled(page, ".chart, .scroll" if width == "desktop" else ".chart") == []
+        pictures.whole(width)
+    for size in site.WIDTHS.values():
+        page.set_viewport_size(size)
+        assert site.barriers(page) == []
 
 
 def test_print_shows_whole_tables_and_which_methods_they_compare(page):

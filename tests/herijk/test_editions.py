@@ -88,7 +88,7 @@ def test_verify_under_other_code_says_that_what_was_published_stands(herijk, ben
         "still_air_coefficient_kg_m",
         lambda area, drag: 1.5 * original(area, drag),
     )
-    monkeypatch.setattr("herijk.warehouse.editions.verify.code_version", lambda: "0.2.0+other")
+    monkeypatch.setattr("herijk.warehouse.editions.remade.code_version", lambda: "0.2.0+other")
     status, out, _ = herijk("verify", "--data", bench.data)
     assert status == 0
     assert "the code changed, from" in out

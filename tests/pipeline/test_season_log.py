@@ -237,6 +237,15 @@ def test_without_boat_identity_the_second_estimate_agrees():
     assert not np.any(beyond)
 
 
+def test_a_fleet_of_one_type_and_crew_has_factors():
+    """A one-design class: nothing but size tells its boats apart."""
+    tows = simulate(replace(CLEAN, boats=12, tows_a_season=8), 1).tows.with_columns(
+        boat_type=pl.lit("whaler"), crew_class=pl.lit("H"), rowers=pl.lit(8, pl.Int8)
+    )
+    found = estimate_season_factors(tows).factors
+    assert found["factor_no_boats"].null_count() < found.height
+
+
 def test_a_fleet_altered_in_one_winter_shows_as_disagreement():
     """All old boats became heavier to tow in 2014: repeat tows take that for a log error."""
     tows = simulate(replace(CLEAN, boats=150, tows_a_season=40), 9).tows

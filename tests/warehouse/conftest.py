@@ -1,12 +1,14 @@
 import pytest
 
+from tests.conftest import shared
 from tests.warehouse.edition_bench import EditionBench
 
 
 @pytest.fixture(scope="session")
 def edition_archive(tmp_path_factory):
     """Rebuilt once; read only."""
-    return EditionBench.simulated(tmp_path_factory.mktemp("editions"))
+    root = shared(tmp_path_factory, "editions", EditionBench.simulated)
+    return EditionBench(root / "archive", root / "data")
 
 
 @pytest.fixture
@@ -18,10 +20,14 @@ def bench_of_editions(edition_archive, tmp_path):
 @pytest.fixture(scope="session")
 def published(edition_archive, tmp_path_factory):
     """With two editions of the two methods, published; read only."""
-    bench = edition_archive.copy(tmp_path_factory.mktemp("published"))
-    bench.publish("2014-1", "as-published")
-    bench.publish("2014-2", "rebased")
-    return bench
+
+    def publish(root):
+        bench = edition_archive.copy(root)
+        bench.publish("2014-1", "as-published")
+        bench.publish("2014-2", "rebased")
+
+    root = shared(tmp_path_factory, "published", publish)
+    return EditionBench(root / "archive", root / "data")
 
 
 @pytest.fixture

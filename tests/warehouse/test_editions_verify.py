@@ -31,19 +31,19 @@ def folder(bench, name="2014-1"):
 def found(bench, **wanted):
     report = verify(bench.store)
     return [
-        f for f in report["findings"] if all(f[key] == value for key, value in wanted.items())
-    ], report["wrong"]
+        f for f in report.findings if all(getattr(f, key) == value for key, value in wanted.items())
+    ], report.wrong
 
 
 def test_untouched_editions_pass_and_come_out_equal_when_made_again(published):
     report = verify(published.store)
-    assert report["findings"] == []
-    assert not report["wrong"]
-    for one in report["editions"]:
-        register = read_edition(published.store, one["edition"]).register
+    assert report.findings == []
+    assert not report.wrong
+    for one in report.editions:
+        register = read_edition(published.store, one.edition).register
         assert (
-            one["equal"]
-            == one["made_again"]
+            one.equal
+            == one.made_again
             == register.filter(pl.col("status") != "never_towed").height
             > 0
         )
@@ -59,7 +59,7 @@ def test_a_changed_digit_in_the_csv_is_named_by_line_and_column(published_copy):
     file.write_text("\n".join(lines), encoding="utf-8-sig")
     findings, wrong = found(published_copy, where=f"register.csv, line 3 ({cells[0]}), column Cw")
     assert wrong
-    assert findings[0]["message"] == f"it says '99,999'; it was '{was}'"
+    assert findings[0].message == f"it says '99,999'; it was '{was}'"
 
 
 def test_a_changed_number_in_the_table_is_named_and_its_code_no_longer_fits(published_copy):
@@ -69,11 +69,11 @@ def test_a_changed_number_in_the_table_is_named_and_its_code_no_longer_fits(publ
     changed = pl.when(pl.int_range(pl.len()) == 3).then(pl.col("a_kg_m") + 1)
     register.with_columns(changed.otherwise(pl.col("a_kg_m")).alias("a_kg_m")).write_parquet(file)
     report = verify(published_copy.store)
-    places = [f["where"] for f in report["findings"]]
+    places = [f.where for f in report.findings]
     assert f"register.csv, line 5 ({boat}), column A" not in places
     assert f"register.parquet, line 5 ({boat}), column A" in places
-    assert any("code" in f["message"] and boat in f["where"] for f in report["findings"])
-    assert any(f["kind"] == "differs" for f in report["findings"])
+    assert any("code" in f.message and boat in f.where for f in report.findings)
+    assert any(f.kind == "differs" for f in report.findings)
 
 
 def test_a_changed_number_in_the_xlsx_is_named_by_its_cell(published_copy):
@@ -92,16 +92,16 @@ def test_a_changed_number_in_the_xlsx_is_named_by_its_cell(published_copy):
     file.write_bytes(target.getvalue())
     findings, wrong = found(published_copy, where="register.xlsx, cell K4")
     assert wrong
-    assert findings[0]["message"].startswith("it says 12.5; it was ")
+    assert findings[0].message.startswith("it says 12.5; it was ")
 
 
 @pytest.mark.parametrize("name", ["method.toml", "inputs.csv", "toelichting.md", "decisions.json"])
 def test_any_changed_file_is_named(published_copy, name):
-    file = folder(published_copy) / name
+    file = folder(published_copy, "2014-2") / name
     file.write_bytes(file.read_bytes() + b"\n")
     findings, wrong = found(published_copy, kind="altered")
     assert wrong
-    assert [f["where"] for f in findings] == [name]
+    assert [f.where for f in findings] == [name]
 
 
 @pytest.mark.parametrize("name", ["register.csv", "tows.parquet"])
@@ -109,7 +109,7 @@ def test_a_missing_file_is_named(published_copy, name):
     (folder(published_copy) / name).unlink()
     findings, wrong = found(published_copy, kind="missing")
     assert wrong
-    assert [f["where"] for f in findings] == [name]
+    assert [f.where for f in findings] == [name]
 
 
 def test_a_changed_decision_breaks_the_seal(published_copy):
@@ -118,29 +118,29 @@ def test_a_changed_decision_breaks_the_seal(published_copy):
     file.write_text(json.dumps(about | {"decision": "van niemand"}), encoding="utf-8")
     findings, wrong = found(published_copy, where="edition.json")
     assert wrong
-    assert "seal" in findings[0]["message"]
+    assert "seal" in findings[0].message
 
 
 @pytest.mark.parametrize("content", [b"", b"{}", b"\xff\xfe"])
 def test_a_damaged_description_does_not_stop_the_others(published_copy, content):
     (folder(published_copy) / "edition.json").write_bytes(content)
     report = verify(published_copy.store)
-    assert report["wrong"]
-    assert [e["edition"] for e in report["editions"]] == ["2014-2"]
+    assert report.wrong
+    assert [e.edition for e in report.editions] == ["2014-2"]
 
 
 def test_a_damaged_table_is_told(published_copy):
     (folder(published_copy) / "register.parquet").write_bytes(b"PAR1 nothing")
     findings, wrong = found(published_copy, edition="2014-1", where="register.parquet")
     assert wrong
-    assert any("cannot be read" in f["message"] for f in findings)
+    assert any("cannot be read" in f.message for f in findings)
 
 
 def test_an_added_file_is_a_notice(published_copy):
     (folder(published_copy) / "~lock.register.xlsx#").write_text("x", encoding="utf-8")
     findings, wrong = found(published_copy, kind="notice")
     assert not wrong
-    assert findings[0]["where"] == "~lock.register.xlsx#"
+    assert findings[0].where == "~lock.register.xlsx#"
 
 
 def test_a_swapped_samples_file_is_named(published_copy):
@@ -149,7 +149,7 @@ def test_a_swapped_samples_file_is_named(published_copy):
     (published_copy.archive / second).write_bytes(content)
     findings, wrong = found(published_copy, kind="swapped")
     assert wrong
-    assert {(f["edition"], f["where"]) for f in findings} == {
+    assert {(f.edition, f.where) for f in findings} == {
         ("2014-1", second),
         ("2014-2", second),
     }
@@ -160,7 +160,7 @@ def test_a_missing_samples_file_is_named(published_copy):
     (published_copy.archive / path).unlink()
     findings, wrong = found(published_copy, kind="missing")
     assert wrong
-    assert {f["where"] for f in findings} == {path}
+    assert {f.where for f in findings} == {path}
 
 
 def test_a_changed_tow_list_is_named_by_tow_and_fact(published_copy):
@@ -173,7 +173,7 @@ def test_a_changed_tow_list_is_named_by_tow_and_fact(published_copy):
     file.write_text(text.replace(row, row.replace(f",{weight},", ",777,", 1)), encoding="utf-8")
     findings, wrong = found(published_copy, edition="2014-1", kind="swapped")
     assert wrong
-    assert [f["message"] for f in findings] == [
+    assert [f.message for f in findings] == [
         f"tow {tow['tow_id']}: weight_kg is 777.0; it was {tow['weight_kg']}"
     ]
 
@@ -200,7 +200,7 @@ def test_a_window_given_by_hand_afterwards_is_named(bench_of_editions):
     findings, wrong = found(bench, kind="differs")
     assert wrong
     (one,) = findings
-    assert f"the list row of tow {tow} changed" in one["message"]
+    assert f"the list row of tow {tow} changed" in one.message
 
 
 def test_a_new_season_is_no_fault(published_copy):
@@ -216,12 +216,12 @@ def test_a_file_changed_and_rebuilt_makes_another_number_and_says_why(published_
     published_copy.rebuild()
     tow = published_copy.tow(2009)["tow_id"]
     report = verify(published_copy.store)
-    assert report["wrong"]
-    own = [f for f in report["findings"] if f["kind"] == "differs" and f["edition"] == "2014-1"]
+    assert report.wrong
+    own = [f for f in report.findings if f.kind == "differs" and f.edition == "2014-1"]
     register = read_edition(published_copy.store, "2014-1").register
     counts = register.filter(tow_id=tow).height
     assert len(own) == counts
-    assert all(f"the list row of tow {tow} changed" in f["message"] for f in own)
+    assert all(f"the list row of tow {tow} changed" in f.message for f in own)
 
 
 def test_other_code_is_told_but_is_no_broken_promise(published_copy, monkeypatch):
@@ -231,11 +231,13 @@ def test_other_code_is_told_but_is_no_broken_promise(published_copy, monkeypatch
         "still_air_coefficient_kg_m",
         lambda area, drag: 1.5 * original(area, drag),
     )
-    assert verify(published_copy.store)["wrong"]
-    monkeypatch.setattr("herijk.warehouse.editions.verify.code_version", lambda: "0.2.0+other")
+    assert verify(published_copy.store).wrong
+    for module in ("verify", "remade"):
+        other = f"herijk.warehouse.editions.{module}.code_version"
+        monkeypatch.setattr(other, lambda: "0.2.0+other")
     findings, wrong = found(published_copy, kind="differs")
     assert not wrong
-    assert all("the code changed, from" in f["message"] for f in findings)
+    assert all("the code changed, from" in f.message for f in findings)
     assert findings
 
 
@@ -254,7 +256,7 @@ def test_an_archive_that_went_away_is_told(published_copy):
     published_copy.archive.rename(published_copy.archive.with_name("elsewhere"))
     findings, wrong = found(published_copy, kind="unchecked")
     assert wrong
-    assert "herijk rebuild" in findings[0]["message"]
+    assert "herijk rebuild" in findings[0].message
 
 
 # Lineage
@@ -308,11 +310,11 @@ def carrying(bench_of_editions):
 
 def test_carried_and_printed_lines_are_made_again_too(carrying):
     report = verify(carrying.store)
-    assert not report["wrong"]
-    for one in report["editions"]:
-        register = read_edition(carrying.store, one["edition"]).register
+    assert not report.wrong
+    for one in report.editions:
+        register = read_edition(carrying.store, one.edition).register
         to_make = register.filter(pl.col("status") != "never_towed").height
-        assert one["equal"] == one["made_again"] == to_make
+        assert one.equal == one.made_again == to_make
     carried = read_edition(carrying.store, "2014-1").register.filter(basis="printed_rebased")
     assert carried["fsn_no"].to_list() == ["FSN900"]
 
@@ -326,8 +328,8 @@ def test_a_changed_carried_or_printed_line_comes_out_otherwise(carrying, edition
     register.with_columns(changed.alias("a_kg_m")).write_parquet(file)
     findings, wrong = found(carrying, kind="differs", edition=edition)
     assert wrong
-    assert [f["where"] for f in findings] == [f"{boat} 8H"]
-    assert "a_kg_m" in findings[0]["message"]
+    assert [f.where for f in findings] == [f"{boat} 8H"]
+    assert "a_kg_m" in findings[0].message
 
 
 def test_a_changed_printed_register_is_named_and_so_is_its_line(carrying):
@@ -335,15 +337,15 @@ def test_a_changed_printed_register_is_named_and_so_is_its_line(carrying):
     file.write_text(PRINTED.replace("32,62", "32,63"), encoding="utf-8")
     findings, wrong = found(carrying, edition="printed")
     assert wrong
-    assert {f["kind"] for f in findings} == {"swapped", "differs"}
-    assert any("the printed register in the archive says so now" in f["message"] for f in findings)
+    assert {f.kind for f in findings} == {"swapped", "differs"}
+    assert any("the printed register in the archive says so now" in f.message for f in findings)
 
 
 def test_an_edition_whose_printed_source_is_gone_cannot_be_made_again(carrying):
     shutil.rmtree(folder(carrying, "printed"))
     findings, wrong = found(carrying, kind="unchecked")
     assert wrong
-    assert "there is no edition printed" in findings[0]["message"]
+    assert "there is no edition printed" in findings[0].message
 
 
 # The ensemble
@@ -355,7 +357,7 @@ def test_a_changed_member_is_told_and_comes_out_otherwise(published_copy):
     members.with_columns(pl.col("cw_kg_m") * 1.001).write_parquet(file)
     findings, wrong = found(published_copy, where="ensemble.parquet")
     assert wrong
-    assert [f["kind"] for f in findings] == ["altered", "differs"]
+    assert [f.kind for f in findings] == ["altered", "differs"]
 
 
 # A chain of editions, and what a new seal does not hide
@@ -397,7 +399,7 @@ def test_a_line_changed_and_sealed_anew_comes_out_otherwise(published_copy, chan
     resealed(published_copy, name, **change)
     findings, wrong = found(published_copy, kind="differs", edition=name)
     assert wrong
-    assert any(next(iter(change)) in finding["message"] for finding in findings)
+    assert any(next(iter(change)) in finding.message for finding in findings)
 
 
 def test_a_sheet_that_says_something_else_is_told_whatever_its_seal(published_copy):
@@ -408,7 +410,43 @@ def test_a_sheet_that_says_something_else_is_told_whatever_its_seal(published_co
     sealed_anew(path)
     findings, wrong = found(published_copy, kind="altered", edition=path.name)
     assert wrong
-    assert {finding["where"].split(",")[0] for finding in findings} == {"register.csv"}
+    assert {finding.where.split(",")[0] for finding in findings} == {"register.csv"}
+
+
+@pytest.mark.parametrize(
+    ("table", "column"),
+    [("run_points", "cw_kg_m"), ("curves", "power_w"), ("log_factors", "factor")],
+)
+def test_a_table_behind_the_lines_changed_and_sealed_anew_comes_out_otherwise(
+    published_copy, table, column
+):
+    file = folder(published_copy, "2014-2") / f"{table}.parquet"
+    frame = pl.read_parquet(file)
+    frame.with_columns(pl.col(column) * 1.001).write_parquet(file)
+    sealed_anew(file.parent)
+    findings, wrong = found(published_copy, kind="differs", where=file.name)
+    assert wrong
+    assert [column in finding.message for finding in findings] == [True]
+
+
+@pytest.mark.parametrize(
+    ("name", "was", "now"),
+    [
+        ("bericht.md", "een", "geen"),
+        ("notice.md", "the", "no"),
+        ("toelichting.md", "e", "a"),
+        ("inputs.csv", ";meetdata;", ";meetdata;0"),
+    ],
+)
+def test_a_text_that_says_something_else_is_told_whatever_its_seal(published_copy, name, was, now):
+    for edition in ("2014-2", "2014-1"):
+        file = folder(published_copy, edition) / name
+        text = file.read_text(encoding="utf-8")
+        file.write_text(text.replace(was, now, 1), encoding="utf-8", newline="")
+        sealed_anew(file.parent)
+        findings, wrong = found(published_copy, kind="altered", edition=edition)
+        assert wrong
+        assert findings[0].where == name
 
 
 def test_an_edition_that_is_gone_breaks_the_chain(published_copy):
@@ -426,7 +464,7 @@ def test_a_link_in_place_of_a_file_is_told(published_copy, tmp_path):
     path.symlink_to(tmp_path / "elsewhere.csv")
     findings, wrong = found(published_copy, kind="altered", where="register.csv")
     assert wrong
-    assert "link" in findings[0]["message"]
+    assert "link" in findings[0].message
 
 
 def test_samples_changed_with_the_same_size_and_time_are_found(published_copy):

@@ -24,7 +24,7 @@ WORLD = WorldSettings(seasons=(2009, 2014, 2017), tows_per_season=10, rate_hz=10
 """Logs to estimate, boats towed again, types of several boats, races."""
 
 EVERYTHING = """
-import json, shutil, sys
+import dataclasses, json, shutil, sys
 from pathlib import Path
 from tests.warehouse.edition_bench import METHODS, EditionBench
 from herijk.pipeline.method.definition import shipped_method
@@ -42,7 +42,7 @@ bench.publish("2014-2", "rebased")
 """
 VERIFY = """
 shutil.copytree(sys.argv[3], bench.data / "editions")
-print(json.dumps(verify(bench.store)))
+print(json.dumps(dataclasses.asdict(verify(bench.store))))
 """
 
 

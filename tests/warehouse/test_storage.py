@@ -160,14 +160,14 @@ def test_an_edition_in_a_bucket_is_published_once_shown_and_verified(moved):
     publish(store, method, terms)
     assert edition_names(store) == ["2026-1"]
     assert read_edition(store, "2026-1").register.height > 0
-    assert not verify(store)["wrong"]
+    assert not verify(store).wrong
     with pytest.raises(BrokenPromiseError, match="already published"):
         publish(store, method, terms)
     copy_sheets(store, moved.data / "site")
     shown = moved.data / "site" / "downloads" / "2026-1" / "register.csv"
     assert shown.read_bytes() == (store.editions / "2026-1" / "register.csv").read_bytes()
     (store.editions / "2026-1" / "register.csv").write_bytes(b"other")
-    assert verify(store)["wrong"]
+    assert verify(store).wrong
 
 
 def test_of_two_publications_under_one_name_one_stops_and_nothing_is_overwritten(moved):

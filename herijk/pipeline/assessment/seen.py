@@ -34,8 +34,8 @@ LEAST_WATER: Final = 0.2
 RADIANS: Final = 2.0 * np.pi
 """Angles in radians lie between -3.14 and 6.28: degrees of a vane that hardly moves."""
 
-STILL_AIR: Final = 0.15
-"""So near to the boat's speed is the wind in still air, with the errors of log and anemometer."""
+TOO_MUCH_AHEAD: Final = 0.1
+"""Angles in radians read as degrees put all wind ahead: more than the boat's own speed is left."""
 
 LEAST_RESULTANT: Final = float(np.cos(np.radians(3.3)))
 """Length of the mean direction of angles of which half are 0 and half 6.28 degrees."""
@@ -86,6 +86,7 @@ class Seen:
         windy = good & (mean["wind_v"] > 0)
         if "wind_measured" in batch.tows.columns:
             windy &= batch.tows["wind_measured"].to_numpy()[batch.tow]
+        ahead = _both_ways(batch, mean["wind_x"] / np.where(good, mean["log1_v"], 1.0), windy) - 1.0
         return cls(
             batch,
             np.isfinite(ln_gps),
@@ -93,10 +94,10 @@ class Seen:
             bend - USUAL_BEND,
             bend_sd,
             batch.mean(mean["force"], good),
-            _both_ways(batch, mean["wind_x"] / np.where(good, mean["log1_v"], 1.0), windy) - 1.0,
+            ahead,
             _both_ways(batch, mean["wind_y"] / np.where(good, mean["log1_v"], 1.0), windy),
             _median(batch, speed - np.log(batch.target_speed_ratio), good),
-            _angles_in_radians(batch, windy, mean["wind_v"] / np.where(good, mean["log1_v"], 1.0)),
+            _angles_in_radians(batch, windy) & (ahead > TOO_MUCH_AHEAD),
         )
 
 
@@ -168,20 +169,14 @@ def _median(batch: Batch, values: FloatArray, runs: BoolArray) -> FloatArray:
     return np.where(none, np.nan, np.nanmedian(rows, axis=1))
 
 
-def _angles_in_radians(batch: Batch, windy: BoolArray, felt: FloatArray) -> BoolArray:
+def _angles_in_radians(batch: Batch, windy: BoolArray) -> BoolArray:
     """Whether every second of a tow has a mean wind angle that lies where radians do.
 
-    In still air only the boat's own speed is felt, from straight ahead: angles near 0 in degrees.
-
-    Args:
-        batch: the tows.
-        windy: runs in which wind was measured.
-        felt: wind speed / boat speed of each run.
+    In still air, and where it blows along the course, degrees do so too.
     """
     n: FloatArray = np.maximum(batch.blocks.n, 1.0)
     cos, sin = batch.blocks["wind_cos"] / n, batch.blocks["wind_sin"] / n
     angle = np.degrees(np.arctan2(sin, cos))
     there = (angle >= -0.5 * RADIANS) & (angle <= RADIANS) & (np.hypot(sin, cos) > LEAST_RESULTANT)
     outside = windy & ((batch.blocks.n > 0) & ~there).any(axis=1)
-    blows = windy & (np.abs(felt - 1.0) > STILL_AIR)
-    return batch.any(blows) & ~batch.any(outside)
+    return batch.any(windy) & ~batch.any(outside)

@@ -52,7 +52,8 @@ def without_boats(network: Network, ageing: tuple[float, float], settings: Setti
     ).to_dummies(drop_first=True)
     logs = [np.log(np.where(sound, size, 1.0)) for size in sizes]
     about = [x - x[sound].mean() for x in logs]
-    other = np.column_stack([np.ones(tows.height), *about, kinds.to_numpy()])[sound]
+    of_kind = kinds.to_numpy().reshape(tows.height, kinds.width)  # none where all are of one
+    other = np.column_stack([np.ones(tows.height), *about, of_kind])[sound]
     group, r = network.group[sound], 1.0 - 2.0 / network.numbers("kappa")[sound]
     year = network.numbers("season")[sound] - settings.reference_year
     observed = network.numbers("ln_cw")[sound] - ageing[0] * year

@@ -1,7 +1,8 @@
 """The boats of the archive: `sloependata.csv`."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Final
 
 import polars as pl
@@ -11,7 +12,7 @@ from herijk.tables.frames import frame_of
 from herijk.tables.lake import ListedBoats
 from herijk.warehouse.archive.faults import Fault, fault_from
 from herijk.warehouse.archive.files import BOATS_FILE
-from herijk.warehouse.archive.lists import ListRow, Wording, read_list
+from herijk.warehouse.archive.lists import ListRow, Wording, all_of, others_of, read_list
 from herijk.warehouse.archive.text import Column
 from herijk.words import say
 
@@ -42,12 +43,14 @@ class Boats:
         crews: every row of those boats: a boat and a crew that rows it.
         bad: why others cannot be used.
         faults: what is wrong in the list.
+        more: what else is wrong in those rows.
     """
 
     good: Mapping[str, Mapping[str, Any]]
     crews: Sequence[Mapping[str, Any]]
     bad: Mapping[str, Fault]
     faults: tuple[Fault, ...]
+    more: tuple[Fault, ...] = ()
 
     def frame(self) -> pl.DataFrame:
         """Return the good boats, a row for each crew that rows them, in the order of the list."""
@@ -82,6 +85,7 @@ def read_boats(data: bytes, path: str = BOATS_FILE, wording: Wording | None = No
     crews: list[Mapping[str, Any]] = []
     bad: dict[str, Fault] = {}
     faults: list[Fault] = []
+    more: list[Fault] = []
     for row in read_list(data, COLUMNS, "bad_boat_row", path, wording or Wording(), ListedBoats):
         try:
             boat = _boat(row)
@@ -89,6 +93,7 @@ def read_boats(data: bytes, path: str = BOATS_FILE, wording: Wording | None = No
         except DefectiveInputError as error:
             fault = fault_from(error, path)
             faults.append(fault)
+            more += [fault_from(other, path) for other in others_of(error)]
             if row.optional_text("fsn_no") is not None:
                 bad[row.boat("fsn_no")] = fault
             continue
@@ -96,23 +101,31 @@ def read_boats(data: bytes, path: str = BOATS_FILE, wording: Wording | None = No
         crews.append(boat)
     usable = {fsn_no: boat for fsn_no, boat in good.items() if fsn_no not in bad}
     rowed = [boat for boat in crews if boat["fsn_no"] in usable]
-    return Boats(usable, rowed, bad, tuple(faults))
+    return Boats(usable, rowed, bad, tuple(faults), tuple(more))
 
 
 def _boat(row: ListRow) -> dict[str, Any]:
     row.check_whole()
-    return {
-        "fsn_no": row.boat("fsn_no"),
-        "ht_no": row.optional_text("ht_no"),
-        "name": row.text("name"),
-        "boat_type": row.optional_text("boat_type"),
-        "waterline_length_m": row.optional_number("waterline_length_m"),
-        "beam_m": row.optional_number("beam_m"),
-        "bow_height_m": row.optional_number("bow_height_m"),
-        "weight_kg": row.optional_number("weight_kg"),
-        "rowers": row.optional_integer("rowers"),
-        "crew_class": row.crew_class("crew_class") if row.optional_text("crew_class") else None,
-    }
+    return all_of({key: partial(reader, row, key) for key, reader in _READERS.items()})
+
+
+def _optional_class(row: ListRow, key: str) -> str | None:
+    return row.crew_class(key) if row.optional_text(key) else None
+
+
+_READERS: Final[Mapping[str, Callable[[ListRow, str], Any]]] = {
+    "fsn_no": ListRow.boat,
+    "ht_no": ListRow.optional_text,
+    "name": ListRow.text,
+    "boat_type": ListRow.optional_text,
+    "waterline_length_m": ListRow.optional_number,
+    "beam_m": ListRow.optional_number,
+    "bow_height_m": ListRow.optional_number,
+    "weight_kg": ListRow.optional_number,
+    "rowers": ListRow.optional_integer,
+    "crew_class": _optional_class,
+}
+"""How the values of a boat are read."""
 
 
 def _merged(

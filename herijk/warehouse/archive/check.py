@@ -39,12 +39,14 @@ from herijk.warehouse.archive.profile import (
 from herijk.warehouse.archive.proposals import Proposal, merged, propose
 from herijk.warehouse.archive.published import read_published_registers, read_races
 from herijk.warehouse.archive.samples import (
+    TIME_TOLERANCE,
     check_header,
     columns_of_runs,
+    rate_in_times,
     read_samples,
     read_tow_samples,
 )
-from herijk.warehouse.archive.text import fold
+from herijk.warehouse.archive.text import split_header
 from herijk.words import Sentence, innermost, say, spoken
 
 ROUNDS: Final = 8
@@ -124,7 +126,7 @@ def _doubted(
     A rate that the files say themselves leaves no question about it.
     """
     lacking = Counter(p for _, offered in seen for p in offered if p.section == "absent")
-    named = {fold(p.key) for p in proposals if p.section == "headers"}
+    named = {split_header(p.key)[0] for p in proposals if p.section == "headers"}
     known = {p.season for p in proposals if p.section == "sample_rate_hz" and p.is_active}
     for proposal in proposals:
         if (
@@ -133,7 +135,7 @@ def _doubted(
             and proposal.season in known
         ):
             continue
-        if proposal.section == "ignore" and fold(proposal.value) in named:
+        if proposal.section == "ignore" and split_header(proposal.value)[0] in named:
             continue  # another list has it
         tows = listed.filter(season=proposal.season).height
         is_sure = proposal.section != "absent" or lacking[proposal] >= tows
@@ -157,7 +159,8 @@ def _faults(root: Path, profiles: Profiles) -> tuple[ArchiveIndex | None, list[F
     in_headers = list(_in_headers(root, index))
     wrong = {fault.path for fault in in_headers}
     in_samples = list(_in_samples(root, index, wrong))
-    return index, [*index.faults, *in_races, *in_registers, *in_headers, *in_samples]
+    in_lists = [*index.faults, *index.more]
+    return index, [*in_lists, *in_races, *in_registers, *in_headers, *in_samples]
 
 
 def quick_hash(path: Path) -> str:
@@ -185,14 +188,22 @@ def _in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Iterator[Fa
     Where no tow of a season can be read, a file of it is read without judging its content.
     """
     done = set()
+    rates: dict[int, float] = {}
     for tow in index.tows.iter_rows(named=True):
         paths = tow["samples_path"].split(PARTS)
         key = (tow["season"], kind_of(Path(paths[0])))
-        if key in done or wrong.intersection(paths):
+        if wrong.intersection(paths):
+            continue
+        profile = index.profiles.for_season(tow["season"])
+        rate = rate_in_times(path_inside(root, paths[0]), profile)
+        usual = rates.setdefault(tow["season"], rate) if rate else None
+        if rate and usual and _differ(rate, usual) and _differ(rate, tow["sample_rate_hz"]):
+            yield _rate_of_its_own(tow, rate)
+            continue
+        if key in done:
             continue
         done.add(key)
         try:
-            profile = index.profiles.for_season(tow["season"])
             samples = read_tow_samples(root, tow, profile)
             others = (_other_rate(samples, tow, index), _other_plan(samples, tow, index))
             found = [fault for fault in others if fault is not None]
@@ -226,6 +237,20 @@ def _in_form(root: Path, file: ArchiveFile, profiles: Profiles, season: int) -> 
     found = _mean_speeds(samples)
     if season and named is None and found["run"].to_list() != planned:
         yield _not_planned(file.path, found, planned, found["log1_m_s"].mean())
+
+
+def _differ(one: float, other: float) -> bool:
+    return abs(one / other - 1) > TIME_TOLERANCE
+
+
+def _rate_of_its_own(tow: Mapping[str, Any], rate: float) -> Fault:
+    """Return that a tow was sampled at another rate than the first of its season."""
+    said = say(
+        "By its times it has {own:.4g} samples per second, other than the first tow of its "
+        "season: write that into the tow list, in a column 'meetfrequentie [Hz]'.",
+        own=rate,
+    )
+    return Fault(tow["samples_path"], tow["tow_id"], None, "bad_time", said)
 
 
 def _with_columns_of_runs(fault: Fault, root: Path, profile: SeasonProfile) -> Fault:

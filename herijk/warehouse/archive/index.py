@@ -8,6 +8,7 @@ import datetime as dt
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -53,7 +54,7 @@ from herijk.warehouse.archive.instruments import (
     read_lamps,
 )
 from herijk.warehouse.archive.limits import LIST_MAX_BYTES
-from herijk.warehouse.archive.lists import ListRow, read_list
+from herijk.warehouse.archive.lists import ListRow, all_of, others_of, read_list
 from herijk.warehouse.archive.misfits import misfits
 from herijk.warehouse.archive.profile import Plan, Profiles, read_profiles
 from herijk.warehouse.archive.recognise import guessed, recognised
@@ -78,6 +79,7 @@ class ArchiveIndex:
         files: every file that was looked at: path, sha256, size_bytes.
         profiles: `archief.toml`.
         seasons: season of each samples file that a row names, whatever is wrong with the row.
+        more: what else is wrong in rows that are set aside; a row is set aside once.
     """
 
     boats: pl.DataFrame
@@ -88,6 +90,7 @@ class ArchiveIndex:
     files: pl.DataFrame
     profiles: Profiles
     seasons: dict[str, int]
+    more: tuple[Fault, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -204,8 +207,12 @@ def index_archive(
     by_name = _by_name(sample_files, entries)
     faults += _not_listed(entries, sample_files, unread_seasons, by_name)
     faults += [] if unread_seasons else _idle(profiles, entries)
+    more = list(boats.more)
+    read_values = partial(_read_values, profiles=profiles)
     good = _keep(_unique_ids(entries), entries, faults)
-    good = _keep(lambda entry: _read_values(entry, profiles), good, faults)
+    unique = set(map(id, good))
+    _keep(read_values, [entry for entry in entries if id(entry) not in unique], more, more)
+    good = _keep(read_values, good, faults, more)
     good = _keep(lambda entry: _find_files(entry, by_name, hashes), good, faults)
     good = _keep(_unique_samples(good), good, faults)
     good = _keep(lambda entry: _join_boat(entry, boats), good, faults)
@@ -229,6 +236,7 @@ def index_archive(
             for file in _candidates(name, entry.season, by_name)
             for part in file.parts
         },
+        more=tuple(more),
     )
 
 
@@ -536,15 +544,20 @@ def _not_listed(
 
 
 def _keep(
-    question: Callable[[_Entry], None], entries: list[_Entry], faults: list[Fault]
+    question: Callable[[_Entry], None],
+    entries: list[_Entry],
+    faults: list[Fault],
+    more: list[Fault] | None = None,
 ) -> list[_Entry]:
-    """Return the entries that pass a question; the others leave a fault."""
+    """Return the entries that pass a question; the others leave a fault, and `more` of a row."""
     passed = []
     for entry in entries:
         try:
             question(entry)
         except DefectiveInputError as error:
             faults.append(fault_from(error, entry.list_path, entry.tow_id))
+            if more is not None:
+                more += [fault_from(e, entry.list_path, entry.tow_id) for e in others_of(error)]
         else:
             passed.append(entry)
     return passed
@@ -583,9 +596,14 @@ def _unique_ids(entries: Iterable[_Entry]) -> Callable[[_Entry], None]:
 
 def _read_values(entry: _Entry, profiles: Profiles) -> None:
     rate_hz = profiles.for_season(entry.season).sample_rate_hz
-    entry.tow = tow_list.read_tow(entry.row, entry.season, rate_hz)
-    entry.selection = tow_list.read_selection(entry.row, entry.plan)
-    entry.row.text("file")
+    read = all_of(
+        {
+            "tow": partial(tow_list.read_tow, entry.row, entry.season, rate_hz),
+            "selection": partial(tow_list.read_selection, entry.row, entry.plan),
+            "file": partial(entry.row.text, "file"),
+        }
+    )
+    entry.tow, entry.selection = read["tow"], read["selection"]
     day = entry.tow["tow_date"]
     if day.year != entry.season:
         message = "the date {day} is not in {season}, the year of the list."

@@ -10,7 +10,7 @@ import unicodedata
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Final
+from typing import Any, Final
 
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.declare import dy
@@ -350,6 +350,38 @@ class ListRow:
         """Return what the file calls a column."""
         place = self.columns.get(key)
         return place.header if place else key
+
+
+class DefectiveRowError(DefectiveInputError):
+    """A row in which several values are wrong: the first, and with it the others."""
+
+    def __init__(self, faults: Sequence[DefectiveInputError]) -> None:
+        first = faults[0]
+        super().__init__(first.reason_code, first.message, first.line)
+        self.others = tuple(faults[1:])
+
+
+def all_of(readings: Mapping[str, Callable[[], Any]]) -> dict[str, Any]:
+    """Return what each of these reads; one that cannot be read does not hide the others.
+
+    Raises:
+        DefectiveRowError: the first fault, with the others.
+    """
+    values: dict[str, Any] = {}
+    faults: list[DefectiveInputError] = []
+    for key, reading in readings.items():
+        try:
+            values[key] = reading()
+        except DefectiveInputError as error:
+            faults += [error, *others_of(error)]
+    if faults:
+        raise DefectiveRowError(faults)
+    return values
+
+
+def others_of(error: DefectiveInputError) -> tuple[DefectiveInputError, ...]:
+    """Return what else is wrong in the row of a fault."""
+    return error.others if isinstance(error, DefectiveRowError) else ()
 
 
 class AmbiguousDateError(ValueError):

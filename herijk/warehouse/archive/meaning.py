@@ -28,6 +28,10 @@ _STOP_WORDS: Final = frozenset(
 )
 _BY_CONTENT: Final = frozenset({"use_runs", "crew_class"})
 """Columns that need not be there, and that are recognised by their content."""
+_SELDOM: Final = frozenset(
+    {"weight_after_kg", "freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m"}
+)
+"""Columns that few lists have."""
 _DISTINCT: Final = frozenset({"tow_id", "file"})
 _NUMBER_SIGN: Final = re.compile(
     r"(?:#|\b(?:n[°º]|num(?:[ée]ro|ber|mer)?|no)(?!\w)|(?:nummer|nr)\b)\.?", re.IGNORECASE
@@ -74,6 +78,7 @@ def meanings(
         (_by_name, free),
         (_by_content, by_content),
         (_by_unit, free),
+        (_by_shared_unit, free),
         (_by_name_alone, free),
     ):
         taken = {meaning.column for meaning in found.values()}
@@ -136,6 +141,22 @@ def _by_unit(
         can_be = [c for c in free if _may_hold(c, header) and _share(c, cells, fits) >= FITS]
         if len(can_be) == 1:
             found[header] = Meaning(header, can_be[0], is_sure=False)
+    return found
+
+
+def _by_shared_unit(
+    strange: Mapping[str, Sequence[str]], free: Sequence[Column], fits: Fits
+) -> dict[str, Meaning]:
+    """Return the headers with a unit that several columns can have, in the order of both."""
+    found: dict[str, Meaning] = {}
+    left = [column for column in free if column.key not in _SELDOM]
+    for header, cells in strange.items():
+        if split_header(header)[1] is None:
+            continue
+        can_be = [c for c in left if _may_hold(c, header) and _share(c, cells, fits) >= FITS]
+        if can_be:
+            found[header] = Meaning(header, can_be[0], is_sure=False)
+            left.remove(can_be[0])
     return found
 
 

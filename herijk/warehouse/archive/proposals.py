@@ -103,7 +103,8 @@ def _of_headers(_: str, values: Any, __: int) -> Iterator[Proposal]:
     """A header that nobody knows: the nearest that is not there yet, else to be ignored."""
     for header, nearest, is_sure in values.get("meant", ()):
         if nearest:
-            yield Proposal("headers", _without_unit(header), nearest, is_active=is_sure)
+            is_active = is_sure and not _has_other_brackets(header)
+            yield Proposal("headers", _without_unit(header), nearest, is_active=is_active)
         else:
             yield Proposal("ignore", "", header)
 
@@ -125,7 +126,7 @@ def _of_value(_: str, values: Any, __: int) -> Iterator[Proposal]:
             ),
             "",
         )
-        sure = bool(meant) and len(word) > 1
+        sure = bool(meant) and len(word) > 1 and not word.startswith("mi")  # mixed, mixte
         yield Proposal("words", word, meant or "H", is_active=sure)
     else:
         yield Proposal("words", word, "")
@@ -146,8 +147,9 @@ def _of_samples(_: str, values: Any, season: int) -> Iterator[Proposal]:
     if not season or not set(keys) <= set(_SAMPLES):
         return
     free, unmatched = list(header), list[str]()
-    if keys == ("run",):  # every one of these can be it
-        yield from (Proposal("columns", "run", name, season, len(header) == 1) for name in header)
+    if keys == ("run",):  # each of these tells the runs
+        is_one = len(header) == 1
+        yield from (Proposal("columns", key, name, season, is_one) for key, name in header)
         return
     for key in keys:
         column = _SAMPLES[key]
@@ -157,7 +159,8 @@ def _of_samples(_: str, values: Any, season: int) -> Iterator[Proposal]:
         if left:
             free.remove(left[0])  # of several, only a person can tell which is which
             name = _without_unit(left[0])
-            yield Proposal("columns", key, name, season, is_active=len(near) == 1)
+            is_sure = len(near) == 1 and not _has_other_brackets(left[0])
+            yield Proposal("columns", key, name, season, is_sure)
         elif not near:
             absent = [name for name, channels in MAY_BE_ABSENT.items() if key in channels]
             is_sure = not any(_is_open(cell, column) for cell in free)
@@ -165,6 +168,11 @@ def _of_samples(_: str, values: Any, season: int) -> Iterator[Proposal]:
             unmatched += [] if absent else [key]
     if len(unmatched) == len(free) == 1:
         yield Proposal("columns", unmatched[0], _without_unit(free[0]), season, is_active=False)
+
+
+def _has_other_brackets(cell: str) -> bool:
+    """Whether a header has brackets that are no known unit: they can be an unknown one."""
+    return split_header(cell)[1] is None and any(mark in cell for mark in "([")
 
 
 def _own_log_first(key: str, cells: list[str]) -> list[str]:
@@ -188,6 +196,12 @@ def _of_times(_: str, values: Any, season: int) -> Iterator[Proposal]:
     if season and "observed" in values:
         rate = f"{values['observed']:.0f}"
         yield Proposal("sample_rate_hz", "", rate, season, is_active="planned" not in values)
+
+
+def _of_unit(_: str, values: Any, season: int) -> Iterator[Proposal]:
+    """A unit that cannot be converted: what it is of can be declared absent."""
+    for name in values.get("absent", ()) if season else ():
+        yield Proposal("absent", "", name, season, is_active=False)
 
 
 def _of_sign(_: str, values: Any, season: int) -> Iterator[Proposal]:
@@ -285,6 +299,7 @@ _RULES: Final = {
     "ambiguous_number": _of_decimals,
     "bad_time": _of_times,
     "short_run": _of_times,
+    "unknown_unit": _of_unit,
     "run_not_planned": _of_plan,
     "negative_force": _of_sign,
     "unrecognised_file": _of_stranger,

@@ -62,6 +62,8 @@ OUTPUT_NAMES: Final = {
     "wind_angle": "wind_angle_deg",
 }
 TIME_TOLERANCE: Final = 0.01
+_FOR_A_RATE: Final = 500
+"""Samples from which the rate is seen."""
 PAUSE_S: Final = 10.0
 """After so long without a sample a new run begins, where nothing else says so."""
 _BLANKS: Final = " \t"
@@ -211,17 +213,38 @@ def _header_of(path: Path, profile: SeasonProfile) -> Sequence[str]:
     return _split_header(read_start(path, _HEAD_BYTES), profile).header
 
 
-def columns_of_runs(path: Path, profile: SeasonProfile) -> tuple[str, ...]:
-    """Return the columns that nobody knows with which as its runs a samples file can be read."""
+def rate_in_times(path: Path, profile: SeasonProfile) -> float | None:
+    """Return the samples per second at the start of a file; None where it has no times to say."""
+    kind = kind_of(path)
+    try:
+        if kind == ".parquet":
+            frame = _from_table(_read_parquet(path, profile, SAMPLES_MAX_BYTES), profile)
+        elif kind == ".tdms":
+            frame = _from_table(read_tdms(path, SAMPLES_MAX_BYTES, _FOR_A_RATE), profile)
+        else:
+            body = _split_header(read_start(path, _HEAD_BYTES), profile)
+            if "time" not in body.columns:
+                return None
+            frame = _read_text(replace(body, data=body.data[: body.data.rfind(b"\n") + 1]))
+    except DefectiveInputError:
+        return None
+    if "time" not in frame.columns or frame.height < 2:
+        return None
+    step = float(np.nanmedian(np.diff(frame["time"].to_numpy()[:_FOR_A_RATE])))
+    return 1.0 / step if step > 0 else None
+
+
+def columns_of_runs(path: Path, profile: SeasonProfile) -> tuple[tuple[str, str], ...]:
+    """Return `run` or `time` with a column nobody knows as which it tells the runs of a file."""
     header = _header_of(path, profile)
     unknown = unknown_headers(header, find_columns(header, profile.columns))
-    return tuple(name for name in unknown if _can_be_run(path, profile, name))
+    pairs = [(key, name) for key in ("run", "time") for name in unknown]
+    return tuple(pair for pair in pairs if _tells_runs(path, profile, *pair))
 
 
-def _can_be_run(path: Path, profile: SeasonProfile, name: str) -> bool:
+def _tells_runs(path: Path, profile: SeasonProfile, key: str, name: str) -> bool:
     columns = tuple(
-        replace(column, header=name) if column.key == "run" else column
-        for column in profile.columns
+        replace(column, header=name) if column.key == key else column for column in profile.columns
     )
     try:
         runs = read_samples(path, replace(profile, columns=columns))["run"]

@@ -18,7 +18,15 @@ from typing import Final
 
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.limits import check_header
-from herijk.warehouse.archive.units import UNITS, Scale, find_scale, is_any_unit, is_unit
+from herijk.warehouse.archive.units import (
+    BEAUFORT,
+    UNITS,
+    Scale,
+    find_scale,
+    fold_unit,
+    is_any_unit,
+    is_unit,
+)
 from herijk.words import say
 
 DELIMITERS: Final = (";", "\t", ",", "|")
@@ -289,6 +297,14 @@ def _choose(
 ) -> Column:
     """Return the one column a header cell stands for."""
     fitting = [c for c in namesakes if unit is None or find_scale(c.dimension, unit) is not None]
+    if unit is not None and fold_unit(unit) in BEAUFORT:
+        said = say(
+            "Column '{header}' is in Beaufort, which is a range of winds and no speed. Without a "
+            "wind in m/s put wind under absent in the season's profile in archief.toml.",
+            header=cell.strip(),
+            absent=("wind",),
+        )
+        raise DefectiveInputError("unknown_unit", said, line)
     if not fitting:
         known = sorted({name for column in namesakes for name in UNITS[column.dimension]})
         said = say(

@@ -5,14 +5,15 @@ One row at a time: text to values. What rows, boats and files say about each oth
 """
 
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any, Final
 
 from herijk.pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.files import PARTS
-from herijk.warehouse.archive.lists import ListRow, fold_word
+from herijk.warehouse.archive.lists import ListRow, all_of, fold_word
 from herijk.warehouse.archive.profile import Plan
 from herijk.warehouse.archive.text import Column, shorten
 from herijk.warehouse.archive.words import ALL_RUNS
@@ -52,6 +53,29 @@ _DIMENSIONS: Final = {
     if column.key in {"waterline_length_m", "beam_m", "bow_height_m"}
 }
 """What a tow or else its boat must have; the height of the bow only where wind was measured."""
+_READERS: Final[Mapping[str, Callable[[ListRow, str], Any]]] = {
+    "tow_date": ListRow.date,
+    "fsn_no": ListRow.boat,
+    "rowers": ListRow.integer,
+    "crew_class": ListRow.crew_class,
+    "declared_speed_m_s": ListRow.number,
+    "waterline_length_m": ListRow.optional_number,
+    "beam_m": ListRow.optional_number,
+    "bow_height_m": ListRow.optional_number,
+    "weight_kg": ListRow.optional_number,
+    "weight_after_kg": ListRow.optional_number,
+    "crew_weight_kg": ListRow.optional_number,
+    "water_temperature_c": ListRow.optional_number,
+    "speed_correction_ratio": ListRow.optional_number,
+    "altered": ListRow.yes_or_no,
+    "sample_rate_hz": ListRow.optional_integer,
+    "empty_thwart": ListRow.optional_text,
+    "freeboard_lowest_m": ListRow.optional_number,
+    "freeboard_bow_m": ListRow.optional_number,
+    "freeboard_stern_m": ListRow.optional_number,
+    "remark": ListRow.optional_text,
+}
+"""How the values of a tow are read."""
 _OF_A_RUN: Final = frozenset({"run", "file", "use_runs", "remark"})
 """What may differ between the rows of one tow, in a list with a row for each run."""
 _RUN: Final = re.compile(r"(b?)([1-9][0-9]?)", re.IGNORECASE)
@@ -137,29 +161,13 @@ def read_tow(row: ListRow, season: int, default_rate_hz: int) -> dict[str, Any]:
     if not _TOW_ID.fullmatch(tow_id):
         message = "'{tow}' cannot be a sleep_id: it is too long, or has a slash."
         raise row.fault(say(message, tow=shorten(tow_id)))
+    readings = {key: partial(reader, row, key) for key, reader in _READERS.items()}
+    values = all_of(readings)
     return {
         "tow_id": tow_id,
         "season": season,
-        "tow_date": row.date("tow_date"),
-        "fsn_no": row.boat("fsn_no"),
-        "rowers": row.integer("rowers"),
-        "crew_class": row.crew_class("crew_class"),
-        "declared_speed_m_s": row.number("declared_speed_m_s"),
-        "waterline_length_m": row.optional_number("waterline_length_m"),
-        "beam_m": row.optional_number("beam_m"),
-        "bow_height_m": row.optional_number("bow_height_m"),
-        "weight_kg": row.optional_number("weight_kg"),
-        "weight_after_kg": row.optional_number("weight_after_kg"),
-        "crew_weight_kg": row.optional_number("crew_weight_kg"),
-        "water_temperature_c": row.optional_number("water_temperature_c"),
-        "speed_correction_ratio": row.optional_number("speed_correction_ratio"),
-        "altered": row.yes_or_no("altered"),
-        "sample_rate_hz": row.optional_integer("sample_rate_hz") or default_rate_hz,
-        "empty_thwart": row.optional_text("empty_thwart"),
-        "freeboard_lowest_m": row.optional_number("freeboard_lowest_m"),
-        "freeboard_bow_m": row.optional_number("freeboard_bow_m"),
-        "freeboard_stern_m": row.optional_number("freeboard_stern_m"),
-        "remark": row.optional_text("remark"),
+        **values,
+        "sample_rate_hz": values["sample_rate_hz"] or default_rate_hz,
     }
 
 

@@ -63,7 +63,8 @@ SPELLINGS: Final[dict[str, dict[str, str]]] = {
         "mps": "m/s", "m/sec": "m/s", "ms-1": "m/s", "ms^-1": "m/s", "m·s-1": "m/s", "m.s-1": "m/s",
         "km/u": "km/h", "kmh": "km/h", "kmu": "km/h", "kph": "km/h", "km/uur": "km/h",
         "km/std": "km/h", "kt": "kn", "kts": "kn", "knoop": "kn", "knopen": "kn", "knots": "kn",
-        "knot": "kn", "knoten": "kn",
+        "knot": "kn", "knoten": "kn", "knop": "kn", "noeuds": "kn", "noeud": "kn", "nœuds": "kn",
+        "nd": "kn",
     },
     "force": {"newton": "n", "kilonewton": "kn", "kg-f": "kgf", "kgkracht": "kgf", "kp": "kgf"},
     "angle": {
@@ -83,6 +84,9 @@ SPELLINGS: Final[dict[str, dict[str, str]]] = {
     "time": {"sec": "s", "seconde": "s", "seconden": "s", "second": "s", "seconds": "s",
              "sek": "s", "msec": "ms"},
 }  # fmt: skip
+
+BEAUFORT: Final = frozenset({"bft", "bf", "beaufort"})
+"""A class of winds and no speed: it cannot be converted."""
 
 _NO_UNIT: Final = (
     *(ArithmeticError, AssertionError, AttributeError, RecursionError, SyntaxError, TypeError),
@@ -123,8 +127,12 @@ def is_unit(text: str) -> bool:
 
 
 def is_any_unit(text: str) -> bool:
-    """Whether a text is a unit of any dimension, also one that only Pint knows."""
-    return is_unit(text) or any(_looked_up(name, text.strip()) for name in _PINT)
+    """Whether a text is a unit of any dimension, also one that only Pint knows, or Beaufort."""
+    return (
+        fold_unit(text) in BEAUFORT
+        or is_unit(text)
+        or any(_looked_up(name, text.strip()) for name in _PINT)
+    )
 
 
 @cache

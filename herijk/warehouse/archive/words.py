@@ -126,8 +126,10 @@ NOTHING: Final = frozenset(
 CLASSES: Final[Mapping[str, str]] = {
     "h": "H", "heren": "H", "heer": "H", "mannen": "H", "man": "H", "men": "H", "herren": "H",
     "männer": "H", "male": "H", "hommes": "H", "homme": "H", "messieurs": "H",
+    "herrer": "H", "herrar": "H", "menn": "H", "mænd": "H", "män": "H",
     "d": "D", "dames": "D", "dame": "D", "vrouwen": "D", "vrouw": "D", "women": "D", "ladies": "D",
     "damen": "D", "frauen": "D", "female": "D", "femmes": "D", "femme": "D",
+    "damer": "D", "kvinner": "D", "kvinder": "D", "kvinnor": "D",
 }  # fmt: skip
 
 YES: Final = frozenset(

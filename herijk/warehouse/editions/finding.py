@@ -1,6 +1,8 @@
 """What `verify` finds."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -21,3 +23,8 @@ class Finding:
     where: str
     message: str
     wrong: bool = True
+
+
+def line_name(row: Mapping[str, Any]) -> str:
+    """A line of the register, as findings name it."""
+    return f"{row['fsn_no']} {row['rowers']}{row['crew_class']}"

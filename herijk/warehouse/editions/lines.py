@@ -5,6 +5,7 @@ beside it, and numbers are left out where no valid curve is.
 """
 
 import datetime as dt
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -34,6 +35,9 @@ NUMBERS: Final = ("a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
 TOW_FACTS: Final = ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg", INPUTS_HASH)
 MEASURED: Final = "measured"
 
+MADE: Final = ("curves", "run_points", "log_factors", "season_links", "tow_instruments")
+"""What a method makes of the tows, and an edition keeps."""
+
 
 def method_lines(
     of_method: dict[str, pl.DataFrame],
@@ -61,11 +65,12 @@ class Again:
 
     Attributes:
         lines: its lines, but for boats never towed, in which nothing is computed.
-        ensemble: the members of its lines; None for a register as printed.
+        tables: what the method made of its tows, with the members of its lines; none for a
+            register as printed.
     """
 
     lines: pl.DataFrame
-    ensemble: pl.DataFrame | None
+    tables: Mapping[str, pl.DataFrame]
 
 
 def made_again(store: Store, edition: Edition) -> Again:
@@ -81,10 +86,11 @@ def made_again(store: Store, edition: Edition) -> Again:
     if store.made_from("tows") is None:
         raise MissingKnowledgeError("there is no warehouse to make it from; run herijk rebuild")
     if edition.method is None:
-        return Again(printed_lines(store, _printed_file(store, edition)), None)
-    mine = edition.tables["tows"].select("tow_id", "^doubts$")
-    tows = tows_of_today(store).drop("doubts").join(mine, on="tow_id")
-    runs = intake.runs_with_windows(store).join(mine, on="tow_id", how="semi")
+        return Again(printed_lines(store, _printed_file(store, edition)), {})
+    judged = edition.tables["tows"].select("tow_id", "^(doubts|unusual)$")
+    today = tows_of_today(store)
+    tows = today.drop(judged.columns[1:]).join(judged, on="tow_id")
+    runs = intake.runs_with_windows(store).join(judged, on="tow_id", how="semi")
     blocks = stack_blocks(intake.all_blocks(store), runs)
     recomputed = recompute(edition.method, tows, blocks)
     nobody = pl.DataFrame(schema={name: edition.register.schema[name] for name in LINE})
@@ -104,7 +110,11 @@ def made_again(store: Store, edition: Edition) -> Again:
     members = tow_ensemble(
         edition.method.name, recomputed.curves, recomputed.uncertainty_budget, recomputed.factors
     )
-    return Again(lines, members.join(edition.tables["ensemble"], on="tow_id", how="semi"))
+    tables: dict[str, pl.DataFrame] = {
+        name: getattr(recomputed, name) for name in MADE if name in edition.tables
+    }
+    tables["ensemble"] = members.join(edition.tables["ensemble"], on="tow_id", how="semi")
+    return Again(lines, tables)
 
 
 def _printed_file(store: Store, edition: Edition) -> str:

@@ -38,6 +38,7 @@ from herijk.warehouse.editions.inputs import (
 )
 from herijk.warehouse.editions.lines import (
     BOAT_FACTS,
+    MADE,
     NUMBERS,
     SAME_NUMBER,
     method_lines,
@@ -69,9 +70,6 @@ from herijk.warehouse.store.ensemble import read_ensemble
 from herijk.warehouse.store.package import Rights
 from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import Store, table_digest
-
-MADE: Final = ("curves", "run_points", "log_factors", "season_links", "tow_instruments")
-"""What a method made of the tows, and an edition keeps."""
 
 PRINTED_METHOD: Final = "as-printed"
 LINE_SCHEMA: Final = {

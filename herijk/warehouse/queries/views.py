@@ -13,7 +13,7 @@ import polars as pl
 from herijk.warehouse.queries.as_of import lay_over
 from herijk.warehouse.queries.chosen_tows import choose
 from herijk.warehouse.queries.due import RETOW_CHOICE
-from herijk.warehouse.store.database import open_database
+from herijk.warehouse.store.database import open_results
 from herijk.warehouse.store.store import Store
 
 
@@ -23,7 +23,7 @@ class Views:
     def __init__(self, store: Store, as_of: dt.date | None = None) -> None:
         self.store = store
         self._contents: dict[str, int] = {}
-        self._db = open_database(store.database)
+        self._db = open_results(store.database)
         self._db.execute("SET threads = 1")  # rows in one order: same tables, same bytes
         if as_of is not None:
             lay_over(self._db, store, as_of)

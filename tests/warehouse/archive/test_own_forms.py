@@ -1,6 +1,7 @@
 """Archives in forms of their own: other headers, units, sheets, files and folders."""
 
 import os
+import re
 import shutil
 import sys
 from collections.abc import Callable
@@ -10,11 +11,11 @@ import polars as pl
 import pytest
 import xlsxwriter
 
-from herijk.warehouse.archive.check import Checked, check_archive
+from herijk.warehouse.archive.check import Checked, as_report, check_archive
 from herijk.warehouse.archive.sheets import read_sheets
 from herijk.warehouse.archive.text import Column, split_header
-from tests.warehouse.archive.conftest import BOATS, FIRST, HEADER, TOWS, Archive, Scan
-from tests.warehouse.archive.test_formats import assert_same, cells_of
+from tests.warehouse.archive.conftest import BOATS, FIRST, HEADER, ROWS, TOWS, Archive, Scan
+from tests.warehouse.archive.test_formats import assert_same, cells_of, lvm
 
 BEAM = Column("beam_m", "breedte", "length", "m")
 COLUMNS = (Column("fsn_no", "fsn_nr"), Column("name", "sloep"), BEAM)
@@ -208,6 +209,14 @@ def runs_of_another_name(archive: Archive) -> None:
         archive.replace(path.relative_to(archive.root).as_posix(), "run;", "rondje;")
 
 
+def times_of_another_name(archive: Archive) -> None:
+    """No column of runs, and only the name of the time is unknown."""
+    for path in sorted((archive.root / "meetdata_2014").glob("*.csv")):
+        header, *lines = path.read_text("utf-8").splitlines()
+        rows = [f"{i % 1000 / 20:.2f}{line[1:]}" for i, line in enumerate(lines)]
+        path.write_text("\n".join([header.replace("run;", "Tid;", 1), *rows, ""]))
+
+
 def in_a_language_nobody_knows(archive: Archive) -> None:
     """Only what stands in the columns says what files and columns are."""
     root = archive.root
@@ -232,7 +241,7 @@ def folder_without_a_year(archive: Archive) -> None:
 
 
 SETTLED = (
-    *(force_with_a_minus, runs_of_another_name),
+    *(force_with_a_minus, runs_of_another_name, times_of_another_name),
     *(other_names, other_headers, other_channels, no_rate, cells_with_words),
     *(folder_without_a_year, lists_in_one_workbook),
 )
@@ -436,6 +445,26 @@ def test_a_fault_of_a_tow_of_several_files_names_its_file(archive: Archive) -> N
     assert (fault.path, fault.line) == (path, line_of(archive, path, "mist"))
 
 
+def test_lines_of_labview_text_are_counted_over_its_headers(archive: Archive) -> None:
+    """One cell that is no number, and one run of which the log was stuck."""
+    lvm(archive)
+    path = FIRST.replace(".csv", ".lvm")
+    lines = (archive.root / path).read_text("utf-8").split("\n")
+    begins = [number for number, line in enumerate(lines) if line.startswith("X_Value")]
+    stuck = slice(begins[4] + 1, begins[4] + 1 + ROWS)
+    lines[stuck] = [re.sub(r"^(\S+)\t\S+", r"\1\t2,40", line) for line in lines[stuck]]
+    archive.edit(path, lambda _: "\n".join(lines))
+    (fault,) = archive.scan().faults
+    assert (fault.reason_code, fault.run, fault.path) == ("stuck_channel", 5, path)
+    assert fault.line == begins[4] + 2
+    lines[begins[2] + 7] = lines[begins[2] + 7].replace("\t2,", "\tmistig 2,", 1)
+    archive.edit(path, lambda _: "\n".join(lines))
+    assert {(fault.reason_code, fault.line) for fault in archive.scan().faults} == {
+        ("bad_number", line_of(archive, path, "mistig")),
+        ("stuck_channel", begins[4] + 2),
+    }
+
+
 def test_the_height_of_the_bow_is_asked_for_where_wind_was_measured_only(
     archive: Archive, good_scan: Scan
 ) -> None:
@@ -450,6 +479,44 @@ def test_the_height_of_the_bow_is_asked_for_where_wind_was_measured_only(
     assert scan.index.tows["bow_height_m"].to_list() == [0.9, None, 1.05]
 
 
+def test_beaufort_is_no_speed(archive: Archive) -> None:
+    """The wind is left out on request; the column is never read as m/s."""
+    for path in sorted((archive.root / "meetdata_2014").glob("*.csv")):
+        archive.replace(path.relative_to(archive.root).as_posix(), "wind [m/s]", "wind (Bft)")
+    (cause,) = check_archive(archive.root).causes
+    assert cause.reason_code == "unknown_unit"
+    assert "Beaufort" in cause.faults[0].message
+    settled(archive)
+    assert not archive.scan().index.tows["wind_measured"].any()
+
+
+def test_brackets_that_are_no_unit_leave_a_question(archive: Archive) -> None:
+    archive.replace(TOWS, "roeisnelheid [m/s]", "roeisnelhd (zeemijl per etmaal)")
+    profile = str(check_archive(archive.root).profile)
+    assert '# "roeisnelhd (zeemijl per etmaal)" = "roeisnelheid"' in profile
+
+
+def test_a_column_that_another_list_needs_is_not_ignored(archive: Archive) -> None:
+    """By its unit it can be the weight of either list."""
+    archive.replace(TOWS, "gewicht [kg]", "Vekt (kg)")
+    archive.replace(BOATS, "gewicht [kg]", "Vekt (kg)")
+    profile = str(check_archive(archive.root).profile)
+    assert '"Vekt" = "gewicht"' in profile
+    assert "ignore" not in profile
+
+
+def test_tows_at_a_rate_of_their_own_are_told_before_a_rebuild(archive: Archive) -> None:
+    for number, path in enumerate(sorted((archive.root / "meetdata_2014").glob("*.csv"))):
+        header, *lines = path.read_text("utf-8").splitlines()
+        rate = 40 if number == 0 else 20
+        rows = [f"{i % 1000 / rate:.3f};{line}" for i, line in enumerate(lines)]
+        path.write_text("\n".join([f"tijd;{header}", *rows, ""]))
+    (cause,) = check_archive(archive.root).causes
+    assert (cause.reason_code, len(cause.faults)) == ("bad_time", 1)
+    assert cause.proposals == ()
+    assert "40 samples per second" in cause.faults[0].message
+
+
 def test_a_mark_that_is_told_settles_what_1_140_means(archive: Archive) -> None:
     archive.replace(TOWS, ";870;1140;", ";870;1.140;")
     checked = check_archive(archive.root)
@@ -458,3 +525,28 @@ def test_a_mark_that_is_told_settles_what_1_140_means(archive: Archive) -> None:
     ]
     settled(archive)
     assert archive.scan().index.tows["crew_weight_kg"].to_list() == [760, None, 1140]
+
+
+def test_every_fault_of_a_row_is_told_at_once(archive: Archive) -> None:
+    """Also where the row falls out for another reason; it is set aside once all the same."""
+    archive.replace(
+        TOWS, "FSN2;tweede boot 6d 2014;;6;D;2,10;", "FSN2;tweede boot 6d 2014;;zes;?;21;"
+    )
+    archive.edit(TOWS, lambda text: text + text.splitlines()[2] + "!\n")
+    archive.replace(BOATS, "10,05;2,73;", "1005;273;")
+    found = {
+        (cause.reason_code, cause.faults[0].line): len(cause.faults)
+        for cause in check_archive(archive.root).causes
+    }
+    assert found == {
+        ("duplicate_tow_id", 3): 2, ("bad_list_row", 3): 2, ("bad_boat_row", 4): 1,
+    }  # fmt: skip
+    set_aside = [fault.line for fault in archive.scan().faults if fault.path == TOWS]
+    assert len(set_aside) == len(set(set_aside)) == 3
+
+
+def test_a_setting_for_what_no_list_has_is_told_as_a_sentence(archive: Archive) -> None:
+    profile = archive.root / "archief.toml"
+    profile.write_text('[[profile]]\nseasons = "1999"\nsample_rate_hz = 20\n')
+    report = as_report(check_archive(archive.root), "nl")
+    assert "[[profile]]" in report["causes"][0]["sentence"]
