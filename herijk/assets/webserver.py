@@ -23,7 +23,8 @@ DEFINITIONS = ModuleTarget("herijk.assets.definitions", None, None, None)
 
 def main(host: str, port: str, rights: str) -> None:
     """Serves until the process is ended."""
-    set_nux_seen()  # without the form that asks for an address to send news to
+    # Without the form that asks for an address to send news to.
+    set_nux_seen()  # type: ignore[no-untyped-call]
     with (
         listen(host, int(port)) as listening,
         dg.DagsterInstance.get() as instance,
