@@ -10,6 +10,7 @@ import sys
 from importlib.metadata import version
 
 import dagster as dg
+from dagster._core.nux import set_nux_seen
 from dagster._core.workspace.context import WorkspaceProcessContext
 from dagster._core.workspace.load_target import ModuleTarget
 from dagster_webserver.app import create_app_from_workspace_process_context
@@ -22,6 +23,8 @@ DEFINITIONS = ModuleTarget("herijk.assets.definitions", None, None, None)
 
 def main(host: str, port: str, rights: str) -> None:
     """Serves until the process is ended."""
+    # Without the form that asks for an address to send news to.
+    set_nux_seen()  # type: ignore[no-untyped-call]
     with (
         listen(host, int(port)) as listening,
         dg.DagsterInstance.get() as instance,

@@ -83,11 +83,9 @@ def proposal(
     from herijk.warehouse.queries.views import Views
     from herijk.warehouse.store.store import Store
 
-    for method in methods:
-        known_methods(data).text(method)
     store = Store(data)
     with Views(store) as views:
-        made = make_proposal(views, methods, against, LANGUAGE.get())
+        made = make_proposal(views, methods, against, LANGUAGE.get(), known_methods(data))
     name = "-".join(("proposal", *methods))
     _write(made, out or _documents(store) / f"{name}.pdf", as_json)
 

@@ -123,13 +123,7 @@ def diff(
         fatigue=_one_of(FATIGUES, fatigue, "--fatigue"),  # type: ignore[arg-type]
     )
     store = Store(data)
-    comparison = compare.diff(store, old, new)
-    races = compare.race_effects(store, comparison.old, comparison.new, rules)
-    report = compare.report(comparison) | {
-        "race_rules": vars(rules),
-        "races": None if races is None else races.results.to_dicts(),
-        "winners": None if races is None else races.winners.to_dicts(),
-    }
+    report = compare.report_with_races(store, compare.diff(store, old, new), rules)
     show(report, text.diff, as_json)
 
 

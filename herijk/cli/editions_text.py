@@ -8,7 +8,9 @@ from herijk.warehouse.editions.words import LANGUAGES, Language
 from herijk.words import LANGUAGE, tell
 
 if TYPE_CHECKING:
+    from herijk.warehouse.editions.compare import DiffReport, Group
     from herijk.warehouse.editions.finding import Finding
+    from herijk.warehouse.editions.lineage import Lineage, LineLineage
     from herijk.warehouse.editions.verify import Verification
 
 Report = dict[str, Any]
@@ -124,21 +126,19 @@ def published(report: Report) -> str:
     )
 
 
-def diff(report: Report) -> str:
+def diff(report: "DiffReport") -> str:
     """Two editions side by side."""
-    parts = [tell(SIMULATED)] if report["simulated"] else []
-    counts = ", ".join(f"{n} {_words().changes.get(c, c)}" for c, n in report["changes"].items())
-    parts.append(
-        f"{report['from_edition']} -> {report['to_edition']}: {counts or tell('no lines')}."
-    )
+    parts = [tell(SIMULATED)] if report.simulated else []
+    counts = ", ".join(f"{n} {_words().changes.get(c, c)}" for c, n in report.changes.items())
+    parts.append(f"{report.from_edition} -> {report.to_edition}: {counts or tell('no lines')}.")
     parts.append(
         tell(
             "Gain (more power for the same race): {}\nLose: {}\nLarger than the intervals "
             "of both: {}; interval not known for {}.",
-            _group(report["gain"]),
-            _group(report["loss"]),
-            report["exceeds_interval"],
-            report["interval_unknown"],
+            _group(report.gain),
+            _group(report.loss),
+            report.exceeds_interval,
+            report.interval_unknown,
         )
     )
     parts += [
@@ -146,16 +146,16 @@ def diff(report: Report) -> str:
             "The interval of {} is the spread of the runs alone: the log's error is not in it.",
             edition,
         )
-        for edition in report["runs_alone"]
+        for edition in report.runs_alone
     ]
-    if report["causes"]:
+    if report.causes:
         rows = [
             (
-                _cause(c),
-                c["lines"],
-                *(_per_cent(c[f"{n}_factor"]) for n in ("median", "lowest", "highest")),
+                _words().cause(c.cause, c.step),
+                c.lines,
+                *map(_per_cent, (c.median_factor, c.lowest_factor, c.highest_factor)),
             )
-            for c in report["causes"]
+            for c in report.causes
         ]
         head = ("cause", "lines", "median", "lowest", "highest")
         parts.append(tell("Causes, with their factor on Cw:\n") + table(head, rows))
@@ -165,20 +165,20 @@ def diff(report: Report) -> str:
             "speed, seconds that the new register gives in\na two-hour race, rank at "
             "equal power among all boats of the class:\n"
         )
-        + _lines(report["rows"])
+        + _lines(report.rows)
     )
     parts.append(_races(report))
     return "\n\n".join(parts)
 
 
-def _group(group: Report) -> str:
-    if not group["lines"]:
+def _group(group: "Group") -> str:
+    if not group.lines:
         return tell("no lines")
     return tell(
         "{} lines, median {}, {} in two hours",
-        group["lines"],
-        _per_cent(group["median_power_ratio"]),
-        _seconds(group["median_seconds"]),
+        group.lines,
+        _per_cent(group.median_power_ratio),
+        _seconds(group.median_seconds),
     )
 
 
@@ -215,13 +215,13 @@ def _line(row: Report) -> tuple[Any, ...]:
     )
 
 
-def _races(report: Report) -> str:
-    races, rules = report["races"], report["race_rules"]
-    if races is None:
+def _races(report: "DiffReport") -> str:
+    races, rules = report.races, report.race_rules
+    if races is None or rules is None or report.winners is None:
         return tell("Races: the archive holds none.")
     moved = [r for r in races if r["old_rank"] != r["new_rank"]]
     podium = sum(r["podium_changed"] for r in races)
-    head = tell("Races (fatigue {}): ", rules["fatigue"])
+    head = tell("Races (fatigue {}): ", rules.fatigue)
     text = tell(
         "{}{} results, {} change rank, {} on or off the podium.",
         head,
@@ -229,7 +229,7 @@ def _races(report: Report) -> str:
         len(moved),
         podium,
     )
-    parts = [text, tell("Winners:\n{}", _winners(report["winners"]))]
+    parts = [text, tell("Winners:\n{}", _winners(report.winners))]
     if moved:
         parts.append(tell("Ranks that change:\n{}", _moved(moved)))
     return "\n".join(parts)
@@ -330,9 +330,9 @@ def _verdict(findings: list["Finding"]) -> str:
     return tell("Everything is as it was published.")
 
 
-def lineage(report: Report) -> str:
+def lineage(report: "Lineage") -> str:
     """From a line to files, runs and seconds."""
-    about = report["about"]
+    about = report.about
     parts = [tell(SIMULATED)] if about["simulated"] else []
     parts.append(
         tell(
@@ -345,20 +345,18 @@ def lineage(report: Report) -> str:
             about["decision"],
         )
     )
-    parts += [_line_history(line) for line in report["lines"]]
+    parts += [_line_history(line) for line in report.lines]
     return "\n\n".join(parts)
 
 
-def _line_history(line: Report) -> str:
-    printed = "; ".join(f"{header} {cell}" for header, cell in line["printed"].items() if cell)
-    parts = [tell("Verification code {}\n  {}", line["code"], printed)]
-    if line["tow"] is None:
+def _line_history(line: "LineLineage") -> str:
+    printed = "; ".join(f"{header} {cell}" for header, cell in line.printed.items() if cell)
+    parts = [tell("Verification code {}\n  {}", line.code, printed)]
+    if line.tow is None:
         parts.append(tell("  No tow of the archive is behind this line."))
         return "\n".join(parts)
-    files = "\n".join(f"    {f['path']}  sha256 {f['sha256']}" for f in line["files"])
-    parts.append(
-        tell("  Tow {} of {}, from\n{}", line["tow"]["tow_id"], line["tow"]["tow_date"], files)
-    )
+    files = "\n".join(f"    {f['path']}  sha256 {f['sha256']}" for f in line.files)
+    parts.append(tell("  Tow {} of {}, from\n{}", line.tow["tow_id"], line.tow["tow_date"], files))
     rows = [
         (
             run["run"],
@@ -367,7 +365,7 @@ def _line_history(line: Report) -> str:
             run["cw_kg_m"],
             "yes" if run["used"] else tell("no: {}", run["reason"]),
         )
-        for run in line["runs"]
+        for run in line.runs
     ]
     parts.append(table(("run", "seconds", "v m/s", "Cw kg/m", "counts"), rows))
     return "\n".join(parts)

@@ -10,6 +10,7 @@ from typing import Any, Final
 
 import polars as pl
 
+from herijk.pipeline.register.register import LINE as NAMES_LINE
 from herijk.tables.declare import dy
 from herijk.tables.schemas import TABLES
 
@@ -82,7 +83,7 @@ def _of_column(column: dy.Column) -> Schema:
 
 SIMULATED: Final = {"simulated": flag("the archive was made by a simulator")}
 NAME: Final = columns("boats", "name")
-LINE: Final = columns("register", "fsn_no", "rowers", "crew_class")
+LINE: Final = columns("register", *NAMES_LINE)
 FACTOR: Final = number("what it does to Cw: new / old", maybe=True)
 PART: Final = {
     "cause": text("why the line changed"),
@@ -351,10 +352,16 @@ def _verify() -> Schema:
 
 
 def _lineage() -> Schema:
-    tow = record("the tow", columns("tows"), maybe=True)
+    inputs = {"inputs_sha256": text("hash of all that its numbers were made from", maybe=True)}
+    tow = record("the tow", columns("tows") | columns("boats", "boat_type") | inputs, maybe=True)
     curve = record("its curve", columns("curves"), maybe=True)
+    boat = columns("boats", "ht_no", "name", "boat_type")
+    origin = {
+        "basis": text("where the numbers come from"),
+        "verification_code": text("verification code", maybe=True),
+    }
     line = {
-        "line": record("the line", columns("register")),
+        "line": record("the line", columns("register") | boat | inputs | origin),
         "printed": by_name("the line as printed, by header", {"type": "string"}),
         "code": text("verification code", maybe=True),
         "tow": tow,

@@ -9,6 +9,7 @@ from herijk.dashboards.documents import certificate, proposal
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.races.race import power_per_rower_w
 from herijk.warehouse.queries.views import Views
+from herijk.warehouse.store.methods import KnownMethods
 from tests.conftest import METHODS
 from tests.dashboards.conftest import EDITIONS
 
@@ -77,8 +78,13 @@ def test_what_is_not_there_is_told(views, edition, fsn_no):
         certificate.certificates(views, edition, fsn_no, "nl")
 
 
+def proposed(views, methods, against, language):
+    known = KnownMethods.of(views.store)
+    return proposal.proposal(views, methods, against, language, known)
+
+
 def test_a_proposal_counts_every_line_that_changes(views, contents):
-    proposal.proposal(views, [METHODS[1]], EDITIONS[0], "en")
+    proposed(views, [METHODS[1]], EDITIONS[0], "en")
     lines = proposal.compared(views, EDITIONS[0], f"concept-{METHODS[1]}")
     changed = lines.filter(change="changed").height
     parts = {part["title"]: part for part in contents[0]["parts"]}
@@ -92,7 +98,7 @@ def test_a_proposal_counts_every_line_that_changes(views, contents):
 
 
 def test_several_methods_make_a_ballot(views, contents):
-    proposal.proposal(views, METHODS, EDITIONS[0], "nl")
+    proposed(views, METHODS, EDITIONS[0], "nl")
     assert [row[0] for row in contents[0]["parts"][0]["rows"]] == [
         "zoals gepubliceerd",
         "regels van 2015",
@@ -108,6 +114,6 @@ def test_the_same_tables_give_the_same_document(views):
 
 
 def test_a_proposal_takes_six_pages_at_most_before_its_annex(views):
-    made = proposal.proposal(views, [METHODS[1]], EDITIONS[0], "nl")
+    made = proposed(views, [METHODS[1]], EDITIONS[0], "nl")
     texts = [page.extract_text() for page in PdfReader(io.BytesIO(made)).pages]
     assert len([text for text in texts if "Bijlage" not in text]) <= 6

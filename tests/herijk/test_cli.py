@@ -167,17 +167,27 @@ def test_every_result_has_a_documented_form():
 @pytest.mark.parametrize(
     "call",
     [
-        ("log-error", "--method", METHODS[1]),
-        ("verify",),
-        ("methods", "show", "rebased"),
-        ("check",),
+        ("log-error", "--method", METHODS[1], "{data}"),
+        ("verify", "{data}"),
+        ("methods", "{data}"),
+        ("methods", "show", "rebased", "{data}"),
+        ("methods", "check", "rebased", "{data}"),
+        ("methods", "new", "ours", "{data}"),
+        ("register", f"concept-{METHODS[0]}", "{data}"),
+        ("certificate", "--edition", f"concept-{METHODS[1]}", "--out", "c.html", "{data}"),
+        ("proposal", METHODS[1], "--out", "p.pdf", "{data}"),
+        ("rebase", METHODS[1], "{data}"),
+        ("check", "{archive}"),
+        ("init", "new"),
+        ("simulate", "s", "--seasons", "2014", "--tows-per-season", "1", "--rate", "5"),
     ],
+    ids=" ".join,
 )
-def test_results_have_their_documented_form(herijk, built, call):
+def test_results_have_their_documented_form(herijk, built, tmp_path, monkeypatch, call):
     """The fixture compares; results of other commands are compared where these are tested."""
-    given = {"check": [built.archive]}
-    data = [] if call == ("check",) else ["--data", built.data]
-    status, out, err = herijk(*call, *given.get(call[0], ()), *data, "--json")
+    monkeypatch.chdir(tmp_path)
+    words = [word.format(data=f"--data={built.data}", archive=built.archive) for word in call]
+    status, out, err = herijk(*words, "--json")
     assert out, (status, err)
 
 

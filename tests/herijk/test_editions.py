@@ -31,6 +31,7 @@ def test_publish_tells_where_the_edition_is_and_only_once(herijk, bench, tmp_pat
     status, out, err = herijk(*call)
     assert (status, out) == (1, "")
     assert "already published" in err
+    assert herijk("publish", "y", *call[2:], "--json")[0] == 0
 
 
 @pytest.mark.parametrize(
@@ -106,6 +107,7 @@ def test_lineage_goes_from_line_to_files_runs_and_seconds(herijk, bench):
     assert (status, err) == (0, "")
     for part in ("Verification code", tow["samples_path"], tow["samples_sha256"], "seconds"):
         assert part in out
+    assert herijk("lineage", "2014-2", tow["fsn_no"], "--data", bench.data, "--json")[0] == 0
     status, _, err = herijk("lineage", "2014-2", "FSN000", "--data", bench.data)
     assert status == 1
     assert "boat FSN000 is not in edition 2014-2" in err

@@ -1,5 +1,6 @@
 """Causes of a change: one file, one option, the code, another tow, each under its own name."""
 
+import dataclasses
 import datetime as dt
 import json
 import math
@@ -195,18 +196,18 @@ def test_another_tow_shows_as_tow_beside_the_steps(bench_of_editions):
 
 def test_the_summary_names_gainers_losers_and_the_largest(published):
     found = report(diff(published.store, "2014-1", "2014-2"))
-    moved = [r for r in found["rows"] if r["change"] == "changed"]
-    assert found["gain"]["lines"] + found["loss"]["lines"] == len(moved)
-    assert all(r["power_ratio"] > 1 for r in found["gain"]["most"])
-    sizes = [abs(math.log(r["cw_ratio"])) for r in found["largest"]]
+    moved = [r for r in found.rows if r["change"] == "changed"]
+    assert found.gain.lines + found.loss.lines == len(moved)
+    assert all(r["power_ratio"] > 1 for r in found.gain.most)
+    sizes = [abs(math.log(r["cw_ratio"])) for r in found.largest]
     assert sizes == sorted(sizes, reverse=True)
     assert sizes[0] == max(abs(math.log(r["cw_ratio"])) for r in moved)
-    row = found["largest"][0]
+    row = found.largest[0]
     assert row["new_power_w"] == pytest.approx(row["old_power_w"] * row["power_ratio"])
     assert row["gain_in_two_hours_s"] == pytest.approx(7200 * (row["time_ratio"] - 1))
     exceeding = [r for r in moved if r["exceeds_interval"]]
-    assert found["exceeds_interval"] == len(exceeding)
-    json.dumps(found, default=str)
+    assert found.exceeds_interval == len(exceeding)
+    json.dumps(dataclasses.asdict(found), default=str)
 
 
 def test_races_are_replayed_under_both(bench_of_editions):

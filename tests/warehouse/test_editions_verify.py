@@ -265,13 +265,13 @@ def test_an_archive_that_went_away_is_told(published_copy):
 def test_lineage_leads_to_files_runs_and_seconds(published):
     register = read_edition(published.store, "2014-2").register
     line = register.filter(basis="measured").row(0, named=True)
-    found_lines = lineage(published.store, "2014-2", line["fsn_no"])["lines"]
-    one = next(f for f in found_lines if f["code"] == line["verification_code"])
+    found_lines = lineage(published.store, "2014-2", line["fsn_no"]).lines
+    one = next(f for f in found_lines if f.code == line["verification_code"])
     tows = published.store.read("tows").filter(tow_id=line["tow_id"]).row(0, named=True)
-    assert one["files"] == [{"path": tows["samples_path"], "sha256": tows["samples_sha256"]}]
-    assert [run["run"] for run in one["runs"]] == [1, 2, 3, 4, 5, 6]
-    assert all(0 <= run["window_start_s"] < run["window_end_s"] <= 50 for run in one["runs"])
-    assert one["curve"]["cw_kg_m"] == line["cw_kg_m"]
+    assert one.files == [{"path": tows["samples_path"], "sha256": tows["samples_sha256"]}]
+    assert [run["run"] for run in one.runs] == [1, 2, 3, 4, 5, 6]
+    assert all(0 <= run["window_start_s"] < run["window_end_s"] <= 50 for run in one.runs)
+    assert one.curve["cw_kg_m"] == line["cw_kg_m"]
 
 
 def test_lineage_rows_are_those_of_the_warehouse(published):

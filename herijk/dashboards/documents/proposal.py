@@ -12,10 +12,11 @@ from herijk.dashboards.answer import crew_name
 from herijk.dashboards.documents import pdf
 from herijk.dashboards.site import headlines
 from herijk.dashboards.speech import Speech
-from herijk.pipeline.method.definition import shipped_method, shipped_text
+from herijk.pipeline.method.definition import Method
 from herijk.pipeline.register.register import draft_name
 from herijk.warehouse.queries.answers import compared, replayed
 from herijk.warehouse.queries.views import Views
+from herijk.warehouse.store.methods import KnownMethods
 
 Part = dict[str, Any]
 
@@ -23,7 +24,9 @@ LARGEST: Final = 10
 """Boats named on each side."""
 
 
-def proposal(views: Views, methods: Sequence[str], against: str, language: str) -> bytes:
+def proposal(
+    views: Views, methods: Sequence[str], against: str, language: str, known: KnownMethods
+) -> bytes:
     """A proposal of one method, or a ballot of several, as PDF.
 
     Raises:
@@ -34,11 +37,11 @@ def proposal(views: Views, methods: Sequence[str], against: str, language: str) 
     say = speech.say
     lines = {method: compared(views, against, draft_name(method)) for method in methods}
     about = views.about()
-    titles = [_title(method, language) for method in methods]
+    titles = {method: _title(known.get(method), language) for method in methods}
     content = {
         "language": language,
         "title": say("proposal_title" if len(methods) == 1 else "proposal_ballot").format(
-            method="; ".join(titles)
+            method="; ".join(titles.values())
         ),
         "kind": say("proposal"),
         "simulated": say("simulated") if about.get("simulated") == "true" else "",
@@ -52,8 +55,8 @@ def proposal(views: Views, methods: Sequence[str], against: str, language: str) 
             {"title": say("proposal_check"), "sentences": [say("proposal_checking")], **NO_ROWS},
         ],
         "annexes": [
-            {"title": f"{say('proposal_annex')}: {_title(m, language)}", "text": shipped_text(m)}
-            for m in methods
+            {"title": f"{say('proposal_annex')}: {title}", "text": known.text(method)}
+            for method, title in titles.items()
         ],
         "footing": f"{say('made_by')} {about.get('code_version', '')}",
     }
@@ -63,9 +66,8 @@ def proposal(views: Views, methods: Sequence[str], against: str, language: str) 
 NO_ROWS: Final[Part] = {"head": [], "rows": []}
 
 
-def _title(method: str, language: str) -> str:
-    known = shipped_method(method)
-    return known.title if language == "nl" else known.title_en
+def _title(method: Method, language: str) -> str:
+    return method.title if language == "nl" else method.title_en
 
 
 def _ballot(lines: dict[str, pl.DataFrame], speech: Speech) -> Part:

@@ -8,7 +8,7 @@ with the code and blocks of today; what they leave is one factor, named after wh
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import polars as pl
@@ -33,6 +33,7 @@ from herijk.warehouse.build.version import code_version
 from herijk.warehouse.editions.inputs import INPUTS_HASH, same_tows, tows_of_today, unchanged_tows
 from herijk.warehouse.editions.lines import MEASURED, made_again
 from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.store.database import Row
 from herijk.warehouse.store.editions import Edition, read_edition
 from herijk.warehouse.store.store import Store
 
@@ -263,55 +264,142 @@ def _ground_of_printed(line: Mapping[str, Any], separated: set[object]) -> str:
 
 LARGEST: Final = 10
 
-Report = dict[str, Any]
 
+@dataclass(frozen=True)
+class Group:
+    """Lines that gain power for the same race, or lose it.
 
-def report(comparison: Comparison) -> Report:
-    """A comparison as plain data: counts, who gains and loses, causes, and every line.
-
-    A line gains when the new register gives its crew more power for the same race.
+    Attributes:
+        lines: how many.
+        of_class: how many of each class.
+        median_power_ratio: new / old power for the same race.
+        median_seconds: what the new register gives in a race of two hours [s].
+        most: the lines that it moves most, as in `DiffReport.rows`.
     """
+
+    lines: int
+    of_class: dict[str, int]
+    median_power_ratio: float | None
+    median_seconds: float | None
+    most: list[Row]
+
+
+@dataclass(frozen=True)
+class CauseSummary:
+    """What one cause, or one step of a method, did.
+
+    Attributes:
+        cause, step: the cause; the step where a method is the cause.
+        lines: the lines it moved.
+        median_factor, lowest_factor, highest_factor: its factor on Cw there.
+    """
+
+    cause: str
+    step: str | None
+    lines: int
+    median_factor: float
+    lowest_factor: float
+    highest_factor: float
+
+
+@dataclass(frozen=True)
+class DiffReport:
+    """A comparison of two editions as plain data.
+
+    Attributes:
+        from_edition, to_edition: the editions.
+        simulated: whether either is of a simulated archive.
+        lines: lines in either.
+        changes: lines by kind of change.
+        gain, loss: lines to which the new register gives more power for the same race, and less.
+        exceeds_interval: lines that moved by more than their intervals.
+        interval_unknown: lines whose interval is not known.
+        runs_alone: editions whose intervals are the spread of the runs alone.
+        causes: per cause and step, the most lines first.
+        largest: the lines that changed most.
+        rows: all lines: rows of `register_changes` with the causes that moved each.
+        race_rules: how races are worked out, where that was asked.
+        races, winners: as in `RaceEffects`; None where not asked, or without results.
+    """
+
+    from_edition: str
+    to_edition: str
+    simulated: bool
+    lines: int
+    changes: dict[str, int]
+    gain: Group
+    loss: Group
+    exceeds_interval: int
+    interval_unknown: int
+    runs_alone: list[str]
+    causes: list[CauseSummary]
+    largest: list[Row]
+    rows: list[Row]
+    race_rules: RaceRules | None = None
+    races: list[Row] | None = None
+    winners: list[Row] | None = None
+
+
+def report(comparison: Comparison) -> DiffReport:
+    """Counts, who gains and loses, causes, and every line of a comparison."""
     lines = comparison.lines
     compared = lines.filter(pl.col("cw_ratio").is_not_null())
     moved = compared.filter(pl.col("change") == "changed")
     gain = moved.filter(pl.col("power_ratio") > 1).sort("power_ratio", "fsn_no", descending=True)
     loss = moved.filter(pl.col("power_ratio") <= 1).sort("power_ratio", "fsn_no")
-    return {
-        "from_edition": comparison.old.about.edition,
-        "to_edition": comparison.new.about.edition,
-        "simulated": comparison.old.about.simulated or comparison.new.about.simulated,
-        "lines": lines.height,
-        "changes": dict(lines["change"].value_counts().sort("change").rows()),
-        "gain": _group(gain),
-        "loss": _group(loss),
-        "exceeds_interval": int(moved["exceeds_interval"].fill_null(False).sum()),
-        "interval_unknown": int(moved["exceeds_interval"].null_count()),
-        "runs_alone": [
+    editions = (comparison.old, comparison.new)
+    return DiffReport(
+        from_edition=comparison.old.about.edition,
+        to_edition=comparison.new.about.edition,
+        simulated=any(edition.about.simulated for edition in editions),
+        lines=lines.height,
+        changes=dict(lines["change"].value_counts().sort("change").rows()),
+        gain=_group(gain),
+        loss=_group(loss),
+        exceeds_interval=int(moved["exceeds_interval"].fill_null(False).sum()),
+        interval_unknown=int(moved["exceeds_interval"].null_count()),
+        runs_alone=[
             edition.about.edition
-            for edition in (comparison.old, comparison.new)
+            for edition in editions
             if edition.method is not None and edition.method.interval == RUNS_ALONE
         ],
-        "causes": _causes(compared),
-        "largest": _rows(_by_size(moved).head(LARGEST)),
-        "rows": _rows(lines),
-    }
+        causes=_causes(compared),
+        largest=_rows(_by_size(moved).head(LARGEST)),
+        rows=_rows(lines),
+    )
 
 
-def _group(lines: pl.DataFrame) -> Report:
-    return {
-        "lines": lines.height,
-        "of_class": {c: lines.filter(crew_class=c).height for c in ("H", "D")},
-        "median_power_ratio": lines["power_ratio"].median(),
-        "median_seconds": lines["gain_in_two_hours_s"].median(),
-        "most": _rows(lines.head(LARGEST)),
-    }
+def report_with_races(store: Store, comparison: Comparison, rules: RaceRules) -> DiffReport:
+    """The same with what it does to the races in the archive; errors as `race_effects`."""
+    effects = race_effects(store, comparison.old, comparison.new, rules)
+    return replace(
+        report(comparison),
+        race_rules=rules,
+        races=None if effects is None else effects.results.to_dicts(),
+        winners=None if effects is None else effects.winners.to_dicts(),
+    )
+
+
+def _group(lines: pl.DataFrame) -> Group:
+    return Group(
+        lines=lines.height,
+        of_class={c: lines.filter(crew_class=c).height for c in ("H", "D")},
+        median_power_ratio=_median(lines["power_ratio"]),
+        median_seconds=_median(lines["gain_in_two_hours_s"]),
+        most=_rows(lines.head(LARGEST)),
+    )
+
+
+def _median(values: pl.Series) -> float | None:
+    median = values.median()
+    return median if isinstance(median, float) else None
 
 
 def _by_size(lines: pl.DataFrame) -> pl.DataFrame:
     return lines.sort(pl.col("cw_ratio").log().abs(), "fsn_no", descending=[True, False])
 
 
-def _causes(lines: pl.DataFrame) -> list[Report]:
+def _causes(lines: pl.DataFrame) -> list[CauseSummary]:
     """Per cause and step: the lines it moved, and its factors there."""
     moved = [
         {"cause": one["cause"], "step": one.get("step"), "factor": one["factor"]}
@@ -319,7 +407,7 @@ def _causes(lines: pl.DataFrame) -> list[Report]:
         for one in _moved(text)
     ]
     schema = {name: PART_SCHEMA[name] for name in ("cause", "step", "factor")}
-    return (
+    summed = (
         pl.DataFrame(moved, schema=schema)
         .group_by("cause", "step")
         .agg(
@@ -329,14 +417,14 @@ def _causes(lines: pl.DataFrame) -> list[Report]:
             pl.col("factor").max().alias("highest_factor"),
         )
         .sort("lines", "cause", "step", descending=[True, False, False])
-        .to_dicts()
     )
+    return [CauseSummary(**row) for row in summed.iter_rows(named=True)]
 
 
-def _rows(lines: pl.DataFrame) -> list[Report]:
+def _rows(lines: pl.DataFrame) -> list[Row]:
     return [row | {"causes": _moved(row["causes"])} for row in lines.to_dicts()]
 
 
-def _moved(causes: str) -> list[Report]:
+def _moved(causes: str) -> list[Row]:
     """The causes that changed something."""
     return [one for one in json.loads(causes) if abs(one["factor"] - 1.0) > NO_FACTOR]

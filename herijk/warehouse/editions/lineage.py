@@ -3,20 +3,57 @@
 Everything is read from the edition itself, so it holds however archive and warehouse have changed.
 """
 
-from typing import Any
+from dataclasses import dataclass, field, replace
 
 import polars as pl
 
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.register.register import LINE
 from herijk.warehouse.editions.sheets import CODE_FIELD, REGISTER_FIELDS, printed_cells
+from herijk.warehouse.store.database import Row
 from herijk.warehouse.store.editions import Edition, edition_path, read_edition
 from herijk.warehouse.store.store import Store
 
-Report = dict[str, Any]
+
+@dataclass(frozen=True)
+class Lineage:
+    """What the lines of a boat in an edition were made from.
+
+    Attributes:
+        about: what the edition says of itself, but for hashes of its tables and files.
+        folder: where it lies.
+        lines: the boat's lines.
+    """
+
+    about: Row
+    folder: str
+    lines: list["LineLineage"]
 
 
-def lineage(store: Store, edition: str, fsn_no: str) -> Report:
+@dataclass(frozen=True)
+class LineLineage:
+    """What a line was made from.
+
+    Attributes:
+        line: the line.
+        printed: the line as printed, by header.
+        code: its verification code.
+        tow: its tow; None, and nothing in what follows, where no tow of the archive is behind it.
+        files: path and SHA-256 of its samples files.
+        runs: its rows of `run_points`.
+        curve: its row of `curves`.
+    """
+
+    line: Row
+    printed: dict[str, str]
+    code: str | None
+    tow: Row | None = None
+    files: list[Row] = field(default_factory=list)
+    runs: list[Row] = field(default_factory=list)
+    curve: Row | None = None
+
+
+def lineage(store: Store, edition: str, fsn_no: str) -> Lineage:
     """What the lines of a boat were made from.
 
     Raises:
@@ -28,20 +65,20 @@ def lineage(store: Store, edition: str, fsn_no: str) -> Report:
         raise MissingKnowledgeError(
             "boat {} is not in edition {}; its register.csv lists the boats", fsn_no, edition
         )
-    return {
-        "about": published.about.model_dump(mode="json", exclude={"files", "tables"}),
-        "folder": str(edition_path(store, edition)),
-        "lines": [_line(published, row) for row in lines.sort(LINE).iter_rows(named=True)],
-    }
+    return Lineage(
+        about=published.about.model_dump(mode="json", exclude={"files", "tables"}),
+        folder=str(edition_path(store, edition)),
+        lines=[_line(published, row) for row in lines.sort(LINE).iter_rows(named=True)],
+    )
 
 
-def _line(edition: Edition, row: dict[str, Any]) -> Report:
+def _line(edition: Edition, row: Row) -> LineLineage:
     frame = pl.DataFrame([row], schema=edition.register.schema)
     cells = printed_cells(frame, REGISTER_FIELDS)[0]
-    printed = {field.header: cell for field, cell in zip(REGISTER_FIELDS, cells, strict=True)}
-    line: Report = {"line": row, "printed": printed, "code": row[CODE_FIELD.column]}
+    printed = {one.header: cell for one, cell in zip(REGISTER_FIELDS, cells, strict=True)}
+    line = LineLineage(row, printed, row[CODE_FIELD.column])
     if row["tow_id"] is None or "tows" not in edition.tables:
-        return line | {"tow": None, "files": [], "runs": [], "curve": None}
+        return line
     of_tow = {
         name: edition.tables[name].filter(pl.col("tow_id") == row["tow_id"]).to_dicts()
         for name in ("tows", "curves", "run_points")
@@ -51,9 +88,10 @@ def _line(edition: Edition, row: dict[str, Any]) -> Report:
         (tow["samples_path"], tow["samples_sha256"]),
         (tow["second_path"], tow["second_sha256"]),
     ]
-    return line | {
-        "tow": tow,
-        "files": [{"path": path, "sha256": sha256} for path, sha256 in files if path],
-        "runs": of_tow["run_points"],
-        "curve": of_tow["curves"][0],
-    }
+    return replace(
+        line,
+        tow=tow,
+        files=[{"path": path, "sha256": sha256} for path, sha256 in files if path],
+        runs=of_tow["run_points"],
+        curve=of_tow["curves"][0],
+    )

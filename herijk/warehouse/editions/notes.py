@@ -10,9 +10,16 @@ from typing import Any, Final
 import jinja2
 
 from herijk.pipeline.method.definition import COMPLETE
-from herijk.warehouse.editions.compare import Comparison, Report, report
+from herijk.warehouse.editions.compare import (
+    CauseSummary,
+    Comparison,
+    DiffReport,
+    Group,
+    report,
+)
 from herijk.warehouse.editions.printed import REBASED
 from herijk.warehouse.editions.words import DUTCH, ENGLISH, Language, table
+from herijk.warehouse.store.database import Row
 from herijk.warehouse.store.editions import NOTES, NOTES_EN, NOTICE, NOTICE_EN, Edition
 
 TEXTS: Final = {NOTICE: DUTCH, NOTES: DUTCH, NOTICE_EN: ENGLISH, NOTES_EN: ENGLISH}
@@ -98,60 +105,64 @@ def _method(edition: Edition, language: Language) -> str:
     return f"{title} ({method.name}, {method.content_hash[:12]})"
 
 
-def _changes(found: Report | None, language: Language) -> dict[str, Any]:
+def _changes(found: DiffReport | None, language: Language) -> dict[str, Any]:
     if found is None:
         return {"changes": False}
     cause_head, largest_head, causes = HEADS[language.code]
-    largest = [_largest(line, language) for line in found["largest"]]
-    named = [_cause(cause, language) for cause in found["causes"]]
+    largest = [_largest(line, language) for line in found.largest]
+    named = [_cause(cause, language) for cause in found.causes]
     whys = [
         "; ".join(
             f"{language.cause(c['cause'], c.get('step'))} {language.per_cent(c['factor'])}"
             for c in line["causes"]
         )
-        for line in found["largest"]
+        for line in found.largest
     ]
     with_causes = [(*row, why) for row, why in zip(largest, whys, strict=True)]
     return {
         "changes": True,
-        "previous": found["from_edition"],
+        "previous": found.from_edition,
         "change_counts": ", ".join(
-            f"{language.count(n)} {language.changes[c]}" for c, n in found["changes"].items()
+            f"{language.count(n)} {language.changes[c]}" for c, n in found.changes.items()
         ),
         "causes": "; ".join(
             f"{cause[0]} ({language.count(int(cause[1]))}, {cause[2]})"
             for cause in named[:MOST_CAUSES]
         ),
         "cause_table": table(cause_head, named) if named else "",
-        "gain": _group(found["gain"], language),
-        "loss": _group(found["loss"], language),
-        "exceeding": language.count(found["exceeds_interval"]),
-        "unknown": language.count(found["interval_unknown"]) if found["interval_unknown"] else "",
-        "runs_alone": found["runs_alone"],
+        "gain": _group(found.gain, language),
+        "loss": _group(found.loss, language),
+        "exceeding": language.count(found.exceeds_interval),
+        "unknown": language.count(found.interval_unknown) if found.interval_unknown else "",
+        "runs_alone": found.runs_alone,
         "largest": table(largest_head, largest) if largest else "",
         "largest_count": len(largest),
         "largest_with_causes": table((*largest_head, causes), with_causes) if largest else "",
     }
 
 
-def _group(group: Report, language: Language) -> str:
-    if not group["lines"]:
+def _group(group: Group, language: Language) -> str:
+    if not group.lines:
         return language.count(0)
-    of_class = ", ".join(f"{words} {group['of_class'][c]}" for c, words in language.crews.items())
+    of_class = ", ".join(f"{words} {group.of_class[c]}" for c, words in language.crews.items())
     median = {"nl": "mediaan", "en": "median"}[language.code]
     return (
-        f"{language.count(group['lines'])} ({of_class}; {median} "
-        f"{language.per_cent(group['median_power_ratio'])}, "
-        f"{language.seconds(group['median_seconds'])})"
+        f"{language.count(group.lines)} ({of_class}; {median} "
+        f"{language.per_cent(group.median_power_ratio)}, "
+        f"{language.seconds(group.median_seconds)})"
     )
 
 
-def _cause(cause: Report, language: Language) -> tuple[str, ...]:
-    factors = (language.per_cent(cause[f"{n}_factor"]) for n in ("median", "lowest", "highest"))
-    return (language.cause(cause["cause"], cause["step"]), str(cause["lines"]), *factors)
+def _cause(cause: CauseSummary, language: Language) -> tuple[str, ...]:
+    factors = (cause.median_factor, cause.lowest_factor, cause.highest_factor)
+    return (
+        language.cause(cause.cause, cause.step),
+        str(cause.lines),
+        *(language.per_cent(factor) for factor in factors),
+    )
 
 
-def _largest(line: Report, language: Language) -> tuple[str, ...]:
+def _largest(line: Row, language: Language) -> tuple[str, ...]:
     return (
         line["fsn_no"],
         line["name"] or "",
