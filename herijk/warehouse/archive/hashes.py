@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
+from herijk.warehouse.archive.files import PARTS, hash_of_parts
 from herijk.warehouse.store.files import file_sha256, written_beside
 
 RACY_SECONDS: Final = 2.0
@@ -44,6 +45,19 @@ class FileHashes:
         """Write the cache to `path` in one step: a reader sees the old one or the new one."""
         with written_beside(path) as beside:
             beside.write_text(json.dumps(self.entries, indent=0, sort_keys=True), encoding="utf-8")
+
+    def hash_samples(self, root: Path, path: str) -> str:
+        """Return the SHA-256 of samples; of a file per run that of their hashes, in their order.
+
+        Args:
+            root: the archive.
+            path: the file, or the files with `PARTS` between them, relative to it.
+
+        Raises:
+            OSError: a file cannot be read.
+        """
+        hashes = [self.hash_file(root / part) for part in path.split(PARTS)]
+        return hashes[0] if len(hashes) == 1 else hash_of_parts(hashes)
 
     def hash_file(self, path: Path) -> str:
         """Return the SHA-256 of a file's content, as hexadecimal text.

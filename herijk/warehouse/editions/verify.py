@@ -17,6 +17,7 @@ from pydantic import ValidationError
 from herijk.pipeline.errors import BrokenPromiseError, HerijkError
 from herijk.pipeline.recompute.facts import samples_files, with_hand_windows
 from herijk.warehouse.archive import FileHashes, index_archive
+from herijk.warehouse.archive.files import PARTS
 from herijk.warehouse.build.version import code_version
 from herijk.warehouse.editions import sheets
 from herijk.warehouse.editions.chain import chain_findings
@@ -311,12 +312,12 @@ def _archive(store: Store, path: Place, about: About, hashes: FileHashes) -> Ite
         if len(row) != len(sheets.INPUT_FIELDS):
             continue  # the file was changed, which is found elsewhere
         file, kind, sha256 = row
-        at = root / file
-        if not at.is_file():
+        gone = PARTS.join(part for part in file.split(PARTS) if not (root / part).is_file())
+        if gone:
             yield Finding(
-                name, "missing", file, say("{} is gone from the archive; put it back", file)
+                name, "missing", gone, say("{} is gone from the archive; put it back", gone)
             )
-        elif hashes.hash_file(at) != sha256:
+        elif hashes.hash_samples(root, file) != sha256:
             yield Finding(
                 name,
                 "notice" if kind == LIST else "swapped",

@@ -25,7 +25,6 @@ from herijk.warehouse.archive import (
     judge_in_files,
     read_tow_samples,
 )
-from herijk.warehouse.archive.files import PARTS, hash_of_parts
 from herijk.warehouse.store.code import ADDERS, READERS, code_hash
 from herijk.warehouse.store.store import Store, count_rows, fingerprint, read_parquet, write_parquet
 
@@ -169,10 +168,9 @@ def _check_unchanged(root: Path, tow: Tow, hashes: FileHashes) -> None:
 def _sha256(root: Path, path: str, hashes: FileHashes) -> str | None:
     """Hash of samples; None when a file of theirs went away."""
     try:
-        parts = [hashes.hash_file(root / part) for part in path.split(PARTS)]
+        return hashes.hash_samples(root, path)
     except FileNotFoundError:
         return None
-    return parts[0] if len(parts) == 1 else hash_of_parts(parts)
 
 
 def forget_season(store: Store, season: int) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from herijk.warehouse.archive import FileHashes
+from herijk.warehouse.archive.files import PARTS, hash_of_parts
 
 OLD_NS = 1_600_000_000_000_000_000
 
@@ -62,3 +63,13 @@ def test_a_lost_or_damaged_cache_is_empty(tmp_path: Path, content: str | None) -
     if content is not None:
         path.write_text(content)
     assert FileHashes.load(path).entries == {}
+
+
+def test_samples_of_a_file_a_run_have_one_hash_as_in_the_index(tmp_path: Path) -> None:
+    for name in "ab":
+        write_old(tmp_path / name, name.encode())
+    cache = FileHashes()
+    both = cache.hash_samples(tmp_path, PARTS.join("ab"))
+    assert both == hash_of_parts([sha256(b"a"), sha256(b"b")])
+    assert both != cache.hash_samples(tmp_path, PARTS.join("ba"))
+    assert cache.hash_samples(tmp_path, "a") == sha256(b"a")
