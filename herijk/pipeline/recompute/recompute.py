@@ -24,7 +24,7 @@ from herijk.pipeline.recompute.outcome import Outcome, Prepared, Texts, TowFacto
 from herijk.pipeline.recompute.results import Recomputed, as_tables
 from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.pipeline.recompute.season_factors import (
-    factor_of_tows,
+    Instruments,
     find_season_factors,
     is_estimated,
     tow_instruments,
@@ -84,8 +84,8 @@ def recompute(
     cache = RunCache() if cache is None else cache
     asked = any(is_estimated(block.steps) for block in method.ranges)
     estimated = season_factors(plans, cache) if asked else None
-    factors = None if estimated is None else tow_instruments(estimated)
-    return as_tables(method, tows, evaluate(plans, cache, factors), estimated, with_bands)
+    instruments = Instruments(None if estimated is None else tow_instruments(estimated))
+    return as_tables(method, tows, evaluate(plans, cache, instruments), estimated, with_bands)
 
 
 def season_factors(plans: Sequence[tuple[Batch, Steps]], cache: RunCache) -> SeasonFactors | None:
@@ -99,12 +99,12 @@ def season_factors(plans: Sequence[tuple[Batch, Steps]], cache: RunCache) -> Sea
     return find_season_factors(before)
 
 
-def log_factors(plans: Sequence[tuple[Batch, Steps]], cache: RunCache) -> pl.DataFrame | None:
-    """The factors alone, as `evaluate` wants them; None if the steps ask for none."""
+def instruments_of(plans: Sequence[tuple[Batch, Steps]], cache: RunCache) -> Instruments:
+    """What is estimated of the tows' instruments, as far as the steps ask for it."""
     if not any(is_estimated(steps) for _, steps in plans):
-        return None
+        return Instruments()
     estimated = season_factors(plans, cache)
-    return None if estimated is None else tow_instruments(estimated)
+    return Instruments(None if estimated is None else tow_instruments(estimated))
 
 
 def batches(
@@ -128,20 +128,18 @@ def batches(
 def evaluate(
     plans: Sequence[tuple[Batch, Steps]],
     cache: RunCache,
-    factors: pl.DataFrame | None = None,
+    instruments: Instruments | None = None,
 ) -> list[Outcome]:
     """What the given steps make of each batch.
 
     Args:
         plans: batches with their steps; what is searched over the archive is searched over them.
         cache: what was found before of the same tows; added to.
-        factors: rows of the table `tow_instruments`, for steps that ask for estimated log factors.
+        instruments: what was estimated, for steps that ask for it.
     """
+    instruments = instruments or Instruments()
     prepared = with_anemometer(
-        [
-            _prepare(batch, steps, cache, factor_of_tows(batch, steps, factors))
-            for batch, steps in plans
-        ]
+        [_prepare(batch, steps, cache, instruments.of_tows(batch, steps)) for batch, steps in plans]
     )
     shared = _archive_coefficient([p for p in prepared if p.steps.wind.coefficients == "archive"])
     return [_finish(p, shared) for p in prepared]

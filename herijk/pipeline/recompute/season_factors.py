@@ -6,7 +6,7 @@ are in `pipeline.season_log`.
 """
 
 from collections.abc import Sequence
-from dataclasses import fields
+from dataclasses import dataclass, field, fields
 from typing import Final
 
 import numpy as np
@@ -75,20 +75,32 @@ def _tow_rows(outcomes: Sequence[Outcome]) -> pl.DataFrame:
     return pl.concat([_rows(o, reference) for o in outcomes]).drop_nulls("ln_cw")
 
 
-def factor_of_tows(batch: Batch, steps: Steps, factors: pl.DataFrame | None) -> TowFactor:
-    """What was estimated of each tow's instruments.
+@dataclass(frozen=True)
+class Instruments:
+    """What was estimated of the instruments of some tows, put beside each batch once per log.
 
-    Args:
-        batch: the tows.
-        steps: what is asked of them.
-        factors: rows of the table `tow_instruments`.
+    Attributes:
+        rows: of the table `tow_instruments`; None where nothing was estimated.
     """
-    if factors is None:
+
+    rows: pl.DataFrame | None = None
+    _known: dict[tuple[tuple[int, ...], str, bool], TowFactor] = field(default_factory=dict)
+
+    def of_tows(self, batch: Batch, steps: Steps) -> TowFactor:
+        """What was estimated of each tow of a batch, as far as its steps ask for it."""
+        key = (batch.seasons, steps.speed.source, is_estimated(steps))
+        if key not in self._known:
+            self._known[key] = _factor_of_tows(batch, steps, self.rows)
+        return self._known[key]
+
+
+def _factor_of_tows(batch: Batch, steps: Steps, rows: pl.DataFrame | None) -> TowFactor:
+    if rows is None:
         nothing, none, one = (np.full(batch.size, x) for x in (np.nan, 0.0, 1.0))
         return TowFactor(nothing, nothing, nothing, one, none, nothing, nothing)
     season, part, log = log_group(steps)
     own = batch.tows.select("tow_id", season, part.alias("part"), log).join(
-        factors, on=["tow_id", "log"], how="left", maintain_order="left"
+        rows, on=["tow_id", "log"], how="left", maintain_order="left"
     )
     # A tow that takes no part in the estimate had the instruments of its season all the same.
     of_season = pl.col("factor", "force_factor", "force_zero_n", "ln_sd", "dof")
@@ -98,7 +110,7 @@ def factor_of_tows(batch: Batch, steps: Steps, factors: pl.DataFrame | None) -> 
     corrections = corrections.with_columns(
         pl.col("force_factor").fill_null(1.0), pl.col("force_zero_n").fill_null(0.0)
     )
-    names = (field.name for field in fields(TowFactor))
+    names = (own_field.name for own_field in fields(TowFactor))
     return TowFactor(**{name: corrections[name].cast(pl.Float64).to_numpy() for name in names})
 
 

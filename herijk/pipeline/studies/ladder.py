@@ -13,8 +13,9 @@ import polars as pl
 from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.pipeline.method.definition import Method, Steps
 from herijk.pipeline.recompute.outcome import Outcome
-from herijk.pipeline.recompute.recompute import batches, evaluate, log_factors
+from herijk.pipeline.recompute.recompute import batches, evaluate, instruments_of
 from herijk.pipeline.recompute.run_cache import RunCache
+from herijk.pipeline.recompute.season_factors import Instruments
 
 STEP_ORDER: Final = (
     "speed",
@@ -58,8 +59,12 @@ def ladder(
     """
     pairs = batches([from_method, to_method], tows, blocks)
     cache = RunCache() if cache is None else cache
-    old_factors, new_factors = links or (
-        log_factors([(batch, steps[end]) for batch, steps in pairs], cache) for end in (0, 1)
+    of_old, of_new = (
+        map(Instruments, links)
+        if links
+        else (
+            instruments_of([(batch, steps[end]) for batch, steps in pairs], cache) for end in (0, 1)
+        )
     )
     rungs: list[list[Outcome]] = []
     mixed: list[Steps] = []
@@ -69,7 +74,7 @@ def ladder(
             rungs.append(rungs[-1])
             continue
         plans = [(batch, steps) for (batch, _), steps in zip(pairs, mixed, strict=True)]
-        rungs.append(evaluate(plans, cache, new_factors if count else old_factors))
+        rungs.append(evaluate(plans, cache, of_new if count else of_old))
     parts = [_rungs_of_batch(list(outcomes)) for outcomes in zip(*rungs, strict=True)]
     return pl.concat(parts).sort("tow_id", "position")
 

@@ -16,8 +16,9 @@ import polars as pl
 from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.pipeline.method.definition import Method, Steps
-from herijk.pipeline.recompute.recompute import batches, evaluate, log_factors
+from herijk.pipeline.recompute.recompute import batches, evaluate, instruments_of
 from herijk.pipeline.recompute.run_cache import RunCache
+from herijk.pipeline.recompute.season_factors import Instruments
 
 ALL_OPTIONS: Final = "all"
 
@@ -78,13 +79,17 @@ def option_effects(
     pairs = batches([method], tows, blocks)
     choices = [c for c in CHOICES if any(c.applies(steps) for _, (steps,) in pairs)]
     cache = RunCache() if cache is None else cache
-    factors = links
-    if factors is None:
-        factors = log_factors([(batch, steps) for batch, (steps,) in pairs], cache)
+    instruments = (
+        instruments_of([(batch, steps) for batch, (steps,) in pairs], cache)
+        if links is None
+        else Instruments(links)
+    )
     cw, slope, corners = [], [], list(itertools.product((0, 1), repeat=len(choices)))
     for corner in corners:
         sides = {c: c.values[side] for c, side in zip(choices, corner, strict=True)}
-        outcomes = evaluate([(b, chosen(steps, sides)) for b, (steps,) in pairs], cache, factors)
+        outcomes = evaluate(
+            [(b, chosen(steps, sides)) for b, (steps,) in pairs], cache, instruments
+        )
         cw.append(np.concatenate([np.log(o.cw_at_declared) for o in outcomes]))
         slope.append(np.concatenate([_ln_b(o.curves.b_m_s) for o in outcomes]))
     tow_ids = pl.concat([batch.tows["tow_id"] for batch, _ in pairs])

@@ -15,8 +15,9 @@ import polars as pl
 from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.pipeline.method.definition import Method, Steps
 from herijk.pipeline.recompute.outcome import Outcome
-from herijk.pipeline.recompute.recompute import batches, evaluate, log_factors
+from herijk.pipeline.recompute.recompute import batches, evaluate, instruments_of
 from herijk.pipeline.recompute.run_cache import RunCache
+from herijk.pipeline.recompute.season_factors import Instruments
 from herijk.pipeline.studies.options import ALL_OPTIONS, Choice, chosen
 
 TICKS: Final = {
@@ -59,9 +60,11 @@ def option_curves(
     """
     pairs = batches([method], tows, blocks)
     cache = RunCache() if cache is None else cache
-    factors = links
-    if factors is None:
-        factors = log_factors([(batch, steps) for batch, (steps,) in pairs], cache)
+    instruments = (
+        instruments_of([(batch, steps) for batch, (steps,) in pairs], cache)
+        if links is None
+        else Instruments(links)
+    )
     frames = []
     for corner in itertools.product((False, True), repeat=len(TICKS)):
         ticked = dict(zip(TICKS, corner, strict=True))
@@ -71,7 +74,7 @@ def option_curves(
             for batch, (steps,) in pairs
             for speed, read in speeds(steps)
         ]
-        outcomes = evaluate([plan for _, plan in plans], cache, factors)
+        outcomes = evaluate([plan for _, plan in plans], cache, instruments)
         frames += [
             _curves(one).with_columns(
                 pl.lit(speed).alias("speed"),
