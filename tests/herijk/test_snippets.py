@@ -5,6 +5,7 @@ import runpy
 import shlex
 import tomllib
 
+import duckdb
 import pytest
 from typer.main import get_command
 
@@ -16,7 +17,7 @@ from tests.conftest import METHODS
 
 PAGES = sorted(
     str(path.relative_to(ROOT))
-    for path in (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md"))
+    for path in (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md"))
 )
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 CALL = re.compile(r"`(?:\.venv/bin/)?herijk ([a-z][^`]*)`")
@@ -67,14 +68,39 @@ def reader(built, monkeypatch, tmp_path):
     return tmp_path
 
 
+def with_what_is_there(code, built):
+    """Tows and the method of the fixture in place of those of the reader's demo."""
+    some = iter(built.table("tows")["tow_id"])
+    code = re.sub(r"(?<=[\"'])20\d\d-\d{3}(?=[\"'])", lambda _: next(some), code)
+    return re.sub(r"\brebased(?=[\"']|\.parquet)", METHODS[1], code)
+
+
 @pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "python")])
 def test_code_runs(page, reader, built):
     code = "\n".join(blocks(page, "python"))
-    some = iter(built.table("tows")["tow_id"])
-    code = re.sub(r'"20\d\d-\d{3}"', lambda _: f'"{next(some)}"', code)
-    code = re.sub(r'"(concept-)?rebased"', rf'"\1{METHODS[1]}"', code)  # the method of the fixture
+    code = with_what_is_there(code, built)
     (reader / "snippets.py").write_text(code, "utf-8")
     assert runpy.run_path(str(reader / "snippets.py"))
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "sql")])
+def test_queries_run(page, reader, built):
+    with duckdb.connect("data/warehouse.duckdb", read_only=True) as db:
+        for query in blocks(page, "sql"):
+            assert db.sql(with_what_is_there(query, built)).columns, query
+
+
+def test_no_block_is_left_out_in_silence():
+    """Diagrams, and settings of systemd and Kubernetes, are for programs that are not here."""
+    tried, left_out = {"", "sh", "python", "sql", "toml", "text"}, {"mermaid", "ini", "yaml"}
+    assert {language for page in PAGES for language, _ in BLOCK.findall(read(page))} <= (
+        tried | left_out
+    )
+    targets = set(re.findall(r"^([\w-]+):", read("Makefile"), re.MULTILINE))
+    calls = r"^make (?:[A-Z]+=\S+ )*([a-z-]+)|`make (?:[A-Z]+=\S+ )*([a-z-]+)"
+    for page in PAGES:
+        named = {name for pair in re.findall(calls, read(page), re.MULTILINE) for name in pair}
+        assert named - {""} <= targets, page
 
 
 def test_worked_examples_print_what_the_page_says(reader, herijk):

@@ -11,7 +11,6 @@ from herijk.tables.schemas import ABOUT, TABLES
 from herijk.tables.views import VIEWS
 from herijk.warehouse.build.graph import LAKE_ONLY
 from herijk.warehouse.store.database import build_database
-from tests.architecture.repository import ROOT
 from tests.conftest import Workbench
 
 CONTRACT = {
@@ -175,12 +174,3 @@ def test_factors_of_causes_multiply_to_the_change(built: Workbench):
     line = ["from_edition", "to_edition", "fsn_no", "rowers", "crew_class", "cw_ratio"]
     product = found.group_by(line).agg(pl.col("factor").product())
     assert product["factor"].to_numpy() == pytest.approx(product["cw_ratio"].to_numpy(), rel=1e-9)
-
-
-def test_every_query_about_tables_runs(built: Workbench):
-    queries = re.findall(
-        r"```sql\n(.*?)```", (ROOT / "docs" / "tables.md").read_text(encoding="utf-8"), re.DOTALL
-    )
-    with duckdb.connect(built.store.database, read_only=True) as db:
-        for query in (q for q in queries if "parquet" not in q):
-            assert db.sql(query).columns, query
