@@ -129,6 +129,9 @@ ARCHIVE: Final[dict[str, str]] = {
         "Kolom '{header}' is in Beaufort, en dat is een klasse van wind en geen snelheid. Zet "
         "zonder wind in m/s wind onder absent in het profiel van het seizoen in archief.toml."
     ),
+    "only '{text}' stands in this row. A heading or a remark may begin with #.": (
+        "alleen '{text}' staat in deze rij. Een kopje of opmerking mag met # beginnen."
+    ),
     # Rows compared with each other
     "the rows of the runs of one tow differ in column '{column}': '{one}' and '{other}'.": (
         "de rijen van de runs van één sleep verschillen in kolom '{column}': '{one}' en '{other}'."

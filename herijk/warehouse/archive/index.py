@@ -595,6 +595,7 @@ def _unique_ids(entries: Iterable[_Entry]) -> Callable[[_Entry], None]:
 
 
 def _read_values(entry: _Entry, profiles: Profiles) -> None:
+    entry.row.check_whole()
     rate_hz = profiles.for_season(entry.season).sample_rate_hz
     read = all_of(
         {

@@ -8,7 +8,7 @@ What the columns mean is in `lists`; samples are read faster, in `samples`.
 import datetime as dt
 import io
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
@@ -22,6 +22,8 @@ from herijk.warehouse.archive.text import (
     is_rest_of_header,
     is_separator_line,
     score_of,
+    shorten,
+    split_header,
     split_line,
     with_units,
 )
@@ -31,6 +33,8 @@ SPREADSHEETS: Final = (".xlsx", ".xlsm", ".xls", ".ods")
 MOST_ROWS: Final = 100_000
 MOST_COLUMNS: Final = 500
 """Of a list; a spreadsheet that says to have more is not one."""
+FEWEST_OF_A_LIST: Final = 4
+"""Columns: in a list of so many a row of one cell is none of its rows."""
 _LETTER: Final = re.compile(r"[^\W\d_]")
 _TOTALS: Final = frozenset(
     {"totaal", "totalen", "subtotaal", "total", "som", "sum", "summe", "gesamt", "aantal",
@@ -95,7 +99,7 @@ def read_sheets(
         _text_row(number, line, delimiter, len(header))
         for number, line in enumerate(lines[place + 1 :], start=place + 2)
     ]
-    return [Sheet(header, place + 1, _without_totals(rows))]
+    return [Sheet(header, place + 1, _only_rows(rows, header))]
 
 
 def _named(sheets: Sequence[Sheet], name: str) -> list[Sheet]:
@@ -160,13 +164,33 @@ def _joined_rows(upper: Sequence[str], lower: Sequence[str]) -> list[str] | None
     return joined
 
 
-def _without_totals(rows: Iterable[Row]) -> list[Row]:
-    """Return the rows that hold something, without totals and without notes below the last."""
+def _only_rows(rows: Iterable[Row], header: Sequence[str]) -> list[Row]:
+    """Return the rows that hold something, without totals, remarks, and the header once more.
+
+    Notes below the last row are left out. A heading between the rows is told as such.
+    """
+    names = {name for cell in header for name in (fold(cell), split_header(cell)[0]) if name}
     filled = [(row, [cell.strip() for cell in row.fields if cell.strip()]) for row in rows]
-    kept = [(row, cells) for row, cells in filled if cells and not _is_total(cells[0])]
+    kept = [(row, cells) for row, cells in filled if cells and not _is_beside(cells, names)]
     while len(kept) > 1 and len(kept[-1][1]) == 1 and " " in kept[-1][1][0]:
         kept.pop()
-    return [row for row, _ in kept]
+    if len(header) < FEWEST_OF_A_LIST:
+        return [row for row, _ in kept]
+    return [_as_heading(row, cells[0]) if len(cells) == 1 else row for row, cells in kept]
+
+
+def _is_beside(cells: Sequence[str], names: Collection[str]) -> bool:
+    """Whether a row is a total, a remark behind a `#`, or the header once more."""
+    is_header = len(cells) > 1 and all(fold(cell) in names for cell in cells)
+    return is_header or cells[0].startswith("#") or _is_total(cells[0])
+
+
+def _as_heading(row: Row, cell: str) -> Row:
+    said = say(
+        "only '{text}' stands in this row. A heading or a remark may begin with #.",
+        text=shorten(cell),
+    )
+    return replace(row, problem=row.problem or said)
 
 
 def _is_total(cell: str) -> bool:
@@ -254,7 +278,7 @@ def _sheet(
         return Sheet([], above + 1, [])
     header, place = _whole_header(rows, _header_among(rows[:HEADER_WITHIN], columns), columns)
     below = (Row(above + i + 1, row) for i, row in enumerate(rows) if i > place)
-    return Sheet(header, above + place + 1, _without_totals(below))
+    return Sheet(header, above + place + 1, _only_rows(below, header))
 
 
 def _as_text(cell: Any) -> str:

@@ -51,7 +51,7 @@ def read_decisions(path: Path) -> tuple[Decision, ...]:
         decisions = _File.model_validate(parse_toml(decoded(path.read_bytes()))).besluit
     except ValidationError as error:
         first = error.errors()[0]
-        where = ".".join(str(part) for part in first["loc"])
+        where = f"'{'.'.join(map(str, first['loc']))}'"  # quoted: a key is never translated
         raise MissingKnowledgeError(
             "{}: {}: {}; a decision has sleep_id, oordeel (uitsluiten or voorkeur), "
             "reden, wie and datum",

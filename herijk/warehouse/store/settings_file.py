@@ -30,7 +30,7 @@ def read_settings_file(path: Path, model: type[Model], may_hold: str) -> Model:
         return model.model_validate(parse_toml(decoded(path.read_bytes())))
     except ValidationError as error:
         first = error.errors(include_input=False)[0]
-        where = ".".join(str(part) for part in first["loc"])
+        where = f"'{'.'.join(map(str, first['loc']))}'"  # quoted: a key is never translated
         raise MissingKnowledgeError(
             "{}: {}: {}; it may hold {}", path, where, problem_in_words(first), may_hold
         ) from error

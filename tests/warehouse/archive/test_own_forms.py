@@ -43,6 +43,14 @@ def totals_and_notes(archive: Archive) -> None:
     )
 
 
+def remarks_and_the_header_again(archive: Archive) -> None:
+    for path in (BOATS, TOWS):
+        header, first, *rows = (archive.root / path).read_text("utf-8").splitlines()
+        empty = ";" * header.count(";")
+        lines = [header, first, f"# slecht weer, later begonnen{empty}", header, *rows, ""]
+        archive.edit(path, lambda _, lines=lines: "\n".join(lines))
+
+
 def units_last(archive: Archive) -> None:
     archive.replace(FIRST, HEADER, "run;log1_m_s;log2 m/s;gps, m/s;kracht_N;wind m/s;windvaan gra")
     archive.replace(BOATS, "breedte [m]", "breedte_cm")
@@ -123,7 +131,7 @@ def a_clock_that_goes_on(archive: Archive) -> None:
 
 READ_AS_THEY_ARE = (
     *(units_below, totals_and_notes, units_last, blanks_before, a_sheet_a_year, runs_in_a_folder),
-    *(thousands, days_as_numbers, in_french, a_clock_that_goes_on),
+    *(remarks_and_the_header_again, thousands, days_as_numbers, in_french, a_clock_that_goes_on),
 )
 
 
@@ -525,6 +533,19 @@ def test_a_mark_that_is_told_settles_what_1_140_means(archive: Archive) -> None:
     ]
     settled(archive)
     assert archive.scan().index.tows["crew_weight_kg"].to_list() == [760, None, 1140]
+
+
+def test_a_heading_between_the_rows_is_told_once_and_costs_no_tow(
+    archive: Archive, good_scan: Scan
+) -> None:
+    header, first, *rows = (archive.root / TOWS).read_text("utf-8").splitlines()
+    heading = "maart 2014" + ";" * header.count(";")
+    archive.edit(TOWS, lambda _: "\n".join([header, first, heading, *rows, ""]))
+    (fault,) = archive.scan().faults
+    assert (fault.reason_code, fault.line) == ("bad_list_row", 3)
+    assert "only 'maart 2014' stands in this row" in fault.message
+    assert archive.scan().good.keys() == good_scan.good.keys()
+    assert len(check_archive(archive.root).causes) == 1
 
 
 def test_every_fault_of_a_row_is_told_at_once(archive: Archive) -> None:
