@@ -7,8 +7,8 @@ from herijk.cli.text import SIMULATED, table
 from herijk.words import tell
 
 if TYPE_CHECKING:
+    from herijk.tables.row import Row
     from herijk.warehouse.queries.due import DueReport
-    from herijk.warehouse.store.database import Row
 
 REASONS: Final = {
     "in_range": "as declared",

@@ -6,14 +6,13 @@ The pages of `herijk audit` are in `cli.audit_text`.
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from herijk.tables.row import Row
 from herijk.words import LANGUAGE, code, number, spoken, tell
 
 if TYPE_CHECKING:
     from herijk.warehouse.queries.rebase import RebaseReport
     from herijk.warehouse.queries.reports import LogErrorReport, RebuildReport
 
-Row = dict[str, Any]
-"""A row of a query, by the names of its columns."""
 
 SIMULATED = "SIMULATED archive: made by `herijk simulate`, not the federation's measurements."
 

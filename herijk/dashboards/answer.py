@@ -7,15 +7,14 @@ import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import exp
-from typing import Any, Final
+from typing import Final
 
 import polars as pl
 from markupsafe import Markup
 
 from herijk.dashboards.pictures import curve_picture, waterfall_picture
 from herijk.dashboards.speech import Speech
-
-Row = dict[str, Any]
+from herijk.tables.row import Row
 
 FEW: Final = 2
 """A place among fewer says nothing."""

@@ -457,6 +457,6 @@ def test_an_unknown_check_is_an_error_that_lists_the_known() -> None:
     with pytest.raises(MethodFileError) as raised:
         parse_method(text, "strict.toml")
     message = str(raised.value)
-    assert message.startswith("strict.toml, line 5: assessment.reject: must be one of no_curve, ")
+    assert message.startswith("strict.toml, line 5: 'assessment.reject': must be one of no_curve, ")
     assert "few_runs, " in message
     assert message.endswith("not 'few_run' (season 2009)")

@@ -85,7 +85,7 @@ def test_log_factors_of_the_editions_are_used_and_not_estimated_again(published,
     def refuse(*_):
         raise AssertionError("estimated again")
 
-    monkeypatch.setattr(herijk.pipeline.studies.ladder, "log_factors", refuse)
+    monkeypatch.setattr(herijk.pipeline.studies.ladder, "instruments_of", refuse)
     assert_factors_multiply(diff(published.store, "2014-1", "2014-2").lines)
 
 

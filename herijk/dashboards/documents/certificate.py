@@ -9,10 +9,9 @@ from herijk.dashboards.answer import crew_name
 from herijk.dashboards.documents import page, pdf
 from herijk.dashboards.pictures import curve_picture
 from herijk.dashboards.speech import Speech
+from herijk.tables.row import Row
 from herijk.warehouse.queries.documents import certificate_lines
 from herijk.warehouse.queries.views import Views
-
-Row = dict[str, Any]
 
 READING: Final = ("certificate_read_cw", "certificate_read_curve", "certificate_read_power")
 

@@ -10,7 +10,7 @@ within a crew; displacement contains the crew.
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Final, NamedTuple, Self
+from typing import Final, NamedTuple, Self
 
 import numpy as np
 import polars as pl
@@ -34,6 +34,7 @@ from herijk.pipeline.consistency.tow_speed import is_slow
 from herijk.tables.consistency import TypeLinePoints, TypeLines, TypeOutliers
 from herijk.tables.frames import frame_of
 from herijk.tables.keys import LINE
+from herijk.tables.row import Row
 
 LN_CW, BEND = "ln_cw_standard", "bend"
 """What tells an outlier: height and bend (v/B)^2 of the curve, both at the standard speed. Of the
@@ -52,7 +53,6 @@ SLIDE_PAIRS: Final = tuple(
 )
 """What the presentation of 2015 plots, here for every choice of tows."""
 
-Row = dict[str, Any]
 
 FEWEST_BOATS: Final = 3
 PLACES: Final = 7

@@ -26,6 +26,7 @@ from herijk.pipeline.register.changes import (
 from herijk.pipeline.register.register import LINE, NO_EMPTY_THWART
 from herijk.pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
 from herijk.pipeline.studies.ladder import ladder
+from herijk.tables.row import Row
 from herijk.tables.studies import CorrectionSteps
 from herijk.warehouse.archive import read_races
 from herijk.warehouse.build.published import lines_in_time
@@ -33,7 +34,6 @@ from herijk.warehouse.build.version import code_version
 from herijk.warehouse.editions.inputs import INPUTS_HASH, same_tows, tows_of_today, unchanged_tows
 from herijk.warehouse.editions.lines import MEASURED, made_again
 from herijk.warehouse.intake import seasons as intake
-from herijk.warehouse.store.database import Row
 from herijk.warehouse.store.editions import Edition, read_edition
 from herijk.warehouse.store.store import Store
 

@@ -10,6 +10,7 @@ from typing import Any, Final
 import jinja2
 
 from herijk.pipeline.method.definition import COMPLETE
+from herijk.tables.row import Row
 from herijk.warehouse.editions.compare import (
     CauseSummary,
     Comparison,
@@ -19,7 +20,6 @@ from herijk.warehouse.editions.compare import (
 )
 from herijk.warehouse.editions.printed import REBASED
 from herijk.warehouse.editions.words import DUTCH, ENGLISH, Language, table
-from herijk.warehouse.store.database import Row
 from herijk.warehouse.store.editions import NOTES, NOTES_EN, NOTICE, NOTICE_EN, Edition
 
 TEXTS: Final = {NOTICE: DUTCH, NOTES: DUTCH, NOTICE_EN: ENGLISH, NOTES_EN: ENGLISH}

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from typing import Final
 
 from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.tables.row import Row
 from herijk.warehouse.queries.as_of import lay_over
-from herijk.warehouse.store.database import Row, is_simulated, open_results, rows
+from herijk.warehouse.store.database import is_simulated, open_results, rows
 from herijk.warehouse.store.store import Store
 
 EXPIRED, THIS_YEAR, LATER, NEVER = "expired", "this_year", "later", "without_curve"

@@ -12,8 +12,8 @@ from herijk.pipeline.method.definition import Method
 from herijk.pipeline.register.changes import register_changes
 from herijk.pipeline.register.register import LINE
 from herijk.pipeline.studies.ladder import START, ladder
+from herijk.tables.row import Row
 from herijk.warehouse.queries.history import History
-from herijk.warehouse.store.database import Row
 from herijk.warehouse.store.store import Store
 
 MOST_AFFECTED = 15

@@ -6,7 +6,8 @@ or one type is in `warehouse.queries.audit`.
 
 from dataclasses import dataclass
 
-from herijk.warehouse.store.database import Row, is_simulated, open_database, open_results, rows
+from herijk.tables.row import Row
+from herijk.warehouse.store.database import is_simulated, open_database, open_results, rows
 from herijk.warehouse.store.store import Store
 
 BIGGEST = 10

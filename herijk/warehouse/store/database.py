@@ -7,13 +7,14 @@ and `warehouse.queries.audit`.
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import duckdb
 import polars as pl
 import polars.selectors as cs
 
 from herijk.pipeline.errors import MissingKnowledgeError, UnavailableError
+from herijk.tables.row import Row
 from herijk.tables.views import VIEWS
 from herijk.warehouse.store.files import written_beside
 
@@ -125,9 +126,6 @@ def _add_views(connection: duckdb.DuckDBPyConnection, tables: Mapping[str, pl.Da
 def _quoted(text: str | None) -> str:
     return "'" + (text or "").replace("'", "''") + "'"
 
-
-Row = dict[str, Any]
-"""A row of a query, by the names of its columns."""
 
 NO_TOW: Final = (
     "the last rebuild found none that it could use; `herijk check ARCHIVE` and the table "

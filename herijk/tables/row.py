@@ -1,0 +1,6 @@
+"""A row of a table."""
+
+from typing import Any
+
+Row = dict[str, Any]
+"""A row, by the names of its columns."""
