@@ -190,21 +190,28 @@ def path_of(name, store, attacked):
     return f"{name}.html"
 
 
+def fits_at_all_widths(page, pictures):
+    """Whatever the width, nothing is wider than its place, and nothing is broken."""
+    for width, size in WIDTHS.items():
+        page.set_viewport_size(size)
+        assert page.evaluate("document.documentElement.scrollWidth") <= size["width"]
+        assert scrolled(page, NOT_SIDEWAYS[width]) == []
+        assert page.locator(".broken").count() == 0
+        pictures.whole(width)
+
+
 @pytest.mark.parametrize("name", KINDS)
 def test_every_page_opens_draws_and_keeps_nobody_out(visitor, store, attacked, name):
+    """The charts of the English page are those of the Dutch one: CI alone draws them again."""
     path = path_of(name, store, attacked)
-    for folder, language in (("", "nl"), ("en/", "en")):
+    for folder, language in (("en/", "en"), ("", "nl")):
         page = visitor.open(folder + path)
         pictures = Pictures(page, f"{name}-{language}")
         pictures.at_first()
         visitor.unfold()
-        visitor.draw_all()
-        for width, size in WIDTHS.items():
-            page.set_viewport_size(size)
-            assert page.evaluate("document.documentElement.scrollWidth") <= size["width"]
-            assert scrolled(page, NOT_SIDEWAYS[width]) == []
-            assert page.locator(".broken").count() == 0
-            pictures.whole(width)
+        if language == "nl" or pictures.taken:
+            visitor.draw_all()
+        fits_at_all_widths(page, pictures)
     for size in WIDTHS.values():
         page.set_viewport_size(size)
         assert barriers(page) == []

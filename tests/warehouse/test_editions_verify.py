@@ -95,21 +95,23 @@ def test_a_changed_number_in_the_xlsx_is_named_by_its_cell(published_copy):
     assert findings[0].message.startswith("it says 12.5; it was ")
 
 
-@pytest.mark.parametrize("name", ["method.toml", "inputs.csv", "toelichting.md", "decisions.json"])
-def test_any_changed_file_is_named(published_copy, name):
-    file = folder(published_copy, "2014-2") / name
-    file.write_bytes(file.read_bytes() + b"\n")
+def test_any_changed_file_is_named(published_copy):
+    names = ["decisions.json", "inputs.csv", "method.toml", "toelichting.md"]
+    for name in names:
+        file = folder(published_copy, "2014-2") / name
+        file.write_bytes(file.read_bytes() + b"\n")
     findings, wrong = found(published_copy, kind="altered")
     assert wrong
-    assert [f.where for f in findings] == [name]
+    assert [f.where for f in findings] == names
 
 
-@pytest.mark.parametrize("name", ["register.csv", "tows.parquet"])
-def test_a_missing_file_is_named(published_copy, name):
-    (folder(published_copy) / name).unlink()
+def test_a_missing_file_is_named(published_copy):
+    names = ["register.csv", "tows.parquet"]
+    for name in names:
+        (folder(published_copy) / name).unlink()
     findings, wrong = found(published_copy, kind="missing")
     assert wrong
-    assert [f.where for f in findings] == [name]
+    assert [f.where for f in findings] == names
 
 
 def test_a_changed_decision_breaks_the_seal(published_copy):
@@ -381,25 +383,20 @@ def sealed_anew(path):
     (path / "edition.json").write_text(sealed.model_dump_json())
 
 
-@pytest.mark.parametrize(
-    "change",
-    [
-        {"valid_until": dt.date(2031, 12, 31)},
-        {"declared_speed_m_s": 9.9},
-        {"weight_kg": 1.0},
-        {"waterline_length_m": 99.0},
-        {"name": "Andere Naam"},
-        {"boat_type": "ander"},
-        {"tow_date": dt.date(2014, 1, 1)},
-    ],
-    ids=lambda change: next(iter(change)),
-)
-def test_a_line_changed_and_sealed_anew_comes_out_otherwise(published_copy, change):
-    name = sorted(p.name for p in (published_copy.data / "editions").glob("[!.]*"))[0]
-    resealed(published_copy, name, **change)
-    findings, wrong = found(published_copy, kind="differs", edition=name)
+def test_a_line_changed_and_sealed_anew_comes_out_otherwise(published_copy):
+    change = {
+        "valid_until": dt.date(2031, 12, 31),
+        "declared_speed_m_s": 9.9,
+        "weight_kg": 1.0,
+        "waterline_length_m": 99.0,
+        "name": "Andere Naam",
+        "boat_type": "ander",
+        "tow_date": dt.date(2014, 1, 1),
+    }
+    resealed(published_copy, "2014-1", **change)
+    findings, wrong = found(published_copy, kind="differs", edition="2014-1")
     assert wrong
-    assert any(next(iter(change)) in finding.message for finding in findings)
+    assert {name for name in change if f"{name} " in findings[0].message} == change.keys()
 
 
 def test_a_sheet_that_says_something_else_is_told_whatever_its_seal(published_copy):
@@ -413,40 +410,36 @@ def test_a_sheet_that_says_something_else_is_told_whatever_its_seal(published_co
     assert {finding.where.split(",")[0] for finding in findings} == {"register.csv"}
 
 
-@pytest.mark.parametrize(
-    ("table", "column"),
-    [("run_points", "cw_kg_m"), ("curves", "power_w"), ("log_factors", "factor")],
-)
-def test_a_table_behind_the_lines_changed_and_sealed_anew_comes_out_otherwise(
-    published_copy, table, column
-):
-    file = folder(published_copy, "2014-2") / f"{table}.parquet"
-    frame = pl.read_parquet(file)
-    frame.with_columns(pl.col(column) * 1.001).write_parquet(file)
+def test_a_table_behind_the_lines_changed_and_sealed_anew_comes_out_otherwise(published_copy):
+    changed = {"run_points": "cw_kg_m", "curves": "power_w", "log_factors": "factor"}
+    for table, column in changed.items():
+        file = folder(published_copy, "2014-2") / f"{table}.parquet"
+        frame = pl.read_parquet(file)
+        frame.with_columns(pl.col(column) * 1.001).write_parquet(file)
     sealed_anew(file.parent)
-    findings, wrong = found(published_copy, kind="differs", where=file.name)
+    findings, wrong = found(published_copy, kind="differs")
     assert wrong
-    assert [column in finding.message for finding in findings] == [True]
+    told = {finding.where.removesuffix(".parquet"): finding.message for finding in findings}
+    assert told.keys() == changed.keys()
+    assert all(f"otherwise in {column}: " in told[table] for table, column in changed.items())
 
 
-@pytest.mark.parametrize(
-    ("name", "was", "now"),
-    [
-        ("bericht.md", "een", "geen"),
-        ("notice.md", "the", "no"),
-        ("toelichting.md", "e", "a"),
-        ("inputs.csv", ";meetdata;", ";meetdata;0"),
-    ],
-)
-def test_a_text_that_says_something_else_is_told_whatever_its_seal(published_copy, name, was, now):
-    for edition in ("2014-2", "2014-1"):
+@pytest.mark.parametrize("edition", ["2014-1", "2014-2"])
+def test_a_text_that_says_something_else_is_told_whatever_its_seal(published_copy, edition):
+    changes = {
+        "bericht.md": ("een", "geen"),
+        "notice.md": ("the", "no"),
+        "toelichting.md": ("e", "a"),
+        "inputs.csv": (";meetdata;", ";meetdata;0"),
+    }
+    for name, (was, now) in changes.items():
         file = folder(published_copy, edition) / name
         text = file.read_text(encoding="utf-8")
         file.write_text(text.replace(was, now, 1), encoding="utf-8", newline="")
-        sealed_anew(file.parent)
-        findings, wrong = found(published_copy, kind="altered", edition=edition)
-        assert wrong
-        assert findings[0].where == name
+    sealed_anew(file.parent)
+    findings, wrong = found(published_copy, kind="altered", edition=edition)
+    assert wrong
+    assert {finding.where for finding in findings} == changes.keys()
 
 
 def test_an_edition_that_is_gone_breaks_the_chain(published_copy):

@@ -105,6 +105,7 @@ def test_a_prefix_is_listed_like_a_folder(root):
     assert list((root / "nothing").iterdir()) == []
 
 
+@pytest.mark.slow
 def test_a_listing_goes_on_past_the_thousand_that_the_service_gives_at_once(root):
     names = [f"{number:04}.parquet" for number in range(1001)]
     with ThreadPoolExecutor(8) as pool:
