@@ -352,9 +352,11 @@ ERRORS: Final[dict[str, str]] = {
     ),
     # Editions
     "there is no edition {}; published: {}": "er is geen editie {}; uitgegeven: {}",
-    "there is no edition {}; there are {}": "er is geen editie {}; er zijn {}",
     "there is no edition {!r}; there are {}": "er is geen editie {!r}; er zijn {}",
-    "there is no edition {}; {}": "er is geen editie {}; {}",
+    "the last rebuild has no edition {}; {}. One published since is there after herijk rebuild": (
+        "de laatste herbouw heeft geen editie {}; {}. Een die daarna is uitgegeven, staat er na "
+        "herijk rebuild"
+    ),
     "none yet": "nog geen",
     "edition {} has no valid line of {}": "editie {} heeft geen geldige regel van {}",
     "any boat": "enige sloep",
@@ -453,7 +455,7 @@ ERRORS: Final[dict[str, str]] = {
         "controlecode {} past niet bij de regel: invoer of getallen zijn gewijzigd"
     ),
     "{} does not say what the tables of the edition say": (
-        "{} zegt iets anders dan de tabellen van de uitgave"
+        "{} zegt iets anders dan de tabellen van de editie"
     ),
     "{} says something else of {} than the tows do": "{} zegt iets anders over {} dan de slepen",
     "made again, it comes out otherwise in {}: {}": "opnieuw gemaakt komt het anders uit in {}: {}",

@@ -74,7 +74,7 @@ def test_a_draft_is_no_certificate(views, contents):
 
 @pytest.mark.parametrize(("edition", "fsn_no"), [("1999-1", None), (EDITIONS[-1], "FSN9")])
 def test_what_is_not_there_is_told(views, edition, fsn_no):
-    with pytest.raises(MissingKnowledgeError, match=r"there is no edition|no valid line"):
+    with pytest.raises(MissingKnowledgeError, match=r"has no edition|no valid line"):
         certificate.certificates(views, edition, fsn_no, "nl")
 
 

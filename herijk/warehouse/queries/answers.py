@@ -8,13 +8,12 @@ from typing import Any, Final
 
 import polars as pl
 
-from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.register.changes import register_changes, side_by_side, steps_of_lines
 from herijk.pipeline.register.register import LINE, draft_name
 from herijk.pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
 from herijk.warehouse.build.studies import STUDIED_METHOD
 from herijk.warehouse.queries.views import Views
-from herijk.warehouse.store.database import choice_of
+from herijk.warehouse.store.database import no_such_edition
 from herijk.warehouse.store.editions import read_edition
 from herijk.warehouse.store.ensemble import read_ensemble
 
@@ -62,8 +61,7 @@ def compared(views: Views, old: str, new: str) -> pl.DataFrame:
     before, after = (register.filter(edition=edition) for edition in (old, new))
     for edition, side in ((old, before), (new, after)):
         if side.is_empty():
-            known = choice_of(register["edition"].unique())
-            raise MissingKnowledgeError("there is no edition {}; {}", edition, known)
+            raise no_such_edition(edition, register["edition"].unique())
     names = views.table("boats").select("fsn_no", "name", "boat_type")
     steps = steps_of_lines(after, _steps(views, before, after))
     side_by_side = _side_by_side(before, after, register_changes(before, after, steps))

@@ -11,7 +11,7 @@ from herijk.pipeline.races.power import curve_of_lines
 from herijk.pipeline.races.race import power_per_rower_w
 from herijk.warehouse.queries.answers import answers
 from herijk.warehouse.queries.views import Views
-from herijk.warehouse.store.database import choice_of
+from herijk.warehouse.store.database import no_such_edition
 
 CURVE: Final = dict.fromkeys(("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m"), pl.Float64())
 SPEEDS: Final = (0.85, 0.90, 0.95, 1.0, 1.05, 1.10, 1.15)
@@ -31,8 +31,7 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[di
     """
     lines = answers(views, edition)
     if lines.is_empty():
-        known = choice_of(views.table("register")["edition"].unique())
-        raise MissingKnowledgeError("there is no edition {}; {}", edition, known)
+        raise no_such_edition(edition, views.table("register")["edition"].unique())
     wanted = lines.filter(pl.col("cw_kg_m").is_not_null())
     if fsn_no is not None:
         wanted = wanted.filter(pl.col("fsn_no").str.to_lowercase() == fsn_no.lower())

@@ -3,9 +3,9 @@
 import datetime as dt
 from typing import Any
 
-from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.queries.answers import current_edition
 from herijk.warehouse.queries.views import Views
+from herijk.warehouse.store.database import no_such_edition
 from herijk.warehouse.store.store import Store
 
 
@@ -28,8 +28,7 @@ def register_report(
         simulated = views.about().get("simulated") == "true"
     of_edition = lines.filter(edition=chosen)
     if of_edition.is_empty():
-        known = ", ".join(lines["edition"].unique().sort())
-        raise MissingKnowledgeError("there is no edition {}; there are {}", chosen, known)
+        raise no_such_edition(chosen, lines["edition"].unique())
     return {
         "edition": chosen,
         "simulated": simulated,

@@ -175,6 +175,15 @@ def choice_of(names: Iterable[str]) -> str:
     return f"there are {known}" if known else f"there is none: {NO_TOW}"
 
 
+def no_such_edition(edition: str, known: Iterable[str]) -> MissingKnowledgeError:
+    """What to say of an edition or draft that the database does not hold."""
+    return MissingKnowledgeError(
+        "the last rebuild has no edition {}; {}. One published since is there after herijk rebuild",
+        edition,
+        choice_of(known),
+    )
+
+
 def rows(connection: duckdb.DuckDBPyConnection, query: str, *values: object) -> list[Row]:
     """What a query gives, a dictionary a row; `values` fill its question marks."""
     cursor = connection.execute(query, list(values))
