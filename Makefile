@@ -6,7 +6,7 @@ BIN = .venv/bin
 READY = .venv/.ready
 DEVELOP = .venv/.ready-develop
 DEMO = demo
-DEMO_WORLD = --seasons 2009:2018 --tows-per-season 12 --rate 1000 --seed 1
+DEMO_WORLD = --seasons 2009:2018 --tows-per-season 10 --rate 1000 --seed 1
 
 # Containers often forbid Python to keep compiled modules; every command would compile Dagster again.
 unexport PYTHONDONTWRITEBYTECODE
