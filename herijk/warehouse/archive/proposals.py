@@ -40,8 +40,7 @@ class Proposal:
 
     Attributes:
         section: `words`, `headers`, `ignore`, `dates`, `decimals`, `files`, `plan`, or `columns`,
-            `absent`,
-            `reversed`, `sample_rate_hz` of a season.
+            `absent`, `reversed`, `sample_rate_hz` of a season.
         key: its key there; empty for `ignore`, `absent` and `reversed`.
         value: its value.
         season: the season of a profile, else 0.

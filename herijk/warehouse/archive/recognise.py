@@ -4,7 +4,7 @@ A guess for a person to look at: `check` proposes it under `[files]`, and nothin
 """
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from itertools import islice
 from pathlib import Path
@@ -60,24 +60,7 @@ def recognised(root: Path, path: str) -> Iterator[tuple[str, str]]:
         root: the archive.
         path: a file or folder in it.
     """
-    full = root / path
-    folders: set[Path] = set()
-    for file in _files_under(full):
-        if any(folder in file.parents for folder in folders):
-            continue
-        relative = file.relative_to(root).as_posix()
-        sheets = _kinds_of_sheets(file)
-        if len(set(sheets.values())) > 1:
-            for sheet, kind in sheets.items():
-                yield f"{relative}#{sheet}", _list_of_year(kind, sheet, file.stem)
-            continue
-        what = next(iter(sheets.values()), None) or _kind(file)
-        if what == SAMPLES and full != file:
-            folder = _folder_of_season(full, file)
-            folders.add(folder)
-            yield folder.relative_to(root).as_posix(), _with_year(SAMPLES, folder.name)
-        elif what and what != SAMPLES:
-            yield relative, _list_of_year(what, file.stem)
+    return _stand_for(root, path, _recognised_kinds)
 
 
 def guessed(root: Path, path: str) -> Iterator[tuple[str, str]]:
@@ -90,13 +73,19 @@ def guessed(root: Path, path: str) -> Iterator[tuple[str, str]]:
         root: the archive.
         path: a file or folder in it.
     """
+    return _stand_for(root, path, lambda file: dict(_guessed_kinds(file)))
+
+
+def _stand_for(
+    root: Path, path: str, kinds_of: Callable[[Path], Mapping[str, str]]
+) -> Iterator[tuple[str, str]]:
+    """Give what files stand for, given the kinds of each by its sheets; samples as a folder."""
     full = root / path
     folders: set[Path] = set()
     for file in _files_under(full):
-        relative = file.relative_to(root).as_posix()
         if any(folder in file.parents for folder in folders):
             continue
-        kinds = dict(_guessed_kinds(file))
+        relative, kinds = file.relative_to(root).as_posix(), kinds_of(file)
         if full != file and SAMPLES in kinds.values():
             folder = _folder_of_season(full, file)
             folders.add(folder)
@@ -106,6 +95,15 @@ def guessed(root: Path, path: str) -> Iterator[tuple[str, str]]:
             place = f"{relative}#{sheet}" if len(kinds) > 1 else relative
             if kind != SAMPLES:
                 yield place, _list_of_year(kind, sheet, file.stem)
+
+
+def _recognised_kinds(file: Path) -> Mapping[str, str]:
+    """Return the kind of each sheet; that of the file, without a name, where they are alike."""
+    sheets = _kinds_of_sheets(file)
+    if len(set(sheets.values())) > 1:
+        return sheets
+    what = next(iter(sheets.values()), None) or _kind(file)
+    return {"": what} if what else {}
 
 
 def _guessed_kinds(file: Path) -> Iterator[tuple[str, str]]:

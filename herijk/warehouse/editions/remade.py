@@ -17,7 +17,7 @@ from herijk.warehouse.editions.finding import Finding, line_name
 from herijk.warehouse.editions.inputs import unchanged_tows
 from herijk.warehouse.editions.lines import BOAT_FACTS, SAME_NUMBER, Again, made_again
 from herijk.warehouse.editions.printed import AS_PRINTED
-from herijk.warehouse.store.editions import INPUTS, About, Edition, read_edition
+from herijk.warehouse.store.editions import About, Edition, read_edition
 from herijk.warehouse.store.store import Store
 from herijk.words import say
 
@@ -160,9 +160,8 @@ class _Reasons:
 
 def _boats_changed(store: Store, edition: Edition) -> bool:
     """Whether the list of boats is another than when the edition was published."""
-    listed = (store.editions / edition.about.edition / INPUTS).read_bytes()
-    rows = sheets.read_csv_cells(listed)[1:]
-    was = {row[0]: row[2] for row in rows if len(row) == len(sheets.INPUT_FIELDS)}
+    inputs = sheets.read_inputs(store.editions / edition.about.edition)
+    was = {file: sha256 for file, _, sha256 in inputs}
     now = dict(store.read("listed_files").select("path", "sha256").rows())
     return BOATS_FILE not in was or was[BOATS_FILE] != now.get(BOATS_FILE)
 

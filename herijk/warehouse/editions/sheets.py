@@ -24,6 +24,7 @@ from herijk.pipeline.register.register import NO_EMPTY_THWART
 from herijk.warehouse.editions.words import DUTCH
 from herijk.warehouse.store.editions import CSV, INPUTS, About
 from herijk.warehouse.store.package import Rights
+from herijk.warehouse.store.storage import Place
 
 A4: Final = 9
 """The paper's number in a spreadsheet."""
@@ -145,6 +146,15 @@ def read_csv_cells(content: bytes) -> Cells:
     """The cells of such a CSV, with the header as first row."""
     text = content.decode("utf-8-sig", errors="replace")
     return list(csv.reader(io.StringIO(text, newline=""), delimiter=";"))
+
+
+def read_inputs(edition: Place) -> list[tuple[str, str, str]]:
+    """File, kind and SHA-256 of what an edition was made from.
+
+    A row of another width was changed, which is found where the files themselves are looked at.
+    """
+    rows = read_csv_cells((edition / INPUTS).read_bytes())[1:]
+    return [(row[0], row[1], row[2]) for row in rows if len(row) == len(INPUT_FIELDS)]
 
 
 def xlsx_bytes(frame: pl.DataFrame, fields: Sequence[Field], about: About) -> bytes:

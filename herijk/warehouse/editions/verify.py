@@ -210,11 +210,7 @@ def _texts(store: Store, path: Place, about: About, intact: set[str]) -> Iterato
 
 
 def _inputs(path: Place, tows: pl.DataFrame) -> Iterator[Finding]:
-    stated = {
-        (row[0], row[2])
-        for row in sheets.read_csv_cells((path / INPUTS).read_bytes())[1:]
-        if len(row) == len(sheets.INPUT_FIELDS) and row[1] == SAMPLES
-    }
+    stated = {(file, sha256) for file, kind, sha256 in sheets.read_inputs(path) if kind == SAMPLES}
     known = set(samples_files(tows).select("path", "sha256").rows())
     for file in sorted({name for name, _ in stated ^ known}):
         message = say("{} says something else of {} than the tows do", INPUTS, file)
@@ -308,10 +304,7 @@ def _archive(store: Store, path: Place, about: About, hashes: FileHashes) -> Ite
         return
     if not (path / INPUTS).exists():
         return
-    for row in sheets.read_csv_cells((path / INPUTS).read_bytes())[1:]:
-        if len(row) != len(sheets.INPUT_FIELDS):
-            continue  # the file was changed, which is found elsewhere
-        file, kind, sha256 = row
+    for file, kind, sha256 in sheets.read_inputs(path):
         gone = PARTS.join(part for part in file.split(PARTS) if not (root / part).is_file())
         if gone:
             yield Finding(

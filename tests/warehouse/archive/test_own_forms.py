@@ -226,7 +226,7 @@ def times_of_another_name(archive: Archive) -> None:
 
 
 def in_a_language_nobody_knows(archive: Archive) -> None:
-    """Only what stands in the columns says what files and columns are."""
+    """Files and columns can be recognised by their content alone."""
     root = archive.root
     header = "Nummer;Alus;Nimi;Tyyppi;Pituus [m];Leveys [m];Korkeus [m];Paino [kg];Soutajat;Luokka"
     archive.edit(BOATS, lambda text: "\n".join([header, *text.split("\n")[1:]]))
