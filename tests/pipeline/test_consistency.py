@@ -449,7 +449,7 @@ def test_every_choice_of_tows_has_its_line_with_its_own_count(three_seasons):
     lines, points = type_lines(observe(*three_seasons))
     of_cw = lines.filter(quantity="cw_standard_kg_m", explaining="weight_kg")
     assert dict(of_cw.select("tows", "n").iter_rows()) == {
-        "all": 36, "newest": 12, "2010": 12, "2014": 12, "2016": 12,
+        "all": 36, "newest": 12, "2010": 12, "2014": 12, "2016": 12, "2014:2016": 24,
     }  # fmt: skip
     # Of repeats only 12 boats count, and a season that reads high spoils the line of all tows.
     assert of_cw["n_boats"].unique().to_list() == [12]

@@ -18,7 +18,7 @@ from herijk.dashboards.site.parts import (
     with_page,
 )
 from herijk.dashboards.site.slides import drawn_rows, sentences, told_charts
-from herijk.warehouse.queries.chosen_tows import choices_of_row
+from herijk.warehouse.queries.chosen_tows import with_choices
 from herijk.warehouse.queries.views import Views
 
 SCATTERS = ("b_weight", "b_speed", "a_weight", "cw_standard_weight", "cw_standard_speed")
@@ -30,7 +30,7 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
     """A, B and Cw at one speed of every tow against weight and speed, and what differs."""
     if not views.has("compared_tows"):
         return Page("types.html", "types", [])
-    tows = with_page(views.type_tows()).with_columns(choices_of_row())
+    tows = with_choices(with_page(views.type_tows()))
     types = tows["boat_type"].unique().sort().to_list()
     columns = (
         *("name", "fsn_no", "boat_type", "rowers", "crew_class", "season", "weight_kg"),
@@ -80,7 +80,7 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
     """A page for every type: the verdict, its tows, the fitted lines."""
     if not views.has("compared_tows"):
         return
-    tows = with_page(views.type_tows(), "../").with_columns(choices_of_row())
+    tows = with_choices(with_page(views.type_tows(), "../"))
     lines, tests = views.table("type_lines"), views.table("type_homogeneity")
     drawn, said = drawn_rows(views), sentences(views)
     for boat_type in views.type_names():
