@@ -118,9 +118,10 @@ def test_how_to_object_names_boat_and_code():
     assert "noem FSN106 en controlecode ABCDEFGHIJ" in said()
 
 
-def test_the_waterfall_has_a_bar_for_both_ends_and_every_cause():
+def test_the_waterfall_has_a_bar_for_every_cause_and_a_mark_for_both_numbers():
     picture = told(Answer(LINE, (), EMPTY, EMPTY), NL).waterfall
-    assert picture.count("<rect") == 2 + 2
+    # A bar for a number would have to begin at zero.
+    assert (picture.count("<rect"), picture.count("<path")) == (2, 2)
     assert re.search(r'aria-label="[^"]*Tr\w+wes', picture)
 
 
