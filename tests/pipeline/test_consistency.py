@@ -147,7 +147,7 @@ def test_equal_errors_give_the_line_and_interval_of_ordinary_least_squares():
 def test_known_variances_give_the_line_and_interval_of_weighted_least_squares():
     problem = one_row_a_boat(np.linspace(0.5, 3.0, 12) ** 2)
     other = sm.WLS(problem.y, problem.x, weights=1 / problem.variance).fit()
-    assert_same_line(mixed.Fit(problem, (), (0.0, 0.0, 0.0)), other)
+    assert_same_line(mixed.fit(problem, ()), other)
 
 
 def test_the_mean_of_unlike_boats_is_that_of_a_meta_analysis():
