@@ -135,10 +135,10 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "tows_number": ("Sleepproeven", "Tows"),
     "compare_boats": ("Twee sloepen vergeleken", "Two boats compared"),
     "compare_note": (
-        "De krommen van het concept dat het best is, elk met zijn 95 %-band. Waar de banden "
-        "elkaar raken, is niet te zeggen welke lichter loopt.",
-        "The curves of the best draft, each with its 95 % band. Where the bands touch, the data do "
-        "not say which boat runs easier.",
+        "De krommen volgens de beste methode, elk met haar 95 %-band. Waar de banden elkaar raken, "
+        "is niet te zeggen welke sloep lichter loopt.",
+        "The curves under the best method, each with its 95 % band. Where the bands touch, the data "
+        "do not say which boat runs easier.",
     ),
     "types_pages": ("Een type", "One type"),
     "types_pages_note": (

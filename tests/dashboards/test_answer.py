@@ -65,7 +65,7 @@ def test_an_interval_that_leaves_the_log_out_says_so():
 
 def test_the_place_in_a_race_is_not_the_place_at_equal_power():
     text = said(races=[RACE | {"old_rank": 12, "new_rank": 11}])
-    assert "de nummer 2 in snelheid van 5 van het type Vlet (dames); dat was 3" in text
+    assert "naar snelheid op plaats 2 van 5 van het type Vlet (dames); dat was 3" in text
     assert "Spiegelrace 2018-06-04: de uitslag wordt plaats 11 van 35; dat was 12" in text
 
 

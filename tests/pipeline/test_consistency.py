@@ -155,7 +155,7 @@ def test_the_mean_of_unlike_boats_is_that_of_a_meta_analysis():
     problem = one_row_a_boat(np.linspace(0.5, 3.0, 12) ** 2, true_sd=2.0)
     other = combine_effects(problem.y, problem.variance, method_re="iterated", atol=1e-12)
     only_mean = replace(problem, x=np.ones((12, 1)))
-    found = mixed.Fit(only_mean, (mixed.BOAT,), (np.sqrt(other.tau2), 0.0, 0.0))
+    found = mixed.Fit.at(only_mean, (mixed.BOAT,), (np.sqrt(other.tau2), 0.0, 0.0))
     assert found.beta[0] == pytest.approx(other.mean_effect_re, rel=1e-9)
     half = stats.t.ppf(0.975, 11) * other.sd_eff_w_re_hksj
     assert found.coefficients().hi[0] - found.beta[0] == pytest.approx(half, rel=1e-6)
@@ -194,7 +194,7 @@ def test_problems_side_by_side_are_fitted_as_each_alone():
 def test_leaving_a_boat_out_equals_fitting_without_it():
     problem = grouped_data()
     sd = (2.0, 1.0, 0.5)
-    found = mixed.Fit(problem, mixed.COMPONENTS, sd).leave_boats_out()
+    found = mixed.Fit.at(problem, mixed.COMPONENTS, sd).leave_boats_out()
     v = np.diag(problem.variance + sd[2] ** 2)
     v += sd[0] ** 2 * (problem.boat[:, None] == problem.boat)
     v += sd[1] ** 2 * (problem.other[:, None] == problem.other)

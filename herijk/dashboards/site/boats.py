@@ -18,6 +18,7 @@ from herijk.dashboards.site.parts import (
     boat_path,
     draft_of,
     methods_select,
+    once_for_methods,
 )
 from herijk.warehouse.queries.answers import (
     DRAFT,
@@ -111,7 +112,9 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
         "register": _once(register),
         "curves": curves,
         "history": curves.select("fsn_no", *HISTORY),
-        "runs": points,
+        "runs": once_for_methods(points.select("fsn_no", *FOLLOWS, *RUN_COLUMNS)).sort(
+            "tow_id", "run", maintain_order=True
+        ),
         "wind": points.select("fsn_no", *WIND),
         "line": _kind(lines, "line", "method", *NUMBERS, "interval"),
         "point": _kind(points.drop_nulls("cw_kg_m"), "point", "method", *POINT),

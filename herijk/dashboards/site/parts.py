@@ -239,6 +239,12 @@ def _path(folder: str, name: str) -> str:
     return f"{folder}/{safe}.html"
 
 
+def once_for_methods(rows: pl.DataFrame) -> pl.DataFrame:
+    """Rows that are alike under several methods once, with all of these in `method`."""
+    alike = [name for name in rows.columns if name != "method"]
+    return rows.group_by(alike, maintain_order=True).agg("method")
+
+
 def with_page(frame: pl.DataFrame, root: str = "") -> pl.DataFrame:
     """With the page of each boat, for charts whose points are links; `root` is the way to them."""
     paths = {fsn_no: root + boat_path(fsn_no) for fsn_no in frame["fsn_no"].unique()}

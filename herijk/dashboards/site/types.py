@@ -13,6 +13,7 @@ from herijk.dashboards.site.parts import (
     Table,
     default_method,
     methods_select,
+    once_for_methods,
     tows_select,
     type_path,
     with_page,
@@ -80,14 +81,15 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
     """A page for every type: the verdict, its tows, the fitted lines."""
     if not views.has("compared_tows"):
         return
-    tows = with_choices(with_page(views.type_tows(), "../"))
+    tows = views.type_tows().select("method", "boat_type", "newest", *TYPE_COLUMNS)
+    listed_tows = with_choices(once_for_methods(tows))
     lines, tests = views.table("type_lines"), views.table("type_homogeneity")
     drawn, said = drawn_rows(views), sentences(views)
     for boat_type in views.type_names():
         own = pl.col("boat_type") == boat_type
         charts = told_charts(TYPE_FIGURES, said, [boat_type], {"tows": "tows"})
         listed = Table(
-            "type_boats", tows.filter(own), TYPE_COLUMNS, "types_list", ["method", "tows"],
+            "type_boats", listed_tows.filter(own), TYPE_COLUMNS, "types_list", ["method", "tows"],
             search=True, cards=TYPE_CARDS,
         )  # fmt: skip
         fitted = Table(

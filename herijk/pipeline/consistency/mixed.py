@@ -70,6 +70,11 @@ class Fit:
     sd: tuple[float, float, float]
     white: Whitened
 
+    @classmethod
+    def at(cls, problem: Problem, free: tuple[str, ...], sd: tuple[float, float, float]) -> Self:
+        """The model with these standard deviations."""
+        return cls(problem, free, sd, Whitened.of(Stack.of([problem]), np.square([sd])))
+
     @property
     def dof(self) -> int:
         """Degrees of freedom of the boats: rows of one boat do not count twice."""
