@@ -137,7 +137,7 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "compare_note": (
         "De krommen volgens de beste methode, elk met haar 95 %-band. Waar de banden elkaar raken, "
         "is niet te zeggen welke sloep lichter loopt.",
-        "The curves under the best method, each with its 95 % band. Where the bands touch, the data "
+        "The curves under the best method, each with its 95 % band. Where bands touch, the data "
         "do not say which boat runs easier.",
     ),
     "types_pages": ("Een type", "One type"),

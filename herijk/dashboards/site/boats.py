@@ -42,14 +42,18 @@ method they are of, the selectors say."""
 def boat_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
     """The page of every boat that the archive lists."""
     frames = _frames(views)
-    by_boat = {name: _parts(frame, ["fsn_no"], name in KEEP) for name, frame in frames.items()}
     editions = frames["register"]["edition"].unique().sort().to_list()
     crews = _answers(views, newest_edition(editions, draft_of(methods)), frames)
+    frames |= {name: once_for_methods(frames[name]) for name in ALIKE if name in frames}
+    by_boat = {name: _parts(frame, ["fsn_no"], name in KEEP) for name, frame in frames.items()}
     for fsn_no in frames["boats"]["fsn_no"]:
         key = (fsn_no,)
         own = {name: by_boat[name].get(key, frame.head(0)) for name, frame in frames.items()}
         yield _page(fsn_no, own, methods, crews.get(fsn_no, ()))
 
+
+ALIKE = ("wind", "line", "point", "declared", "stages", "assessments")
+"""Frames of which most rows are the same under several methods."""
 
 KEEP = ("boats",)
 """Frames whose rows are shown with the number of their boat."""

@@ -90,7 +90,7 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
         charts = told_charts(TYPE_FIGURES, said, [boat_type], {"tows": "tows"})
         listed = Table(
             "type_boats", listed_tows.filter(own), TYPE_COLUMNS, "types_list", ["method", "tows"],
-            search=True, cards=TYPE_CARDS,
+            search=True, exact=False, cards=TYPE_CARDS,
         )  # fmt: skip
         fitted = Table(
             "type_lines", lines.filter(own), LINE_COLUMNS, "types_lines", ["method", "tows"]
