@@ -2,6 +2,7 @@
 
 import datetime as dt
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import polars as pl
@@ -418,6 +419,30 @@ def test_a_slow_tow_raced_hard_says_whom_its_curve_favours():
     assert found["raced_high"]
     # More power is computed than was delivered: that is the advantage.
     assert found["power_ratio_raced_lo"] > 1.1
+
+
+def test_each_case_of_the_text_says_who_is_wronged():
+    # Length from "v_r = 1,25 x wortel(lengte)", for tows at 2.5 m/s.
+    cases = {"low": 0.60, "middle": 0.73, "high": 0.85}
+    raced_at = {"faster": 1.2, "slower": 0.8, "within": 1.1}
+    expected = {
+        ("low", "faster"): "advantaged", ("low", "slower"): None,
+        ("middle", "faster"): "disadvantaged", ("middle", "slower"): "advantaged",
+        ("high", "faster"): "disadvantaged", ("high", "slower"): "disadvantaged",
+    }  # fmt: skip
+    both = list(product(cases, raced_at))
+    curves, tows, boats, points = fleet(4, boats=len(both), speeds_m_s=np.full(len(both), 2.5))
+    length = [(2.5 / cases[case] / 1.25) ** 2 for case, _ in both]
+    tows = tows.with_columns(waterline_length_m=pl.Series(length))
+    races = pl.concat(
+        raced((curves,), tow_id, 2.5 * raced_at[pace])
+        for tow_id, (_, pace) in zip(curves["tow_id"], both, strict=True)
+    )
+    found = slow_tows(observe(curves, tows, boats, points), races)
+    said = dict(zip(found["tow_id"], found.select("speed_case", "text_says").rows(), strict=True))
+    for tow_id, (case, pace) in zip(curves["tow_id"], both, strict=True):
+        if pace != "within" or tow_id in said:
+            assert said[tow_id] == (case, expected.get((case, pace)))
 
 
 def test_a_race_before_the_tow_or_after_the_next_does_not_count():

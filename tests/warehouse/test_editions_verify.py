@@ -53,7 +53,7 @@ def test_a_changed_digit_in_the_csv_is_named_by_line_and_column(published_copy):
     file = folder(published_copy) / "register.csv"
     lines = file.read_text(encoding="utf-8-sig").splitlines()
     cells = lines[2].split(";")
-    place = lines[0].split(";").index("Cw")
+    place = lines[0].split(";").index("Cw [kg/m]")
     was, cells[place] = cells[place], "99,999"
     lines[2] = ";".join(cells)
     file.write_text("\n".join(lines), encoding="utf-8-sig")

@@ -339,10 +339,16 @@ def _compare(views: Views, methods: Sequence[str]) -> Page:
         [Section("compare_boats", "compare_note", [chart])],
         selects=[
             Select(first, "pair_first", crews, crews[0]),
-            Select(second, "pair_second", crews, crews[1]),
+            Select(second, "pair_second", crews, _another(crews)),
         ],
         data={"curves": [curves]},
     )
+
+
+def _another(crews: Sequence[str]) -> str:
+    """The first crew of another boat than the first, if there is one."""
+    boat = crews[0].rpartition(" · ")[0]
+    return next((crew for crew in crews if not crew.startswith(boat)), crews[1])
 
 
 PAIR_OF_BOATS = ("boat_first", "boat_second")
