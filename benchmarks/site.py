@@ -31,7 +31,10 @@ from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.store import Store
 
-READY = "document.querySelector('.chart.drawn') || !document.querySelector('.chart')"
+READY = (
+    "document.querySelector('.chart.drawn')"
+    " || !document.querySelector('.chart:not(details:not([open]) .chart)')"
+)
 COUNTED = "!document.querySelector('.count b:empty')"
 REPEATS = 5
 BOATS = 5
