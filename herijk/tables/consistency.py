@@ -279,7 +279,8 @@ class RepeatPairs(dy.Schema):
     tow_id_before = column.tow_id()
     season = column.season()
     season_before = column.season()
-    ln_ratio = column.number("1", "ln of new / old Cw, at the old declared speed")
+    cw_ratio = column.number("1", "new / old Cw, at the old declared speed")
+    ln_ratio = column.number("1", "ln of that")
     e_n = column.number("1", "difference / both intervals (ISO 13528)", nullable=True)
 
 

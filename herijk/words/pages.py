@@ -526,11 +526,11 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     ),
     "repeats": ("Elk paar", "Every pair"),
     "repeats_note": (
-        "ln(nieuwe Cw / oude Cw), bij het seizoen van de nieuwe proef. E_n: het verschil gedeeld "
+        "Nieuwe Cw / oude Cw, bij het seizoen van de nieuwe proef. E_n: het verschil gedeeld "
         "door beide intervallen samen; voorbij 1 spreken twee proeven elkaar tegen. Waar die de "
         "spreiding van de runs alleen zijn, kan dat de fout van de log zijn. Klik op "
         "een punt om naar de sloep te gaan.",
-        "ln(new Cw / old Cw), at the season of the new tow. E_n: the difference divided by both "
+        "New Cw / old Cw, at the season of the new tow. E_n: the difference divided by both "
         "intervals together; beyond 1 two tows disagree. Where these are the spread of the runs "
         "alone, that may be the log's error. Click a point to go to the boat.",
     ),

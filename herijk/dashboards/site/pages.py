@@ -232,7 +232,7 @@ def _reproducibility(views: Views, methods: list[str]) -> Page:
             "repeats",
             "repeats_note",
             lambda: with_page(views.repeat_pairs()),
-            "method name fsn_no rowers crew_class season_before season ln_ratio e_n",
+            "method name fsn_no rowers crew_class season_before season cw_ratio e_n",
         ),
         "variance_components": (
             "components",
