@@ -26,8 +26,10 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "Hoe een controle van een sloep of type gelezen wordt.",
         "How to read the audit of a boat or a type.",
     ),
+    "guide_in_short": ("In het kort", "In short"),
+    "guide_whole": ("De hele tekst", "The whole text"),
     "guide_note": (
-        "Dit document is er alleen in het Engels.",
+        "De hele tekst is er alleen in het Engels.",
         "The document of the project, as it stands beside the program.",
     ),
     "edition_title": ("Editie", "Edition"),
