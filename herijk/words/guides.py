@@ -1,5 +1,4 @@
-"""The documents of the project in short, as Markdown: what a reader needs before the whole
-text."""
+"""The documents of the project in short, as Markdown."""
 
 from typing import Final
 
