@@ -22,12 +22,12 @@ from herijk.assets import archive
 from herijk.assets.progress import Progress, Quiet
 from herijk.assets.rebuild import Done
 from herijk.assets.resources import Setup
+from herijk.assets.side_by_side import Task
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.archive import ArchiveIndex
 from herijk.warehouse.build.graph import CONSISTENCY, STUDIES
-from herijk.warehouse.build.step import Step
 from herijk.warehouse.store.store import Store
 
 # The same examples every time, whatever the machine's speed.
@@ -66,14 +66,15 @@ class _Directly:
         archive.read(self.setup, season, self.progress)
         archive.add_up(self.setup, season)
 
-    def build(self, step: Step, method: str | None) -> None:
+    def build(self, tasks: Sequence[Task]) -> None:
         store, known = self.setup.store, self.setup.known_methods
-        methods = self.setup.chosen_methods if method is None else [known.get(method)]
-        if step not in (STUDIES, CONSISTENCY):
-            step.make(store, methods)
-            return
-        for name in step.outputs:
-            store.write(name, TABLES[name].create_empty(), step.made_from(store, methods))
+        for task in tasks:
+            step, methods = task.made_by, [known.get(name) for name in task.methods]
+            if step in (STUDIES, CONSISTENCY):
+                for name in step.outputs:
+                    store.write(name, TABLES[name].create_empty(), step.made_from(store, methods))
+            else:
+                task.do()
 
     def check(self) -> None:
         """Checks nothing."""

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 from herijk.assets.progress import Progress
 from herijk.assets.report import write_report
 from herijk.assets.settings import Settings, read_settings
+from herijk.assets.side_by_side import Task, stages
 from herijk.assets.site_state import site_is_stale
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
@@ -165,8 +166,8 @@ class _Rebuild:
         def do(work: "Work") -> None:
             work.record_index(index)
             self._read(work, seasons)
-            for step in STEPS:
-                self._build(work, step)
+            for stage in stages(STEPS):
+                self._build(work, stage)
             if site_is_stale(self.store):
                 self.progress.step("making the site")
                 work.make_site()
@@ -202,17 +203,19 @@ class _Rebuild:
         """The methods, one at a time where the step is made per method."""
         return [[m] for m in self.methods] if step.per_method else [self.methods]
 
-    def _build(self, work: "Work", step: Step) -> None:
-        """Makes the tables of a step where they are stale, per method where they are made so."""
-        for methods in self._applied_by(step):
+    def _build(self, work: "Work", stage: Sequence[Step]) -> None:
+        """Makes the tables of steps where they are stale, per method where they are made so."""
+        tasks = []
+        for step, methods in ((s, m) for s in stage for m in self._applied_by(s)):
             if not step.is_stale(self.store, methods):
                 continue
-            method = methods[0].name if step.per_method else None
-            self.progress.step(step.says.format(method))
-            work.build(step, method)
-            if method is not None and method not in self.done.methods:
-                self.done.methods.append(method)
+            self.progress.step(step.says.format(methods[0].name))
+            names = tuple(method.name for method in methods)
+            tasks.append(Task(self.store.root, step.name, names))
+            if step.per_method:
+                self.done.methods += (name for name in names if name not in self.done.methods)
             self.done.database |= step is DATABASE
+        work.build(tasks)
 
 
 def check_apart(archive: Path, data: Path) -> None:

@@ -3,7 +3,9 @@
 import os
 import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from concurrent.futures import Executor
+from contextlib import ExitStack, contextmanager
+from functools import cached_property
 from pathlib import Path
 from typing import Final
 
@@ -16,11 +18,11 @@ from herijk.assets.events import Result, events_of
 from herijk.assets.jobs import NAMES, READ
 from herijk.assets.progress import Progress
 from herijk.assets.resources import QUIET_LOG, Setup
+from herijk.assets.side_by_side import Task, helper, side_by_side
 from herijk.assets.site import make_site
 from herijk.assets.tables import results_of
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.archive import ArchiveIndex
-from herijk.warehouse.build.step import Step
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.lock import nobody_writes
 from herijk.warehouse.store.store import Store
@@ -38,9 +40,16 @@ WORK: Final = "make_what_is_stale"
 class Work:
     """The pieces of a rebuild, each recorded in the rebuild's run as its asset would be."""
 
-    def __init__(self, setup: Setup, progress: Progress, run: dg.OpExecutionContext) -> None:
-        self.setup, self.progress, self.run = setup, progress, run
+    def __init__(
+        self, setup: Setup, progress: Progress, run: dg.OpExecutionContext, opened: ExitStack
+    ) -> None:
+        self.setup, self.progress, self.run, self.opened = setup, progress, run, opened
         self.checks: list[dg.AssetCheckEvaluation] = []
+
+    @cached_property
+    def other(self) -> Executor:
+        """A second process, from the first work on that two can share."""
+        return self.opened.enter_context(helper())
 
     def record_index(self, index: ArchiveIndex) -> None:
         """Notes that the archive was looked through."""
@@ -55,14 +64,16 @@ class Work:
         for result in read_whole(self.setup, season, self.progress):
             self._record(result, str(season))
 
-    def build(self, step: Step, method: str | None) -> None:
-        """Makes the tables of a step, for one method where they are made so."""
-        methods = self.setup.chosen_methods
-        if method is not None:
-            self._add_partition(partitions.methods, method)
-            methods = [self.setup.known_methods.get(method)]
-        for result in results_of(step.make(self.setup.store, methods)):
-            self._record(result, method)
+    def build(self, tasks: Sequence[Task]) -> None:
+        """Makes the tables of steps that do not wait for each other."""
+        several = len(tasks) > 1
+        made = side_by_side(tasks, self.other) if several else [task.do() for task in tasks]
+        for task, tables in zip(tasks, made, strict=True):
+            method = task.method
+            if method is not None:
+                self._add_partition(partitions.methods, method)
+            for result in results_of(tables):
+                self._record(result, method)
 
     def make_site(self) -> None:
         """Makes the pages."""
@@ -107,13 +118,13 @@ def in_one_run(setup: Setup, progress: Progress, work: Callable[[Work], None]) -
 
     @dg.op(name=WORK)
     def whole(context: dg.OpExecutionContext) -> None:
-        work(Work(setup, progress, context))
+        work(Work(setup, progress, context, opened))
 
     @dg.job(name=WORK)
     def job() -> None:
         whole()
 
-    with instance_of(setup.store) as instance:
+    with instance_of(setup.store) as instance, ExitStack() as opened:
         _end_lost_runs(instance)
         job.execute_in_process(instance=instance, run_config=QUIET_LOG, tags={STEP_TAG: WORK})
 
