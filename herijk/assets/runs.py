@@ -77,7 +77,7 @@ class Work:
 
     def make_site(self) -> None:
         """Makes the pages."""
-        self._record(make_site(self.setup.store))
+        self._record(make_site(self.setup.store, self.other))
 
     def check(self) -> None:
         """Runs the checks that look at the whole."""
