@@ -23,17 +23,23 @@ from herijk.warehouse.store.store import Store
 )
 def site(setup: Setup) -> dg.MaterializeResult:
     """Pages people can look at, swapped in whole."""
+    return make_site(setup.store)
+
+
+def make_site(store: Store) -> dg.MaterializeResult:
+    """Makes the pages, and remembers from what."""
     from herijk.dashboards.site import build_site  # noqa: PLC0415 - Altair takes a second to import
 
-    size = build_site(setup.store)
-    setup.store.write(SITE_TABLE, pl.DataFrame(), site_made_from(setup.store))
-    index = setup.store.root / "site" / "index.html"
+    size = build_site(store)
+    store.write(SITE_TABLE, pl.DataFrame(), site_made_from(store))
+    index = store.root / "site" / "index.html"
     return dg.MaterializeResult(
+        asset_key="site",
         metadata={
             **size,
             "index": dg.MetadataValue.path(str(index.resolve())),
-            "reproducibility": dg.MetadataValue.md(_reproducibility(setup.store)),
-        }
+            "reproducibility": dg.MetadataValue.md(_reproducibility(store)),
+        },
     )
 
 
