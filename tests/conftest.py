@@ -3,10 +3,10 @@
 import os
 import shutil
 from collections.abc import Callable, Collection, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 from unittest import mock
 
 import dagster as dg
@@ -22,12 +22,12 @@ from herijk.assets import archive
 from herijk.assets.progress import Progress, Quiet
 from herijk.assets.rebuild import Done
 from herijk.assets.resources import Setup
+from herijk.assets.side_by_side import Task
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.archive import ArchiveIndex
 from herijk.warehouse.build.graph import CONSISTENCY, STUDIES
-from herijk.warehouse.build.step import Step
 from herijk.warehouse.store.store import Store
 
 # The same examples every time, whatever the machine's speed.
@@ -66,14 +66,15 @@ class _Directly:
         archive.read(self.setup, season, self.progress)
         archive.add_up(self.setup, season)
 
-    def build(self, step: Step, method: str | None) -> None:
+    def build(self, tasks: Sequence[Task]) -> None:
         store, known = self.setup.store, self.setup.known_methods
-        methods = self.setup.chosen_methods if method is None else [known.get(method)]
-        if step not in (STUDIES, CONSISTENCY):
-            step.make(store, methods)
-            return
-        for name in step.outputs:
-            store.write(name, TABLES[name].create_empty(), step.made_from(store, methods))
+        for task in tasks:
+            step, methods = task.made_by, [known.get(name) for name in task.methods]
+            if step in (STUDIES, CONSISTENCY):
+                for name in step.outputs:
+                    store.write(name, TABLES[name].create_empty(), step.made_from(store, methods))
+            else:
+                task.do()
 
     def check(self) -> None:
         """Checks nothing."""
@@ -83,11 +84,11 @@ class _Directly:
 def directly() -> Iterator[None]:
     """Inside, rebuilds do their work without Dagster, and the site counts as made."""
 
-    def opened(setup: Setup, progress: Progress) -> AbstractContextManager[_Directly]:
-        return nullcontext(_Directly(setup, progress))
+    def unrecorded(setup: Setup, progress: Progress, work: Callable[[Any], None]) -> None:
+        work(_Directly(setup, progress))
 
     no_site = mock.patch.object(herijk.assets.rebuild, "site_is_stale", return_value=False)
-    with no_site, mock.patch.object(herijk.assets.runs, "opened_jobs", opened):
+    with no_site, mock.patch.object(herijk.assets.runs, "in_one_run", unrecorded):
         yield
 
 

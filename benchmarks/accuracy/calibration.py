@@ -73,16 +73,19 @@ def drawn(seed: int) -> Truth:
         for mean, count in ((s.changed_share, s.changed_gaps), (s.askew_share, s.askew_tows))
     )
     for group in problem.groups:
-        for tows in group.tow:
+        for tows, drift in zip(group.tow, group.drift, strict=True):
             early = tows[: group.early]
             askew = rng.random(len(early)) < askew_share
             excess = s.askew_excess.mean + s.askew_excess.sd * rng.standard_normal(len(early))
             noise[early, LEVEL] += askew * excess
             altered = rng.random(len(tows) - 1) < share
+            drift_sd = np.sqrt(np.diff(np.diag(drift)) * np.exp(ln_variance[-1]))
             for place, (first, step) in enumerate(
                 ((LEVEL_SD, s.changed_sd), (s.bend_sd, s.changed_bend_sd))
             ):
                 steps = step * altered * rng.standard_normal(len(altered))
+                if place == LEVEL:
+                    steps += drift_sd * rng.standard_normal(len(drift_sd))
                 start = first * rng.standard_normal()
                 state[tows, place] = start + np.concatenate([[0.0], np.cumsum(steps)])
     observed = -residual + np.einsum("nik,nk->ni", held.state, state) + noise
@@ -142,6 +145,8 @@ def ln_density(problem: Problem, found: Fit, place: np.ndarray) -> float:
         full = np.zeros((boats, len(group.askew), tows, 3, tows, 3))
         for n, prior in enumerate((group.level, group.bend)):
             full += np.einsum("bki,blj,pkl->bpkilj", z[..., n], z[..., n], prior)
+        drift = np.exp(ln_variance[-1]) * group.drift
+        full += np.einsum("bki,blj,bkl->bkilj", z[..., 0], z[..., 0], drift)[:, None]
         for tow in range(tows):
             full[:, :, tow, :, tow, :] += own[group.tow[:, tow]][:, None]
             full[:, :, tow, LEVEL, tow, LEVEL] += group.excess_variance * group.askew[:, tow]

@@ -91,8 +91,41 @@ def standards(world: Measured, rng: np.random.Generator) -> Measured:
     return reading(world, force=np.exp(np.sum(errors, axis=0)))
 
 
+def aged(world: Measured, ln_ratio: dict[str, np.ndarray]) -> Measured:
+    """The same world with boats whose ln Cw has changed by so much in each season."""
+    lines = world.tows.select("fsn_no", pl.col("season") - world.tows["season"].min())
+    ratio = np.exp([ln_ratio[boat][year] for boat, year in lines.iter_rows()])
+    changed = world.tows.select("tow_id", pl.Series("ratio", ratio))
+    truth = world.truth.join(changed, on="tow_id", maintain_order="left")
+    true = truth.with_columns(pl.col("cw_at_15c_kg_m") * pl.col("ratio")).drop("ratio")
+    return replace(reading(world, force=ratio[runs(world)["tow"].to_numpy()]), truth=true)
+
+
+def boats_and_years(world: Measured) -> tuple[list[str], int]:
+    """The boats in order, and the number of seasons from the first to the last."""
+    season = world.tows["season"].unique()
+    return world.tows["fsn_no"].unique().sort().to_list(), season.max() - season.min() + 1
+
+
+def uneven_ageing(world: Measured, rng: np.random.Generator) -> Measured:
+    """Half of the boats get 2 % worse a year, the others do not."""
+    boats, years = boats_and_years(world)
+    worse = rng.random(len(boats)) < 0.5
+    return aged(world, {b: 0.02 * w * np.arange(years) for b, w in zip(boats, worse, strict=True)})
+
+
+def drifting(world: Measured, rng: np.random.Generator) -> Measured:
+    """Every boat drifts by 1 % a year, this way or that."""
+    boats, years = boats_and_years(world)
+    return aged(world, {b: 0.01 * rng.standard_normal(years).cumsum() for b in boats})
+
+
 FOREIGN: dict[str, Callable[[Measured, np.random.Generator], Measured]] = {
-    change.__name__: change for change in (log_by_speed, hysteresis, salt, shadow, standards)
+    change.__name__: change
+    for change in (
+        *(log_by_speed, hysteresis, salt, shadow, standards),
+        *(uneven_ageing, drifting),
+    )
 }
 
 

@@ -1,6 +1,7 @@
 """From archive files to blocks: the heavy part, partitioned by season."""
 
 import datetime as dt
+from collections.abc import Iterator
 
 import dagster as dg
 import polars as pl
@@ -70,6 +71,7 @@ def read(setup: Setup, season: int, progress: Progress) -> dg.MaterializeResult:
     faulty = season_index.filter(pl.col("reason_code").is_not_null())
     reasons = faulty["reason_code"].value_counts(sort=True).rows()
     return dg.MaterializeResult(
+        asset_key="samples",
         metadata={
             "dagster/row_count": int(season_index["samples"].sum()),
             "tows": season_index.height - faulty.height,
@@ -77,6 +79,7 @@ def read(setup: Setup, season: int, progress: Progress) -> dg.MaterializeResult:
         },
         check_results=[
             dg.AssetCheckResult(
+                asset_key="samples",
                 check_name="most_tows_sound",
                 passed=2 * faulty.height <= season_index.height,
                 severity=dg.AssetCheckSeverity.WARN,
@@ -103,4 +106,12 @@ def blocks(context: dg.AssetExecutionContext, setup: Setup) -> dg.MaterializeRes
 def add_up(setup: Setup, season: int) -> dg.MaterializeResult:
     """Puts a season's blocks together in one table."""
     blocks_of_season = intake.collect_blocks(setup.store, season)
-    return dg.MaterializeResult(metadata={"dagster/row_count": blocks_of_season.height})
+    return dg.MaterializeResult(
+        asset_key="blocks", metadata={"dagster/row_count": blocks_of_season.height}
+    )
+
+
+def read_whole(setup: Setup, season: int, progress: Progress) -> Iterator[dg.MaterializeResult]:
+    """Both: a season's samples and its blocks."""
+    yield read(setup, season, progress)
+    yield add_up(setup, season)

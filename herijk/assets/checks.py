@@ -3,7 +3,8 @@
 An error means that a table is not what it promises; a warning, that a person should look.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Final
 
 import dagster as dg
 
@@ -32,19 +33,16 @@ def _on_a_line(wrong: object) -> str:
     return " ".join(map(str, wrong)) if isinstance(wrong, tuple) else str(wrong)
 
 
-@dg.asset_check(asset="warehouse_database")
 def tables_fit_their_schemas(setup: Setup) -> dg.AssetCheckResult:
     """Every table of the database has the columns, types and ranges it promises."""
     return _result(schema_faults(setup.store))
 
 
-@dg.asset_check(asset="warehouse_database")
 def counts_agree(setup: Setup) -> dg.AssetCheckResult:
     """The database holds what the lake holds, and every method a curve row for every tow."""
     return _result(count_faults(setup.store, setup.chosen_methods))
 
 
-@dg.asset_check(asset="quarantine")
 def few_tows_set_aside(setup: Setup) -> dg.AssetCheckResult:
     """Not more of the listed tows are set aside than the settings allow."""
     aside, listed = set_aside_tows(setup.store)
@@ -55,7 +53,6 @@ def few_tows_set_aside(setup: Setup) -> dg.AssetCheckResult:
     )
 
 
-@dg.asset_check(asset="log_factors")
 def log_factors_stayed(setup: Setup) -> dg.AssetCheckResult:
     """No season's log factor jumped since the last report."""
     moved = change_report(setup.store).factors
@@ -63,7 +60,6 @@ def log_factors_stayed(setup: Setup) -> dg.AssetCheckResult:
     return _result(jumps.rows(), dg.AssetCheckSeverity.WARN)
 
 
-@dg.asset_check(asset="register")
 def boats_stayed_within_their_intervals(setup: Setup) -> dg.AssetCheckResult:
     """No line of a draft moved by more than its intervals since the last report."""
     lines = change_report(setup.store).lines
@@ -72,7 +68,6 @@ def boats_stayed_within_their_intervals(setup: Setup) -> dg.AssetCheckResult:
     return _result(beyond.select(columns).rows(), dg.AssetCheckSeverity.WARN)
 
 
-@dg.asset_check(asset="register")
 def editions_can_be_made_again(setup: Setup) -> dg.AssetCheckResult:
     """Published editions are what they were, and archive and code of today give them again.
 
@@ -84,11 +79,29 @@ def editions_can_be_made_again(setup: Setup) -> dg.AssetCheckResult:
     return _result([f"{f.edition}: {f.message}" for f in wrong], severity)
 
 
-ALL = [
-    tables_fit_their_schemas,
-    counts_agree,
-    few_tows_set_aside,
-    log_factors_stayed,
-    boats_stayed_within_their_intervals,
-    editions_can_be_made_again,
+CHECKS: Final[Mapping[str, Sequence[Callable[[Setup], dg.AssetCheckResult]]]] = {
+    "warehouse_database": (tables_fit_their_schemas, counts_agree),
+    "quarantine": (few_tows_set_aside,),
+    "log_factors": (log_factors_stayed,),
+    "register": (boats_stayed_within_their_intervals, editions_can_be_made_again),
+}
+"""What is checked of which table."""
+
+ALL: Final = [
+    dg.asset_check(asset=table)(check) for table, checks in CHECKS.items() for check in checks
 ]
+"""The same for Dagster's page."""
+
+
+def results(setup: Setup) -> Iterator[dg.AssetCheckResult]:
+    """What all checks say."""
+    for table, checks in CHECKS.items():
+        for check in checks:
+            found = check(setup)
+            yield dg.AssetCheckResult(
+                asset_key=table,
+                check_name=check.__name__,
+                passed=found.passed,
+                severity=found.severity,
+                metadata=found.metadata,
+            )

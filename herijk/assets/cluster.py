@@ -16,6 +16,7 @@ from dagster_dask import dask_executor
 from distributed.scheduler import KilledWorker, NoWorkerError
 
 from herijk.assets import archive
+from herijk.assets.events import events_of
 from herijk.assets.progress import Quiet
 from herijk.assets.resources import QUIET_LOG, Setup
 from herijk.pipeline.errors import UnavailableError
@@ -33,28 +34,9 @@ class Season(dg.Config):
 def read_season(context: dg.OpExecutionContext, config: Season) -> None:
     """The samples and blocks of one season; who asked for it holds the lock."""
     setup = Setup(archive=config.archive, data=config.data)
-    _log(context, archive.samples, archive.read(setup, config.season, Quiet()))
-    _log(context, archive.blocks, archive.add_up(setup, config.season))
-
-
-def _log(
-    context: dg.OpExecutionContext, asset: dg.AssetsDefinition, result: dg.MaterializeResult
-) -> None:
-    """Records an asset's partition and its checks, as the asset itself would."""
-    season = str(context.op_config["season"])
-    context.log_event(
-        dg.AssetMaterialization(asset.key, partition=season, metadata=result.metadata)
-    )
-    for check in result.check_results or ():
-        context.log_event(
-            dg.AssetCheckEvaluation(  # type: ignore[arg-type]  # it takes this too
-                asset_key=asset.key,
-                check_name=check.check_name or "",
-                passed=check.passed,
-                severity=check.severity,
-                metadata=check.metadata,
-            )
-        )
+    for result in archive.read_whole(setup, config.season, Quiet()):
+        for event in events_of(result, str(config.season)):
+            context.log_event(event)  # type: ignore[arg-type]  # it takes checks too
 
 
 def seasons_job(name: str, seasons: Sequence[int]) -> dg.JobDefinition:

@@ -1,4 +1,4 @@
-"""A rebuild: whatever is stale is made again, as runs of Dagster's jobs; then a report.
+"""A rebuild: whatever is stale is made again, in one run of Dagster; then a report.
 
 The decision what is stale is `warehouse`'s. Dagster is imported when there is work to do: looking
 that there is none takes a second, importing it two.
@@ -6,7 +6,6 @@ that there is none takes a second, importing it two.
 
 import datetime as dt
 from collections.abc import Callable, Collection, Sequence
-from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 from herijk.assets.progress import Progress
 from herijk.assets.report import write_report
 from herijk.assets.settings import Settings, read_settings
+from herijk.assets.side_by_side import Task, stages
 from herijk.assets.site_state import site_is_stale
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
@@ -31,7 +31,9 @@ from herijk.warehouse.store.store import DamagedFileError, Store
 from herijk.words import tell
 
 if TYPE_CHECKING:
-    from herijk.assets.runs import Jobs
+    import dagster as dg
+
+    from herijk.assets.runs import Work
 
 ROUNDS: Final = 3
 """So many times a rebuild begins again because the archive changed under its hands."""
@@ -82,8 +84,8 @@ def rebuild(
     check_apart(archive, data)
     with machine_faults_explained(data):
         settings = read_settings(data)
-    with machine_faults_explained(data), only_writer(data), ExitStack() as opened:
-        work = _Rebuild(archive, Store(data), methods, progress, settings, opened)
+    with machine_faults_explained(data), only_writer(data):
+        work = _Rebuild(archive, Store(data), methods, progress, settings)
         _mending(lambda: work.do(seasons))
     return work.done
 
@@ -116,35 +118,10 @@ class _Rebuild:
         methods: Sequence[str],
         progress: Progress,
         settings: Settings,
-        opened: ExitStack,
     ) -> None:
         self.archive, self.store, self.names = archive, store, methods
-        self.progress, self.settings, self.opened = progress, settings, opened
+        self.progress, self.settings = progress, settings
         self.done = Done()
-        self._index: ArchiveIndex | None = None
-        self._jobs: Jobs | None = None
-
-    @property
-    def jobs(self) -> "Jobs":
-        """Dagster's jobs, from the first work on."""
-        self._jobs = self._jobs or self._open_jobs()
-        return self._jobs
-
-    def _open_jobs(self) -> "Jobs":
-        from herijk.assets.resources import Setup  # noqa: PLC0415 - see above
-        from herijk.assets.runs import opened_jobs  # noqa: PLC0415
-
-        setup = Setup(
-            archive=str(self.archive),
-            data=str(self.store.root),
-            methods=list(self.names),
-            set_aside_share=self.settings.set_aside_share,
-            factor_jump=self.settings.factor_jump,
-        )
-        jobs = self.opened.enter_context(opened_jobs(setup, self.progress))
-        if self._index is not None:
-            jobs.record_index(self._index)
-        return jobs
 
     @property
     def methods(self) -> list[Method]:
@@ -154,55 +131,91 @@ class _Rebuild:
 
     def do(self, seasons: Collection[int] | None) -> None:
         """Everything that is stale, and the report."""
-        self._read(seasons)
-        for step in STEPS:
-            self._build(step)
-        if site_is_stale(self.store):
-            self.progress.step("making the site")
-            self.jobs.make_site()
-        if not is_reported(self.store):
-            self.progress.step("checking the tables")
-            self.jobs.check()
-        checks = [] if self._jobs is None else self._jobs.checks
+        self.progress.step("looking at what the archive holds")
+        index = intake.index(self.store, self.archive)
+        intake.forget_unlisted_seasons(self.store)
+        stale = intake.stale_seasons(self.store, self.archive, seasons)
+        checks: Sequence[dg.AssetCheckEvaluation] = ()
+        if stale or self._is_stale():
+            checks = self._work(index, stale)
         now = dt.datetime.now().astimezone()
         self.done.report = write_report(self.store, self.done.work, checks, now)
 
-    def _read(self, seasons: Collection[int] | None) -> None:
-        self.progress.step("looking at what the archive holds")
-        self._index = intake.index(self.store, self.archive)
-        intake.forget_unlisted_seasons(self.store)
-        stale = intake.stale_seasons(self.store, self.archive, seasons)
+    def _is_stale(self) -> bool:
+        """Whether anything that follows from the seasons has to be made again."""
+        return (
+            any(step.is_stale(self.store, m) for step in STEPS for m in self._applied_by(step))
+            or site_is_stale(self.store)
+            or not is_reported(self.store)
+        )
+
+    def _work(self, index: ArchiveIndex, seasons: list[int]) -> "Sequence[dg.AssetCheckEvaluation]":
+        """Reads seasons and makes what is stale; gives what the checks said."""
+        from herijk.assets.resources import Setup  # noqa: PLC0415 - see above
+        from herijk.assets.runs import in_one_run  # noqa: PLC0415
+
+        setup = Setup(
+            archive=str(self.archive),
+            data=str(self.store.root),
+            methods=list(self.names),
+            set_aside_share=self.settings.set_aside_share,
+            factor_jump=self.settings.factor_jump,
+        )
+        checks: list[dg.AssetCheckEvaluation] = []
+
+        def do(work: "Work") -> None:
+            work.record_index(index)
+            self._read(work, seasons)
+            for stage in stages(STEPS):
+                self._build(work, stage)
+            if site_is_stale(self.store):
+                self.progress.step("making the site")
+                work.make_site()
+            if not is_reported(self.store):
+                self.progress.step("checking the tables")
+                work.check()
+            checks.extend(work.checks)
+
+        in_one_run(setup, self.progress, do)
+        return checks
+
+    def _read(self, work: "Work", stale: list[int]) -> None:
         self.done.seasons = sorted({*self.done.seasons, *stale})
         if self.settings.dask is not None and stale:
-            stale = self._read_elsewhere(self.settings.dask, stale)
+            stale = self._read_elsewhere(work, self.settings.dask, stale)
         self.progress.expect(intake.count_listed(self.store, stale))
         for season in stale:
-            self.jobs.read(season)
+            work.read(season)
 
-    def _read_elsewhere(self, address: str, seasons: Sequence[int]) -> list[int]:
+    def _read_elsewhere(self, work: "Work", address: str, seasons: Sequence[int]) -> list[int]:
         """Has a Dask cluster read seasons; gives those to read here, where an error comes out."""
         self.progress.step(
             tell("reading {} seasons on the Dask cluster at {}", len(seasons), address)
         )
-        failed = self.jobs.read_on_dask(address, (self.archive, self.store.root), seasons)
+        failed = work.read_on_dask(address, (self.archive, self.store.root), seasons)
         for season, why in failed.items():
             self.progress.step(
                 tell("season {} could not be read there ({}); reading it here", season, why)
             )
         return list(failed)
 
-    def _build(self, step: Step) -> None:
-        """Makes the tables of a step where they are stale, per method where they are made so."""
-        chosen = self.methods
-        for methods in [[m] for m in chosen] if step.per_method else [chosen]:
+    def _applied_by(self, step: Step) -> list[list[Method]]:
+        """The methods, one at a time where the step is made per method."""
+        return [[m] for m in self.methods] if step.per_method else [self.methods]
+
+    def _build(self, work: "Work", stage: Sequence[Step]) -> None:
+        """Makes the tables of steps where they are stale, per method where they are made so."""
+        tasks = []
+        for step, methods in ((s, m) for s in stage for m in self._applied_by(s)):
             if not step.is_stale(self.store, methods):
                 continue
-            method = methods[0].name if step.per_method else None
-            self.progress.step(step.says.format(method))
-            self.jobs.build(step, method)
-            if method is not None and method not in self.done.methods:
-                self.done.methods.append(method)
+            self.progress.step(step.says.format(methods[0].name))
+            names = tuple(method.name for method in methods)
+            tasks.append(Task(self.store.root, step.name, names))
+            if step.per_method:
+                self.done.methods += (name for name in names if name not in self.done.methods)
             self.done.database |= step is DATABASE
+        work.build(tasks)
 
 
 def check_apart(archive: Path, data: Path) -> None:

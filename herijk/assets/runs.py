@@ -1,23 +1,28 @@
-"""The runs of a rebuild in Dagster, with their history in the data folder."""
+"""The run of a rebuild in Dagster, with its history in the data folder."""
 
 import os
 import shutil
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from contextlib import ExitStack, contextmanager
+from functools import cached_property
 from pathlib import Path
 from typing import Final
 
 import dagster as dg
 import yaml  # type: ignore[import-untyped]
 
-from herijk.assets import partitions
-from herijk.assets.archive import index_metadata
-from herijk.assets.jobs import BUILD_JOBS, CHECK, NAMES, READ, SITE, job_defs
+from herijk.assets import checks, partitions
+from herijk.assets.archive import index_metadata, read_whole
+from herijk.assets.events import Result, events_of
+from herijk.assets.jobs import NAMES, READ
 from herijk.assets.progress import Progress
 from herijk.assets.resources import QUIET_LOG, Setup
+from herijk.assets.side_by_side import Task, helper, side_by_side
+from herijk.assets.site import make_site
+from herijk.assets.tables import results_of
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.archive import ArchiveIndex
-from herijk.warehouse.build.step import Step
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.lock import nobody_writes
 from herijk.warehouse.store.store import Store
@@ -28,52 +33,56 @@ INSTANCE_SETTINGS = Path(__file__).with_name("dagster.yaml")
 STEP_TAG: Final = "herijk/step"
 """Marks runs that live and die with the process of a rebuild."""
 
+WORK: Final = "make_what_is_stale"
+"""The run in which a rebuild does its work."""
 
-class Jobs:
-    """Runs jobs in process; an error comes out as the step raised it."""
 
-    def __init__(self, defs: dg.Definitions, instance: dg.DagsterInstance) -> None:
-        self.defs, self.instance = defs, instance
-        self._checks: dict[dg.AssetCheckKey, dg.AssetCheckEvaluation] = {}
+class Work:
+    """The pieces of a rebuild, each recorded in the rebuild's run as its asset would be."""
 
-    @property
-    def checks(self) -> list[dg.AssetCheckEvaluation]:
-        """What the checks said, each the last time."""
-        return list(self._checks.values())
+    def __init__(
+        self, setup: Setup, progress: Progress, run: dg.OpExecutionContext, opened: ExitStack
+    ) -> None:
+        self.setup, self.progress, self.run, self.opened = setup, progress, run, opened
+        self.checks: list[dg.AssetCheckEvaluation] = []
+
+    @cached_property
+    def other(self) -> Executor:
+        """A second process, from the first work on that two can share."""
+        return self.opened.enter_context(helper())
 
     def record_index(self, index: ArchiveIndex) -> None:
-        """Notes that the archive was looked through, which takes no run of its own."""
-        seen = dg.AssetMaterialization("archive_index", metadata=index_metadata(index))
-        self.instance.report_runless_asset_event(seen)
+        """Notes that the archive was looked through."""
+        seen: dg.MaterializeResult = dg.MaterializeResult(
+            asset_key="archive_index", metadata=index_metadata(index)
+        )
+        self._record(seen)
 
     def read(self, season: int) -> None:
         """Reads a season."""
-        self.run(READ, str(season))
+        self._add_partition(partitions.seasons, str(season))
+        for result in read_whole(self.setup, season, self.progress):
+            self._record(result, str(season))
 
-    def build(self, step: Step, method: str | None) -> None:
-        """Makes the tables of a step, for one method where they are made so."""
-        self.run(BUILD_JOBS[step], method)
+    def build(self, tasks: Sequence[Task]) -> None:
+        """Makes the tables of steps that do not wait for each other."""
+        several = len(tasks) > 1
+        made = side_by_side(tasks, self.other) if several else [task.do() for task in tasks]
+        for task, tables in zip(tasks, made, strict=True):
+            method = task.method
+            if method is not None:
+                self._add_partition(partitions.methods, method)
+            for result in results_of(tables):
+                self._record(result, method)
 
     def make_site(self) -> None:
         """Makes the pages."""
-        self.run(SITE)
+        self._record(make_site(self.setup.store, self.other))
 
     def check(self) -> None:
         """Runs the checks that look at the whole."""
-        self.run(CHECK)
-
-    def run(self, job: str, partition: str | None = None) -> None:
-        """Runs a job, for a season or method where it has partitions."""
-        if partition is not None:
-            kind = partitions.seasons if job == READ else partitions.methods
-            self.instance.add_dynamic_partitions(str(kind.name), [partition])
-        result = self.defs.resolve_job_def(job).execute_in_process(
-            instance=self.instance,
-            partition_key=partition,
-            run_config=QUIET_LOG,
-            tags={STEP_TAG: job},
-        )
-        self._keep(result.get_asset_check_evaluations())
+        for result in checks.results(self.setup):
+            self._record(result)
 
     def read_on_dask(
         self, address: str, folders: tuple[Path, Path], seasons: Sequence[int]
@@ -87,12 +96,37 @@ class Jobs:
                 "with: pip install 'herijk[dask]'",
                 address,
             ) from error
-        read = read_seasons(self.instance, address, folders, seasons, {STEP_TAG: READ})
-        self._keep(read.checks)
+        read = read_seasons(self.run.instance, address, folders, seasons, {STEP_TAG: READ})
+        self.checks += read.checks
         return read.failed
 
-    def _keep(self, checks: Iterable[dg.AssetCheckEvaluation]) -> None:
-        self._checks |= {check.asset_check_key: check for check in checks}
+    def _add_partition(self, kind: dg.DynamicPartitionsDefinition, name: str) -> None:
+        self.run.instance.add_dynamic_partitions(str(kind.name), [name])
+
+    def _record(self, result: Result, partition: str | None = None) -> None:
+        for event in events_of(result, partition):
+            self.run.log_event(event)  # type: ignore[arg-type]  # it takes checks too
+            if isinstance(event, dg.AssetCheckEvaluation):
+                self.checks.append(event)
+
+
+def in_one_run(setup: Setup, progress: Progress, work: Callable[[Work], None]) -> None:
+    """Has work done in a run of Dagster, by whoever holds the lock; an error comes out as raised.
+
+    A run costs a second and more, so a rebuild is one and not one for each of its thirty pieces.
+    """
+
+    @dg.op(name=WORK)
+    def whole(context: dg.OpExecutionContext) -> None:
+        work(Work(setup, progress, context, opened))
+
+    @dg.job(name=WORK)
+    def job() -> None:
+        whole()
+
+    with instance_of(setup.store) as instance, ExitStack() as opened:
+        _end_lost_runs(instance)
+        job.execute_in_process(instance=instance, run_config=QUIET_LOG, tags={STEP_TAG: WORK})
 
 
 def taking_over(store: Store) -> Iterator[str]:
@@ -124,7 +158,9 @@ _BEGUN: Final = (
 
 def _end_lost_runs(instance: dg.DagsterInstance) -> None:
     """Records runs of killed rebuilds as failed; only the holder of the lock can tell."""
-    unfinished = dg.RunsFilter(tags={STEP_TAG: list(NAMES)}, statuses=[dg.DagsterRunStatus.STARTED])
+    unfinished = dg.RunsFilter(
+        tags={STEP_TAG: [WORK, *NAMES]}, statuses=[dg.DagsterRunStatus.STARTED]
+    )
     for run in instance.get_runs(unfinished):
         instance.report_run_failed(run, "The rebuild it was part of was killed.")
 
@@ -146,14 +182,6 @@ def instance_of(store: Store) -> Iterator[dg.DagsterInstance]:
         ) from error
     with opened as instance:
         yield instance
-
-
-@contextmanager
-def opened_jobs(setup: Setup, progress: Progress) -> Iterator[Jobs]:
-    """The jobs of a rebuild, by whoever holds the lock: runs of killed rebuilds are ended."""
-    with instance_of(setup.store) as instance:
-        _end_lost_runs(instance)
-        yield Jobs(job_defs(setup, progress), instance)
 
 
 def prepare_home(store: Store) -> Path:

@@ -1,11 +1,13 @@
 """The site of plain files, made from the database that is in place."""
 
 import base64
+from concurrent.futures import Executor
 
 import dagster as dg
 import polars as pl
 
 from herijk.assets.resources import Setup
+from herijk.assets.side_by_side import helper
 from herijk.assets.site_state import SITE_CODE, SITE_TABLE, site_made_from
 from herijk.warehouse.build.database import DATABASE_TABLE
 from herijk.warehouse.queries.views import Views
@@ -23,17 +25,24 @@ from herijk.warehouse.store.store import Store
 )
 def site(setup: Setup) -> dg.MaterializeResult:
     """Pages people can look at, swapped in whole."""
+    with helper() as other:
+        return make_site(setup.store, other)
+
+
+def make_site(store: Store, other: Executor) -> dg.MaterializeResult:
+    """Makes the pages with the help of a second process, and remembers from what."""
     from herijk.dashboards.site import build_site  # noqa: PLC0415 - Altair takes a second to import
 
-    size = build_site(setup.store)
-    setup.store.write(SITE_TABLE, pl.DataFrame(), site_made_from(setup.store))
-    index = setup.store.root / "site" / "index.html"
+    size = build_site(store, other)
+    store.write(SITE_TABLE, pl.DataFrame(), site_made_from(store))
+    index = store.root / "site" / "index.html"
     return dg.MaterializeResult(
+        asset_key="site",
         metadata={
             **size,
             "index": dg.MetadataValue.path(str(index.resolve())),
-            "reproducibility": dg.MetadataValue.md(_reproducibility(setup.store)),
-        }
+            "reproducibility": dg.MetadataValue.md(_reproducibility(store)),
+        },
     )
 
 

@@ -1,11 +1,12 @@
 """The steps of a build as assets: what `warehouse.build.graph` declares, as Dagster sees it."""
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import dagster as dg
 import polars as pl
 
+from herijk.assets.events import Result
 from herijk.assets.partitions import methods
 from herijk.assets.resources import Setup
 from herijk.assets.shown import preview
@@ -46,9 +47,10 @@ def step_asset(step: Step) -> dg.AssetsDefinition:
             chosen = [setup.known_methods.get(context.partition_key)]
         asked = {key.to_user_string() for key in context.selected_asset_keys}
         made = step.make(setup.store, chosen, wanted=asked)
-        for table, frame in made.tables.items():
-            yield dg.MaterializeResult(asset_key=table, metadata=_metadata(table, frame))
-        yield from _check_results(made, context.selected_asset_check_keys)
+        checks = {key.name for key in context.selected_asset_check_keys}
+        for result in results_of(made):
+            if isinstance(result, dg.MaterializeResult) or result.check_name in checks:
+                yield result
 
     return asset
 
@@ -102,17 +104,17 @@ def _metadata(table: str, frame: pl.DataFrame) -> dict[str, Any]:
     return metadata | preview(table, frame)
 
 
-def _check_results(
-    made: Made, asked: Collection[dg.AssetCheckKey]
-) -> Iterator[dg.AssetCheckResult]:
+def results_of(made: Made) -> Iterator[Result]:
+    """What a step made, and what does not hold of it."""
+    for table, frame in made.tables.items():
+        yield dg.MaterializeResult(asset_key=table, metadata=_metadata(table, frame))
     for check, faults in made.faults.items():
-        if dg.AssetCheckKey(dg.AssetKey(check.table), check.name) in asked:
-            yield dg.AssetCheckResult(
-                check_name=check.name,
-                asset_key=check.table,
-                passed=not faults,
-                metadata={"lost": dg.MetadataValue.json(list(faults))},
-            )
+        yield dg.AssetCheckResult(
+            check_name=check.name,
+            asset_key=check.table,
+            passed=not faults,
+            metadata={"lost": dg.MetadataValue.json(list(faults))},
+        )
 
 
 STEP_ASSETS = {step.name: step_asset(step) for step in STEPS}

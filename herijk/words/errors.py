@@ -115,6 +115,11 @@ ERRORS: Final[dict[str, str]] = {
         "{} is beschadigd. Het is opnieuw te maken: draai herijk rebuild; komt dit terug, "
         "kijk dan naar de schijf"
     ),
+    "a process that helped with the rebuild was ended, perhaps as memory ran out. Run it again: "
+    "what was finished is kept": (
+        "een proces dat bij het herrekenen hielp is gestopt, misschien omdat het geheugen vol was. "
+        "Start het opnieuw: wat af was, blijft"
+    ),
     "{} changed while it was read. Try again when nobody is copying files into {}": (
         "{} veranderde tijdens het lezen. Probeer opnieuw wanneer niemand bestanden naar "
         "{} kopieert"

@@ -10,9 +10,10 @@ import pytest
 
 from herijk.dashboards.html import as_json
 from herijk.dashboards.site import build_site
+from herijk.dashboards.site.boats import boat_pages
 from herijk.dashboards.site.cells import CODES, KEPT
 from herijk.dashboards.site.downloads import SHEETS
-from herijk.dashboards.site.pages import MENU, all_pages
+from herijk.dashboards.site.pages import MENU, method_names, shared_pages
 from herijk.dashboards.site.parts import (
     boat_path,
     default_method,
@@ -157,7 +158,7 @@ def test_a_log_s_factors_are_shown_as_often_as_the_table_has_them(site, store):
 
 def test_a_column_and_a_code_on_a_page_have_a_text(store):
     with Views(store) as views:
-        pages_made = list(all_pages(views))
+        pages_made = [*shared_pages(views), *boat_pages(views, method_names(views))]
     tables = [t for page in pages_made for s in page.sections for t in s.tables]
     drawn = [
         frame
@@ -191,7 +192,7 @@ def test_nothing_half_made_is_left(store):
 
 def test_a_failing_build_leaves_the_old_site(store, site, monkeypatch):
     before = hashes(site)
-    monkeypatch.setattr("herijk.dashboards.site.render.all_pages", lambda _: 1 / 0)
+    monkeypatch.setattr("herijk.dashboards.site.render.shared_pages", lambda _: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         build_site(store)
     assert hashes(site) == before

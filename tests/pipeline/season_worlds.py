@@ -33,11 +33,15 @@ class Setup:
     altered_share: float = 0.0
     altered_sd: float = 0.08
     ageing_per_year: float = 0.0
+    ageing_apart_per_year: float = 0.0
+    """More of it for every other boat, less for the others."""
     gps_run_error: float = 0.012
     gps_season_error: float = 0.003
     kappa_error: float = 0.03
     force_step: tuple[int, float] | None = None
     log_factors: tuple[tuple[int, float], ...] = ()
+    log_change: tuple[int, int, float] | None = None
+    """Season, number of tows until its log was replaced, and change of the ln factor."""
 
 
 CLEAN = Setup()
@@ -61,7 +65,7 @@ def simulate(setup: Setup, seed: int) -> World:
     towed = np.zeros(setup.boats, bool)
     rows = []
     for season, crews in _schedule(setup):
-        for boat in crews:
+        for day, boat in enumerate(crews):
             if towed[boat] and rng.random() < setup.altered_share:
                 state[boat] += setup.altered_sd * rng.standard_normal()
             towed[boat] = True
@@ -75,17 +79,26 @@ def simulate(setup: Setup, seed: int) -> World:
                     state[boat],
                     ln_weight[boat] + change,
                     change,
-                    ln_factor[season],
+                    ln_factor[season] + _replaced(setup, season, day),
                     gps_offset[season],
                     rng,
                 )
             )
+            rows[-1]["day"] = float(day) if setup.log_change else None
     tows = pl.DataFrame(rows, infer_schema_length=None).with_columns(
         (pl.col("season").cast(pl.String) + "-" + pl.int_range(pl.len()).cast(pl.String)).alias(
             "tow_id"
         )
     )
     return World(tows, {s: x for s, x in ln_factor.items() if s < ANCHORED_FROM})
+
+
+def _replaced(setup, season, day):
+    """Change of the log's ln factor after it was replaced."""
+    if setup.log_change is None:
+        return 0.0
+    when, first, change = setup.log_change
+    return change if season == when and day >= first else 0.0
 
 
 def _true_ln_factor(season, rng):
@@ -122,7 +135,9 @@ def _tow(setup, season, boat, boats, ln_cw, ln_weight, change, ln_factor, gps_of
     r, q = boats["r"][boat], boats["r"][boat] / (1 - boats["r"][boat])
     wander = 0.0 if anchored else setup.wander * rng.standard_normal()
     y2 = np.exp(2 * (0.0 if anchored else ln_factor + wander))
-    level = ln_cw + 0.4 * change + setup.ageing_per_year * (season - 2009)
+    ageing = setup.ageing_per_year + (-1) ** boat * setup.ageing_apart_per_year
+    level = ln_cw + 0.4 * change + ageing * (season - 2009)
+    truth = level
     q_log = r * y2 / (1 - r * y2)
     level += np.log(y2) - np.log((1 - r * y2) / (1 - r))
     if setup.force_step and setup.force_step[0] == season:
@@ -142,6 +157,7 @@ def _tow(setup, season, boat, boats, ln_cw, ln_weight, change, ln_factor, gps_of
         "rowers": 8,
         "crew_class": "H",
         "ln_cw": level,
+        "true_ln_cw": truth,
         "kappa": 2 * (1 + q_guess),
         "ln_cw_sd": 0.41 * setup.run_noise,
         "weight_kg": float(np.exp(ln_weight)),
@@ -156,7 +172,6 @@ def _tow(setup, season, boat, boats, ln_cw, ln_weight, change, ln_factor, gps_of
         "q": q_log + 2.5 * setup.run_noise * rng.standard_normal(),
         "q_sd": 2.5 * setup.run_noise,
         "ln_cw_q_cov": 0.0,
-        "day": None,
     }
 
 

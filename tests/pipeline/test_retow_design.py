@@ -71,9 +71,9 @@ def test_each_boat_is_chosen_once_and_tells_less_than_the_one_before(found):
 
 
 def test_the_first_choice_is_the_best_of_all_by_brute_force(tows):
-    """Without GPS and ageing the covariance is that of plain least squares, before and after."""
+    """Without GPS, ageing and drift the covariance is that of plain least squares."""
     bare = tows.with_columns(pl.lit(None).cast(pl.Float64).alias("gps_ln_ratio"))
-    found = dataclasses.replace(estimate_season_factors(bare), ageing_sd=0.0)
+    found = dataclasses.replace(estimate_season_factors(bare), ageing_sd=0.0, drift_sd=0.0)
     found = dataclasses.replace(found, covariance=with_boats_as_unknowns(found))
     choice = retow_choice(found, most=1)
     lines = tows.select(LINE).unique().rows()

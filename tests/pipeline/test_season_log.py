@@ -120,6 +120,19 @@ def test_ageing_is_told_from_log_errors():
     assert found.factors["factor"].to_numpy() == pytest.approx(truth, abs=0.001)
 
 
+def test_boats_that_age_apart_are_seen_to_drift_and_their_best_estimates_hold():
+    """Half of the boats get 2 % worse a year, the others do not."""
+    setup = replace(CLEAN, ageing_per_year=0.01, ageing_apart_per_year=0.01)
+    world = simulate(setup, 3)
+    found = estimate_season_factors(world.tows)
+    calm = estimate_season_factors(simulate(CLEAN, 3).tows)
+    assert calm.drift_sd < 0.004
+    assert found.drift_sd > 0.01
+    best = found.best.join(world.tows.select("tow_id", "true_ln_cw"), on="tow_id")
+    held = best.select(pl.col("true_ln_cw").is_between("lo", "hi")).to_series()
+    assert held.mean() > 0.93
+
+
 def test_wander_within_the_season_is_found_and_widens_the_interval():
     found = estimate_season_factors(simulate(replace(CLEAN, wander=0.015), 2).tows)
     calm = estimate_season_factors(simulate(CLEAN, 2).tows)
@@ -326,6 +339,18 @@ def test_a_fault_of_the_load_cell_is_found_beside_dgps_and_corrected():
     corrected = found.instruments.filter(pl.col("force_factor") != 1.0)
     assert corrected["tow_id"].str.starts_with("2016").all()
     assert corrected.height == found.tows.filter(pl.col("season") == 2016).height
+
+
+@pytest.mark.parametrize("seed", [2, 9])
+def test_a_log_replaced_is_not_taken_for_many_tows_pulled_askew(seed):
+    """Of an earlier log 8 of 24 tows: so few may have been pulled askew, each by 10 %."""
+    world = simulate(replace(CLEAN, log_change=(2010, 8, -0.04)), seed)
+    found = estimate_season_factors(world.tows).diagnosis
+    change = found.filter(season=2010, instrument="log_change").row(0, named=True)
+    assert change["verdict"] == "fault"
+    assert change["estimate"] == pytest.approx(-0.04, abs=0.006)
+    tow = world.tows.filter(tow_id=change["first_tow"])
+    assert tow["day"].to_list() == [8.0]
 
 
 def test_a_tow_pulled_askew_is_told_from_an_altered_boat():

@@ -13,15 +13,19 @@ from pathlib import Path
 import polars as pl
 import pytest
 
+from herijk.pipeline.assessment.plausibility import implausible
+from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.method.definition import shipped_method
-from herijk.simulate import WorldSettings, simulate_world
+from herijk.simulate import WorldSettings, simulate_world, world_settings
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.warehouse.build.graph import ARCHIVE
 from herijk.warehouse.build.graph import METHOD as METHOD_STEP
+from herijk.warehouse.build.plausible import with_doubts
 from herijk.warehouse.editions.publish import Terms, lines_to_look_at, publish
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.editions import read_edition
 from herijk.warehouse.store.store import Store
+from tests.worlds import measure
 
 DAY = dt.date(2026, 11, 22)
 WORLD = WorldSettings(seasons=(2015, 2016, 2017), tows_per_season=10, rate_hz=20, seed=5)
@@ -150,6 +154,15 @@ def test_angles_in_radians_are_told_from_still_air(archive):
     assert set(found) == {"2016-007"}
     assert found["2016-007"][0] == "wind_not_plausible"
     assert "radians" in found["2016-007"][1]
+
+
+def test_a_log_replaced_within_a_season_is_seen_as_a_part_and_doubts_no_tow():
+    """Logs may differ by 6 %: the joint model needs these tows to say by how much."""
+    size = {"seasons": (2010, 2015), "tows_per_season": 12, "rate_hz": 10, "seed": 3}
+    world = measure(world_settings("log-replaced", **size))
+    shifts = [s for s in implausible(Batch.of(world.tows, world.blocks)) if s.quantity == "speed"]
+    assert [s.kind for s in shifts if s.clear] == ["part"]
+    assert with_doubts(world.tows, shifts)["doubts"].list.len().sum() == 0
 
 
 def test_an_archive_is_simulated_as_long_as_it_says_so(archive):

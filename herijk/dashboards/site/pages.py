@@ -5,7 +5,6 @@ from collections.abc import Callable, Iterator, Sequence
 import polars as pl
 
 from herijk.dashboards.site import headlines
-from herijk.dashboards.site.boats import boat_pages
 from herijk.dashboards.site.downloads import files_of
 from herijk.dashboards.site.parts import (
     Chart,
@@ -36,8 +35,8 @@ MENU = (
 )
 
 
-def all_pages(views: Views) -> Iterator[Page]:
-    """Every page of the site."""
+def shared_pages(views: Views) -> Iterator[Page]:
+    """Every page of the site but those of the boats."""
     methods = method_names(views)
     changes = line_changes(views)
     yield start_page(views, methods, changes)
@@ -55,7 +54,6 @@ def all_pages(views: Views) -> Iterator[Page]:
     yield words_page()
     yield from guide_pages()
     yield from edition_pages(views)
-    yield from boat_pages(views, methods)
 
 
 def method_names(views: Views) -> list[str]:

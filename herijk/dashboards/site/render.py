@@ -7,7 +7,8 @@ its charts once, as a script beside them.
 import datetime as dt
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from concurrent.futures import Executor, wait
 from functools import cache
 from importlib.metadata import version
 from itertools import chain, groupby
@@ -22,9 +23,10 @@ from herijk.dashboards import fonts
 from herijk.dashboards.answer import told
 from herijk.dashboards.html import as_json, environment
 from herijk.dashboards.kept import kept
+from herijk.dashboards.site.boats import boat_pages
 from herijk.dashboards.site.cells import Cells, hashable
 from herijk.dashboards.site.downloads import copy_sheets
-from herijk.dashboards.site.pages import MENU, all_pages
+from herijk.dashboards.site.pages import MENU, method_names, shared_pages
 from herijk.dashboards.site.parts import Page, boat_path, race_path, type_path
 from herijk.dashboards.site.specifications import chart_specifications
 from herijk.dashboards.site.still import still_pictures
@@ -59,22 +61,35 @@ POLICY: Final = "; ".join(
 is in the style sheet, because some browsers keep fonts of another folder from such a page."""
 
 
-def build_site(store: Store) -> dict[str, int]:
+def build_site(store: Store, other: Executor | None = None) -> dict[str, int]:
     """Makes all pages from the database and swaps them in.
+
+    Args:
+        store: the data folder.
+        other: a second process, for the half of the work that boats are; without, all is done here.
 
     Returns:
         Files and bytes of the site.
     """
-    return build_pages(store, store.root / "site")
+    return build_pages(store, store.root / "site", other=other)
 
 
-def build_pages(store: Store, target: Path, as_of: dt.date | None = None) -> dict[str, int]:
+def build_pages(
+    store: Store, target: Path, as_of: dt.date | None = None, other: Executor | None = None
+) -> dict[str, int]:
     """The same in another folder, and as of a day; what stood in the folder is replaced."""
     target.parent.mkdir(parents=True, exist_ok=True)
     beside = Path(tempfile.mkdtemp(prefix=TEMPORARY_PREFIX, dir=target.parent))
     try:
-        with Views(store, as_of) as views:
-            _write(views, beside)
+        boats = store.root, beside, as_of
+        elsewhere = other.submit(write_boats, *boats) if other else None
+        try:
+            with Views(store, as_of) as views:
+                _write_shared(views, beside)
+                _write_pages(views, beside, shared_pages(views))
+        finally:
+            wait([elsewhere] if elsewhere else [])  # it would write in a folder that is gone
+        elsewhere.result() if elsewhere else write_boats(*boats)
         copy_sheets(store, beside)
         written = [f for f in beside.rglob("*") if f.is_file()]
         size = {"files": len(written), "bytes": sum(f.stat().st_size for f in written)}
@@ -85,7 +100,13 @@ def build_pages(store: Store, target: Path, as_of: dt.date | None = None) -> dic
     return size
 
 
-def _write(views: Views, folder: Path) -> None:
+def write_boats(data: Path, folder: Path, as_of: dt.date | None) -> None:
+    """Writes the pages of all boats of a data folder."""
+    with Views(Store(data), as_of) as views:
+        _write_pages(views, folder, boat_pages(views, method_names(views)))
+
+
+def _write_shared(views: Views, folder: Path) -> None:
     static = folder / "static"
     static.mkdir()
     for name in OWN_FILES:
@@ -95,8 +116,11 @@ def _write(views: Views, folder: Path) -> None:
     for language in LANGUAGES:
         (static / f"charts-{language}.js").write_text(charts_script(language), encoding="utf-8")
     (static / "find.js").write_text(_search_script(views), encoding="utf-8")
+
+
+def _write_pages(views: Views, folder: Path, pages: Iterable[Page]) -> None:
     editions = [Edition(views, language) for language in LANGUAGES]
-    for page in all_pages(views):
+    for page in pages:
         for edition in editions:
             _put(folder / edition.address(page), edition.html(page))
         if page.data:

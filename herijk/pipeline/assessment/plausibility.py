@@ -2,9 +2,9 @@
 
 A force in kgf under a header of newtons is a sound number of a boat that does not exist. No tow
 shows that by itself; the others do. What each tow shows is compared with what all the others let
-expect, and a shift of a tow, a day, a season or the whole archive that they rule out is found and
-named. Nothing here depends on a method, and nothing here changes a number: whoever computes leaves
-these tows out of what others share.
+expect, and a shift of a tow, a day, a season, a part of one, or the whole archive that they rule
+out is found and named. Nothing here depends on a method, and nothing here changes a number: whoever
+computes leaves these tows out of what others share.
 
 The expectation is a Gaussian model with known variances (mean-shift outliers; Cook & Weisberg 1982,
 Residuals and Influence in Regression, 2.2.2): the shift of a group of tows is estimated from all
@@ -34,7 +34,7 @@ LOOK: Final = 3.0
 stand. One sound tow in 400, were all as Gaussian as the model."""
 
 FEWEST: Final = 3
-"""Tows that a day, a season or an archive needs before it is judged as a whole."""
+"""Tows that a day, a season, either part of one, or an archive needs to be judged as a whole."""
 
 GROSS: Final = np.log(1.6)
 """Shift of a logarithm that no boat explains: the widest spread within a type is far less."""
@@ -78,7 +78,8 @@ class Shift:
     """A shift that chance does not explain.
 
     Attributes:
-        kind, key: what shifted: the `tow`, `day`, `season` or `archive`, and which.
+        kind, key: what shifted: the `tow`, `day`, `part` (of a season, from a day on), `season` or
+            `archive`, and which.
         quantity: `force`, `zero` (of the load cell), `wind` (its speed), `vane` or `speed`.
         size: of ln force; in N for a zero; relative for the others.
         sd: its standard deviation; 0 where the samples themselves leave no doubt.
@@ -122,7 +123,7 @@ def implausible(batch: Batch) -> list[Shift]:
         *_of_force(seen),
         *_of_one(seen, "wind", seen.wind_ahead, WIND_AHEAD, _GROUPS),
         *_of_one(seen, "vane", seen.wind_abeam, WIND_ABEAM, _GROUPS),
-        *_of_one(seen, "speed", seen.speed, SPEED, ("tow",)),
+        *_of_one(seen, "speed", seen.speed, SPEED, ("tow", "part")),
     ]
 
 
@@ -151,6 +152,9 @@ Group = tuple[str, str, IntArray]
 
 def _groups(tows: pl.DataFrame, kinds: tuple[str, ...]) -> list[Group]:
     """The groups that are judged."""
+    if "part" in kinds:
+        whole = tuple(kind for kind in kinds if kind != "part")
+        return [*_groups(tows, whole), *_parts(tows)]
     keys = {
         "tow": tows["tow_id"],
         "day": tows["tow_date"].cast(pl.String),
@@ -163,6 +167,16 @@ def _groups(tows: pl.DataFrame, kinds: tuple[str, ...]) -> list[Group]:
         for name, places in _places(keys[kind])
         if kind == "tow" or len(places) >= FEWEST
     ]
+
+
+def _parts(tows: pl.DataFrame) -> Iterator[Group]:
+    """Seasons from each of their days on: a log may be replaced between two days."""
+    day = tows["tow_date"].cast(pl.String).to_numpy()
+    for _, places in _places(tows["season"].cast(pl.String)):
+        for first in np.unique(day[places])[1:]:
+            after = places[day[places] >= first]
+            if FEWEST <= len(after) <= len(places) - FEWEST:
+                yield ("part", str(first), after)
 
 
 def _places(key: pl.Series) -> Iterator[tuple[str, IntArray]]:

@@ -21,6 +21,8 @@ class Settings:
         log_sd: ln factor of a log of which nothing is known: the worst log was 6 % wrong.
         ageing_per_year: change of ln Cw per year; half a per cent has been seen.
         weight_elasticity, length_elasticity: dlnCw / dln of the empty boat's weight, of its length.
+        drift_sd: of the change of a boat's ln Cw in a year beyond the ageing that all share, a
+            random walk; with `spread`.
         tow_sd, bend_sd_tow, gps_sd, tow_log_sd, calibration_sd: between tows, each with `spread`:
             ln Cw beyond its random part, the same of the bend, ln(GPS / log) beyond its given
             uncertainty, the ln factor of the log, and that of a log calibrated on dGPS: by the
@@ -59,6 +61,7 @@ class Settings:
     ageing_per_year: Prior = Prior(0.0, 0.005)
     weight_elasticity: Prior = Prior(0.4, 0.4)
     length_elasticity: Prior = Prior(0.0, 1.0)
+    drift_sd: float = 0.003
     tow_sd: float = 0.0065
     bend_sd_tow: float = 0.01
     gps_sd: float = 0.008

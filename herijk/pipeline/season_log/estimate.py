@@ -37,7 +37,8 @@ class SeasonFactors:
         tow_log_sd: standard deviation of ln factor from tow to tow, by first season of the era.
         calibration_sd: the same of tows calibrated on dGPS.
         tow_sd: standard deviation of ln Cw of a tow beyond its random part and its log.
-        ageing_per_year: change of ln Cw per year, with `ageing_sd`.
+        ageing_per_year: change of ln Cw per year that all boats share, with `ageing_sd`.
+        drift_sd: standard deviation of what a boat drifts from that in a year.
         weakest_mode_sd: standard deviation of the combination of ln factors that is known worst.
         tows: what it was estimated from.
         instruments: per tow, what its instruments did: `pipeline.season_log.tows`.
@@ -53,6 +54,7 @@ class SeasonFactors:
     tow_sd: float
     ageing_per_year: float
     ageing_sd: float
+    drift_sd: float
     weakest_mode_sd: float
     tows: pl.DataFrame
     instruments: pl.DataFrame
@@ -137,6 +139,7 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
         tow_sd=float(np.exp(0.5 * fit.state.ln_variance[0])),
         ageing_per_year=ageing_per_year,
         ageing_sd=ageing_sd,
+        drift_sd=float(np.sqrt(fit.drift_variance)),
         weakest_mode_sd=mode_sd,
         tows=tows,
         instruments=instruments,

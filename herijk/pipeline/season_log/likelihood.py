@@ -1,9 +1,10 @@
 """What the tows of a boat say together: their joint normal density, unreported changes summed.
 
 Each tow gives three numbers: ln Cw and the bend q of its own curve, and ln(GPS / log). The boat's
-level and bend are random and integrated out. It may have been altered between two tows without a
-report, and any tow of the years before steering was aided may have been pulled askew: every pattern
-of at most `MOST_CHANGES` of these is a component of a normal mixture.
+level and bend are random and integrated out. The level drifts in a way of the boat's own, as paint,
+wear and fouling differ: a random walk over the seasons. A boat may have been altered between two
+tows without a report, and any tow of the years before steering was aided may have been pulled
+askew: every pattern of at most `MOST_CHANGES` of these is a component of a normal mixture.
 Belongs here: that density with its slopes, per boat, as arrays. Does not: what moves the numbers of
 a tow (`effects`) and the search for the unknowns (`posterior`).
 """
@@ -38,6 +39,7 @@ class Patterns:
         askew: (patterns, tows) whether a tow was pulled askew.
         early: number of tows, the first ones, that may have been.
         level, bend: (patterns, tows, tows) prior covariance of the boat's level and bend.
+        drift: (boats, tows, tows) years that the drift of two tows has in common.
         excess: (patterns, tows) mean of what being pulled askew adds to ln Cw.
         excess_variance: of that.
     """
@@ -48,6 +50,7 @@ class Patterns:
     early: int
     level: FloatArray
     bend: FloatArray
+    drift: FloatArray
     excess: FloatArray
     excess_variance: float
 
@@ -68,25 +71,29 @@ class Patterns:
         return np.asarray(ln_prior - scipy.special.logsumexp(ln_prior))
 
 
-def patterns_of(boat: IntArray, early: BoolArray, settings: Settings) -> list[Patterns]:
+def patterns_of(
+    boat: IntArray, season: FloatArray, early: BoolArray, settings: Settings
+) -> list[Patterns]:
     """Boats by their number of tows and of early ones, with every pattern of changes.
 
     Args:
         boat: index of the boat as it was until a reported alteration, (tows,), sorted by time.
+        season: year of each tow, (tows,).
         early: whether a tow may have been pulled askew, (tows,).
     """
     order = np.argsort(boat, kind="stable")
     first, count = np.unique(boat[order], return_index=True, return_counts=True)[1:]
     kinds = np.stack([count, np.bincount(boat, early).astype(np.int64)], axis=1)
     return [
-        _patterns(order[first[mine][:, None] + np.arange(kind[0])], int(kind[1]), settings)
+        _patterns(order[first[mine][:, None] + np.arange(kind[0])], season, int(kind[1]), settings)
         for kind in np.unique(kinds, axis=0)
         for mine in [(kinds == kind).all(axis=1)]
     ]
 
 
-def _patterns(tow: IntArray, early: int, settings: Settings) -> Patterns:
+def _patterns(tow: IntArray, season: FloatArray, early: int, settings: Settings) -> Patterns:
     tows = tow.shape[1]
+    since_first = season[tow] - season[tow[:, :1]]
     gaps = tows - 1
     chosen = [c for n in range(MOST_CHANGES + 1) for c in combinations(range(gaps + early), n)]
     there = np.array([np.isin(np.arange(gaps + tows), places) for places in chosen])
@@ -100,6 +107,7 @@ def _patterns(tow: IntArray, early: int, settings: Settings) -> Patterns:
         early,
         LEVEL_SD**2 + settings.changed_sd**2 * step,
         settings.bend_sd**2 + settings.changed_bend_sd**2 * step,
+        np.minimum(since_first[:, :, None], since_first[:, None, :]),
         settings.askew_excess.mean * askew,
         settings.askew_excess.sd**2,
     )
@@ -110,19 +118,23 @@ class Told:
     """What boats with the same number of tows say, at given unknowns; 3 x tows numbers per boat.
 
     Attributes:
+        ln_density: (boats,) of what was observed, over all patterns.
         weight: (boats, patterns) posterior of each pattern.
         precision: (boats, patterns, n, n) of the numbers.
         pull: (boats, patterns, n) precision times residual.
         mean_precision, mean_pull: the same, averaged over patterns.
+        drift: (boats, n, n) part of the covariance of the numbers that is the boats' drift.
         slope: (boats, n, unknowns) of the numbers by the unknowns.
     """
 
     patterns: Patterns
+    ln_density: FloatArray
     weight: FloatArray
     precision: FloatArray
     pull: FloatArray
     mean_precision: FloatArray
     mean_pull: FloatArray
+    drift: FloatArray
     slope: FloatArray
 
     @property
@@ -150,6 +162,7 @@ def tell(
     covariance: FloatArray,
     state: FloatArray,
     slope: FloatArray,
+    drift_variance: float,
     shares: FloatArray,
 ) -> Iterator[Told]:
     """The density of all boats.
@@ -160,6 +173,7 @@ def tell(
         covariance: (tows, 3, 3) of what is a tow's own.
         state: (tows, 3, 2) slope of the numbers by the boat's level and bend.
         slope: (tows, 3, unknowns).
+        drift_variance: of the drift of a boat's level, per year.
         shares: of gaps between tows in which a boat was altered without a report, and of early tows
             that were pulled askew.
     """
@@ -168,6 +182,9 @@ def tell(
         n, z = 3 * tows, state[group.tow]
         full = np.einsum("bki,blj,pkl->bpkilj", z[..., 0], z[..., 0], group.level)
         full += np.einsum("bki,blj,pkl->bpkilj", z[..., 1], z[..., 1], group.bend)
+        drift = drift_variance * group.drift
+        drift = np.einsum("bki,blj,bkl->bkilj", z[..., 0], z[..., 0], drift)
+        full += drift[:, None]
         each = np.arange(tows)
         # Indexing twice with one array puts that axis first.
         full[:, :, each, :, each, :] += covariance[group.tow].swapaxes(0, 1)[:, :, None]
@@ -179,13 +196,16 @@ def tell(
         own = own.reshape(boats, -1, n)
         pull = np.einsum("bpij,bpj->bpi", precision, own)
         ln_density = -0.5 * ((pull * own).sum(axis=2) + np.linalg.slogdet(full)[1])
-        weight = scipy.special.softmax(ln_density + group.prior(shares), axis=1)
+        ln_joint = ln_density + group.prior(shares)
+        weight = scipy.special.softmax(ln_joint, axis=1)
         yield Told(
             group,
+            scipy.special.logsumexp(ln_joint, axis=1),
             weight,
             precision,
             pull,
             np.einsum("bp,bpij->bij", weight, precision),
             np.einsum("bp,bpi->bi", weight, pull),
+            drift.reshape(boats, n, n),
             slope[group.tow].reshape(boats, n, -1),
         )

@@ -2,7 +2,8 @@
 
 Given the alterations and faults the model is linear and Gaussian. The unknowns and the variances
 are searched by scoring (REML: Patterson & Thompson 1971; variances with log-normal priors), the
-posterior is Laplace's about the mode. A fault joins or leaves the model by its odds, one at a time.
+posterior is Laplace's about the mode. A fault joins or leaves the model by its odds, one at a time;
+where that ends depends on where it began, so it is done from two ends.
 The answer is averaged over the best model and all that differ from it by one fault more, one less,
 or one for another (Bayesian model averaging in Occam's window: Madigan & Raftery 1994).
 """
@@ -37,7 +38,7 @@ and a step by it can leap to where the search finds no way back.
 """
 LEAST_SD: Final = 0.001
 """No number of a tow is ever better known: keeps the search finite where all tows agree."""
-NO_CHANGE: Final = np.full(2, 1e-9)
+NO_CHANGE: Final = np.full(2, 1e-300)
 """Shares of alterations and of tows pulled askew, where there are none."""
 ACCELERATED: Final = 8
 MODEST: Final = 0.1
@@ -117,7 +118,7 @@ class Problem:
             np.stack([u.share for u in unknowns], axis=1),
             np.unique(season, return_inverse=True)[1],
             np.where(network.group >= 0, np.maximum(era, 0), len(settings.era_starts)),
-            patterns_of(network.boat, season < settings.straight_from, settings),
+            patterns_of(network.boat, season, season < settings.straight_from, settings),
             settings,
         )
 
@@ -130,6 +131,13 @@ class Problem:
     def faults(self) -> IntArray:
         """Unknowns of faults that there may be."""
         return np.flatnonzero([u.chance < 1.0 for u in self.unknowns])
+
+    @property
+    def kinds(self) -> IntArray:
+        """Kind of each fault: all places where one log may have changed are one."""
+        names = [(u.name, u.season, u.group) for u in (self.unknowns[i] for i in self.faults)]
+        number = {name: place for place, name in enumerate(dict.fromkeys(names))}
+        return np.array([number[name] for name in names], dtype=np.int64)
 
     def slopes(self, value: FloatArray, active: IntArray) -> tuple[Slopes, FloatArray]:
         """Slopes and residuals, (n, 3), at values of the active unknowns."""
@@ -161,6 +169,11 @@ class _State:
     shares: FloatArray
 
     @property
+    def drift_variance(self) -> float:
+        """Of the drift of a boat's ln Cw, per year."""
+        return float(np.exp(self.ln_variance[-1]))
+
+    @property
     def array(self) -> FloatArray:
         return np.concatenate([self.value, self.ln_variance, scipy.special.logit(self.shares)])
 
@@ -176,13 +189,14 @@ class Fit:
     Attributes:
         active: (k,) unknowns in the model.
         state: their values, the ln variances (between tows, of bend, of GPS, of the log per era
-            and where calibrated, then the factor of each season) and the shares of what changes.
+            and where calibrated, then the factor of each season, last the drift of boats per year)
+            and the shares of what changes.
         covariance: (k, k) of those.
         ln_variance_covariance: of the ln variances.
         told: what the boats say there.
         slopes: of the numbers of each tow.
         own: (n, 3, 3) covariance of what is a tow's own.
-        parts: (variances, n, 3, 3) slope of `own` by each ln variance.
+        parts: (variances but that of drift, n, 3, 3) slope of `own` by each ln variance.
     """
 
     active: IntArray
@@ -199,6 +213,11 @@ class Fit:
         """Values of the active unknowns, (k,)."""
         return self.state.value
 
+    @property
+    def drift_variance(self) -> float:
+        """Of the drift of a boat's ln Cw, per year."""
+        return self.state.drift_variance
+
     def dof(self, direction: FloatArray) -> FloatArray:
         """Satterthwaite's degrees of freedom of combinations of the active unknowns.
 
@@ -206,20 +225,25 @@ class Fit:
             direction: (combinations, k).
         """
         along = direction @ self.covariance
-        by = np.zeros((len(direction), len(self.parts)))
+        by = np.zeros((len(direction), len(self.state.ln_variance)))
         for told in self.told:
             boats, tows = told.patterns.tow.shape
             moved = told.mean_precision @ told.slope @ along.T
+            by[:, -1] += np.einsum("bic,bij,bjc->c", moved, told.drift, moved, optimize=True)
             moved = moved.reshape(boats, tows, 3, -1)
             part = self.parts[:, told.patterns.tow]
-            by += np.einsum("btic,abtij,btjc->ca", moved, part, moved, optimize=True)
+            by[:, :-1] += np.einsum("btic,abtij,btjc->ca", moved, part, moved, optimize=True)
         variance = (along * direction).sum(axis=1)
         spread = np.einsum("ca,ab,cb->c", by, self.ln_variance_covariance, by)
         return np.asarray(2.0 * variance**2 / np.maximum(spread, 1e-300))
 
 
 def fit(
-    problem: Problem, active: IntArray, start: Fit | None = None, tolerance: float = TOLERANCE
+    problem: Problem,
+    active: IntArray,
+    start: Fit | None = None,
+    tolerance: float = TOLERANCE,
+    changes: bool = True,
 ) -> Fit:
     """Unknowns and variances with given faults in the model.
 
@@ -228,6 +252,7 @@ def fit(
         active: unknowns in the model.
         start: an earlier fit to begin at.
         tolerance: movement below which nothing moves any more.
+        changes: boats may have been altered, and tows pulled askew.
     """
     mean = _prior(problem, active)[0]
     if start is None:
@@ -240,10 +265,10 @@ def fit(
         now = replace(start.state, value=np.array(kept))
     places, steps = [now.array], []
     for iteration in range(MAX_ITERATIONS):
-        untroubled = start is None and iteration < UNTROUBLED
-        fitted, step = _step(problem, active, now, untroubled)
+        begins = start is None and iteration < UNTROUBLED
+        fitted, step = _step(problem, active, now, changes and not begins)
         steps.append(step)
-        if np.abs(step).max() < tolerance and not untroubled:
+        if np.abs(step).max() < tolerance and not begins:
             break
         following = _accelerated(places[-1 - REMEMBERED :], steps[-1 - REMEMBERED :])
         settled = iteration >= ACCELERATED and np.abs(step).max() < MODEST
@@ -252,19 +277,18 @@ def fit(
     return fitted
 
 
-def _step(
-    problem: Problem, active: IntArray, now: _State, untroubled: bool
-) -> tuple[Fit, FloatArray]:
+def _step(problem: Problem, active: IntArray, now: _State, changes: bool) -> tuple[Fit, FloatArray]:
     """What is known at a state, and the scoring step from there."""
     mean, precision = _prior(problem, active)
     prior, prior_precision = _variance_prior(problem)
     tangent, residual = problem.slopes(now.value, active)
     own, parts = _own(problem, tangent, now.ln_variance)
     design = problem.design(tangent, active)
-    shares = NO_CHANGE if untroubled else now.shares
-    told = list(tell(problem.groups, residual, own, tangent.state, design, shares))
+    shares = now.shares if changes else NO_CHANGE
+    drift = now.drift_variance
+    told = list(tell(problem.groups, residual, own, tangent.state, design, drift, shares))
     full = np.sum([t.complete_information.sum(axis=0) for t in told], axis=0)
-    seen = full if untroubled else np.sum([t.information.sum(axis=0) for t in told], axis=0)
+    seen = np.sum([t.information.sum(axis=0) for t in told], axis=0) if changes else full
     covariance: FloatArray = np.linalg.inv(_positive(seen, full, precision)).astype(np.float64)
     score = np.sum([t.score for t in told], axis=0)
     step = covariance @ (score - precision * (now.value - mean))
@@ -308,16 +332,18 @@ def _variance_prior(problem: Problem) -> tuple[FloatArray, FloatArray]:
     eras = [s.tow_log_sd] * len(s.era_starts)
     between = [s.tow_sd, s.bend_sd_tow, s.gps_sd, *eras, s.calibration_sd]
     seasons = int(problem.season.max()) + 1
-    mean = np.concatenate([2.0 * np.log(between), np.zeros(seasons)])
-    sd = np.concatenate([np.full(len(between), s.spread), np.full(seasons, s.season_spread)])
+    drift = 2.0 * np.log([s.drift_sd])
+    mean = np.concatenate([2.0 * np.log(between), np.zeros(seasons), drift])
+    sd = np.repeat([s.spread, s.season_spread, s.spread], [len(between), seasons, 1])
     return mean, sd**-2.0
 
 
 def _own(
     problem: Problem, tangent: Slopes, ln_variance: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Covariance of what is a tow's own, (n, 3, 3), and its slopes by each ln variance."""
+    """Covariance of what is a tow's own, (n, 3, 3), and its slopes by each of its ln variances."""
     n, eras = len(problem.q), len(problem.settings.era_starts) + 1
+    ln_variance = ln_variance[:-1]
     variance = np.exp(ln_variance)
     own_factor = variance[3 + eras :][problem.season]
     parts = np.zeros((len(ln_variance), n, 3, 3))
@@ -338,7 +364,8 @@ def _variance_slopes(
     told: list[Told], covariance: FloatArray, parts: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Slope of the restricted ln likelihood by the ln variances, and their information."""
-    slope, fisher = np.zeros(len(parts)), np.zeros((len(parts), len(parts)))
+    variances = len(parts) + 1
+    slope, fisher = np.zeros(variances), np.zeros((variances, variances))
     for t in told:
         boats, tows = t.patterns.tow.shape
         design = t.mean_precision @ t.slope
@@ -347,11 +374,14 @@ def _variance_slopes(
         each = np.arange(tows)
         blocks = excess.reshape(boats, tows, 3, tows, 3)[:, each, :, each, :]
         part = parts[:, t.patterns.tow]
-        slope += 0.5 * np.einsum("tbij,abtji->a", blocks, part, optimize=True)
+        slope[:-1] += 0.5 * np.einsum("tbij,abtji->a", blocks, part, optimize=True)
+        slope[-1] += 0.5 * np.einsum("bij,bij->", excess, t.drift)
         precision = t.mean_precision.reshape(boats, tows, 3, tows, 3)
         across = np.einsum("bkilj,abljm->abkilm", precision, part, optimize=True)
-        turned = np.ascontiguousarray(across.transpose(0, 1, 4, 5, 2, 3)).reshape(len(parts), -1)
-        fisher += 0.5 * across.reshape(len(parts), -1) @ turned.T
+        across = across.reshape(-1, boats, 3 * tows, 3 * tows)
+        across = np.concatenate([across, (t.mean_precision @ t.drift)[None]])
+        turned = np.ascontiguousarray(across.swapaxes(2, 3)).reshape(variances, -1)
+        fisher += 0.5 * across.reshape(variances, -1) @ turned.T
     return slope, fisher
 
 
@@ -393,14 +423,54 @@ class Posterior:
 
 def solve(problem: Problem) -> Posterior:
     """The posterior of everything, with the faults that the archive shows."""
-    active = problem.always
-    fitted = fit(problem, active, tolerance=ROUGH)
+    unchanged = _with_needed_faults(problem, None, changes=False)
+    ends = [_with_needed_faults(problem, start) for start in (None, unchanged)]
+    best = ends[int(first_largest(np.array([_ln_evidence(problem, end) for end in ends])))]
+    return _averaged(problem, fit(problem, best.active, best))
+
+
+def _with_needed_faults(problem: Problem, start: Fit | None, changes: bool = True) -> Fit:
+    """The fit with every fault that is likelier than not, and without the others.
+
+    A log that was replaced is easily taken for many tows pulled askew, and then is not missed. From
+    a start where no boat had changed it is found; what changed boats do without is left again.
+
+    Args:
+        problem: the archive.
+        start: where to begin.
+        changes: boats may have been altered, and tows pulled askew.
+    """
+    active = problem.always if start is None else start.active
+    fitted = fit(problem, active, start, ROUGH, changes)
     for _ in range(2 * MOST_FAULTS):
         chosen = _better(problem, fitted)
         if chosen is None:
             break
-        fitted = fit(problem, chosen, fitted, ROUGH)
-    return _averaged(problem, fit(problem, fitted.active, fitted))
+        fitted = fit(problem, chosen, fitted, ROUGH, changes)
+    return fitted
+
+
+def _ln_evidence(problem: Problem, fitted: Fit) -> float:
+    """Ln probability of all that was observed under the model of a fit, by Laplace's approximation.
+
+    The variances are taken at their mode. What is the same for all models is left out.
+    """
+    mean, precision = _prior(problem, fitted.active)
+    prior, prior_precision = _variance_prior(problem)
+    s, shares = problem.settings, fitted.state.shares
+    found = np.array([s.changed_gaps * s.changed_share, s.askew_tows * s.askew_share])
+    not_found = np.array([s.changed_gaps, s.askew_tows]) - found
+    faults = np.intersect1d(fitted.active, problem.faults)
+    chance = np.array([problem.unknowns[i].chance for i in faults])
+    return float(
+        sum(told.ln_density.sum() for told in fitted.told)
+        + found @ np.log(shares)
+        + not_found @ np.log1p(-shares)
+        - 0.5 * precision @ (fitted.value - mean) ** 2
+        - 0.5 * prior_precision @ (fitted.state.ln_variance - prior) ** 2
+        + 0.5 * (np.log(precision).sum() + np.linalg.slogdet(fitted.covariance)[1])
+        + scipy.special.logit(chance).sum()
+    )
 
 
 @dataclass(frozen=True)
@@ -496,11 +566,8 @@ def _in_window(problem: Problem, weight: FloatArray) -> FloatArray:
     A fault that is twenty times less likely than the best model lies in the tails that an interval
     of 95 % leaves out. All places where one log may have changed count as one.
     """
-    faults = [problem.unknowns[i] for i in problem.faults]
-    names = [(u.name, u.season, u.group) for u in faults]
-    kinds = {name: number for number, name in enumerate(dict.fromkeys(names))}
-    kind = np.array([kinds[name] for name in names], dtype=np.int64)
-    together = np.stack([np.bincount(kind, row[:-1], len(kinds))[kind] for row in weight])
+    kind = problem.kinds
+    together = np.stack([np.bincount(kind, row[:-1])[kind] for row in weight])
     kept = weight.copy()
     kept[:, :-1][together * WINDOW < weight.max()] = 0.0
     return np.asarray(kept / kept.sum())

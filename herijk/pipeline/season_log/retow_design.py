@@ -106,7 +106,8 @@ def _candidates(
     np.add.at(tie, (network.boat[loose], network.group[loose]), (kappa / own)[loose])
     years = season.max() + 1.0 - np.bincount(network.boat, season / own, boats) / weight
     new_tow = estimated.tow_sd**2 + float(np.median(random_sd)) ** 2
-    variance = new_tow + 1.0 / weight + (estimated.ageing_sd * years) ** 2
+    moved = (estimated.ageing_sd * years) ** 2 + estimated.drift_sd**2 * years
+    variance = new_tow + 1.0 / weight + moved
     last = network.tows.select(pl.col("state") == pl.col("state").max().over(LINE)).to_series()
     current = np.zeros(boats, dtype=bool)
     current[network.boat[last.to_numpy()]] = True

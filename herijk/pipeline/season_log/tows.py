@@ -201,10 +201,12 @@ def _of_boats(
     boats, tows = tow.shape
     state = posterior.fit.slopes.state[tow][..., 0]
     # Covariance of the level at each tow with every number of the boat, per pattern.
-    with_level = np.einsum("pkl,bli->bpkli", told.patterns.level, state)
+    drift = posterior.fit.drift_variance * told.patterns.drift
+    level = told.patterns.level + drift[:, None]
+    with_level = np.einsum("bpkl,bli->bpkli", level, state)
     with_level = with_level.reshape(boats, -1, tows, 3 * tows)
     gain = with_level @ told.precision
-    prior = np.einsum("pkk->pk", told.patterns.level)
+    prior = np.einsum("bpkk->bpk", level)
     variance = prior - (gain * with_level).sum(axis=3)
     by = true_level[tow][:, None] - gain @ design[tow].reshape(boats, 1, 3 * tows, -1)
     mean = np.einsum("bpkn,bpn->bpk", with_level, told.pull) + by @ away

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, Self
 
 import polars as pl
 import pyarrow as pa  # type: ignore[import-untyped]
@@ -143,6 +143,9 @@ class DamagedFileError(BrokenPromiseError):
             path,
         )
         self.path = path
+
+    def __reduce__(self) -> tuple[type[Self], tuple[Place]]:
+        return type(self), (self.path,)  # a helping process hands it over by its path
 
 
 _UNREADABLE: Final = (

@@ -1,0 +1,89 @@
+"""Steps that do not wait for each other in two processes: this one and a helper.
+
+Tables are made by code that holds Python's lock most of the time, so threads would not do. Which
+process makes a table changes nothing in it.
+"""
+
+import multiprocessing
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from herijk.pipeline.errors import UnavailableError
+from herijk.warehouse.build.graph import STEPS
+from herijk.warehouse.build.step import Made, Step
+from herijk.warehouse.store.methods import KnownMethods
+from herijk.warehouse.store.store import Store
+
+
+@dataclass(frozen=True)
+class Task:
+    """A step to be made, for some methods, in a data folder; both processes understand it."""
+
+    data: Path
+    step: str
+    methods: tuple[str, ...]
+
+    @property
+    def made_by(self) -> Step:
+        """The step itself."""
+        return next(step for step in STEPS if step.name == self.step)
+
+    @property
+    def method(self) -> str | None:
+        """The method, where the step is made once for each."""
+        return self.methods[0] if self.made_by.per_method else None
+
+    def do(self) -> Made:
+        """Makes the tables."""
+        store = Store(self.data)
+        known = KnownMethods.of(store)
+        return self.made_by.make(store, [known.get(name) for name in self.methods])
+
+
+@contextmanager
+def helper() -> Iterator[Executor]:
+    """A second process, which begins at once to import what it needs.
+
+    Raises:
+        UnavailableError: it was ended from outside, as by a machine short of memory.
+    """
+    afresh = multiprocessing.get_context("spawn")  # a copy of this one would lack its threads
+    try:
+        with ProcessPoolExecutor(1, mp_context=afresh) as process:
+            process.submit(Store, Path())
+            yield process
+    except BrokenProcessPool as error:
+        raise UnavailableError(
+            "a process that helped with the rebuild was ended, perhaps as memory ran out. Run it "
+            "again: what was finished is kept"
+        ) from error
+
+
+def side_by_side(tasks: Sequence[Task], other: Executor) -> list[Made]:
+    """What the tasks make, in their order; each process takes the next when it has done one."""
+    made: dict[Task, Made] = {}
+    queue = iter(tasks)
+
+    def elsewhere() -> None:
+        made.update((task, other.submit(task.do).result()) for task in queue)
+
+    with ThreadPoolExecutor(1) as waiting:
+        done = waiting.submit(elsewhere)
+        made.update((task, task.do()) for task in queue)
+        done.result()
+    return [made[task] for task in tasks]
+
+
+def stages(steps: Sequence[Step]) -> list[list[Step]]:
+    """The steps in their order, together where none reads what another of them makes."""
+    found: list[list[Step]] = []
+    for step in steps:
+        if found and not any(set(step.inputs) & set(other.outputs) for other in found[-1]):
+            found[-1].append(step)
+        else:
+            found.append([step])
+    return found

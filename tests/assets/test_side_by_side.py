@@ -1,0 +1,53 @@
+"""Steps shared by two processes: none twice, none lost, in their order; errors come out."""
+
+import copy
+import os
+import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from herijk.assets.side_by_side import helper, side_by_side, stages
+from herijk.pipeline.errors import UnavailableError
+from herijk.warehouse.build.graph import STEPS
+from herijk.warehouse.store.store import DamagedFileError
+
+
+@dataclass(frozen=True)
+class Slow:
+    """Takes longer, the earlier it comes."""
+
+    place: int
+    of: int
+
+    def do(self):
+        time.sleep(0.01 * (self.of - self.place))
+        return self.place
+
+
+def test_what_is_made_comes_in_the_order_of_the_tasks():
+    with ThreadPoolExecutor(1) as other:
+        assert side_by_side([Slow(place, 5) for place in range(5)], other) == list(range(5))
+
+
+def test_steps_stand_together_where_none_reads_what_another_makes():
+    found = stages(STEPS)
+    assert [step for stage in found for step in stage] == list(STEPS)
+    together = [{step.name for step in stage} for stage in found]
+    assert {"studies", "consistency", "register"} in together
+    for stage in found:
+        made = {name for step in stage for name in step.outputs}
+        assert made.isdisjoint(name for step in stage for name in step.inputs)
+
+
+def test_a_helper_that_is_ended_is_told_with_the_way_out():
+    with pytest.raises(UnavailableError, match="Run it again"), helper() as other:
+        other.submit(os._exit, 1).result()
+
+
+def test_a_damaged_file_found_by_the_helper_is_named():
+    found = copy.copy(DamagedFileError(Path("lake/tows.parquet")))  # as it is handed over
+    assert found.path == Path("lake/tows.parquet")
+    assert str(found).count("is damaged") == 1
