@@ -72,10 +72,10 @@ def _whole(views: Views, name: str, title: str, columns: Sequence[str] = ()) -> 
 
 REGISTER_COLUMNS = (
     *("name", "fsn_no", "boat_type", "rowers", "crew_class", "empty_thwart", "tow_date"),
-    *("valid_until", "status", "as_of"),
+    *("valid_until", "status"),
     *("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),
     *("waterline_length_m", "beam_m", "bow_height_m", "weight_kg"),
-    *("verification_code", "method"),
+    "verification_code",
 )
 REGISTER_CARDS = (
     *("name", "fsn_no", "boat_type", "rowers", "crew_class", "cw_kg_m", "cw_lo_kg_m"),
@@ -303,7 +303,7 @@ CHANGE_COLUMNS = (
         "new_speed_rank",
         "causes",
     ),
-    *("from_edition", "to_edition"),
+    "from_edition",
 )
 CHANGE_CARDS = (
     *("name", "fsn_no", "rowers", "crew_class", "old_cw_kg_m", "new_cw_kg_m"),
