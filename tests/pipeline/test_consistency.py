@@ -139,6 +139,12 @@ def assert_same_line(fit, other):
     assert np.column_stack([found.lo, found.hi]) == pytest.approx(other.conf_int(), rel=1e-9)
 
 
+def at(problem, sd):
+    """The model at these standard deviations."""
+    (fit,) = mixed.Fit.at([problem], mixed.COMPONENTS, np.array([sd]))
+    return fit
+
+
 def test_equal_errors_give_the_line_and_interval_of_ordinary_least_squares():
     problem = one_row_a_boat(np.full(12, 1e-6), true_sd=1.0)
     assert_same_line(mixed.fit(problem, (mixed.BOAT,)), sm.OLS(problem.y, problem.x).fit())
@@ -147,7 +153,7 @@ def test_equal_errors_give_the_line_and_interval_of_ordinary_least_squares():
 def test_known_variances_give_the_line_and_interval_of_weighted_least_squares():
     problem = one_row_a_boat(np.linspace(0.5, 3.0, 12) ** 2)
     other = sm.WLS(problem.y, problem.x, weights=1 / problem.variance).fit()
-    assert_same_line(mixed.Fit(problem, (), (0.0, 0.0, 0.0)), other)
+    assert_same_line(at(problem, (0.0, 0.0, 0.0)), other)
 
 
 def test_the_mean_of_unlike_boats_is_that_of_a_meta_analysis():
@@ -155,7 +161,7 @@ def test_the_mean_of_unlike_boats_is_that_of_a_meta_analysis():
     problem = one_row_a_boat(np.linspace(0.5, 3.0, 12) ** 2, true_sd=2.0)
     other = combine_effects(problem.y, problem.variance, method_re="iterated", atol=1e-12)
     only_mean = replace(problem, x=np.ones((12, 1)))
-    found = mixed.Fit(only_mean, (mixed.BOAT,), (np.sqrt(other.tau2), 0.0, 0.0))
+    found = at(only_mean, (np.sqrt(other.tau2), 0.0, 0.0))
     assert found.beta[0] == pytest.approx(other.mean_effect_re, rel=1e-9)
     half = stats.t.ppf(0.975, 11) * other.sd_eff_w_re_hksj
     assert found.coefficients().hi[0] - found.beta[0] == pytest.approx(half, rel=1e-6)
@@ -194,7 +200,7 @@ def test_problems_side_by_side_are_fitted_as_each_alone():
 def test_leaving_a_boat_out_equals_fitting_without_it():
     problem = grouped_data()
     sd = (2.0, 1.0, 0.5)
-    found = mixed.Fit(problem, mixed.COMPONENTS, sd).leave_boats_out()
+    found = at(problem, sd).leave_boats_out()
     v = np.diag(problem.variance + sd[2] ** 2)
     v += sd[0] ** 2 * (problem.boat[:, None] == problem.boat)
     v += sd[1] ** 2 * (problem.other[:, None] == problem.other)

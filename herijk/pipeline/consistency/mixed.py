@@ -62,11 +62,24 @@ class Fit:
         problem: what was fitted.
         free: components that were estimated; the others are 0.
         sd: standard deviations of boat, other and cell.
+        white: the problem at these.
     """
 
     problem: Problem
     free: tuple[str, ...]
     sd: tuple[float, float, float]
+    white: Whitened
+
+    @classmethod
+    def at(cls, problems: Sequence[Problem], free: tuple[str, ...], sds: FloatArray) -> list[Self]:
+        """Models of problems of one layout at given standard deviations, (problems, 3)."""
+        white = Whitened.of(Stack.of(problems), np.square(sds))
+        return [
+            cls(problem, free, (boat, other, cell), white.take([i]))
+            for i, (problem, (boat, other, cell)) in enumerate(
+                zip(problems, sds.tolist(), strict=True)
+            )
+        ]
 
     @property
     def dof(self) -> int:
@@ -74,19 +87,15 @@ class Fit:
         return self.problem.boats - int(self.problem.x.shape[1])
 
     @cached_property
-    def _white(self) -> Whitened:
-        return Whitened.of(Stack.of([self.problem]), np.square([self.sd]))
-
-    @cached_property
     def _root(self) -> FloatArray:
         """R with (R'R)^-1 the covariance of the fixed effects, (p, p); upper triangular."""
-        first = self._white.of_others.shape[1]
-        return self._white.r[0, first:, first:]
+        first = self.white.of_others.shape[1]
+        return self.white.r[0, first:, first:]
 
     @cached_property
     def misfit(self) -> float:
         """Y' P Y: the weighted sum of squares about the fixed effects."""
-        return float(self._white.misfit[0])
+        return float(self.white.misfit[0])
 
     @property
     def total_misfit(self) -> float:
@@ -103,7 +112,7 @@ class Fit:
     @cached_property
     def beta(self) -> FloatArray:
         """Fixed effects, shape (p,)."""
-        known = self._white.along[0, self._white.of_others.shape[1] :, 0]
+        known = self.white.along[0, self.white.of_others.shape[1] :, 0]
         plain = np.linalg.lstsq(self.problem.x, self.problem.y)[0]
         return np.asarray(plain + np.linalg.solve(self._root, known))
 
@@ -134,7 +143,7 @@ class Fit:
         For rows g the error is (P_gg)^-1 (P y)_g with variance (P_gg)^-1: no fit is repeated.
         Where the others do not determine the prediction, the variance is infinite.
         """
-        white, boat = self._white, self.problem.boat
+        white, boat = self.white, self.problem.boat
         weighed = white.weigh(np.concatenate([white.q, white.rest], axis=-1))[0][0]
         known, py = weighed[:, :-1], weighed[:, -1]
         weights, shared = white.weight[0], white.boat[0] / white.inflation[0]
@@ -231,11 +240,12 @@ def fit_all(problems: Sequence[Problem], free: tuple[str, ...]) -> list[Fit]:
     layouts: dict[tuple[object, ...], list[int]] = {}
     for i, problem in enumerate(problems):
         layouts.setdefault(problem.layout, []).append(i)
-    sds = np.empty((len(problems), len(COMPONENTS)))
+    fits: dict[int, Fit] = {}
     for numbers in layouts.values():
-        sds[numbers] = np.sqrt(_most_likely([problems[i] for i in numbers], free))
-    fitted = zip(problems, sds.tolist(), strict=True)
-    return [Fit(problem, free, (boat, other, cell)) for problem, (boat, other, cell) in fitted]
+        alike = [problems[i] for i in numbers]
+        found = Fit.at(alike, free, np.sqrt(_most_likely(alike, free)))
+        fits.update(zip(numbers, found, strict=True))
+    return [fits[i] for i in range(len(problems))]
 
 
 def _most_likely(problems: Sequence[Problem], free: tuple[str, ...]) -> FloatArray:

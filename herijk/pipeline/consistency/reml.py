@@ -7,7 +7,7 @@ cell. What a fitted model says about anything is in `mixed`.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Final, NamedTuple, Self
 
@@ -267,6 +267,11 @@ class Whitened:
         along = q[:, :n].mT @ y
         rest = y - q[:, :n] @ along
         return replace(bare, q=q[:, :n], of_others=q[:, n:], r=r, along=along, rest=rest)
+
+    def take(self, rows: Sequence[int]) -> Self:
+        """Some of the problems."""
+        arrays = {f.name: getattr(self, f.name)[rows] for f in fields(self) if f.name != "stack"}
+        return replace(self, stack=self.stack.take(np.asarray(rows)), **arrays)
 
     @cached_property
     def root(self) -> FloatArray:
