@@ -62,7 +62,7 @@ class Fit:
         problem: what was fitted.
         free: components that were estimated; the others are 0.
         sd: standard deviations of boat, other and cell.
-        white: the problem at these.
+        white: the problem at these, as a stack of one.
     """
 
     problem: Problem
@@ -71,15 +71,9 @@ class Fit:
     white: Whitened
 
     @classmethod
-    def at(cls, problems: Sequence[Problem], free: tuple[str, ...], sds: FloatArray) -> list[Self]:
-        """Models of problems of one layout at given standard deviations, (problems, 3)."""
-        white = Whitened.of(Stack.of(problems), np.square(sds))
-        return [
-            cls(problem, free, (boat, other, cell), white.take([i]))
-            for i, (problem, (boat, other, cell)) in enumerate(
-                zip(problems, sds.tolist(), strict=True)
-            )
-        ]
+    def at(cls, problem: Problem, free: tuple[str, ...], sd: tuple[float, float, float]) -> Self:
+        """The model with these standard deviations."""
+        return cls(problem, free, sd, Whitened.of(Stack.of([problem]), np.square([sd])))
 
     @property
     def dof(self) -> int:
@@ -242,18 +236,19 @@ def fit_all(problems: Sequence[Problem], free: tuple[str, ...]) -> list[Fit]:
         layouts.setdefault(problem.layout, []).append(i)
     fits: dict[int, Fit] = {}
     for numbers in layouts.values():
-        alike = [problems[i] for i in numbers]
-        found = Fit.at(alike, free, np.sqrt(_most_likely(alike, free)))
-        fits.update(zip(numbers, found, strict=True))
+        stack = Stack.of([problems[i] for i in numbers])
+        variances = _most_likely(stack, free)
+        white = Whitened.of(stack, variances)
+        for place, (i, sd) in enumerate(zip(numbers, np.sqrt(variances).tolist(), strict=True)):
+            fits[i] = Fit(problems[i], free, tuple(sd), white.of_one(place))
     return [fits[i] for i in range(len(problems))]
 
 
-def _most_likely(problems: Sequence[Problem], free: tuple[str, ...]) -> FloatArray:
-    """Variances of boat, other and cell of problems of one layout, (problems, 3)."""
-    stack = Stack.of(problems)
-    loose = np.tile(np.isin(COMPONENTS, free), (len(problems), 1))
+def _most_likely(stack: Stack, free: tuple[str, ...]) -> FloatArray:
+    """Variances of boat, other and cell of each problem, (problems, 3)."""
+    loose = np.tile(np.isin(COMPONENTS, free), (len(stack.unit), 1))
     # What the errors leave of the spread, in equal parts.
-    left = [p.spread**2 - float(p.variance.mean()) for p in problems]
+    left = stack.spread**2 - stack.variance.mean(axis=1)
     start = loose * (np.maximum(left, 0.1 * stack.unit) / max(len(free), 1))[:, None]
     variances, least = search(stack, loose, start)
     for place in np.flatnonzero(loose[0]):
