@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Final
 
+from herijk.dashboards.site.prose import GUIDES, guide_file
 from herijk.warehouse.build.database import DATABASE_TABLE
 from herijk.warehouse.store.code import code_hash
 from herijk.warehouse.store.files import file_sha256
@@ -17,6 +18,7 @@ def site_made_from(store: Store) -> str:
     """The database, and the code and files that make pages of it."""
     folder = Path(__file__).parents[1] / "dashboards"
     files = [f for f in folder.rglob("*.*") if f.parent.name in {"static", "templates"}]
+    files += map(guide_file, GUIDES)
     return fingerprint(
         store.made_from(DATABASE_TABLE),
         code_hash(SITE_CODE),

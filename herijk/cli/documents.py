@@ -21,8 +21,9 @@ def add_to(app: typer.Typer) -> None:
 
 
 def certificate(
-    fsn_no: Annotated[
-        str | None, typer.Argument(metavar="[FSN_NO]", help="Boat; all of the edition without.")
+    boat: Annotated[
+        str | None,
+        typer.Argument(metavar="[BOAT]", help="By number or name; all of the edition without."),
     ] = None,
     data: DataFolder = Path("data"),
     edition: Annotated[
@@ -36,12 +37,14 @@ def certificate(
     """The certificate of a boat, a page per crew; or of all boats of an edition in one file."""
     from herijk.dashboards.documents.certificate import certificates
     from herijk.warehouse.queries.answers import current_edition
+    from herijk.warehouse.queries.boats import the_boat
     from herijk.warehouse.queries.views import Views
     from herijk.warehouse.store.store import Store
 
     store = Store(data)
     with Views(store) as views:
         chosen = edition or current_edition(views)
+        fsn_no = boat and the_boat(views.table("boats"), boat)
         as_page = out is not None and out.suffix == ".html"
         made = certificates(views, chosen, fsn_no, LANGUAGE.get(), as_page)
     name = "-".join(filter(None, ("certificate", chosen, fsn_no)))

@@ -141,7 +141,7 @@ def verify(data: DataFolder = Path("data"), as_json: AsJson = False) -> None:
 
 def lineage(
     edition: EditionName,
-    fsn_no: Annotated[str, typer.Argument(metavar="FSN_NO", help="Boat, for example FSN211.")],
+    boat: Annotated[str, typer.Argument(metavar="BOAT", help="By number or name.")],
     data: DataFolder = Path("data"),
     as_json: AsJson = False,
 ) -> None:
@@ -150,7 +150,7 @@ def lineage(
     from herijk.warehouse.editions.lineage import lineage as find_lineage
     from herijk.warehouse.store.store import Store
 
-    show(find_lineage(Store(data), edition, fsn_no), text.lineage, as_json)
+    show(find_lineage(Store(data), edition, boat), text.lineage, as_json)
 
 
 def due(

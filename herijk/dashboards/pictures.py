@@ -36,6 +36,7 @@ _LINE = Markup(
     '<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" stroke="{}" stroke-width="{}"/>'
 )
 _BAR = Markup('<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="16" fill="{}"/>')
+_NUMBER = Markup('<path d="M{:.1f} {:.1f}l7 8l-7 8l-7 -8z" fill="{}"/>')
 _BAND = Markup('<polygon points="{}" fill="{}" fill-opacity="0.35"/>')
 _CURVE = Markup('<polyline points="{}" fill="none" stroke="black" stroke-width="2"/>')
 _OUT = Markup('<circle cx="{:.1f}" cy="{:.1f}" r="4" fill="{}" stroke="{}"/>')
@@ -125,7 +126,9 @@ def _run(x: Axis, y: Axis, row: dict[str, float]) -> Markup:
 def waterfall_picture(
     old: float, causes: Sequence[tuple[str, float]], speech: Speech, title: str
 ) -> Markup:
-    """From the old number to the new one, a bar a cause.
+    """From the old number to the new one: a mark at both, and a bar for each cause.
+
+    The axis need not begin at zero: both numbers are marks on it, and only changes have a length.
 
     Args:
         old: Cw before [kg/m].
@@ -135,31 +138,47 @@ def waterfall_picture(
     """
     steps = list(accumulate([old, *(factor for _, factor in causes)], mul))
     x = Axis.over([*steps, *_around(steps)], LABEL, WIDTH - VALUE)
-    ends = [(speech.say("before_number"), steps[0]), (speech.say("after_number"), steps[-1])]
-    rows = [_end(*ends[0], x, speech)]
-    for (name, factor), before, after in zip(causes, steps[:-1], steps[1:], strict=True):
-        ink = MORE if after > before else LESS
-        left, right = sorted((x.place(before), x.place(after)))
-        rows.append((name, left, max(right - left, 1.0), ink, speech.per_cent(factor)))
-    rows.append(_end(*ends[1], x, speech))
-    parts = [
-        part
-        for place, (name, left, width, ink, value) in enumerate(rows)
-        for part in (
-            _TEXT.format(LABEL - 8, place * ROW + 17, "end", name),
-            _BAR.format(left, place * ROW + 5, width, ink),
-            _TEXT.format(WIDTH, place * ROW + 17, "end", value),
-        )
-    ]
-    return _SVG.format(WIDTH, len(rows) * ROW, WIDTH, len(rows) * ROW, title, Markup().join(parts))
+    floor = (len(steps) + 1) * ROW + 4
+    parts = [*_scale(x, floor, speech), _number(0, "before_number", steps[0], x, speech)]
+    for row, ((name, factor), *ends) in enumerate(zip(causes, steps, steps[1:], strict=False), 1):
+        before, after = map(x.place, ends)
+        ink = MORE if factor > 1 else LESS
+        left, width = min(before, after), max(abs(after - before), 1.0)
+        parts += [
+            _LINE.format(before, row * ROW - 5, before, row * ROW + 5, GREY, 1),
+            _BAR.format(left, row * ROW + 5, width, ink),
+            *_row(row, name, speech.per_cent(factor)),
+        ]
+    row, end = len(steps), x.place(steps[-1])
+    parts.append(_LINE.format(end, row * ROW - 5, end, row * ROW + 5, GREY, 1))
+    parts.append(_number(row, "after_number", steps[-1], x, speech))
+    height = floor + 20
+    return _SVG.format(WIDTH, height, WIDTH, height, title, Markup().join(parts))
 
 
 def _around(steps: Sequence[float]) -> tuple[float, float]:
-    """A little room at both ends, so that the shortest bar is seen."""
+    """A little room at both ends, so that no mark is on the edge."""
     room = 0.25 * (max(steps) - min(steps)) or 0.01 * steps[0]
     return min(steps) - room, max(steps) + room
 
 
-def _end(name: str, value: float, x: Axis, speech: Speech) -> tuple[str, float, float, str, str]:
-    """A bar that begins at the left: a number, not a change."""
-    return name, LABEL, max(x.place(value) - LABEL, 1.0), TOTAL, speech.number(value, 2)
+def _scale(x: Axis, floor: float, speech: Speech) -> list[Markup]:
+    """Thin lines with their numbers below."""
+    parts = []
+    for tick in x.ticks:
+        parts.append(_LINE.format(x.place(tick), 2, x.place(tick), floor, "#ddd", 1))
+        label = speech.number(tick, x.digits)
+        parts.append(_TEXT.format(x.place(tick), floor + 15, "middle", label))
+    return parts
+
+
+def _number(row: int, key: str, value: float, x: Axis, speech: Speech) -> Markup:
+    """A row with a mark where a number lies."""
+    mark = _NUMBER.format(x.place(value), row * ROW + 5, TOTAL)
+    return Markup().join([mark, *_row(row, speech.say(key), speech.number(value, 2))])
+
+
+def _row(row: int, name: str, value: str) -> tuple[Markup, Markup]:
+    """What is left and right of the marks of a row."""
+    y = row * ROW + 17
+    return _TEXT.format(LABEL - 8, y, "end", name), _TEXT.format(WIDTH, y, "end", value)

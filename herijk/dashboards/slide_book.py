@@ -24,7 +24,7 @@ from herijk.dashboards.slide_rows import (
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.studies.tool_options import AS_READ, SPEEDS, TICKS
-from herijk.warehouse.queries.chosen_tows import ALL, STATED, choices_of_row, rows_of
+from herijk.warehouse.queries.chosen_tows import ALL, STATED, rows_of, spoken_range, with_choices
 from herijk.warehouse.queries.views import Views
 from herijk.words.catalogue import Say
 
@@ -140,7 +140,7 @@ class Book:
             y=self.say(f"slide.{quantity}"), types=" / ".join(types)
         )
         if tows != ALL:
-            words = self.say(f"code.{tows}") if tows in STATED else tows
+            words = self.say(f"code.{tows}") if tows in STATED else spoken_range(tows)
             title += self.say("slide.of_season").format(tows=words)
         said = [self.line((quantity, explaining), name, tows, self.ends(tows)) for name in types]
         return Slide(
@@ -191,9 +191,9 @@ class Book:
     @cached_property
     def _outliers(self) -> dict[tuple[str, str], str]:
         """Tows outside their type after correction, by type and choice: boat, crew and season."""
-        own = self.compared.filter(pl.col("outside"), method=self.ends()[1])
         names = (
-            own.with_columns(choices_of_row())
+            with_choices(self.compared)
+            .filter(pl.col("outside"), method=self.ends()[1])
             .explode("tows")
             .group_by("boat_type", "tows")
             .agg(pl.col("label").str.join(", "))

@@ -19,6 +19,8 @@ from herijk.warehouse.store.store import Store
 from herijk.words.catalogue import speaker
 
 WIDTH_OF_TEXT: Final = 140
+MARGIN: Final = 24
+"""White around a slide [px]."""
 LOCALES: Final[dict[str, Literal["nl-NL", "en-GB"]]] = {"nl": "nl-NL", "en": "en-GB"}
 """How numbers on axes are written."""
 
@@ -67,7 +69,7 @@ def _svg(slide: Slide, language: str, simulated: bool) -> str:
     said = [*slide.said, *([say("simulated")] if simulated else [])]
     lines = [line for text in said for line in textwrap.wrap(text, WIDTH_OF_TEXT)]
     title = alt.Title(slide.title, subtitle=lines, anchor="start", offset=12)
-    chart = FIGURES[slide.figure](slide.rows, say).properties(title=title)
+    chart = FIGURES[slide.figure](slide.rows, say).properties(title=title, padding=MARGIN)
     spec = chart.to_dict(validate=False)
     locale = LOCALES[language]
     return str(vl_convert.vegalite_to_svg(spec, vl_version=VEGA_LITE, format_locale=locale))

@@ -40,14 +40,16 @@ class TypeConsistency(dy.Schema):
 class TypeLines(TypeConsistency):
     """The same lines for every choice of tows: all, the newest, those of a season."""
 
-    tows = column.text("all, newest (of each boat and crew), or a season", primary_key=True)
+    tows = column.text(
+        "all, newest (of each boat and crew), a season, or an era (2012:2013)", primary_key=True
+    )
 
 
 class TypeLinePoints(dy.Schema):
     """A line of `type_lines` with its 95 % interval, for drawing."""
 
     method = column.method(primary_key=True)
-    tows = column.text("all, newest, or a season", primary_key=True)
+    tows = column.text("all, newest, a season, or an era (2012:2013)", primary_key=True)
     boat_type = column.text("type of boat", primary_key=True)
     quantity = column.text("b_m_s, a_kg_m or cw_standard_kg_m", primary_key=True)
     explaining = column.text(
@@ -116,7 +118,9 @@ class HullSpeed(dy.Schema):
     """Is B hull speed, and at what part of hull speed are boats towed? Medians over boats."""
 
     method = column.method(primary_key=True)
-    tows = column.text("all, newest (of each boat and crew), or a season", primary_key=True)
+    tows = column.text(
+        "all, newest (of each boat and crew), a season, or an era (2012:2013)", primary_key=True
+    )
     boat_type = column.text("type of boat, or all", primary_key=True)
     n = dy.Int32(description="tows", min=0)
     n_boats = dy.Int32(description="boats", min=0)
@@ -275,7 +279,8 @@ class RepeatPairs(dy.Schema):
     tow_id_before = column.tow_id()
     season = column.season()
     season_before = column.season()
-    ln_ratio = column.number("1", "ln of new / old Cw, at the old declared speed")
+    cw_ratio = column.number("1", "new / old Cw, at the old declared speed")
+    ln_ratio = column.number("1", "ln of that")
     e_n = column.number("1", "difference / both intervals (ISO 13528)", nullable=True)
 
 

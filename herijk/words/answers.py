@@ -24,7 +24,10 @@ ANSWERS: Final[dict[str, tuple[str, str]]] = {
         "Cw gaat van {old} naar {new} kg/m: {by} % hoger.",
         "Cw goes from {old} to {new} kg/m: {by} % higher.",
     ),
-    "answer_compared": ("Vergeleken: {new}, met {old}.", "Compared: {new}, with {old}."),
+    "answer_compared": (
+        "Vergeleken: \u201c{new}\u201d met \u201c{old}\u201d.",
+        "Compared: \u201c{new}\u201d with \u201c{old}\u201d.",
+    ),
     "answer_other_speed": (
         "De opgegeven snelheid is een andere: {new} in plaats van {old} m/s. Het percentage geldt "
         "bij de oude snelheid.",
@@ -115,19 +118,19 @@ ANSWERS: Final[dict[str, tuple[str, str]]] = {
         "numbers is not known.",
     ),
     "answer_old_spread": (
-        "In de onzekerheid van het oude getal zit de fout van de log niet: zij is te klein.",
+        "In de onzekerheid van het oude getal zit de fout van de log niet; zij is dus te klein.",
         "The uncertainty of the old number leaves out the error of the log: it is too small.",
     ),
     "answer_place": (
-        "Bij gelijk vermogen per roeier is dit de nummer {place} in snelheid van {size} van het "
-        "type {type} ({people}).",
-        "At equal power per rower this is number {place} in speed of {size} of type {type} "
+        "Bij gelijk vermogen per roeier staat deze sloep naar snelheid op plaats {place} van "
+        "{size} van het type {type} ({people}).",
+        "At equal power per rower this boat ranks {place} of {size} of type {type} by speed "
         "({people}).",
     ),
     "answer_place_moved": (
-        "Bij gelijk vermogen per roeier wordt dit de nummer {place} in snelheid van {size} van het "
-        "type {type} ({people}); dat was {old}.",
-        "At equal power per rower this becomes number {place} in speed of {size} of type {type} "
+        "Bij gelijk vermogen per roeier komt deze sloep naar snelheid op plaats {place} van {size} "
+        "van het type {type} ({people}); dat was {old}.",
+        "At equal power per rower this boat now ranks {place} of {size} of type {type} by speed "
         "({people}); it was {old}.",
     ),
     "answer_race": (

@@ -51,7 +51,7 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.window": ("venster", "window"),
     "code.runs": ("runs", "runs"),
     "code.calibration": ("ijking", "calibration"),
-    "code.run_point": ("runpunt", "run point"),
+    "code.run_point": ("middeling per run", "averaging of each run"),
     "code.wind": ("wind", "wind"),
     "code.temperature": ("temperatuur", "temperature"),
     "code.curve": ("kromme", "curve"),

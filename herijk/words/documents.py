@@ -87,7 +87,7 @@ DOCUMENTS: Final[dict[str, tuple[str, str]]] = {
     "proposal_boats": ("De grootste veranderingen", "The largest changes"),
     "proposal_old": ("Oud", "Old"),
     "proposal_new": ("Nieuw", "New"),
-    "proposal_change": ("Cw", "Cw"),
+    "proposal_change": ("Verandering", "Change"),
     "proposal_races": ("De wedstrijden van {year}", "The races of {year}"),
     "proposal_moved": (
         "Van alle {results} uitslagen in het archief veranderen er {moved} van plaats. De winnaars "
@@ -97,11 +97,19 @@ DOCUMENTS: Final[dict[str, tuple[str, str]]] = {
     ),
     "proposal_chance": ("Kans op een ander", "Chance of another"),
     "proposal_undecided": ("Wat open blijft", "What stays undecided"),
+    "proposal_unknown": (
+        "Regels waarvan niet te zeggen is of de verandering groter is dan de onzekerheid: "
+        "{unknown}.",
+        "Lines of which it cannot be told whether the change is larger than the uncertainty: "
+        "{unknown}.",
+    ),
+    "proposal_known": (
+        "Van elke regel is te zeggen of de verandering groter is dan de onzekerheid.",
+        "Of every line it can be told whether the change is larger than the uncertainty.",
+    ),
     "proposal_unsure": (
-        "Van {unknown} regels is niet te zeggen of de verandering groter is dan de onzekerheid. "
         "Bij {flagged} sloepen staat een waarschuwing waar de commissie nog naar moet kijken. Oude "
         "getallen hebben vaak een te kleine onzekerheid: de fout van de log zit er niet in.",
-        "For {unknown} lines it cannot be told whether the change is larger than the uncertainty. "
         "{flagged} boats carry a flag that the committee still has to look at. Old numbers often "
         "have too small an uncertainty: the error of the log is not in it.",
     ),

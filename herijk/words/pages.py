@@ -26,8 +26,10 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "Hoe een controle van een sloep of type gelezen wordt.",
         "How to read the audit of a boat or a type.",
     ),
+    "guide_in_short": ("In het kort", "In short"),
+    "guide_whole": ("De hele tekst", "The whole text"),
     "guide_note": (
-        "Dit document is er alleen in het Engels.",
+        "De hele tekst is er alleen in het Engels.",
         "The document of the project, as it stands beside the program.",
     ),
     "edition_title": ("Editie", "Edition"),
@@ -135,10 +137,10 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "tows_number": ("Sleepproeven", "Tows"),
     "compare_boats": ("Twee sloepen vergeleken", "Two boats compared"),
     "compare_note": (
-        "De krommen van het concept dat het best is, elk met zijn 95 %-band. Waar de banden "
-        "elkaar raken, is niet te zeggen welke lichter loopt.",
-        "The curves of the best draft, each with its 95 % band. Where the bands touch, the data do "
-        "not say which boat runs easier.",
+        "De krommen volgens de beste methode, elk met haar 95 %-band. Waar de banden elkaar raken, "
+        "is niet te zeggen welke sloep lichter loopt.",
+        "The curves under the best method, each with its 95 % band. Where bands touch, the data "
+        "do not say which boat runs easier.",
     ),
     "types_pages": ("Een type", "One type"),
     "types_pages_note": (
@@ -526,11 +528,11 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     ),
     "repeats": ("Elk paar", "Every pair"),
     "repeats_note": (
-        "ln(nieuwe Cw / oude Cw), bij het seizoen van de nieuwe proef. E_n: het verschil gedeeld "
+        "Nieuwe Cw / oude Cw, bij het seizoen van de nieuwe proef. E_n: het verschil gedeeld "
         "door beide intervallen samen; voorbij 1 spreken twee proeven elkaar tegen. Waar die de "
         "spreiding van de runs alleen zijn, kan dat de fout van de log zijn. Klik op "
         "een punt om naar de sloep te gaan.",
-        "ln(new Cw / old Cw), at the season of the new tow. E_n: the difference divided by both "
+        "New Cw / old Cw, at the season of the new tow. E_n: the difference divided by both "
         "intervals together; beyond 1 two tows disagree. Where these are the spread of the runs "
         "alone, that may be the log's error. Click a point to go to the boat.",
     ),

@@ -12,7 +12,7 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
         "De methoden staan naast elkaar op gelijke assen. Cirkels zijn heren, driehoeken dames. "
         "Een open teken is een proef die te langzaam of te snel was voor de standaardsnelheid, een "
         "zwarte stip een proef met te weinig vermogen. De lijn is de best passende rechte met een "
-        "95 %-interval; bij gewicht en lengte een per ploegklasse. R2 is het deel van de spreiding "
+        "95 %-interval; bij gewicht en lengte een per ploegklasse. R² is het deel van de spreiding "
         "dat de lijn verklaart, met elke proef gewogen naar haar fout en proeven van een sloep als "
         "herhaling. Een proef waarvan Cw van het type afwijkt, is genoemd. Een streep is het "
         "95 %-interval van een proef; een streepjeslijn de spreiding van de runs alleen: de fout "
@@ -20,7 +20,7 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
         "The methods stand side by side on equal axes. Circles are men, triangles women. An open "
         "mark is a tow too slow or too fast for the standard speed, a black dot one with too "
         "little power. The line is the straight line that fits best, with its 95 % interval; "
-        "against weight and length one per crew class. R2 is the share of the spread that the line "
+        "against weight and length one per crew class. R² is the share of the spread that the line "
         "explains, each tow weighted by its error and tows of one boat as repeats. A tow whose Cw "
         "is an outlier of its type is named. A bar is a tow's 95 % interval; a dashed one the "
         "spread of the runs alone: the log's error is not in it.",
@@ -92,8 +92,8 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     ),
     # Sentences
     "slide.line": (
-        "{type}: {verdict}. R2 {r2_after} {after}, {r2_before} {before}; {counted}.",
-        "{type}: {verdict}. R2 {r2_after} {after}, {r2_before} {before}; {counted}.",
+        "{type}: {verdict}. R² {r2_after} {after}, {r2_before} {before}; {counted}.",
+        "{type}: {verdict}. R² {r2_after} {after}, {r2_before} {before}; {counted}.",
     ),
     "slide.counted": ("{tows} van {boats}", "{tows} of {boats}"),
     "slide.one_tow": ("1 proef", "1 tow"),

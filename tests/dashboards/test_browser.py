@@ -116,7 +116,7 @@ NOT_SIDEWAYS = {
 """What fits its box: not the register, whose lines have all sizes of the boat, nor tables on a
 phone."""
 
-KINDS = [*MENU, *GUIDES, "boat", "type", "race", "edition"]
+KINDS = [*MENU, GUIDES[0], "boat", "type", "race", "edition"]
 """A page of each kind."""
 
 SERIOUS = {"serious", "critical"}

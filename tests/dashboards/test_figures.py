@@ -36,7 +36,7 @@ AXES = {
     "season_change": {"season", "median_ratio", "lowest_ratio"},
     "options": {"option", "median_ratio", "lo_ratio"},
     "reproducibility": {"scope", "sd_ratio", "lo"},
-    "repeats": {"season", "ln_ratio"},
+    "repeats": {"season", "cw_ratio"},
     "components": {"component", "sd_ratio", "lo"},
     "predicted": {"cw_kg_m", "predicted_cw_kg_m"},
     "changes": {"cw_ratio", "time_ratio"},
@@ -128,7 +128,7 @@ def test_a_method_of_one_s_own_is_drawn_and_changes_no_other_s_colour():
 METHODS = {
     "season_change": {"season": 2010, "median_ratio": 0.9, "lowest_ratio": 0.8, "highest_ratio": 1},
     "components": {"scope": "fleet", "component": "boat", "sd_ratio": 0.9, "lo": 0.8, "hi": 1.1},
-    "repeats": {"season": 2012, "season_before": 2010, "ln_ratio": 0.1, "page": "#"},
+    "repeats": {"season": 2012, "season_before": 2010, "cw_ratio": 1.1, "page": "#"},
     "curves_compared": {"kind": "point", "speed_m_s": 2.5, "cw_kg_m": 30.0, "run": 1, "used": True},
 }
 

@@ -1,7 +1,6 @@
 """The site: every page, escaped, alone, and the same bytes from the same tables."""
 
 import hashlib
-import html
 import json
 import re
 from itertools import accumulate
@@ -117,8 +116,8 @@ def test_a_number_on_a_page_is_the_warehouse_s(site, built):
 
 def keys_of(rows, table, page):
     """What selectors choose rows of a table by, row by row."""
-    keys = re.search(rf'data-table="{table}".*?data-keys="([^"]*)"', page)[1]
-    known = json.loads(html.unescape(keys))
+    keys = re.search(rf'data-table="{table}".*?data-keys=\'([^\']*)\'', page)[1]
+    known = json.loads(keys)
     return [known[int(place)] for place in re.findall(r"<tr data-k=(\d+)>", rows)]
 
 

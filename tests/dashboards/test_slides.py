@@ -53,7 +53,7 @@ def test_a_range_of_seasons_draws_its_tows_alone(built):
         first = next(book.slides(views, speaker("en"), book.Asked(tows="2014:2015")))
     assert first.rows.filter(kind="tow")["season"].unique().to_list() == [2014]
     assert first.rows.filter(kind="line").height
-    assert "2014:2015" in first.title
+    assert "2014\N{EN DASH}2015" in first.title
 
 
 def test_pages_say_of_every_choice_and_type_how_many_tows_it_rests_on(built):

@@ -2,6 +2,7 @@
 
 import datetime as dt
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import polars as pl
@@ -147,7 +148,7 @@ def test_equal_errors_give_the_line_and_interval_of_ordinary_least_squares():
 def test_known_variances_give_the_line_and_interval_of_weighted_least_squares():
     problem = one_row_a_boat(np.linspace(0.5, 3.0, 12) ** 2)
     other = sm.WLS(problem.y, problem.x, weights=1 / problem.variance).fit()
-    assert_same_line(mixed.Fit(problem, (), (0.0, 0.0, 0.0)), other)
+    assert_same_line(mixed.fit(problem, ()), other)
 
 
 def test_the_mean_of_unlike_boats_is_that_of_a_meta_analysis():
@@ -155,7 +156,7 @@ def test_the_mean_of_unlike_boats_is_that_of_a_meta_analysis():
     problem = one_row_a_boat(np.linspace(0.5, 3.0, 12) ** 2, true_sd=2.0)
     other = combine_effects(problem.y, problem.variance, method_re="iterated", atol=1e-12)
     only_mean = replace(problem, x=np.ones((12, 1)))
-    found = mixed.Fit(only_mean, (mixed.BOAT,), (np.sqrt(other.tau2), 0.0, 0.0))
+    found = mixed.Fit.at(only_mean, (mixed.BOAT,), (np.sqrt(other.tau2), 0.0, 0.0))
     assert found.beta[0] == pytest.approx(other.mean_effect_re, rel=1e-9)
     half = stats.t.ppf(0.975, 11) * other.sd_eff_w_re_hksj
     assert found.coefficients().hi[0] - found.beta[0] == pytest.approx(half, rel=1e-6)
@@ -194,7 +195,7 @@ def test_problems_side_by_side_are_fitted_as_each_alone():
 def test_leaving_a_boat_out_equals_fitting_without_it():
     problem = grouped_data()
     sd = (2.0, 1.0, 0.5)
-    found = mixed.Fit(problem, mixed.COMPONENTS, sd).leave_boats_out()
+    found = mixed.Fit.at(problem, mixed.COMPONENTS, sd).leave_boats_out()
     v = np.diag(problem.variance + sd[2] ** 2)
     v += sd[0] ** 2 * (problem.boat[:, None] == problem.boat)
     v += sd[1] ** 2 * (problem.other[:, None] == problem.other)
@@ -420,6 +421,30 @@ def test_a_slow_tow_raced_hard_says_whom_its_curve_favours():
     assert found["power_ratio_raced_lo"] > 1.1
 
 
+def test_each_case_of_the_text_says_who_is_wronged():
+    # Length from "v_r = 1,25 x wortel(lengte)", for tows at 2.5 m/s.
+    cases = {"low": 0.60, "middle": 0.73, "high": 0.85}
+    raced_at = {"faster": 1.2, "slower": 0.8, "within": 1.1}
+    expected = {
+        ("low", "faster"): "advantaged", ("low", "slower"): None,
+        ("middle", "faster"): "disadvantaged", ("middle", "slower"): "advantaged",
+        ("high", "faster"): "disadvantaged", ("high", "slower"): "disadvantaged",
+    }  # fmt: skip
+    both = list(product(cases, raced_at))
+    curves, tows, boats, points = fleet(4, boats=len(both), speeds_m_s=np.full(len(both), 2.5))
+    length = [(2.5 / cases[case] / 1.25) ** 2 for case, _ in both]
+    tows = tows.with_columns(waterline_length_m=pl.Series(length))
+    races = pl.concat(
+        raced((curves,), tow_id, 2.5 * raced_at[pace])
+        for tow_id, (_, pace) in zip(curves["tow_id"], both, strict=True)
+    )
+    found = slow_tows(observe(curves, tows, boats, points), races)
+    said = dict(zip(found["tow_id"], found.select("speed_case", "text_says").rows(), strict=True))
+    for tow_id, (case, pace) in zip(curves["tow_id"], both, strict=True):
+        if pace != "within" or tow_id in said:
+            assert said[tow_id] == (case, expected.get((case, pace)))
+
+
 def test_a_race_before_the_tow_or_after_the_next_does_not_count():
     tables = fleet(3, boats=6, seasons=(2014, 2016, 2018))
     found = tow_speed.raced(observe(*tables), raced(tables, "2014-001", 2.4))
@@ -449,7 +474,7 @@ def test_every_choice_of_tows_has_its_line_with_its_own_count(three_seasons):
     lines, points = type_lines(observe(*three_seasons))
     of_cw = lines.filter(quantity="cw_standard_kg_m", explaining="weight_kg")
     assert dict(of_cw.select("tows", "n").iter_rows()) == {
-        "all": 36, "newest": 12, "2010": 12, "2014": 12, "2016": 12,
+        "all": 36, "newest": 12, "2010": 12, "2014": 12, "2016": 12, "2014:2016": 24,
     }  # fmt: skip
     # Of repeats only 12 boats count, and a season that reads high spoils the line of all tows.
     assert of_cw["n_boats"].unique().to_list() == [12]

@@ -53,11 +53,13 @@ def test_a_changed_digit_in_the_csv_is_named_by_line_and_column(published_copy):
     file = folder(published_copy) / "register.csv"
     lines = file.read_text(encoding="utf-8-sig").splitlines()
     cells = lines[2].split(";")
-    place = lines[0].split(";").index("Cw")
+    place = lines[0].split(";").index("Cw [kg/m]")
     was, cells[place] = cells[place], "99,999"
     lines[2] = ";".join(cells)
     file.write_text("\n".join(lines), encoding="utf-8-sig")
-    findings, wrong = found(published_copy, where=f"register.csv, line 3 ({cells[0]}), column Cw")
+    findings, wrong = found(
+        published_copy, where=f"register.csv, line 3 ({cells[0]}), column Cw [kg/m]"
+    )
     assert wrong
     assert findings[0].message == f"it says '99,999'; it was '{was}'"
 
@@ -70,8 +72,8 @@ def test_a_changed_number_in_the_table_is_named_and_its_code_no_longer_fits(publ
     register.with_columns(changed.otherwise(pl.col("a_kg_m")).alias("a_kg_m")).write_parquet(file)
     report = verify(published_copy.store)
     places = [f.where for f in report.findings]
-    assert f"register.csv, line 5 ({boat}), column A" not in places
-    assert f"register.parquet, line 5 ({boat}), column A" in places
+    assert f"register.csv, line 5 ({boat}), column A [kg/m]" not in places
+    assert f"register.parquet, line 5 ({boat}), column A [kg/m]" in places
     assert any("code" in f.message and boat in f.where for f in report.findings)
     assert any(f.kind == "differs" for f in report.findings)
 

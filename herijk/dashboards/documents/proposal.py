@@ -8,7 +8,6 @@ from typing import Any, Final
 
 import polars as pl
 
-from herijk.dashboards.answer import crew_name
 from herijk.dashboards.documents import pdf
 from herijk.dashboards.site import headlines
 from herijk.dashboards.speech import Speech
@@ -121,10 +120,11 @@ def _parts(views: Views, method: str, lines: pl.DataFrame, speech: Speech) -> It
     yield _boats(lines, speech)
     yield _races(views, lines, speech)
     unknown = int(lines["exceeds_interval"].null_count())
+    sure = say("proposal_unknown").format(unknown=unknown) if unknown else say("proposal_known")
     flagged = views.flagged_boats().filter(method=method)["fsn_no"].n_unique()
     yield {
         "title": say("proposal_undecided"),
-        "sentences": [say("proposal_unsure").format(unknown=unknown, flagged=flagged)],
+        "sentences": [sure, say("proposal_unsure").format(flagged=flagged)],
         **NO_ROWS,
     }
 
@@ -183,8 +183,8 @@ def _boats(lines: pl.DataFrame, speech: Speech) -> Part:
     shown = pl.concat([known.head(LARGEST), known.tail(LARGEST)]).unique(maintain_order=True)
     heads = (
         "boat",
-        "proposal_old",
-        "proposal_new",
+        "column.old_cw_kg_m",
+        "column.new_cw_kg_m",
         "proposal_change",
         "column.gain_in_two_hours_s",
     )
@@ -200,9 +200,10 @@ def _boats(lines: pl.DataFrame, speech: Speech) -> Part:
 
 
 def _boat(line: dict[str, Any], speech: Speech) -> list[str]:
+    crew = f"{line['rowers']}{line['crew_class']}"
     beyond = {None: "unknown_word", True: "yes", False: "no"}[line["exceeds_interval"]]
     return [
-        f"{line['name'] or line['fsn_no']} ({line['fsn_no']}, {crew_name(line, speech)})",
+        " · ".join(filter(None, (line["name"], line["fsn_no"], crew))),
         speech.number(line["old_cw_kg_m"], 2),
         speech.number(line["new_cw_kg_m"], 2),
         speech.per_cent(line["cw_ratio"]),

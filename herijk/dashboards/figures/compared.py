@@ -72,12 +72,14 @@ def boats_compared(frame: pl.DataFrame, say: Say) -> Drawing:
     x = number(alt.X, "speed_m_s", say("speed"))
     low, high = alt.Y("cw_lo_kg_m:Q", title=say("cw")), alt.Y2("cw_hi_kg_m:Q")
     legend = alt.Legend(orient="top", columns=1, labelLimit=400)
+    # One legend, that of the lines: the bands' own would show the same names again.
+    band = colour("crew", say("boat"), sort=None, legend=None)
     crew = colour("crew", say("boat"), sort=None, legend=legend)
     dash = alt.StrokeDash("crew:N", title=say("boat"), sort=None, legend=legend)
     base = alt.Chart(frame)
     tip = tips(("crew:N", say("boat")), ("speed_m_s:Q", say("speed")), ("cw_kg_m:Q", say("cw")))
     return alt.layer(
-        base.mark_area(opacity=0.25).encode(x, low, high, crew),
+        base.mark_area(opacity=0.25).encode(x, low, high, band),
         base.mark_line(strokeWidth=2).encode(
             x, number(alt.Y, "cw_kg_m", say("cw")), crew, dash, tooltip=tip
         ),

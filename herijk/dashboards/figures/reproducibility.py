@@ -52,13 +52,13 @@ def era_shifts(frame: pl.DataFrame, say: Say) -> Drawing:
 
 def repeat_pairs(frame: pl.DataFrame, say: Say) -> Drawing:
     """Every pair of repeat tows, by the season of the newer; `frame` has `page`."""
-    zero = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3]).encode(y=alt.datum(0.0))
+    same = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3]).encode(y=alt.datum(1.0))
     points = (
         alt.Chart(frame)
         .mark_point(size=45, filled=True, opacity=0.8, cursor="pointer")
         .encode(
             alt.X("season:O", title=say("season")),
-            number(alt.Y, "ln_ratio", say("ln_ratio")),
+            number(alt.Y, "cw_ratio", say("cw_ratio")),
             method_colour(say),
             method_shape(say),
             xOffset="method:N",
@@ -68,11 +68,11 @@ def repeat_pairs(frame: pl.DataFrame, say: Say) -> Drawing:
                 ("fsn_no:N", "FSN"),
                 ("method:N", say("method")),
                 ("season_before:O", say("season")),
-                ("ln_ratio:Q", say("ln_ratio")),
+                ("cw_ratio:Q", say("cw_ratio")),
             ),
         )
     )
-    return alt.layer(zero, points).properties(width=WIDTH, height=HEIGHT)
+    return alt.layer(same, points).properties(width=WIDTH, height=HEIGHT)
 
 
 def components(frame: pl.DataFrame, say: Say) -> Drawing:

@@ -18,6 +18,7 @@ from herijk.dashboards.site.parts import (
     boat_path,
     draft_of,
     methods_select,
+    once_for_methods,
 )
 from herijk.warehouse.queries.answers import (
     DRAFT,
@@ -41,14 +42,18 @@ method they are of, the selectors say."""
 def boat_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
     """The page of every boat that the archive lists."""
     frames = _frames(views)
-    by_boat = {name: _parts(frame, ["fsn_no"], name in KEEP) for name, frame in frames.items()}
     editions = frames["register"]["edition"].unique().sort().to_list()
     crews = _answers(views, newest_edition(editions, draft_of(methods)), frames)
+    frames |= {name: once_for_methods(frames[name]) for name in ALIKE if name in frames}
+    by_boat = {name: _parts(frame, ["fsn_no"], name in KEEP) for name, frame in frames.items()}
     for fsn_no in frames["boats"]["fsn_no"]:
         key = (fsn_no,)
         own = {name: by_boat[name].get(key, frame.head(0)) for name, frame in frames.items()}
         yield _page(fsn_no, own, methods, crews.get(fsn_no, ()))
 
+
+ALIKE = ("wind", "line", "point", "declared", "stages", "assessments")
+"""Frames of which most rows are the same under several methods."""
 
 KEEP = ("boats",)
 """Frames whose rows are shown with the number of their boat."""
@@ -111,7 +116,9 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
         "register": _once(register),
         "curves": curves,
         "history": curves.select("fsn_no", *HISTORY),
-        "runs": points,
+        "runs": once_for_methods(points.select("fsn_no", *FOLLOWS, *RUN_COLUMNS)).sort(
+            "tow_id", "run", maintain_order=True
+        ),
         "wind": points.select("fsn_no", *WIND),
         "line": _kind(lines, "line", "method", *NUMBERS, "interval"),
         "point": _kind(points.drop_nulls("cw_kg_m"), "point", "method", *POINT),

@@ -12,7 +12,7 @@ from markupsafe import Markup
 
 from herijk.dashboards.site.parts import Page, Table, boat_path, is_chosen, type_path
 from herijk.dashboards.speech import Speech, duration
-from herijk.warehouse.queries.chosen_tows import STATED
+from herijk.warehouse.queries.chosen_tows import STATED, spoken_range
 from herijk.words import LANGUAGES
 
 DIGITS: Final = (
@@ -128,7 +128,9 @@ class Cells:
             "direction": lambda value: self.text("out" if value == 1 else "back"),
             "causes": self._causes,
             "tows": lambda value: (
-                self.text(f"code.{value}") if value in STATED else self._plain(value)
+                self.text(f"code.{value}")
+                if value in STATED
+                else Markup("{}").format(spoken_range(value))
             ),
             "unit": lambda value: self._plain("" if value == "1" else value),
             **dict.fromkeys(("sha256", "content_hash", "method_hash", "seal"), _hash),

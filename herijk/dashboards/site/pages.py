@@ -230,7 +230,7 @@ def _reproducibility(views: Views, methods: list[str]) -> Page:
             "repeats",
             "repeats_note",
             lambda: with_page(views.repeat_pairs()),
-            "method name fsn_no rowers crew_class season_before season ln_ratio e_n",
+            "method name fsn_no rowers crew_class season_before season cw_ratio e_n",
         ),
         "variance_components": (
             "components",
@@ -337,10 +337,16 @@ def _compare(views: Views, methods: Sequence[str]) -> Page:
         [Section("compare_boats", "compare_note", [chart])],
         selects=[
             Select(first, "pair_first", crews, crews[0]),
-            Select(second, "pair_second", crews, crews[1]),
+            Select(second, "pair_second", crews, _another(crews)),
         ],
         data={"curves": [curves]},
     )
+
+
+def _another(crews: Sequence[str]) -> str:
+    """The first crew of another boat than the first, if there is one."""
+    boat = crews[0].rpartition(" · ")[0]
+    return next((crew for crew in crews if not crew.startswith(boat)), crews[1])
 
 
 PAIR_OF_BOATS = ("boat_first", "boat_second")

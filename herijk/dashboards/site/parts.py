@@ -15,7 +15,7 @@ from herijk.dashboards.answer import Answer
 from herijk.dashboards.speech import Speech
 from herijk.pipeline.register.register import draft_name
 from herijk.warehouse.build.studies import STUDIED_METHOD
-from herijk.warehouse.queries.chosen_tows import ALL, NEWEST
+from herijk.warehouse.queries.chosen_tows import ALL, NEWEST, choices_of, spoken_range
 
 Headline: TypeAlias = Callable[[Speech], str]
 """What a section shows in one sentence, in the language of a page."""
@@ -204,12 +204,11 @@ def editions_select(name: str, editions: Sequence[str], chosen: str) -> Select:
 
 
 def tows_select(compared: pl.DataFrame) -> Select:
-    """A selector of tows: all, the newest of each crew, or those of a season."""
-    seasons = [str(season) for season in compared["season"].unique().sort()]
+    """A selector of tows: all, the newest of each crew, or those of an era or a season."""
     words = {ALL: "all_tows", NEWEST: "code.newest"}
     return Select(
-        "tows", "tows", [*words, *seasons], ALL,
-        named=lambda tows, speech: speech.say(words[tows]) if tows in words else tows,
+        "tows", "tows", choices_of(compared["season"]), ALL,
+        named=lambda tows, s: s.say(words[tows]) if tows in words else spoken_range(tows),
     )  # fmt: skip
 
 
@@ -238,6 +237,12 @@ def _path(folder: str, name: str) -> str:
     if safe != name:
         safe += "-" + hashlib.sha256(name.encode()).hexdigest()[:8]
     return f"{folder}/{safe}.html"
+
+
+def once_for_methods(rows: pl.DataFrame) -> pl.DataFrame:
+    """Rows that are alike under several methods once, with all of these in `method`."""
+    alike = [name for name in rows.columns if name != "method"]
+    return rows.group_by(alike, maintain_order=True).agg("method")
 
 
 def with_page(frame: pl.DataFrame, root: str = "") -> pl.DataFrame:

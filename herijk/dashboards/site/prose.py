@@ -14,6 +14,7 @@ from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.editions import NOTES, NOTES_EN, NOTICE, NOTICE_EN, edition_path
 from herijk.warehouse.store.storage import Place
 from herijk.words import LANGUAGES
+from herijk.words.guides import GUIDES_IN_SHORT
 
 GUIDES: Final = ("method", "audit")
 """Documents of the project that have a page, by their name."""
@@ -29,13 +30,14 @@ def guide_file(name: str) -> Path:
 
 
 def guide_pages() -> Iterator[Page]:
-    """The documents; they are in English only, and say so."""
+    """The documents in short, then whole: these are in English only, and say so."""
     links = {f"{name}.md": f"{name}.html" for name in GUIDES}
     for name in GUIDES:
         text = guide_file(name).read_text(encoding="utf-8")
         prose = _in_language((text, text), links)
-        section = Section(f"guide_{name}", "guide_note", prose=prose, prose_language="en")
-        yield Page(f"{name}.html", f"guide_{name}", [section])
+        short = Section("guide_in_short", prose=_in_language(GUIDES_IN_SHORT[name], {}))
+        whole = Section("guide_whole", "guide_note", prose=prose, prose_language="en")
+        yield Page(f"{name}.html", f"guide_{name}", [short, whole])
 
 
 def guide_links() -> list[tuple[str, str, str]]:

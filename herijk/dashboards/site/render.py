@@ -15,6 +15,7 @@ from itertools import chain, groupby
 from pathlib import Path
 from typing import Final
 
+import numpy as np
 import polars as pl
 import vl_convert
 
@@ -245,9 +246,8 @@ def _column(column: pl.Series) -> str:
         steps = _steps(column)
         if steps is not None:
             return f'{{"steps":[{",".join(map(str, steps))}]}}'
-        known = column.fill_nan(None).to_list()
-        numbers = ("null" if v is None else f"{v:.{DRAWN}g}" for v in known)
-        return f"[{','.join(numbers)}]"
+        numbers = ("null" if v is None else f"{v:.{DRAWN}g}" for v in column.to_list())
+        return f"[{','.join(numbers).replace('nan', 'null')}]"
     values = hashable(column)
     stretches = [(value, len(list(same))) for value, same in groupby(values)]
     if column.dtype != pl.String and 2 * len(stretches) >= len(values):
@@ -261,8 +261,9 @@ def _steps(column: pl.Series) -> list[int] | None:
     """Differences in hundredths, where every number is known and has no more decimals."""
     if column.is_empty() or column.null_count():
         return None
-    hundredths = (column * HUNDRED).round()
-    if not (column.is_finite() & (hundredths / HUNDRED == column)).all():
+    values = column.to_numpy()
+    hundredths = np.round(values * HUNDRED)
+    if not (np.isfinite(values) & (hundredths / HUNDRED == values)).all():
         return None
-    steps: list[int] = hundredths.diff().fill_null(hundredths[0]).cast(pl.Int64).to_list()
+    steps: list[int] = np.diff(hundredths, prepend=0.0).astype(np.int64).tolist()
     return steps

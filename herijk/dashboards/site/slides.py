@@ -26,7 +26,7 @@ from herijk.dashboards.slide_rows import (
     methods_of,
     pair_of_types,
 )
-from herijk.warehouse.queries.chosen_tows import ALL, choices_of_row
+from herijk.warehouse.queries.chosen_tows import ALL, with_choices
 from herijk.warehouse.queries.views import Views
 from herijk.words import LANGUAGES
 from herijk.words.catalogue import speaker
@@ -142,9 +142,8 @@ def drawn_rows(views: Views) -> list[pl.DataFrame]:
     compared = compared_frame(views)
     methods = methods_of(compared["method"].unique().to_list())
     own = pl.col("method").is_in(methods)
-    tows = compared.filter(own, pl.col("boat_type").is_in(by_tows(compared))).select(
-        *TOW_COLUMNS, choices_of_row(), newest_method=pl.lit(methods[-1])
-    )
+    tows = with_choices(compared).filter(own, pl.col("boat_type").is_in(by_tows(compared)))
+    tows = tows.select(*TOW_COLUMNS, "tows", newest_method=pl.lit(methods[-1]))
     return [tows, lines_frame(views).filter(own).with_columns(pl.concat_list("tows"))]
 
 

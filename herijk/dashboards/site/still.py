@@ -41,7 +41,9 @@ def still(figure: str, rows: pl.DataFrame, speech: Speech, caption: str) -> Mark
     """A figure as SVG; a screen reader says its caption."""
     spec = copy.deepcopy(chart_specifications(speech.language)[figure])
     drop_links(spec)
-    spec["datasets"] = {"rows": rows.to_dicts()}
+    text = json.dumps(spec)
+    drawn = rows.select(name for name in rows.columns if name in text)
+    spec["datasets"] = {"rows": drawn.to_dicts()}
     svg = vl_convert.vegalite_to_svg(
         json.dumps(spec, default=str),
         vl_version=VEGA_LITE,
@@ -49,6 +51,7 @@ def still(figure: str, rows: pl.DataFrame, speech: Speech, caption: str) -> Mark
         format_locale=LOCALES[speech.language],
     )
     bare = re.sub(r' (role|aria-[a-z]+)="[^"]*"', "", _renumbered(svg))  # described as a whole
+    bare = PLACES.sub(lambda place: DIGITS.sub(r"\1", place[0]), bare)
     named = Markup('<svg role="img" aria-label="{}" ').format(caption)
     return Markup(bare.replace("<svg ", named, 1))  # noqa: S704 - Vega escapes texts
 
@@ -61,6 +64,10 @@ def _renumbered(svg: str) -> str:
 
 
 CONFIG: Final = {"font": fonts.FAMILY}
+
+PLACES: Final = re.compile(r' (?:d|transform|[xy][12]?)="[^"]*"')
+DIGITS: Final = re.compile(r"(\.\d\d)\d+")
+"""Where a picture says where something lies, and digits there that nobody can see."""
 
 
 def _shown(page: Page, chart: Chart) -> pl.DataFrame:

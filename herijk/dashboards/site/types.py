@@ -13,12 +13,13 @@ from herijk.dashboards.site.parts import (
     Table,
     default_method,
     methods_select,
+    once_for_methods,
     tows_select,
     type_path,
     with_page,
 )
 from herijk.dashboards.site.slides import drawn_rows, sentences, told_charts
-from herijk.warehouse.queries.chosen_tows import choices_of_row
+from herijk.warehouse.queries.chosen_tows import with_choices
 from herijk.warehouse.queries.views import Views
 
 SCATTERS = ("b_weight", "b_speed", "a_weight", "cw_standard_weight", "cw_standard_speed")
@@ -30,7 +31,7 @@ def types_page(views: Views, methods: Sequence[str]) -> Page:
     """A, B and Cw at one speed of every tow against weight and speed, and what differs."""
     if not views.has("compared_tows"):
         return Page("types.html", "types", [])
-    tows = with_page(views.type_tows()).with_columns(choices_of_row())
+    tows = with_choices(with_page(views.type_tows()))
     types = tows["boat_type"].unique().sort().to_list()
     columns = (
         *("name", "fsn_no", "boat_type", "rowers", "crew_class", "season", "weight_kg"),
@@ -80,15 +81,16 @@ def type_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
     """A page for every type: the verdict, its tows, the fitted lines."""
     if not views.has("compared_tows"):
         return
-    tows = with_page(views.type_tows(), "../").with_columns(choices_of_row())
+    tows = views.type_tows().select("method", "boat_type", "newest", *TYPE_COLUMNS)
+    listed_tows = with_choices(once_for_methods(tows))
     lines, tests = views.table("type_lines"), views.table("type_homogeneity")
     drawn, said = drawn_rows(views), sentences(views)
     for boat_type in views.type_names():
         own = pl.col("boat_type") == boat_type
         charts = told_charts(TYPE_FIGURES, said, [boat_type], {"tows": "tows"})
         listed = Table(
-            "type_boats", tows.filter(own), TYPE_COLUMNS, "types_list", ["method", "tows"],
-            search=True, cards=TYPE_CARDS,
+            "type_boats", listed_tows.filter(own), TYPE_COLUMNS, "types_list", ["method", "tows"],
+            search=True, exact=False, cards=TYPE_CARDS,
         )  # fmt: skip
         fitted = Table(
             "type_lines", lines.filter(own), LINE_COLUMNS, "types_lines", ["method", "tows"]

@@ -23,7 +23,7 @@ from herijk.pipeline.method.definition import (
     shipped_methods,
 )
 from herijk.pipeline.method.variant import cut_at, differences, variant, variant_text
-from herijk.warehouse.queries.chosen_tows import ALL, STATED
+from herijk.warehouse.queries.chosen_tows import ALL, choices_of
 from herijk.warehouse.queries.history import History
 from herijk.warehouse.queries.scenario import CURVE_COLUMNS, Scenario
 from herijk.warehouse.store.editions import edition_names, method_of_edition, read_edition
@@ -134,7 +134,7 @@ class Bench:
             "editions": self._editions(),
             "boats": _rows(boats.select("fsn_no", "name").sort("name", "fsn_no")),
             "types": boats["boat_type"].drop_nulls().unique().sort().to_list(),
-            "choices": [*STATED, *map(str, self._seasons)],
+            "choices": choices_of(self._seasons),
             "digits": DIGITS,
             "long": sorted(LONG),
             "base": DEFAULT_BASE,

@@ -12,7 +12,7 @@ import polars as pl
 import scipy
 
 from herijk.pipeline.arrays import FloatArray
-from herijk.pipeline.consistency.eras import Era, median_interval
+from herijk.pipeline.consistency.eras import Era, median_interval, season_ranges
 from herijk.pipeline.consistency.lines import (
     ALL_TOWS,
     NEWEST,
@@ -129,7 +129,7 @@ def hull_speed_statistics(compared: pl.DataFrame) -> pl.DataFrame:
 
     Of a boat with several tows the median counts, so that it counts once. The interval of the
     median rests on order statistics; the slope is that of ln B on ln waterline length, 0.5 if B
-    went with hull speed. Of a single season only all types together.
+    went with hull speed. Of seasons only all types together.
 
     Args:
         compared: rows of `compared_tows`.
@@ -139,6 +139,8 @@ def hull_speed_statistics(compared: pl.DataFrame) -> pl.DataFrame:
     """
     stated = {ALL_TOWS.tows: compared, NEWEST.tows: compared.filter("newest")}
     seasons = {str(season): tows for (season,), tows in compared.group_by("season")}
+    for name, ends in season_ranges(compared["season"]).items():
+        seasons[name] = compared.filter(pl.col("season").is_between(*ends))
     rows = []
     for choice, tows in (stated | seasons).items():
         groups = [((m, ALL_TYPES), group) for (m,), group in tows.group_by("method")]

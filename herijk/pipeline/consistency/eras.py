@@ -4,7 +4,7 @@ A worn log makes all tows of an era too high; so does nothing else that hits eve
 age. How boats age is seen in the last era, where instruments are alike.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import comb, exp, hypot
 from typing import Any, Final
@@ -42,6 +42,17 @@ ERAS: Final = (
     Era("2014-", 2014, 9999, steering_checked=True),
 )
 """Worn logs, Doppler logs, dGPS (Sleepproef, R. Pot 2017); straight steering from 2014 on."""
+
+
+def season_ranges(seasons: Iterable[int], eras: Sequence[Era] = ERAS) -> dict[str, tuple[int, int]]:
+    """First and last season of each era that has several of these seasons, but not all.
+
+    They are named as people ask for them: 2012:2013.
+    """
+    known = sorted(set(seasons))
+    parts = [[s for s in known if era.first <= s <= era.last] for era in eras]
+    ends = [(part[0], part[-1]) for part in parts if 1 < len(part) < len(known)]
+    return {f"{first}:{last}": (first, last) for first, last in ends}
 
 
 def era_shifts(

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.consistency import mixed
-from herijk.pipeline.consistency.eras import Era
+from herijk.pipeline.consistency.eras import Era, season_ranges
 from herijk.pipeline.consistency.observed import (
     UNKNOWN_TYPE,
     Observed,
@@ -73,11 +73,11 @@ ASKEW_EXCESS: Final = 0.03
 
 
 class Choice(NamedTuple):
-    """Which tows: a name as in tables (`newest`, `all`, a season), and what deviates.
+    """Which tows: a name as in tables (`newest`, `all`, a season, a range), and what deviates.
 
     Of one season, as of the newest tows, hardly any boat has two: boat and tow are one. Of all
-    tows each deviates by itself as well, by its season among other things: a chart of all tows
-    shows that too.
+    tows and of a range each deviates by itself as well, by its season among other things: a chart
+    of all tows shows that too.
     """
 
     tows: str
@@ -96,6 +96,9 @@ def chosen_tows(observed: Observed) -> Iterator[tuple[Choice, Observed]]:
     for season in observed.table["season"].unique().sort():
         rows = np.flatnonzero((observed.table["season"] == season).to_numpy())
         yield Choice(str(season)), observed.take(rows)
+    for name, ends in season_ranges(observed.table["season"]).items():
+        rows = np.flatnonzero(observed.table["season"].is_between(*ends).to_numpy())
+        yield Choice(name, ALL_TOWS.components), observed.take(rows)
 
 
 def standard_speed_m_s(observed: Observed) -> float:

@@ -62,11 +62,18 @@ class Fit:
         problem: what was fitted.
         free: components that were estimated; the others are 0.
         sd: standard deviations of boat, other and cell.
+        white: the problem at these, as a stack of one.
     """
 
     problem: Problem
     free: tuple[str, ...]
     sd: tuple[float, float, float]
+    white: Whitened
+
+    @classmethod
+    def at(cls, problem: Problem, free: tuple[str, ...], sd: tuple[float, float, float]) -> Self:
+        """The model with these standard deviations."""
+        return cls(problem, free, sd, Whitened.of(Stack.of([problem]), np.square([sd])))
 
     @property
     def dof(self) -> int:
@@ -74,19 +81,15 @@ class Fit:
         return self.problem.boats - int(self.problem.x.shape[1])
 
     @cached_property
-    def _white(self) -> Whitened:
-        return Whitened.of(Stack.of([self.problem]), np.square([self.sd]))
-
-    @cached_property
     def _root(self) -> FloatArray:
         """R with (R'R)^-1 the covariance of the fixed effects, (p, p); upper triangular."""
-        first = self._white.of_others.shape[1]
-        return self._white.r[0, first:, first:]
+        first = self.white.of_others.shape[1]
+        return self.white.r[0, first:, first:]
 
     @cached_property
     def misfit(self) -> float:
         """Y' P Y: the weighted sum of squares about the fixed effects."""
-        return float(self._white.misfit[0])
+        return float(self.white.misfit[0])
 
     @property
     def total_misfit(self) -> float:
@@ -103,7 +106,7 @@ class Fit:
     @cached_property
     def beta(self) -> FloatArray:
         """Fixed effects, shape (p,)."""
-        known = self._white.along[0, self._white.of_others.shape[1] :, 0]
+        known = self.white.along[0, self.white.of_others.shape[1] :, 0]
         plain = np.linalg.lstsq(self.problem.x, self.problem.y)[0]
         return np.asarray(plain + np.linalg.solve(self._root, known))
 
@@ -134,7 +137,7 @@ class Fit:
         For rows g the error is (P_gg)^-1 (P y)_g with variance (P_gg)^-1: no fit is repeated.
         Where the others do not determine the prediction, the variance is infinite.
         """
-        white, boat = self._white, self.problem.boat
+        white, boat = self.white, self.problem.boat
         weighed = white.weigh(np.concatenate([white.q, white.rest], axis=-1))[0][0]
         known, py = weighed[:, :-1], weighed[:, -1]
         weights, shared = white.weight[0], white.boat[0] / white.inflation[0]
@@ -231,19 +234,21 @@ def fit_all(problems: Sequence[Problem], free: tuple[str, ...]) -> list[Fit]:
     layouts: dict[tuple[object, ...], list[int]] = {}
     for i, problem in enumerate(problems):
         layouts.setdefault(problem.layout, []).append(i)
-    sds = np.empty((len(problems), len(COMPONENTS)))
+    fits: dict[int, Fit] = {}
     for numbers in layouts.values():
-        sds[numbers] = np.sqrt(_most_likely([problems[i] for i in numbers], free))
-    fitted = zip(problems, sds.tolist(), strict=True)
-    return [Fit(problem, free, (boat, other, cell)) for problem, (boat, other, cell) in fitted]
+        stack = Stack.of([problems[i] for i in numbers])
+        variances = _most_likely(stack, free)
+        white = Whitened.of(stack, variances)
+        for place, (i, sd) in enumerate(zip(numbers, np.sqrt(variances).tolist(), strict=True)):
+            fits[i] = Fit(problems[i], free, tuple(sd), white.of_one(place))
+    return [fits[i] for i in range(len(problems))]
 
 
-def _most_likely(problems: Sequence[Problem], free: tuple[str, ...]) -> FloatArray:
-    """Variances of boat, other and cell of problems of one layout, (problems, 3)."""
-    stack = Stack.of(problems)
-    loose = np.tile(np.isin(COMPONENTS, free), (len(problems), 1))
+def _most_likely(stack: Stack, free: tuple[str, ...]) -> FloatArray:
+    """Variances of boat, other and cell of each problem, (problems, 3)."""
+    loose = np.tile(np.isin(COMPONENTS, free), (len(stack.unit), 1))
     # What the errors leave of the spread, in equal parts.
-    left = [p.spread**2 - float(p.variance.mean()) for p in problems]
+    left = stack.spread**2 - stack.variance.mean(axis=1)
     start = loose * (np.maximum(left, 0.1 * stack.unit) / max(len(free), 1))[:, None]
     variances, least = search(stack, loose, start)
     for place in np.flatnonzero(loose[0]):

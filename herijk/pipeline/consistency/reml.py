@@ -7,12 +7,11 @@ cell. What a fitted model says about anything is in `mixed`.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Final, NamedTuple, Self
 
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike
 
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
@@ -126,12 +125,10 @@ class Problem:
         )
 
     @cached_property
-    def by_boat(self) -> "scipy.sparse.csr_array":
-        """Adds up the rows of each boat; (boats, n)."""
-        n = len(self.y)
-        return scipy.sparse.csr_array(
-            (np.ones(n), (self.boat, np.arange(n))), shape=(self.boats, n)
-        )
+    def by_boat(self) -> tuple[IntArray, IntArray]:
+        """The rows boat by boat, and where each boat begins among them."""
+        order = np.argsort(self.boat, kind="stable")
+        return order, np.searchsorted(self.boat[order], np.arange(self.boats))
 
     @property
     def layout(self) -> tuple[object, ...]:
@@ -148,34 +145,34 @@ class Stack:
         problem: one of them, for what they share.
         columns: (m, n, k + p + 1) others, fixed effects and what y is beyond the plain fit.
         variance: (m, n) known variance of each observation.
+        spread: (m,) standard deviation about the plain fit.
         unit: (m,) size of a variance.
     """
 
     problem: Problem
     columns: FloatArray
     variance: FloatArray
+    spread: FloatArray
     unit: FloatArray
 
     @classmethod
     def of(cls, problems: Sequence[Problem]) -> Self:
         """A stack of problems of one layout."""
         columns = [np.hstack([p.others, p.x, p.residual[:, None]]) for p in problems]
-        unit = [max(p.spread**2, float(p.variance.min())) for p in problems]
+        spread = np.array([p.spread for p in problems])
         variance = np.stack([p.variance for p in problems])
-        return cls(problems[0], np.stack(columns), variance, np.array(unit))
+        unit = np.maximum(spread**2, variance.min(axis=1))
+        return cls(problems[0], np.stack(columns), variance, spread, unit)
 
     def take(self, rows: IntArray | BoolArray) -> Self:
         """Some of the problems."""
-        return replace(
-            self, columns=self.columns[rows], variance=self.variance[rows], unit=self.unit[rows]
-        )
+        taken = (a[rows] for a in (self.columns, self.variance, self.spread, self.unit))
+        return type(self)(self.problem, *taken)
 
     def by_boat(self, rows: FloatArray) -> FloatArray:
         """Adds up the rows of each boat: (m, n, c) to (m, boats, c)."""
-        m, n, c = rows.shape
-        flat = rows.transpose(1, 0, 2).reshape(n, m * c)
-        sums = self.problem.by_boat @ flat
-        return np.asarray(sums.reshape(self.problem.boats, m, c).transpose(1, 0, 2))
+        order, begins = self.problem.by_boat
+        return np.asarray(np.add.reduceat(rows[:, order], begins, axis=1))
 
     def likelihood(self, variances: FloatArray) -> Likelihood:
         """The restricted likelihood at variances of boat, other and cell, none of them negative.
@@ -268,6 +265,12 @@ class Whitened:
         rest = y - q[:, :n] @ along
         return replace(bare, q=q[:, :n], of_others=q[:, n:], r=r, along=along, rest=rest)
 
+    def of_one(self, place: int) -> Self:
+        """One problem of the stack, as a stack of one."""
+        one = slice(place, place + 1)
+        arrays = {f.name: getattr(self, f.name)[one] for f in fields(self) if f.name != "stack"}
+        return type(self)(stack=self.stack.take(np.array([place])), **arrays)
+
     @cached_property
     def root(self) -> FloatArray:
         """Root of the weights, (m, n, 1)."""
@@ -333,28 +336,25 @@ def search(
         if not len(busy):
             break
         last = at[busy]
-        steps = [
-            _newton(now.gradient[i], now.information[i], loose[i], stack.unit[i]) for i in busy
-        ]
-        _descend(stack, busy, np.array(steps), at, now)
+        step = _newton(now.gradient[busy], now.information[busy], loose[busy], stack.unit[busy])
+        _descend(stack, busy, step, at, now)
         size = np.maximum(at[busy], NEGLIGIBLE * stack.unit[busy, None])
         busy = busy[(np.abs(at[busy] - last) > tolerance * size).any(axis=1)]
     return at, now.deviance
 
 
 def _newton(
-    gradient: FloatArray, information: FloatArray, loose: BoolArray, unit: float
+    gradient: FloatArray, information: FloatArray, loose: BoolArray, unit: FloatArray
 ) -> FloatArray:
-    """Step of the loose variances; one that the data do not feel goes nowhere, as do its like."""
-    size = np.diag(information)[loose]
-    felt = size > UNFELT / unit**2
+    """Steps of the loose variances, (m, 3); one that the data do not feel goes nowhere."""
+    size = np.diagonal(information, axis1=-2, axis2=-1)
+    felt = loose & (size > UNFELT / unit[:, None] ** 2)
     size = np.sqrt(np.where(felt, size, 1.0))
-    scaled = np.where(np.outer(felt, felt), information[np.ix_(loose, loose)], 0.0)
-    slope = np.where(felt, gradient[loose], 0.0) / size
-    scaled = scaled / np.outer(size, size)
-    step = np.zeros(3)
-    step[loose] = -np.linalg.lstsq(scaled, slope, rcond=UNFELT)[0] / size
-    return step
+    both = felt[:, :, None] & felt[:, None, :]
+    scaled = np.where(both, information / (size[:, :, None] * size[:, None, :]), 0.0)
+    slope = np.where(felt, gradient, 0.0) / size
+    inverse = np.linalg.pinv(scaled, rcond=UNFELT, hermitian=True)
+    return np.asarray(-(inverse @ slope[..., None])[..., 0] / size)
 
 
 def _descend(

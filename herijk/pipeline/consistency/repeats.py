@@ -22,6 +22,11 @@ LEVEL: Final = 0.95
 ALL_PAIRS: Final = "all"
 
 
+PAIR_COLUMNS: Final = (
+    *("tow_id", "tow_id_before", "season", "season_before", "cw_ratio", "ln_ratio", "e_n"),
+)
+
+
 def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     """Consecutive tows of one boat and crew without an alteration between them.
 
@@ -58,8 +63,8 @@ def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
             + pl.col("by_others")
             - pl.col("by_others_before")
         )
-        .with_columns(_e_n())
-        .select(*line, "tow_id", "tow_id_before", "season", "season_before", "ln_ratio", "e_n")
+        .with_columns(_e_n(), cw_ratio=pl.col("ln_ratio").exp())
+        .select(*line, *PAIR_COLUMNS)
     )
 
 

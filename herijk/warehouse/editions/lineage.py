@@ -11,6 +11,7 @@ from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.register.register import LINE
 from herijk.tables.row import Row
 from herijk.warehouse.editions.sheets import CODE_FIELD, REGISTER_FIELDS, printed_cells
+from herijk.warehouse.queries.boats import boats_named, the_boat
 from herijk.warehouse.store.editions import Edition, edition_path, read_edition
 from herijk.warehouse.store.store import Store
 
@@ -53,18 +54,20 @@ class LineLineage:
     curve: Row | None = None
 
 
-def lineage(store: Store, edition: str, fsn_no: str) -> Lineage:
-    """What the lines of a boat were made from.
+def lineage(store: Store, edition: str, boat: str) -> Lineage:
+    """What the lines of a boat, by number or name, were made from.
 
     Raises:
-        MissingKnowledgeError: there is no such edition, or the boat is not in it.
+        MissingKnowledgeError: there is no such edition, the boat is not in it, or several boats
+            have that name.
     """
     published = read_edition(store, edition)
-    lines = published.register.filter(pl.col("fsn_no") == fsn_no)
-    if lines.is_empty():
+    boats = published.register.select("fsn_no", "name").unique()
+    if not boats_named(boats, boat):
         raise MissingKnowledgeError(
-            "boat {} is not in edition {}; its register.csv lists the boats", fsn_no, edition
+            "boat {} is not in edition {}; its register.csv lists the boats", boat, edition
         )
+    lines = published.register.filter(pl.col("fsn_no") == the_boat(boats, boat))
     return Lineage(
         about=published.about.model_dump(mode="json", exclude={"files", "tables"}),
         folder=str(edition_path(store, edition)),

@@ -74,17 +74,17 @@ REGISTER_FIELDS: Final = (
     Field("status", "status", "string", "geldig, of waarom er geen geldige kromme is"),
     Field("nakijken", "flags", "string", "ja: de commissie moet nog naar deze sleep kijken"),
     Field("roeisnelheid [m/s]", "declared_speed_m_s", "number", "opgegeven snelheid", 2),
-    Field("A", "a_kg_m", "number", "A in kg/m: de weerstand bij snelheid 0"),
+    Field("A [kg/m]", "a_kg_m", "number", "de weerstand bij snelheid 0"),
     Field(
-        "B",
+        "B [m/s]",
         "b_m_s",
         "number",
-        "B in m/s; leeg waar hij niet bepaald is: Cw stijgt daar niet met de snelheid, en A en Cw "
+        "leeg waar hij niet bepaald is: Cw stijgt daar niet met de snelheid, en A en Cw "
         "bij de roeisnelheid bepalen samen de kromme",
     ),
-    Field("Cw", "cw_kg_m", "number", "Cw in kg/m bij de roeisnelheid"),
-    Field("Cw laagst", "cw_lo_kg_m", "number", LOWER_END),
-    Field("Cw hoogst", "cw_hi_kg_m", "number", "bovengrens"),
+    Field("Cw [kg/m]", "cw_kg_m", "number", "Cw bij de roeisnelheid"),
+    Field("Cw laagst [kg/m]", "cw_lo_kg_m", "number", LOWER_END),
+    Field("Cw hoogst [kg/m]", "cw_hi_kg_m", "number", "bovengrens"),
     Field("sleep_id", "tow_id", "string", "sleep die telt"),
     Field("sleepdatum", "tow_date", "date", "dag van die sleep"),
     Field("geldig tot en met", "valid_until", "date", "laatste dag waarop de regel telt"),

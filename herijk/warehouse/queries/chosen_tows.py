@@ -7,7 +7,7 @@ such does so over all tows (lines, outliers); the others keep to the newest tow,
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Final
 
 import duckdb
@@ -16,6 +16,7 @@ import polars as pl
 
 from herijk.pipeline import consistency
 from herijk.pipeline.consistency import ERAS, Observed
+from herijk.pipeline.consistency.eras import season_ranges
 from herijk.pipeline.consistency.observed import newest, of_trusted
 from herijk.pipeline.errors import MissingKnowledgeError
 
@@ -76,11 +77,28 @@ def rows_of(tows: str) -> pl.Expr:
     return pl.col("newest") if tows == NEWEST else pl.col("season").is_in(_seasons(tows))
 
 
-def choices_of_row() -> pl.Expr:
-    """The choices that a row with `season` and `newest` belongs to, as a list."""
-    newest = pl.when("newest").then(pl.lit([NEWEST])).otherwise(pl.lit([], pl.List(pl.String)))
-    season = pl.concat_list(pl.col("season").cast(pl.String))
-    return pl.concat_list(pl.lit([ALL]), newest, season).alias("tows")
+def with_choices(tows: pl.DataFrame) -> pl.DataFrame:
+    """With the choices that each tow, by its `season` and `newest`, belongs to: a list `tows`."""
+    season = pl.col("season")
+    held = [(ALL, pl.lit(value=True)), (NEWEST, pl.col("newest"))]
+    held += [
+        (name, season.is_between(*ends)) for name, ends in season_ranges(tows["season"]).items()
+    ]
+    names = [pl.when(whether).then(pl.lit(name)) for name, whether in held]
+    return tows.with_columns(
+        pl.concat_list(*names, season.cast(pl.String)).list.drop_nulls().alias("tows")
+    )
+
+
+def choices_of(seasons: Iterable[int]) -> list[str]:
+    """Every choice that tables and pages hold, of tows of these seasons."""
+    known = sorted(set(seasons))
+    return [*STATED, *season_ranges(known), *map(str, known)]
+
+
+def spoken_range(tows: str) -> str:
+    """A season or range of seasons as people write it."""
+    return tows.replace(":", "\u2013")
 
 
 def _seasons(tows: str) -> list[int]:

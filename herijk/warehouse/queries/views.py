@@ -149,14 +149,16 @@ class Views:
     def repeat_pairs(self) -> pl.DataFrame:
         """Repeat tows with the boat's name."""
         return self.frame(
-            "SELECT r.*, b.name FROM repeat_pairs AS r LEFT JOIN boats AS b USING (fsn_no) "
+            "SELECT r.* EXCLUDE ln_ratio, b.name FROM repeat_pairs AS r "
+            "LEFT JOIN boats AS b USING (fsn_no) "
             "ORDER BY method, tow_id"
         )
 
     def predicted(self) -> pl.DataFrame:
         """Predicted Cw next to the tow's, with the boat's name."""
         return self.frame(
-            "SELECT p.*, b.name FROM predicted_cw AS p LEFT JOIN boats AS b USING (fsn_no) "
+            "SELECT p.* EXCLUDE ln_ratio, b.name FROM predicted_cw AS p "
+            "LEFT JOIN boats AS b USING (fsn_no) "
             "WHERE predicted_cw_kg_m IS NOT NULL ORDER BY method, tow_id"
         )
 

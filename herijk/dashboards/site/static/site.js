@@ -147,6 +147,7 @@
     const body = table.querySelector("tbody");
     const isSame = shown.length === body.rows.length && shown.every((row, i) => row === body.rows[i]);
     if (!isSame) body.replaceChildren(...shown);
+    if (linked) shown.forEach((row, i) => { row.tabIndex = i ? -1 : 0; });
     table.querySelector(".count b").textContent = shown.length;
     const clear = table.querySelector(".clear");
     if (clear) clear.hidden = selected === null;
@@ -203,6 +204,14 @@
       const row = event.target.closest("tbody tr");
       if (row) mark(row.dataset.boat);
     });
+    table.querySelector("table.linked")?.addEventListener("keydown", (event) => {
+      const step = { ArrowDown: "nextElementSibling", ArrowUp: "previousElementSibling", Enter: "self" }[event.key];
+      const row = event.target.matches("tr") && (step === "self" ? event.target : event.target[step]);
+      if (!row) return;
+      event.preventDefault();
+      row.focus();
+      mark(row.dataset.boat);
+    });
   }
 
   // -- Charts -----------------------------------------------------------------------------------
@@ -238,8 +247,12 @@
 
   function chosenRows(name, figure) {
     const follows = Object.entries(JSON.parse(figure.dataset.follows));
-    return rowsOf(name).filter((row) => follows.every(([column, names]) =>
+    const own = rowsOf(name).filter((row) => follows.every(([column, names]) =>
       (row[column] ?? null) === null || matches(names, row[column])));
+    // A row of several methods or choices of tows is here for the one that is chosen.
+    const several = follows.filter(([column, names]) => own.some((row) => Array.isArray(row[column])) && choice(names));
+    const said = Object.fromEntries(several.map(([column, names]) => [column, choice(names)]));
+    return several.length ? own.map((row) => ({ ...row, ...said })) : own;
   }
 
   const shownRows = (figure) => chosenRows(figure.dataset.data, figure);
@@ -402,7 +415,7 @@
     tables.forEach(filter);
   }
 
-  // Clicking a row of the list makes its point large in every scatter.
+  // Clicking a row of the list, or going there with the arrows, makes its point large in every scatter.
   function mark(boat) {
     for (const row of [...rowsOfTable.values()].flat()) {
       row.classList.toggle("chosen", row.dataset.boat === boat);

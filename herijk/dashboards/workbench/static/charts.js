@@ -36,11 +36,14 @@ export function redrawCharts() {
   return updateSeen();
 }
 
+// The boat that is chosen is large in the scatters.
+const mark = (view) => ("chosen" in view.getState().signals ? view.signal("chosen", byId("boat").value) : view);
+
 async function drawNow(figure) {
   const rows = figureRows(figure);
   const known = views.get(figure);
   if (known?.language === root.lang) {
-    await known.view.data("rows", structuredClone(rows)).runAsync();
+    await mark(known.view.data("rows", structuredClone(rows))).runAsync();
     return;
   }
   known?.view.finalize();
@@ -67,6 +70,7 @@ async function drawNow(figure) {
   view.addEventListener("click", (_, item) => {
     if (item?.datum?.fsn_no) chooseBoat(item.datum.fsn_no);
   });
+  await mark(view).runAsync();
   const picture = place.querySelector("svg");
   picture.setAttribute("role", "img");
   picture.setAttribute("aria-label", figure.dataset[root.lang]);

@@ -249,7 +249,7 @@ const anyType = make("option", { value: "" });
 [anyType.dataset.nl, anyType.dataset.en] = pair("all");
 byId("boat_type").append(anyType, ...start.types.map((type) => make("option", { value: type }, type)));
 byId("tows").append(...start.choices.map((value) => {
-  const option = make("option", { value }, value);
+  const option = make("option", { value }, value.replace(":", "\u2013"));
   if (start.words[`code.${value}`]) [option.dataset.nl, option.dataset.en] = pair(`code.${value}`);
   return option;
 }));
