@@ -106,6 +106,8 @@ REPEATS ?= 5
 bench: $(DEVELOP)
 	@PYTHONPATH=. $(BIN)/python -m benchmarks.speed --tows-per-season $(TOWS) --repeats $(REPEATS) \
 	  --write $(if $(filter 60,$(TOWS)),docs,benchmarks/data)
+	@PYTHONPATH=. $(BIN)/python -m benchmarks.commands benchmarks/data/$(TOWS)/archive \
+	  --write $(if $(filter 60,$(TOWS)),docs/commands.md,benchmarks/data/commands.md)
 	@for part in fit editions samples_format; do echo "== $$part"; PYTHONPATH=. $(BIN)/python -m benchmarks.$$part || exit 1; done
 
 scale: $(DEVELOP)

@@ -19,6 +19,7 @@ ANCHORED_FROM = 2014
 GPS_FROM = 2011
 RETOW_YEARS = (3, 4, 4, 5)
 TYPES = 8
+TOWS_A_DAY = 3
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,8 @@ class Setup:
     kappa_error: float = 0.03
     force_step: tuple[int, float] | None = None
     log_factors: tuple[tuple[int, float], ...] = ()
+    day_sd: float = 0.0
+    """Of ln Cw, of what three tows of one day share."""
     log_change: tuple[int, int, float] | None = None
     """Season, number of tows until its log was replaced, and change of the ln factor."""
 
@@ -55,7 +58,7 @@ class World:
 
 
 def simulate(setup: Setup, seed: int) -> World:
-    rng = np.random.default_rng(seed)
+    rng, of_days = np.random.default_rng(seed), np.random.default_rng((seed, 1))
     ln_factor = {s: _true_ln_factor(s, rng) for s in SEASONS}
     ln_factor |= {s: float(np.log(f)) for s, f in setup.log_factors}
     gps_offset = {s: setup.gps_season_error * rng.standard_normal() for s in SEASONS}
@@ -65,7 +68,8 @@ def simulate(setup: Setup, seed: int) -> World:
     towed = np.zeros(setup.boats, bool)
     rows = []
     for season, crews in _schedule(setup):
-        for day, boat in enumerate(crews):
+        of_day = setup.day_sd * np.repeat(of_days.standard_normal(len(crews)), TOWS_A_DAY)
+        for place, boat in enumerate(crews):
             if towed[boat] and rng.random() < setup.altered_share:
                 state[boat] += setup.altered_sd * rng.standard_normal()
             towed[boat] = True
@@ -79,12 +83,13 @@ def simulate(setup: Setup, seed: int) -> World:
                     state[boat],
                     ln_weight[boat] + change,
                     change,
-                    ln_factor[season] + _replaced(setup, season, day),
+                    ln_factor[season] + _replaced(setup, season, place),
                     gps_offset[season],
                     rng,
                 )
             )
-            rows[-1]["day"] = float(day) if setup.log_change else None
+            rows[-1]["ln_cw"] += of_day[place]
+            rows[-1]["day"] = _day(setup, place)
     tows = pl.DataFrame(rows, infer_schema_length=None).with_columns(
         (pl.col("season").cast(pl.String) + "-" + pl.int_range(pl.len()).cast(pl.String)).alias(
             "tow_id"
@@ -93,12 +98,18 @@ def simulate(setup: Setup, seed: int) -> World:
     return World(tows, {s: x for s, x in ln_factor.items() if s < ANCHORED_FROM})
 
 
-def _replaced(setup, season, day):
+def _day(setup, place):
+    if setup.day_sd:
+        return float(place // TOWS_A_DAY)
+    return float(place) if setup.log_change else None
+
+
+def _replaced(setup, season, place):
     """Change of the log's ln factor after it was replaced."""
     if setup.log_change is None:
         return 0.0
     when, first, change = setup.log_change
-    return change if season == when and day >= first else 0.0
+    return change if season == when and place >= first else 0.0
 
 
 def _true_ln_factor(season, rng):

@@ -18,6 +18,7 @@ from herijk.pipeline.season_log import (
     retow_choice,
     scale_effect,
 )
+from herijk.pipeline.season_log.days import day_variance
 from herijk.pipeline.season_log.network import Network
 from tests.numbers import SAME, jittered, unequal
 from tests.pipeline.season_worlds import ANCHORED_FROM, CLEAN, HARD, simulate
@@ -131,6 +132,19 @@ def test_boats_that_age_apart_are_seen_to_drift_and_their_best_estimates_hold():
     best = found.best.join(world.tows.select("tow_id", "true_ln_cw"), on="tow_id")
     held = best.select(pl.col("true_ln_cw").is_between("lo", "hi")).to_series()
     assert held.mean() > 0.93
+
+
+def test_what_tows_of_a_day_share_is_found_and_widens_the_interval():
+    shared, calm = (simulate(replace(CLEAN, day_sd=sd), 4).tows for sd in (0.015, 1e-9))
+    sd = [
+        np.sqrt(day_variance(found.fit.told, found.fit.covariance, found.problem.day))
+        for found in (
+            posterior.solve(posterior.Problem.of(Network.of(t), USUAL)) for t in (shared, calm)
+        )
+    ]
+    assert sd == pytest.approx([0.015, 0.0], abs=0.005)
+    wide, narrow = (estimate_season_factors(t).factors["ln_sd"] for t in (shared, calm))
+    assert (wide > 1.3 * narrow).all()
 
 
 def test_wander_within_the_season_is_found_and_widens_the_interval():

@@ -9,7 +9,6 @@ from typing import Final
 
 import numpy as np
 import polars as pl
-import scipy
 
 from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.consistency.eras import Era, median_interval, season_ranges
@@ -185,11 +184,15 @@ def _length_slope(boats: pl.DataFrame) -> dict[str, float]:
     x, y = (np.log(sorted_boats[name].to_numpy()) for name in ("waterline_length_m", "b_m_s"))
     if len(x) < FEWEST_LENGTHS or np.ptp(x) < 1e-9:
         return {}
-    line = scipy.stats.linregress(x, y)
-    half = float(t_quantile(len(x) - 2)) * line.stderr
+    # Plain least squares; scipy.stats, which has it, takes a second to import.
+    var_x, together, _, var_y = np.cov(x, y, bias=True).flat
+    slope = together / var_x
+    r = min(max(together / np.sqrt(var_x * var_y), -1.0), 1.0) if var_y > 0.0 else 0.0
+    freedom = len(x) - 2
+    half = float(t_quantile(freedom)) * np.sqrt((1.0 - r**2) * var_y / var_x / freedom)
     return {
-        "length_slope": float(line.slope),
-        "length_slope_lo": float(line.slope - half),
-        "length_slope_hi": float(line.slope + half),
-        "length_r2": float(line.rvalue**2),
+        "length_slope": float(slope),
+        "length_slope_lo": float(slope - half),
+        "length_slope_hi": float(slope + half),
+        "length_r2": float(r**2),
     }

@@ -114,8 +114,8 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
     """
     _refuse_unknown(tows)
     network = Network.of(tows)
-    problem = Problem.of(network, settings)
-    posterior = solve(problem)
+    posterior = solve(Problem.of(network, settings))
+    problem = posterior.problem
     fit = posterior.fit
     ageing = int(np.flatnonzero([problem.unknowns[i].name == AGEING for i in fit.active])[0])
     ageing_per_year = float(posterior.mean[ageing])

@@ -17,7 +17,9 @@ import scipy
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.choice import first_largest
 from herijk.pipeline.season_log.assumed import Settings
+from herijk.pipeline.season_log.days import day_variance, share_of_season
 from herijk.pipeline.season_log.effects import (
+    FORCE,
     WAYS,
     Slopes,
     Unknown,
@@ -66,7 +68,7 @@ class Problem:
         q, force_n: (n,) usual bend and force.
         unknowns: what there always is, then possible faults.
         share: (n, unknowns) how much of each a tow has.
-        season, era: (n,) index; the last era is that of calibrated tows, whenever.
+        season, day, era: (n,) index; the last era is that of calibrated tows, whenever.
         groups: boats by their number of tows, with what may have changed between these.
     """
 
@@ -79,6 +81,7 @@ class Problem:
     unknowns: list[Unknown]
     share: FloatArray
     season: IntArray
+    day: IntArray
     era: IntArray
     groups: list[Patterns]
     settings: Settings
@@ -117,6 +120,7 @@ class Problem:
             unknowns,
             np.stack([u.share for u in unknowns], axis=1),
             np.unique(season, return_inverse=True)[1],
+            network.day,
             np.where(network.group >= 0, np.maximum(era, 0), len(settings.era_starts)),
             patterns_of(network.boat, season, season < settings.straight_from, settings),
             settings,
@@ -401,6 +405,7 @@ class Posterior:
     """What is known of all unknowns, averaged over the faults that there may be.
 
     Attributes:
+        problem: with load cells as uncertain as the days of their seasons show.
         fit: with the faults that are likelier than not.
         places: (k + faults,) index of each unknown below: those of the fit, then every fault.
         mean, covariance: of their values; a fault that is not there is 0.
@@ -411,6 +416,7 @@ class Posterior:
         taken_for: (faults,) unknown of the fit that would move most, in standard deviations.
     """
 
+    problem: Problem
     fit: Fit
     places: IntArray
     mean: FloatArray
@@ -426,7 +432,22 @@ def solve(problem: Problem) -> Posterior:
     unchanged = _with_needed_faults(problem, None, changes=False)
     ends = [_with_needed_faults(problem, start) for start in (None, unchanged)]
     best = ends[int(first_largest(np.array([_ln_evidence(problem, end) for end in ends])))]
-    return _averaged(problem, fit(problem, best.active, best))
+    settled = fit(problem, best.active, best)
+    wider = _with_days(problem, settled)
+    return _averaged(wider, fit(wider, settled.active, settled))
+
+
+def _with_days(problem: Problem, fitted: Fit) -> Problem:
+    """The problem with load cells of seasons as uncertain as their days show."""
+    variance = day_variance(fitted.told, fitted.covariance, problem.day)
+    share = share_of_season(problem.season, problem.day)
+    unknowns = list(problem.unknowns)
+    cells = [i for i in problem.always.tolist() if unknowns[i].name == FORCE]
+    for i, part in zip(cells, share.tolist(), strict=True):
+        unknowns[i] = unknowns[i]._replace(
+            sd=float(np.hypot(unknowns[i].sd, np.sqrt(variance * part)))
+        )
+    return replace(problem, unknowns=unknowns)
 
 
 def _with_needed_faults(problem: Problem, start: Fit | None, changes: bool = True) -> Fit:
@@ -616,6 +637,7 @@ def _averaged(problem: Problem, fitted: Fit) -> Posterior:
             else:
                 instead[fault] += all_w[:-1]
     return Posterior(
+        problem,
         fitted,
         np.append(fitted.active, problem.faults),
         mean,

@@ -1,0 +1,247 @@
+"""How long the commands take, measured as a user would: from the shell, on a whole archive.
+
+    PYTHONPATH=. python -m benchmarks.commands ARCHIVE [--repeats 3] [--write FILE]
+
+The archive is linked, not copied, and its last tow is held back, to come in later as a new one.
+`Processor` counts all processes of a command. `Memory` is the largest sum of what they held at a
+time; pages that they share count for each.
+"""
+
+import argparse
+import contextlib
+import datetime as dt
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import polars as pl
+
+from benchmarks.harness import machine
+from herijk.simulate import WorldSettings, simulate_world
+from herijk.simulate.archive_writer import write_simulated_archive
+from herijk.warehouse.store.store import Store
+
+SMALL: Final = WorldSettings(tuple(range(2009, 2017)), 3, 100)
+READ, COLD = "only text to blocks", "rebuild, cold"
+LONGEST_OF_READING: Final = 1.5
+LEAST_BUSY: Final = 0.85
+WITHIN_S: Final = {
+    "rebuild, nothing new": 2.0,
+    "rebuild, one new tow": 10.0,
+    "rebuild, a small archive": 8.0,
+    **dict.fromkeys(("audit, its text", "due", "lineage", "log-error", "diff", "methods"), 0.8),
+}
+"""What the project asks: the ratio of the two, the share of processors, seconds by the clock."""
+
+_READING: Final = """
+import sys
+from pathlib import Path
+from herijk.warehouse.intake.seasons import bring_in
+from herijk.warehouse.store.store import Store
+bring_in(Store(Path(sys.argv[2])), Path(sys.argv[1]))
+"""
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What a command took.
+
+    Attributes:
+        seconds: by the clock.
+        processor_s: of all its processes.
+        peak_mib: the largest sum of their memory.
+        load: of the machine when it ended.
+    """
+
+    seconds: float
+    processor_s: float
+    peak_mib: float
+    load: float
+
+    @property
+    def busy(self) -> float:
+        """Share of the processors that it used."""
+        return self.processor_s / self.seconds / (os.cpu_count() or 1)
+
+
+def cost_of(*called: object, until_text: str = "") -> Cost:
+    """Runs a command; its time ends with it, or with the first line that holds a text."""
+    start = time.perf_counter()
+    process = subprocess.Popen(
+        [sys.executable, *map(str, called)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    peak = [0.0]
+    watch = threading.Thread(target=_watch, args=(process, peak))
+    watch.start()
+    assert process.stdout is not None
+    seconds = 0.0
+    for line in process.stdout:
+        if until_text and not seconds and until_text in line.decode():
+            seconds = time.perf_counter() - start
+    _, status, used = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    seconds = seconds or time.perf_counter() - start
+    watch.join()
+    if process.returncode:
+        raise subprocess.CalledProcessError(process.returncode, list(map(str, called)))
+    return Cost(seconds, used.ru_utime + used.ru_stime, peak[0], os.getloadavg()[0])
+
+
+def _watch(process: "subprocess.Popen[bytes]", peak: list[float]) -> None:
+    while process.returncode is None:
+        peak[0] = max(peak[0], sum(_held_mib(process.pid)))
+        time.sleep(0.1)
+
+
+def _held_mib(session: int) -> Iterator[float]:
+    """Memory of each process of a session (Linux)."""
+    for about in Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError):
+            fields = about.read_text().rpartition(")")[2].split()
+            if int(fields[3]) == session:
+                yield int(fields[21]) * os.sysconf("SC_PAGE_SIZE") / 2**20
+
+
+def herijk(*words: object, until_text: str = "") -> Cost:
+    """A command of Herijk."""
+    return cost_of("-m", "herijk", *words, until_text=until_text)
+
+
+def held_back(archive: Path, folder: Path) -> tuple[Path, bytes]:
+    """Links an archive without the last row of its newest tow list; gives that list, whole."""
+    shutil.copytree(archive, folder, copy_function=os.link)
+    newest = max((folder / "sleeplijsten").glob("sleeplijst_*"))
+    whole = newest.read_bytes()
+    newest.unlink()
+    newest.write_bytes(whole.rstrip().rpartition(b"\n")[0] + b"\n")
+    return newest, whole
+
+
+def rebuilds(archive: Path, folder: Path) -> dict[str, Cost]:
+    """The rebuilds, and what only reading takes."""
+    mine, data = folder / "archive", folder / "data"
+    newest, whole = held_back(archive, mine)
+    again = "rebuild", "--archive", mine, "--data", data
+    found = {
+        READ: cost_of("-c", _READING, mine, folder / "only read"),
+        COLD: herijk(*again),
+        "rebuild, nothing new": herijk(*again),
+    }
+    newest.write_bytes(whole)
+    found["rebuild, one new tow"] = herijk(*again)
+    write_simulated_archive(folder / "small", simulate_world(SMALL))
+    small = "--archive", folder / "small", "--data", folder / "small data"
+    return found | {"rebuild, a small archive": herijk("rebuild", *small)}
+
+
+def readings(data: Path, repeats: int) -> dict[str, Cost]:
+    """The commands that only read, after two editions were published: medians."""
+    day = max(Store(data).read("tows")["tow_date"]) + dt.timedelta(days=1)
+    for edition, method in (("2026-1", "as-published"), ("2026-2", "rebased")):
+        herijk("publish", edition, "--method", method, "--valid-from", day,
+               "--decision", "benchmark", "--data", data)  # fmt: skip
+    herijk("rebuild", "--archive", data.parent / "archive", "--data", data)
+    boat = Store(data).read("register").filter(pl.col("tow_id").is_not_null())["fsn_no"][0]
+    commands = {
+        "audit, its text": ("audit", boat),
+        "due": ("due",),
+        "lineage": ("lineage", "2026-2", boat),
+        "log-error": ("log-error",),
+        "diff": ("diff", "2026-1", "2026-2"),
+        "methods": ("methods",),
+    }
+    return {
+        name: _middle(
+            [
+                herijk(*words, "--data", data, until_text=boat if name.startswith("audit") else "")
+                for _ in range(repeats)
+            ]
+        )
+        for name, words in commands.items()
+    }
+
+
+def _middle(costs: list[Cost]) -> Cost:
+    """The one with the median time."""
+    return sorted(costs, key=lambda cost: cost.seconds)[len(costs) // 2]
+
+
+def asked(found: dict[str, Cost]) -> Iterator[tuple[str, str, str, bool]]:
+    """What, what was found, what is asked, and whether it holds."""
+    cold, read = found[COLD], found[READ]
+    ratio = cold.seconds / read.seconds
+    most = f"at most {LONGEST_OF_READING:g}"
+    yield f"{COLD} / {READ}", f"{ratio:.2f}", most, ratio <= LONGEST_OF_READING
+    least = f"at least {LEAST_BUSY:.0%}"
+    yield f"{COLD}: processors used", f"{cold.busy:.0%}", least, cold.busy >= LEAST_BUSY
+    for name, limit in WITHIN_S.items():
+        seconds = found[name].seconds
+        yield f"{name}, seconds", f"{seconds:.2f}", f"at most {limit:g}", seconds <= limit
+
+
+def page(found: dict[str, Cost], archive: str) -> str:
+    """The page of the documentation."""
+    about = ", ".join(f"{key} {value}" for key, value in machine("numpy", "polars").items())
+    lines = [
+        "# Commands from the shell",
+        "",
+        f"Made by `python -m benchmarks.commands` on {dt.datetime.now(dt.UTC).date()}. Machine: "
+        f"{about}. {archive} Reading commands: medians. Processor is that of all processes of a "
+        "command. Memory is the largest sum of what they held at a time; pages that they share "
+        "count for each. Load is that of the machine when the command ended: above the number of "
+        "cores, other work was going on, and the column *processor* is the more reliable one.",
+        "",
+        "| what | found | asked | holds |",
+        "| --- | --- | --- | --- |",
+        *(
+            f"| {what} | {value} | {limit} | {'yes' if holds else '**no**'} |"
+            for what, value, limit, holds in asked(found)
+        ),
+        "",
+        "| command | seconds | processor s | peak MiB | load |",
+        "| --- | --- | --- | --- | --- |",
+        *(
+            f"| {name} | {cost.seconds:.2f} | {cost.processor_s:.2f} | {cost.peak_mib:.0f} | "
+            f"{cost.load:.1f} |"
+            for name, cost in found.items()
+        ),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("archive", type=Path)
+    parser.add_argument("--repeats", type=int, default=3)
+    parser.add_argument("--write", type=Path, metavar="FILE", help="write the page here too")
+    chosen = parser.parse_args()
+    with tempfile.TemporaryDirectory(dir=chosen.archive.parent) as folder:
+        found = rebuilds(chosen.archive, Path(folder))
+        data = Path(folder) / "data"
+        tows = Store(data).read("tows")
+        rates = tows["sample_rate_hz"].unique().sort().to_list()
+        about = (
+            f"Simulated archive of {tows.height} tows of {tows['fsn_no'].n_unique()} boats at "
+            f"{', '.join(map(str, rates))} Hz; the small one has {len(SMALL.seasons)} seasons of "
+            f"{SMALL.tows_per_season} tows at {SMALL.rate_hz} Hz."
+        )
+        found |= readings(data, chosen.repeats)
+    made = page(found, about)
+    print(made)
+    if chosen.write:
+        chosen.write.write_text(made, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
