@@ -7,9 +7,9 @@ DATA is a data folder that a rebuild made; without it a small one is simulated. 
     herijk simulate big --seasons 2009:2022 --tows-per-season 72 --rate 10
     herijk rebuild --archive big --data DATA
 
-Pages are timed in Chromium, from the start of loading until tables are filtered and the first
-chart is drawn: the largest boat pages, and all others. Beside it what the page's main thread used
-of a processor till then, which other programs on the machine do not lengthen.
+Pages are timed in Chromium, from the start of loading until tables are filtered and every chart in
+view is drawn: the largest boat pages, and all others. Beside it what the page's main thread used of
+a processor till then, which other programs on the machine do not lengthen.
 """
 
 import shutil
@@ -32,9 +32,10 @@ from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.store import Store
 
 READY = (
-    "document.querySelector('.chart.drawn')"
-    " || !document.querySelector('.chart:not(details:not([open]) .chart)')"
+    "[...document.querySelectorAll('.chart')].every(chart => chart.querySelector('svg')"
+    " || !chart.offsetParent || chart.getBoundingClientRect().top > innerHeight)"
 )
+"""Every chart that is in view is drawn."""
 COUNTED = "!document.querySelector('.count b:empty')"
 REPEATS = 5
 BOATS = 5

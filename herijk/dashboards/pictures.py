@@ -4,7 +4,7 @@ They need no script and no library in the browser; the charts that people can po
 from are `dashboards.figures`. Coordinates in pixels, y down.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
 from operator import mul
@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 import polars as pl
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from herijk.dashboards.figures.style import BACK, GREY, OKABE_ITO, OUT
 from herijk.dashboards.speech import Speech
@@ -31,16 +31,14 @@ _SVG = Markup(
     '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {} {}" width="{}" height="{}" '
     'role="img" aria-label="{}" font-family="Open Sans, sans-serif" font-size="12">{}</svg>'
 )
-_TEXT = Markup('<text x="{:.1f}" y="{:.1f}" text-anchor="{}">{}</text>')
-_LINE = Markup(
-    '<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" stroke="{}" stroke-width="{}"/>'
-)
-_BAR = Markup('<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="16" fill="{}"/>')
-_NUMBER = Markup('<path d="M{:.1f} {:.1f}l7 8l-7 8l-7 -8z" fill="{}"/>')
-_BAND = Markup('<polygon points="{}" fill="{}" fill-opacity="0.35"/>')
-_CURVE = Markup('<polyline points="{}" fill="none" stroke="black" stroke-width="2"/>')
-_OUT = Markup('<circle cx="{:.1f}" cy="{:.1f}" r="4" fill="{}" stroke="{}"/>')
-_BACK = Markup('<path d="M{0:.1f} {1:.1f}l5 9h-10z" fill="{2}" stroke="{3}"/>')
+_TEXT = '<text x="{:.1f}" y="{:.1f}" text-anchor="{}">{}</text>'
+_LINE = '<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" stroke="{}" stroke-width="{}"/>'
+_BAR = '<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="16" fill="{}"/>'
+_NUMBER = '<path d="M{:.1f} {:.1f}l7 8l-7 8l-7 -8z" fill="{}"/>'
+_BAND = '<polygon points="{}" fill="{}" fill-opacity="0.35"/>'
+_CURVE = '<polyline points="{}" fill="none" stroke="black" stroke-width="2"/>'
+_OUT = '<circle cx="{:.1f}" cy="{:.1f}" r="4" fill="{}" stroke="{}"/>'
+_BACK = '<path d="M{0:.1f} {1:.1f}l5 9h-10z" fill="{2}" stroke="{3}"/>'
 
 Place = Callable[[float], float]
 
@@ -89,20 +87,26 @@ def curve_picture(line: pl.DataFrame, points: pl.DataFrame, speech: Speech, titl
         _CURVE.format(_path(x, y, line["speed_m_s"], line["cw_kg_m"])),
         *(_run(x, y, row) for row in points.iter_rows(named=True)),
     ]
-    return _SVG.format(WIDTH, HEIGHT, WIDTH, HEIGHT, title, Markup().join(parts))
+    return _picture(HEIGHT, title, parts)
+
+
+def _picture(height: float, title: str, parts: Iterable[str]) -> Markup:
+    """The parts, in which texts are escaped, as a picture with a name."""
+    drawn = Markup("".join(parts))  # noqa: S704 - see above
+    return _SVG.format(WIDTH, height, WIDTH, height, title, drawn)
 
 
 def _path(x: Axis, y: Axis, across: pl.Series, up: pl.Series) -> str:
     return " ".join(f"{x.place(a):.1f},{y.place(b):.1f}" for a, b in zip(across, up, strict=True))
 
 
-def _axes(x: Axis, y: Axis, speech: Speech) -> list[Markup]:
+def _axes(x: Axis, y: Axis, speech: Speech) -> list[str]:
     floor, left = HEIGHT - BOTTOM, LEFT
     parts = [
         _LINE.format(left, floor, WIDTH - 12, floor, GREY, 1),
         _LINE.format(left, floor, left, TOP, GREY, 1),
-        _TEXT.format((left + WIDTH) / 2, HEIGHT - 5, "middle", speech.say("speed")),
-        _TEXT.format(4, 11, "start", speech.say("cw")),
+        _TEXT.format((left + WIDTH) / 2, HEIGHT - 5, "middle", speech.text("speed")),
+        _TEXT.format(4, 11, "start", speech.text("cw")),
     ]
     for tick in x.ticks:
         parts.append(_LINE.format(x.place(tick), floor, x.place(tick), floor + 4, GREY, 1))
@@ -115,7 +119,7 @@ def _axes(x: Axis, y: Axis, speech: Speech) -> list[Markup]:
     return parts
 
 
-def _run(x: Axis, y: Axis, row: dict[str, float]) -> Markup:
+def _run(x: Axis, y: Axis, row: dict[str, float]) -> str:
     across, up = x.place(row["speed_m_s"]), y.place(row["cw_kg_m"])
     out = row["direction"] == 1
     ink = OUT if out else BACK
@@ -147,13 +151,13 @@ def waterfall_picture(
         parts += [
             _LINE.format(before, row * ROW - 5, before, row * ROW + 5, GREY, 1),
             _BAR.format(left, row * ROW + 5, width, ink),
-            *_row(row, name, speech.per_cent(factor)),
+            _row(row, name, speech.per_cent(factor)),
         ]
     row, end = len(steps), x.place(steps[-1])
     parts.append(_LINE.format(end, row * ROW - 5, end, row * ROW + 5, GREY, 1))
     parts.append(_number(row, "after_number", steps[-1], x, speech))
     height = floor + 20
-    return _SVG.format(WIDTH, height, WIDTH, height, title, Markup().join(parts))
+    return _picture(height, title, parts)
 
 
 def _around(steps: Sequence[float]) -> tuple[float, float]:
@@ -162,7 +166,7 @@ def _around(steps: Sequence[float]) -> tuple[float, float]:
     return min(steps) - room, max(steps) + room
 
 
-def _scale(x: Axis, floor: float, speech: Speech) -> list[Markup]:
+def _scale(x: Axis, floor: float, speech: Speech) -> list[str]:
     """Thin lines with their numbers below."""
     parts = []
     for tick in x.ticks:
@@ -172,13 +176,14 @@ def _scale(x: Axis, floor: float, speech: Speech) -> list[Markup]:
     return parts
 
 
-def _number(row: int, key: str, value: float, x: Axis, speech: Speech) -> Markup:
+def _number(row: int, key: str, value: float, x: Axis, speech: Speech) -> str:
     """A row with a mark where a number lies."""
     mark = _NUMBER.format(x.place(value), row * ROW + 5, TOTAL)
-    return Markup().join([mark, *_row(row, speech.say(key), speech.number(value, 2))])
+    return mark + _row(row, speech.say(key), speech.number(value, 2))
 
 
-def _row(row: int, name: str, value: str) -> tuple[Markup, Markup]:
+def _row(row: int, name: str, value: str) -> str:
     """What is left and right of the marks of a row."""
     y = row * ROW + 17
-    return _TEXT.format(LABEL - 8, y, "end", name), _TEXT.format(WIDTH, y, "end", value)
+    left = _TEXT.format(LABEL - 8, y, "end", escape(name))
+    return left + _TEXT.format(WIDTH, y, "end", value)

@@ -167,8 +167,8 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     ),
     # Headlines
     "head_register": (
-        "{known} van {lines} regels hebben een geldige kromme.",
-        "{known} of {lines} lines have a valid curve.",
+        "{known} van {lines} regels hebben een geldige kromme, gezien op {day}.",
+        "{known} of {lines} lines have a valid curve, as of {day}.",
     ),
     "head_changes": (
         "{changed} van {lines} regels veranderen; {beyond} met meer dan de onzekerheid van beide "

@@ -113,8 +113,7 @@ NOT_SIDEWAYS = {
     "desktop": ".chart, :not([data-table=register]) > .scroll",
     "phone": ".chart",
 }
-"""What fits its box: not the register, whose lines have all sizes of the boat, nor tables on a
-phone."""
+"""What fits its box: not the register, whose lines may have long words, nor tables on a phone."""
 
 KINDS = [*MENU, GUIDES[0], "boat", "type", "race", "edition"]
 """A page of each kind."""
@@ -287,8 +286,11 @@ def test_search_sort_and_edition(visitor):
         )
         assert cells == sorted(cells, reverse=direction < 0)
     assert page.locator("th[data-c=cw_kg_m]").get_attribute("aria-sort") == "descending"
+    assert page.locator("#register .headline").is_visible()
     page.locator("select[name=edition]").select_option("concept-as-published")
     assert keys_shown(page, "register") == [["concept-as-published"]]
+    # It tells of the edition that was shown.
+    assert not page.locator("#register .headline").is_visible()
 
 
 def test_a_table_downloads_what_it_shows(visitor):

@@ -136,6 +136,21 @@ def test_a_browser_lays_out_only_the_edition_that_is_chosen(site, built, store):
     assert sorted([*body, *rest]) == sorted(editions)
 
 
+def headings(page):
+    """The headings of each table of a page."""
+    text = page.read_text("utf-8")
+    for head in re.findall(r"<thead>.*?</thead>", text, re.DOTALL):
+        cells = re.findall(r"<th .*?</th>", head, re.DOTALL)
+        yield [re.sub(r"<[^>]+>|[\u00ad\u200b]", "", cell).strip() for cell in cells]
+
+
+def test_no_two_numbers_of_a_table_go_by_one_name_and_none_is_a_logarithm(site):
+    tables = [names for page in pages(site) for names in headings(page)]
+    assert len(tables) > 100
+    assert [names for names in tables if len(set(names)) < len(names)] == []
+    assert not any(re.search(r"\bln\b", name) for names in tables for name in names)
+
+
 def test_every_crew_stands_on_the_due_list_once_a_method(site, store):
     with Views(store) as views:
         due = views.table("due_list")

@@ -45,7 +45,8 @@ def ticks(frame: pl.DataFrame, say: Say) -> Drawing:
             alt.Color(
                 "on:N",
                 title=say("ticked"),
-                scale=alt.Scale(domain=[False, True], range=[OKABE_ITO[0], OKABE_ITO[1]]),
+                # Dark and light: apart in grey print too.
+                scale=alt.Scale(domain=[False, True], range=[OKABE_ITO[0], OKABE_ITO[4]]),
                 legend=alt.Legend(labelExpr=seen, orient="bottom"),
             ),
             alt.StrokeDash(

@@ -18,9 +18,11 @@ MONTHS_AHEAD = dt.timedelta(days=365)
 
 
 def register(lines: pl.DataFrame) -> Headline:
-    """How many lines have a curve."""
-    known = lines["cw_kg_m"].drop_nulls().len()
-    return lambda speech: speech.say("head_register").format(lines=lines.height, known=known)
+    """How many lines have a curve, and on which day that was judged."""
+    known, day = lines["cw_kg_m"].drop_nulls().len(), lines["as_of"].max()
+    return lambda speech: speech.say("head_register").format(
+        lines=lines.height, known=known, day=day
+    )
 
 
 def changes(lines: pl.DataFrame) -> Headline:

@@ -17,6 +17,7 @@ from herijk.dashboards.site.parts import (
     edition_page,
     editions_select,
     methods_select,
+    once_for_methods,
     with_page,
 )
 from herijk.dashboards.site.prose import edition_pages, guide_pages
@@ -72,10 +73,10 @@ def _whole(views: Views, name: str, title: str, columns: Sequence[str] = ()) -> 
 
 REGISTER_COLUMNS = (
     *("name", "fsn_no", "boat_type", "rowers", "crew_class", "empty_thwart", "tow_date"),
-    *("valid_until", "status", "as_of"),
+    *("valid_until", "status"),
     *("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m"),
     *("waterline_length_m", "beam_m", "bow_height_m", "weight_kg"),
-    *("verification_code", "method"),
+    "verification_code",
 )
 REGISTER_CARDS = (
     *("name", "fsn_no", "boat_type", "rowers", "crew_class", "cw_kg_m", "cw_lo_kg_m"),
@@ -230,7 +231,7 @@ def _reproducibility(views: Views, methods: list[str]) -> Page:
             "repeats",
             "repeats_note",
             lambda: with_page(views.repeat_pairs()),
-            "method name fsn_no rowers crew_class season_before season cw_ratio e_n",
+            "name fsn_no rowers crew_class season_before season cw_ratio e_n",
         ),
         "variance_components": (
             "components",
@@ -242,7 +243,7 @@ def _reproducibility(views: Views, methods: list[str]) -> Page:
             "predicted",
             "predicted_note",
             lambda: with_page(views.predicted()),
-            "method name fsn_no boat_type rowers crew_class cw_kg_m predicted_cw_kg_m disagrees",
+            "name fsn_no boat_type rowers crew_class cw_kg_m predicted_cw_kg_m disagrees",
         ),
     }
     figures = {
@@ -257,7 +258,9 @@ def _reproducibility(views: Views, methods: list[str]) -> Page:
         frame = read() if views.has(name) else pl.DataFrame()
         if frame.height:
             data[name] = frame if name != "era_shifts" else frame.filter(boat_type="all")
-            table = Table(name, frame, columns.split(), title, ["method"], exact=False)
+            shown = columns.split()
+            rows = frame if "method" in shown else once_for_methods(frame.select("method", *shown))
+            table = Table(name, rows, shown, title, ["method"], exact=False)
             headline = None
             if name == "reproducibility":
                 headline = headlines.reproducibility(frame, default_method(methods))
@@ -303,7 +306,7 @@ CHANGE_COLUMNS = (
         "new_speed_rank",
         "causes",
     ),
-    *("from_edition", "to_edition"),
+    "from_edition",
 )
 CHANGE_CARDS = (
     *("name", "fsn_no", "rowers", "crew_class", "old_cw_kg_m", "new_cw_kg_m"),

@@ -471,8 +471,15 @@
   }, { rootMargin: "200px" });
 
   // -- Begin ------------------------------------------------------------------------------------
+  // A headline says what is shown at first: of another choice it would not be true.
+  function hideHeadlines() {
+    const isOther = all("select", form ?? undefined).some((field) => field.value !== defaults.get(field.name));
+    all("section:not(.answer) > .headline").forEach((headline) => { headline.hidden = isOther; });
+  }
+
   form?.addEventListener("change", () => {
     selected = null;
+    hideHeadlines();
     tables.forEach(filter);
     charts.forEach(redraw);
     writeAddress();
@@ -480,6 +487,7 @@
   window.addEventListener("beforeprint", () =>
     charts.filter((figure) => !visible.has(figure) && figure.offsetParent !== null).forEach(start));
   const sorted = readAddress()?.split(".");
+  hideHeadlines();
   tables.forEach(filter);
   if (sorted) {
     const header = document.querySelector(`[data-table="${CSS.escape(sorted[0])}"] th[data-c="${CSS.escape(sorted[1])}"]`);

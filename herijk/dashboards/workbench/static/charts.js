@@ -63,7 +63,7 @@ async function drawNow(figure) {
   const place = figure.querySelector(".chart");
   const { view } = await window.vegaEmbed(place, spec, {
     actions: false, renderer: "svg", formatLocale: LOCALES[root.lang],
-    config: { aria: false, mark: { aria: false }, legend: { labelFontSize: 12, titleFontSize: 12, labelLimit: 220,
+    config: { font: "Open Sans", aria: false, mark: { aria: false }, legend: { labelFontSize: 12, titleFontSize: 12, labelLimit: 220,
       orient: "bottom", columns: columns + 1 },
       axis: { labelFontSize: 12, titleFontSize: 12, labelLimit: 200 } },
   });

@@ -78,14 +78,14 @@ function cell(row, column, isOfCounts) {
     return make("td", {}, make("button", { type: "button", className: "to-boat",
       onclick: () => chooseBoat(value) }, value));
   }
-  if (typeof value === "boolean") return make("td", {}, say(value ? "yes" : "no"));
+  if (typeof value === "boolean") return make("td", { className: "t" }, say(value ? "yes" : "no"));
   if (typeof value === "number") {
     const text = isOfCounts ? `${value}`
       : number(value, digitsOf(column), column.startsWith("gain"));
     return make("td", { className: "n" }, text);
   }
   const codes = Array.isArray(value) ? value : [value];
-  const className = start.long.includes(column) ? "w" : "";
+  const className = start.long.includes(column) ? "w" : "t";
   return make("td", { className }, codes.map(code).join(", "));
 }
 

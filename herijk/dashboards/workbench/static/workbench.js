@@ -44,6 +44,11 @@ async function post(path, body) {
   return found.refused ? null : found;
 }
 
+function tellState(found) {
+  byId("state").replaceChildren(...(found ? [`${start.tows} `, say("tows_in_all"), ". ",
+    say("done_in"), ` ${number(Number(root.dataset.seconds), 1)} s.`] : []));
+}
+
 async function ask() {
   asked = true;
   since = performance.now();
@@ -57,10 +62,8 @@ async function ask() {
       boat: byId("boat").value, tows: byId("tows").value });
     if (asked) continue;
     if (found) { state.answer = found; writeAddress(); await show(); }
-    const seconds = (performance.now() - since) / 1000;
-    root.dataset.seconds = seconds;
-    byId("state").replaceChildren(...(found ? [`${start.tows} `, say("tows_in_all"), ". ",
-      say("done_in"), ` ${number(seconds, 1)} s.`] : []));
+    root.dataset.seconds = (performance.now() - since) / 1000;
+    tellState(found);
   }
   busy = false;
   root.setAttribute("aria-busy", "false");
@@ -174,8 +177,15 @@ function fillSelect(select, values, texts = values) {
   if (values.includes(chosen)) select.value = chosen;
 }
 
+// A method that ships goes by its name in words.
+function named(name) {
+  const option = make("option", { value: name }, name);
+  if (start.words[`method.${name}`]) [option.dataset.nl, option.dataset.en] = pair(`method.${name}`);
+  return option;
+}
+
 function group(key, names) {
-  const element = make("optgroup", {}, ...names.map((name) => make("option", { value: name }, name)));
+  const element = make("optgroup", {}, ...names.map(named));
   [element.dataset.nl, element.dataset.en] = pair(key);
   return element;
 }
@@ -201,6 +211,7 @@ function setLanguage(language) {
   });
   document.title = word("workbench");
   if (state.answer) show();
+  if (root.dataset.seconds) tellState(state.answer);
 }
 
 const wished = () => ({ base: state.source, steps: state.steps,
