@@ -33,6 +33,8 @@ SMALL: Final = WorldSettings(tuple(range(2009, 2017)), 3, 100)
 READ, COLD = "only text to blocks", "rebuild, cold"
 LONGEST_OF_READING: Final = 1.5
 LEAST_BUSY: Final = 0.85
+UNCOMPILED: Final = "PYTHONDONTWRITEBYTECODE"
+"""With this every command compiles its modules anew, which no user's does."""
 WITHIN_S: Final = {
     "rebuild, nothing new": 2.0,
     "rebuild, one new tow": 10.0,
@@ -79,6 +81,7 @@ def cost_of(*called: object, until_text: str = "") -> Cost:
         [sys.executable, *map(str, called)],
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
+        env={name: value for name, value in os.environ.items() if name != UNCOMPILED},
         start_new_session=True,
     )
     peak = [0.0]

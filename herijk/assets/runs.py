@@ -4,8 +4,7 @@ import os
 import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
-from contextlib import ExitStack, contextmanager
-from functools import cached_property
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
@@ -41,15 +40,10 @@ class Work:
     """The pieces of a rebuild, each recorded in the rebuild's run as its asset would be."""
 
     def __init__(
-        self, setup: Setup, progress: Progress, run: dg.OpExecutionContext, opened: ExitStack
+        self, setup: Setup, progress: Progress, run: dg.OpExecutionContext, other: Executor
     ) -> None:
-        self.setup, self.progress, self.run, self.opened = setup, progress, run, opened
+        self.setup, self.progress, self.run, self.other = setup, progress, run, other
         self.checks: list[dg.AssetCheckEvaluation] = []
-
-    @cached_property
-    def other(self) -> Executor:
-        """A second process, from the first work on that two can share."""
-        return self.opened.enter_context(helper())
 
     def record_index(self, index: ArchiveIndex) -> None:
         """Notes that the archive was looked through."""
@@ -66,8 +60,7 @@ class Work:
 
     def build(self, tasks: Sequence[Task]) -> None:
         """Makes the tables of steps that do not wait for each other."""
-        several = len(tasks) > 1
-        made = side_by_side(tasks, self.other) if several else [task.do() for task in tasks]
+        made = side_by_side(tasks, self.other)
         for task, tables in zip(tasks, made, strict=True):
             method = task.method
             if method is not None:
@@ -118,13 +111,13 @@ def in_one_run(setup: Setup, progress: Progress, work: Callable[[Work], None]) -
 
     @dg.op(name=WORK)
     def whole(context: dg.OpExecutionContext) -> None:
-        work(Work(setup, progress, context, opened))
+        work(Work(setup, progress, context, other))
 
     @dg.job(name=WORK)
     def job() -> None:
         whole()
 
-    with instance_of(setup.store) as instance, ExitStack() as opened:
+    with helper() as other, instance_of(setup.store) as instance:
         _end_lost_runs(instance)
         job.execute_in_process(instance=instance, run_config=QUIET_LOG, tags={STEP_TAG: WORK})
 

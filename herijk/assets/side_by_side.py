@@ -5,7 +5,7 @@ process makes a table changes nothing in it.
 """
 
 import multiprocessing
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
@@ -53,8 +53,8 @@ def helper() -> Iterator[Executor]:
     """
     afresh = multiprocessing.get_context("spawn")  # a copy of this one would lack its threads
     try:
-        with ProcessPoolExecutor(1, mp_context=afresh) as process:
-            process.submit(Store, Path())
+        with ProcessPoolExecutor(1, mp_context=afresh, initializer=_import_all) as process:
+            process.submit(stages, ())  # the process begins with its first task
             yield process
     except BrokenProcessPool as error:
         raise UnavailableError(
@@ -63,17 +63,25 @@ def helper() -> Iterator[Executor]:
         ) from error
 
 
+def _import_all() -> None:
+    """Imports what tables and pages are made with: three seconds that nobody has to wait for."""
+    import herijk.dashboards.site  # noqa: F401, PLC0415
+
+
 def side_by_side(tasks: Sequence[Task], other: Executor) -> list[Made]:
     """What the tasks make, in their order; each process takes the next when it has done one."""
     made: dict[Task, Made] = {}
     queue = iter(tasks)
 
-    def elsewhere() -> None:
-        made.update((task, other.submit(task.do).result()) for task in queue)
+    def make(do: Callable[[Task], Made]) -> None:
+        made.update((task, do(task)) for task in queue)
 
     with ThreadPoolExecutor(1) as waiting:
-        done = waiting.submit(elsewhere)
-        made.update((task, task.do()) for task in queue)
+        here = next(queue, None)  # a single task is not handed over
+        done = waiting.submit(make, lambda task: other.submit(task.do).result())
+        if here is not None:
+            made[here] = here.do()
+        make(lambda task: task.do())
         done.result()
     return [made[task] for task in tasks]
 
