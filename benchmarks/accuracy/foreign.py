@@ -120,11 +120,18 @@ def drifting(world: Measured, rng: np.random.Generator) -> Measured:
     return aged(world, {b: 0.01 * rng.standard_normal(years).cumsum() for b in boats})
 
 
+def days(world: Measured, rng: np.random.Generator) -> Measured:
+    """On each day the load cell reads 1 % too much or too little."""
+    day = world.tows["tow_date"].rank("dense").to_numpy() - 1
+    force = np.exp(0.01 * rng.standard_normal(day.max() + 1)[day])
+    return reading(world, force=force[runs(world)["tow"].to_numpy()])
+
+
 FOREIGN: dict[str, Callable[[Measured, np.random.Generator], Measured]] = {
     change.__name__: change
     for change in (
         *(log_by_speed, hysteresis, salt, shadow, standards),
-        *(uneven_ageing, drifting),
+        *(uneven_ageing, drifting, days),
     )
 }
 

@@ -11,9 +11,9 @@ from typing import Any, Final, NamedTuple
 
 import altair as alt
 import polars as pl
-import vl_convert
 from markupsafe import Markup
 
+from herijk.dashboards import drawn
 from herijk.dashboards.figures import FIGURES, drop_links
 from herijk.dashboards.site.parts import default_method
 from herijk.warehouse.queries.chosen_tows import rows_of
@@ -23,7 +23,6 @@ from herijk.warehouse.store.store import Store
 from herijk.words.catalogue import speaker
 
 SCATTERS: Final = ("a_weight", "b_weight", "cw_standard_weight", "b_speed", "cw_standard_speed")
-VEGA_LITE: Final = ".".join(alt.SCHEMA_VERSION.removeprefix("v").split(".")[:2])
 
 
 class Plot(NamedTuple):
@@ -123,9 +122,8 @@ def _write(plot: Plot, report: dict[str, Any], folder: Path) -> Path:
         if parameter["name"] == "chosen":
             parameter["value"] = about[0]
     path = folder / f"{file_name(f'{plot.figure} {plot.of}')}.svg"
-    svg = vl_convert.vegalite_to_svg(spec, vl_version=VEGA_LITE)
     with written_beside(path) as beside:
-        beside.write_text(svg, encoding="utf-8")
+        beside.write_text(drawn.svg(spec), encoding="utf-8")
     return path
 
 

@@ -5,9 +5,8 @@ from pathlib import Path
 import altair as alt
 import numpy as np
 import polars as pl
-import vl_convert
 
-from herijk.dashboards.audit_plots import VEGA_LITE
+from herijk.dashboards import drawn
 from herijk.dashboards.figures.style import HEIGHT, OKABE_ITO, WIDTH, number
 from herijk.library.curves import Fit
 from herijk.warehouse.store.files import written_beside
@@ -22,8 +21,8 @@ def write_fit_plot(fit: Fit, path: Path) -> None:
     """Writes the picture of a fitted curve."""
     say = speaker("en")
     speeds = fit.points.speed_m_s[0]
-    drawn = np.linspace(speeds.min() * (1 - MARGIN), speeds.max() * (1 + MARGIN), BAND_POINTS)
-    band = [{"speed_m_s": v, **fit.cw(float(v))._asdict()} for v in drawn]
+    speed = np.linspace(speeds.min() * (1 - MARGIN), speeds.max() * (1 + MARGIN), BAND_POINTS)
+    band = [{"speed_m_s": v, **fit.cw(float(v))._asdict()} for v in speed]
     points = pl.DataFrame({"speed_m_s": speeds, "value": fit.points.cw_kg_m[0]})
     x = number(alt.X, "speed_m_s", say("speed"))
     y = number(alt.Y, "value", say("cw"))
@@ -35,5 +34,4 @@ def write_fit_plot(fit: Fit, path: Path) -> None:
         alt.Chart(points).mark_point(size=90, filled=True, color=OKABE_ITO[0]).encode(x, y),
     ).properties(width=WIDTH, height=HEIGHT)
     with written_beside(path) as beside:
-        svg = vl_convert.vegalite_to_svg(chart.to_dict(), vl_version=VEGA_LITE)
-        beside.write_text(svg, encoding="utf-8")
+        beside.write_text(drawn.svg(chart.to_dict()), encoding="utf-8")

@@ -3,13 +3,14 @@
 import io
 import textwrap
 from pathlib import Path
-from typing import Final, Literal
+from typing import Final
 
 import altair as alt
 import pypdf
 import vl_convert
 
-from herijk.dashboards.audit_plots import VEGA_LITE, file_name
+from herijk.dashboards import drawn
+from herijk.dashboards.audit_plots import file_name
 from herijk.dashboards.figures import FIGURES
 from herijk.dashboards.slide_book import THE_PRESENTATION, Asked, Slide, slides
 from herijk.warehouse.queries.views import Views
@@ -21,8 +22,6 @@ from herijk.words.catalogue import speaker
 WIDTH_OF_TEXT: Final = 140
 MARGIN: Final = 24
 """White around a slide [px]."""
-LOCALES: Final[dict[str, Literal["nl-NL", "en-GB"]]] = {"nl": "nl-NL", "en": "en-GB"}
-"""How numbers on axes are written."""
 
 
 def write_slides(
@@ -71,5 +70,4 @@ def _svg(slide: Slide, language: str, simulated: bool) -> str:
     title = alt.Title(slide.title, subtitle=lines, anchor="start", offset=12)
     chart = FIGURES[slide.figure](slide.rows, say).properties(title=title, padding=MARGIN)
     spec = chart.to_dict(validate=False)
-    locale = LOCALES[language]
-    return str(vl_convert.vegalite_to_svg(spec, vl_version=VEGA_LITE, format_locale=locale))
+    return drawn.svg(spec, language)

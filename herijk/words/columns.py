@@ -62,7 +62,6 @@ COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "old_power": ("Vermogen oud [W/roeier]", "Power before [W/rower]"),
     "new_power": ("Vermogen nieuw [W/roeier]", "Power after [W/rower]"),
     "race": ("Wedstrijd", "Race"),
-    "class": ("Klasse", "Class"),
     # Columns
     "column.edition": ("Editie", "Edition"),
     "column.method": ("Methode", "Method"),

@@ -254,7 +254,7 @@ def test_lists_without_any_sound_row_say_so(bench, tmp_path):
 
 def test_the_tables_do_not_depend_on_where_the_archive_lies(bench, built, tmp_path):
     elsewhere = Workbench(bench.archive, tmp_path / "other data")
-    elsewhere.rebuild(whole=True)
+    elsewhere.rebuild()
     found = elsewhere.tables()
-    for name, frame in built.tables().items():
+    for name, frame in without_studies(built.tables()).items():
         assert table_digest(found[name]) == table_digest(frame), name

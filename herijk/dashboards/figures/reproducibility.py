@@ -12,6 +12,7 @@ from herijk.dashboards.figures.style import (
     Drawing,
     by_method,
     colour,
+    crews,
     editions_legend,
     method_colour,
     method_shape,
@@ -156,8 +157,7 @@ def race_ranks(frame: pl.DataFrame, say: Say) -> Drawing:
         .encode(
             alt.X("old_rank:Q", title=say("old_rank"), axis=alt.Axis(tickMinStep=1, format="d")),
             alt.Y("new_rank:Q", title=say("new_rank"), axis=alt.Axis(tickMinStep=1, format="d")),
-            colour("crew_class", say("class")),
-            shape("crew_class", say("class")),
+            *crews(say),
             href="page:N",
             tooltip=tips(
                 ("race:N", say("race")),

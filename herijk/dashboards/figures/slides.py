@@ -14,9 +14,9 @@ import polars as pl
 
 from herijk.dashboards.figures.style import (
     GREY,
-    OKABE_ITO,
     Drawing,
     colour,
+    crews,
     interval_kind,
     named,
     number,
@@ -105,18 +105,6 @@ def in_words(value: str, say: Say) -> str:
     return f"(({json.dumps(texts)})[{value}] || {value})"
 
 
-def _crew(say: Say) -> tuple[alt.Color, alt.Shape]:
-    """Men and women apart by colour and shape, in one legend."""
-    people = f"{{'H': '{say('men')}', 'D': '{say('women')}'}}[datum.value]"
-    title, legend = say("crew_class"), alt.Legend(labelExpr=people, orient="bottom")
-    shapes = alt.Scale(domain=["H", "D"], range=["circle", "triangle-up"])
-    inks = alt.Scale(domain=["H", "D"], range=[OKABE_ITO[0], OKABE_ITO[1]])
-    return (
-        alt.Color("crew_class:N", scale=inks, title=title, legend=legend),
-        alt.Shape("crew_class:N", scale=shapes, title=title, legend=legend),
-    )
-
-
 def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Drawing]:
     """The figure of a quantity against what may explain it, types below each other.
 
@@ -135,7 +123,7 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Dra
         )
         at, value = small(x, x_title), number(alt.Y, y, y_title)
         by_class = alt.Detail("crew_class:N")
-        ink, form = _crew(say)
+        ink, form = crews(say)
         low, high = number(alt.Y, "seen_lo", y_title), alt.Y2("seen_hi:Q")
         band = (
             _within_reach(line, "lo", "hi")
@@ -258,7 +246,7 @@ def towed_at(frame: pl.DataFrame, say: Say) -> Drawing:
         .mark_rect(color=GREY, opacity=0.25)
         .encode(x=alt.datum(low), x2=alt.datum(high))
     )
-    ink, form = _crew(say)
+    ink, form = crews(say)
     points = (
         alt.Chart(frame)
         .transform_filter("datum.kind == 'tow' && datum.method == datum.newest_method")

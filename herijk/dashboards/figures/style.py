@@ -32,6 +32,18 @@ def colour(field: str, title: str, **more: Any) -> alt.Color:
     return alt.Color(f"{field}:N", title=title, scale=alt.Scale(range=list(OKABE_ITO)), **more)
 
 
+def crews(say: Say) -> tuple[alt.Color, alt.Shape]:
+    """Men and women apart by colour and shape, in one legend."""
+    people = f"{{'H': '{say('men')}', 'D': '{say('women')}'}}[datum.value]"
+    title, legend = say("crew_class"), alt.Legend(labelExpr=people, orient="bottom")
+    shapes = alt.Scale(domain=["H", "D"], range=["circle", "triangle-up"])
+    inks = alt.Scale(domain=["H", "D"], range=[OKABE_ITO[0], OKABE_ITO[1]])
+    return (
+        alt.Color("crew_class:N", scale=inks, title=title, legend=legend),
+        alt.Shape("crew_class:N", scale=shapes, title=title, legend=legend),
+    )
+
+
 def method_colour(say: Say) -> alt.Color:
     """A method by colour: every method that ships has the same in every figure."""
     scale = _of_methods(OKABE_ITO)

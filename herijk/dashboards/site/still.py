@@ -5,24 +5,14 @@ import json
 import re
 from typing import Final
 
-import altair as alt
 import polars as pl
-import vl_convert
 from markupsafe import Markup
 
-from herijk.dashboards import fonts
+from herijk.dashboards import drawn
 from herijk.dashboards.figures import drop_links
 from herijk.dashboards.site.parts import Chart, Page, is_chosen
 from herijk.dashboards.site.specifications import chart_specifications
 from herijk.dashboards.speech import Speech
-
-VEGA_LITE: Final = ".".join(alt.SCHEMA_VERSION.removeprefix("v").split(".")[:2])
-LOCALES: Final = {
-    "nl": {"decimal": ",", "thousands": ".", "grouping": [3], "currency": ["€ ", ""]},
-    "en": {"decimal": ".", "thousands": ",", "grouping": [3], "currency": ["€", ""]},
-}
-
-vl_convert.register_font_directory(str(fonts.FOLDER))
 
 
 def still_pictures(page: Page, speech: Speech) -> dict[str, Markup]:
@@ -42,14 +32,9 @@ def still(figure: str, rows: pl.DataFrame, speech: Speech, caption: str) -> Mark
     spec = copy.deepcopy(chart_specifications(speech.language)[figure])
     drop_links(spec)
     text = json.dumps(spec)
-    drawn = rows.select(name for name in rows.columns if name in text)
-    spec["datasets"] = {"rows": drawn.to_dicts()}
-    svg = vl_convert.vegalite_to_svg(
-        json.dumps(spec, default=str),
-        vl_version=VEGA_LITE,
-        config=CONFIG,
-        format_locale=LOCALES[speech.language],
-    )
+    seen = rows.select(name for name in rows.columns if name in text)
+    spec["datasets"] = {"rows": seen.to_dicts()}
+    svg = drawn.svg(spec, speech.language)
     bare = re.sub(r' (role|aria-[a-z]+)="[^"]*"', "", _renumbered(svg))  # described as a whole
     bare = PLACES.sub(lambda place: DIGITS.sub(r"\1", place[0]), bare)
     named = Markup('<svg role="img" aria-label="{}" ').format(caption)
@@ -62,8 +47,6 @@ def _renumbered(svg: str) -> str:
     places = {name: f"clip{place}" for place, name in enumerate(names)}
     return re.sub(r"\bclip\d+\b", lambda found: places[found[0]], svg)
 
-
-CONFIG: Final = {"font": fonts.FAMILY}
 
 PLACES: Final = re.compile(r' (?:d|transform|[xy][12]?)="[^"]*"')
 DIGITS: Final = re.compile(r"(\.\d\d)\d+")

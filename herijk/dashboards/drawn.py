@@ -1,0 +1,32 @@
+"""Charts drawn without a browser, with the font of the pages: the same on every machine."""
+
+import json
+from typing import Any, Final
+
+import altair as alt
+import vl_convert
+
+from herijk.dashboards import fonts
+
+VEGA_LITE: Final = ".".join(alt.SCHEMA_VERSION.removeprefix("v").split(".")[:2])
+"""The version of the charts."""
+
+LOCALES: Final = {
+    "nl": {"decimal": ",", "thousands": ".", "grouping": [3], "currency": ["€ ", ""]},
+    "en": {"decimal": ".", "thousands": ",", "grouping": [3], "currency": ["€", ""]},
+}
+"""How numbers on axes are written."""
+
+vl_convert.register_font_directory(str(fonts.FOLDER))
+
+
+def svg(spec: dict[str, Any], language: str = "en") -> str:
+    """A chart as SVG, its numbers as people of a language write them."""
+    return str(
+        vl_convert.vegalite_to_svg(
+            json.dumps(spec, default=str),
+            vl_version=VEGA_LITE,
+            config={"font": fonts.FAMILY},
+            format_locale=LOCALES[language],
+        )
+    )
