@@ -13,9 +13,9 @@ import shutil
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 
+from herijk.dashboards.guides import GUIDES
 from herijk.dashboards.site.pages import MENU
 from herijk.dashboards.site.parts import boat_path, edition_page, race_path, type_path
-from herijk.dashboards.site.prose import GUIDES
 from herijk.warehouse.queries.views import Views
 from tests.architecture.repository import ROOT
 from tests.dashboards.conftest import ATTACK, EDITIONS, FORMULA

@@ -8,6 +8,7 @@ from itertools import accumulate
 import polars as pl
 import pytest
 
+from herijk.dashboards.guides import GUIDES
 from herijk.dashboards.html import as_json
 from herijk.dashboards.site import build_site
 from herijk.dashboards.site.boats import boat_pages
@@ -21,7 +22,6 @@ from herijk.dashboards.site.parts import (
     race_path,
     type_path,
 )
-from herijk.dashboards.site.prose import GUIDES
 from herijk.dashboards.site.render import DRAWN
 from herijk.warehouse.queries.answers import answers, line_changes, newest_edition
 from herijk.warehouse.queries.views import Views
