@@ -39,7 +39,7 @@ class Observations:
 
     values: FloatArray
     variance: FloatArray
-    effects: scipy.sparse.csr_array
+    effects: "scipy.sparse.csr_array"
     effect_variance: FloatArray
 
 
@@ -53,7 +53,7 @@ class Candidates:
         least: smallest size that matters, shape (candidates,).
     """
 
-    directions: scipy.sparse.csc_array
+    directions: "scipy.sparse.csc_array"
     single: BoolArray
     least: FloatArray
 
@@ -136,7 +136,7 @@ class _Precision:
         self._taken.append((product, 1.0 / float(product @ direction)))
         return product
 
-    def weights(self, directions: scipy.sparse.csc_array) -> FloatArray:
+    def weights(self, directions: "scipy.sparse.csc_array") -> FloatArray:
         """Gives g'Pg of each direction, before anything is taken out."""
         scaled = directions.multiply(1.0 / self._seen.variance[:, None]).tocsc()
         own = np.asarray(directions.multiply(scaled).sum(axis=0)).ravel()

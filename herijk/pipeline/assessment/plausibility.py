@@ -185,7 +185,7 @@ def _places(key: pl.Series) -> Iterator[tuple[str, IntArray]]:
     yield from zip(names, np.split(order, ends[:-1]), strict=True)
 
 
-def _effects(tows: pl.DataFrame, spread: Spread) -> tuple[scipy.sparse.csr_array, FloatArray]:
+def _effects(tows: pl.DataFrame, spread: Spread) -> "tuple[scipy.sparse.csr_array, FloatArray]":
     """Random effects of tows, shape (tows, effects), and the variance of each."""
     line = LINE
     altered = pl.col("altered").cast(pl.Int32)
