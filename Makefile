@@ -75,12 +75,13 @@ $(DEMO)/archief: | $(READY)
 	@rm -f $(DEMO)/archief-truth.json
 	@$(BIN)/herijk simulate $(DEMO)/archief $(DEMO_WORLD)
 
-# Each worker has a core; threads of its own would fight the other's.
+# A worker more than two cores, since some wait for a browser or another process; threads of their
+# own would fight over the cores.
 test slow: export POLARS_MAX_THREADS = 1
 test slow: export OPENBLAS_NUM_THREADS = 1
 
 test: $(DEVELOP)
-	@$(BIN)/python -m pytest -n 2 --dist worksteal
+	@$(BIN)/python -m pytest -n 3 --dist worksteal
 
 slow: $(DEVELOP)
 	@$(BIN)/python -m pytest -n 2 --dist worksteal -m slow

@@ -173,12 +173,7 @@ def run(tows_per_season: int, compared: int, repeats: int) -> dict[str, Any]:
         curves = check_same(results)
     sizes = measure(of_size(tows_per_season, counts), repeats)
     whole = {"tows_per_season": tows_per_season}
-    once = [
-        Task("herijk rebase", "benchmarks.tasks.whole_rebase", whole),
-        Task("herijk rebuild, all methods", "benchmarks.tasks.rebuild_all", whole),
-        Task("herijk rebuild, nothing new", "benchmarks.tasks.rebuild_again", whole),
-    ]
-    found |= measure(once, 1)
+    found |= measure([Task("herijk rebase", "benchmarks.tasks.whole_rebase", whole)], 1)
     return {
         "date": dt.datetime.now(dt.UTC).date().isoformat(),
         "machine": machine("numpy", "numba", "polars", "duckdb", "pandas", "scipy", "pyarrow"),
@@ -219,7 +214,8 @@ def summary(report: dict[str, Any], command: str) -> str:
         f"Made by `{command}` on {report['date']}. Machine: {about}. Simulated archive of "
         f"{report['tows']} tows at {report['rate_hz']} Hz, 2009-2025. Medians of "
         f"{report['repeats']} repeats in turn; each task in a process of its own, two threads. "
-        "All figures: [performance.json](performance.json).",
+        "All figures: [performance.json](performance.json). Whole rebuilds and other commands, "
+        "from the shell: [commands.md](commands.md).",
         "",
         "The others keep the samples as Parquet, make the same sums of every second and the same "
         "curves by the same method (whole runs, oblique wind, free curve); "

@@ -13,10 +13,9 @@ import pyarrow.parquet as pq
 from benchmarks import plain, same
 from benchmarks.harness import both
 from benchmarks.world import FOLDER, RATE_HZ, World
-from herijk.assets.rebuild import rebuild
 from herijk.pipeline.blocks.run_blocks import stack_blocks
 from herijk.pipeline.blocks.sums import block_sums
-from herijk.pipeline.method.definition import parse_method, shipped_method, shipped_methods
+from herijk.pipeline.method.definition import parse_method, shipped_method
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.warehouse.archive.files import read_bytes
 from herijk.warehouse.archive.profile import read_profiles
@@ -231,33 +230,6 @@ def whole_rebase(tows_per_season: int) -> Work:
     """What `herijk rebase rebased` computes: two methods, the ladder between them, registers."""
     methods = shipped_method("rebased"), shipped_method("as-published")
     return partial(rebase, World(tows_per_season).store, *methods)
-
-
-def rebuild_all(tows_per_season: int) -> Work:
-    """`herijk rebuild` with every method, through Dagster, into an empty folder."""
-    world, store = World(tows_per_season), _empty_store()
-    return partial(rebuild, world.archive, store.root, list(shipped_methods()), Silent())
-
-
-def rebuild_again(tows_per_season: int) -> Work:
-    """The same when nothing has changed."""
-    store = Store(FOLDER / "empty")
-    return partial(
-        rebuild, World(tows_per_season).archive, store.root, list(shipped_methods()), Silent()
-    )
-
-
-class Silent:
-    """Progress that nobody watches."""
-
-    def expect(self, tows: int) -> None:
-        pass
-
-    def tow_read(self, tow_id: str, set_aside: bool) -> None:
-        pass
-
-    def step(self, what: str) -> None:
-        pass
 
 
 # The others

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Final
 
-from herijk.dashboards.site.prose import GUIDES, guide_file
+from herijk.dashboards.guides import GUIDES, guide_file
 from herijk.warehouse.build.database import DATABASE_TABLE
 from herijk.warehouse.store.code import code_hash
 from herijk.warehouse.store.files import file_sha256

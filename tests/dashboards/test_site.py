@@ -8,6 +8,7 @@ from itertools import accumulate
 import polars as pl
 import pytest
 
+from herijk.dashboards.guides import GUIDES
 from herijk.dashboards.html import as_json
 from herijk.dashboards.site import build_site
 from herijk.dashboards.site.boats import boat_pages
@@ -21,9 +22,8 @@ from herijk.dashboards.site.parts import (
     race_path,
     type_path,
 )
-from herijk.dashboards.site.prose import GUIDES
 from herijk.dashboards.site.render import DRAWN
-from herijk.warehouse.queries.answers import answers, line_changes
+from herijk.warehouse.queries.answers import answers, line_changes, newest_edition
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.store import Store
 from herijk.words.catalogue import WORDS
@@ -324,3 +324,10 @@ def test_an_edition_is_there_with_its_codes_and_sheets(store, site):
         for name in SHEETS:
             published = store.root / "editions" / edition / name
             assert (site / "downloads" / edition / name).read_bytes() == published.read_bytes()
+
+
+def test_what_is_shown_first_is_among_what_there_is():
+    drafts = ["concept-as-published", "concept-corrected-2013"]
+    assert newest_edition([*drafts, "2026-1"], "concept-as-published") == "2026-1"
+    assert newest_edition(drafts, "concept-as-published") == "concept-as-published"
+    assert newest_edition(drafts, "concept-rebased") == "concept-corrected-2013"

@@ -1,11 +1,11 @@
 """Pages that are read: the method, how to read an audit, and what goes with an edition."""
 
 from collections.abc import Callable, Iterator, Mapping
-from pathlib import Path
 from typing import Final
 
 from markupsafe import Markup
 
+from herijk.dashboards.guides import GUIDES, guide_file
 from herijk.dashboards.markdown import to_html
 from herijk.dashboards.site.downloads import files_of
 from herijk.dashboards.site.parts import Page, Section, edition_page
@@ -16,17 +16,7 @@ from herijk.warehouse.store.storage import Place
 from herijk.words import LANGUAGES
 from herijk.words.guides import GUIDES_IN_SHORT
 
-GUIDES: Final = ("method", "audit")
-"""Documents of the project that have a page, by their name."""
-
-_PACKAGE: Final = Path(__file__).parents[2]
 _TEXTS: Final = {"notice": (NOTICE, NOTICE_EN), "release_notes": (NOTES, NOTES_EN)}
-
-
-def guide_file(name: str) -> Path:
-    """Where the document is: packed with the program, or in its checkout."""
-    packed = _PACKAGE / "docs" / f"{name}.md"
-    return packed if packed.exists() else _PACKAGE.parent / "docs" / f"{name}.md"
 
 
 def guide_pages() -> Iterator[Page]:

@@ -22,8 +22,9 @@ DRAFT: Final = "concept-"
 
 
 def newest_edition(editions: list[str], default: str) -> str:
-    """The last published edition, or this draft where none is published."""
-    return next((e for e in reversed(editions) if not e.startswith(DRAFT)), default)
+    """The last published edition; this draft where none is published, or else the last of all."""
+    draft = default if default in editions or not editions else editions[-1]
+    return next((e for e in reversed(editions) if not e.startswith(DRAFT)), draft)
 
 
 def current_edition(views: Views) -> str:
