@@ -26,7 +26,7 @@ def svg(spec: dict[str, Any], language: str = "en") -> str:
         vl_convert.vegalite_to_svg(
             json.dumps(spec, default=str),
             vl_version=VEGA_LITE,
-            config={"font": fonts.FAMILY},
+            config={"font": fonts.FAMILY, "legend": {"titleLimit": 400}},
             format_locale=LOCALES[language],
         )
     )

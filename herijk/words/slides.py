@@ -138,11 +138,11 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     ),
     "slide.raced": (
         "Gesleept met weinig vermogen of geroeid buiten de eigen kromme: {n}. Daarvan geeft de "
-        "eigen kromme {up} keer te veel en {down} keer te weinig vermogen (interval zonder 1). "
-        "Gesleept onder 70 W (dames 40) en geroeid boven 100 W (dames 57): {both}.",
+        "eigen kromme {up} keer te veel en {down} keer te weinig vermogen (het interval sluit 1 "
+        "uit). Gesleept onder 70 W (dames 40) en geroeid boven 100 W (dames 57): {both}.",
         "Towed with little power or raced off their own curve: {n}. The own curve of {up} of these "
-        "gives too much power, of {down} too little (interval without 1). Towed under 70 W "
-        "(women 40) and raced above 100 W (women 57): {both}.",
+        "gives too much power, of {down} too little (the interval leaves out 1). Towed under "
+        "70 W (women 40) and raced above 100 W (women 57): {both}.",
     ),
     "slide.years": (
         "{crew}: Cw bij {speed} m/s loopt {after_spread} uiteen {after}, {before_spread} {before} "

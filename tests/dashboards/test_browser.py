@@ -89,13 +89,20 @@ class Visitor:
         self.expect(self.page.locator(".chart:not(.drawn)")).to_have_count(0, timeout=30_000)
 
 
+@pytest.fixture(scope="module")
+def context(browser):
+    """One for all tests, so that the browser reads the scripts of the site once."""
+    with browser.new_context(accept_downloads=True, viewport=WIDTHS["desktop"]) as context:
+        yield context
+
+
 @pytest.fixture
-def visitor(browser, site):
-    with browser.new_context(accept_downloads=True, viewport=WIDTHS["desktop"]) as c:
-        visitor = Visitor(c.new_page(), site)
-        visitor.page.set_default_timeout(10_000)
+def visitor(context, site):
+    with context.new_page() as page:
+        visitor = Visitor(page, site)
+        page.set_default_timeout(10_000)
         yield visitor
-        assert visitor.faults == []
+    assert visitor.faults == []
 
 
 def scrolled(page, boxes):
