@@ -18,8 +18,8 @@ THREAD_LIMITS = ("POLARS_MAX_THREADS", "OPENBLAS_NUM_THREADS")
 
 
 @pytest.mark.slow
-def test_a_fresh_process_with_one_thread_gives_the_tables_of_two(built: Workbench, tmp_path: Path):
-    assert pl.thread_pool_size() == 2  # with which `built` was made
+def test_a_fresh_process_with_other_threads_gives_the_same_tables(built: Workbench, tmp_path: Path):
+    threads = "2" if pl.thread_pool_size() == 1 else "1"  # `built` was made with other ones
     chosen = [part for name in METHODS for part in ("--method", name)]
     run = subprocess.run(
         [
@@ -27,7 +27,7 @@ def test_a_fresh_process_with_one_thread_gives_the_tables_of_two(built: Workbenc
             *("--archive", built.archive, "--data", tmp_path / "data"),
         ],
         cwd=ROOT,
-        env=os.environ | dict.fromkeys(THREAD_LIMITS, "1"),
+        env=os.environ | dict.fromkeys(THREAD_LIMITS, threads),
         capture_output=True,
         text=True,
         check=False,
