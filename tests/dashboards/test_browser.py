@@ -44,8 +44,9 @@ def browser(site):
     """
     assert (site / "index.html").exists()
     assert CHROMIUM is not None, "CI has to test in a browser: install the package chromium"
-    from playwright.sync_api import sync_playwright  # noqa: PLC0415 - not needed when skipped
+    from playwright.sync_api import expect, sync_playwright  # noqa: PLC0415 - not needed when skipped
 
+    expect.set_options(timeout=30_000)  # other tests run beside these
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(
             executable_path=CHROMIUM, args=FLAGS, ignore_default_args=HIDDEN_BARS
@@ -100,7 +101,7 @@ def context(browser):
 def visitor(context, site):
     with context.new_page() as page:
         visitor = Visitor(page, site)
-        page.set_default_timeout(10_000)
+        page.set_default_timeout(30_000)
         yield visitor
     assert visitor.faults == []
 
@@ -334,7 +335,7 @@ def test_the_uncertainty_can_be_read_without_its_chart(visitor, attacked, built)
     page = visitor.open(boat_path(attacked))
     visitor.unfold()
     figure = page.locator("figure[data-figure=budget]")
-    figure.locator("summary").click()
+    figure.locator("summary").press("Enter")
     tow, method = (page.locator(f"select[name={n}]").input_value() for n in ("tow_id", "method"))
     budget = built.table("uncertainty_budget").filter(tow_id=tow, method=method)
     rows = figure.locator("details tbody tr")
@@ -347,7 +348,7 @@ def test_a_chart_s_table_says_out_and_back_in_words(visitor, attacked):
     page = visitor.open(boat_path(attacked))
     visitor.unfold()
     figure = page.locator("figure[data-figure=out_and_back]")
-    figure.locator("summary").click()
+    figure.locator("summary").press("Enter")
     figure.locator("details tbody tr").first.wait_for()
     text = figure.locator("details tbody").inner_text()
     assert {"heen", "terug", "bruto: F/v²"} <= set(text.replace("\n", "\t").split("\t"))

@@ -50,7 +50,7 @@ def page(browser, url):
     faults = []
     with browser.new_context(accept_downloads=True, viewport={"width": 1280, "height": 900}) as c:
         page = c.new_page()
-        page.set_default_timeout(10_000)
+        page.set_default_timeout(30_000)
         page.on("pageerror", lambda error: faults.append(str(error)))
         page.on("console", lambda m: faults.append(m.text) if m.type == "error" else None)
         page.on("request", lambda r: None if is_own(r.url, url) else faults.append(r.url))

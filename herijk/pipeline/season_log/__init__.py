@@ -7,10 +7,11 @@ boats are the stars, seasons the nights, tows calibrated on dGPS the absolute an
 
 Belongs here: what is assumed (`assumed`), the unknowns and their effects (`effects`), the density
 of a boat's tows (`likelihood`), the posterior of everything (`posterior`), what it says of tows
-(`tows`), seasons (`diagnosis`) and factors (`estimate`); what it all rests on (`network`); which
-boats to tow again (`retow_design`); the second estimate without boat identity
-(`without_boats`); the factor of the log that is not in use (`other_log`). Does not: how Cw of a tow
-is computed, prescribed corrections (never data here) and what is done with the factors.
+(`tows`), seasons (`diagnosis`) and factors (`estimate`); what it all rests on (`network`) and what
+tows of one day share (`days`); which boats to tow again (`retow_design`); the second estimate
+without boat identity (`without_boats`); the factor of the log that is not in use (`other_log`).
+Does not: how Cw of a tow is computed, prescribed corrections (never data here) and what is done
+with the factors.
 
 The model, for tow k of boat i in season j, with lambda = ln(true speed / log speed):
 
@@ -19,9 +20,9 @@ The model, for tow k of boat i in season j, with lambda = ln(true speed / log sp
     ln(GPS / log)_k = lambda_k + b_j + gamma_k                       (plain GPS, where there is)
 
 h and g are what a scale error of the log does to a hyperbola exactly (`effects`). theta and q of a
-boat are random, q about its type, and step where it was altered; lambda_k = lambda_j + trend +
-change + between-tow scatter. phi is the scale of the load cell, z its zero. Faults are rare and
-large: each is there
+boat are random, q about its type, and step where it was altered; theta drifts besides, a random
+walk over the seasons. lambda_k = lambda_j + trend + change + between-tow scatter. phi is the scale
+of the load cell, with what its days share; z is its zero. Faults are rare and large: each is there
 or not, and what cannot be told apart is averaged over.
 """
 
