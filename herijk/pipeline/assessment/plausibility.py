@@ -152,21 +152,20 @@ Group = tuple[str, str, IntArray]
 
 def _groups(tows: pl.DataFrame, kinds: tuple[str, ...]) -> list[Group]:
     """The groups that are judged."""
-    if "part" in kinds:
-        whole = tuple(kind for kind in kinds if kind != "part")
-        return [*_groups(tows, whole), *_parts(tows)]
     keys = {
         "tow": tows["tow_id"],
         "day": tows["tow_date"].cast(pl.String),
         "season": tows["season"].cast(pl.String),
         "archive": pl.repeat("", tows.height, eager=True),
     }
-    return [
+    whole = [
         (kind, str(name), places)
         for kind in kinds
+        if kind in keys
         for name, places in _places(keys[kind])
         if kind == "tow" or len(places) >= FEWEST
     ]
+    return [*whole, *_parts(tows)] if "part" in kinds else whole
 
 
 def _parts(tows: pl.DataFrame) -> Iterator[Group]:

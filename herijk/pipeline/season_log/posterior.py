@@ -217,11 +217,6 @@ class Fit:
         """Values of the active unknowns, (k,)."""
         return self.state.value
 
-    @property
-    def drift_variance(self) -> float:
-        """Of the drift of a boat's ln Cw, per year."""
-        return self.state.drift_variance
-
     def dof(self, direction: FloatArray) -> FloatArray:
         """Satterthwaite's degrees of freedom of combinations of the active unknowns.
 

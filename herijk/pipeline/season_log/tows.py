@@ -201,7 +201,7 @@ def _of_boats(
     boats, tows = tow.shape
     state = posterior.fit.slopes.state[tow][..., 0]
     # Covariance of the level at each tow with every number of the boat, per pattern.
-    drift = posterior.fit.drift_variance * told.patterns.drift
+    drift = posterior.fit.state.drift_variance * told.patterns.drift
     level = told.patterns.level + drift[:, None]
     with_level = np.einsum("bpkl,bli->bpkli", level, state)
     with_level = with_level.reshape(boats, -1, tows, 3 * tows)
