@@ -274,13 +274,14 @@ def _line(
     boats, x, y = boats.take(known), x[known], y[known]
     within_crew = names["explaining"] in OF_THE_BOAT
     crews = boats.crew_effects if within_crew else np.ones((len(y), 1))
-    reason = _no_line(boats, crews, x)
-    counts = {"n": len(y), "n_boats": boats.number, "reason": reason}
-    if reason:
-        return counts, None
     centre = np.asarray(np.linalg.lstsq(crews, x)[0], dtype=np.float64)
     centred = x - crews @ centre
-    width = float(np.abs(centred).max())
+    width = float(np.abs(centred).max(initial=0.0))
+    number = boats.number
+    reason = _no_line(boats.type_known, number, crews, width <= 1e-9 * np.abs(x).max(initial=0.0))
+    counts = {"n": len(y), "n_boats": number, "reason": reason}
+    if reason:
+        return counts, None
     variance = unit[known] * boats.run_sd_ratio**2
     problem = Problem.of(
         y,
@@ -295,14 +296,13 @@ def _line(
     return counts, _Line(problem, crews, x, (centre, width), noise, level, groups)
 
 
-def _no_line(boats: _Boats, crews: FloatArray, x: FloatArray) -> str:
+def _no_line(type_known: bool, boats: int, crews: FloatArray, equal_values: bool) -> str:
     """Why no line is drawn; empty where there is one."""
-    if not boats.type_known:
+    if not type_known:
         return NO_TYPE
-    if boats.number < max(FEWEST_BOATS, crews.shape[1] + 2):
+    if boats < max(FEWEST_BOATS, crews.shape[1] + 2):
         return FEW_BOATS
-    centred = x - crews @ np.linalg.lstsq(crews, x)[0]
-    return EQUAL_VALUES if np.abs(centred).max() <= 1e-9 * np.abs(x).max() else ""
+    return EQUAL_VALUES if equal_values else ""
 
 
 @dataclass(frozen=True)
@@ -348,13 +348,21 @@ class _Line:
     def points(self, fit: mixed.Fit) -> Iterator[Row]:
         """The line with its interval at some places; for each class at the mean of its crews."""
         centre, width = self.scale
+        names, places, designs = [], [], []
         for name in np.unique(self.groups):
             rows = self.groups == name
             at = np.unique(np.linspace(self.x[rows].min(), self.x[rows].max(), PLACES))
             crew = self.crews[rows].mean(axis=0)
-            design = np.column_stack([np.tile(crew, (len(at), 1)), (at - crew @ centre) / width])
-            for place, mean, lo, hi in zip(at, *fit.line_at(design), strict=True):
-                yield {"crew_class": name, "x": place, "y": mean, "lo": lo, "hi": hi}
+            designs.append(
+                np.column_stack([np.tile(crew, (len(at), 1)), (at - crew @ centre) / width])
+            )
+            names += [name] * len(at)
+            places += at.tolist()
+        line = fit.line_at(np.concatenate(designs))
+        for name, at, mean, lo, hi in zip(
+            names, places, *map(np.ndarray.tolist, line), strict=True
+        ):
+            yield {"crew_class": name, "x": at, "y": mean, "lo": lo, "hi": hi}
 
 
 def _seasons(season: IntArray, choice: Choice) -> IntArray | None:

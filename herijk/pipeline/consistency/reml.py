@@ -104,9 +104,14 @@ class Problem:
         return int(self.boat.max()) + 1
 
     @cached_property
+    def plain(self) -> FloatArray:
+        """Fixed effects by plain least squares, (p,)."""
+        return np.asarray(np.linalg.lstsq(self.x, self.y)[0])
+
+    @cached_property
     def residual(self) -> FloatArray:
         """Y less the plain least-squares fit: the likelihood sees nothing else of y."""
-        return np.asarray(self.y - self.x @ np.linalg.lstsq(self.x, self.y)[0])
+        return np.asarray(self.y - self.x @ self.plain)
 
     @cached_property
     def spread(self) -> float:
@@ -312,7 +317,7 @@ class Whitened:
 
 def search(
     stack: Stack, free: BoolArray, start: FloatArray, tolerance: float = TOLERANCE
-) -> tuple[FloatArray, FloatArray]:
+) -> tuple[FloatArray, Likelihood]:
     """Least deviance of each problem over some of the variances, the others held.
 
     Newton's method with the average information, on variances that are not negative: one that is 0
@@ -326,7 +331,7 @@ def search(
         tolerance: share of its size by which a step at the end may change a variance.
 
     Returns:
-        The variances, (m, 3), and the deviance there, (m,).
+        The variances, (m, 3), and the likelihood there.
     """
     at, now = start.copy(), stack.likelihood(start)
     busy = np.arange(len(at))
@@ -340,7 +345,7 @@ def search(
         _descend(stack, busy, step, at, now)
         size = np.maximum(at[busy], NEGLIGIBLE * stack.unit[busy, None])
         busy = busy[(np.abs(at[busy] - last) > tolerance * size).any(axis=1)]
-    return at, now.deviance
+    return at, now
 
 
 def _newton(
