@@ -83,7 +83,8 @@ def with_doubts(tows: pl.DataFrame, judged: Plausibility) -> pl.DataFrame:
         ]
         return pl.Series(found, dtype=pl.List(pl.String))
 
-    seen_from = judged.force_seen_from
+    # To a thousandth, as no processor gives the last bits of a solved system like another.
+    seen_from = {tow: round(ratio, 3) for tow, ratio in judged.force_seen_from.items()}
     return tows.with_columns(
         named(_CODES, doubted=True).alias("doubts"),
         named(_UNUSUAL, doubted=False).alias("unusual"),
