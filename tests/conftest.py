@@ -26,7 +26,6 @@ from herijk.assets.side_by_side import Task
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.tables.schemas import TABLES
-from herijk.warehouse.archive import ArchiveIndex
 from herijk.warehouse.build.graph import CONSISTENCY, STUDIES
 from herijk.warehouse.store.store import Store
 
@@ -59,7 +58,7 @@ class _Directly:
     def __init__(self, setup: Setup, progress: Progress) -> None:
         self.setup, self.progress = setup, progress
 
-    def record_index(self, index: ArchiveIndex) -> None:
+    def record_index(self) -> None:
         """Keeps no records."""
 
     def read(self, season: int) -> None:

@@ -9,9 +9,9 @@ import polars as pl
 from herijk.assets.partitions import seasons
 from herijk.assets.progress import Progress
 from herijk.assets.resources import Setup
-from herijk.warehouse.archive import ArchiveIndex
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.code import ADDERS, READERS, code_hash
+from herijk.warehouse.store.store import Store
 
 LOOKED_AT = dg.FreshnessPolicy.time_window(
     warn_window=dt.timedelta(hours=26), fail_window=dt.timedelta(hours=50)
@@ -33,18 +33,18 @@ SUBJECT = {"herijk/subject": "archive"}
 )
 def archive_index(setup: Setup) -> dg.MaterializeResult:
     """Boats, tow lists and files of the archive, with what is wrong in the lists."""
-    listed = intake.index(setup.store, setup.archive_root)
-    return dg.MaterializeResult(metadata=index_metadata(listed))
+    intake.index(setup.store, setup.archive_root)
+    return dg.MaterializeResult(metadata=index_metadata(setup.store))
 
 
-def index_metadata(listed: ArchiveIndex) -> dict[str, int | bool]:
-    """What is shown of an index."""
+def index_metadata(store: Store) -> dict[str, int | bool]:
+    """What is shown of the lists of the archive."""
     return {
-        "dagster/row_count": listed.tows.height,
-        "boats": listed.boats.height,
-        "files": listed.files.height,
-        "faults": len(listed.faults),
-        "simulated": listed.profiles.simulated,
+        "dagster/row_count": store.read("listed_tows").height,
+        "boats": store.read("listed_boats").height,
+        "files": store.read("listed_files").height,
+        "faults": store.read("list_faults").height,
+        "simulated": store.read("about_archive")["simulated"][0],
     }
 
 

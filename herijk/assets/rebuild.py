@@ -17,7 +17,6 @@ from herijk.assets.side_by_side import Task, stages
 from herijk.assets.site_state import site_is_stale
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
-from herijk.warehouse.archive import ArchiveIndex
 from herijk.warehouse.build.graph import DATABASE, STEPS
 from herijk.warehouse.build.step import Step
 from herijk.warehouse.intake import seasons as intake
@@ -132,12 +131,12 @@ class _Rebuild:
     def do(self, seasons: Collection[int] | None) -> None:
         """Everything that is stale, and the report."""
         self.progress.step("looking at what the archive holds")
-        index = intake.index(self.store, self.archive)
+        intake.index(self.store, self.archive)
         intake.forget_unlisted_seasons(self.store)
         stale = intake.stale_seasons(self.store, self.archive, seasons)
         checks: Sequence[dg.AssetCheckEvaluation] = ()
         if stale or self._is_stale():
-            checks = self._work(index, stale)
+            checks = self._work(stale)
         now = dt.datetime.now().astimezone()
         self.done.report = write_report(self.store, self.done.work, checks, now)
 
@@ -149,7 +148,7 @@ class _Rebuild:
             or not is_reported(self.store)
         )
 
-    def _work(self, index: ArchiveIndex, seasons: list[int]) -> "Sequence[dg.AssetCheckEvaluation]":
+    def _work(self, seasons: list[int]) -> "Sequence[dg.AssetCheckEvaluation]":
         """Reads seasons and makes what is stale; gives what the checks said."""
         from herijk.assets.resources import Setup  # noqa: PLC0415 - see above
         from herijk.assets.runs import in_one_run  # noqa: PLC0415
@@ -164,7 +163,7 @@ class _Rebuild:
         checks: list[dg.AssetCheckEvaluation] = []
 
         def do(work: "Work") -> None:
-            work.record_index(index)
+            work.record_index()
             self._read(work, seasons)
             for stage in stages(STEPS):
                 self._build(work, stage)

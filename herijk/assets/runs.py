@@ -21,7 +21,6 @@ from herijk.assets.side_by_side import Task, helper, side_by_side
 from herijk.assets.site import make_site
 from herijk.assets.tables import results_of
 from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.warehouse.archive import ArchiveIndex
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.lock import nobody_writes
 from herijk.warehouse.store.store import Store
@@ -45,10 +44,10 @@ class Work:
         self.setup, self.progress, self.run, self.other = setup, progress, run, other
         self.checks: list[dg.AssetCheckEvaluation] = []
 
-    def record_index(self, index: ArchiveIndex) -> None:
+    def record_index(self) -> None:
         """Notes that the archive was looked through."""
         seen: dg.MaterializeResult = dg.MaterializeResult(
-            asset_key="archive_index", metadata=index_metadata(index)
+            asset_key="archive_index", metadata=index_metadata(self.setup.store)
         )
         self._record(seen)
 

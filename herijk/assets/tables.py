@@ -14,8 +14,9 @@ from herijk.tables.declare import dy
 from herijk.tables.lake import SEASON_TABLES
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.build.graph import STEPS
-from herijk.warehouse.build.inputs import BLOCKS, DECISIONS, LISTED, PRINTED, PUBLISHED
+from herijk.warehouse.build.inputs import BLOCKS, DECISIONS, PUBLISHED
 from herijk.warehouse.build.step import Made, Step
+from herijk.warehouse.intake.seasons import INDEXED
 
 KINDS = {"warehouse_database": "duckdb"}
 """What an asset is stored as, where that is not Parquet."""
@@ -73,7 +74,7 @@ def _spec(step: Step, table: str) -> dg.AssetSpec:
 
 def _deps(name: str) -> Iterator[dg.AssetDep]:
     """The asset behind an input of a step; decisions and editions are no assets."""
-    if name in (*LISTED, PRINTED):
+    if name in INDEXED:
         yield dg.AssetDep("archive_index")
     elif name in SEASON_TABLES or name == BLOCKS:
         asset = BLOCKS if name == BLOCKS else "samples"

@@ -16,6 +16,7 @@ from herijk.pipeline.register.replay import RaceRules
 from herijk.tables.keys import LINE
 from herijk.warehouse.editions.compare import diff, race_effects, report
 from herijk.warehouse.editions.publish import publish_printed
+from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.decisions import FILE_NAME
 from herijk.warehouse.store.editions import read_edition
 from tests.warehouse.edition_bench import terms
@@ -222,6 +223,7 @@ def test_races_are_replayed_under_both(bench_of_editions):
     head = "wedstrijd;datum;afstand [km];fsn_nr;roeiers;klasse;roeitijd;stroom [km];straf [W]"
     folder = empty_races(bench)
     (folder / "proefrace_2014.csv").write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
+    intake.index(bench.store, bench.archive)
     old, new = (read_edition(bench.store, name) for name in "ab")
     found = race_effects(bench.store, old, new, RaceRules())
     assert found is not None
@@ -232,6 +234,7 @@ def test_races_are_replayed_under_both(bench_of_editions):
 
 def test_without_races_there_is_no_effect(published_copy):
     empty_races(published_copy)
+    intake.index(published_copy.store, published_copy.archive)
     edition = read_edition(published_copy.store, "2014-1")
     assert race_effects(published_copy.store, edition, edition, RaceRules()) is None
 

@@ -6,15 +6,17 @@ single lines cannot show. Belongs here: the draws, and the counting. Does not: t
 (`uncertainty`) and where members are kept (`warehouse.store.ensemble`).
 """
 
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import polars as pl
 
 from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.pipeline.season_log import SeasonFactors
 from herijk.pipeline.uncertainty.propagation import log_key
+
+if TYPE_CHECKING:
+    from herijk.pipeline.season_log import SeasonFactors
 
 MEMBERS: Final = 200
 SEED: Final = 2009
@@ -23,7 +25,7 @@ SEED: Final = 2009
 def register_ensemble(
     lines: pl.DataFrame,
     budget: pl.DataFrame,
-    estimated: SeasonFactors | None,
+    estimated: "SeasonFactors | None",
     members: int = MEMBERS,
     seed: int = SEED,
 ) -> FloatArray:
@@ -58,7 +60,7 @@ def register_ensemble(
 
 
 def tow_ensemble(
-    method: str, curves: pl.DataFrame, budget: pl.DataFrame, estimated: SeasonFactors | None
+    method: str, curves: pl.DataFrame, budget: pl.DataFrame, estimated: "SeasonFactors | None"
 ) -> pl.DataFrame:
     """Rows of the table `ensemble` of a method: members of every tow with a curve.
 
@@ -137,7 +139,7 @@ def _members_of(members: pl.DataFrame, tow_id: str) -> FloatArray:
 
 
 def _errors(
-    budget: pl.DataFrame, estimated: SeasonFactors | None, members: int, seed: int
+    budget: pl.DataFrame, estimated: "SeasonFactors | None", members: int, seed: int
 ) -> tuple[pl.DataFrame, FloatArray]:
     """Standard normal errors of every key, shape (keys, members), season factors correlated."""
     keys = budget.select("key").unique().sort("key").with_row_index("index")

@@ -15,9 +15,8 @@ import polars as pl
 
 from herijk.pipeline.errors import HerijkError
 from herijk.pipeline.method.definition import Method
-from herijk.tables.lake import SEASON_TABLES, PrintedLines
+from herijk.tables.lake import SEASON_TABLES
 from herijk.tables.schemas import TABLES
-from herijk.warehouse.archive.published import read_published_registers
 from herijk.warehouse.build.published import published_made_from, published_tables
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store import decisions
@@ -25,17 +24,8 @@ from herijk.warehouse.store.database import open_database
 from herijk.warehouse.store.store import Store, table_digest
 
 BLOCKS: Final = "blocks"
-PRINTED: Final = "printed_registers"
-"""The registers that the archive holds as they were printed."""
-
 DECISIONS: Final = "decisions"
 """The decisions of people about tows, as `decisions.decision_table` gives them."""
-
-LISTED: Final = (
-    *(f"listed_{name}" for name in (*intake.LISTED, "files", "races")),
-    *("list_faults", "about_archive"),
-)
-"""Tables of intake that every rebuild makes again, so that their content is what counts."""
 
 PUBLISHED: Final = tuple(
     f"published_{name}"
@@ -127,14 +117,6 @@ def _decisions(store: Store) -> pl.DataFrame:
     return decisions.decision_table(decided)
 
 
-def _printed(store: Store) -> pl.DataFrame:
-    """Lines of printed registers; none where the archive is not where it was."""
-    root = intake.archive_root(store)
-    if root is None:
-        return PrintedLines.create_empty()
-    return read_published_registers(root)[0]
-
-
 def _of_seasons(inputs: Inputs, name: str) -> pl.DataFrame:
     if not inputs.store.partitions(name):
         return SEASON_TABLES[name].create_empty()
@@ -150,17 +132,13 @@ _WHOLE: Final = _Kind(
 )
 _KINDS: Final[dict[str, _Kind]] = {
     BLOCKS: _Kind(lambda inputs, _: intake.all_blocks(inputs.store), _seasons_made_from),
-    PRINTED: _Kind(
-        lambda inputs, _: _printed(inputs.store),
-        lambda store, *_: table_digest(_printed(store)),
-    ),
     DECISIONS: _Kind(
         lambda inputs, _: _decisions(inputs.store),
         lambda store, *_: table_digest(_decisions(store)),
     ),
     **dict.fromkeys(SEASON_TABLES, _Kind(_of_seasons, _seasons_made_from)),
-    **dict.fromkeys(
-        LISTED,
+    **dict.fromkeys(  # made again whenever a file was touched, so their content is what counts
+        intake.INDEXED,
         _Kind(
             lambda inputs, name: _listed(inputs.store, name),
             lambda store, name, _: table_digest(_listed(store, name)),

@@ -25,16 +25,13 @@ from herijk.pipeline.register.changes import (
 )
 from herijk.pipeline.register.register import LINE, NO_EMPTY_THWART
 from herijk.pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
-from herijk.pipeline.studies.ladder import ladder
 from herijk.tables.row import Row
 from herijk.tables.studies import CorrectionSteps
-from herijk.warehouse.archive import read_races
 from herijk.warehouse.build.published import lines_in_time
 from herijk.warehouse.build.version import code_version
 from herijk.warehouse.editions.inputs import INPUTS_HASH, same_tows, tows_of_today, unchanged_tows
-from herijk.warehouse.editions.lines import MEASURED, made_again
 from herijk.warehouse.intake import seasons as intake
-from herijk.warehouse.store.editions import Edition, read_edition
+from herijk.warehouse.store.editions import CHANGES, MEASURED, Edition, read_edition
 from herijk.warehouse.store.store import Store
 
 PRINTED: Final = "printed"
@@ -72,11 +69,16 @@ class Comparison:
 def diff(store: Store, old: str, new: str) -> Comparison:
     """Compares two published editions.
 
+    With the edition before it an edition was compared when it was published; that is part of it.
+
     Raises:
         MissingKnowledgeError: there is no such edition.
         BrokenPromiseError: a file of it is missing or damaged.
     """
-    return compare(store, read_edition(store, old), read_edition(store, new))
+    before, after = read_edition(store, old), read_edition(store, new)
+    if after.about.previous == old:
+        return Comparison(before, after, after.tables[CHANGES])
+    return compare(store, before, after)
 
 
 def compare(store: Store, old: Edition, new: Edition) -> Comparison:
@@ -122,9 +124,10 @@ def race_effects(store: Store, old: Edition, new: Edition, rules: RaceRules) -> 
     Raises:
         MissingKnowledgeError: the rules ask for what is not known.
     """
-    root = intake.archive_root(store)
-    results = None if root is None else read_races(root)[0]
-    if results is None or results.is_empty():
+    if intake.archive_root(store) is None:
+        return None
+    results = store.read("listed_races")
+    if results.is_empty():
         return None
     before, after = (
         replay(lines_in_time(store, edition), results, rules) for edition in (old, new)
@@ -144,6 +147,8 @@ def _code_parts(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
         return NO_PARTS
     if len(unchanged_tows(store, old)) < old.tables["tows"].height:
         return NO_PARTS
+    from herijk.warehouse.editions.lines import made_again  # noqa: PLC0415 - much, and seldom needed
+
     again = made_again(store, old).lines.with_columns(pl.lit("again").alias("edition"))
     return register_changes(old.register, again).select(
         *LINE,
@@ -190,6 +195,8 @@ def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     tows, runs = tows_of_today(store).filter(there), intake.runs_with_windows(store).filter(there)
     if tows.is_empty():
         return CorrectionSteps.create_empty().select(LADDER_COLUMNS)
+    from herijk.pipeline.studies.ladder import ladder  # noqa: PLC0415 - much, and seldom needed
+
     blocks = stack_blocks(intake.all_blocks(store), runs)
     return ladder(old.method, new.method, tows, blocks, _links(old, new))
 

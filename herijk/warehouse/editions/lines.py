@@ -22,7 +22,13 @@ from herijk.warehouse.editions import sheets
 from herijk.warehouse.editions.inputs import INPUTS_HASH, JUDGED, tows_of_today
 from herijk.warehouse.editions.printed import printed_lines, with_carried
 from herijk.warehouse.intake import seasons as intake
-from herijk.warehouse.store.editions import INPUTS, Edition, edition_path, read_edition
+from herijk.warehouse.store.editions import (
+    INPUTS,
+    MEASURED,
+    Edition,
+    edition_path,
+    read_edition,
+)
 from herijk.warehouse.store.store import Store
 
 SAME_NUMBER: Final = 1e-9
@@ -33,7 +39,6 @@ Other processors leave other last bits, which come to no more in any table (docs
 BOAT_FACTS: Final = ("ht_no", "name", "boat_type")
 NUMBERS: Final = ("a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
 TOW_FACTS: Final = ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg", INPUTS_HASH)
-MEASURED: Final = "measured"
 
 MADE: Final = ("curves", "run_points", "log_factors", "season_links", "tow_instruments")
 """What a method makes of the tows, and an edition keeps."""

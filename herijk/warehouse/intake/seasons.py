@@ -1,15 +1,17 @@
 """Intake: what the archive holds today, and which of it the lake still has to read.
 
-The lists of the archive are indexed on every rebuild (they are small); samples only where a
-season's fingerprint says that something changed. Reading one season's files is
-`warehouse.intake.lake`.
+The lists of the archive are indexed when any file of it, or the code that reads them, changed;
+samples only where a season's fingerprint says that something changed. Reading one season's files
+is `warehouse.intake.lake`.
 """
 
 import dataclasses
 import os
-from collections.abc import Collection
+import time
+from collections.abc import Collection, Iterator
 from contextlib import suppress
 from pathlib import Path
+from stat import S_ISLNK
 from typing import Final
 
 import polars as pl
@@ -21,44 +23,83 @@ from herijk.tables.archive import TraceSeconds
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import AboutArchive, Faults
 from herijk.warehouse.archive import (
-    ArchiveIndex,
     FileHashes,
     Profiles,
     index_archive,
     read_published_registers,
     read_races,
 )
+from herijk.warehouse.archive.hashes import RACY_SECONDS
 from herijk.warehouse.archive.profile import read_profiles
 from herijk.warehouse.intake import lake
-from herijk.warehouse.store.store import Store
+from herijk.warehouse.store.code import code_hash
+from herijk.warehouse.store.store import Store, fingerprint
 
 LISTED: Final = ("boats", "tows", "runs", "windows")
+INDEXED: Final = (
+    *(f"listed_{name}" for name in (*LISTED, "files", "races")),
+    *("printed_registers", "list_faults", "about_archive"),
+)
+"""What is kept of the archive's lists."""
 SEASON_TABLES: Final = ("season_tows", "season_runs", "season_index", "blocks")
 """What is kept of a season, as the archive was when it was read."""
 
 
-def index(store: Store, root: Path) -> ArchiveIndex:
-    """Reads the lists of the archive and keeps them as tables `listed_*`.
+def index(store: Store, root: Path) -> None:
+    """Reads the lists of the archive and keeps them as the tables of `INDEXED`.
+
+    Nothing is read where all of the archive lies there as it did when they were made.
 
     Raises:
         HerijkError: the folder is missing or holds nothing that looks like an archive.
     """
+    seen = _seen(root)
+    if seen and all(store.made_from(table) == seen for table in INDEXED):
+        return
     hashes = FileHashes.load(store.file_hashes)
     listed = index_archive(root, hashes.hash_file)
     hashes.save(store.file_hashes)
-    for name in LISTED:
-        store.write(f"listed_{name}", getattr(listed, name), made_from="")
     races, race_faults = read_races(root)
-    _, register_faults = read_published_registers(root)
+    printed, register_faults = read_published_registers(root)
     faults = [dataclasses.asdict(f) for f in (*listed.faults, *race_faults, *register_faults)]
-    store.write("list_faults", frame_of(Faults, faults), made_from="")
     about = {"simulated": listed.profiles.simulated, "root": str(root.resolve())}
     about |= listed.profiles.publication.model_dump()
-    about_archive = frame_of(AboutArchive, [about])
-    store.write("about_archive", about_archive, made_from="")
-    store.write("listed_files", listed.files, made_from="")
-    store.write("listed_races", races, made_from="")
-    return listed
+    tables = {
+        **{f"listed_{name}": getattr(listed, name) for name in LISTED},
+        "listed_files": listed.files,
+        "listed_races": races,
+        "printed_registers": printed,
+        "list_faults": frame_of(Faults, faults),
+        "about_archive": frame_of(AboutArchive, [about]),
+    }
+    for name in INDEXED:
+        store.write(name, tables[name], made_from=seen)
+
+
+def _seen(root: Path) -> str:
+    """Fingerprint of the archive as it lies there, and of the code that reads its lists.
+
+    Empty, so that the lists are read, where a file can have changed unseen: one behind a link, or
+    one changed just now (`hashes.RACY_SECONDS`).
+    """
+    stats = dict(_stats(root))
+    newest_ns = max((stat.st_ctime_ns for stat in stats.values()), default=0)
+    is_racy = time.time_ns() - newest_ns < RACY_SECONDS * 1e9
+    if is_racy or any(S_ISLNK(stat.st_mode) for stat in stats.values()):
+        return ""
+    files = {
+        path: (stat.st_mode, stat.st_size, stat.st_mtime_ns, stat.st_ctime_ns)
+        for path, stat in stats.items()
+    }
+    return fingerprint(str(root.resolve()), files, code_hash(__name__))
+
+
+def _stats(root: Path) -> Iterator[tuple[str, os.stat_result]]:
+    """What the system knows of each file and folder of an archive, by path within it."""
+    for folder, folders, files in os.walk(root):
+        for path in (Path(folder, name) for name in (*folders, *files)):
+            with suppress(FileNotFoundError):
+                yield path.relative_to(root).as_posix(), path.lstat()
 
 
 Listing = dict[str, list[int]]

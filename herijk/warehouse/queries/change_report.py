@@ -106,8 +106,10 @@ def _nothing() -> ChangeReport:
 
 def is_reported(store: Store) -> bool:
     """Whether the database is the one that was reported on."""
-    reported = reported_database(store)
-    return reported.exists() and file_sha256(reported) == file_sha256(store.database)
+    reported, now = reported_database(store), store.database
+    if not reported.exists():
+        return False
+    return reported.samefile(now) or file_sha256(reported) == file_sha256(now)
 
 
 def remember(store: Store) -> None:

@@ -48,6 +48,8 @@ NOTES_EN: Final = "release_notes.md"
 NOTICE: Final = "bericht.md"
 NOTICE_EN: Final = "notice.md"
 CHANGES: Final = "register_changes"
+MEASURED: Final = "measured"
+"""The basis of a line that was computed from a tow."""
 TABLES: Final = (
     "register",
     "tows",

@@ -1,0 +1,66 @@
+"""The lists of an archive are read again when something of it changed, and only then."""
+
+import os
+import shutil
+import time
+from unittest import mock
+
+import pytest
+
+from herijk.warehouse.archive import hashes
+from herijk.warehouse.intake import seasons as intake
+
+
+@pytest.fixture
+def settled(bench_of_editions, monkeypatch):
+    """An archive that was indexed, and in which any later change can be seen."""
+    monkeypatch.setattr(intake, "RACY_SECONDS", 0.0)
+    intake.index(bench_of_editions.store, bench_of_editions.archive)
+    return bench_of_editions
+
+
+def is_read_again(bench):
+    with mock.patch.object(intake, "index_archive", wraps=intake.index_archive) as reads:
+        intake.index(bench.store, bench.archive)
+    return reads.called
+
+
+def changed(path):
+    """Other content of the same size under the same time of change."""
+    before = path.stat()
+    content = path.read_bytes()
+    time.sleep(0.02)
+    path.write_bytes(content[:-2] + content[-2:-1].swapcase() + content[-1:])
+    os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
+
+
+def test_lists_are_not_read_again_while_nothing_changed(settled):
+    assert not is_read_again(settled)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda bench: changed(next((bench.archive / "sleeplijsten").iterdir())),
+        lambda bench: (bench.archive / "sleeplijsten" / "leeg").mkdir(),
+        lambda bench: next((bench.archive / "sleeplijsten").iterdir()).chmod(0o600),
+        lambda bench: (bench.archive / "notes.txt").symlink_to("archief.toml"),
+        lambda bench: (bench.store.table_path("listed_tows")).unlink(),
+    ],
+)
+def test_lists_are_read_again_after_any_change(settled, change):
+    change(settled)
+    assert is_read_again(settled)
+
+
+def test_lists_of_another_folder_are_read(settled):
+    shutil.copytree(settled.archive, settled.archive.with_name("moved"))
+    intake.index(settled.store, settled.archive.with_name("moved"))
+    assert settled.store.read("about_archive")["root"][0].endswith("moved")
+
+
+def test_what_changed_just_now_is_read_again(settled, monkeypatch):
+    monkeypatch.setattr(intake, "RACY_SECONDS", hashes.RACY_SECONDS)
+    changed(next((settled.archive / "sleeplijsten").iterdir()))
+    assert is_read_again(settled)
+    assert is_read_again(settled)
