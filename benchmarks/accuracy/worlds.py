@@ -32,7 +32,7 @@ import numpy as np
 import polars as pl
 
 from benchmarks.accuracy.score import EQUAL_BOATS, Record, score, table
-from herijk.pipeline.assessment.plausibility import implausible
+from herijk.pipeline.assessment.plausibility import plausibility
 from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.consistency import observe, type_homogeneity
 from herijk.pipeline.method.definition import shipped_method
@@ -122,7 +122,7 @@ def _by_blocks(world: str, seed: int) -> tuple[dict[str, pl.DataFrame], pl.DataF
 
 def recomputed(archive: Measured, equal_boats: bool) -> dict[str, pl.DataFrame]:
     """Tables of an archive as a rebuild makes them; where asked, whether equal boats are alike."""
-    tows = with_doubts(archive.tows, implausible(Batch.of(archive.tows, archive.blocks)))
+    tows = with_doubts(archive.tows, plausibility(Batch.of(archive.tows, archive.blocks)))
     made = recompute(shipped_method(METHOD), tows, archive.blocks, with_bands=False)
     tables = {name: getattr(made, name) for name in TABLES if hasattr(made, name)}
     if equal_boats:

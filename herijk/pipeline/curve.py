@@ -561,11 +561,6 @@ def _b_of_s(s: FloatArray) -> FloatArray:
     return np.where(positive, 1.0 / np.sqrt(np.where(positive, s, 1.0)), np.inf)
 
 
-def _cw_of_points(points: Points, curves: Curves) -> FloatArray:
-    speed = np.where(points.used, points.speed_m_s, 0.0)
-    return cw(curves.a_kg_m[:, None], curves.s_s2_m2[:, None], speed)
-
-
 def _sensitivities(
     curves: Curves, v0: FloatArray, speed: FloatArray, wanted: BoolArray
 ) -> tuple[FloatArray, FloatArray]:

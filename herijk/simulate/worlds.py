@@ -14,8 +14,6 @@ from herijk.pipeline.errors import HerijkError
 from herijk.simulate.defects import FIRST_SEASON, Defects
 from herijk.simulate.world import WorldSettings
 
-DEFAULT_WORLD: Final = "history"
-WORN_LOGS: Final = range(FIRST_SEASON, 2012)
 BEFORE_DGPS: Final = range(FIRST_SEASON, 2014)
 EVER: Final = range(FIRST_SEASON, 10_000)
 LOGS_ONLY: Final = range(2010, 2011)

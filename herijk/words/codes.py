@@ -183,7 +183,7 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.weight_changed": ("gewicht veranderd", "weight changed"),
     "code.curve_changed": ("kromme veranderd", "curve changed"),
     "code.curve_change_unexplained": ("kromme onverklaard veranderd", "unexplained curve change"),
-    "code.other_tows": ("geen andere proef van sloep en ploeg", "no other tow of boat and crew"),
+    "code.unseen_error": ("fout die niemand zou zien", "error that nobody would see"),
     "code.curve_change_significant": (
         "kromme meer veranderd dan de onzekerheid",
         "curve changed beyond its uncertainty",

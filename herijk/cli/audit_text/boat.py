@@ -309,7 +309,7 @@ def _result(curve: Report) -> str:
     if curve["cw_kg_m"] is None:
         return tell("no curve, {}{}", code(curve["status"]), flags)
     b = tell("B not determined") if curve["b_m_s"] is None else tell("B {:.2f} m/s", curve["b_m_s"])
-    return tell(
+    numbers = tell(
         "A {:.2f} kg/m, {} ({}), Cw {:.2f} kg/m ({}: {:.2f} to {:.2f}), {:.1f} W per rower, {}{}",
         curve["a_kg_m"],
         b,
@@ -321,7 +321,16 @@ def _result(curve: Report) -> str:
         curve["power_w"],
         code(curve["status"]),
         flags,
-    ) + ("" if curve["interval"] == COMPLETE else f"; {tell(RUNS_ALONE_MEANS)}")
+    )
+    left_out = [] if curve["interval"] == COMPLETE else [tell(RUNS_ALONE_MEANS)]
+    return "; ".join([numbers, *_unseen(curve), *left_out])
+
+
+def _unseen(curve: Report) -> list[str]:
+    """From which size on an error would have been seen."""
+    if curve["unseen_error_ratio"] is None:
+        return []
+    return [tell("an error would be seen from {:.0%} on", curve["unseen_error_ratio"])]
 
 
 def _interval_of_b(curve: Report) -> str:

@@ -5,7 +5,7 @@ from typing import Any, Final
 
 import segno
 
-from herijk.dashboards.answer import crew_name
+from herijk.dashboards.answer import crew_name, unseen_error
 from herijk.dashboards.documents import page, pdf
 from herijk.dashboards.pictures import curve_picture
 from herijk.dashboards.speech import Speech
@@ -87,7 +87,8 @@ def _interval(line: Row, speech: Speech) -> str:
     if low is None or high is None:
         return speech.say("certificate_no_interval")
     key = "answer_interval" if line["new_log_known"] else "answer_spread"
-    return speech.say(key).format(low=speech.number(low, 2), high=speech.number(high, 2))
+    interval = speech.say(key).format(low=speech.number(low, 2), high=speech.number(high, 2))
+    return " ".join([interval, *unseen_error(line, speech)])
 
 
 def _numbers(line: Row, speech: Speech) -> list[tuple[str, str]]:

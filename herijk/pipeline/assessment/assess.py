@@ -10,10 +10,12 @@ them reject a tow, the method says.
 from collections.abc import Sequence
 from typing import Final
 
+import numpy as np
 import polars as pl
 
 from herijk.pipeline.assessment.checks import CHECKS, CODES, DOUBTS, UNUSUAL
 from herijk.pipeline.assessment.freeboard import by_freeboard
+from herijk.pipeline.assessment.mean_shift import MOSTLY, NORMAL_MAD
 from herijk.pipeline.assessment.season_levels import season_levels
 from herijk.pipeline.choice import SAME_SHARE
 from herijk.tables.keys import LINE
@@ -33,6 +35,13 @@ SIZES: Final = {
     "bow_height_changed": "bow_height_m",
 }
 
+AGREE: Final = 0.02
+"""Standard deviation of ln Cw between two sound tows of a boat, where too few pairs show it
+themselves (presentation 24-01-2015: tows agree within 2 %)."""
+
+FEWEST_PAIRS: Final = 10
+
+_HIGHEST: Final = {check.code: check.limits("H")[1] for check in CHECKS}
 _LAST_SEASON: Final = {check.code: check.last_season for check in CHECKS}
 
 
@@ -51,6 +60,7 @@ def assess(
         Rows of the table `assessments`. A check that could not be made (nothing to compare with,
         weight not known, season after its last) has no row.
     """
+    pairs = _pairs(curves, tows, diagnosis)
     observed = [
         _of_curves(curves),
         _of_runs(curves, run_points),
@@ -59,7 +69,8 @@ def assess(
         _of_sizes(tows),
         _of_freeboards(tows),
         _of_season(tows, diagnosis),
-        _of_previous_curve(curves, tows, diagnosis),
+        _of_previous_curve(pairs),
+        _of_unseen_errors(pairs, tows),
         _of_like_boats(curves, tows),
     ]
     long = pl.concat([_long(frame) for frame in observed])
@@ -69,7 +80,7 @@ def assess(
 def with_status(
     curves: pl.DataFrame, assessments: pl.DataFrame, rejecting: Sequence[tuple[int, str]]
 ) -> pl.DataFrame:
-    """The curves with `status` and `flags`.
+    """The curves with `status`, `flags` and `unseen_error_ratio`.
 
     Rejected is a tow without a curve or with a flag that rejects; flagged one that somebody must
     look at; the others are accepted. Notes are not listed, unless they reject.
@@ -99,8 +110,15 @@ def with_status(
         .then(pl.lit("flagged"))
         .otherwise(pl.lit("accepted"))
     )
+    unseen = assessments.filter(check="unseen_error")
     return (
         curves.join(flagged, on="tow_id", how="left", maintain_order="left")
+        .join(
+            unseen.select("tow_id", unseen_error_ratio="observed"),
+            on="tow_id",
+            how="left",
+            maintain_order="left",
+        )
         .with_columns(status.alias("status"), pl.col("flags").fill_null([]))
         .drop("rejects")
     )
@@ -299,39 +317,69 @@ def _of_season(tows: pl.DataFrame, diagnosis: pl.DataFrame) -> pl.DataFrame:
     return tows.join(seasons, on="season").select("tow_id", "season_in_doubt")
 
 
-def _of_previous_curve(
-    curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame
-) -> pl.DataFrame:
-    """Against the previous tow of boat and crew that has a curve, at its declared speed.
+def _pairs(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame) -> pl.DataFrame:
+    """Every tow with a curve beside the previous one of boat and crew, at its declared speed.
 
-    Between seasons whose logs are not on one scale, what all boats changed together is no change of
-    this one.
+    `ln` is what weight and length leave unexplained of ln Cw / Cw before; null where there is none
+    before, or an alteration was reported. Between seasons whose logs are not on one scale, what all
+    boats changed together is no change of this one. `sd` is its standard uncertainty, where the
+    method knows it.
     """
     change = _cw_at(_before("declared_speed_m_s", LINE)) / _before("cw_kg_m", LINE)
     by_size = (pl.col("size") / _before("size", LINE)).fill_null(1.0)
     changed = _with_boats(curves, tows).select(
         "tow_id",
+        *LINE,
         "season",
-        other_tows=pl.len().over(LINE) - 1,
         before=_before("season", LINE),
-        curve_changed=change - 1,
+        change=change,
         ln=pl.when(~pl.col("altered")).then((change / by_size).log()),
         sd=(pl.col("ln_sd") ** 2 + _before("ln_sd", LINE) ** 2).sqrt(),
     )
     level = season_levels(changed.drop_nulls("ln"), _seasons_to_scale(curves, diagnosis))
-    shared = (
+    now, then = (
         pl.col(column).replace_strict(level, default=0.0, return_dtype=pl.Float64)
         for column in ("season", "before")
     )
-    now, then = shared
-    ln = pl.col("ln") - now + then
-    return changed.select(
+    return changed.with_columns(pl.col("ln") - now + then)
+
+
+def _of_previous_curve(pairs: pl.DataFrame) -> pl.DataFrame:
+    return pairs.select(
         "tow_id",
-        "other_tows",
-        "curve_changed",
-        curve_change_unexplained=ln.exp() - 1,
-        curve_change_significant=ln / pl.col("sd"),
+        curve_changed=pl.col("change") - 1,
+        curve_change_unexplained=pl.col("ln").exp() - 1,
+        curve_change_significant=pl.col("ln") / pl.col("sd"),
     )
+
+
+def _of_unseen_errors(pairs: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+    """From which size on an error of a tow's Cw is looked at, in 19 of 20 cases.
+
+    By the tow before or after it, or by what all others let its force be.
+    """
+    limit, sds = _HIGHEST["curve_change_unexplained"], _HIGHEST["curve_change_significant"]
+    scatter = _scatter_of_pairs(pairs["ln"].drop_nulls())
+    told = pl.min_horizontal(pl.lit(limit).log1p(), pl.lit(sds) * pl.col("sd")) + MOSTLY * scatter
+    by_pair = pl.when(pl.col("ln").is_not_null()).then(told.exp() - 1)
+    by_force = [name for name in ("unseen_force_ratio",) if name in tows.columns]
+    return (
+        pairs.join(tows.select("tow_id", *by_force), on="tow_id", maintain_order="left")
+        .with_columns(by_pair=by_pair)
+        .select(
+            "tow_id",
+            unseen_error=pl.min_horizontal(
+                "by_pair", pl.col("by_pair").shift(-1).over(LINE), *by_force
+            ),
+        )
+    )
+
+
+def _scatter_of_pairs(ln: pl.Series) -> float:
+    """Standard deviation of ln Cw / Cw before, whatever a few boats did."""
+    if len(ln) < FEWEST_PAIRS:
+        return AGREE
+    return float(np.median(np.abs(ln.to_numpy()))) / NORMAL_MAD
 
 
 def _seasons_to_scale(curves: pl.DataFrame, diagnosis: pl.DataFrame) -> set[int]:

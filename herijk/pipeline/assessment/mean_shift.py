@@ -23,6 +23,9 @@ SAME_DIRECTION: Final = 1e-6
 """What is left of a direction of which so little is, was taken out with another."""
 
 FEWEST_FOR_SCALE: Final = 10
+MOSTLY: Final = 1.645
+"""Standard deviations below its mean that a Gaussian number reaches in 19 of 20 cases."""
+
 NORMAL_MAD: Final = 0.6745
 
 
@@ -72,7 +75,21 @@ class Found:
     clear: bool
 
 
-def find_shifts(seen: Observations, may: Candidates, limit: float, look: float) -> list[Found]:
+@dataclass(frozen=True)
+class Shifted:
+    """What shifted, and what else would have been seen.
+
+    Attributes:
+        shifts: the shifts, the clearest first.
+        seen_from: size from which a shift of each candidate is beyond its last limit in 19 of 20
+            cases, shape (candidates,); NaN of one that was taken out, or is one with such a one.
+    """
+
+    shifts: list[Found]
+    seen_from: FloatArray
+
+
+def find_shifts(seen: Observations, may: Candidates, limit: float, look: float) -> Shifted:
     """Shifts beyond so many standard deviations, the clearest first.
 
     Where tows scatter more or less than is assumed, the limits move with them.
@@ -99,7 +116,8 @@ def find_shifts(seen: Observations, may: Candidates, limit: float, look: float) 
         best = int(first_largest(beyond))
         if beyond[best] < 1.0:
             if not clear:
-                return shifts
+                seen_from = np.maximum(sd * (limits + MOSTLY * scales), may.least)
+                return Shifted(shifts, np.where(told, seen_from, np.nan))
             limits, clear = np.where(may.single, look * scales, np.inf), False
             continue
         shifts.append(Found(best, float(size[best]), float(sd[best]), clear))

@@ -11,7 +11,7 @@ Residuals and Influence in Regression, 2.2.2): the shift of a group of tows is e
 other tows, the clearest is taken out, and the rest is judged again without it.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -21,7 +21,7 @@ import scipy
 
 from herijk.pipeline.arrays import FloatArray, IntArray
 from herijk.pipeline.assessment.likely_unit import likely_cause
-from herijk.pipeline.assessment.mean_shift import Candidates, Observations, find_shifts
+from herijk.pipeline.assessment.mean_shift import Candidates, Observations, Shifted, find_shifts
 from herijk.pipeline.assessment.seen import USUAL_BEND, Seen
 from herijk.pipeline.blocks.batch import Batch
 from herijk.tables.keys import LINE
@@ -109,22 +109,37 @@ class Shift:
         return self.quantity == "force" and abs(self.size) > GROSS
 
 
-def implausible(batch: Batch) -> list[Shift]:
-    """Shifts of force, wind and speed that the other tows rule out, the clearest first.
+@dataclass(frozen=True)
+class Plausibility:
+    """What all tows together say of each.
 
-    After these, single tows that are only unusual.
+    Attributes:
+        shifts: of force, wind and speed that the other tows rule out, the clearest first; after
+            these, single tows that are only unusual.
+        force_seen_from: per tow, the smallest relative error of its force that would have it looked
+            at in 19 of 20 cases; a tow of which nothing can be told is missing.
+    """
+
+    shifts: tuple[Shift, ...]
+    force_seen_from: Mapping[str, float]
+
+
+def plausibility(batch: Batch) -> Plausibility:
+    """Judges every tow beside all others.
 
     Args:
         batch: all tows of the archive with their runs, in one batch.
     """
     seen = Seen.of(batch)
-    return [
+    of_force, force_seen_from = _of_force(seen)
+    shifts = (
         *_in_radians(seen),
-        *_of_force(seen),
+        *of_force,
         *_of_one(seen, "wind", seen.wind_ahead, WIND_AHEAD, _GROUPS),
         *_of_one(seen, "vane", seen.wind_abeam, WIND_ABEAM, _GROUPS),
         *_of_one(seen, "speed", seen.speed, SPEED, ("tow", "part")),
-    ]
+    )
+    return Plausibility(shifts, force_seen_from)
 
 
 _RADIANS: Final = "radians instead of degrees"
@@ -148,6 +163,9 @@ def _in_radians(seen: Seen) -> Iterator[Shift]:
 
 Group = tuple[str, str, IntArray]
 """Kind, key, and the places of its tows."""
+
+Candidate = tuple[str, Group, FloatArray]
+"""Quantity, group, and what a shift of it does to what is observed."""
 
 
 def _groups(tows: pl.DataFrame, kinds: tuple[str, ...]) -> list[Group]:
@@ -223,16 +241,20 @@ def _of_one(
     observed = Observations(values[there], np.full(tows.height, spread.tow**2), effects, variance)
     groups = _groups(tows, kinds)
     columns = [np.where(np.isin(np.arange(tows.height), g[2]), 1.0, 0.0) for g in groups]
-    return _named(tows, observed, [(quantity, g, c) for g, c in zip(groups, columns, strict=True)])
+    may = [(quantity, group, column) for group, column in zip(groups, columns, strict=True)]
+    return _named(tows, may, _find(observed, may))
 
 
-def _of_force(seen: Seen) -> list[Shift]:
-    """Shifts of the force's gain, and of its zero, which changes the bend in its own way."""
+def _of_force(seen: Seen) -> tuple[list[Shift], dict[str, float]]:
+    """Shifts of the force's gain, and of its zero, which changes the bend in its own way.
+
+    And from which relative size on a gain of each tow would be seen.
+    """
     known = np.isfinite(seen.level) & np.isfinite(seen.bend) & (seen.force_n > 0)
     alone = pl.when(pl.Series(seen.has_gps)).then(0).otherwise("season").alias("log_alone")
     tows = seen.batch.tows.with_columns(alone).filter(pl.Series(known))
     if tows.is_empty():
-        return []
+        return [], {}
     level, level_variance = _effects(tows, LEVEL)
     bend, bend_variance = _effects(tows, BEND)
     noise = np.concatenate(
@@ -245,7 +267,7 @@ def _of_force(seen: Seen) -> list[Shift]:
         np.concatenate([level_variance, bend_variance]),
     )
     per_newton = 1.0 / seen.force_n[known]
-    columns = []
+    columns: list[Candidate] = []
     for group in _groups(tows, _GROUPS):
         mine = np.isin(np.arange(tows.height), group[2]).astype(np.float64)
         columns.append(("force", group, np.concatenate([mine, np.zeros(tows.height)])))
@@ -253,21 +275,29 @@ def _of_force(seen: Seen) -> list[Shift]:
             continue
         zero = mine * per_newton
         columns.append(("zero", group, np.concatenate([zero, -(2.0 + USUAL_BEND) * zero])))
-    return _named(tows, observed, columns)
+    found = _find(observed, columns)
+    seen_from = {
+        key: float(np.expm1(size))
+        for (quantity, (kind, key, _), _), size in zip(columns, found.seen_from, strict=True)
+        if (quantity, kind) == ("force", "tow") and np.isfinite(size)
+    }
+    return _named(tows, columns, found), seen_from
 
 
-def _named(
-    tows: pl.DataFrame, observed: Observations, columns: list[tuple[str, Group, FloatArray]]
-) -> list[Shift]:
-    """The shifts that are found among columns of quantity, group and direction."""
-    directions = scipy.sparse.csc_array(np.column_stack([c for _, _, c in columns]))
+def _find(observed: Observations, columns: list[Candidate]) -> Shifted:
+    """What is found among the candidates."""
     may = Candidates(
-        directions,
+        scipy.sparse.csc_array(np.column_stack([c for _, _, c in columns])),
         np.array([kind == "tow" for _, (kind, _, _), _ in columns]),
         np.array([LEAST[quantity] for quantity, _, _ in columns]),
     )
+    return find_shifts(observed, may, LIMIT, LOOK)
+
+
+def _named(tows: pl.DataFrame, columns: list[Candidate], found: Shifted) -> list[Shift]:
+    """The shifts that were found, with their tows and what may have caused them."""
     shifts = []
-    for one in find_shifts(observed, may, LIMIT, LOOK):
+    for one in found.shifts:
         quantity, (kind, key, places), _ = columns[one.place]
         ids = tuple(tows["tow_id"].gather(np.sort(places)))
         cause = likely_cause(quantity, _ln_ratio(quantity, one.size), one.sd)

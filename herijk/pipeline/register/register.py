@@ -29,6 +29,7 @@ CURVE_COLUMNS: Final = (
     "cw_lo_kg_m",
     "cw_hi_kg_m",
     "flags",
+    "unseen_error_ratio",
 )
 CW_COLUMNS: Final = ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
 FIVE_YEARS: Final = RegisterRule()

@@ -39,7 +39,6 @@ class SeasonFactors:
         tow_sd: standard deviation of ln Cw of a tow beyond its random part and its log.
         ageing_per_year: change of ln Cw per year that all boats share, with `ageing_sd`.
         drift_sd: standard deviation of what a boat drifts from that in a year.
-        weakest_mode_sd: standard deviation of the combination of ln factors that is known worst.
         tows: what it was estimated from.
         instruments: per tow, what its instruments did: `pipeline.season_log.tows`.
         best: per tow, what all tows together say of its Cw; `weights`: what that rests on.
@@ -55,7 +54,6 @@ class SeasonFactors:
     ageing_per_year: float
     ageing_sd: float
     drift_sd: float
-    weakest_mode_sd: float
     tows: pl.DataFrame
     instruments: pl.DataFrame
     best: pl.DataFrame
@@ -123,7 +121,7 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
     second = without_boats(network, (ageing_per_year, ageing_sd), settings)
     along = _group_means(problem, posterior, network)
     covariance = along @ posterior.covariance @ along.T
-    mode_sd, mode = _weakest_mode(covariance)
+    mode = _weakest_mode(covariance)
     change = _without_each_boat(network, posterior)
     instruments = instrument_errors(problem, posterior, network, change)
     best, weights = best_estimates(problem, posterior, network, instruments)
@@ -140,7 +138,6 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
         ageing_per_year=ageing_per_year,
         ageing_sd=ageing_sd,
         drift_sd=float(np.sqrt(fit.state.drift_variance)),
-        weakest_mode_sd=mode_sd,
         tows=tows,
         instruments=instruments,
         best=best,
@@ -175,14 +172,13 @@ def _group_means(problem: Problem, posterior: Posterior, network: Network) -> Fl
     return np.array(means).reshape(len(groups), len(posterior.places))
 
 
-def _weakest_mode(covariance: FloatArray) -> tuple[float, FloatArray]:
-    """The combination of ln factors that is known worst: its sd, and the share of each in it."""
+def _weakest_mode(covariance: FloatArray) -> FloatArray:
+    """The share of each ln factor in their combination that is known worst."""
     if not len(covariance):
-        return 0.0, np.zeros(0)
-    variance, modes = np.linalg.eigh(covariance)
-    mode = modes[:, -1]
+        return np.zeros(0)
+    mode = np.linalg.eigh(covariance).eigenvectors[:, -1]
     sign = np.sign(mode[first_largest(np.abs(mode))])  # which way round is arbitrary
-    return float(np.sqrt(variance[-1])), mode * sign
+    return np.asarray(mode * sign)
 
 
 def _without_each_boat(network: Network, posterior: Posterior) -> FloatArray:

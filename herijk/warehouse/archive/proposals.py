@@ -290,9 +290,7 @@ def _season(path: str, named: Mapping[str, str]) -> int:
 
 
 _RULES: Final = {
-    "unknown_column": lambda p, v, s: (_of_headers if "meant" in v else _of_unknown_samples)(
-        p, v, s
-    ),
+    "unknown_column": _of_strange_headers,
     "missing_column": _of_samples,
     "ambiguous_date": _of_date,
     "ambiguous_number": _of_decimals,

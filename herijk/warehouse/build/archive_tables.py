@@ -99,9 +99,9 @@ def judged_tows(
     """The tows with their doubts, and the faults of those that the other tows contradict."""
     twice = same_samples(tows, blocks)
     once = tows.join(twice, on="tow_id", how="anti")
-    shifts = judge(once, runs.join(once, on="tow_id", how="semi"), blocks)
-    gross = gross_faults(shifts, once)
-    kept = with_doubts(once.join(gross, on="tow_id", how="anti"), shifts)
+    judged = judge(once, runs.join(once, on="tow_id", how="semi"), blocks)
+    gross = gross_faults(judged.shifts, once)
+    kept = with_doubts(once.join(gross, on="tow_id", how="anti"), judged)
     return kept, pl.concat([twice, gross])
 
 

@@ -14,7 +14,7 @@ from typing import Final
 
 import polars as pl
 
-from herijk.pipeline.assessment.plausibility import Shift, implausible
+from herijk.pipeline.assessment.plausibility import Plausibility, Shift, plausibility
 from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.blocks.run_blocks import stack_blocks
 from herijk.tables.frames import frame_of
@@ -44,8 +44,8 @@ _CODES: Final = {
 """Reason code of a tow set aside, and check of one that is doubted."""
 
 
-def judge(tows: pl.DataFrame, runs: pl.DataFrame, blocks: pl.DataFrame) -> list[Shift]:
-    """The shifts of an archive's tows.
+def judge(tows: pl.DataFrame, runs: pl.DataFrame, blocks: pl.DataFrame) -> Plausibility:
+    """What an archive's tows say of each other.
 
     Args:
         tows: rows of `tows` with `boat_type`.
@@ -53,8 +53,8 @@ def judge(tows: pl.DataFrame, runs: pl.DataFrame, blocks: pl.DataFrame) -> list[
         blocks: blocks of at least these.
     """
     if tows.is_empty():
-        return []
-    return implausible(Batch.of(tows, stack_blocks(blocks, runs)))
+        return Plausibility((), {})
+    return plausibility(Batch.of(tows, stack_blocks(blocks, runs)))
 
 
 def gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> pl.DataFrame:
@@ -73,18 +73,22 @@ def gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> pl.DataFrame:
     return frame_of(Faults, map(dataclasses.asdict, faults))
 
 
-def with_doubts(tows: pl.DataFrame, shifts: Sequence[Shift]) -> pl.DataFrame:
-    """The tows with `doubts` and `unusual`: checks that the rest of the archive makes of them."""
+def with_doubts(tows: pl.DataFrame, judged: Plausibility) -> pl.DataFrame:
+    """The tows with `doubts`, `unusual` and `unseen_force_ratio`: what all others say of them."""
 
     def named(codes: Mapping[str, str], doubted: bool) -> pl.Series:
-        mine = [s for s in shifts if (s.clear and s.kind in _SINGLED_OUT) is doubted]
+        mine = [s for s in judged.shifts if (s.clear and s.kind in _SINGLED_OUT) is doubted]
         found = [
             sorted({codes[s.quantity] for s in mine if tow in s.tows}) for tow in tows["tow_id"]
         ]
         return pl.Series(found, dtype=pl.List(pl.String))
 
+    # To a thousandth, as no processor gives the last bits of a solved system like another.
+    seen_from = {tow: round(ratio, 3) for tow, ratio in judged.force_seen_from.items()}
     return tows.with_columns(
-        named(_CODES, doubted=True).alias("doubts"), named(_UNUSUAL, doubted=False).alias("unusual")
+        named(_CODES, doubted=True).alias("doubts"),
+        named(_UNUSUAL, doubted=False).alias("unusual"),
+        pl.Series("unseen_force_ratio", map(seen_from.get, tows["tow_id"]), pl.Float64),
     )
 
 

@@ -40,7 +40,7 @@ def published_tables(store: Store) -> dict[str, pl.DataFrame]:
     for name in edition_names(store):
         edition = read_edition(store, name)
         rows["editions"].append(_edition_row(edition))
-        rows["register"].append(_with_later_columns(edition.register))
+        rows["register"].append(edition.register)
         rows["register_history"].append(lines_in_time(store, edition))
         if CHANGES in edition.tables:
             rows[CHANGES].append(edition.tables[CHANGES])
@@ -63,7 +63,7 @@ def lines_in_time(store: Store, edition: Edition) -> pl.DataFrame:
 
     So a race of before the edition is computed with the tow that counted then.
     """
-    lines = _with_later_columns(edition.register.drop_nulls("cw_kg_m"))
+    lines = edition.register.drop_nulls("cw_kg_m")
     if edition.method is None:
         return history_rows(
             lines, edition.about.edition, lines["method"][0] if lines.height else ""
@@ -85,13 +85,6 @@ def history_rows(lines: pl.DataFrame, edition: str, method: str) -> pl.DataFrame
         pl.int_range(1, pl.len() + 1, dtype=pl.Int32).over(LINE).alias("position"),
         *CURVE_COLUMNS,
     ).sort(*LINE, "position")
-
-
-def _with_later_columns(register: pl.DataFrame) -> pl.DataFrame:
-    """Lines of an edition, with what was not yet said of a line when it was published."""
-    columns = TABLES["register"].columns()
-    missing = [n for n, column in columns.items() if column.nullable and n not in register.columns]
-    return register.with_columns(pl.lit(None, columns[n].dtype).alias(n) for n in missing)
 
 
 def _edition_row(edition: Edition) -> pl.DataFrame:

@@ -15,8 +15,12 @@ from herijk.warehouse.intake.seasons import runs_with_windows, typed_tows
 from herijk.warehouse.store.editions import Edition
 from herijk.warehouse.store.store import Store, fingerprint, table_digest
 
+JUDGED: Final = ("doubts", "unusual", "unseen_force_ratio")
+"""What all other tows say of a tow."""
+
 NOT_INPUT: Final = (
-    *("samples_path", "second_path", "remark", "inputs_sha256", "doubts", "unusual"),
+    *("samples_path", "second_path", "remark", "inputs_sha256"),
+    *JUDGED,
     *("hand_reason", "list_path", "list_line"),
 )
 """What a tow is called or said to be does not change its numbers; its doubts follow from others."""

@@ -19,7 +19,7 @@ from herijk.pipeline.register.register import LINE, draft_register
 from herijk.pipeline.uncertainty.ensemble import tow_ensemble
 from herijk.warehouse.build.published import decisions_of
 from herijk.warehouse.editions import sheets
-from herijk.warehouse.editions.inputs import INPUTS_HASH, tows_of_today
+from herijk.warehouse.editions.inputs import INPUTS_HASH, JUDGED, tows_of_today
 from herijk.warehouse.editions.printed import printed_lines, with_carried
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.editions import (
@@ -92,9 +92,10 @@ def made_again(store: Store, edition: Edition) -> Again:
         raise MissingKnowledgeError("there is no warehouse to make it from; run herijk rebuild")
     if edition.method is None:
         return Again(printed_lines(store, _printed_file(store, edition)), {})
-    judged = edition.tables["tows"].select("tow_id", "^(doubts|unusual)$")
+    known = [name for name in JUDGED if name in edition.tables["tows"].columns]
+    judged = edition.tables["tows"].select("tow_id", *known)
     today = tows_of_today(store)
-    tows = today.drop(judged.columns[1:]).join(judged, on="tow_id")
+    tows = today.drop(JUDGED).join(judged, on="tow_id")
     runs = intake.runs_with_windows(store).join(judged, on="tow_id", how="semi")
     blocks = stack_blocks(intake.all_blocks(store), runs)
     recomputed = recompute(edition.method, tows, blocks)

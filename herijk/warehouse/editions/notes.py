@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import Any, Final
 
 import jinja2
+import polars as pl
 
+from herijk.pipeline.assessment.checks import UNSEEN
 from herijk.pipeline.method.definition import COMPLETE
 from herijk.tables.row import Row
 from herijk.warehouse.editions.compare import (
@@ -90,6 +92,10 @@ def _facts(edition: Edition, language: Language) -> dict[str, Any]:
         "carried": language.count(carried) if carried else None,
         "carried_from": about.carried_from,
         "members": None if ensemble is None else ensemble["member"].n_unique(),
+        "unseen": language.count(
+            edition.register.filter(pl.col("unseen_error_ratio") > UNSEEN).height
+        ),
+        "unseen_limit": round(100 * UNSEEN),
         "complete": edition.method is not None and edition.method.interval == COMPLETE,
     }
 

@@ -297,10 +297,9 @@ def _write(store: Store, edition: Edition, files: pl.DataFrame, texts: dict[str,
         previous = compare(store, read_edition(store, about.previous), edition)
         tables[CHANGES] = previous.lines
     written = texts | notes.texts(edition, previous)
-    fields = [*sheets.REGISTER_FIELDS, CODE_FIELD]
     contents = {
-        CSV: sheets.csv_bytes(edition.register, fields),
-        XLSX: sheets.xlsx_bytes(edition.register, fields, about),
+        CSV: sheets.csv_bytes(edition.register, sheets.SHEET_FIELDS),
+        XLSX: sheets.xlsx_bytes(edition.register, sheets.SHEET_FIELDS, about),
         INPUTS: sheets.csv_bytes(files, sheets.INPUT_FIELDS),
         **{name: text.encode("utf-8") for name, text in written.items()},
         **{f"{name}.parquet": _parquet(tables[name]) for name in TABLES if name in tables},

@@ -52,6 +52,8 @@ class Field:
     type: FieldType
     description: str
     decimals: int = 3
+    scale: float = 1.0
+    """What a number is multiplied by before it is printed."""
 
 
 LOWER_END: Final = (
@@ -101,6 +103,18 @@ LINE_KEY: Final = ["fsn_nr", "roeiers", "klasse", "lege doft"]
 CODE_FIELD: Final = Field(
     CODE_HEADER, "verification_code", "string", "hash van invoer, methode en getallen van de regel"
 )
+UNSEEN_FIELD: Final = Field(
+    "fout te zien vanaf [%]",
+    "unseen_error_ratio",
+    "number",
+    "kleinste fout in Cw die in 19 van de 20 gevallen zou opvallen naast de andere proeven; een "
+    "kleinere ziet niemand. Valt niet onder de controlecode",
+    0,
+    100.0,
+)
+SHEET_FIELDS: Final = (*REGISTER_FIELDS, UNSEEN_FIELD, CODE_FIELD)
+"""The columns of the sheet; the code is over those of `REGISTER_FIELDS`."""
+
 INPUT_FIELDS: Final = (
     Field("bestand", "path", "string", "bestand, vanaf de map van het archief"),
     Field("soort", "kind", "string", "meetdata, lijst of register"),
@@ -176,7 +190,6 @@ def xlsx_bytes(frame: pl.DataFrame, fields: Sequence[Field], about: About) -> by
 
 def package_bytes(about: About, contents: dict[str, bytes], notes: str, rights: Rights) -> bytes:
     """The Frictionless descriptor of the CSV files of an edition."""
-    register = [*REGISTER_FIELDS, CODE_FIELD]
     package = {
         "profile": "tabular-data-package",
         "name": about.edition.lower(),
@@ -190,8 +203,8 @@ def package_bytes(about: About, contents: dict[str, bytes], notes: str, rights: 
                 "register",
                 CSV,
                 contents[CSV],
-                register,
-                ["fsn_nr", "roeiers", "klasse", "lege doft"],
+                SHEET_FIELDS,
+                LINE_KEY,
             ),
             _resource("inputs", INPUTS, contents[INPUTS], INPUT_FIELDS, ["bestand"]),
         ],
@@ -246,7 +259,7 @@ def _printed(value: Any, field: Field) -> str:
     if value is None:
         return ""
     if field.type == "number":
-        return f"{value:.{field.decimals}f}".replace(".", ",")
+        return f"{value * field.scale:.{field.decimals}f}".replace(".", ",")
     text = str(value)
     return FORMULA.sub(r"\1\2'\3", text) if field.type == "string" else text
 
@@ -290,7 +303,7 @@ def _write_cell(sheet: Any, place: tuple[int, int], value: Any, field: Field, st
     elif field.type == "string":
         sheet.write_string(*place, str(value), style)
     else:
-        sheet.write_number(*place, round(value, field.decimals), style)
+        sheet.write_number(*place, round(value * field.scale, field.decimals), style)
 
 
 def _write_about(book: xlsxwriter.Workbook, about: About) -> None:

@@ -240,9 +240,14 @@ def _where(path: Place, about: About, file: str, intact: set[str]) -> list[tuple
 
 
 def _expected_csv(path: Place) -> sheets.Cells:
-    fields = [*sheets.REGISTER_FIELDS, sheets.CODE_FIELD]
-    rows = sheets.printed_cells(read_table(path, "register"), fields)
-    return [[field.header for field in fields], *rows]
+    register, fields = _register(path)
+    return [[field.header for field in fields], *sheets.printed_cells(register, fields)]
+
+
+def _register(path: Place) -> tuple[pl.DataFrame, list[sheets.Field]]:
+    """The register of an edition, and the columns of its sheets, of which older ones have fewer."""
+    register = read_table(path, "register")
+    return register, [one for one in sheets.SHEET_FIELDS if one.column in register.columns]
 
 
 def _cells(file: str, was: sheets.Cells, now: sheets.Cells) -> list[tuple[str, str]]:
@@ -266,9 +271,7 @@ def _cells(file: str, was: sheets.Cells, now: sheets.Cells) -> list[tuple[str, s
 
 
 def _xlsx_cells(path: Place, about: About) -> list[tuple[str, str]]:
-    fields = [*sheets.REGISTER_FIELDS, sheets.CODE_FIELD]
-    register = read_table(path, "register")
-    was = sheets.read_xlsx_cells(sheets.xlsx_bytes(register, fields, about))
+    was = sheets.read_xlsx_cells(sheets.xlsx_bytes(*_register(path), about))
     now = sheets.read_xlsx_cells((path / XLSX).read_bytes())
     places = sorted(p for p in was.keys() | now.keys() if was.get(p) != now.get(p))
     problems: list[tuple[str, str]] = [

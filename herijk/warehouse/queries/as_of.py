@@ -12,14 +12,10 @@ import polars as pl
 
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.register.due import due_list
-from herijk.pipeline.register.register import LINE, draft_name
+from herijk.pipeline.register.register import CURVE_COLUMNS, LINE, draft_name
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.store.store import Store
 
-NUMBERED: Final = (
-    *("tow_id", "tow_date", "valid_until", "declared_speed_m_s"),
-    *("a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m", "flags"),
-)
 SIZES: Final = ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg")
 NOT_YET: Final = "never_towed"
 
@@ -80,7 +76,7 @@ def register_on(
     later = pl.col("tow_date").is_not_null()
     rest = register.join(counted, on=key, how="anti").with_columns(
         pl.when(later).then(pl.lit(NOT_YET)).otherwise("status").alias("status"),
-        *(pl.lit(None, register.schema[name]).alias(name) for name in (*NUMBERED, *SIZES)),
+        *(pl.lit(None, register.schema[name]).alias(name) for name in (*CURVE_COLUMNS, *SIZES)),
         pl.lit(None, pl.String).alias("verification_code"),
     )
     both = pl.concat([counted, rest], how="diagonal_relaxed")

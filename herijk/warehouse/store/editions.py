@@ -24,6 +24,9 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import Method, parse_method
 from herijk.pipeline.register.register import with_empty_thwart
+from herijk.tables.curves import Curves
+from herijk.tables.declare import dy
+from herijk.tables.register import Register
 from herijk.warehouse.store.files import TEMPORARY_PREFIX, sync
 from herijk.warehouse.store.storage import Place
 from herijk.warehouse.store.store import Store
@@ -216,10 +219,22 @@ def read_edition(store: Store, edition: str) -> Edition:
     tables |= {
         name: with_empty_thwart(tables[name]) for name in ("register", CHANGES) if name in tables
     }
+    tables |= {
+        name: _with_later_columns(schema, tables[name])
+        for name, schema in {"register": Register, "curves": Curves}.items()
+        if name in tables
+    }
     method = None
     if about.kind == "recomputed":
         method = parse_method((path / METHOD).read_text(encoding="utf-8"), f"{edition}/{METHOD}")
     return Edition(about, tables, method)
+
+
+def _with_later_columns(schema: type[dy.Schema], frame: pl.DataFrame) -> pl.DataFrame:
+    """A table of an edition, with what was not yet said when it was published, empty."""
+    columns = schema.columns()
+    missing = [n for n, column in columns.items() if column.nullable and n not in frame.columns]
+    return frame.with_columns(pl.lit(None, columns[n].dtype).alias(n) for n in missing)
 
 
 def method_of_edition(store: Store, edition: str) -> Method:
