@@ -230,7 +230,7 @@ class _Profile:
         """
         inside, outside = inside.copy(), outside.copy()
         least = np.sqrt(PROFILE_DROP)
-        at = inside + (outside - inside) * least / (least + excess)
+        at: FloatArray = inside + (outside - inside) * least / (least + excess)
         busy = np.arange(len(at))
         for _ in range(MAX_STEPS):
             if not len(busy):

@@ -83,10 +83,14 @@ def recompute(
     """
     plans = [(batch, steps) for batch, (steps,) in batches([method], tows, blocks)]
     cache = RunCache() if cache is None else cache
-    asked = any(is_estimated(block.steps) for block in method.ranges)
-    estimated = season_factors(plans, cache) if asked else None
+    estimated = season_factors(plans, cache) if estimates(method) else None
     instruments = Instruments(None if estimated is None else tow_instruments(estimated))
     return as_tables(method, tows, evaluate(plans, cache, instruments), estimated, with_bands)
+
+
+def estimates(method: Method) -> bool:
+    """Whether a method asks to estimate the log factor of any season."""
+    return any(is_estimated(block.steps) for block in method.ranges)
 
 
 def season_factors(plans: Sequence[tuple[Batch, Steps]], cache: RunCache) -> SeasonFactors | None:
