@@ -8,7 +8,7 @@ Women's and men's crews differ in weight and speed, so lines against weight or l
 within a crew; displacement contains the crew.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Final, NamedTuple, Self
 
@@ -150,7 +150,7 @@ def type_consistency(observed: Observed) -> pl.DataFrame:
     Returns:
         Rows of the table `type_consistency`; where no line is drawn, `reason` says why.
     """
-    return newest_lines(_lines(newest(observed), NEWEST)[0])
+    return newest_lines(_lines([(NEWEST, newest(observed))])[0])
 
 
 def newest_lines(lines: pl.DataFrame) -> pl.DataFrame:
@@ -167,30 +167,30 @@ def type_lines(observed: Observed) -> tuple[pl.DataFrame, pl.DataFrame]:
         Rows of the tables `type_lines` and `type_line_points`. Where a line compares boats within
         a crew, its points are given per class; `crew_class` is `all` elsewhere.
     """
-    parts = [_lines(tows, choice) for choice, tows in chosen_tows(observed)]
-    lines, points = zip(*parts, strict=True)
-    return pl.concat(lines), pl.concat(points)
+    return _lines(chosen_tows(observed))
 
 
-def _lines(tows: Observed, choice: Choice) -> tuple[pl.DataFrame, pl.DataFrame]:
-    to_fit: list[tuple[Row, Row, _Line]] = []
+def _lines(chosen: Iterable[tuple[Choice, Observed]]) -> tuple[pl.DataFrame, pl.DataFrame]:
     rows: list[Row] = []
-    for (method, boat_type), group in tows.groups("method", "boat_type"):
-        boats = _Boats.of(group)
-        speed = {"standard_speed_m_s": standard_speed_m_s(group)}
-        for quantity, explaining, measured in _pairs(group, choice):
-            names = {"method": method, "tows": choice.tows, "boat_type": boat_type}
-            names |= {"quantity": quantity, "explaining": explaining}
-            facts, line = _line(boats, choice, names, measured)
-            rows.append(names | speed | facts)
-            if line is not None:
-                to_fit.append((rows[-1], names, line))
-    fits = mixed.fit_all([line.problem for *_, line in to_fit], choice.components)
+    to_fit: dict[tuple[str, ...], list[tuple[Row, Row, _Line]]] = {}
+    for choice, tows in chosen:
+        for (method, boat_type), group in tows.groups("method", "boat_type"):
+            boats = _Boats.of(group)
+            speed = {"standard_speed_m_s": standard_speed_m_s(group)}
+            for quantity, explaining, measured in _pairs(group, choice):
+                names = {"method": method, "tows": choice.tows, "boat_type": boat_type}
+                names |= {"quantity": quantity, "explaining": explaining}
+                facts, line = _line(boats, choice, names, measured)
+                rows.append(names | speed | facts)
+                if line is not None:
+                    to_fit.setdefault(choice.components, []).append((rows[-1], names, line))
     points: list[Row] = []
-    for (row, names, line), fit in zip(to_fit, fits, strict=True):
-        row.update(line.row(fit))
-        if (names["quantity"], names["explaining"]) in SLIDE_PAIRS:
-            points += [names | point for point in line.points(fit)]
+    for components, lines in to_fit.items():
+        fits = mixed.fit_all([line.problem for *_, line in lines], components)
+        for (row, names, line), fit in zip(lines, fits, strict=True):
+            row.update(line.row(fit))
+            if (names["quantity"], names["explaining"]) in SLIDE_PAIRS:
+                points += [names | point for point in line.points(fit)]
     return frame_of(TypeLines, rows), frame_of(TypeLinePoints, points)
 
 

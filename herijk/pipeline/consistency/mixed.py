@@ -36,6 +36,9 @@ MAX_STEPS: Final = 60
 MAX_DOUBLINGS: Final = 7
 """The upper end of an interval is looked for up to this power of 2 times where it is expected."""
 
+NUMBERS_AT_ONCE: Final = 1 << 16
+"""Numbers of a stack: enough to make calls cheap, few enough for the nearer cache."""
+
 NO_GAIN: Final = 1e-4
 """A component that lowers the deviance by no more than this is 0."""
 
@@ -137,19 +140,20 @@ class Fit:
         For rows g the error is (P_gg)^-1 (P y)_g with variance (P_gg)^-1: no fit is repeated.
         Where the others do not determine the prediction, the variance is infinite.
         """
-        white, boat = self.white, self.problem.boat
-        weighed = white.weigh(np.concatenate([white.q, white.rest], axis=-1))[0][0]
+        white, order = self.white, self.problem.by_boat
+        n, boat = len(order), self.problem.boat[order]
+        weighed = white.weigh(np.concatenate([white.q, white.rest], axis=-1))[0][0, :n]
         known, py = weighed[:, :-1], weighed[:, -1]
-        weights, shared = white.weight[0], white.boat[0] / white.inflation[0]
-        error, variance = np.zeros(len(py)), np.full(len(py), np.inf)
-        order = np.argsort(boat, kind="stable")
-        for rows in np.split(order, np.flatnonzero(np.diff(boat[order])) + 1):
+        weights, shared = white.weight[0, :n], white.boat[0] / white.inflation[0]
+        error, variance = np.zeros(n), np.full(n, np.inf)
+        for rows in np.split(np.arange(n), np.flatnonzero(np.diff(boat)) + 1):
             weight = weights[rows]
             inverse = np.diag(weight) - shared[boat[rows[0]]] * np.outer(weight, weight)
             block = inverse - known[rows] @ known[rows].T
             if np.linalg.eigvalsh(block)[0] > 1e-9 * np.diag(inverse).max():
                 covariance = np.linalg.inv(block)
-                error[rows], variance[rows] = covariance @ py[rows], np.diag(covariance)
+                error[order[rows]] = covariance @ py[rows]
+                variance[order[rows]] = np.diag(covariance)
         return LeftOut(error, variance)
 
     def intervals(self) -> dict[str, tuple[float, float | None]]:
@@ -244,7 +248,7 @@ class _Profile:
             between = (ends[0] < to) & (to < ends[1])
             to = np.where(between, to, ends.mean(axis=0))
             moved, at[busy] = np.abs(to - at[busy]), to
-            busy = busy[moved > PROFILE_PRECISION * self.stack.problem.spread]
+            busy = busy[moved > PROFILE_PRECISION * self.stack.spread[0]]
         return at
 
 
@@ -254,17 +258,19 @@ def fit(problem: Problem, free: tuple[str, ...]) -> Fit:
 
 
 def fit_all(problems: Sequence[Problem], free: tuple[str, ...]) -> list[Fit]:
-    """The same of each of many problems; those of one layout are searched side by side."""
-    layouts: dict[tuple[object, ...], list[int]] = {}
+    """The same of each of many problems; those of one size are searched side by side."""
+    sizes: dict[tuple[int, ...], list[int]] = {}
     for i, problem in enumerate(problems):
-        layouts.setdefault(problem.layout, []).append(i)
+        sizes.setdefault(problem.size, []).append(i)
     fits: dict[int, Fit] = {}
-    for numbers in layouts.values():
-        stack = Stack.of([problems[i] for i in numbers])
-        variances = _most_likely(stack, free)
-        white = Whitened.of(stack, variances)
-        for place, (i, sd) in enumerate(zip(numbers, np.sqrt(variances).tolist(), strict=True)):
-            fits[i] = Fit(problems[i], free, tuple(sd), white.of_one(place))
+    for (rows, _, others, effects), numbers in sizes.items():
+        at_once = max(1, NUMBERS_AT_ONCE // (rows * (others + effects + 1)))
+        for some in (numbers[i : i + at_once] for i in range(0, len(numbers), at_once)):
+            stack = Stack.of([problems[i] for i in some])
+            variances = _most_likely(stack, free)
+            white = Whitened.of(stack, variances)
+            for place, (i, sd) in enumerate(zip(some, np.sqrt(variances).tolist(), strict=True)):
+                fits[i] = Fit(problems[i], free, tuple(sd), white.of_one(place))
     return [fits[i] for i in range(len(problems))]
 
 
@@ -272,7 +278,8 @@ def _most_likely(stack: Stack, free: tuple[str, ...]) -> FloatArray:
     """Variances of boat, other and cell of each problem, (problems, 3)."""
     loose = np.tile(np.isin(COMPONENTS, free), (len(stack.unit), 1))
     # What the errors leave of the spread, in equal parts.
-    left = stack.spread**2 - stack.variance.mean(axis=1)
+    known = stack.variance.mean(axis=1, where=np.isfinite(stack.variance))
+    left = stack.spread**2 - known
     start = loose * (np.maximum(left, 0.1 * stack.unit) / max(len(free), 1))[:, None]
     variances, there = search(stack, loose, start)
     least = there.deviance
