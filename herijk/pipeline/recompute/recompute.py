@@ -30,6 +30,7 @@ from herijk.pipeline.recompute.season_factors import (
     is_estimated,
     tow_instruments,
     without_factor,
+    without_gps,
 )
 from herijk.pipeline.season_log import SeasonFactors
 from herijk.pipeline.steps.calibration import gps_factor_of_files
@@ -90,7 +91,7 @@ def recompute(
 
 def estimates(method: Method) -> bool:
     """Whether a method asks to estimate the log factor of any season."""
-    return any(is_estimated(block.steps) for block in method.ranges)
+    return any(block.steps.estimate_logs for block in method.ranges)
 
 
 def season_factors(plans: Sequence[tuple[Batch, Steps]], cache: RunCache) -> SeasonFactors | None:
@@ -117,6 +118,8 @@ def batches(
 ) -> list[tuple[Batch, tuple[Steps, ...]]]:
     """Tows that share their steps under every method, together: each step works on all at once.
 
+    Tows without GPS are batches of their own where a method says what they get instead.
+
     Returns:
         Batches, each with its steps under each of the methods.
     """
@@ -124,10 +127,22 @@ def batches(
     for season in tows["season"].unique().sort():
         steps = tuple(method.for_season(season) for method in methods)
         seasons.setdefault(str(steps), (steps, []))[1].append(season)
-    return [
+    whole = [
         (Batch.of(tows.filter(pl.col("season").is_in(season_batch)), blocks), steps)
         for steps, season_batch in seasons.values()
     ]
+    return [part for batch, steps in whole for part in _by_gps(batch, steps)]
+
+
+def _by_gps(batch: Batch, steps: tuple[Steps, ...]) -> Iterator[tuple[Batch, tuple[Steps, ...]]]:
+    """A batch as it is, or its tows with GPS and those without."""
+    otherwise = tuple(without_gps(one) for one in steps)
+    if otherwise == steps or batch.has_gps.all():
+        yield batch, steps
+        return
+    for mine, own in ((batch.has_gps, steps), (~batch.has_gps, otherwise)):
+        if mine.any():
+            yield batch.part(mine), own
 
 
 def evaluate(
