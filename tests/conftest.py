@@ -61,9 +61,10 @@ class _Directly:
     def record_index(self) -> None:
         """Keeps no records."""
 
-    def read(self, season: int) -> None:
-        archive.read(self.setup, season, self.progress)
-        archive.add_up(self.setup, season)
+    def read(self, seasons: Sequence[int]) -> None:
+        for season in seasons:
+            archive.read(self.setup, season, self.progress)
+            archive.add_up(self.setup, season)
 
     def build(self, tasks: Sequence[Task]) -> None:
         store, known = self.setup.store, self.setup.known_methods

@@ -184,8 +184,7 @@ class _Rebuild:
         if self.settings.dask is not None and stale:
             stale = self._read_elsewhere(work, self.settings.dask, stale)
         self.progress.expect(intake.count_listed(self.store, stale))
-        for season in stale:
-            work.read(season)
+        work.read(stale)
 
     def _read_elsewhere(self, work: "Work", address: str, seasons: Sequence[int]) -> list[int]:
         """Has a Dask cluster read seasons; gives those to read here, where an error comes out."""
