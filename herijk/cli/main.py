@@ -147,19 +147,20 @@ def rebuild(
     chosen = [known.kept(name) for name in method or read_settings(data).applied]
     try:
         with TerminalProgress() as progress:
-            done = run(archive, data, chosen, progress, seasons)
+            news = run(archive, data, chosen, progress, seasons)
     except Exception as error:
         _tell_failure(data, error)
         raise
     report = reports.rebuild_report(Store(data))
-    news = headlines(done.report, speaker(LANGUAGE.get()))
-    as_text = text.rebuild(report, done.work, news)
-    everything = {**vars(report), "done": done.work, "since": done.report}
-    show(everything, lambda _: as_text, as_json)
+    if as_json:
+        typer.echo(as_json_text({**vars(report), "done": news.done, "since": news}))
+    else:
+        lines = headlines(news, news.checks, speaker(LANGUAGE.get()))
+        typer.echo(text.rebuild(report, news.done, lines))
     notifier = notifier_of(str(data), read_settings(data))
-    for problem in tell(notifier, done.report):
+    for problem in tell(notifier, news):
         typer.echo(f"herijk: {problem}", err=True)
-    if failed := failed_checks(done.report):
+    if failed := failed_checks(news.checks):
         raise BrokenPromiseError("a check failed: {}", "; ".join(failed))
 
 
