@@ -87,6 +87,11 @@ def _speed(step: Speed) -> str:
 
 
 def _calibration(step: Calibration) -> str:
+    without = [] if step.without_gps == "no_curve" else [tell("Without GPS: as estimated.")]
+    return " ".join([_calibration_rule(step), *without])
+
+
+def _calibration_rule(step: Calibration) -> str:
     return {
         "none": tell("none."),
         "gps_per_tow": tell(

@@ -307,6 +307,45 @@ def test_without_gps_a_method_that_calibrates_on_it_has_no_curve():
     assert by_log["cw_kg_m"].null_count() == 0
 
 
+def without_gps(world: Measured, tows: list[str]) -> Measured:
+    """The same world in which the GPS of some tows was not on board."""
+    lost = world.blocks.runs["tow_id"].is_in(tows).to_numpy()[:, None]
+    sums = {
+        name: np.where(lost & name.startswith("gps"), 0.0, values)
+        for name, values in world.blocks.sums.items()
+    }
+    return replace(world, blocks=replace(world.blocks, sums=sums))
+
+
+def test_a_tow_without_gps_gets_the_factor_of_its_log_from_the_other_tows(measured):
+    lost = measured.tows.filter(season=2015)["tow_id"].to_list()[::3]
+    world = without_gps(measured, lost)
+    made, with_gps = (
+        recompute(shipped_method("rebased"), w.tows, w.blocks) for w in (world, measured)
+    )
+    assert made.curves["cw_kg_m"].null_count() == 0
+    both = made.curves.join(with_gps.curves, on="tow_id", suffix="_with").filter(
+        pl.col("tow_id").is_in(lost)
+    )
+    assert both["calibration_factor"].null_count() == len(lost)
+    assert both.select(pl.col("cw_kg_m_with").is_between("cw_lo_kg_m", "cw_hi_kg_m").all()).item()
+    assert (both["cw_kg_m"] / both["cw_kg_m_with"]).to_numpy() == pytest.approx(1.0, abs=0.03)
+    assert made.log_factors["season"].to_list() == [2010, 2012, 2015]
+    assert made.log_factors["source"][2] == "gps"
+
+
+def test_a_season_without_gps_rests_on_boats_towed_in_others(measured):
+    season = measured.tows.filter(season=2012)["tow_id"].to_list()
+    text = 'name = "by-gps"\ntitle = "x"\nextends = "rebased"\n[[overrides]]\nrange = "2012"\n'
+    rule = 'why = "x"\ncalibration = { rule = "gps_per_tow", without_gps = "estimated" }\n'
+    world = without_gps(measured, season)
+    by_gps = recompute(parse_method(text + rule, "by-gps.toml"), world.tows, world.blocks)
+    estimated = recompute(shipped_method("rebased"), world.tows, world.blocks)
+    for table in ("curves", "log_factors"):
+        one, other = (getattr(m, table).drop("method") for m in (by_gps, estimated))
+        assert_frame_equal(one, other, check_row_order=False)
+
+
 def test_wind_that_was_not_measured_is_said_and_in_the_budget():
     tows, blocks = three_tows_without("wind_speed_m_s", "wind_angle_deg")
     said = tows.with_columns(wind_measured=pl.lit(False))

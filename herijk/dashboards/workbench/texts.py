@@ -202,6 +202,7 @@ TEXTS: Final[Words] = {
     ),
     "speed.operation": ("Hoe de correctie werkt", "How the correction works"),
     "calibration.rule": ("Gps-factor", "GPS factor"),
+    "calibration.without_gps": ("Proef zonder gps", "Tow without GPS"),
     "window.rule": ("Welk deel van een run", "Which part of a run"),
     "window.minimum_s": ("Kortste venster", "Shortest window"),
     "window.speed_drift_m_s": (
@@ -244,6 +245,7 @@ TEXTS: Final[Words] = {
     "choice.none": ("niet", "none"),
     "choice.prescribed": ("voorgeschreven", "prescribed"),
     "choice.estimated": ("geschat", "estimated"),
+    "choice.no_curve": ("geen kromme", "no curve"),
     "choice.multiply": ("maal 1 + p", "times 1 + p"),
     "choice.divide": ("gedeeld door 1 - p", "divided by 1 - p"),
     "choice.gps_per_tow": ("per proef", "per tow"),

@@ -13,7 +13,7 @@ import polars as pl
 
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.blocks.run_blocks import RunBlocks
-from herijk.pipeline.channels import SECOND_FILE_OFFSET
+from herijk.pipeline.channels import BACK, OUT, SECOND_FILE_OFFSET
 
 DOUBTED_SPEED: Final = "speed_not_plausible"
 """Doubt that costs a tow nothing but a look."""
@@ -50,6 +50,23 @@ class Batch:
     def seasons(self) -> tuple[int, ...]:
         """Seasons of the tows, sorted."""
         return tuple(self.tows["season"].unique().sort())
+
+    @cached_property
+    def key(self) -> tuple[str, ...]:
+        """What tells this batch from others of the same tables: its tows."""
+        return tuple(self.tows["tow_id"])
+
+    @property
+    def has_gps(self) -> BoolArray:
+        """Tows with fixes in runs that are to be used, out and back, shape (tows,)."""
+        fixed = self.selected & (self.blocks["gps_n"].sum(axis=1) > 0)
+        return self.any(fixed & (self.direction == OUT)) & self.any(
+            fixed & (self.direction == BACK)
+        )
+
+    def part(self, tows: BoolArray) -> "Batch":
+        """Some of its tows, marked in shape (tows,)."""
+        return Batch.of(self.tows.filter(pl.Series(tows)), self.blocks)
 
     def of_tow(self, column: str) -> FloatArray:
         """A number of each tow, shape (tows,); NaN where it is not known."""

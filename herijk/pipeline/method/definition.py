@@ -12,6 +12,7 @@ import itertools
 import json
 import re
 from collections.abc import Callable, Iterable, Mapping
+from functools import cache
 from importlib import resources
 from typing import Annotated, Any, Final, Literal
 
@@ -51,9 +52,12 @@ class Speed(_Options):
 
 
 class Calibration(_Options):
-    """The factor that brings the log to ground speed."""
+    """The factor that brings the log to ground speed, and what a tow without GPS gets instead."""
 
     rule: Literal["none", "gps_per_tow", "gps_per_season"]
+    without_gps: Literal["no_curve", "estimated"] = Field(
+        default="no_curve", exclude_if=lambda value: value == "no_curve"
+    )
 
 
 class Window(_Options):
@@ -143,6 +147,11 @@ class Steps(_Options):
     curve: Curve
     assessment: Assessment
 
+    @property
+    def estimate_logs(self) -> bool:
+        """Whether the factor of any tow's log is estimated from other tows."""
+        return "estimated" in (self.speed.correction, self.calibration.without_gps)
+
 
 class RegisterRule(_Options):
     """How long a tow counts, and which of its estimates. It changes no curve."""
@@ -200,7 +209,7 @@ class Method(_Options):
     @property
     def interval(self) -> str:
         """What its intervals hold: `COMPLETE`, or `RUNS_ALONE` if no log factor is estimated."""
-        estimated = any(block.steps.speed.correction == "estimated" for block in self.ranges)
+        estimated = any(block.steps.estimate_logs for block in self.ranges)
         return COMPLETE if estimated else RUNS_ALONE
 
     @property
@@ -234,6 +243,7 @@ def shipped_text(name: str) -> str:
     return (resources.files("herijk.pipeline.methods") / f"{name}.toml").read_text(encoding="utf-8")
 
 
+@cache
 def shipped_method(name: str) -> Method:
     """A method that comes with the package."""
     return parse_method(shipped_text(name), f"{name}.toml")

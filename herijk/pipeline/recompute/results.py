@@ -95,7 +95,9 @@ def as_tables(
     return Recomputed(
         run_points=run_points,
         curves=with_status(curves, assessments, rejecting),
-        log_factors=together([_log_factors(o, estimated) for o in outcomes]),
+        log_factors=together([_log_factors(o, estimated) for o in outcomes]).unique(
+            "season", keep="first", maintain_order=True
+        ),
         assessments=assessments,
         uncertainty_budget=budget.filter(at_declared).select(
             name,
@@ -198,6 +200,7 @@ def _calibrated(o: Outcome) -> BoolArray:
 def _log_factors(o: Outcome, estimated: SeasonFactors | None) -> pl.DataFrame:
     """The factor of each season: from GPS, estimated, prescribed or none, in this order.
 
+    Tows without GPS in a season that has it are in a batch behind the others, and give no row.
     With a calibration per tow it is the mean of the tows' factors, with a t interval of that mean.
     A tow's own factor is in `run_points.speed_factor`.
     """

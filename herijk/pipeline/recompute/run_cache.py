@@ -12,24 +12,24 @@ from herijk.pipeline.method.definition import RunPoint, Steps, Window
 from herijk.pipeline.steps.resistance import RunMeans, run_means
 from herijk.pipeline.steps.window import Windows, choose_windows
 
-Seasons: TypeAlias = tuple[int, ...]
+Tows: TypeAlias = tuple[str, ...]
 
 
 @dataclass(frozen=True)
 class RunCache:
-    """Windows and means of all tows of some seasons by the options that they depend on.
+    """Windows and means of the tows of each batch by the options that they depend on.
 
-    Of one set of tows; another needs a cache of its own.
+    Of one set of blocks; another needs a cache of its own.
     """
 
-    _windows: dict[tuple[Seasons, Window], Windows] = field(default_factory=dict)
-    _means: dict[tuple[Seasons, Window, str, RunPoint, str, int], RunMeans] = field(
+    _windows: dict[tuple[Tows, Window], Windows] = field(default_factory=dict)
+    _means: dict[tuple[Tows, Window, str, RunPoint, str, int], RunMeans] = field(
         default_factory=dict
     )
 
     def windows(self, batch: Batch, steps: Steps) -> Windows:
         """The window of every run of a batch."""
-        key = (batch.seasons, steps.window)
+        key = (batch.key, steps.window)
         if key not in self._windows:
             self._windows[key] = choose_windows(batch.blocks, steps.window)
         return self._windows[key]
@@ -37,7 +37,7 @@ class RunCache:
     def means(self, batch: Batch, steps: Steps) -> RunMeans:
         """The means of every run of a batch over its window: coefficients are not in them yet."""
         of_wind = (steps.wind.model, steps.wind.averaging_s)
-        key = (batch.seasons, steps.window, steps.speed.source, steps.run_point, *of_wind)
+        key = (batch.key, steps.window, steps.speed.source, steps.run_point, *of_wind)
         if key not in self._means:
             self._means[key] = run_means(batch, self.windows(batch, steps).mask, steps)
         return self._means[key]

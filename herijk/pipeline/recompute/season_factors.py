@@ -5,6 +5,7 @@ those curves the factors follow, once, and are applied after (never tuned in a l
 are in `pipeline.season_log`.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
 from typing import Final
@@ -15,7 +16,7 @@ import polars as pl
 from herijk.pipeline import curve
 from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.blocks.batch import Batch
-from herijk.pipeline.method.definition import Steps, Wind
+from herijk.pipeline.method.definition import Calibration, Steps, Wind
 from herijk.pipeline.recompute.budget import files_log_sd, force_uncertainty, pooled_scatter
 from herijk.pipeline.recompute.outcome import Outcome, TowFactor
 from herijk.pipeline.season_log import (
@@ -34,6 +35,9 @@ FEWEST_OF_TYPE: Final = 5
 LEAST_SPREAD: Final = 1e-6
 """Variance of the bend between boats of a type: none at all would leave nothing to divide by."""
 
+LOG_SCATTER: Final = 0.005
+"""Standard deviation of ln y from tow to tow where too few are calibrated to show it (inferred)."""
+
 GPS: Final = "gps_per_tow"
 
 OTHER_LOG: Final = {"log1": "log2", "log2": "log1"}
@@ -43,6 +47,15 @@ OTHER_LOG: Final = {"log1": "log2", "log2": "log1"}
 def is_estimated(steps: Steps) -> bool:
     """Whether these steps ask for an estimated log factor."""
     return steps.speed.correction == "estimated"
+
+
+def without_gps(steps: Steps) -> Steps:
+    """The steps of a tow that has no GPS, where the method says what it then gets."""
+    if steps.calibration.without_gps == "no_curve":
+        return steps
+    speed = steps.speed.model_copy(update={"correction": "estimated"})
+    calibration = Calibration(rule="none")
+    return steps.model_copy(update={"speed": speed, "calibration": calibration})
 
 
 def without_factor(steps: Steps) -> Steps:
@@ -65,7 +78,7 @@ def find_season_factors(outcomes: Sequence[Outcome]) -> SeasonFactors:
     Args:
         outcomes: all batches under `without_factor`.
     """
-    return estimate_season_factors(_with_kappa(_tow_rows(outcomes)))
+    return estimate_season_factors(_with_calibrations(_with_kappa(_tow_rows(outcomes))))
 
 
 def _tow_rows(outcomes: Sequence[Outcome]) -> pl.DataFrame:
@@ -84,11 +97,11 @@ class Instruments:
     """
 
     rows: pl.DataFrame | None = None
-    _known: dict[tuple[tuple[int, ...], str, bool], TowFactor] = field(default_factory=dict)
+    _known: dict[tuple[tuple[str, ...], str, bool], TowFactor] = field(default_factory=dict)
 
     def of_tows(self, batch: Batch, steps: Steps) -> TowFactor:
         """What was estimated of each tow of a batch, as far as its steps ask for it."""
-        key = (batch.seasons, steps.speed.source, is_estimated(steps))
+        key = (batch.key, steps.speed.source, is_estimated(steps))
         if key not in self._known:
             self._known[key] = _factor_of_tows(batch, steps, self.rows)
         return self._known[key]
@@ -159,6 +172,7 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
     gps, gps_sd, has_gps = _gps_ratio(o)
     files_sd, q = files_log_sd(o), safe_r / (1.0 - safe_r)
     by_log = (2.0 + 2.0 * q, 2.0 * q * (1.0 + q))
+    y = np.where(o.calibrated, o.calibration_factor, 1.0)
     numbers = {
         "ln_cw": np.where(sound, np.log(safe), np.nan),
         "ln_cw_sd": np.hypot(
@@ -169,6 +183,7 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
         "ln_cw_q_cov": np.where(sure, errors.c0_q_covariance_kg_m / safe, 0.0)
         + by_log[0] * by_log[1] * files_sd**2,
         "other_ln_ratio": _other_ln_ratio(o),
+        "calibration_ln": np.where(o.calibrated, np.log(o.known_factor * y), np.nan),
         "gps_ln_ratio": np.where(has_gps & (not calibrated), gps, np.nan),
         "gps_sd": np.where(has_gps & (not calibrated), np.hypot(gps_sd, files_sd), np.nan),
     }
@@ -233,6 +248,30 @@ def _gps_ratio(o: Outcome) -> tuple[FloatArray, FloatArray, np.ndarray]:
     run_sd = np.sqrt(spread / count) if count else 1.0
     runs = np.maximum(batch.count(used), 1)
     return np.log(np.where(both, y, 1.0)), run_sd / np.sqrt(runs), both
+
+
+def _with_calibrations(rows: pl.DataFrame) -> pl.DataFrame:
+    """Adds `calibrated_ln` and `calibrated_sd`: what dGPS says of a log in its other tows.
+
+    The mean of ln y over the tows of a season that are calibrated, and its standard deviation by
+    the scatter within all such seasons; null where there are none.
+    """
+    y = pl.col("calibration_ln")
+    within = (y - y.mean().over(GROUP)) ** 2
+    spread, tows, groups = (
+        rows.drop_nulls("calibration_ln")
+        .select(within.sum().alias("spread"), pl.len(), pl.struct(GROUP).n_unique().alias("groups"))
+        .row(0)
+    )
+    scatter = (
+        math.sqrt(spread / (tows - groups)) if tows - groups >= FEWEST_OF_TYPE else LOG_SCATTER
+    )
+    return rows.with_columns(
+        y.mean().over(GROUP).alias("calibrated_ln"),
+        pl.when(y.count().over(GROUP) > 0)
+        .then(scatter / y.count().over(GROUP).sqrt())
+        .alias("calibrated_sd"),
+    )
 
 
 def _with_kappa(rows: pl.DataFrame) -> pl.DataFrame:

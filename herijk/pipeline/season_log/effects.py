@@ -98,7 +98,8 @@ def _always(network: Network, settings: Settings) -> Iterator[Unknown]:
     excess = rectification(network, settings)
     for number, year in enumerate(network.groups["season"]):
         mine = network.group == number
-        yield Unknown(LOG, year, number, None, mine * 1.0, settings.log_sd)
+        sd, mean = _log_prior(network, number, settings)
+        yield Unknown(LOG, year, number, None, mine * 1.0, sd, mean=mean)
         yield Unknown(SEASON_BEND, year, number, None, mine * 1.0, settings.season_bend_sd)
         if network.has_gps[number]:
             with_gps = mine & np.isfinite(network.numbers("gps_ln_ratio"))
@@ -121,6 +122,15 @@ def _always(network: Network, settings: Settings) -> Iterator[Unknown]:
     for kind in kinds.unique().sort():
         mine = (kinds == kind).to_numpy()
         yield Unknown(TYPE_BEND, None, None, None, mine * 1.0, settings.type_bend_sd)
+
+
+def _log_prior(network: Network, group: int, settings: Settings) -> tuple[float, float]:
+    """Standard deviation and mean of ln factor of a log: by other tows of it with dGPS, if any."""
+    if not network.calibrated[group]:
+        return settings.log_sd, 0.0
+    first = int(np.flatnonzero(network.group == group)[0])
+    sd, mean = (network.numbers(f"calibrated_{name}")[first] for name in ("sd", "ln"))
+    return float(sd), float(mean)
 
 
 def _force_sd(network: Network, year: int, settings: Settings) -> float:

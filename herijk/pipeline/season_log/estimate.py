@@ -95,6 +95,8 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
             `boat_type` (may be null); `altered`, reported, since the line's previous tow;
             `declared_speed_m_s`; `gps_ln_ratio`, ln(mean GPS / log), null without, with `gps_sd`,
             its random part; `anchored`, calibrated on dGPS: no log error is left;
+            `calibrated_ln`, ln factor of the log by other tows that are, null without, with
+            `calibrated_sd` (both may be absent);
             `temperature_known`, of the water.
         settings: what is assumed beforehand.
 
@@ -224,7 +226,7 @@ def _numbers(
         pl.Series("n_tows", np.bincount(network.group[network.group >= 0]), pl.Int64),
         pl.Series("n_links", network.links, pl.Int64),
         pl.Series("component", network.component, pl.Int64),
-        pl.Series("has_gps", network.has_gps),
+        pl.Series("by_gps", network.has_gps | network.calibrated),
     )
 
 
@@ -242,7 +244,7 @@ def _described(table: pl.DataFrame, network: Network, second: Second) -> pl.Data
     source = (
         pl.when(pl.col("ln_factor").is_null())
         .then(pl.lit(NOT_DETERMINED))
-        .when((pl.col("n_links") == 0) & pl.col("has_gps"))
+        .when((pl.col("n_links") == 0) & pl.col("by_gps"))
         .then(pl.lit(GPS))
         .otherwise(pl.lit(ESTIMATED))
     )

@@ -41,6 +41,7 @@ class Network:
         links: boats that tie a group to others, shape (groups,).
         component: connected part of the network, 0 with the anchor, shape (groups,).
         has_gps: groups with plain GPS, shape (groups,).
+        calibrated: groups of whose log dGPS calibrated other tows that season, shape (groups,).
     """
 
     tows: pl.DataFrame
@@ -52,6 +53,7 @@ class Network:
     links: IntArray
     component: IntArray
     has_gps: BoolArray
+    calibrated: BoolArray
 
     @classmethod
     def of(cls, tows: pl.DataFrame) -> "Network":
@@ -65,10 +67,18 @@ class Network:
         boat = index_of(tows, BOAT)
         has_gps = np.zeros(groups.height, dtype=bool)
         has_gps[group_index[loose & tows["gps_ln_ratio"].is_not_null().to_numpy()]] = True
+        calibrated = np.zeros(groups.height, dtype=bool)
+        if "calibrated_ln" in tows.columns:
+            beside = loose & tows["calibrated_ln"].is_not_null().to_numpy()
+            calibrated[group_index[beside]] = True
         names = tows["fsn_no"].unique().sort().to_list()
-        links, component = _connect(group_index, boat, has_gps)
+        links, component = _connect(group_index, boat, has_gps | calibrated)
         cluster = index_of(tows, ("fsn_no",))
-        return cls(tows, group_index, boat, cluster, groups, names, links, component, has_gps)
+        return cls(
+            *(tows, group_index, boat, cluster, groups, names, links, component),
+            has_gps,
+            calibrated,
+        )
 
     @property
     def day(self) -> IntArray:
@@ -87,10 +97,11 @@ class Network:
     def critical(self) -> BoolArray:
         """Whether a group is tied to the anchor no more without a boat, (boats, groups)."""
         lost = np.zeros((len(self.boat_names), len(self.has_gps)), dtype=bool)
+        anchors = self.has_gps | self.calibrated
         for cluster in range(len(self.boat_names)):
             others = self.cluster != cluster
             if len(np.unique(self.group[~others])) > 1:
-                component = _connect(self.group[others], self.boat[others], self.has_gps)[1]
+                component = _connect(self.group[others], self.boat[others], anchors)[1]
                 lost[cluster] = self.determined & (component != 0)
         return lost
 
@@ -112,14 +123,14 @@ def index_of(tows: pl.DataFrame, columns: tuple[str, ...]) -> IntArray:
     return placed["index"].to_numpy().astype(np.int64)
 
 
-def _connect(group: IntArray, boat: IntArray, has_gps: BoolArray) -> tuple[IntArray, IntArray]:
+def _connect(group: IntArray, boat: IntArray, by_gps: BoolArray) -> tuple[IntArray, IntArray]:
     """Links and connected component of each group; GPS ties a group to the anchor."""
-    groups, boats = len(has_gps), int(boat.max(initial=-1)) + 1
+    groups, boats = len(by_gps), int(boat.max(initial=-1)) + 1
     edges = np.unique(np.stack([boat, group + 1]), axis=1)  # node 0 is the anchor
     degree = np.bincount(edges[0], minlength=boats)
     linking = edges[1][degree[edges[0]] > 1]
     links = np.bincount(linking, minlength=groups + 1)[1:].astype(np.int64)
-    gps_nodes = np.flatnonzero(has_gps) + 1
+    gps_nodes = np.flatnonzero(by_gps) + 1
     nodes = groups + 1 + boats
     start = np.concatenate([edges[1], np.zeros(len(gps_nodes), np.int64)])
     end = np.concatenate([edges[0] + groups + 1, gps_nodes])
