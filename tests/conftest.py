@@ -26,7 +26,7 @@ from herijk.assets.side_by_side import Task
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.tables.schemas import TABLES
-from herijk.warehouse.build.graph import CONSISTENCY, STUDIES
+from herijk.warehouse.build.graph import CONSISTENCY, LINES, STUDIES
 from herijk.warehouse.store.store import Store
 
 # The same examples every time, whatever the machine's speed.
@@ -61,15 +61,16 @@ class _Directly:
     def record_index(self) -> None:
         """Keeps no records."""
 
-    def read(self, season: int) -> None:
-        archive.read(self.setup, season, self.progress)
-        archive.add_up(self.setup, season)
+    def read(self, seasons: Sequence[int]) -> None:
+        for season in seasons:
+            archive.read(self.setup, season, self.progress)
+            archive.add_up(self.setup, season)
 
     def build(self, tasks: Sequence[Task]) -> None:
         store, known = self.setup.store, self.setup.known_methods
         for task in tasks:
             step, methods = task.made_by, [known.get(name) for name in task.methods]
-            if step in (STUDIES, CONSISTENCY):
+            if step in (STUDIES, LINES, CONSISTENCY):
                 for name in step.outputs:
                     store.write(name, TABLES[name].create_empty(), step.made_from(store, methods))
             else:

@@ -67,7 +67,13 @@ def samples(
 
 def read(setup: Setup, season: int, progress: Progress) -> dg.MaterializeResult:
     """Brings a season's samples into the lake."""
-    season_index = intake.read_season(setup.store, setup.archive_root, season, progress.tow_read)
+    return read_result(
+        intake.read_season(setup.store, setup.archive_root, season, progress.tow_read)
+    )
+
+
+def read_result(season_index: pl.DataFrame) -> dg.MaterializeResult:
+    """What is shown of a season that was read."""
     faulty = season_index.filter(pl.col("reason_code").is_not_null())
     reasons = faulty["reason_code"].value_counts(sort=True).rows()
     return dg.MaterializeResult(
@@ -105,10 +111,12 @@ def blocks(context: dg.AssetExecutionContext, setup: Setup) -> dg.MaterializeRes
 
 def add_up(setup: Setup, season: int) -> dg.MaterializeResult:
     """Puts a season's blocks together in one table."""
-    blocks_of_season = intake.collect_blocks(setup.store, season)
-    return dg.MaterializeResult(
-        asset_key="blocks", metadata={"dagster/row_count": blocks_of_season.height}
-    )
+    return blocks_result(intake.collect_blocks(setup.store, season).height)
+
+
+def blocks_result(rows: int) -> dg.MaterializeResult:
+    """What is shown of a season's blocks."""
+    return dg.MaterializeResult(asset_key="blocks", metadata={"dagster/row_count": rows})
 
 
 def read_whole(setup: Setup, season: int, progress: Progress) -> Iterator[dg.MaterializeResult]:

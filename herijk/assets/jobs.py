@@ -18,6 +18,7 @@ BUILD_JOBS: Final = {
     graph.ARCHIVE: "collect_archive",
     graph.METHOD: "apply_method",
     graph.STUDIES: "study_methods",
+    graph.LINES: "draw_lines",
     graph.CONSISTENCY: "compare_boats",
     graph.REGISTERS: "make_registers",
     graph.SUMMARIES: "sum_up",

@@ -17,6 +17,7 @@ from herijk.assets.side_by_side import Task, stages
 from herijk.assets.site_state import site_is_stale
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
+from herijk.pipeline.recompute.recompute import estimates
 from herijk.warehouse.build.graph import DATABASE, STEPS
 from herijk.warehouse.build.step import Step
 from herijk.warehouse.intake import seasons as intake
@@ -183,8 +184,7 @@ class _Rebuild:
         if self.settings.dask is not None and stale:
             stale = self._read_elsewhere(work, self.settings.dask, stale)
         self.progress.expect(intake.count_listed(self.store, stale))
-        for season in stale:
-            work.read(season)
+        work.read(stale)
 
     def _read_elsewhere(self, work: "Work", address: str, seasons: Sequence[int]) -> list[int]:
         """Has a Dask cluster read seasons; gives those to read here, where an error comes out."""
@@ -199,8 +199,13 @@ class _Rebuild:
         return list(failed)
 
     def _applied_by(self, step: Step) -> list[list[Method]]:
-        """The methods, one at a time where the step is made per method."""
-        return [[m] for m in self.methods] if step.per_method else [self.methods]
+        """The methods, one at a time where the step is made per method.
+
+        Those that estimate take longest, so they begin: both processes are busy to the end.
+        """
+        if not step.per_method:
+            return [self.methods]
+        return [[method] for method in sorted(self.methods, key=estimates, reverse=True)]
 
     def _build(self, work: "Work", stage: Sequence[Step]) -> None:
         """Makes the tables of steps where they are stale, per method where they are made so."""
@@ -212,7 +217,8 @@ class _Rebuild:
             names = tuple(method.name for method in methods)
             tasks.append(Task(self.store.root, step.name, names))
             if step.per_method:
-                self.done.methods += (name for name in names if name not in self.done.methods)
+                made = {*self.done.methods, *names}
+                self.done.methods = [name for name in self.names if name in made]
             self.done.database |= step is DATABASE
         work.build(tasks)
 

@@ -12,12 +12,12 @@ import dagster as dg
 import yaml  # type: ignore[import-untyped]
 
 from herijk.assets import checks, partitions
-from herijk.assets.archive import index_metadata, read_whole
+from herijk.assets.archive import blocks_result, index_metadata, read_result
 from herijk.assets.events import Result, events_of
 from herijk.assets.jobs import NAMES, READ
 from herijk.assets.progress import Progress
 from herijk.assets.resources import QUIET_LOG, Setup
-from herijk.assets.side_by_side import Task, helper, side_by_side
+from herijk.assets.side_by_side import Read, Reading, Task, helper, side_by_side
 from herijk.assets.site import make_site
 from herijk.assets.tables import results_of
 from herijk.pipeline.errors import MissingKnowledgeError
@@ -51,15 +51,28 @@ class Work:
         )
         self._record(seen)
 
-    def read(self, season: int) -> None:
-        """Reads a season."""
-        self._add_partition(partitions.seasons, str(season))
-        for result in read_whole(self.setup, season, self.progress):
-            self._record(result, str(season))
+    def read(self, seasons: Sequence[int]) -> None:
+        """Reads seasons."""
+        self._add_partition(partitions.seasons, *map(str, seasons))
+        readings = [Reading(self.setup.archive_root, self.setup.store.root, s) for s in seasons]
+        found = side_by_side(
+            readings,
+            self.other,
+            Reading.do,
+            here=lambda reading: reading.do(self.progress.tow_read),
+            came=self._tell,
+        )
+        for season, read in zip(seasons, found, strict=True):
+            self._record(read_result(read.index), str(season))
+            self._record(blocks_result(read.blocks), str(season))
+
+    def _tell(self, read: Read) -> None:
+        for tow_id, reason in read.index.select("tow_id", "reason_code").rows():
+            self.progress.tow_read(tow_id, reason is not None)
 
     def build(self, tasks: Sequence[Task]) -> None:
         """Makes the tables of steps that do not wait for each other."""
-        made = side_by_side(tasks, self.other)
+        made = side_by_side(tasks, self.other, Task.do)
         for task, tables in zip(tasks, made, strict=True):
             method = task.method
             if method is not None:
@@ -92,8 +105,8 @@ class Work:
         self.checks += read.checks
         return read.failed
 
-    def _add_partition(self, kind: dg.DynamicPartitionsDefinition, name: str) -> None:
-        self.run.instance.add_dynamic_partitions(str(kind.name), [name])
+    def _add_partition(self, kind: dg.DynamicPartitionsDefinition, *names: str) -> None:
+        self.run.instance.add_dynamic_partitions(str(kind.name), names)
 
     def _record(self, result: Result, partition: str | None = None) -> None:
         for event in events_of(result, partition):

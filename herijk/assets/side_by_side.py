@@ -1,7 +1,7 @@
-"""Steps that do not wait for each other in two processes: this one and a helper.
+"""Seasons and steps that do not wait for each other in two processes: this one and a helper.
 
-Tables are made by code that holds Python's lock most of the time, so threads would not do. Which
-process makes a table changes nothing in it.
+Samples are read and tables made by code that holds Python's lock most of the time, so threads would
+not do. Which process does it changes nothing in what is made.
 """
 
 import multiprocessing
@@ -11,17 +11,53 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
+
+import polars as pl
 
 from herijk.pipeline.errors import UnavailableError
 from herijk.warehouse.build.graph import STEPS
 from herijk.warehouse.build.step import Made, Step
+from herijk.warehouse.intake import seasons as intake
+from herijk.warehouse.intake.lake import Report
 from herijk.warehouse.store.methods import KnownMethods
 from herijk.warehouse.store.store import Store
+
+T = TypeVar("T")
+M = TypeVar("M")
+
+
+@dataclass(frozen=True)
+class Read:
+    """What reading a season gave.
+
+    Attributes:
+        index: where each listed tow's samples and blocks lie, or its fault.
+        blocks: rows of the season's table of blocks.
+    """
+
+    index: pl.DataFrame
+    blocks: int
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A season to be read from an archive into a data folder."""
+
+    archive: Path
+    data: Path
+    season: int
+
+    def do(self, report: Report = lambda *_: None) -> Read:
+        """Reads it; someone may be told of each tow."""
+        store = Store(self.data)
+        index = intake.read_season(store, self.archive, self.season, report)
+        return Read(index, intake.collect_blocks(store, self.season).height)
 
 
 @dataclass(frozen=True)
 class Task:
-    """A step to be made, for some methods, in a data folder; both processes understand it."""
+    """A step to be made, for some methods, in a data folder."""
 
     data: Path
     step: str
@@ -68,22 +104,42 @@ def _import_all() -> None:
     import herijk.dashboards.site  # noqa: F401, PLC0415
 
 
-def side_by_side(tasks: Sequence[Task], other: Executor) -> list[Made]:
-    """What the tasks make, in their order; each process takes the next when it has done one."""
-    made: dict[Task, Made] = {}
-    queue = iter(tasks)
+def side_by_side(
+    tasks: Sequence[T],
+    other: Executor,
+    do: Callable[[T], M],
+    here: Callable[[T], M] | None = None,
+    came: Callable[[M], None] = lambda _: None,
+) -> list[M]:
+    """What the tasks make, in their order; each process takes the next when it has done one.
 
-    def make(do: Callable[[Task], Made]) -> None:
-        made.update((task, do(task)) for task in queue)
+    Args:
+        tasks: what to do.
+        other: the other process.
+        do: does a task.
+        here: the same in this process, where it differs.
+        came: is told what the other process made.
+    """
+    here = here or do
+    made: dict[int, M] = {}
+    queue = iter(enumerate(tasks))
+
+    def there(task: T) -> M:
+        result = other.submit(do, task).result()
+        came(result)
+        return result
+
+    def make(do_next: Callable[[T], M]) -> None:
+        made.update((place, do_next(task)) for place, task in queue)
 
     with ThreadPoolExecutor(1) as waiting:
-        here = next(queue, None)  # a single task is not handed over
-        done = waiting.submit(make, lambda task: other.submit(task.do).result())
-        if here is not None:
-            made[here] = here.do()
-        make(lambda task: task.do())
+        first = next(queue, None)  # a single task is not handed over
+        done = waiting.submit(make, there)
+        if first is not None:
+            made[first[0]] = here(first[1])
+        make(here)
         done.result()
-    return [made[task] for task in tasks]
+    return [made[place] for place in range(len(tasks))]
 
 
 def stages(steps: Sequence[Step]) -> list[list[Step]]:

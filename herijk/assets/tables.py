@@ -25,6 +25,7 @@ OWNERS = {
     "archive": "team:archive",
     "method": "team:method",
     "studies": "team:method",
+    "lines": "team:method",
     "consistency": "team:method",
 }
 """Who answers for the tables of a step, where it is not who publishes the register."""

@@ -11,7 +11,7 @@ from polars.testing import assert_frame_equal
 import herijk.warehouse.intake.lake
 from herijk.assets.rebuild import Done
 from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
-from herijk.warehouse.build.graph import CONSISTENCY, STUDIES
+from herijk.warehouse.build.graph import CONSISTENCY, LINES, STUDIES
 from herijk.warehouse.store.store import table_digest
 from tests.conftest import METHODS, SMALL, Workbench
 
@@ -48,7 +48,7 @@ SUMMED_UP = ("season_ladder", "option_summary", "promise", "contents")
 
 def without_studies(tables: dict[str, pl.DataFrame]) -> dict[str, pl.DataFrame]:
     """The tables that a rebuild makes also where it is not whole."""
-    left_out = {*STUDIES.outputs, *CONSISTENCY.outputs, *SUMMED_UP}
+    left_out = {*STUDIES.outputs, *LINES.outputs, *CONSISTENCY.outputs, *SUMMED_UP}
     return {name: frame for name, frame in tables.items() if name not in left_out}
 
 

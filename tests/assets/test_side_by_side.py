@@ -29,14 +29,30 @@ class Slow:
 
 def test_what_is_made_comes_in_the_order_of_the_tasks():
     with ThreadPoolExecutor(1) as other:
-        assert side_by_side([Slow(place, 5) for place in range(5)], other) == list(range(5))
+        tasks = [Slow(place, 5) for place in range(5)]
+        assert side_by_side(tasks, other, Slow.do) == list(range(5))
+
+
+def test_what_the_other_process_made_is_told():
+    told, here = [], []
+
+    def do_here(task):
+        here.append(task.place)
+        return task.do()
+
+    with ThreadPoolExecutor(1) as other:
+        tasks = [Slow(place, 5) for place in range(5)]
+        side_by_side(tasks, other, Slow.do, here=do_here, came=told.append)
+    assert sorted(here + told) == list(range(5))
+    assert here
+    assert told
 
 
 def test_steps_stand_together_where_none_reads_what_another_makes():
     found = stages(STEPS)
     assert [step for stage in found for step in stage] == list(STEPS)
     together = [{step.name for step in stage} for stage in found]
-    assert {"studies", "consistency", "register"} in together
+    assert {"studies", "lines", "consistency", "register"} in together
     for stage in found:
         made = {name for step in stage for name in step.outputs}
         assert made.isdisjoint(name for step in stage for name in step.inputs)

@@ -17,6 +17,7 @@ from herijk.pipeline.consistency import (
     compared_tows,
     consistency_tables,
     hull_speed_statistics,
+    line_tables,
     mixed,
     observe,
     pooled_curves,
@@ -641,9 +642,13 @@ CASES = {
 }
 
 
+def everything(*tables):
+    return line_tables(*tables) | consistency_tables(*tables, NO_RACES)
+
+
 @pytest.mark.parametrize("case", CASES)
 def test_degenerate_input_gives_no_nan_and_fits_the_schemas(case):
-    for name, frame in consistency_tables(*CASES[case], NO_RACES).items():
+    for name, frame in everything(*CASES[case]).items():
         checked = conform(name, frame)
         for column in checked.select(pl.col(pl.Float64)):
             assert not column.is_nan().any(), (name, column.name)
@@ -674,6 +679,6 @@ def test_where_there_is_no_line_the_reason_is_said(case, quantity, explaining, r
 def test_the_order_of_rows_does_not_matter():
     tables = fleet(40, boats=8, seasons=(2014, 2016, 2018), height_sd=0.03, season_sd=0.02)
     shuffled = [frame.sample(fraction=1.0, shuffle=True, seed=1) for frame in tables]
-    ours, theirs = consistency_tables(*tables, NO_RACES), consistency_tables(*shuffled, NO_RACES)
+    ours, theirs = everything(*tables), everything(*shuffled)
     for name, frame in ours.items():
         assert conform(name, frame).equals(conform(name, theirs[name])), name

@@ -35,6 +35,7 @@ __all__ = [
     "consistency_tables",
     "era_shifts",
     "hull_speed_statistics",
+    "line_tables",
     "observe",
     "pooled_curves",
     "predicted_cw",
@@ -52,6 +53,25 @@ __all__ = [
 ]
 
 
+def line_tables(
+    curves: pl.DataFrame, tows: pl.DataFrame, boats: pl.DataFrame, run_points: pl.DataFrame
+) -> dict[str, pl.DataFrame]:
+    """The lines through boats of a type, for all methods in `curves`: half of the analysis.
+
+    Args:
+        curves, tows, boats, run_points: the warehouse's tables.
+
+    Returns:
+        The frames by the name of their table.
+    """
+    lines, points = type_lines(observe(curves, tows, boats, run_points))
+    return {
+        "type_lines": lines,
+        "type_line_points": points,
+        "type_consistency": newest_lines(lines),
+    }
+
+
 def consistency_tables(
     curves: pl.DataFrame,
     tows: pl.DataFrame,
@@ -60,7 +80,7 @@ def consistency_tables(
     results: pl.DataFrame,
     eras: tuple[Era, ...] = ERAS,
 ) -> dict[str, pl.DataFrame]:
-    """All tables of the consistency analysis, for all methods in `curves`.
+    """The other tables of the consistency analysis, for all methods in `curves`.
 
     Args:
         curves, tows, boats, run_points: the warehouse's tables.
@@ -74,14 +94,10 @@ def consistency_tables(
     pairs = repeat_pairs(curves, tows)
     components = variance_components(observed)
     predicted = predicted_cw(observed)
-    lines, line_points = type_lines(observed)
     compared = compared_tows(observed, eras)
     return {
         "compared_tows": compared,
         "hull_speed": hull_speed_statistics(compared),
-        "type_lines": lines,
-        "type_line_points": line_points,
-        "type_consistency": newest_lines(lines),
         "type_outliers": type_outliers(observed, eras),
         "type_homogeneity": type_homogeneity(observed),
         "pooled_curves": pooled_curves(observed),

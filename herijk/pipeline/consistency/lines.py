@@ -8,7 +8,7 @@ Women's and men's crews differ in weight and speed, so lines against weight or l
 within a crew; displacement contains the crew.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Final, NamedTuple, Self
 
@@ -150,7 +150,7 @@ def type_consistency(observed: Observed) -> pl.DataFrame:
     Returns:
         Rows of the table `type_consistency`; where no line is drawn, `reason` says why.
     """
-    return newest_lines(_lines(newest(observed), NEWEST)[0])
+    return newest_lines(_lines([(NEWEST, newest(observed))])[0])
 
 
 def newest_lines(lines: pl.DataFrame) -> pl.DataFrame:
@@ -167,30 +167,30 @@ def type_lines(observed: Observed) -> tuple[pl.DataFrame, pl.DataFrame]:
         Rows of the tables `type_lines` and `type_line_points`. Where a line compares boats within
         a crew, its points are given per class; `crew_class` is `all` elsewhere.
     """
-    parts = [_lines(tows, choice) for choice, tows in chosen_tows(observed)]
-    lines, points = zip(*parts, strict=True)
-    return pl.concat(lines), pl.concat(points)
+    return _lines(chosen_tows(observed))
 
 
-def _lines(tows: Observed, choice: Choice) -> tuple[pl.DataFrame, pl.DataFrame]:
-    to_fit: list[tuple[Row, Row, _Line]] = []
+def _lines(chosen: Iterable[tuple[Choice, Observed]]) -> tuple[pl.DataFrame, pl.DataFrame]:
     rows: list[Row] = []
-    for (method, boat_type), group in tows.groups("method", "boat_type"):
-        boats = _Boats.of(group)
-        speed = {"standard_speed_m_s": standard_speed_m_s(group)}
-        for quantity, explaining, measured in _pairs(group, choice):
-            names = {"method": method, "tows": choice.tows, "boat_type": boat_type}
-            names |= {"quantity": quantity, "explaining": explaining}
-            facts, line = _line(boats, choice, names, measured)
-            rows.append(names | speed | facts)
-            if line is not None:
-                to_fit.append((rows[-1], names, line))
-    fits = mixed.fit_all([line.problem for *_, line in to_fit], choice.components)
+    to_fit: dict[tuple[str, ...], list[tuple[Row, Row, _Line]]] = {}
+    for choice, tows in chosen:
+        for (method, boat_type), group in tows.groups("method", "boat_type"):
+            boats = _Boats.of(group)
+            speed = {"standard_speed_m_s": standard_speed_m_s(group)}
+            for quantity, explaining, measured in _pairs(group, choice):
+                names = {"method": method, "tows": choice.tows, "boat_type": boat_type}
+                names |= {"quantity": quantity, "explaining": explaining}
+                facts, line = _line(boats, choice, names, measured)
+                rows.append(names | speed | facts)
+                if line is not None:
+                    to_fit.setdefault(choice.components, []).append((rows[-1], names, line))
     points: list[Row] = []
-    for (row, names, line), fit in zip(to_fit, fits, strict=True):
-        row.update(line.row(fit))
-        if (names["quantity"], names["explaining"]) in SLIDE_PAIRS:
-            points += [names | point for point in line.points(fit)]
+    for components, lines in to_fit.items():
+        fits = mixed.fit_all([line.problem for *_, line in lines], components)
+        for (row, names, line), fit in zip(lines, fits, strict=True):
+            row.update(line.row(fit))
+            if (names["quantity"], names["explaining"]) in SLIDE_PAIRS:
+                points += [names | point for point in line.points(fit)]
     return frame_of(TypeLines, rows), frame_of(TypeLinePoints, points)
 
 
@@ -274,13 +274,14 @@ def _line(
     boats, x, y = boats.take(known), x[known], y[known]
     within_crew = names["explaining"] in OF_THE_BOAT
     crews = boats.crew_effects if within_crew else np.ones((len(y), 1))
-    reason = _no_line(boats, crews, x)
-    counts = {"n": len(y), "n_boats": boats.number, "reason": reason}
-    if reason:
-        return counts, None
     centre = np.asarray(np.linalg.lstsq(crews, x)[0], dtype=np.float64)
     centred = x - crews @ centre
-    width = float(np.abs(centred).max())
+    width = float(np.abs(centred).max(initial=0.0))
+    number = boats.number
+    reason = _no_line(boats.type_known, number, crews, width <= 1e-9 * np.abs(x).max(initial=0.0))
+    counts = {"n": len(y), "n_boats": number, "reason": reason}
+    if reason:
+        return counts, None
     variance = unit[known] * boats.run_sd_ratio**2
     problem = Problem.of(
         y,
@@ -295,14 +296,13 @@ def _line(
     return counts, _Line(problem, crews, x, (centre, width), noise, level, groups)
 
 
-def _no_line(boats: _Boats, crews: FloatArray, x: FloatArray) -> str:
+def _no_line(type_known: bool, boats: int, crews: FloatArray, equal_values: bool) -> str:
     """Why no line is drawn; empty where there is one."""
-    if not boats.type_known:
+    if not type_known:
         return NO_TYPE
-    if boats.number < max(FEWEST_BOATS, crews.shape[1] + 2):
+    if boats < max(FEWEST_BOATS, crews.shape[1] + 2):
         return FEW_BOATS
-    centred = x - crews @ np.linalg.lstsq(crews, x)[0]
-    return EQUAL_VALUES if np.abs(centred).max() <= 1e-9 * np.abs(x).max() else ""
+    return EQUAL_VALUES if equal_values else ""
 
 
 @dataclass(frozen=True)
@@ -348,13 +348,21 @@ class _Line:
     def points(self, fit: mixed.Fit) -> Iterator[Row]:
         """The line with its interval at some places; for each class at the mean of its crews."""
         centre, width = self.scale
+        names, places, designs = [], [], []
         for name in np.unique(self.groups):
             rows = self.groups == name
             at = np.unique(np.linspace(self.x[rows].min(), self.x[rows].max(), PLACES))
             crew = self.crews[rows].mean(axis=0)
-            design = np.column_stack([np.tile(crew, (len(at), 1)), (at - crew @ centre) / width])
-            for place, mean, lo, hi in zip(at, *fit.line_at(design), strict=True):
-                yield {"crew_class": name, "x": place, "y": mean, "lo": lo, "hi": hi}
+            designs.append(
+                np.column_stack([np.tile(crew, (len(at), 1)), (at - crew @ centre) / width])
+            )
+            names += [name] * len(at)
+            places += at.tolist()
+        line = fit.line_at(np.concatenate(designs))
+        for name, at, mean, lo, hi in zip(
+            names, places, *map(np.ndarray.tolist, line), strict=True
+        ):
+            yield {"crew_class": name, "x": at, "y": mean, "lo": lo, "hi": hi}
 
 
 def _seasons(season: IntArray, choice: Choice) -> IntArray | None:

@@ -29,11 +29,15 @@ PROFILE_DROP: Final = 3.841458820694124
 PROFILE_PRECISION: Final = 1e-12
 """Precision of the ends of a profile interval, as a share of the spread."""
 
-PROFILE_TOLERANCE: Final = 1e-7
+PROFILE_TOLERANCE: Final = 1e-6
 """When the search for the other variances is done: their error counts squared in the deviance."""
 
+MAX_STEPS: Final = 60
 MAX_DOUBLINGS: Final = 7
 """The upper end of an interval is looked for up to this power of 2 times where it is expected."""
+
+NUMBERS_AT_ONCE: Final = 1 << 16
+"""Numbers of a stack: enough to make calls cheap, few enough for the nearer cache."""
 
 NO_GAIN: Final = 1e-4
 """A component that lowers the deviance by no more than this is 0."""
@@ -107,8 +111,7 @@ class Fit:
     def beta(self) -> FloatArray:
         """Fixed effects, shape (p,)."""
         known = self.white.along[0, self.white.of_others.shape[1] :, 0]
-        plain = np.linalg.lstsq(self.problem.x, self.problem.y)[0]
-        return np.asarray(plain + np.linalg.solve(self._root, known))
+        return np.asarray(self.problem.plain + np.linalg.solve(self._root, known))
 
     def coefficients(self) -> Coefficients:
         """Fixed effects with 95 % intervals; needs `dof` of at least 1.
@@ -137,19 +140,20 @@ class Fit:
         For rows g the error is (P_gg)^-1 (P y)_g with variance (P_gg)^-1: no fit is repeated.
         Where the others do not determine the prediction, the variance is infinite.
         """
-        white, boat = self.white, self.problem.boat
-        weighed = white.weigh(np.concatenate([white.q, white.rest], axis=-1))[0][0]
+        white, order = self.white, self.problem.by_boat
+        n, boat = len(order), self.problem.boat[order]
+        weighed = white.weigh(np.concatenate([white.q, white.rest], axis=-1))[0][0, :n]
         known, py = weighed[:, :-1], weighed[:, -1]
-        weights, shared = white.weight[0], white.boat[0] / white.inflation[0]
-        error, variance = np.zeros(len(py)), np.full(len(py), np.inf)
-        order = np.argsort(boat, kind="stable")
-        for rows in np.split(order, np.flatnonzero(np.diff(boat[order])) + 1):
+        weights, shared = white.weight[0, :n], white.boat[0] / white.inflation[0]
+        error, variance = np.zeros(n), np.full(n, np.inf)
+        for rows in np.split(np.arange(n), np.flatnonzero(np.diff(boat)) + 1):
             weight = weights[rows]
             inverse = np.diag(weight) - shared[boat[rows[0]]] * np.outer(weight, weight)
             block = inverse - known[rows] @ known[rows].T
             if np.linalg.eigvalsh(block)[0] > 1e-9 * np.diag(inverse).max():
                 covariance = np.linalg.inv(block)
-                error[rows], variance[rows] = covariance @ py[rows], np.diag(covariance)
+                error[order[rows]] = covariance @ py[rows]
+                variance[order[rows]] = np.diag(covariance)
         return LeftOut(error, variance)
 
     def intervals(self) -> dict[str, tuple[float, float | None]]:
@@ -157,16 +161,19 @@ class Fit:
         profile = _Profile.of(self)
         sd, places = np.asarray(self.sd), np.arange(len(COMPONENTS))
         lo, nothing = np.zeros(len(sd)), np.zeros(len(sd))
-        above = profile.excess(nothing, places) > 0.0
-        lo[above] = profile.ends(nothing[above], sd[above], places[above])
+        at_nothing, _ = profile.excess(nothing, places)
+        above = at_nothing > 0.0
+        lo[above] = profile.ends(sd[above], nothing[above], at_nothing[above], places[above])
         outside = np.maximum(2.0 * sd, 0.1 * self.problem.spread)
-        beyond = profile.excess(outside, places) > 0.0
+        at_outside, _ = profile.excess(outside, places)
         for _ in range(MAX_DOUBLINGS):
-            if beyond.all():
+            within = at_outside <= 0.0
+            if not within.any():
                 break
-            outside[~beyond] *= 2.0
-            beyond[~beyond] = profile.excess(outside[~beyond], places[~beyond]) > 0.0
-        hi = profile.ends(sd[beyond], outside[beyond], places[beyond])
+            outside[within] *= 2.0
+            at_outside[within], _ = profile.excess(outside[within], places[within])
+        beyond = at_outside > 0.0
+        hi = profile.ends(sd[beyond], outside[beyond], at_outside[beyond], places[beyond])
         upper = dict(zip(places[beyond].tolist(), hi.tolist(), strict=True))
         return {name: (float(lo[i]), upper.get(i)) for i, name in enumerate(COMPONENTS)}
 
@@ -195,33 +202,54 @@ class _Profile:
         at = np.square([fit.sd] * len(COMPONENTS))
         return cls(stack, free, at, float(stack.likelihood(at).deviance[0]))
 
-    def excess(self, sd: FloatArray, place: IntArray) -> FloatArray:
-        """Root of the deviance at sds of some components, less its value at the ends.
+    def excess(self, sd: FloatArray, place: IntArray) -> tuple[FloatArray, FloatArray]:
+        """Root of the deviance at sds of some components, less its value at the ends; its slope.
 
         The root of a deviance is nearly straight, which a search for its zero likes.
         """
+        each = np.arange(len(place))
         start = self.nearest[place]
-        start[np.arange(len(place)), place] = sd**2
-        self.nearest[place], deviance = search(
+        start[each, place] = sd**2
+        self.nearest[place], there = search(
             self.stack.take(place), self.free[place], start, PROFILE_TOLERANCE
         )
-        root = np.sqrt(np.maximum(deviance - self.least, 0.0))
-        return np.asarray(root - np.sqrt(PROFILE_DROP))
+        root = np.sqrt(np.maximum(there.deviance - self.least, 0.0))
+        # Along the profile the other variances are at their best, so they add nothing.
+        slope = 2.0 * sd * there.gradient[each, place]
+        return root - np.sqrt(PROFILE_DROP), slope / np.maximum(2.0 * root, 1e-300)
 
-    def ends(self, inside: FloatArray, outside: FloatArray, place: IntArray) -> FloatArray:
-        """Sds between these at which the deviance is that of a 95 % interval's end."""
-        from scipy.optimize.elementwise import find_root  # noqa: PLC0415 - half a second
+    def ends(
+        self, inside: FloatArray, outside: FloatArray, excess: FloatArray, place: IntArray
+    ) -> FloatArray:
+        """Sds between these at which the deviance is that of a 95 % interval's end.
 
-        if not len(place):
-            return inside
-        spread = self.stack.problem.spread
-        roots = find_root(
-            self.excess,
-            (inside, outside),
-            args=(place,),
-            tolerances={"xatol": PROFILE_PRECISION * spread, "xrtol": 0.0},
-        )
-        return np.asarray(roots.x)
+        Newton's method from the straight line between the two; a step that leaves what is known to
+        hold the end is replaced by half of that.
+
+        Args:
+            inside: where the deviance is least, (ends,).
+            outside: where it is too large, (ends,).
+            excess: by how much its root is, (ends,).
+            place: of which component, (ends,).
+        """
+        inside, outside = inside.copy(), outside.copy()
+        least = np.sqrt(PROFILE_DROP)
+        at: FloatArray = inside + (outside - inside) * least / (least + excess)
+        busy = np.arange(len(at))
+        for _ in range(MAX_STEPS):
+            if not len(busy):
+                break
+            excess, slope = self.excess(at[busy], place[busy])
+            too_far = excess > 0.0
+            outside[busy[too_far]], inside[busy[~too_far]] = at[busy[too_far]], at[busy[~too_far]]
+            with np.errstate(divide="ignore", invalid="ignore"):
+                to = at[busy] - excess / slope
+            ends = np.sort([inside[busy], outside[busy]], axis=0)
+            between = (ends[0] < to) & (to < ends[1])
+            to = np.where(between, to, ends.mean(axis=0))
+            moved, at[busy] = np.abs(to - at[busy]), to
+            busy = busy[moved > PROFILE_PRECISION * self.stack.spread[0]]
+        return at
 
 
 def fit(problem: Problem, free: tuple[str, ...]) -> Fit:
@@ -230,17 +258,19 @@ def fit(problem: Problem, free: tuple[str, ...]) -> Fit:
 
 
 def fit_all(problems: Sequence[Problem], free: tuple[str, ...]) -> list[Fit]:
-    """The same of each of many problems; those of one layout are searched side by side."""
-    layouts: dict[tuple[object, ...], list[int]] = {}
+    """The same of each of many problems; those of one size are searched side by side."""
+    sizes: dict[tuple[int, ...], list[int]] = {}
     for i, problem in enumerate(problems):
-        layouts.setdefault(problem.layout, []).append(i)
+        sizes.setdefault(problem.size, []).append(i)
     fits: dict[int, Fit] = {}
-    for numbers in layouts.values():
-        stack = Stack.of([problems[i] for i in numbers])
-        variances = _most_likely(stack, free)
-        white = Whitened.of(stack, variances)
-        for place, (i, sd) in enumerate(zip(numbers, np.sqrt(variances).tolist(), strict=True)):
-            fits[i] = Fit(problems[i], free, tuple(sd), white.of_one(place))
+    for (rows, _, others, effects), numbers in sizes.items():
+        at_once = max(1, NUMBERS_AT_ONCE // (rows * (others + effects + 1)))
+        for some in (numbers[i : i + at_once] for i in range(0, len(numbers), at_once)):
+            stack = Stack.of([problems[i] for i in some])
+            variances = _most_likely(stack, free)
+            white = Whitened.of(stack, variances)
+            for place, (i, sd) in enumerate(zip(some, np.sqrt(variances).tolist(), strict=True)):
+                fits[i] = Fit(problems[i], free, tuple(sd), white.of_one(place))
     return [fits[i] for i in range(len(problems))]
 
 
@@ -248,9 +278,11 @@ def _most_likely(stack: Stack, free: tuple[str, ...]) -> FloatArray:
     """Variances of boat, other and cell of each problem, (problems, 3)."""
     loose = np.tile(np.isin(COMPONENTS, free), (len(stack.unit), 1))
     # What the errors leave of the spread, in equal parts.
-    left = stack.spread**2 - stack.variance.mean(axis=1)
+    known = stack.variance.mean(axis=1, where=np.isfinite(stack.variance))
+    left = stack.spread**2 - known
     start = loose * (np.maximum(left, 0.1 * stack.unit) / max(len(free), 1))[:, None]
-    variances, least = search(stack, loose, start)
+    variances, there = search(stack, loose, start)
+    least = there.deviance
     for place in np.flatnonzero(loose[0]):
         without = variances.copy()
         without[:, place] = 0.0
@@ -258,5 +290,6 @@ def _most_likely(stack: Stack, free: tuple[str, ...]) -> FloatArray:
         idle &= variances[:, place] > 0.0
         loose[idle, place] = False
         if idle.any():
-            variances[idle], least[idle] = search(stack.take(idle), loose[idle], without[idle])
+            variances[idle], there = search(stack.take(idle), loose[idle], without[idle])
+            least[idle] = there.deviance
     return variances

@@ -104,9 +104,14 @@ class Problem:
         return int(self.boat.max()) + 1
 
     @cached_property
+    def plain(self) -> FloatArray:
+        """Fixed effects by plain least squares, (p,)."""
+        return np.asarray(np.linalg.lstsq(self.x, self.y)[0])
+
+    @cached_property
     def residual(self) -> FloatArray:
         """Y less the plain least-squares fit: the likelihood sees nothing else of y."""
-        return np.asarray(self.y - self.x @ np.linalg.lstsq(self.x, self.y)[0])
+        return np.asarray(self.y - self.x @ self.plain)
 
     @cached_property
     def spread(self) -> float:
@@ -125,54 +130,93 @@ class Problem:
         )
 
     @cached_property
-    def by_boat(self) -> tuple[IntArray, IntArray]:
-        """The rows boat by boat, and where each boat begins among them."""
-        order = np.argsort(self.boat, kind="stable")
-        return order, np.searchsorted(self.boat[order], np.arange(self.boats))
+    def by_boat(self) -> IntArray:
+        """The rows boat by boat."""
+        return np.argsort(self.boat, kind="stable")
 
     @property
-    def layout(self) -> tuple[object, ...]:
-        """Equal for problems that can be searched together."""
-        other = None if self.other is None else self.other.tobytes()
-        return self.x.shape, self.boat.tobytes(), other
+    def size(self) -> tuple[int, int, int, int]:
+        """Rows and boats, each rounded up to a power of two, other groups and fixed effects.
+
+        Problems of one size can be searched together.
+        """
+        rows, boats = (1 << (n - 1).bit_length() for n in (len(self.y), self.boats))
+        return rows, boats, self.others.shape[1], self.x.shape[1]
 
 
 @dataclass(frozen=True)
 class Stack:
-    """Problems of one layout side by side: small matrices cost their calls, not their numbers.
+    """Problems of one size side by side: small matrices cost their calls, not their numbers.
+
+    The rows of each problem go boat by boat. Below them come empty rows without any weight, as many
+    as the size asks for; they count for the last boat.
 
     Attributes:
-        problem: one of them, for what they share.
         columns: (m, n, k + p + 1) others, fixed effects and what y is beyond the plain fit.
-        variance: (m, n) known variance of each observation.
+        variance: (m, n) known variance of each observation; infinite in empty rows.
+        boat: (m, n) which boat.
+        size: rows, boats, other groups and fixed effects.
         spread: (m,) standard deviation about the plain fit.
         unit: (m,) size of a variance.
     """
 
-    problem: Problem
     columns: FloatArray
     variance: FloatArray
+    boat: IntArray
+    size: tuple[int, int, int, int]
     spread: FloatArray
     unit: FloatArray
 
     @classmethod
     def of(cls, problems: Sequence[Problem]) -> Self:
-        """A stack of problems of one layout."""
-        columns = [np.hstack([p.others, p.x, p.residual[:, None]]) for p in problems]
+        """A stack of problems of one size."""
+        size = problems[0].size
+        n, _, k, p = size
+        columns = np.zeros((len(problems), n, k + p + 1))
+        variance = np.full(columns.shape[:2], np.inf)
+        boat = np.empty(columns.shape[:2], np.int64)
+        for i, one in enumerate(problems):
+            order, rows = one.by_boat, len(one.y)
+            columns[i, :rows, :k], columns[i, :rows, k:-1] = one.others[order], one.x[order]
+            columns[i, :rows, -1] = one.residual[order]
+            variance[i, :rows] = one.variance[order]
+            boat[i, :rows], boat[i, rows:] = one.boat[order], one.boats - 1
         spread = np.array([p.spread for p in problems])
-        variance = np.stack([p.variance for p in problems])
         unit = np.maximum(spread**2, variance.min(axis=1))
-        return cls(problems[0], np.stack(columns), variance, spread, unit)
+        return cls(columns, variance, boat, size, spread, unit)
 
     def take(self, rows: IntArray | BoolArray) -> Self:
         """Some of the problems."""
-        taken = (a[rows] for a in (self.columns, self.variance, self.spread, self.unit))
-        return type(self)(self.problem, *taken)
+        names = ("columns", "variance", "boat", "spread", "unit")
+        return replace(self, **{name: getattr(self, name)[rows] for name in names})
+
+    @property
+    def others(self) -> FloatArray:
+        """Which other group each row is of, as columns of 0 and 1; (m, n, k)."""
+        return self.columns[..., : self.size[2]]
+
+    @cached_property
+    def _place(self) -> IntArray:
+        """The boat of each row among those of all problems, (m, n)."""
+        return self.boat + self.size[1] * np.arange(len(self.boat))[:, None]
+
+    @cached_property
+    def _begins(self) -> IntArray:
+        """Where each boat that has rows begins among the rows of all problems."""
+        return np.flatnonzero(np.diff(self._place.ravel(), prepend=-1))
 
     def by_boat(self, rows: FloatArray) -> FloatArray:
         """Adds up the rows of each boat: (m, n, c) to (m, boats, c)."""
-        order, begins = self.problem.by_boat
-        return np.asarray(np.add.reduceat(rows[:, order], begins, axis=1))
+        (m, n, c), boats = rows.shape, self.size[1]
+        added = np.add.reduceat(rows.reshape(m * n, c), self._begins)
+        total = np.zeros((m * boats, c))
+        total[self._place.ravel()[self._begins]] = added
+        return total.reshape(m, boats, c)
+
+    def of_rows(self, boats: FloatArray) -> FloatArray:
+        """What a boat has, for each of its rows: (m, boats, ...) to (m, n, ...)."""
+        m, each, *rest = boats.shape
+        return np.asarray(boats.reshape(m * each, *rest)[self._place])
 
     def likelihood(self, variances: FloatArray) -> Likelihood:
         """The restricted likelihood at variances of boat, other and cell, none of them negative.
@@ -188,18 +232,19 @@ class Stack:
         own, of_boats = at.weigh(np.concatenate([at.q, at.rest], axis=-1))
         p_y, boats_p_y = own[..., -1:], of_boats[..., -1:]
         others_p_y, trace_of_others = at.others()
-        boat = self.problem.boat
-        alone = at.weight * (1.0 + at.boat[:, None] * (at.precision[:, boat] - at.weight))
+        precision, inflation = self.of_rows(at.precision), self.of_rows(at.inflation)
+        alone = at.weight * (1.0 + at.boat[:, None] * (precision - at.weight))
         traces = [
             (at.precision / at.inflation).sum(axis=-1) - _squares(of_boats[..., :-1]),
             trace_of_others,
-            (alone / at.inflation[:, boat]).sum(axis=-1) - _squares(own[..., :-1]),
+            (alone / inflation).sum(axis=-1) - _squares(own[..., :-1]),
         ]
         squares = [_squares(part) for part in (boats_p_y, others_p_y, p_y)]
-        parts = [boats_p_y[:, boat], self.problem.others @ others_p_y, p_y]
+        parts = [self.of_rows(boats_p_y), self.others @ others_p_y, p_y]
         felt = at.without_boats(at.root * np.concatenate(parts, axis=-1))
         along = at.q.mT @ felt
-        determinant = np.log(at.inflation).sum(axis=-1) - np.log(at.weight).sum(axis=-1)
+        weight = np.where(at.weight > 0.0, at.weight, 1.0)
+        determinant = np.log(at.inflation).sum(axis=-1) - np.log(weight).sum(axis=-1)
         diagonal = np.diagonal(at.r, axis1=-2, axis2=-1)
         determinant += 2.0 * np.log(np.abs(diagonal)).sum(axis=-1)
         return Likelihood(
@@ -255,7 +300,7 @@ class Whitened:
         inflation = 1.0 + boat[:, None] * precision
         none = np.zeros((0, 0, 0))
         bare = cls(stack, boat, other, weight, precision, inflation, *(none,) * 5)
-        k, n = stack.problem.others.shape[1], weight.shape[1]
+        n, _, k, _ = stack.size
         white = bare.without_boats(bare.root * stack.columns)
         known, y = white[..., :-1], white[..., -1:]
         known[..., :k] *= np.sqrt(other)[:, None, None]
@@ -278,7 +323,7 @@ class Whitened:
 
     def others(self) -> tuple[FloatArray, FloatArray]:
         """Y as it weighs on the other groups, (m, k, 1), and the trace of P times their part."""
-        others = self.without_boats(self.root * self.stack.problem.others)
+        others = self.without_boats(self.root * self.stack.others)
         weighs = others.mT @ self.rest
         trace = _squares(others) - _squares(others.mT @ self.q)
         # Where they vary they are taken out with the columns, which loses no digits.
@@ -301,8 +346,8 @@ class Whitened:
 
     def _shrunk(self, rows: FloatArray, total: FloatArray) -> FloatArray:
         """Rows with each boat's mean made smaller; `total` is the weighted sum by boat."""
-        shrink = (1.0 / np.sqrt(self.inflation) - 1.0) / self.precision
-        return rows + self.root * (shrink[..., None] * total)[:, self.stack.problem.boat]
+        shrink = (1.0 / np.sqrt(self.inflation) - 1.0) / np.maximum(self.precision, 1e-300)
+        return rows + self.root * self.stack.of_rows(shrink[..., None] * total)
 
     @property
     def misfit(self) -> FloatArray:
@@ -312,7 +357,7 @@ class Whitened:
 
 def search(
     stack: Stack, free: BoolArray, start: FloatArray, tolerance: float = TOLERANCE
-) -> tuple[FloatArray, FloatArray]:
+) -> tuple[FloatArray, Likelihood]:
     """Least deviance of each problem over some of the variances, the others held.
 
     Newton's method with the average information, on variances that are not negative: one that is 0
@@ -326,7 +371,7 @@ def search(
         tolerance: share of its size by which a step at the end may change a variance.
 
     Returns:
-        The variances, (m, 3), and the deviance there, (m,).
+        The variances, (m, 3), and the likelihood there.
     """
     at, now = start.copy(), stack.likelihood(start)
     busy = np.arange(len(at))
@@ -340,7 +385,7 @@ def search(
         _descend(stack, busy, step, at, now)
         size = np.maximum(at[busy], NEGLIGIBLE * stack.unit[busy, None])
         busy = busy[(np.abs(at[busy] - last) > tolerance * size).any(axis=1)]
-    return at, now.deviance
+    return at, now
 
 
 def _newton(

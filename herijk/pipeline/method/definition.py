@@ -12,6 +12,7 @@ import itertools
 import json
 import re
 from collections.abc import Callable, Iterable, Mapping
+from functools import cache
 from importlib import resources
 from typing import Annotated, Any, Final, Literal
 
@@ -242,6 +243,7 @@ def shipped_text(name: str) -> str:
     return (resources.files("herijk.pipeline.methods") / f"{name}.toml").read_text(encoding="utf-8")
 
 
+@cache
 def shipped_method(name: str) -> Method:
     """A method that comes with the package."""
     return parse_method(shipped_text(name), f"{name}.toml")

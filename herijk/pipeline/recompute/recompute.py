@@ -7,7 +7,8 @@ searched over the whole archive is found first and applied after. Nothing here k
 method says what holds when.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -83,10 +84,14 @@ def recompute(
     """
     plans = [(batch, steps) for batch, (steps,) in batches([method], tows, blocks)]
     cache = RunCache() if cache is None else cache
-    asked = any(block.steps.estimate_logs for block in method.ranges)
-    estimated = season_factors(plans, cache) if asked else None
+    estimated = season_factors(plans, cache) if estimates(method) else None
     instruments = Instruments(None if estimated is None else tow_instruments(estimated))
     return as_tables(method, tows, evaluate(plans, cache, instruments), estimated, with_bands)
+
+
+def estimates(method: Method) -> bool:
+    """Whether a method asks to estimate the log factor of any season."""
+    return any(block.steps.estimate_logs for block in method.ranges)
 
 
 def season_factors(plans: Sequence[tuple[Batch, Steps]], cache: RunCache) -> SeasonFactors | None:
@@ -158,6 +163,36 @@ def evaluate(
     )
     shared = _archive_coefficient([p for p in prepared if p.steps.wind.coefficients == "archive"])
     return [_finish(p, shared) for p in prepared]
+
+
+def evaluate_each(
+    variants: Iterable[Sequence[tuple[Batch, Steps]]],
+    cache: RunCache,
+    instruments: Instruments | None = None,
+) -> Iterator[list[Outcome]]:
+    """The same for variants of the steps of the same batches.
+
+    Where a variant differs from the one before it in the rule for the curve alone, all that comes
+    before the curve is kept.
+    """
+    last: list[Outcome] = []
+    for plans in variants:
+        asked = [steps for _, steps in plans]
+        if last and all(map(_differ_in_curve_alone, last, asked)):
+            last = list(map(_with_curve, last, asked))
+        else:
+            last = evaluate(plans, cache, instruments)
+        yield last
+
+
+def _differ_in_curve_alone(outcome: Outcome, steps: Steps) -> bool:
+    return bool(outcome.steps.model_copy(update={"curve": steps.curve}) == steps)
+
+
+def _with_curve(outcome: Outcome, steps: Steps) -> Outcome:
+    """The same points with the curve that other steps choose."""
+    other = replace(outcome, steps=steps)
+    return replace(other, curves=_choose_curve(other, outcome.points, outcome.free))
 
 
 def _prepare(batch: Batch, steps: Steps, cache: RunCache, estimated: TowFactor) -> Prepared:

@@ -16,7 +16,7 @@ import polars as pl
 from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.pipeline.method.definition import Method, Steps
-from herijk.pipeline.recompute.recompute import batches, evaluate, instruments_of
+from herijk.pipeline.recompute.recompute import batches, evaluate_each, instruments_of
 from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.pipeline.recompute.season_factors import Instruments
 
@@ -51,6 +51,7 @@ CHOICES: Final = (
     Choice("wind", "averaging_s", (0, 3)),
     Choice("curve", "b", ("capped", "free")),
 )
+"""The curve comes last, so that it varies fastest (`evaluate_each`)."""
 
 
 def option_effects(
@@ -84,12 +85,11 @@ def option_effects(
         if links is None
         else Instruments(links)
     )
-    cw, slope, corners = [], [], list(itertools.product((0, 1), repeat=len(choices)))
-    for corner in corners:
-        sides = {c: c.values[side] for c, side in zip(choices, corner, strict=True)}
-        outcomes = evaluate(
-            [(b, chosen(steps, sides)) for b, (steps,) in pairs], cache, instruments
-        )
+    corners = list(itertools.product((0, 1), repeat=len(choices)))
+    sides = [{c: c.values[s] for c, s in zip(choices, corner, strict=True)} for corner in corners]
+    variants = ([(b, chosen(steps, side)) for b, (steps,) in pairs] for side in sides)
+    cw, slope = [], []
+    for outcomes in evaluate_each(variants, cache, instruments):
         cw.append(np.concatenate([np.log(o.cw_at_declared) for o in outcomes]))
         slope.append(np.concatenate([_ln_b(o.curves.b_m_s) for o in outcomes]))
     tow_ids = pl.concat([batch.tows["tow_id"] for batch, _ in pairs])

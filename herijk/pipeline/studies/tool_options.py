@@ -6,7 +6,7 @@ wrong; this is what they did, not a vote (`options`).
 """
 
 import itertools
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Final
 
 import numpy as np
@@ -15,7 +15,7 @@ import polars as pl
 from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.pipeline.method.definition import Method, Steps
 from herijk.pipeline.recompute.outcome import Outcome
-from herijk.pipeline.recompute.recompute import batches, evaluate, instruments_of
+from herijk.pipeline.recompute.recompute import batches, evaluate_each, instruments_of
 from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.pipeline.recompute.season_factors import Instruments
 from herijk.pipeline.studies.options import ALL_OPTIONS, Choice, chosen
@@ -65,25 +65,24 @@ def option_curves(
         if links is None
         else Instruments(links)
     )
-    frames = []
-    for corner in itertools.product((False, True), repeat=len(TICKS)):
-        ticked = dict(zip(TICKS, corner, strict=True))
-        sides = {choice: choice.values[ticked[name]] for name, choice in TICKS.items()}
-        plans = [
-            (speed, (batch, chosen(read, sides)))
-            for batch, (steps,) in pairs
-            for speed, read in speeds(steps)
-        ]
-        outcomes = evaluate([plan for _, plan in plans], cache, instruments)
-        frames += [
-            _curves(one).with_columns(
-                pl.lit(speed).alias("speed"),
-                *(pl.lit(value).alias(name) for name, value in ticked.items()),
-            )
-            for (speed, _), one in zip(plans, outcomes, strict=True)
-        ]
+    corners = itertools.product((False, True), repeat=len(TICKS))
+    ticks = [dict(zip(TICKS, corner, strict=True)) for corner in corners]
+    read = [(speed, batch, way) for batch, (steps,) in pairs for speed, way in speeds(steps)]
+    variants = ([(batch, _ticked(way, ticked)) for _, batch, way in read] for ticked in ticks)
+    frames = [
+        _curves(one).with_columns(
+            pl.lit(speed).alias("speed"),
+            *(pl.lit(value).alias(name) for name, value in ticked.items()),
+        )
+        for ticked, outcomes in zip(ticks, evaluate_each(variants, cache, instruments), strict=True)
+        for (speed, *_), one in zip(read, outcomes, strict=True)
+    ]
     key = ["tow_id", "speed", *TICKS]
     return pl.concat(frames).select(*key, "a_kg_m", "b_m_s", "cw_kg_m").sort(key)
+
+
+def _ticked(steps: Steps, ticked: Mapping[str, bool]) -> Steps:
+    return chosen(steps, {choice: choice.values[ticked[name]] for name, choice in TICKS.items()})
 
 
 def speeds(steps: Steps) -> Iterator[tuple[str, Steps]]:

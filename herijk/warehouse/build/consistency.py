@@ -11,11 +11,15 @@ if TYPE_CHECKING:
     from herijk.warehouse.build.inputs import Inputs
 
 
+def line_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
+    """Lines through the boats of every type under every method."""
+    curves, run_points = _of_trusted_tows(inputs)
+    return consistency.line_tables(curves, inputs["tows"], inputs["boats"], run_points)
+
+
 def consistency_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
-    """Are equal boats equal: the statistics of every boat type under every method."""
-    curves, run_points = (
-        of_trusted(inputs[name], inputs["tows"]) for name in ("curves", "run_points")
-    )
+    """Are equal boats equal: the other statistics of every boat type under every method."""
+    curves, run_points = _of_trusted_tows(inputs)
     return consistency.consistency_tables(
         curves,
         inputs["tows"],
@@ -23,3 +27,7 @@ def consistency_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
         run_points,
         inputs["listed_races"],
     )
+
+
+def _of_trusted_tows(inputs: "Inputs") -> list[pl.DataFrame]:
+    return [of_trusted(inputs[name], inputs["tows"]) for name in ("curves", "run_points")]

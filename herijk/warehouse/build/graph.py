@@ -5,7 +5,7 @@ from typing import Final
 from herijk.pipeline.method.definition import Method
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.build.archive_tables import archive_tables, unaccounted_tows
-from herijk.warehouse.build.consistency import consistency_tables
+from herijk.warehouse.build.consistency import consistency_tables, line_tables
 from herijk.warehouse.build.database import (
     DATABASE_TABLE,
     MEANINGS,
@@ -59,14 +59,18 @@ STUDIES: Final = Step(
         Check("steps_multiply_to_the_total", "correction_steps", ladders_that_do_not_multiply),
     ),
 )
+LINES: Final = Step(
+    name="lines",
+    says="drawing lines through boats of the same type",
+    inputs=("curves", "run_points", "tows", "boats"),
+    outputs=("type_lines", "type_line_points", "type_consistency"),
+    compute=line_tables,
+)
 CONSISTENCY: Final = Step(
     name="consistency",
     says="comparing boats of the same type",
     inputs=("curves", "run_points", "tows", "boats", "listed_races"),
     outputs=(
-        "type_consistency",
-        "type_lines",
-        "type_line_points",
         "compared_tows",
         "hull_speed",
         "type_outliers",
@@ -130,5 +134,5 @@ DATABASE: Final = Step(
     is_whole=is_whole,
 )
 
-STEPS: Final = (ARCHIVE, METHOD, STUDIES, CONSISTENCY, REGISTERS, SUMMARIES, DATABASE)
+STEPS: Final = (ARCHIVE, METHOD, STUDIES, LINES, CONSISTENCY, REGISTERS, SUMMARIES, DATABASE)
 """Every step comes after those whose tables it reads."""

@@ -4,6 +4,7 @@ A number depends on its own tow, and under some methods on all tows at once (a c
 the whole archive); so both hashes are kept. Which files still are what they were is `verify`'s.
 """
 
+from collections import defaultdict
 from collections.abc import Mapping
 from typing import Final
 
@@ -31,11 +32,14 @@ SAMPLES, LIST, REGISTER = "meetdata", "lijst", "register"
 def with_input_hashes(tows: pl.DataFrame, runs: pl.DataFrame) -> pl.DataFrame:
     """Tows with the hash of all that their numbers are made from: list row, runs and files."""
     facts = [name for name in sorted(runs.columns) if name not in NOT_INPUT]
-    of_tow = dict(runs.sort("tow_id", "run").select(facts).partition_by("tow_id", as_dict=True))
+    of_tow = defaultdict(list)
+    runs = runs.sort("tow_id", "run")
+    for tow_id, run in zip(runs["tow_id"], runs.select(facts).iter_rows(), strict=True):
+        of_tow[tow_id].append(run)
     measured = [name for name in sorted(tows.columns) if name not in NOT_INPUT]
     hashes = [
-        fingerprint([row[name] for name in measured], of_tow[row["tow_id"],].rows())
-        for row in tows.iter_rows(named=True)
+        fingerprint(row, of_tow[tow_id])
+        for tow_id, row in zip(tows["tow_id"], tows.select(measured).iter_rows(), strict=True)
     ]
     return tows.with_columns(pl.Series(INPUTS_HASH, hashes, pl.String))
 

@@ -47,6 +47,9 @@ SAME_FACTOR: Final = 5e-5
 
 Tables = dict[str, pl.DataFrame]
 
+Inputs = tuple[dict[str, str], dict[str, str]]
+"""What the tows are made from, by tow: then, and now."""
+
 
 @dataclass(frozen=True)
 class ChangeReport:
@@ -208,7 +211,8 @@ def _factors(was: pl.DataFrame, now: pl.DataFrame) -> pl.DataFrame:
 
 
 def _lines(was: Tables, now: Tables) -> pl.DataFrame:
-    drafts = [_draft_lines(was, now, method) for method in now["methods"]["method"]]
+    inputs = _input_hashes(was), _input_hashes(now)
+    drafts = [_draft_lines(was, now, method, inputs) for method in now["methods"]["method"]]
     known = [draft for draft in drafts if draft is not None]
     return pl.concat(known or [_no_lines()], how="diagonal_relaxed")
 
@@ -218,12 +222,12 @@ def _no_lines() -> pl.DataFrame:
     return TABLES["register_changes"].create_empty().with_columns(unknown)
 
 
-def _draft_lines(was: Tables, now: Tables, method: str) -> pl.DataFrame | None:
+def _draft_lines(was: Tables, now: Tables, method: str, inputs: Inputs) -> pl.DataFrame | None:
     """Lines of a method's draft that changed; None where one of the two has no such draft."""
     old, new = (_draft(tables["register"], method) for tables in (was, now))
     if old.is_empty() or new.is_empty():
         return None
-    grounds = _grounds(was, now, method, old.join(new, on=LINE, suffix="_new"))
+    grounds = _grounds(was, now, method, inputs, old.join(new, on=LINE, suffix="_new"))
     names = now["boats"].select("fsn_no", "name")
     return (
         register_changes(old, new, NO_PARTS, grounds)
@@ -239,11 +243,12 @@ def _draft(register: pl.DataFrame, method: str) -> pl.DataFrame:
     return register.filter(is_draft & (pl.col("method") == method))
 
 
-def _grounds(was: Tables, now: Tables, method: str, pairs: pl.DataFrame) -> pl.DataFrame:
+def _grounds(
+    was: Tables, now: Tables, method: str, inputs: Inputs, pairs: pl.DataFrame
+) -> pl.DataFrame:
     """Per line why it can have changed: another tow, its input, other tows, method or code."""
     hashes = [_method_hash(tables, method) for tables in (was, now)]
     versions = [dict(tables["about"].rows())["code_version"] for tables in (was, now)]
-    inputs = [_input_hashes(tables) for tables in (was, now)]
     others = inputs[0] != inputs[1]
     grounds = [
         _ground(
