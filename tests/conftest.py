@@ -20,7 +20,7 @@ import herijk.assets.rebuild
 import herijk.assets.runs
 from herijk.assets import archive
 from herijk.assets.progress import Progress, Quiet
-from herijk.assets.rebuild import Done
+from herijk.assets.report import Report
 from herijk.assets.resources import Setup
 from herijk.assets.side_by_side import Task
 from herijk.simulate import WorldSettings, simulate_world
@@ -108,7 +108,7 @@ class Workbench:
         methods: Sequence[str] = METHODS,
         seasons: Collection[int] | None = None,
         whole: bool = False,
-    ) -> Done:
+    ) -> Report:
         """A rebuild in this process.
 
         The whole has Dagster's runs (recorded in memory), studies, comparisons of types, checks and
