@@ -410,56 +410,74 @@ def tow_outliers(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
 def _outliers(
     tows: Observed, choice: Choice, names: tuple[str, ...], eras: tuple[Era, ...]
 ) -> pl.DataFrame:
-    parts = [
-        _against_type(group, choice, quantity, eras)
+    compared = [
+        one
         for (_, boat_type), group in tows.groups("method", "boat_type")
         if boat_type != UNKNOWN_TYPE
-        for quantity in names
+        for one in (_Compared.of(group, choice, quantity) for quantity in names)
+        if one is not None
     ]
-    known = (part for part in parts if part is not None)
-    everything = pl.concat([TypeOutliers.create_empty(), *known])
-    return _with_season(everything)
+    fits = mixed.fit_all([one.problem for one in compared], choice.components)
+    parts = [one.frame(fit, eras) for one, fit in zip(compared, fits, strict=True)]
+    return _with_season(pl.concat([TypeOutliers.create_empty(), *parts]))
 
 
-def _against_type(
-    boats: Observed, choice: Choice, quantity: str, eras: tuple[Era, ...]
-) -> pl.DataFrame | None:
-    y, unit = quantities(boats)[quantity]
-    speed = standard_speed_m_s(boats)
-    displacement = _explaining(boats, LN_DISPLACEMENT)
-    weighed = quantity == LN_CW and bool(np.isfinite(displacement).all())
-    known = np.flatnonzero(np.isfinite(y))
-    boats, y, displacement = boats.take(known), y[known], displacement[known]
-    if len(y) == 0:
-        return None
-    x = np.ones((len(y), 1))
-    if weighed and np.ptp(displacement) > 1e-9:
-        x = np.column_stack([x, displacement - displacement.mean()])
-    n_boats = boats.table["fsn_no"].n_unique()
-    if n_boats < x.shape[1] + FEWEST_BOATS:
-        return None
-    variance = unit[known] * boats.column("run_sd_ratio") ** 2
-    fsn_no = boats.table["fsn_no"].to_numpy()
-    season = boats.table["season"].to_numpy().astype(np.int64)
-    problem = Problem.of(y, x, variance, fsn_no, _seasons(season, choice))
-    fit = mixed.fit(problem, choice.components)
-    left_out = fit.leave_boats_out()
-    deviation = _studentised(left_out.error / np.sqrt(left_out.variance * fit.scale), fit)
-    limit = float(scipy.special.stdtrit(max(fit.dof - 1, 1), 1.0 - OUTSIDE_LEVEL / (2.0 * len(y))))
-    return boats.table.select(
-        "method",
-        "tow_id",
-        *LINE,
-        "boat_type",
-        "season",
-        pl.lit(quantity).alias("quantity"),
-        pl.lit(speed).alias("standard_speed_m_s"),
-        pl.Series("value", y),
-        pl.Series("expected", y - left_out.error),
-        pl.Series("deviation_sd", deviation),
-        pl.Series("outside", np.abs(deviation) > limit),
-        pl.Series("candidates", _candidates(boats, quantity, left_out.error, eras)),
-    )
+@dataclass(frozen=True)
+class _Compared:
+    """A quantity of the boats of a type, to be compared with the others' of the type.
+
+    Attributes:
+        boats: those that have it.
+        quantity: its name.
+        problem: what is fitted; `problem.y` is the quantity.
+    """
+
+    boats: Observed
+    quantity: str
+    problem: Problem
+
+    @classmethod
+    def of(cls, boats: Observed, choice: Choice, quantity: str) -> Self | None:
+        """What is compared; None where too few boats have it."""
+        y, unit = quantities(boats)[quantity]
+        displacement = _explaining(boats, LN_DISPLACEMENT)
+        weighed = quantity == LN_CW and bool(np.isfinite(displacement).all())
+        known = np.flatnonzero(np.isfinite(y))
+        boats, y, displacement = boats.take(known), y[known], displacement[known]
+        if len(y) == 0:
+            return None
+        x = np.ones((len(y), 1))
+        if weighed and np.ptp(displacement) > 1e-9:
+            x = np.column_stack([x, displacement - displacement.mean()])
+        n_boats = boats.table["fsn_no"].n_unique()
+        if n_boats < x.shape[1] + FEWEST_BOATS:
+            return None
+        variance = unit[known] * boats.column("run_sd_ratio") ** 2
+        fsn_no = boats.table["fsn_no"].to_numpy()
+        season = boats.table["season"].to_numpy().astype(np.int64)
+        problem = Problem.of(y, x, variance, fsn_no, _seasons(season, choice))
+        return cls(boats, quantity, problem)
+
+    def frame(self, fit: mixed.Fit, eras: tuple[Era, ...]) -> pl.DataFrame:
+        """Rows of the table `type_outliers`, without the candidate `season`."""
+        y, left_out = self.problem.y, fit.leave_boats_out()
+        deviation = _studentised(left_out.error / np.sqrt(left_out.variance * fit.scale), fit)
+        chance = 1.0 - OUTSIDE_LEVEL / (2.0 * len(y))
+        limit = float(scipy.special.stdtrit(max(fit.dof - 1, 1), chance))
+        return self.boats.table.select(
+            "method",
+            "tow_id",
+            *LINE,
+            "boat_type",
+            "season",
+            pl.lit(self.quantity).alias("quantity"),
+            "standard_speed_m_s",
+            pl.Series("value", y),
+            pl.Series("expected", y - left_out.error),
+            pl.Series("deviation_sd", deviation),
+            pl.Series("outside", np.abs(deviation) > limit),
+            pl.Series("candidates", _candidates(self.boats, self.quantity, left_out.error, eras)),
+        )
 
 
 def _studentised(internal: FloatArray, fit: mixed.Fit) -> FloatArray:
