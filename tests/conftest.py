@@ -3,7 +3,7 @@
 import os
 import shutil
 from collections.abc import Callable, Collection, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -20,7 +20,7 @@ import herijk.assets.rebuild
 import herijk.assets.runs
 from herijk.assets import archive
 from herijk.assets.progress import Progress, Quiet
-from herijk.assets.rebuild import Done
+from herijk.assets.report import Report
 from herijk.assets.resources import Setup
 from herijk.assets.side_by_side import Task
 from herijk.simulate import WorldSettings, simulate_world
@@ -84,11 +84,14 @@ class _Directly:
 def directly() -> Iterator[None]:
     """Inside, rebuilds do their work without Dagster, and the site counts as made."""
 
-    def unrecorded(setup: Setup, progress: Progress, work: Callable[[Any], None]) -> None:
+    def unrecorded(
+        setup: Setup, progress: Progress, other: object, work: Callable[[Any], None]
+    ) -> None:
         work(_Directly(setup, progress))
 
     no_site = mock.patch.object(herijk.assets.rebuild, "site_is_stale", return_value=False)
-    with no_site, mock.patch.object(herijk.assets.runs, "in_one_run", unrecorded):
+    alone = mock.patch.object(herijk.assets.rebuild, "helper", nullcontext)
+    with no_site, alone, mock.patch.object(herijk.assets.runs, "in_one_run", unrecorded):
         yield
 
 
@@ -108,7 +111,7 @@ class Workbench:
         methods: Sequence[str] = METHODS,
         seasons: Collection[int] | None = None,
         whole: bool = False,
-    ) -> Done:
+    ) -> Report:
         """A rebuild in this process.
 
         The whole has Dagster's runs (recorded in memory), studies, comparisons of types, checks and

@@ -70,7 +70,7 @@ def rebuild_archive(
     progress = LogProgress(context)
     data, seasons = Path(setup.data), config.seasons or None
     try:
-        report = rebuild(setup.archive_root, data, setup.methods, progress, seasons).report
+        report = rebuild(setup.archive_root, data, setup.methods, progress, seasons)
     except UnavailableError as error:
         if context.retry_number < TRIES:
             raise dg.RetryRequested(TRIES, TRY_AGAIN_S) from error
@@ -79,16 +79,16 @@ def rebuild_archive(
         raise _failure(notifier, error) from error
     # The archive was looked through, which counts for its freshness also when nothing changed.
     context.log_event(dg.AssetMaterialization("archive_index"))
-    for line in [*report["headlines"], *tell(notifier, report)]:
+    for line in [*report.headlines, *tell(notifier, report)]:
         context.log.info(line)
     context.add_output_metadata(
         {
-            "nothing_changed": report["nothing_changed"],
-            "headlines": dg.MetadataValue.json(report["headlines"]),
+            "nothing_changed": report.nothing_changed,
+            "headlines": dg.MetadataValue.json(report.headlines),
             "report": dg.MetadataValue.path(str(data / "report" / "latest.html")),
         }
     )
-    if failed := failed_checks(report):
+    if failed := failed_checks(report.checks):
         raise dg.Failure("; ".join(failed), allow_retries=False)
 
 

@@ -6,14 +6,14 @@ that there is none takes a second, importing it two.
 
 import datetime as dt
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import asdict, dataclass, field
+from concurrent.futures import Executor
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from herijk.assets.progress import Progress
-from herijk.assets.report import write_report
+from herijk.assets.report import Done, Report, write_report
 from herijk.assets.settings import Settings, read_settings
-from herijk.assets.side_by_side import Task, stages
+from herijk.assets.side_by_side import Task, helper, stages
 from herijk.assets.site_state import site_is_stale
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
@@ -39,32 +39,13 @@ ROUNDS: Final = 3
 """So many times a rebuild begins again because the archive changed under its hands."""
 
 
-@dataclass
-class Done:
-    """What a rebuild did: seasons read again, methods applied again, database made again.
-
-    Attributes:
-        report: what changed and what the checks say (`assets.report`).
-    """
-
-    seasons: list[int] = field(default_factory=list)
-    methods: list[str] = field(default_factory=list)
-    database: bool = False
-    report: dict[str, Any] = field(default_factory=dict, compare=False, repr=False)
-
-    @property
-    def work(self) -> dict[str, Any]:
-        """The work alone, as plain data."""
-        return {name: value for name, value in asdict(self).items() if name != "report"}
-
-
 def rebuild(
     archive: Path,
     data: Path,
     methods: Sequence[str],
     progress: Progress,
     seasons: Collection[int] | None = None,
-) -> Done:
+) -> Report:
     """Brings the data folder up to date with the archive, and reports what that changed.
 
     Files of ours that turn out to be damaged are made again. Where the archive changes during the
@@ -86,11 +67,10 @@ def rebuild(
         settings = read_settings(data)
     with machine_faults_explained(data), only_writer(data):
         work = _Rebuild(archive, Store(data), methods, progress, settings)
-        _mending(lambda: work.do(seasons))
-    return work.done
+        return _mending(lambda: work.do(seasons))
 
 
-def _mending(work: Callable[[], None]) -> None:
+def _mending(work: Callable[[], Report]) -> Report:
     """Does the work; begins again without a file that is damaged, or when the archive changed."""
     damaged: set[Place] = set()
     rounds_left = ROUNDS
@@ -129,7 +109,7 @@ class _Rebuild:
         known = KnownMethods.of(self.store)
         return [known.get(name) for name in self.names]
 
-    def do(self, seasons: Collection[int] | None) -> None:
+    def do(self, seasons: Collection[int] | None) -> Report:
         """Everything that is stale, and the report."""
         self.progress.step("looking at what the archive holds")
         intake.index(self.store, self.archive)
@@ -139,7 +119,7 @@ class _Rebuild:
         if stale or self._is_stale():
             checks = self._work(stale)
         now = dt.datetime.now().astimezone()
-        self.done.report = write_report(self.store, self.done.work, checks, now)
+        return write_report(self.store, self.done, checks, now)
 
     def _is_stale(self) -> bool:
         """Whether anything that follows from the seasons has to be made again."""
@@ -151,6 +131,12 @@ class _Rebuild:
 
     def _work(self, seasons: list[int]) -> "Sequence[dg.AssetCheckEvaluation]":
         """Reads seasons and makes what is stale; gives what the checks said."""
+        with helper() as other:  # it imports what it needs while we import Dagster
+            return self._work_with(other, seasons)
+
+    def _work_with(
+        self, other: Executor, seasons: list[int]
+    ) -> "Sequence[dg.AssetCheckEvaluation]":
         from herijk.assets.resources import Setup  # noqa: PLC0415 - see above
         from herijk.assets.runs import in_one_run  # noqa: PLC0415
 
@@ -176,7 +162,7 @@ class _Rebuild:
                 work.check()
             checks.extend(work.checks)
 
-        in_one_run(setup, self.progress, do)
+        in_one_run(setup, self.progress, other, do)
         return checks
 
     def _read(self, work: "Work", stale: list[int]) -> None:

@@ -8,19 +8,26 @@ and a dated JSON for each that changed something.
 import datetime as dt
 import json
 from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from herijk.assets.notify import Message, Notifier
 from herijk.dashboards.report import (
     PAGES,
+    Check,
     found_in_words,
     headlines,
     mail,
     with_later_rebuild,
 )
 from herijk.warehouse.build.version import code_version
-from herijk.warehouse.queries.change_report import as_plain, change_report, remember
+from herijk.warehouse.queries.change_report import (
+    ChangeSummary,
+    change_report,
+    remember,
+    summary_of,
+)
 from herijk.warehouse.store.files import written_beside
 from herijk.warehouse.store.store import Store
 from herijk.words import LANGUAGE
@@ -29,37 +36,66 @@ from herijk.words.catalogue import speaker
 if TYPE_CHECKING:  # Dagster takes two seconds, and only a rebuild with work to do needs it
     import dagster as dg
 
-Report = dict[str, Any]
-
 ERROR: Final = "ERROR"
 """Dagster's word for a check whose failing means that a table is not what it promises."""
 
 
+@dataclass
+class Done:
+    """What a rebuild did: seasons read again, methods applied again, database made again."""
+
+    seasons: list[int] = field(default_factory=list)
+    methods: list[str] = field(default_factory=list)
+    database: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Report(ChangeSummary):
+    """What a rebuild did, what that changed, and what the checks say.
+
+    Attributes:
+        made_at: the moment, ISO 8601.
+        archive: where it is.
+        simulated: whether the archive is.
+        code_version: of the code that made the tables.
+        headlines: the news in English.
+    """
+
+    made_at: str
+    archive: str
+    simulated: bool
+    code_version: str
+    done: Done
+    checks: list[Check]
+    headlines: list[str]
+
+
 def write_report(
-    store: Store, done: Report, checks: Sequence["dg.AssetCheckEvaluation"], now: dt.datetime
+    store: Store, done: Done, evaluated: Sequence["dg.AssetCheckEvaluation"], now: dt.datetime
 ) -> Report:
-    """Finds out what changed, writes page and JSON, and returns the JSON as plain data.
+    """Finds out what changed, and writes page and JSON.
 
     Where nothing changed, the page about the last change stays, and says so.
     """
     changes = change_report(store)
-    about = store.read("about_archive")
-    report = {
-        "made_at": now.isoformat(timespec="seconds"),
-        "archive": about["root"][0],
-        "simulated": about["simulated"][0],
-        "code_version": code_version(),
-        "done": done,
-        **as_plain(changes),
-        "checks": [_plain(check) for check in checks],
-    }
-    report["headlines"] = headlines(report, speaker("en"))
-    text = json.dumps(report, default=str, indent=1)
+    about, summary = store.read("about_archive"), summary_of(changes)
+    checks = [_check(one) for one in evaluated]
+    report = Report(
+        **vars(summary),
+        made_at=now.isoformat(timespec="seconds"),
+        archive=about["root"][0],
+        simulated=about["simulated"][0],
+        code_version=code_version(),
+        done=done,
+        checks=checks,
+        headlines=headlines(summary, checks, speaker("en")),
+    )
+    text = json.dumps(asdict(report), default=str, indent=1)
     folder = store.root / "report"
     if not changes.nothing:
         from herijk.dashboards.report_page import report_pages  # noqa: PLC0415 - Altair takes a second
 
-        for name, page in report_pages(store, changes, report).items():
+        for name, page in report_pages(store, changes, checks, report.made_at).items():
             _write(folder / name, page)
         _write(folder / f"{now:%Y-%m-%dT%H%M%S}.json", text)
     else:
@@ -67,20 +103,20 @@ def write_report(
             path = folder / name
             if path.exists():
                 shown = path.read_text(encoding="utf-8")
-                _write(path, with_later_rebuild(shown, report["made_at"], speaker(language)))
+                _write(path, with_later_rebuild(shown, report.made_at, speaker(language)))
     _write(folder / "latest.json", text)
     remember(store)
     return report
 
 
-def _plain(check: "dg.AssetCheckEvaluation") -> Report:
-    return {
-        "asset": check.asset_key.to_user_string(),
-        "check": check.check_name,
-        "passed": check.passed,
-        "severity": check.severity.value,
-        "found": {name: value.value for name, value in check.metadata.items()},
-    }
+def _check(evaluated: "dg.AssetCheckEvaluation") -> Check:
+    return Check(
+        asset=evaluated.asset_key.to_user_string(),
+        check=evaluated.check_name,
+        passed=evaluated.passed,
+        severity=evaluated.severity.value,
+        found={name: value.value for name, value in evaluated.metadata.items()},
+    )
 
 
 def _write(path: Path, text: str) -> None:
@@ -88,12 +124,12 @@ def _write(path: Path, text: str) -> None:
         beside.write_text(text, encoding="utf-8")
 
 
-def failed_checks(report: Report) -> list[str]:
+def failed_checks(checks: Sequence[Check]) -> list[str]:
     """Checks whose failing means that a table is not what it promises."""
     return [
-        f"{check['check']}: {found_in_words(check, speaker(LANGUAGE.get()))}"
-        for check in report["checks"]
-        if not check["passed"] and check["severity"] == ERROR
+        f"{check.check}: {found_in_words(check, speaker(LANGUAGE.get()))}"
+        for check in checks
+        if not check.passed and check.severity == ERROR
     ]
 
 
@@ -103,10 +139,10 @@ def tell(notifier: Notifier, report: Report) -> list[str]:
     Returns:
         A sentence for each message that could not be sent.
     """
-    if report["nothing_changed"] and not failed_checks(report):
+    if report.nothing_changed and not failed_checks(report.checks):
         return []
-    subject, text = mail(report)
-    return notifier.send(Message(subject, text, report, _now()))
+    subject, text = mail(report, report.checks, report.simulated)
+    return notifier.send(Message(subject, text, asdict(report), _now()))
 
 
 def tell_failure(notifier: Notifier, failure: str) -> list[str]:

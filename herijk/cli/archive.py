@@ -1,14 +1,15 @@
 """The commands about an archive that come before a rebuild: `check` and `init`."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from herijk.cli.arguments import AsJson, show, show_files
 from herijk.words import LANGUAGE, tell
 
-Report = dict[str, Any]
+if TYPE_CHECKING:
+    from herijk.warehouse.archive.check import CauseReport, CheckReport, Place
 
 
 def check(
@@ -22,12 +23,11 @@ def check(
     as_json: AsJson = False,
 ) -> None:
     """Every fault of lists, headers and a sample of the data, by cause, before any rebuild."""
-    from herijk.warehouse.archive.check import as_report, check_archive
+    from herijk.warehouse.archive.check import check_archive, check_report
     from herijk.warehouse.archive.files import PROFILE_FILE
 
     checked = check_archive(archive)
-    report = as_report(checked, LANGUAGE.get()) | {"archive": str(archive)}
-    show(report, check_text, as_json)
+    show(check_report(archive, checked, LANGUAGE.get()), check_text, as_json)
     if write_profile and checked.profile is not None:
         from herijk.warehouse.store.files import written_beside
 
@@ -54,34 +54,34 @@ def init(
     show_files(files, as_json, said)
 
 
-def check_text(report: Report) -> str:
+def check_text(report: "CheckReport") -> str:
     """A check in words: a paragraph per cause."""
-    causes = report["causes"]
+    causes = report.causes
     if not causes:
-        return tell("Nothing is wrong: {} tows can be read.", report["tows"])
+        return tell("Nothing is wrong: {} tows can be read.", report.tows)
     head = tell(
         "{} causes, {} places. With what is proposed below {} tows can be read.",
         len(causes),
-        sum(cause["number"] for cause in causes),
-        report["tows"],
+        sum(cause.number for cause in causes),
+        report.tows,
     )
     parts = [head, *(_cause(cause) for cause in causes)]
-    if report["profile"] is not None:
+    if report.profile is not None:
         parts.append(
-            tell("Write what is proposed with: herijk check {} --write-profile", report["archive"])
+            tell("Write what is proposed with: herijk check {} --write-profile", report.archive)
         )
     return "\n\n".join(parts)
 
 
-def _cause(cause: Report) -> str:
-    lines = [f"{cause['number']} x {cause['reason_code']}: {cause['sentence']}"]
-    if len(cause["cells"]) > 1:
-        cells = ", ".join(f"'{cell}'" for cell in cause["cells"][1:9])
+def _cause(cause: "CauseReport") -> str:
+    lines = [f"{cause.number} x {cause.reason_code}: {cause.sentence}"]
+    if len(cause.cells) > 1:
+        cells = ", ".join(f"'{cell}'" for cell in cause.cells[1:9])
         lines.append(f"    {tell('There is also: {}', cells)}")
-    lines += [f"    {_place(place)}" for place in cause["places"]]
-    if cause["number"] > len(cause["places"]):
-        lines.append(f"    {tell('and {} more', cause['number'] - len(cause['places']))}")
-    for proposal in cause["proposals"]:
+    lines += [f"    {_place(place)}" for place in cause.places]
+    if cause.number > len(cause.places):
+        lines.append(f"    {tell('and {} more', cause.number - len(cause.places))}")
+    for proposal in cause.proposals:
         how = (
             tell("Put into archief.toml")
             if proposal["is_active"]
@@ -91,7 +91,7 @@ def _cause(cause: Report) -> str:
     return "\n".join(lines)
 
 
-def _place(place: Report) -> str:
-    line = "" if place["line"] is None else f", {tell('line {}', place['line'])}"
-    tow = "" if place["tow_id"] is None else f" ({place['tow_id']})"
-    return f"{place['path']}{line}{tow}"
+def _place(place: "Place") -> str:
+    line = "" if place.line is None else f", {tell('line {}', place.line)}"
+    tow = "" if place.tow_id is None else f" ({place.tow_id})"
+    return f"{place.path}{line}{tow}"

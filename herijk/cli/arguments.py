@@ -29,7 +29,12 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print the result as JSON."
 
 def show(report: R, as_text: Callable[[R], str], as_json: bool) -> None:
     """Prints a result for a person, or for a program."""
-    typer.echo(json.dumps(report, default=_plain, indent=1) if as_json else as_text(report))
+    typer.echo(as_json_text(report) if as_json else as_text(report))
+
+
+def as_json_text(report: object) -> str:
+    """A result for a program."""
+    return json.dumps(report, default=_plain, indent=1)
 
 
 def show_files(files: Iterable[Path], as_json: bool, said: str | None = None) -> None:

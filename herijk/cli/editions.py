@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from herijk.cli.arguments import AsJson, AsOf, DataFolder, read_day, show
+from herijk.cli.arguments import AsJson, AsOf, DataFolder, as_json_text, read_day, show
 from herijk.cli.methods import known_methods
 from herijk.words import say
 
@@ -78,9 +78,8 @@ def publish(
 ) -> None:
     """Freeze an edition of the register: it is never changed afterwards."""
     from herijk.cli import editions_text as text
-    from herijk.warehouse.editions.publish import Terms, lines_to_look_at, publish_printed
+    from herijk.warehouse.editions.publish import Terms, publish_printed, published
     from herijk.warehouse.editions.publish import publish as publish_edition
-    from herijk.warehouse.store.editions import read_edition
     from herijk.warehouse.store.store import Store
 
     if (method is None) == (printed is None):
@@ -93,14 +92,12 @@ def publish(
         folder = publish_printed(store, printed, terms)
     else:
         folder = publish_edition(store, known_methods(data).get(str(method)), terms, carry)
-    made = read_edition(store, folder.name)
-    counts = made.register["status"].value_counts().sort("count", "status", descending=True)
-    shown = made.about.model_dump(mode="json") | {
-        "folder": str(folder),
-        "statuses": dict(counts.rows()),
-        "to_look_at": lines_to_look_at(made),
-    }
-    show(shown, text.published, as_json)
+    made = published(store, folder)
+    if as_json:
+        rest = {name: value for name, value in vars(made).items() if name != "about"}
+        typer.echo(as_json_text(made.about.model_dump(mode="json") | rest))
+    else:
+        typer.echo(text.published(made))
 
 
 def diff(

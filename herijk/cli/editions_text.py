@@ -4,6 +4,7 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 from herijk.cli.text import SIMULATED, table
+from herijk.tables.row import Row
 from herijk.warehouse.editions.words import LANGUAGES, Language
 from herijk.words import LANGUAGE, tell
 
@@ -11,9 +12,10 @@ if TYPE_CHECKING:
     from herijk.warehouse.editions.compare import DiffReport, Group
     from herijk.warehouse.editions.finding import Finding
     from herijk.warehouse.editions.lineage import Lineage, LineLineage
+    from herijk.warehouse.editions.publish import Published
     from herijk.warehouse.editions.verify import Verification
+    from herijk.warehouse.queries.register import RegisterReport
 
-Report = dict[str, Any]
 KINDS = {"recomputed": "recomputed", "as_printed": "as printed"}
 FINDINGS = {
     "altered": "altered",
@@ -30,7 +32,7 @@ def _words() -> Language:
     return LANGUAGES[LANGUAGE.get()]
 
 
-def _to_look_at(lines: list[Report]) -> list[str]:
+def _to_look_at(lines: list[Row]) -> list[str]:
     """Which lines are marked or left empty, one a line; nothing where none is."""
     if not lines:
         return []
@@ -53,25 +55,23 @@ def _to_look_at(lines: list[Report]) -> list[str]:
     ]
 
 
-def register(report: Report) -> str:
+def register(report: "RegisterReport") -> str:
     """The lines of an edition, and the day on which their validity was judged."""
     head = (
         *("boat", "name", "crew", "empty thwart", "status", "valid until", "tow", "v m/s"),
         *("A kg/m", "B m/s", "Cw kg/m", "length m", "beam m", "bow m", "kg"),
     )
-    parts = [tell(SIMULATED)] if report["simulated"] else []
-    counts = Counter(line["status"] for line in report["lines"])
+    parts = [tell(SIMULATED)] if report.simulated else []
+    counts = Counter(line["status"] for line in report.lines)
     statuses = ", ".join(f"{n} {_words().statuses.get(s, s)}" for s, n in counts.items())
     parts += [
-        tell(
-            "Register {}, validity judged on {}: {}.", report["edition"], report["as_of"], statuses
-        ),
-        table(head, [_register_line(line) for line in report["lines"]]),
+        tell("Register {}, validity judged on {}: {}.", report.edition, report.as_of, statuses),
+        table(head, [_register_line(line) for line in report.lines]),
     ]
     return "\n\n".join(parts)
 
 
-def _register_line(line: Report) -> tuple[Any, ...]:
+def _register_line(line: Row) -> tuple[Any, ...]:
     return (
         line["fsn_no"],
         line["name"] or "-",
@@ -85,37 +85,38 @@ def _register_line(line: Report) -> tuple[Any, ...]:
     )
 
 
-def published(report: Report) -> str:
+def published(report: "Published") -> str:
     """An edition that was just published."""
-    lines = report["tables"]["register"]["rows"]
-    source = report["method"] or tell("as printed")
-    statuses = ", ".join(f"{n} {_words().statuses[s]}" for s, n in report["statuses"].items())
+    about = report.about
+    lines = about.tables["register"].rows
+    source = about.method or tell("as printed")
+    statuses = ", ".join(f"{n} {_words().statuses[s]}" for s, n in report.statuses.items())
     compared = (
         tell(
             "Compared with {}: herijk diff {} {}",
-            report["previous"],
-            report["previous"],
-            report["edition"],
+            about.previous,
+            about.previous,
+            about.edition,
         )
-        if report["previous"]
+        if about.previous
         else tell("There is no earlier edition to compare it with.")
     )
     return "\n".join(
         [
-            *([tell(SIMULATED)] if report["simulated"] else []),
+            *([tell(SIMULATED)] if about.simulated else []),
             tell(
                 "Published {}: {} lines ({}), method {}, valid from {}.",
-                report["edition"],
+                about.edition,
                 lines,
                 statuses,
                 source,
-                report["valid_from"],
+                about.valid_from,
             ),
-            tell("Decision: {}", report["decision"]),
+            tell("Decision: {}", about.decision),
             compared,
-            *_to_look_at(report["to_look_at"]),
-            tell("Seal, to be kept in the minutes: {}", report["seal"]),
-            tell("Folder: {}", report["folder"]),
+            *_to_look_at(report.to_look_at),
+            tell("Seal, to be kept in the minutes: {}", about.seal),
+            tell("Folder: {}", report.folder),
             tell("  register.xlsx, register.csv        the register"),
             tell(
                 "  bericht.md, notice.md              one page for the members, Dutch and English"
@@ -182,7 +183,7 @@ def _group(group: "Group") -> str:
     )
 
 
-def _lines(rows: list[Report]) -> str:
+def _lines(rows: list[Row]) -> str:
     head = (
         *("boat", "name", "crew", "change", "A old", "new", "B old", "new", "Cw old", "new"),
         *("W old", "new", "Cw %", "in 2 h", "rank", "new", "causes"),
@@ -190,7 +191,7 @@ def _lines(rows: list[Report]) -> str:
     return table(head, [_line(row) for row in rows])
 
 
-def _line(row: Report) -> tuple[Any, ...]:
+def _line(row: Row) -> tuple[Any, ...]:
     pairs = [
         _number(row[f"{side}_{name}"])
         for name in ("a_kg_m", "b_m_s", "cw_kg_m", "power_w")
@@ -235,7 +236,7 @@ def _races(report: "DiffReport") -> str:
     return "\n".join(parts)
 
 
-def _winners(winners: list[Report]) -> str:
+def _winners(winners: list[Row]) -> str:
     rows = [
         (
             w["race"],
@@ -257,7 +258,7 @@ def _winners(winners: list[Report]) -> str:
     return f"{table(head, rows)}\n{note}"
 
 
-def _moved(moved: list[Report]) -> str:
+def _moved(moved: list[Row]) -> str:
     rows = [
         (
             r["race"],
@@ -371,13 +372,13 @@ def _line_history(line: "LineLineage") -> str:
     return "\n".join(parts)
 
 
-def _seconds_of(run: Report) -> str:
+def _seconds_of(run: Row) -> str:
     if run["window_start_s"] is None:
         return "-"
     return f"{run['window_start_s']:.0f}-{run['window_end_s']:.0f}"
 
 
-def _cause(cause: Report) -> str:
+def _cause(cause: Row) -> str:
     return _words().cause(cause["cause"], cause.get("step"))
 
 

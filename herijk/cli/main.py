@@ -12,7 +12,7 @@ import re
 import sys
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Final
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
@@ -20,7 +20,7 @@ from herijk.cli import documents as commands_documents
 from herijk.cli import editions as commands_editions
 from herijk.cli import methods, text
 from herijk.cli.archive import check, init
-from herijk.cli.arguments import ArchiveFolder, AsJson, DataFolder, show, show_files
+from herijk.cli.arguments import ArchiveFolder, AsJson, DataFolder, as_json_text, show, show_files
 from herijk.cli.doctor import doctor
 from herijk.cli.fit import fit
 from herijk.cli.overview import Overview, defaults_of, folders_here
@@ -28,6 +28,8 @@ from herijk.pipeline.errors import BrokenPromiseError, HerijkError, unexpected
 from herijk.words import LANGUAGE, say, spoken, tell
 
 if TYPE_CHECKING:
+    from herijk.warehouse.queries.audit import BoatAudit
+    from herijk.warehouse.queries.audit_types import TypesAudit
     from herijk.warehouse.store.store import Store
 
 app = typer.Typer(
@@ -145,19 +147,20 @@ def rebuild(
     chosen = [known.kept(name) for name in method or read_settings(data).applied]
     try:
         with TerminalProgress() as progress:
-            done = run(archive, data, chosen, progress, seasons)
+            news = run(archive, data, chosen, progress, seasons)
     except Exception as error:
         _tell_failure(data, error)
         raise
     report = reports.rebuild_report(Store(data))
-    news = headlines(done.report, speaker(LANGUAGE.get()))
-    as_text = text.rebuild(report, done.work, news)
-    everything = {**vars(report), "done": done.work, "since": done.report}
-    show(everything, lambda _: as_text, as_json)
+    if as_json:
+        typer.echo(as_json_text({**vars(report), "done": news.done, "since": news}))
+    else:
+        lines = headlines(news, news.checks, speaker(LANGUAGE.get()))
+        typer.echo(text.rebuild(report, news.done, lines))
     notifier = notifier_of(str(data), read_settings(data))
-    for problem in tell(notifier, done.report):
+    for problem in tell(notifier, news):
         typer.echo(f"herijk: {problem}", err=True)
-    if failed := failed_checks(done.report):
+    if failed := failed_checks(news.checks):
         raise BrokenPromiseError("a check failed: {}", "; ".join(failed))
 
 
@@ -270,10 +273,10 @@ def audit(
     store = Store(data)
     report = audit_report(store, names, method, tows)
     if not as_json:
-        show(report, audit_text.audit, as_json)  # the plots take longer than the text
+        typer.echo(audit_text.audit(report))  # the plots take longer than the text
     drawn = _plots(store, report, plots, " ".join(names))
     if as_json:
-        show(report | {"plots": [str(path) for path in drawn]}, audit_text.audit, as_json)
+        typer.echo(as_json_text({**vars(report), "plots": drawn}))
     elif drawn:
         typer.echo("\n" + tell("{} plots in {}", len(drawn), drawn[0].parent))
 
@@ -310,7 +313,9 @@ def slides(
     show_files(written, as_json)
 
 
-def _plots(store: "Store", report: dict[str, Any], asked: Path | None, name: str) -> list[Path]:
+def _plots(
+    store: "Store", report: "BoatAudit | TypesAudit", asked: Path | None, name: str
+) -> list[Path]:
     """The plots of an audit; none, and said so, where they cannot be written: the page stands."""
     from herijk.dashboards.audit_plots import file_name, write_audit_plots
 

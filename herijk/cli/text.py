@@ -10,6 +10,7 @@ from herijk.tables.row import Row
 from herijk.words import LANGUAGE, code, number, spoken, tell
 
 if TYPE_CHECKING:
+    from herijk.assets.report import Done
     from herijk.warehouse.queries.rebase import RebaseReport
     from herijk.warehouse.queries.reports import LogErrorReport, RebuildReport
 
@@ -45,7 +46,7 @@ def _per_cent(ratio: float | None) -> str:
     return "-" if ratio is None else number(100 * (ratio - 1), "+z.1f") + " %"
 
 
-def rebuild(report: "RebuildReport", done: Row, headlines: list[str]) -> str:
+def rebuild(report: "RebuildReport", done: "Done", headlines: list[str]) -> str:
     """The closing summary of a rebuild."""
     parts = [tell(SIMULATED)] if report.simulated else []
     parts.append(_work_done(done))
@@ -74,11 +75,11 @@ def rebuild(report: "RebuildReport", done: Row, headlines: list[str]) -> str:
     return "\n\n".join(parts)
 
 
-def _work_done(done: Row) -> str:
-    if not done["database"]:
+def _work_done(done: "Done") -> str:
+    if not done.database:
         return tell("Nothing changed: no file was read again, all tables are up to date.")
-    seasons = ", ".join(str(s) for s in done["seasons"]) or "none"
-    methods = ", ".join(done["methods"]) or "none"
+    seasons = ", ".join(str(s) for s in done.seasons) or "none"
+    methods = ", ".join(done.methods) or "none"
     return tell("Seasons read: {}. Methods applied: {}.", seasons, methods)
 
 

@@ -16,6 +16,8 @@ from markupsafe import Markup
 from herijk.dashboards import drawn
 from herijk.dashboards.figures import FIGURES, drop_links
 from herijk.dashboards.site.parts import default_method
+from herijk.warehouse.queries.audit import BoatAudit
+from herijk.warehouse.queries.audit_types import TypesAudit
 from herijk.warehouse.queries.chosen_tows import rows_of
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.files import written_beside
@@ -37,7 +39,7 @@ class Plot(NamedTuple):
     beside: pl.DataFrame | None = None
 
 
-def write_audit_plots(store: Store, report: dict[str, Any], folder: Path) -> list[Path]:
+def write_audit_plots(store: Store, report: BoatAudit | TypesAudit, folder: Path) -> list[Path]:
     """Writes the plots of a report of `warehouse.queries.audit`, replacing those of the same name.
 
     Beside them `index.html` shows all.
@@ -46,7 +48,9 @@ def write_audit_plots(store: Store, report: dict[str, Any], folder: Path) -> lis
         The plots; one without rows is left out.
     """
     with Views(store) as views:
-        plots = _of_boat(views, report) if report["about"] == "boat" else _of_types(views, report)
+        plots = (
+            _of_boat(views, report) if isinstance(report, BoatAudit) else _of_types(views, report)
+        )
         files = [_write(plot, report, folder) for plot in plots if plot.rows.height]
     title = ", ".join(_about(report))
     pictures = Markup("\n").join(_PICTURE.format(f.name, f.stem) for f in files)
@@ -62,18 +66,18 @@ _INDEX: Final = Markup(
 _PICTURE: Final = Markup('<p><img src="{}" alt="{}" style="max-width:100%"></p>')
 
 
-def _about(report: dict[str, Any]) -> list[str]:
-    return [report["boat"]["fsn_no"]] if report["about"] == "boat" else _types(report)
+def _about(report: BoatAudit | TypesAudit) -> list[str]:
+    return [report.boat["fsn_no"]] if isinstance(report, BoatAudit) else _types(report)
 
 
-def _of_types(views: Views, report: dict[str, Any]) -> Iterator[Plot]:
+def _of_types(views: Views, report: TypesAudit) -> Iterator[Plot]:
     """Eras and repeats under all methods; the rest before and after correction."""
-    methods, types = report["methods"], _types(report)
+    methods, types = report.methods, _types(report)
     own = pl.col("boat_type").is_in(types) & pl.col("method").is_in(methods)
     shifts = views.table("era_shifts").filter(own, pl.col("shift_ratio").is_not_null())
     for boat_type in types:
         yield Plot("eras", shifts.filter(boat_type=boat_type), boat_type)
-    boats = views.type_tows().filter(own, rows_of(report["statistics_over"]))
+    boats = views.type_tows().filter(own, rows_of(report.statistics_over))
     yield Plot(
         "repeats",
         boats.select("method", "fsn_no")
@@ -87,15 +91,15 @@ def _of_types(views: Views, report: dict[str, Any]) -> Iterator[Plot]:
         yield Plot("predicted", predicted.filter(method=method), method)
 
 
-def _of_boat(views: Views, report: dict[str, Any]) -> Iterator[Plot]:
+def _of_boat(views: Views, report: BoatAudit) -> Iterator[Plot]:
     """Its history under all methods, and its place in its type by the default method."""
-    methods, boat = report["methods"], report["boat"]
+    methods, boat = report.methods, report.boat
     own = (pl.col("fsn_no") == boat["fsn_no"]) & pl.col("method").is_in(methods)
     tow = pl.format("{} {}{}", "tow_id", "rowers", "crew_class")
     yield Plot("history", views.curves().filter(own).with_columns(tow=tow))
     yield Plot("repeats", views.repeat_pairs().filter(own))
     like = views.type_tows().filter(
-        rows_of(report["statistics_over"]), pl.col("boat_type") == (boat["boat_type"] or "")
+        rows_of(report.statistics_over), pl.col("boat_type") == (boat["boat_type"] or "")
     )
     yield from _scatters(like, default_method(methods))
 
@@ -105,14 +109,14 @@ def _scatters(boats: pl.DataFrame, method: str) -> Iterator[Plot]:
         yield Plot(name, boats.filter(method=method), method, boats)
 
 
-def _write(plot: Plot, report: dict[str, Any], folder: Path) -> Path:
+def _write(plot: Plot, report: BoatAudit | TypesAudit, folder: Path) -> Path:
     """One SVG, its title saying of what and whether it was simulated; a boat stands out."""
     say = speaker("en")
     about = _about(report)
     of = [plot.of] if plot.of in about else [*about, plot.of]
     title = alt.Title(
         ", ".join(filter(None, of)),
-        subtitle=[say("simulated")] if report["simulated"] else [],
+        subtitle=[say("simulated")] if report.simulated else [],
     )
     spec = FIGURES[plot.figure](plot.rows, say).properties(title=title).to_dict()
     drop_links(spec)
@@ -158,8 +162,8 @@ def _encodings(part: Any) -> Iterator[dict[str, Any]]:
             yield from _encodings(one)
 
 
-def _types(report: dict[str, Any]) -> list[str]:
-    return [one["boat_type"] for one in report["types"]]
+def _types(report: TypesAudit) -> list[str]:
+    return [one.boat_type for one in report.types]
 
 
 def file_name(text: str) -> str:

@@ -3,7 +3,8 @@
 It lies beside the site and uses its style.
 """
 
-from typing import Any, Final
+from collections.abc import Sequence
+from typing import Final
 
 import polars as pl
 from markupsafe import Markup
@@ -11,6 +12,7 @@ from markupsafe import Markup
 from herijk.dashboards.report import (
     LATER,
     PAGES,
+    Check,
     in_short,
     minutes_of,
     outcome_of,
@@ -18,7 +20,7 @@ from herijk.dashboards.report import (
 )
 from herijk.dashboards.site.parts import Page, Section, Table
 from herijk.dashboards.site.render import Edition
-from herijk.warehouse.queries.change_report import ChangeReport
+from herijk.warehouse.queries.change_report import ChangeReport, summary_of
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.store import Store
 from herijk.words import LANGUAGES
@@ -41,26 +43,28 @@ _COLUMNS: Final = {
 }
 
 
-def report_pages(store: Store, found: ChangeReport, report: dict[str, Any]) -> dict[str, str]:
+def report_pages(
+    store: Store, changes: ChangeReport, checks: Sequence[Check], made_at: str
+) -> dict[str, str]:
     """The page by its file name, in each language, with the moment it was made.
 
     It has what came in, what was set aside, what changed and why, and what the checks say.
     """
-    checks = pl.DataFrame(
+    of_checks = pl.DataFrame(
         [
-            [check["check"], outcome_of(check), *found]
-            for check in report["checks"]
-            for found in ([("", "")] if check["passed"] else values_found(check))
+            [check.check, outcome_of(check), *found]
+            for check in checks
+            for found in ([("", "")] if check.passed else values_found(check))
         ],
         schema=dict.fromkeys(_COLUMNS["checks"], pl.String),
         orient="row",
     )
     frames = {
-        "lines": found.lines,
-        "tows": found.tows,
-        "set_aside": found.set_aside,
-        "factors": found.factors,
-        "checks": checks,
+        "lines": changes.lines,
+        "tows": changes.tows,
+        "set_aside": changes.set_aside,
+        "factors": changes.factors,
+        "checks": of_checks,
     }
     sections = [
         Section(f"report_{name}", tables=[Table(name, frame, _COLUMNS[name], f"report_{name}")])
@@ -68,9 +72,12 @@ def report_pages(store: Store, found: ChangeReport, report: dict[str, Any]) -> d
         else Section(f"report_{name}", empty="report_none")
         for name, frame in frames.items()
     ]
-    summary = Section(
+    summary = summary_of(changes)
+    in_words = Section(
         "report_summary",
-        headline=lambda speech: Markup("{} {}").format(in_short(report, speech.say), _LATER),
+        headline=lambda speech: Markup("{} {}").format(
+            in_short(summary, checks, speech.say), _LATER
+        ),
     )
     with Views(store) as views:
         return {
@@ -78,8 +85,8 @@ def report_pages(store: Store, found: ChangeReport, report: dict[str, Any]) -> d
                 Page(
                     PAGES[language],
                     "report",
-                    [summary, *sections],
-                    name=f"{speaker(language)('report')} {minutes_of(report['made_at'])}",
+                    [in_words, *sections],
+                    name=f"{speaker(language)('report')} {minutes_of(made_at)}",
                     site=TO_SITE,
                     others=PAGES,
                 )

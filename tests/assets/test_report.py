@@ -8,6 +8,7 @@ import json
 import shutil
 import socketserver
 import threading
+from dataclasses import replace
 from http.server import BaseHTTPRequestHandler, HTTPServer
 from typing import ClassVar
 
@@ -17,8 +18,9 @@ import polars as pl
 import pytest
 
 from herijk.assets.notify import Message, Notifier, notifier_of
-from herijk.assets.report import failed_checks, tell
+from herijk.assets.report import Done, failed_checks, tell
 from herijk.assets.settings import read_settings
+from herijk.dashboards.report import Check
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.queries.change_report import change_report, reported_database
 from herijk.words.catalogue import both
@@ -48,17 +50,17 @@ def test_a_report_names_what_was_set_aside_what_changed_and_why(bench, built):
     register = built.table("register").filter(pl.col("tow_id").str.starts_with("2009"))
     stronger = register.filter(pl.col("tow_id") != gone).row(0, named=True)
     with_more_force(bench, stronger["tow_id"])
-    report = bench.rebuild().report
-    assert latest(bench)["headlines"] == report["headlines"]
-    assert {(row["tow_id"], row["what"]) for row in report["tow_rows"]} == {
+    report = bench.rebuild()
+    assert latest(bench)["headlines"] == report.headlines
+    assert {(row["tow_id"], row["what"]) for row in report.tow_rows} == {
         (gone, "gone"),
         (stronger["tow_id"], "samples"),
     }
-    assert [(r["tow_id"], r["reason_code"], r["what"]) for r in report["set_aside_rows"]] == [
+    assert [(r["tow_id"], r["reason_code"], r["what"]) for r in report.set_aside_rows] == [
         (gone, "unknown_run", "new")
     ]
-    assert report["factors"] == []
-    changed = [line for line in report["lines"] if line["change"] == "changed"]
+    assert report.factors == []
+    changed = [line for line in report.lines if line["change"] == "changed"]
     assert [(line["fsn_no"], line["to_edition"]) for line in changed] == [
         (stronger["fsn_no"], f"concept-{method}") for method in METHODS
     ]
@@ -71,9 +73,9 @@ def test_a_report_names_what_was_set_aside_what_changed_and_why(bench, built):
     assert f"{nl} +5," in page
 
     file.write_bytes(kept)
-    report = bench.rebuild().report
-    assert [row["what"] for row in report["set_aside_rows"]] == ["mended"]
-    assert [row["what"] for row in report["tow_rows"]] == ["new"]
+    report = bench.rebuild()
+    assert [row["what"] for row in report.set_aside_rows] == ["mended"]
+    assert [row["what"] for row in report.tow_rows] == ["new"]
 
 
 def test_a_log_factor_that_shows_the_same_did_not_move(bench):
@@ -88,12 +90,12 @@ def test_a_log_factor_that_shows_the_same_did_not_move(bench):
 
 def test_a_second_rebuild_reports_that_nothing_changed(bench):
     bench.rebuild()
-    report = bench.rebuild().report
-    assert report["nothing_changed"]
-    assert report["headlines"] == ["Nothing changed since the last report."]
+    report = bench.rebuild()
+    assert report.nothing_changed
+    assert report.headlines == ["Nothing changed since the last report."]
     assert latest(bench)["nothing_changed"]
     page = (bench.data / "report" / "latest.html").read_text("utf-8")
-    later = both("report_later")[0].format(made_at=report["made_at"].replace("T", " ")[:16])
+    later = both("report_later")[0].format(made_at=report.made_at.replace("T", " ")[:16])
     assert page.count(later) == 1
     assert "Eerste verslag" in page
     assert "GESIMULEERD" in page
@@ -110,29 +112,26 @@ def test_a_rebuild_killed_before_its_report_is_reported_on_by_the_next(bench, mo
         patched.setattr("herijk.assets.rebuild.write_report", killed)
         with pytest.raises(KeyboardInterrupt):
             bench.rebuild()
-    done = bench.rebuild()
-    assert (done.seasons, done.database) == ([], False)
-    assert [row["what"] for row in done.report["set_aside_rows"]] == ["new"]
+    report = bench.rebuild()
+    assert report.done == Done()
+    assert [row["what"] for row in report.set_aside_rows] == ["new"]
 
 
 def test_all_checks_pass_on_a_sound_archive(built):
     report = json.loads(next((built.data / "report").glob("2*.json")).read_text("utf-8"))
     assert {c["check"] for c in report["checks"]} >= {"counts_agree", "tables_fit_their_schemas"}
     assert [c for c in report["checks"] if not c["passed"]] == []
-    assert failed_checks(report) == []
+    assert failed_checks([Check(**check) for check in report["checks"]]) == []
 
 
 def test_a_failing_check_of_a_promise_is_an_error_and_a_warning_is_none():
-    check = {
-        "check": "counts_agree",
-        "passed": False,
-        "found": {"number": 2, "first": ["boats", "tows"]},
-    }
+    found = {"number": 2, "first": ["boats", "tows"]}
     for severity, failed in (
         ("ERROR", ["counts_agree: number 2, among them boats; tows"]),
         ("WARN", []),
     ):
-        assert failed_checks({"checks": [check | {"severity": severity}]}) == failed
+        check = Check("tows", "counts_agree", passed=False, severity=severity, found=found)
+        assert failed_checks([check]) == failed
     assert dg.AssetCheckSeverity.ERROR.value == "ERROR"
 
 
@@ -163,7 +162,7 @@ def test_news_is_mailed_to_a_file_and_posted(bench, web):
     address, posted = web
     bench.rebuild()
     spoil(samples_files(bench, 2009)[3])
-    report = bench.rebuild().report
+    report = bench.rebuild()
     notifier = Notifier(
         data=str(bench.data),
         mail_to="tc@example.org",
@@ -173,7 +172,7 @@ def test_news_is_mailed_to_a_file_and_posted(bench, web):
     assert tell(notifier, report) == []
     assert "1 nieuw" in posted[-1]["text"]
     assert "GESIMULEERD" in posted[-1]["text"]
-    assert tell(notifier, report | {"nothing_changed": True}) == []
+    assert tell(notifier, replace(report, nothing_changed=True)) == []
     assert len(posted) == 1
     message = Message("onderwerp", "tekst", {"nothing_changed": False}, NOW)
     assert notifier.send(message) == []

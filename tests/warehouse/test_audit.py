@@ -1,5 +1,7 @@
 """What is collected about a boat or a type: figures of the tables, and verdicts they bear."""
 
+from dataclasses import replace
+
 import duckdb
 import numpy as np
 import polars as pl
@@ -7,7 +9,7 @@ import pytest
 
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.warehouse.queries.audit import audit
-from herijk.warehouse.queries.audit_types import closest, differences
+from herijk.warehouse.queries.audit_types import Closest, closest, differences
 from tests.conftest import METHODS
 
 
@@ -23,27 +25,27 @@ def types_of(bench):
 
 
 def under(bench, boat_type, method="rebased-2015"):
-    return audit(bench.store, [boat_type], method)["types"][0]["under"][method]
+    return audit(bench.store, [boat_type], method).types[0].under[method]
 
 
 def test_figures_of_a_type_are_those_of_the_tables(built):
     for boat_type in types_of(built):
         report = audit(built.store, [boat_type])
-        assert report["methods"] == list(METHODS)
+        assert report.methods == list(METHODS)
         for method in METHODS:
             own = {"method": method, "boat_type": boat_type}
-            found = report["types"][0]["under"][method]
+            found = report.types[0].under[method]
             lines = built.table("type_consistency").filter(**own)
-            assert lines.height == len(found["lines"])
-            for line in found["lines"]:
+            assert lines.height == len(found.lines)
+            for line in found.lines:
                 key = {name: line[name] for name in ("quantity", "explaining")}
                 row = lines.row(by_predicate=_where(key), named=True)
                 assert row.items() <= line.items()
             test = built.table("type_homogeneity").filter(**own).row(0, named=True)
-            assert test.items() <= found["bends"].items()
+            assert test.items() <= found.bends.items()
             outliers = built.table("type_outliers").filter(**own)
-            assert len(found["outside"]) == outliers["outside"].sum()
-            assert sum(row["n"] for row in found["judged"]) == outliers.height
+            assert len(found.outside) == outliers["outside"].sum()
+            assert sum(row["n"] for row in found.judged) == outliers.height
 
 
 def _where(key):
@@ -53,7 +55,7 @@ def _where(key):
 def test_a_line_follows_only_where_its_interval_leaves_out_zero(built):
     seen = set()
     for boat_type in types_of(built):
-        for line in under(built, boat_type)["lines"]:
+        for line in under(built, boat_type).lines:
             expected = None if line["reason"] else line["slope_lo"] > 0 or line["slope_hi"] < 0
             assert line["follows"] is expected
             seen.add(line["follows"])
@@ -72,44 +74,48 @@ def test_equal_bends_are_possible_only_by_a_test_that_could_have_failed(
         f"UPDATE type_homogeneity SET p_value = {p_value}, "  # noqa: S608
         f"power_at_10pct = {'NULL' if power is None else power}, reason = ''",
     )
-    assert under(bench, "Kuikensloep")["bends"]["equal_possible"] is verdict
+    assert under(bench, "Kuikensloep").bends["equal_possible"] is verdict
 
 
 def test_repeats_of_a_type_are_those_of_its_boats(built):
     boats = built.table("boats").filter(boat_type="Kuikensloep")["fsn_no"].to_list()
     pairs = built.table("repeat_pairs").filter(method="rebased-2015")
     own = pairs.filter(pairs["fsn_no"].is_in(boats))["ln_ratio"].to_numpy()
-    found = under(built, "Kuikensloep")["repeats"]
-    assert found["n_pairs"] == len(own) > 0
-    assert found["sd_ratio"] == pytest.approx(np.sqrt((own**2).mean() / 2))
+    found = under(built, "Kuikensloep").repeats
+    assert found.n_pairs == len(own) > 0
+    assert found.sd_ratio == pytest.approx(np.sqrt((own**2).mean() / 2))
 
 
-def of(first, second):
-    """Figures of two types with the given slopes and verdicts, as far as they are compared."""
-    return [
-        {
-            "lines": [{"quantity": "b_m_s", "explaining": "weight_kg", "reason": ""} | slope],
-            "speed_trend": {"reason": "few_boats"},
-            "eras": [],
-            "bends": {"equal_possible": bends},
-            "closest": {"cw_closest": None},
-        }
-        for slope, bends in (first, second)
-    ]
+@pytest.fixture
+def of(built):
+    """Statistics of two types with the given slopes and verdicts, and nothing else to compare."""
+    any_type = under(built, "Kuikensloep")
+
+    def statistics(slope, bends):
+        return replace(
+            any_type,
+            lines=[{"quantity": "b_m_s", "explaining": "weight_kg", "reason": ""} | slope],
+            speed_trend={"reason": "few_boats"},
+            eras=[],
+            bends={"equal_possible": bends},
+            closest=Closest(0, None, ""),
+        )
+
+    return lambda first, second: [statistics(*first), statistics(*second)]
 
 
 def slope(value, half):
     return {"slope": value, "slope_lo": value - half, "slope_hi": value + half}
 
 
-def test_types_differ_where_their_slopes_lie_further_apart_than_both_intervals():
+def test_types_differ_where_their_slopes_lie_further_apart_than_both_intervals(of):
     # One follows weight and in the other no trend is seen: no difference by that alone.
     assert differences(*of((slope(1.0, 0.9), None), (slope(0.5, 0.9), None))) == []
     assert differences(*of((slope(1.0, 0.3), None), (slope(0.5, 0.3), None))) == ["b_m_s weight_kg"]
     assert differences(*of((slope(1.0, 0.3), None), (slope(0.5, 0.41), None))) == []
 
 
-def test_types_differ_by_a_verdict_only_where_both_have_one():
+def test_types_differ_by_a_verdict_only_where_both_have_one(of):
     same = slope(0.0, 1.0)
     assert differences(*of((same, True), (same, False))) == ["bends"]
     assert differences(*of((same, True), (same, None))) == []
@@ -136,39 +142,39 @@ def spread(n_boats, **sds):
 )
 def test_cw_lies_closest_only_where_chance_would_not_make_it(n_boats, b, a, cw, verdict):
     lines = spread(n_boats, b_m_s=b, a_kg_m=a, cw_standard_kg_m=cw)
-    assert closest(lines)["cw_closest"] is verdict
+    assert closest(lines).cw_closest is verdict
     missing = [line | {"reason": "few_boats"} for line in lines]
-    assert (closest(missing)["cw_closest"], closest(missing)["reason"]) == (None, "few_boats")
+    assert closest(missing) == Closest(n_boats, None, "few_boats")
 
 
 def test_eras_are_those_of_the_table(built):
     shifts = built.table("era_shifts")
     for boat_type in [*types_of(built), "unknown"]:
-        for era in under(built, boat_type)["eras"]:
+        for era in under(built, boat_type).eras:
             row = shifts.filter(method="rebased-2015", boat_type=boat_type, era=era["era"])
             if row.height:
                 assert era == row.row(0, named=True)
             else:
                 assert (era["n"], era["apart"], era["reason"]) == (0, None, "few_pairs")
-    everyone = audit(built.store, ["Vlet"])["fleet"]["rebased-2015"]["eras"]
+    everyone = audit(built.store, ["Vlet"]).fleet["rebased-2015"].eras
     assert everyone.keys() == {"2009-2011", "2012-2013"}
 
 
 @pytest.mark.parametrize("name", ["Kuikensloep", "kuikensloep", " KUIKEN SLOEP "])
 def test_a_type_is_found_whatever_its_case_and_blanks(built, name):
-    assert audit(built.store, [name])["types"][0]["boat_type"] == "Kuikensloep"
+    assert audit(built.store, [name]).types[0].boat_type == "Kuikensloep"
 
 
 def test_a_boat_is_found_whatever_its_case_and_blanks(built):
     fsn_no = built.table("tows")["fsn_no"][0]
-    assert audit(built.store, [f" fsn {fsn_no[3:]}"])["boat"]["fsn_no"] == fsn_no
+    assert audit(built.store, [f" fsn {fsn_no[3:]}"]).boat["fsn_no"] == fsn_no
 
 
 def test_boats_without_a_type_have_a_page_without_claims(built):
     found = under(built, "unknown")
-    assert {line["reason"] for line in found["lines"]} == {"no_type"}
-    assert (found["bends"]["reason"], found["speed_trend"]["reason"]) == ("no_type", "no_type")
-    assert found["bends"]["equal_possible"] is None
+    assert {line["reason"] for line in found.lines} == {"no_type"}
+    assert (found.bends["reason"], found.speed_trend["reason"]) == ("no_type", "no_type")
+    assert found.bends["equal_possible"] is None
 
 
 def test_an_unknown_name_lists_the_types_and_a_boat(built):
@@ -192,8 +198,8 @@ def test_a_method_that_the_tables_do_not_hold_is_named_with_those_they_do(built)
 def test_a_type_whose_tows_gave_no_curve_has_a_page(bench):
     change(bench, "UPDATE boats SET boat_type = 'Punter' WHERE fsn_no = 'FSN100'")
     found = under(bench, "punter")
-    assert found["lines"] == []
-    assert found["bends"]["reason"] == found["speed_trend"]["reason"] == "no_curves"
+    assert found.lines == []
+    assert found.bends["reason"] == found.speed_trend["reason"] == "no_curves"
 
 
 def test_a_boats_page_holds_all_that_the_tables_say_of_it(built):
@@ -208,9 +214,9 @@ def test_a_boats_page_holds_all_that_the_tables_say_of_it(built):
         "register": "register",
     }
     for part, table in tables.items():
-        assert len(report[part]) == built.table(table).filter(fsn_no=fsn_no).height, part
-    assert len(report["repeat_pairs"]) > 0
-    for tow in report["tows"]:
+        assert len(getattr(report, part)) == built.table(table).filter(fsn_no=fsn_no).height, part
+    assert len(report.repeat_pairs) > 0
+    for tow in report.tows:
         assert {curve["method"] for curve in tow["curves"]} == set(METHODS)
         assert tow["steps"][0]["step"] == "start"
 
@@ -219,8 +225,8 @@ def test_one_method_leaves_out_the_others(built):
     fsn_no = built.table("repeat_pairs")["fsn_no"][0]
     report = audit(built.store, [fsn_no], "rebased-2015")
     parts = ("in_type", "pooled", "repeat_pairs", "predicted", "register")
-    methods = {row["method"] for part in parts for row in report[part]}
-    curves = {curve["method"] for tow in report["tows"] for curve in tow["curves"]}
+    methods = {row["method"] for part in parts for row in getattr(report, part)}
+    curves = {curve["method"] for tow in report.tows for curve in tow["curves"]}
     assert methods == curves == {"rebased-2015"}
 
 
@@ -239,7 +245,7 @@ def test_set_aside_tows_of_a_boat_are_found_by_number_or_file_and_no_others(benc
             )
         ),
     )
-    found = [row["path"] for row in audit(bench.store, ["FSN101"])["set_aside"]]
+    found = [row["path"] for row in audit(bench.store, ["FSN101"]).set_aside]
     assert found == ["a.csv", "meetdata_2014/razende snol 8h 2014.csv"]
 
 
@@ -248,20 +254,20 @@ def test_statistics_of_a_season_rest_on_its_tows_alone(built):
     numbers = built.table("boats").filter(boat_type=boat_type)["fsn_no"]
     own = built.table("tows").filter(pl.col("fsn_no").is_in(numbers.to_list()), season=2014)
     report = audit(built.store, [boat_type], "rebased-2015", tows="2014")
-    page = report["types"][0]
-    assert report["statistics_over"] == "2014"
-    assert page["n_tows"] == own.height < built.table("tows").height
-    figures = page["under"]["rebased-2015"]
-    assert all(line["n"] <= own.height for line in figures["lines"] + figures["all_tows"])
-    assert {row["season"] for row in figures["outside"]} <= {2014}
+    page = report.types[0]
+    assert report.statistics_over == "2014"
+    assert page.n_tows == own.height < built.table("tows").height
+    figures = page.under["rebased-2015"]
+    assert all(line["n"] <= own.height for line in figures.lines + figures.all_tows)
+    assert {row["season"] for row in figures.outside} <= {2014}
     again = audit(built.store, [boat_type], "rebased-2015")
-    assert again["types"][0]["n_tows"] > own.height, "the database is as it was"
+    assert again.types[0].n_tows > own.height, "the database is as it was"
 
 
 def test_lines_over_all_tows_are_those_of_the_table(built):
     boat_type = types_of(built)[0]
     report = audit(built.store, [boat_type], "rebased-2015", tows="all")
-    lines = report["types"][0]["under"]["rebased-2015"]["lines"]
+    lines = report.types[0].under["rebased-2015"].lines
     table = built.table("type_lines").filter(boat_type=boat_type, method="rebased-2015", tows="all")
     assert [line["n"] for line in lines] == table.sort("quantity", "explaining")["n"].to_list()
 
@@ -269,7 +275,7 @@ def test_lines_over_all_tows_are_those_of_the_table(built):
 def test_a_boat_is_found_by_its_name_as_people_write_it(built):
     boat = built.table("boats").row(0, named=True)
     found = audit(built.store, [f" {boat['name'].upper()} "])
-    assert found["boat"]["fsn_no"] == boat["fsn_no"]
+    assert found.boat["fsn_no"] == boat["fsn_no"]
 
 
 @pytest.mark.parametrize("tows", ["last year", "1999"])

@@ -56,7 +56,7 @@ def test_a_race_and_a_decision_change_the_list_at_the_next_rebuild(bench):
     )
     curves = bench.store.table_path("curves", METHOD)
     made = curves.stat().st_mtime_ns
-    assert bench.rebuild().database
+    assert bench.rebuild().done.database
     assert curves.stat().st_mtime_ns == made  # of tows: neither concerns them
     after = bench.table("due_list").filter(pl.col("method") == METHOD)
     raced = after.filter(**key).row(0, named=True)
@@ -64,7 +64,7 @@ def test_a_race_and_a_decision_change_the_list_at_the_next_rebuild(bench):
     assert raced["raced_speed_m_s"] == pytest.approx(5.0)
     assert raced["speed_reason"] != NOT_RACED
     assert due["tow_id"][1] not in after["tow_id"].to_list()
-    assert not bench.rebuild().database
+    assert not bench.rebuild().done.database
 
 
 def test_a_draft_has_no_verification_code(built):

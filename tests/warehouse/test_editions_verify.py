@@ -15,12 +15,14 @@ from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import parse_method, shipped_method
 from herijk.tables.schemas import conform
 from herijk.warehouse.build.published import lineage_rows
+from herijk.warehouse.editions import sheets
 from herijk.warehouse.editions.inputs import same_tows, unchanged_tows
 from herijk.warehouse.editions.lineage import lineage
 from herijk.warehouse.editions.publish import publish_printed
 from herijk.warehouse.editions.verify import verify
-from herijk.warehouse.store.editions import read_about, read_edition
+from herijk.warehouse.store.editions import TableDigest, read_about, read_edition
 from herijk.warehouse.store.files import file_sha256
+from herijk.warehouse.store.store import table_digest
 from tests.warehouse.edition_bench import terms
 
 
@@ -399,6 +401,25 @@ def test_a_line_changed_and_sealed_anew_comes_out_otherwise(published_copy):
     findings, wrong = found(published_copy, kind="differs", edition="2014-1")
     assert wrong
     assert {name for name in change if f"{name} " in findings[0].message} == change.keys()
+
+
+def test_an_edition_of_before_a_column_was_added_is_as_it_was_published(published_copy):
+    path = folder(published_copy, "2014-1")
+    tables = {}
+    for name in ("register", "curves", "tows"):
+        older = pl.read_parquet(path / f"{name}.parquet").drop("^unseen_.*_ratio$")
+        older.write_parquet(path / f"{name}.parquet")
+        tables[name] = TableDigest(rows=older.height, digest=table_digest(older))
+    about = read_about(path)
+    about = about.model_copy(update={"code_version": "0.0.1", "tables": {**about.tables, **tables}})
+    register = pl.read_parquet(path / "register.parquet")
+    fields = [field for field in sheets.SHEET_FIELDS if field.column in register.columns]
+    (path / "register.csv").write_bytes(sheets.csv_bytes(register, fields))
+    (path / "register.xlsx").write_bytes(sheets.xlsx_bytes(register, fields, about))
+    (path / "edition.json").write_text(about.model_dump_json())
+    sealed_anew(path)
+    assert found(published_copy, edition="2014-1") == ([], True)  # its seal is another
+    assert len(fields) == len(sheets.SHEET_FIELDS) - 1
 
 
 def test_a_sheet_that_says_something_else_is_told_whatever_its_seal(published_copy):

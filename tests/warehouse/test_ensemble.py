@@ -31,7 +31,7 @@ def test_members_stay_out_of_the_database(built: Workbench):
 def test_a_rebuild_after_a_loss_draws_the_same_members(bench: Workbench):
     before = read_ensemble(bench.store, METHOD)
     bench.store.table_path("ensemble", METHOD).unlink()
-    assert bench.rebuild().methods == [METHOD]
+    assert bench.rebuild().done.methods == [METHOD]
     assert read_ensemble(bench.store, METHOD).equals(before)
 
 

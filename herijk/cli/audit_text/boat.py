@@ -7,7 +7,6 @@ from typing import Final
 
 from herijk.cli.audit_text.words import (
     EXPLANATIONS,
-    Report,
     change,
     codes,
     distance,
@@ -20,6 +19,8 @@ from herijk.cli.audit_text.words import (
 )
 from herijk.cli.text import table
 from herijk.pipeline.method.definition import COMPLETE
+from herijk.tables.row import Row
+from herijk.warehouse.queries.audit import BoatAudit
 from herijk.words import LANGUAGE, code, tell
 
 RUNS_ALONE_MEANS: Final = "runs alone: spread of the runs alone: the log's error is not in it"
@@ -30,54 +31,54 @@ LEAST_TOLD: Final = 5e-5
 """Part of Cw below which a cause of uncertainty is nothing in two decimals of a per cent."""
 
 
-def boat_page(report: Report) -> list[str]:
+def boat_page(report: BoatAudit) -> list[str]:
     """The parts of the page."""
-    boat = report["boat"]
-    parts = [_boat_title(boat, report["tows"])]
-    parts += [_tow(tow) for tow in report["tows"]]
-    if not report["tows"]:
+    boat = report.boat
+    parts = [_boat_title(boat, report.tows)]
+    parts += [_tow(tow) for tow in report.tows]
+    if not report.tows:
         parts.append(tell("No tow of this boat was accepted."))
     sections = [
         (_place_title(report), _place(report)),
         (
             tell("If it shared its type's bend:"),
-            [_pooled(row) for row in _not_own(report["pooled"])],
+            [_pooled(row) for row in _not_own(report.pooled)],
         ),
         (
             tell("Slow tow:"),
-            [f"  {r['method']}: {slow_tow(r | {'name': ''})}" for r in report["slow_tows"]],
+            [f"  {r['method']}: {slow_tow(r | {'name': ''})}" for r in report.slow_tows],
         ),
         (
             tell(
                 "Its repeat tows (without an alteration between them; E_n above 1: they disagree):"
             ),
-            [_pair(row) for row in report["repeat_pairs"]] or [tell("  none: n 0")],
+            [_pair(row) for row in report.repeat_pairs] or [tell("  none: n 0")],
         ),
         (
             tell("As predicted from weight, length, beam and type by the other boats:"),
-            [_predicted(row) for row in report["predicted"]] or [tell("  not predicted: n 0")],
+            [_predicted(row) for row in report.predicted] or [tell("  not predicted: n 0")],
         ),
         (
             tell(
                 "What other choices do to Cw, the largest first (the tool of 2015 let one tick: "
                 "tool):"
             ),
-            list(_options(report["options"])),
+            list(_options(report.options)),
         ),
         (
             tell("In the registers:"),
-            [_register(row) for row in report["register"]] or [tell("  no line")],
+            [_register(row) for row in report.register] or [tell("  no line")],
         ),
         (
             tell("Set aside, by its number or the name of its file:"),
-            [_set_aside(row) for row in report["set_aside"]] or [tell("  nothing")],
+            [_set_aside(row) for row in report.set_aside] or [tell("  nothing")],
         ),
     ]
     laid = [(title, [wrapped(line.strip()) for line in lines]) for title, lines in sections]
     return [*parts, *(section(*one) for one in laid if one[1])]
 
 
-def _boat_title(boat: Report, tows: list[Report]) -> str:
+def _boat_title(boat: Row, tows: list[Row]) -> str:
     title = tell("{} {}, type {}", boat["fsn_no"], boat["name"], boat["boat_type"] or "not known")
     crews = sorted({f"{tow['rowers']}{tow['crew_class']}" for tow in tows})
     if len(crews) < 2:
@@ -94,18 +95,18 @@ def _boat_title(boat: Report, tows: list[Report]) -> str:
     )
 
 
-def _place_title(report: Report) -> str:
-    size = report["type_size"]
+def _place_title(report: BoatAudit) -> str:
+    size = report.type_size
     return tell(
         "Its place among {} towed boats of its type ({}), newest tow of each boat and crew:",
-        size["n_towed"],
-        size["boat_type"],
+        size.n_towed,
+        size.boat_type,
     )
 
 
-def _place(report: Report) -> list[str]:
+def _place(report: BoatAudit) -> list[str]:
     lines = []
-    for row in report["in_type"]:
+    for row in report.in_type:
         why = ", ".join(tell(EXPLANATIONS.get(name, name)) for name in row["candidates"])
         place = tell("outside") if row["outside"] else tell("within")
         lines.append(
@@ -121,13 +122,13 @@ def _place(report: Report) -> list[str]:
                 why and f" ({why})",
             )
         )
-    size = report["type_size"]
-    unknown = report["boat"]["boat_type"] is None
-    reason = {"reason": "no_type" if unknown else "few_boats", "n": 0, "n_boats": size["n_towed"]}
+    size = report.type_size
+    unknown = report.boat["boat_type"] is None
+    reason = {"reason": "no_type" if unknown else "few_boats", "n": 0, "n_boats": size.n_towed}
     return lines or [f"  {nothing(reason)}"]
 
 
-def _not_own(pooled: list[Report]) -> Iterator[Report]:
+def _not_own(pooled: list[Row]) -> Iterator[Row]:
     """Curves with a bend drawn to the type's, with the own Cw beside them."""
     own = {(row["method"], row["tow_id"]): row for row in pooled if row["pooling"] == "own"}
     for row in pooled:
@@ -135,7 +136,7 @@ def _not_own(pooled: list[Report]) -> Iterator[Report]:
             yield row | {"own": own[row["method"], row["tow_id"]]}
 
 
-def _pooled(row: Report) -> str:
+def _pooled(row: Row) -> str:
     own = row["own"]
     words = {"partial": tell("in part"), "shared": tell("wholly")}[row["pooling"]]
     b = [
@@ -155,7 +156,7 @@ def _pooled(row: Report) -> str:
     )
 
 
-def _pair(row: Report) -> str:
+def _pair(row: Row) -> str:
     e_n = tell("not known") if row["e_n"] is None else tell("{:+.2f}", row["e_n"])
     return tell(
         "  {}, {}{}, {} to {}: Cw {} %, E_n {}",
@@ -169,14 +170,14 @@ def _pair(row: Report) -> str:
     )
 
 
-def _predicted(row: Report) -> str:
+def _predicted(row: Row) -> str:
     if row["predicted_cw_kg_m"] is None:
         return f"  {row['method']}: {nothing({'reason': row['reason'] or 'few_boats', 'n': 0})}"
     verdict = tell("they disagree") if row["disagrees"] else tell("they agree")
     return f"  {row['method']}, {row['tow_id']}: {second_opinion(row)}; {verdict}"
 
 
-def _options(effects: list[Report]) -> Iterator[str]:
+def _options(effects: list[Row]) -> Iterator[str]:
     """A line per tow, method and study; choices that do nothing are left out."""
     for key, group in groupby(effects, key=lambda e: (e["tow_id"], e["method"], e["study"])):
         felt = [
@@ -188,7 +189,7 @@ def _options(effects: list[Report]) -> Iterator[str]:
             yield f"  {', '.join(key)}: {', '.join(felt)}"
 
 
-def _register(row: Report) -> str:
+def _register(row: Row) -> str:
     line = f"  {row['edition']}, {row['rowers']}{row['crew_class']}: {code(row['status'])}"
     if row["cw_kg_m"] is None:
         return line
@@ -205,14 +206,14 @@ def _register(row: Report) -> str:
     )
 
 
-def _set_aside(row: Report) -> str:
+def _set_aside(row: Row) -> str:
     tow = "" if row["tow_id"] is None else tell(" (tow {})", row["tow_id"])
     line = "" if row["line"] is None else tell(", line {}", row["line"])
     said = row["message_nl" if LANGUAGE.get() == "nl" else "message"]
     return f"  {row['path']}{line}{tow}: {said}"
 
 
-def _tow(tow: Report) -> str:
+def _tow(tow: Row) -> str:
     weight = tell("weight not known") if tow["weight_kg"] is None else f"{tow['weight_kg']:.0f} kg"
     sizes = (tow[key] for key in ("waterline_length_m", "beam_m", "bow_height_m"))
     head = tell(
@@ -229,7 +230,7 @@ def _tow(tow: Report) -> str:
     return "\n".join([head, *_steps(tow["steps"]), *(_curve(curve) for curve in tow["curves"])])
 
 
-def _steps(steps: list[Report]) -> list[str]:
+def _steps(steps: list[Row]) -> list[str]:
     """What each step of a correction does to the tow's Cw; steps that do nothing are left out."""
     lines = []
     for ends in dict.fromkeys((step["from_method"], step["to_method"]) for step in steps):
@@ -253,7 +254,7 @@ def _steps(steps: list[Report]) -> list[str]:
     return lines
 
 
-def _curve(curve: Report) -> str:
+def _curve(curve: Row) -> str:
     head = (
         "run",
         "window s",
@@ -293,7 +294,7 @@ def _curve(curve: Report) -> str:
     return "\n".join(part for part in parts if part)
 
 
-def _budget(budget: list[Report]) -> str:
+def _budget(budget: list[Row]) -> str:
     """What makes Cw uncertain, the largest first; with whom it is shared where it is."""
     felt = [
         f"{code(row['component'])} {share(row['u_ratio'], 2)}"
@@ -304,7 +305,7 @@ def _budget(budget: list[Report]) -> str:
     return wrapped(tell("standard uncertainty of Cw: {}", ", ".join(felt)), 4) if felt else ""
 
 
-def _result(curve: Report) -> str:
+def _result(curve: Row) -> str:
     flags = f" ({codes(curve['flags'])})" if curve["flags"] else ""
     if curve["cw_kg_m"] is None:
         return tell("no curve, {}{}", code(curve["status"]), flags)
@@ -326,14 +327,14 @@ def _result(curve: Report) -> str:
     return "; ".join([numbers, *_unseen(curve), *left_out])
 
 
-def _unseen(curve: Report) -> list[str]:
+def _unseen(curve: Row) -> list[str]:
     """From which size on an error would have been seen."""
     if curve["unseen_error_ratio"] is None:
         return []
     return [tell("an error would be seen from {:.0%} on", curve["unseen_error_ratio"])]
 
 
-def _interval_of_b(curve: Report) -> str:
+def _interval_of_b(curve: Row) -> str:
     if curve["b_lo_m_s"] is None:
         return tell("no interval")
     upper = (
@@ -342,6 +343,6 @@ def _interval_of_b(curve: Report) -> str:
     return tell("{}: {:.2f} to {}", _named(curve), curve["b_lo_m_s"], upper)
 
 
-def _named(curve: Report) -> str:
+def _named(curve: Row) -> str:
     """What an interval is called: without the log's error in it, it is not a 95 % interval."""
     return "95 %" if curve["interval"] == COMPLETE else tell("runs alone")

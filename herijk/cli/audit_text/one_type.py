@@ -1,7 +1,7 @@
 """The page of one type: are equal boats equal?"""
 
-from collections.abc import Callable, Iterator
-from typing import Any, Final
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, Final, TypeVar
 
 from herijk.cli.audit_text.words import (
     AGAINST,
@@ -9,7 +9,6 @@ from herijk.cli.audit_text.words import (
     LINES,
     QUANTITIES,
     REASONS,
-    Report,
     apart,
     change,
     heading,
@@ -31,7 +30,11 @@ from herijk.cli.audit_text.words import (
 from herijk.cli.text import table
 from herijk.pipeline.consistency import ERAS
 from herijk.pipeline.consistency.tow_speed import SLOW_POWER_W
+from herijk.tables.row import Row
+from herijk.warehouse.queries.audit_types import Fleet, TypesAudit, TypeStatistics
 from herijk.words import tell
+
+T = TypeVar("T")
 
 NAMES: Final = {
     "boat": "boats",
@@ -42,10 +45,10 @@ NAMES: Final = {
 """Causes of spread, by the codes in `variance_components`."""
 
 
-def one_type(report: Report) -> list[str]:
+def one_type(report: TypesAudit) -> list[str]:
     """The parts of the page."""
-    of_type, fleet = report["types"][0], report["fleet"]
-    under = of_type["under"]
+    of_type, fleet = report.types[0], report.fleet
+    under = of_type.under
     repeats = [
         *_eras(under, fleet),
         *_agreement(fleet),
@@ -54,7 +57,7 @@ def one_type(report: Report) -> list[str]:
     ]
     opinion = [line for m in under for line in _prediction(m, under[m], fleet[m])]
     sections = [
-        (_in_short_title(report["statistics_over"]), _each(under, _in_short)),
+        (_in_short_title(report.statistics_over), _each(under, _in_short)),
         (_first_title(under), _lines(under)),
         (tell("2. Can all boats have the same bend?"), _each(under, _equal_bends)),
         (
@@ -76,9 +79,9 @@ def one_type(report: Report) -> list[str]:
         (tell("8. Second opinion without towing: Cw from weight, length, beam and type"), opinion),
     ]
     top = (
-        tell("{}: are equal boats equal?", of_type["boat_type"]),
+        tell("{}: are equal boats equal?", of_type.boat_type),
         heading(of_type),
-        note(report["statistics_over"]),
+        note(report.statistics_over),
     )
     return ["\n".join(wrapped(line, 0, 0) for line in top), *(section(*one) for one in sections)]
 
@@ -88,11 +91,11 @@ def _in_short_title(tows: str) -> str:
     return tell("In short, over all tows of {}", "all seasons" if whole else tows)
 
 
-def _in_short(under: Report) -> list[str]:
+def _in_short(under: TypeStatistics) -> list[str]:
     """The verdicts over all tows, each with its figure."""
-    lines = [line for line in under["all_tows"] if not line["reason"]]
+    lines = [line for line in under.all_tows if not line["reason"]]
     if not lines:
-        return [nothing(under["bends"] | {"reason": under["bends"]["reason"] or "few_boats"})]
+        return [nothing(under.bends | {"reason": under.bends["reason"] or "few_boats"})]
     said = [
         tell(
             "{} (n {} of {} boats).",
@@ -101,13 +104,13 @@ def _in_short(under: Report) -> list[str]:
             lines[0]["n_boats"],
         )
     ]
-    said += [_hull(row) for row in under["hull_speed"] if row["b_is_hull_speed"] is not None]
-    names = ", ".join(f"{who(row)} {row['season']}" for row in under["tows_outside"])
+    said += [_hull(row) for row in under.hull_speed if row["b_is_hull_speed"] is not None]
+    names = ", ".join(f"{who(row)} {row['season']}" for row in under.tows_outside)
     judged = tell("Outside the type: ") + (names or tell("no tow")) + "."
     return [" ".join([*said, judged])]
 
 
-def _verdict(line: Report) -> str:
+def _verdict(line: Row) -> str:
     letter, against = LETTERS[line["quantity"]], AGAINST[line["explaining"]][0]
     seen = (
         tell("{} follows {}", letter, against)
@@ -117,7 +120,7 @@ def _verdict(line: Report) -> str:
     return tell("{}, {} explained", seen, share(line["r2"]))
 
 
-def _hull(row: Report) -> str:
+def _hull(row: Row) -> str:
     """Whether B is hull speed."""
     is_it = tell("may be") if row["b_is_hull_speed"] else tell("is not")
     ends = tell("{:.2f} to {:.2f}", row["b_ratio_lo"], row["b_ratio_hi"])
@@ -130,7 +133,7 @@ def _hull(row: Report) -> str:
     )
 
 
-def _first_title(under: Report) -> str:
+def _first_title(under: Mapping[str, TypeStatistics]) -> str:
     lines = [line_of(figures, "cw_standard_kg_m", "weight_kg") for figures in under.values()]
     speeds = {
         tell("{:.2f} m/s", x["standard_speed_m_s"]) for x in lines if "standard_speed_m_s" in x
@@ -139,7 +142,7 @@ def _first_title(under: Report) -> str:
     return tell("1. Do A [kg/m] and B [m/s] follow weight or tow speed, q weight? Cw [kg/m]{}?", at)
 
 
-def _each(under: Report, say: Callable[[Report], list[str]]) -> list[str]:
+def _each(under: Mapping[str, T], say: Callable[[T], list[str]]) -> list[str]:
     """What a section says of every method; methods of which the same holds share a line."""
     said: dict[tuple[str, ...], list[str]] = {}
     for method, figures in under.items():
@@ -150,7 +153,7 @@ def _each(under: Report, say: Callable[[Report], list[str]]) -> list[str]:
     return lines
 
 
-def _lines(under: Report) -> list[str]:
+def _lines(under: Mapping[str, TypeStatistics]) -> list[str]:
     """The table of lines, what is not claimed, and which quantity lies closest together."""
     cells, silent = [], []
     for quantity, explaining in LINES:
@@ -175,12 +178,12 @@ def _lines(under: Report) -> list[str]:
     return shown + _silent(silent) + (_each(under, _closest) if cells else [])
 
 
-def _slope(line: Report) -> str:
+def _slope(line: Row) -> str:
     step, _ = step_of(line["quantity"], line["explaining"])
     return interval(*(step * line[end] for end in ("slope", "slope_lo", "slope_hi")), digits=2)
 
 
-def _line_figures(line: Report) -> tuple[Any, ...]:
+def _line_figures(line: Row) -> tuple[Any, ...]:
     digits = 0 if line["quantity"] == "q" else 1  # q spreads by many per cent
     return (
         share(line["r2"]),
@@ -204,16 +207,16 @@ def _silent(silent: list[tuple[str, str, str]]) -> list[str]:
     ]
 
 
-def _closest(under: Report) -> list[str]:
+def _closest(under: TypeStatistics) -> list[str]:
     """Spread about the line on weight: does Cw at one speed lie closer together than A and B?"""
-    closest = under["closest"]
-    if closest["reason"]:
-        return [nothing(closest)]
+    closest = under.closest
+    if closest.reason:
+        return [nothing(vars(closest))]
     verdict = {
         True: tell("Cw lies closer together than both"),
         False: tell("Cw lies further apart"),
         None: tell("these differ no more than chance lets them"),
-    }[closest["cw_closest"]]
+    }[closest.cw_closest]
     by_letter = {letter: line_of(under, q, "weight_kg") for q, letter in QUANTITIES.items()}
     spreads = ", ".join(
         f"{letter} {share(line['residual_sd_ratio'], 1)} (n {line['n']})"
@@ -222,8 +225,8 @@ def _closest(under: Report) -> list[str]:
     return [tell("spread about weight: {}: {}.", spreads, verdict)]
 
 
-def _equal_bends(under: Report) -> list[str]:
-    test = under["bends"]
+def _equal_bends(under: TypeStatistics) -> list[str]:
+    test = under.bends
     if test["reason"]:
         return [nothing(test)]
     verdict = {
@@ -253,7 +256,7 @@ def _equal_bends(under: Report) -> list[str]:
     ]
 
 
-def _noise(test: Report) -> str:
+def _noise(test: Row) -> str:
     noise = tell("Noise alone gives {} of the variance of the bends", share(test["noise_share"]))
     if test["b_sd_ratio"] is None or test["ab_correlation"] is None:
         return f"{noise}."
@@ -267,22 +270,22 @@ def _noise(test: Report) -> str:
     )
 
 
-def _speed_trend(under: Report) -> list[str]:
-    trend = under["speed_trend"]
+def _speed_trend(under: TypeStatistics) -> list[str]:
+    trend = under.speed_trend
     if trend["reason"]:
         return [nothing(trend)]
     ends = interval(*(0.1 * trend[end] for end in ("slope", "slope_lo", "slope_hi")), digits=3)
     return [tell("{}: 10 % more tow speed, q {}, n {}.", yes(trend["follows"]), ends, trend["n"])]
 
 
-def _shared(under: Report) -> list[str]:
+def _shared(under: Mapping[str, TypeStatistics]) -> list[str]:
     """What becomes of the register when boats share their bend: B, and how far Cw would move."""
     cells, silent = [], []
     for method, figures in under.items():
-        by_pooling = {row["pooling"]: row for row in figures["shared"]}
+        by_pooling = {row["pooling"]: row for row in figures.shared}
         if "shared" not in by_pooling:
-            reason = {"reason": figures["bends"]["reason"] or "few_boats"}
-            silent.append((method, tell("shared bend"), nothing(figures["bends"] | reason)))
+            reason = {"reason": figures.bends["reason"] or "few_boats"}
+            silent.append((method, tell("shared bend"), nothing(figures.bends | reason)))
             continue
         own, part, shared = (by_pooling[pooling] for pooling in ("own", "partial", "shared"))
         b = shared["median_b_m_s"]
@@ -294,8 +297,8 @@ def _shared(under: Report) -> list[str]:
     return ([table(head, cells)] if cells else []) + _silent(silent)
 
 
-def _judged(under: Report) -> str:
-    counts = {row["quantity"]: row["n"] for row in under["judged"]}
+def _judged(under: TypeStatistics) -> str:
+    counts = {row["quantity"]: row["n"] for row in under.judged}
     return ", ".join(
         tell("n {} by {}", counts[code], words)
         if code in counts
@@ -304,11 +307,11 @@ def _judged(under: Report) -> str:
     )
 
 
-def _outside(under: Report) -> list[str]:
-    if not under["judged"]:
-        reason = under["bends"]["reason"] or "few_boats"
-        return [nothing(under["bends"] | {"reason": reason})]
-    boats = [outsider(row) for row in under["outside"]]
+def _outside(under: TypeStatistics) -> list[str]:
+    if not under.judged:
+        reason = under.bends["reason"] or "few_boats"
+        return [nothing(under.bends | {"reason": reason})]
+    boats = [outsider(row) for row in under.outside]
     return [tell("{} outside ({}).", len(boats) or "none", _judged(under)), *listed(boats)]
 
 
@@ -317,35 +320,35 @@ def _slow_title() -> str:
     return tell("6. Slow tows: under {:.0f} W (men) or {:.0f} W (women) a rower", men, women)
 
 
-def _slow(under: Report) -> list[str]:
-    counted = tell("of n {}", under["bends"]["n"])
-    lines = [slow_tow(row) for row in under["slow_tows"]]
+def _slow(under: TypeStatistics) -> list[str]:
+    counted = tell("of n {}", under.bends["n"])
+    lines = [slow_tow(row) for row in under.slow_tows]
     return [f"{len(lines) or 'none'} {counted}.", *listed(lines)]
 
 
-def _eras(under: Report, fleet: Report) -> list[str]:
+def _eras(under: Mapping[str, TypeStatistics], fleet: Mapping[str, Fleet]) -> list[str]:
     """Whether the tows of an era stand apart from the next tow of the same boats."""
     cells = []
-    for index, era in enumerate(next(iter(under.values()))["eras"]):
+    for index, era in enumerate(next(iter(under.values())).eras):
         label = tell("{} to later", era["era"])
         for method, figures in under.items():
-            own, everyone = figures["eras"][index], fleet[method]["eras"].get(era["era"], era)
+            own, everyone = figures.eras[index], fleet[method].eras.get(era["era"], era)
             cells.append((label, method, *_shift(own), *_shift(everyone)))
             label = ""
     head = ("towed in", "method", "new / old Cw, %", "", "n", "all types, %", "", "n")
     return [table(head, cells), *_each(fleet, _ageing)]
 
 
-def _shift(era: Report) -> tuple[str, str, int]:
+def _shift(era: Row) -> tuple[str, str, int]:
     if era["reason"]:
         return REASONS[era["reason"]], "-", era["n"]
     shift, lo, hi = (change(era[end]) for end in ("shift_ratio", "lo", "hi"))
     return tell("{} ({} to {})", shift, lo, hi), apart(era), era["n"]
 
 
-def _ageing(fleet: Report) -> list[str]:
+def _ageing(fleet: Fleet) -> list[str]:
     """How boats age by the pairs of the last era, which is not in the shift of an era."""
-    known = [era for era in fleet["eras"].values() if era["ageing_per_year"] is not None]
+    known = [era for era in fleet.eras.values() if era["ageing_per_year"] is not None]
     if not known:
         return [tell("ageing is not taken out: fewer than six pairs within the last era.")]
     yearly = (100 * known[0][f"ageing_{end}"] for end in ("per_year", "lo", "hi"))
@@ -358,11 +361,11 @@ def _ageing(fleet: Report) -> list[str]:
     ]
 
 
-def _agreement(fleet: Report) -> list[str]:
+def _agreement(fleet: Mapping[str, Fleet]) -> list[str]:
     """How well repeat tows of all types agree, per method and era (ISO 5725)."""
     cells = [
         (
-            method if row["scope"] == figures["reproducibility"][0]["scope"] else "",
+            method if row["scope"] == figures.reproducibility[0]["scope"] else "",
             row["scope"],
             share(row["within_sd_ratio"], 1),
             _between(row),
@@ -372,7 +375,7 @@ def _agreement(fleet: Report) -> list[str]:
             _classes(row),
         )
         for method, figures in fleet.items()
-        for row in figures["reproducibility"]
+        for row in figures.reproducibility
     ]
     head = (
         "all types",
@@ -392,12 +395,12 @@ def _agreement(fleet: Report) -> list[str]:
     return [table(head, cells), wrapped(meaning)]
 
 
-def _classes(row: Report) -> str:
+def _classes(row: Row) -> str:
     """How many classes of boats the test tells apart."""
     return "-" if row["distinct_categories"] is None else tell("{:.1f}", row["distinct_categories"])
 
 
-def _between(row: Report) -> str:
+def _between(row: Row) -> str:
     if not row["n_pairs"]:
         return "-"
     return tell(
@@ -405,32 +408,32 @@ def _between(row: Report) -> str:
     )
 
 
-def _repeats(figures: Report) -> list[str]:
+def _repeats(figures: TypeStatistics) -> list[str]:
     """How well repeat tows of this type agree."""
-    pairs = figures["repeats"]
-    if not pairs["n_pairs"]:
+    pairs = figures.repeats
+    if not pairs.n_pairs:
         return [tell("no repeat pairs of this type (n 0).")]
     return [
         tell(
             "this type: s_R {} (n {} pairs, {} of {} disagree by E_n).",
-            share(pairs["sd_ratio"], 1),
-            pairs["n_pairs"],
-            pairs["n_disagree"],
-            pairs["n_e_n"],
+            share(pairs.sd_ratio, 1),
+            pairs.n_pairs,
+            pairs.n_disagree,
+            pairs.n_e_n,
         )
     ]
 
 
-def _cause(row: Report) -> str:
+def _cause(row: Row) -> str:
     if row["lo"] is None:
         return share(row["sd_ratio"], 1)
     upper = tell("no bound") if row["hi"] is None else share(row["hi"], 1)
     return tell("{} ({} to {})", share(row["sd_ratio"], 1), share(row["lo"], 1), upper)
 
 
-def _causes(fleet: Report) -> list[str]:
+def _causes(fleet: Fleet) -> list[str]:
     """Spread of Cw within types by cause."""
-    by_component = {row["component"]: row for row in fleet["components"]}
+    by_component = {row["component"]: row for row in fleet.components}
     if "boat" not in by_component or by_component["boat"]["reason"]:
         reason = by_component["boat"]["reason"] if "boat" in by_component else "no_curves"
         return [tell("spread by cause: nothing claimed, {}.", REASONS[reason])]
@@ -438,9 +441,9 @@ def _causes(fleet: Report) -> list[str]:
     return [tell("within types, at one speed: {} (n {}).", causes, by_component["boat"]["n"])]
 
 
-def _newest_reproducibility(fleet: Report) -> str:
+def _newest_reproducibility(fleet: Fleet) -> str:
     """s_R of the last era, what a tow test can do now."""
-    rows = [row for row in fleet["reproducibility"] if row["scope"] == ERAS[-1].name]
+    rows = [row for row in fleet.reproducibility if row["scope"] == ERAS[-1].name]
     known = [row for row in rows if row["n_pairs"]]
     if not known:
         return tell("not known (n 0 pairs)")
@@ -449,8 +452,8 @@ def _newest_reproducibility(fleet: Report) -> str:
     )
 
 
-def _prediction(method: str, under: Report, fleet: Report) -> Iterator[str]:
-    own, everyone = under["prediction"], fleet["prediction_error"]
+def _prediction(method: str, under: TypeStatistics, fleet: Fleet) -> Iterator[str]:
+    own, everyone = under.prediction, fleet.prediction_error
     if not own["n_predicted"] or everyone is None:
         yield wrapped(f"{method}: {nothing({'reason': 'few_boats', 'n': own['n']})}")
         return
@@ -469,5 +472,5 @@ def _prediction(method: str, under: Report, fleet: Report) -> Iterator[str]:
             own["n_predicted"],
         )
     )
-    boats = [f"{who(row)}: {second_opinion(row)}" for row in under["disagreeing"]]
+    boats = [f"{who(row)}: {second_opinion(row)}" for row in under.disagreeing]
     yield from (wrapped(line, 4) for line in listed(boats))

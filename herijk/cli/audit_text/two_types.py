@@ -6,7 +6,6 @@ from typing import NamedTuple
 from herijk.cli.audit_text.words import (
     AGAINST,
     QUANTITIES,
-    Report,
     apart,
     change,
     heading,
@@ -18,13 +17,15 @@ from herijk.cli.audit_text.words import (
     wrapped,
 )
 from herijk.cli.text import table
+from herijk.tables.row import Row
+from herijk.warehouse.queries.audit_types import TypesAudit, TypeStatistics
 from herijk.words import tell
 
-Cell = Callable[[Report], str]
+Cell = Callable[[TypeStatistics], str]
 """The words in a cell, from the figures of a type."""
 
 
-class Row(NamedTuple):
+class TableRow(NamedTuple):
     """A row of the table: its label, its name among the differences, and its cells."""
 
     label: str
@@ -32,9 +33,9 @@ class Row(NamedTuple):
     cell: Cell
 
 
-def _headline(eras: list[str]) -> list[Row]:
+def _headline(eras: list[str]) -> list[TableRow]:
     lines = [
-        Row(
+        TableRow(
             tell("{} against {}", letter, against),
             f"{quantity} {explaining}",
             _line(quantity, explaining),
@@ -44,28 +45,28 @@ def _headline(eras: list[str]) -> list[Row]:
     ]
     return [
         *lines,
-        Row("q against weight", "q weight_kg", _line("q", "weight_kg")),
-        Row("spread about weight", "closest", _spread),
-        Row("equal bends possible", "bends", _bends),
-        Row("q per 10 % tow speed", "speed_trend", _trend),
-        Row("boats outside", "", _outside),
-        Row("slow tows", "", lambda u: tell("{} of n {}", len(u["slow_tows"]), u["bends"]["n"])),
-        *(Row(tell("{}, next tow", era), era, _era(i)) for i, era in enumerate(eras)),
-        Row("repeats: s_R", "", _repeat),
-        Row("off from dimensions", "", _prediction),
+        TableRow("q against weight", "q weight_kg", _line("q", "weight_kg")),
+        TableRow("spread about weight", "closest", _spread),
+        TableRow("equal bends possible", "bends", _bends),
+        TableRow("q per 10 % tow speed", "speed_trend", _trend),
+        TableRow("boats outside", "", _outside),
+        TableRow("slow tows", "", lambda u: tell("{} of n {}", len(u.slow_tows), u.bends["n"])),
+        *(TableRow(tell("{}, next tow", era), era, _era(i)) for i, era in enumerate(eras)),
+        TableRow("repeats: s_R", "", _repeat),
+        TableRow("off from dimensions", "", _prediction),
     ]
 
 
-def _trend_seen(line: Report) -> str:
+def _trend_seen(line: Row) -> str:
     return "follows" if line["follows"] else tell("none seen")
 
 
-def _nothing(row: Report) -> str:
+def _nothing(row: Row) -> str:
     return f"- {row['reason'].replace('_', ' ')}, n {row['n']}"
 
 
 def _line(quantity: str, explaining: str) -> Cell:
-    def cell(under: Report) -> str:
+    def cell(under: TypeStatistics) -> str:
         line = line_of(under, quantity, explaining)
         if line["reason"]:
             return _nothing(line)
@@ -75,17 +76,17 @@ def _line(quantity: str, explaining: str) -> Cell:
     return cell
 
 
-def _spread(under: Report) -> str:
-    closest = under["closest"]
-    if closest["reason"]:
-        return _nothing(closest)
+def _spread(under: TypeStatistics) -> str:
+    closest = under.closest
+    if closest.reason:
+        return _nothing(vars(closest))
     lines = [line_of(under, quantity, "weight_kg") for quantity in QUANTITIES]
     b, a, cw = (line["residual_sd_ratio"] for line in lines)
-    return tell("B {:.1f}, A {:.1f}, Cw {:.1f} %, n {}", 100 * b, 100 * a, 100 * cw, closest["n"])
+    return tell("B {:.1f}, A {:.1f}, Cw {:.1f} %, n {}", 100 * b, 100 * a, 100 * cw, closest.n)
 
 
-def _bends(under: Report) -> str:
-    test = under["bends"]
+def _bends(under: TypeStatistics) -> str:
+    test = under.bends
     if test["reason"]:
         return _nothing(test)
     word = {True: "yes", False: "no", None: tell("not claimed")}[test["equal_possible"]]
@@ -94,21 +95,21 @@ def _bends(under: Report) -> str:
     )
 
 
-def _trend(under: Report) -> str:
-    trend = under["speed_trend"]
+def _trend(under: TypeStatistics) -> str:
+    trend = under.speed_trend
     if trend["reason"]:
         return _nothing(trend)
     return tell("{}, {:+.3f}, n {}", _trend_seen(trend), 0.1 * trend["slope"], trend["n"])
 
 
-def _outside(under: Report) -> str:
-    judged = max((row["n"] for row in under["judged"]), default=0)
-    return tell("{} of n {}", len(under["outside"]), judged)
+def _outside(under: TypeStatistics) -> str:
+    judged = max((row["n"] for row in under.judged), default=0)
+    return tell("{} of n {}", len(under.outside), judged)
 
 
 def _era(index: int) -> Cell:
-    def cell(under: Report) -> str:
-        era = under["eras"][index]
+    def cell(under: TypeStatistics) -> str:
+        era = under.eras[index]
         if era["reason"]:
             return _nothing(era)
         return f"{apart(era)}, {change(era['shift_ratio'])} %, n {era['n']}"
@@ -116,35 +117,35 @@ def _era(index: int) -> Cell:
     return cell
 
 
-def _repeat(under: Report) -> str:
-    pairs = under["repeats"]
-    return tell("{}, n {} pairs", share(pairs["sd_ratio"], 1), pairs["n_pairs"])
+def _repeat(under: TypeStatistics) -> str:
+    pairs = under.repeats
+    return tell("{}, n {} pairs", share(pairs.sd_ratio, 1), pairs.n_pairs)
 
 
-def _prediction(under: Report) -> str:
-    own = under["prediction"]
+def _prediction(under: TypeStatistics) -> str:
+    own = under.prediction
     return f"{share(own['rmse_ratio'], 1)}, n {own['n_predicted']}"
 
 
-def two_types(report: Report) -> list[str]:
+def two_types(report: TypesAudit) -> list[str]:
     """The parts of the page."""
-    types, methods = report["types"], report["methods"]
-    names = [one["boat_type"] for one in types]
-    eras = [era["era"] for era in types[0]["under"][methods[0]]["eras"]]
+    types, methods = report.types, report.methods
+    names = [one.boat_type for one in types]
+    eras = [era["era"] for era in types[0].under[methods[0]].eras]
     cells, differing = [], []
     for row in _headline(eras):
         for method in methods:
-            words = [row.cell(one["under"][method]) for one in types]
+            words = [row.cell(one.under[method]) for one in types]
             cells.append((row.label if method == methods[0] else "", method, *words))
-            if row.name in report["differences"][method]:
+            if row.name in report.differences[method]:
                 said = "; ".join(f"{n} {w}" for n, w in zip(names, words, strict=True))
                 differing.append(wrapped(f"{row.label}, {method}: {said}"))
-    intro = [f"{one['boat_type']}: {heading(one)}" for one in types]
+    intro = [f"{one.boat_type}: {heading(one)}" for one in types]
     intro.append(
         tell(
             "{} Beside a verdict stand the slope, per 100 kg (q: 1000 kg) or 0.1 m/s, "
             "and the share of the spread that the line explains.",
-            note(report["statistics_over"]),
+            note(report.statistics_over),
         )
     )
     title = tell(

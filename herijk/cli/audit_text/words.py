@@ -8,11 +8,11 @@ import re
 import textwrap
 from collections.abc import Iterable
 from math import exp
-from typing import Any, Final
+from typing import Final
 
+from herijk.tables.row import Row
+from herijk.warehouse.queries.audit_types import TypeFacts, TypeStatistics
 from herijk.words import code, number, tell
-
-Report = dict[str, Any]
 
 REASONS: Final = {
     "no_type": "boats without a type are not compared",
@@ -110,7 +110,7 @@ def change(ratio: float) -> str:
     return tell("{:+.1f}", 100 * (ratio - 1))
 
 
-def nothing(row: Report) -> str:
+def nothing(row: Row) -> str:
     """That nothing is claimed, why, and from how many boats."""
     n = row.get("n_boats", row["n"])
     counted = tell("{} boats", n) if "n_boats" in row else f"n {n}"
@@ -127,7 +127,7 @@ def interval(value: float, lo: float, hi: float, *, digits: int) -> str:
     return tell("{} ({} to {})", *(number(x, f"+.{digits}f") for x in (value, lo, hi)))
 
 
-def who(row: Report) -> str:
+def who(row: Row) -> str:
     """A boat with its crew."""
     return f"{row['fsn_no']} {row['name'] or ''} {row['rowers']}{row['crew_class']}"
 
@@ -143,40 +143,40 @@ def section(title: str, lines: list[str]) -> str:
     return "\n".join([title, *lines])
 
 
-def line_of(under: Report, quantity: str, explaining: str) -> Report:
+def line_of(under: TypeStatistics, quantity: str, explaining: str) -> Row:
     """The straight line of a quantity on an explaining variable, or why there is none."""
-    for line in under["lines"]:
+    for line in under.lines:
         if (line["quantity"], line["explaining"]) == (quantity, explaining):
-            return dict(line)
+            return line
     return {"n": 0, "n_boats": 0, "slope": None, "follows": None, "reason": "no_curves"}
 
 
-def heading(report: Report) -> str:
+def heading(facts: TypeFacts) -> str:
     """How many boats and tows of a type there are, and how they differ."""
     boats = tell(
         "{} boats, {} of them towed; {} tows",
-        report["n_boats"],
-        report["n_towed"],
-        report["n_tows"],
+        facts.n_boats,
+        facts.n_towed,
+        facts.n_tows,
     )
-    if not report["n_tows"]:
+    if not facts.n_tows:
         return tell("{} accepted.", boats)
-    seasons = f"{report['first_season']}-{report['last_season']}"
+    seasons = f"{facts.first_season}-{facts.last_season}"
     weight = (
         tell("weight not known")
-        if report["lightest_kg"] is None
-        else f"{report['lightest_kg']:.0f}-{report['heaviest_kg']:.0f} kg"
+        if facts.lightest_kg is None
+        else f"{facts.lightest_kg:.0f}-{facts.heaviest_kg:.0f} kg"
     )
-    speeds = tell("{:.2f}-{:.2f} m/s", report["slowest_m_s"], report["fastest_m_s"])
+    speeds = tell("{:.2f}-{:.2f} m/s", facts.slowest_m_s, facts.fastest_m_s)
     return tell("{}, {}; {}; declared speed {}.", boats, seasons, weight, speeds)
 
 
-def apart(era: Report) -> str:
+def apart(era: Row) -> str:
     """The verdict on an era."""
     return {True: "apart", False: tell("none seen"), None: "-"}[era["apart"]]
 
 
-def outsider(row: Report) -> str:
+def outsider(row: Row) -> str:
     """A boat outside its type: how far, and what could explain it."""
     codes = ", ".join(tell(EXPLANATIONS.get(name, name)) for name in row["candidates"])
     return tell(
@@ -189,7 +189,7 @@ def outsider(row: Report) -> str:
     )
 
 
-def distance(row: Report) -> str:
+def distance(row: Row) -> str:
     """How far a boat lies from what the other boats of its type predict."""
     if row["quantity"] == "bend":
         return tell("(v/B)^2 {:.2f}, expected {:.2f}", row["value"], row["expected"])
@@ -197,7 +197,7 @@ def distance(row: Report) -> str:
     return tell("Cw at {:.2f} m/s {} % from the expected", row["standard_speed_m_s"], change(ratio))
 
 
-def slow_tow(row: Report) -> str:
+def slow_tow(row: Row) -> str:
     """A slow tow, and what its own curve asks at the speed that like crews row."""
     towed = tell("{:.2f} m/s, {:.0f} W per rower", row["declared_speed_m_s"], row["power_w"])
     ratios = [row[f"power_ratio_rowed{end}"] for end in ("", "_lo", "_hi")]
@@ -219,7 +219,7 @@ def slow_tow(row: Report) -> str:
     )
 
 
-def second_opinion(row: Report) -> str:
+def second_opinion(row: Row) -> str:
     """Cw of the tow and as the other boats predict it."""
     return tell(
         "Cw at {:.2f} m/s {:.2f}, predicted {:.2f} ({:.2f} to {:.2f}) kg/m",

@@ -18,7 +18,7 @@ from herijk.dashboards.site.parts import (
 from herijk.dashboards.site.prose import guide_links
 from herijk.dashboards.speech import Speech
 from herijk.warehouse.queries.answers import newest_edition
-from herijk.warehouse.queries.change_report import last_report_with_changes
+from herijk.warehouse.queries.change_report import last_changes
 from herijk.warehouse.queries.views import Views
 
 CARDS = ("register", "due", "types", "compare", "races", "corrections", "reproducibility",
@@ -58,12 +58,10 @@ def start_page(views: Views, methods: Sequence[str], changes: pl.DataFrame) -> P
 
 def _last_rebuild(views: Views) -> list[Section]:
     """What the rebuild that last changed something changed."""
-    report = last_report_with_changes(views.store)
-    if report is None:
+    changes = last_changes(views.store)
+    if changes is None:
         return []
-
-    changes = report | {"checks": []}
-    return [Section("last_rebuild", headline=lambda speech: in_short(changes, speech.say))]
+    return [Section("last_rebuild", headline=lambda speech: in_short(changes, (), speech.say))]
 
 
 def methods_table(views: Views) -> Table:

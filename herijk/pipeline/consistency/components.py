@@ -19,6 +19,7 @@ from herijk.pipeline.consistency.observed import (
 )
 from herijk.pipeline.consistency.reml import Problem
 from herijk.tables.consistency import VarianceComponents
+from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of
 from herijk.tables.keys import LINE
 
@@ -32,7 +33,7 @@ FEWEST_REPEATS: Final = 3
 NAMES: Final = {"boat": mixed.BOAT, "season": mixed.OTHER, "boat_season": mixed.CELL}
 
 
-def variance_components(observed: Observed) -> pl.DataFrame:
+def variance_components(observed: Observed) -> dy.DataFrame[VarianceComponents]:
     """Standard deviations of ln Cw by cause, over the fleet and within types, per method.
 
     A boat with a crew is compared at its median declared speed; that Cw grows with speed is taken

@@ -15,6 +15,7 @@ import polars as pl
 from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
 from herijk.tables.consistency import EraShifts
+from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of
 
 ALL_TYPES: Final = "all"
@@ -57,7 +58,7 @@ def season_ranges(seasons: Iterable[int], eras: Sequence[Era] = ERAS) -> dict[st
 
 def era_shifts(
     pairs: pl.DataFrame, boats: pl.DataFrame, eras: tuple[Era, ...] = ERAS
-) -> pl.DataFrame:
+) -> dy.DataFrame[EraShifts]:
     """Shift of Cw from the tows of an era to the next tow of the same boat and crew, later.
 
     Per method, era but the last, and boat type; also over all types. The shift is a median with

@@ -18,6 +18,7 @@ from herijk.pipeline.consistency import mixed
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE, Observed, newest, q_at
 from herijk.pipeline.consistency.reml import Problem
 from herijk.tables.consistency import PooledCurves, TypeHomogeneity
+from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of
 from herijk.tables.keys import LINE
 
@@ -92,7 +93,7 @@ def _misfit_slope(boats: Observed, s_s2_m2: float) -> float:
     return float((-2.0 * residual * slope / boats.column("c0_kg_m")[:, None] ** 2).sum())
 
 
-def type_homogeneity(observed: Observed) -> pl.DataFrame:
+def type_homogeneity(observed: Observed) -> dy.DataFrame[TypeHomogeneity]:
     """Test per method and type whether boats share a bend, and what noise alone would give.
 
     Returns:

@@ -32,6 +32,7 @@ from herijk.pipeline.consistency.observed import (
 from herijk.pipeline.consistency.reml import Problem
 from herijk.pipeline.consistency.tow_speed import is_slow
 from herijk.tables.consistency import TypeLinePoints, TypeLines, TypeOutliers
+from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of
 from herijk.tables.keys import LINE
 from herijk.tables.row import Row
@@ -158,7 +159,9 @@ def newest_lines(lines: pl.DataFrame) -> pl.DataFrame:
     return lines.filter(tows=NEWEST.tows).drop("tows")
 
 
-def type_lines(observed: Observed) -> tuple[pl.DataFrame, pl.DataFrame]:
+def type_lines(
+    observed: Observed,
+) -> tuple[dy.DataFrame[TypeLines], dy.DataFrame[TypeLinePoints]]:
     """The lines of every choice of tows, per method and boat type.
 
     Of the newest tows all, of other choices those that the presentation of 2015 plots.
@@ -170,7 +173,9 @@ def type_lines(observed: Observed) -> tuple[pl.DataFrame, pl.DataFrame]:
     return _lines(chosen_tows(observed))
 
 
-def _lines(chosen: Iterable[tuple[Choice, Observed]]) -> tuple[pl.DataFrame, pl.DataFrame]:
+def _lines(
+    chosen: Iterable[tuple[Choice, Observed]],
+) -> tuple[dy.DataFrame[TypeLines], dy.DataFrame[TypeLinePoints]]:
     rows: list[Row] = []
     to_fit: dict[tuple[str, ...], list[tuple[Row, Row, _Line]]] = {}
     for choice, tows in chosen:

@@ -22,6 +22,7 @@ from herijk.pipeline.consistency.observed import (
 from herijk.pipeline.consistency.reml import Problem
 from herijk.pipeline.quantiles import t_quantile
 from herijk.tables.consistency import PredictedCw, PredictionError
+from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of
 from herijk.tables.keys import LINE
 
@@ -121,7 +122,7 @@ def _types(fleet: Observed) -> list[str]:
     return [f"{UNKNOWN_TYPE}/{fsn}" if t == UNKNOWN_TYPE else t for t, fsn in named]
 
 
-def prediction_error(predicted: pl.DataFrame) -> pl.DataFrame:
+def prediction_error(predicted: pl.DataFrame) -> dy.DataFrame[PredictionError]:
     """Cross-validated error of the prediction, next to the uncertainty of a tow, per method.
 
     Args:

@@ -26,6 +26,7 @@ from herijk.pipeline.curve import VALID_RATIO
 from herijk.pipeline.races.race import mean_speed_m_s, power_per_rower_w
 from herijk.pipeline.steps.hull import hull_speed_m_s
 from herijk.tables.consistency import SlowTows, SpeedTrend
+from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of
 from herijk.tables.keys import LINE
 
@@ -67,7 +68,7 @@ def is_slow(table: pl.DataFrame, limits: Mapping[str, float] = SLOW_POWER_W) -> 
     return slow.to_numpy()
 
 
-def speed_trend(observed: Observed) -> pl.DataFrame:
+def speed_trend(observed: Observed) -> dy.DataFrame[SpeedTrend]:
     """Trend of the bend q at a type's standard speed with the speed of the tow.
 
     Per type and over all types, each about its own level. The trend is per unit of ln v0; 0.1 of

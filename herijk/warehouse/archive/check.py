@@ -8,7 +8,7 @@ rebuild's; here every header is read, and one tow of each season whole.
 import hashlib
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -18,6 +18,7 @@ from herijk.pipeline.channels import FEWEST_RUNS, MOST_RUNS, SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import ListedTows
+from herijk.tables.row import Row
 from herijk.warehouse.archive.faults import Fault, fault_from
 from herijk.warehouse.archive.files import (
     PARTS,
@@ -55,8 +56,6 @@ ROUNDS: Final = 8
 SHOWN: Final = 3
 _PIECE: Final = 1 << 16
 
-Report = dict[str, Any]
-
 
 @dataclass(frozen=True)
 class Cause:
@@ -85,6 +84,46 @@ class Checked:
 
     tows: int
     causes: tuple[Cause, ...]
+    profile: str | None
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a fault is."""
+
+    path: str
+    line: int | None
+    tow_id: str | None
+
+
+@dataclass(frozen=True)
+class CauseReport:
+    """One thing that is wrong, as it is told.
+
+    Attributes:
+        reason_code: a key of `REASONS`.
+        number: of places.
+        sentence: of the first of them.
+        cells: what the cells say that have it.
+        places: the first of them.
+        proposals: the fields of each `Proposal`, with its `line`.
+    """
+
+    reason_code: str
+    number: int
+    sentence: str
+    cells: list[str]
+    places: list[Place]
+    proposals: list[Row]
+
+
+@dataclass(frozen=True)
+class CheckReport:
+    """A check in a language."""
+
+    archive: str
+    tows: int
+    causes: list[CauseReport]
     profile: str | None
 
 
@@ -356,25 +395,20 @@ def _grouped(seen: Iterable[tuple[Fault, Sequence[Proposal]]]) -> tuple[Cause, .
     return tuple(sorted(causes, key=lambda cause: -len(cause.faults)))
 
 
-def as_report(checked: Checked, language: str) -> Report:
-    """Return a check as plain data, its sentences in `en` or `nl`."""
-    return {
-        "tows": checked.tows,
-        "causes": [_cause_report(cause, language) for cause in checked.causes],
-        "profile": checked.profile,
-    }
+def check_report(root: Path, checked: Checked, language: str) -> CheckReport:
+    """Return a check of an archive with its sentences in `en` or `nl`."""
+    causes = [_cause_report(cause, language) for cause in checked.causes]
+    return CheckReport(str(root), checked.tows, causes, checked.profile)
 
 
-def _cause_report(cause: Cause, language: str) -> Report:
+def _cause_report(cause: Cause, language: str) -> CauseReport:
     first = innermost(cause.faults[0].message)
     cells = [getattr(innermost(f.message), "values", {}).get("cell") for f in cause.faults]
-    return {
-        "reason_code": cause.reason_code,
-        "number": len(cause.faults),
-        "sentence": spoken(first, language),
-        "cells": [str(cell) for cell in dict.fromkeys(cells) if cell is not None],
-        "places": [
-            {"path": f.path, "line": f.line, "tow_id": f.tow_id} for f in cause.faults[:SHOWN]
-        ],
-        "proposals": [asdict(p) | {"line": p.line} for p in cause.proposals],
-    }
+    return CauseReport(
+        reason_code=cause.reason_code,
+        number=len(cause.faults),
+        sentence=spoken(first, language),
+        cells=[str(cell) for cell in dict.fromkeys(cells) if cell is not None],
+        places=[Place(f.path, f.line, f.tow_id) for f in cause.faults[:SHOWN]],
+        proposals=[vars(p) | {"line": p.line} for p in cause.proposals],
+    )

@@ -16,6 +16,7 @@ import polars as pl
 
 from herijk.pipeline.channels import SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError, MissingKnowledgeError
+from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import ListedFiles, ListedRuns, ListedTows, ListedWindows
 from herijk.warehouse.archive import boats as boat_list
@@ -71,23 +72,23 @@ class ArchiveIndex:
 
     Attributes:
         boats: one row per boat (`ListedBoats`).
-        tows: one row per tow that can be read (`ListedTows`).
-        runs: one row per run of those tows (`ListedRuns`); runs of a second file are 21 and on.
-        windows: windows given by hand for those runs (`ListedWindows`), of which nobody knows yet
-            whether they lie in their run.
+        tows: one row per tow that can be read.
+        runs: one row per run of those tows; runs of a second file are 21 and on.
+        windows: windows given by hand for those runs, of which nobody knows yet whether they lie in
+            their run.
         faults: what is set aside, and why.
-        files: every file that was looked at: path, sha256, size_bytes.
+        files: every file that was looked at.
         profiles: `archief.toml`.
         seasons: season of each samples file that a row names, whatever is wrong with the row.
         more: what else is wrong in rows that are set aside; a row is set aside once.
     """
 
     boats: pl.DataFrame
-    tows: pl.DataFrame
-    runs: pl.DataFrame
-    windows: pl.DataFrame
+    tows: dy.DataFrame[ListedTows]
+    runs: dy.DataFrame[ListedRuns]
+    windows: dy.DataFrame[ListedWindows]
     faults: tuple[Fault, ...]
-    files: pl.DataFrame
+    files: dy.DataFrame[ListedFiles]
     profiles: Profiles
     seasons: dict[str, int]
     more: tuple[Fault, ...] = ()
@@ -172,7 +173,7 @@ class _Hashes:
         self.rows[file.path] = (sha256, size)
         return sha256
 
-    def frame(self) -> pl.DataFrame:
+    def frame(self) -> dy.DataFrame[ListedFiles]:
         rows = [(path, *self.rows[path]) for path in sorted(self.rows)]
         return frame_of(ListedFiles, rows)
 

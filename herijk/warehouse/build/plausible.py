@@ -17,6 +17,7 @@ import polars as pl
 from herijk.pipeline.assessment.plausibility import Plausibility, Shift, plausibility
 from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.blocks.run_blocks import stack_blocks
+from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import Faults
 from herijk.warehouse.archive.faults import Fault
@@ -57,7 +58,7 @@ def judge(tows: pl.DataFrame, runs: pl.DataFrame, blocks: pl.DataFrame) -> Plaus
     return plausibility(Batch.of(tows, stack_blocks(blocks, runs)))
 
 
-def gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> pl.DataFrame:
+def gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> dy.DataFrame[Faults]:
     """A fault of every tow that a wrong unit, column or file costs, each once."""
     sentences = {
         tow: (_CODES[shift.quantity], _sentence(shift))

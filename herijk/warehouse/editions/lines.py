@@ -95,7 +95,7 @@ def made_again(store: Store, edition: Edition) -> Again:
     known = [name for name in JUDGED if name in edition.tables["tows"].columns]
     judged = edition.tables["tows"].select("tow_id", *known)
     today = tows_of_today(store)
-    tows = today.drop(JUDGED).join(judged, on="tow_id")
+    tows = today.drop(JUDGED, strict=False).join(judged, on="tow_id")
     runs = intake.runs_with_windows(store).join(judged, on="tow_id", how="semi")
     blocks = stack_blocks(intake.all_blocks(store), runs)
     recomputed = recompute(edition.method, tows, blocks)

@@ -10,7 +10,7 @@ import hashlib
 import io
 import json
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import polars as pl
 
@@ -23,6 +23,7 @@ from herijk.pipeline.register.register import DOUBTED, LINE
 from herijk.tables.archive import Boats
 from herijk.tables.frames import dtypes
 from herijk.tables.register import Register
+from herijk.tables.row import Row
 from herijk.tables.schemas import conform
 from herijk.warehouse.build.graph import METHOD as METHOD_STEP
 from herijk.warehouse.build.version import code_version
@@ -212,7 +213,31 @@ def latest_before(store: Store, valid_from: dt.date, published_on: dt.date) -> s
     return max(earlier, key=lambda a: (a.valid_from, a.published_on, a.edition)).edition
 
 
-def lines_to_look_at(edition: Edition) -> list[dict[str, Any]]:
+@dataclass(frozen=True)
+class Published:
+    """An edition that was just published.
+
+    Attributes:
+        about: what it is.
+        folder: where it is.
+        statuses: how many lines have each.
+        to_look_at: rows of the register to look at.
+    """
+
+    about: About
+    folder: str
+    statuses: dict[str, int]
+    to_look_at: list[Row]
+
+
+def published(store: Store, folder: Place) -> Published:
+    """What there is to say about an edition that was just published."""
+    edition = read_edition(store, folder.name)
+    counts = edition.register["status"].value_counts().sort("count", "status", descending=True)
+    return Published(edition.about, str(folder), dict(counts.rows()), lines_to_look_at(edition))
+
+
+def lines_to_look_at(edition: Edition) -> list[Row]:
     """Lines with flags, and those left without numbers because their tows are doubted."""
     to_look_at = (pl.col("flags").list.len() > 0) | (pl.col("status") == DOUBTED)
     lines = edition.register.filter(to_look_at)

@@ -26,6 +26,9 @@ NEVER_TOWED: Final = "never_towed"
 FLAGS: Final = "flags"
 """Follow from what is known of other tows, which grows."""
 
+LATER: Final = ("unseen_error_ratio",)
+"""Columns that editions of before do not have: they are empty there in all rows."""
+
 _OWN: Final = ("edition", "method", "verification_code", "inputs_sha256")
 """Columns of a line that others check."""
 
@@ -69,7 +72,8 @@ def _differing(
     now = again.lines.drop(FLAGS, strict=False).join(
         store.read("listed_boats").select("fsn_no", *BOAT_FACTS), on="fsn_no", how="left"
     )
-    known = [n for n in lines.columns if n in now.columns and n not in (*LINE, "basis", *_OWN)]
+    said = [name for name in _recorded(lines) if name in now.columns]
+    known = [name for name in said if name not in (*LINE, "basis", *_OWN)]
     pairs = lines.select(*LINE, "basis", *known).join(
         now.select(*LINE, *known), on=LINE, how="left", suffix="_now"
     )
@@ -102,12 +106,21 @@ def _other_tables(edition: Edition, again: Again) -> Iterator[Finding]:
 
 
 def _unequal_columns(was: pl.DataFrame, now: pl.DataFrame, key: list[str]) -> list[str]:
-    """Columns of which a value differs; an edition of before a column was added has no such."""
-    shared = [name for name in was.columns if name in now.columns and name != FLAGS]
+    """Columns of which a value differs."""
+    shared = [name for name in _recorded(was) if name in now.columns and name != FLAGS]
     if was.height != now.height:
         return shared
     one, other = (frame.select(shared).sort(key, nulls_last=True) for frame in (was, now))
     return [name for name in shared if not _equal(one[name], other[name])]
+
+
+def _recorded(frame: pl.DataFrame) -> list[str]:
+    """Columns that a table of an edition had when it was published."""
+    return [
+        name
+        for name in frame.columns
+        if name not in LATER or frame[name].null_count() < frame.height
+    ]
 
 
 def _equal(was: pl.Series, now: pl.Series) -> bool:

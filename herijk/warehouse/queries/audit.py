@@ -6,27 +6,65 @@ collected, in `warehouse.queries.audit_types` also judged. How it is said in wor
 """
 
 from collections.abc import Sequence
-from typing import Any, Final
+from dataclasses import dataclass
+from typing import Final
 
 import duckdb
 
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
 from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.warehouse.queries.audit_types import TYPE, type_facts, types_page
+from herijk.tables.row import Row
+from herijk.warehouse.queries.audit_types import (
+    TYPE,
+    Audit,
+    TypeFacts,
+    TypesAudit,
+    type_facts,
+    types_audit,
+)
 from herijk.warehouse.queries.boats import boats_named, plain, the_boat
 from herijk.warehouse.queries.chosen_tows import NEWEST, choose
 from herijk.warehouse.store.database import is_simulated, open_results, rows
 from herijk.warehouse.store.store import Store
 
-Report = dict[str, Any]
-
 TYPE_METHODS: Final = ("as-published", "rebased-2015", "rebased")
 """Methods on a type's page when none is asked for: before, by the rules of 2015, and now."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class BoatAudit(Audit):
+    """A boat's tows step by step, and its place among its like and in its own history.
+
+    Attributes:
+        boat: its row of `boats`.
+        tows: rows of `tows` with `curves` (rows of that table with `interval`, `run_points` and
+            `budget`) and `steps`, rows of `correction_steps`.
+        type_size: the facts of its type.
+        in_type: rows of `type_outliers`.
+        predicted: rows of `predicted_cw`.
+        options: rows of `option_effects`.
+        set_aside: rows of `quarantine`.
+        pooled: rows of `pooled_curves`.
+        slow_tows, repeat_pairs, register: rows of those tables.
+    """
+
+    about: str = "boat"
+    boat: Row
+    tows: list[Row]
+    in_type: list[Row]
+    type_size: TypeFacts
+    pooled: list[Row]
+    slow_tows: list[Row]
+    repeat_pairs: list[Row]
+    predicted: list[Row]
+    options: list[Row]
+    register: list[Row]
+    set_aside: list[Row]
+
+
 def audit(
     store: Store, names: Sequence[str], method: str | None = None, tows: str = NEWEST
-) -> Report:
+) -> BoatAudit | TypesAudit:
     """The page of a boat, or of one or two types.
 
     Args:
@@ -35,9 +73,6 @@ def audit(
             accents do not matter.
         method: show this method only.
         tows: over which tows a type's statistics are: see `chosen_tows`.
-
-    Returns:
-        A boat page or a page of types, with `about`: boat or types.
 
     Raises:
         MissingKnowledgeError: there is no such boat, type or method, or no database.
@@ -48,11 +83,9 @@ def audit(
         boat = _boat_named(db, names[0]) if len(names) == 1 else None
         choose(db, tows, methods if boat else chosen)
         if boat:
-            page = {"about": "boat"} | _boat_page(db, boat, methods)
-        else:
-            types = list(dict.fromkeys(_type_named(db, name) for name in names))
-            page = {"about": "types"} | types_page(db, types, chosen)
-        return {"simulated": is_simulated(db), "statistics_over": tows} | page
+            return _boat_audit(db, boat, methods, tows)
+        types = list(dict.fromkeys(_type_named(db, name) for name in names))
+        return types_audit(db, types, chosen, tows)
 
 
 def _methods(db: duckdb.DuckDBPyConnection, method: str | None) -> list[str]:
@@ -70,7 +103,7 @@ def _usual(methods: list[str]) -> list[str]:
     return [name for name in TYPE_METHODS if name in methods] or methods
 
 
-def _boat_named(db: duckdb.DuckDBPyConnection, name: str) -> Report | None:
+def _boat_named(db: duckdb.DuckDBPyConnection, name: str) -> Row | None:
     """The boat of that number or name; a type goes before a boat of the same name."""
     boats = db.sql("SELECT * FROM boats").pl()
     if not boats_named(boats, name) or _is_type(db, name):
@@ -110,33 +143,36 @@ def _type_named(db: duckdb.DuckDBPyConnection, name: str) -> str:
 # A boat ------------------------------------------------------------------------------------------
 
 
-def _boat_page(db: duckdb.DuckDBPyConnection, boat: Report, methods: list[str]) -> Report:
-    """A boat's tows step by step, and its place among its like and in its own history."""
+def _boat_audit(
+    db: duckdb.DuckDBPyConnection, boat: Row, methods: list[str], tows: str
+) -> BoatAudit:
     fsn_no = boat["fsn_no"]
-    return {
-        "boat": boat,
-        "methods": methods,
-        "tows": [_tow(db, tow, methods) for tow in rows(db, _TOWS, fsn_no)],
-        "in_type": _of_boat(db, "type_outliers", fsn_no, methods),
-        "type_size": type_facts(db, boat["boat_type"] or UNKNOWN_TYPE),
-        "pooled": _of_boat(db, "pooled_curves", fsn_no, methods),
-        "slow_tows": _of_boat(db, "slow_tows", fsn_no, methods),
-        "repeat_pairs": _of_boat(db, "repeat_pairs", fsn_no, methods),
-        "predicted": _of_boat(db, "predicted_cw", fsn_no, methods),
-        "options": rows(db, _OPTIONS, fsn_no, methods),
-        "register": _of_boat(db, "register", fsn_no, methods),
-        "set_aside": rows(db, _SET_ASIDE, fsn_no, boat["name"]),
-    }
+    return BoatAudit(
+        simulated=is_simulated(db),
+        statistics_over=tows,
+        methods=methods,
+        boat=boat,
+        tows=[_tow(db, tow, methods) for tow in rows(db, _TOWS, fsn_no)],
+        in_type=_of_boat(db, "type_outliers", fsn_no, methods),
+        type_size=type_facts(db, boat["boat_type"] or UNKNOWN_TYPE),
+        pooled=_of_boat(db, "pooled_curves", fsn_no, methods),
+        slow_tows=_of_boat(db, "slow_tows", fsn_no, methods),
+        repeat_pairs=_of_boat(db, "repeat_pairs", fsn_no, methods),
+        predicted=_of_boat(db, "predicted_cw", fsn_no, methods),
+        options=rows(db, _OPTIONS, fsn_no, methods),
+        register=_of_boat(db, "register", fsn_no, methods),
+        set_aside=rows(db, _SET_ASIDE, fsn_no, boat["name"]),
+    )
 
 
 def _of_boat(
     db: duckdb.DuckDBPyConnection, table: str, fsn_no: str, methods: list[str]
-) -> list[Report]:
+) -> list[Row]:
     query = f"SELECT * FROM {table} WHERE fsn_no = ? AND list_contains(?, method) ORDER BY ALL"  # noqa: S608
     return rows(db, query, fsn_no, methods)
 
 
-def _tow(db: duckdb.DuckDBPyConnection, tow: Report, methods: list[str]) -> Report:
+def _tow(db: duckdb.DuckDBPyConnection, tow: Row, methods: list[str]) -> Row:
     """A tow with its curves, the runs and uncertainty of each, and what each step did."""
     tow_id = tow["tow_id"]
     curves = rows(db, _CURVES, tow_id, methods)

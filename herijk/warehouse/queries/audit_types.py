@@ -4,8 +4,9 @@ A verdict is true, false, or None where the figures do not decide. Does not belo
 what was asked for, and a boat's own page (`warehouse.queries.audit`).
 """
 
+from dataclasses import dataclass
 from math import hypot, log
-from typing import Any, Final
+from typing import Final
 
 import duckdb
 import scipy
@@ -13,9 +14,8 @@ import scipy
 from herijk.pipeline.consistency import ERAS
 from herijk.pipeline.consistency.homogeneity import LEVEL
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
-from herijk.warehouse.store.database import rows
-
-Report = dict[str, Any]
+from herijk.tables.row import Row
+from herijk.warehouse.store.database import is_simulated, rows
 
 ENOUGH_POWER: Final = 0.8
 """Chance of seeing a spread of B of 10 % from which on "equal bends are possible" is said."""
@@ -24,23 +24,137 @@ TYPE: Final = f"coalesce(b.boat_type, '{UNKNOWN_TYPE}')"
 """A boat's type in a query that calls the table of boats b."""
 
 
-def types_page(db: duckdb.DuckDBPyConnection, types: list[str], methods: list[str]) -> Report:
+@dataclass(frozen=True, kw_only=True)
+class Audit:
+    """What the page of a boat and that of types share.
+
+    Attributes:
+        simulated: whether the archive is.
+        statistics_over: the tows that statistics of types are over; see `chosen_tows`.
+        methods: the methods shown.
+    """
+
+    simulated: bool
+    statistics_over: str
+    methods: list[str]
+
+
+@dataclass(frozen=True)
+class TypeFacts:
+    """How many boats and tows there are of a type, and how they differ."""
+
+    boat_type: str
+    n_boats: int
+    n_towed: int
+    n_tows: int
+    first_season: int | None
+    last_season: int | None
+    lightest_kg: float | None
+    heaviest_kg: float | None
+    slowest_m_s: float | None
+    fastest_m_s: float | None
+
+
+@dataclass(frozen=True)
+class Closest:
+    """Whether Cw at one speed spreads less about the line on weight than A and than B."""
+
+    n: int
+    cw_closest: bool | None
+    reason: str
+
+
+@dataclass(frozen=True)
+class Repeats:
+    """How repeat pairs of a type spread, how many have an E_n, and of how many it is above 1."""
+
+    n_pairs: int
+    sd_ratio: float | None
+    n_e_n: int
+    n_disagree: int
+
+
+@dataclass(frozen=True)
+class TypeStatistics:
+    """All statistics of a type under one method.
+
+    Attributes:
+        lines: rows of `type_consistency` with `follows`.
+        all_tows: rows of `type_lines` over all tows with `follows`.
+        bends: the row of `type_homogeneity` with `equal_possible`, or `n` and `reason`.
+        speed_trend: the row of that table with `follows`, or `n` and `reason`.
+        shared: per pooling, what sharing a bend does to B and Cw.
+        judged: per quantity, how many tows were judged.
+        eras: a row of `era_shifts` each, or `era`, `n`, `apart` and `reason`.
+        prediction: how far `predicted_cw` is off.
+        hull_speed, tows_outside, outside, slow_tows, disagreeing: rows of their tables.
+    """
+
+    lines: list[Row]
+    closest: Closest
+    all_tows: list[Row]
+    hull_speed: list[Row]
+    tows_outside: list[Row]
+    bends: Row
+    speed_trend: Row
+    shared: list[Row]
+    judged: list[Row]
+    outside: list[Row]
+    slow_tows: list[Row]
+    repeats: Repeats
+    eras: list[Row]
+    prediction: Row
+    disagreeing: list[Row]
+
+
+@dataclass(frozen=True)
+class OneType(TypeFacts):
+    """A type, with its statistics under each method."""
+
+    under: dict[str, TypeStatistics]
+
+
+@dataclass(frozen=True)
+class Fleet:
+    """What holds for all types together under a method: rows of the tables, eras by name."""
+
+    reproducibility: list[Row]
+    components: list[Row]
+    eras: dict[str, Row]
+    prediction_error: Row | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class TypesAudit(Audit):
+    """The page of types: each, what differs between them, and all types, by method."""
+
+    about: str = "types"
+    types: list[OneType]
+    differences: dict[str, list[str]]
+    fleet: dict[str, Fleet]
+
+
+def types_audit(
+    db: duckdb.DuckDBPyConnection, types: list[str], methods: list[str], tows: str
+) -> TypesAudit:
     """Facts and figures of the types under each method, what holds for all, and what differs."""
     found = [
-        type_facts(db, name) | {"under": {m: _type_under(db, name, m) for m in methods}}
+        OneType(**vars(type_facts(db, name)), under={m: _type_under(db, name, m) for m in methods})
         for name in types
     ]
-    return {
-        "methods": methods,
-        "types": found,
-        "differences": {m: differences(*(one["under"][m] for one in found)) for m in methods},
-        "fleet": {method: _fleet(db, method) for method in methods},
-    }
+    return TypesAudit(
+        simulated=is_simulated(db),
+        statistics_over=tows,
+        methods=methods,
+        types=found,
+        differences={m: differences(*(one.under[m] for one in found)) for m in methods},
+        fleet={method: _fleet(db, method) for method in methods},
+    )
 
 
-def type_facts(db: duckdb.DuckDBPyConnection, boat_type: str) -> Report:
+def type_facts(db: duckdb.DuckDBPyConnection, boat_type: str) -> TypeFacts:
     """How many boats and tows there are of a type, and how they differ."""
-    return rows(
+    (facts,) = rows(
         db,
         f"""SELECT {TYPE} AS boat_type, count(DISTINCT b.fsn_no) AS n_boats,
                    count(DISTINCT t.fsn_no) AS n_towed, count(t.tow_id) AS n_tows,
@@ -51,33 +165,34 @@ def type_facts(db: duckdb.DuckDBPyConnection, boat_type: str) -> Report:
             FROM boats AS b LEFT JOIN tows AS t USING (fsn_no)
             WHERE {TYPE} = ? GROUP BY ALL""",  # noqa: S608
         boat_type,
-    )[0]
+    )
+    return TypeFacts(**facts)
 
 
-def _type_under(db: duckdb.DuckDBPyConnection, boat_type: str, method: str) -> Report:
+def _type_under(db: duckdb.DuckDBPyConnection, boat_type: str, method: str) -> TypeStatistics:
     """All statistics of a type under one method."""
     own = (method, boat_type)
     lines = rows(db, _LINES, *own)
-    return {
-        "lines": [line | {"follows": _away_from_zero(line)} for line in lines],
-        "closest": closest(lines),
-        "all_tows": [x | {"follows": _away_from_zero(x)} for x in rows(db, _ALL_TOWS, *own)],
-        "hull_speed": rows(db, _HULL_SPEED, *own),
-        "tows_outside": rows(db, _TOWS_OUTSIDE, *own),
-        "bends": _bends(_one(db, "type_homogeneity", *own)),
-        "speed_trend": _trend(_one(db, "speed_trend", *own)),
-        "shared": rows(db, _SHARED, *own),
-        "judged": rows(db, _JUDGED, *own),
-        "outside": rows(db, _OUTSIDE, *own),
-        "slow_tows": rows(db, _SLOW, *own),
-        "repeats": _repeats(rows(db, _PAIRS, *own)),
-        "eras": [_era(db, *own, era.name) for era in ERAS[:-1]],
-        "prediction": rows(db, _PREDICTION, *own)[0],
-        "disagreeing": rows(db, _DISAGREEING, *own),
-    }
+    return TypeStatistics(
+        lines=[_judged_line(line) for line in lines],
+        closest=closest(lines),
+        all_tows=[_judged_line(line) for line in rows(db, _ALL_TOWS, *own)],
+        hull_speed=rows(db, _HULL_SPEED, *own),
+        tows_outside=rows(db, _TOWS_OUTSIDE, *own),
+        bends=_bends(_one(db, "type_homogeneity", *own)),
+        speed_trend=_trend(_one(db, "speed_trend", *own)),
+        shared=rows(db, _SHARED, *own),
+        judged=rows(db, _JUDGED, *own),
+        outside=rows(db, _OUTSIDE, *own),
+        slow_tows=rows(db, _SLOW, *own),
+        repeats=_repeats(rows(db, _PAIRS, *own)),
+        eras=[_era(db, *own, era.name) for era in ERAS[:-1]],
+        prediction=rows(db, _PREDICTION, *own)[0],
+        disagreeing=rows(db, _DISAGREEING, *own),
+    )
 
 
-def _one(db: duckdb.DuckDBPyConnection, table: str, method: str, boat_type: str) -> Report:
+def _one(db: duckdb.DuckDBPyConnection, table: str, method: str, boat_type: str) -> Row:
     """The one row of a method and type; there is none without a curve, or where types are asked."""
     query = f"SELECT * FROM {table} WHERE method = ? AND boat_type = ?"  # noqa: S608
     matching = rows(db, query, method, boat_type)
@@ -85,14 +200,13 @@ def _one(db: duckdb.DuckDBPyConnection, table: str, method: str, boat_type: str)
     return matching[0] if matching else {"n": 0, "reason": reason}
 
 
-def _away_from_zero(line: Report) -> bool | None:
-    """Whether the interval of a slope leaves out zero."""
-    if line["slope"] is None:
-        return None
-    return bool(line["slope_lo"] > 0 or line["slope_hi"] < 0)
+def _judged_line(line: Row) -> Row:
+    """A line with its verdict: whether the interval of its slope leaves out zero."""
+    follows = None if line["slope"] is None else line["slope_lo"] > 0 or line["slope_hi"] < 0
+    return line | {"follows": follows}
 
 
-def closest(lines: list[Report]) -> Report:
+def closest(lines: list[Row]) -> Closest:
     """Whether Cw at one speed spreads less about the line on weight than A and than B.
 
     `cw_closest` is None where the variances differ no more than an F test at 5 % lets them. The
@@ -104,13 +218,13 @@ def closest(lines: list[Report]) -> Report:
         if line is None or line["reason"]:
             n = 0 if line is None else line["n"]
             reason = "no_curves" if line is None else line["reason"]
-            return {"n": n, "cw_closest": None, "reason": reason}
+            return Closest(n, None, reason)
     cw, a, b = ((line["n_boats"] - 2, line["residual_sd_ratio"] ** 2) for line in three if line)
     closer = all(_larger(other, cw) for other in (a, b))
     further = any(_larger(cw, other) for other in (a, b))
     n = min(line["n"] for line in three if line)
     verdict = False if further else True if closer else None
-    return {"n": n, "cw_closest": verdict, "reason": ""}
+    return Closest(n, verdict, "")
 
 
 def _larger(one: tuple[int, float], other: tuple[int, float]) -> bool:
@@ -119,7 +233,7 @@ def _larger(one: tuple[int, float], other: tuple[int, float]) -> bool:
     return one[1] > float(scipy.special.fdtri(*dof, 1.0 - LEVEL)) * other[1]
 
 
-def _bends(test: Report) -> Report:
+def _bends(test: Row) -> Row:
     """The test of equal bends with its verdict: None where it could not have seen a difference."""
     if test["reason"]:
         return test | {"equal_possible": None}
@@ -128,23 +242,22 @@ def _bends(test: Report) -> Report:
     return test | {"equal_possible": False if different else True if strong else None}
 
 
-def _trend(trend: Report) -> Report:
-    return trend | {"follows": None if trend["reason"] else _away_from_zero(trend)}
+def _trend(trend: Row) -> Row:
+    return trend | {"follows": None} if trend["reason"] else _judged_line(trend)
 
 
-def _repeats(pairs: list[Report]) -> Report:
-    """Repeat pairs of a type: how they spread, and how many disagree."""
+def _repeats(pairs: list[Row]) -> Repeats:
     squares = [pair["ln_ratio"] ** 2 for pair in pairs]
     known = [abs(pair["e_n"]) for pair in pairs if pair["e_n"] is not None]
-    return {
-        "n_pairs": len(pairs),
-        "sd_ratio": (sum(squares) / len(pairs) / 2) ** 0.5 if pairs else None,
-        "n_e_n": len(known),
-        "n_disagree": sum(e_n > 1 for e_n in known),
-    }
+    return Repeats(
+        n_pairs=len(pairs),
+        sd_ratio=(sum(squares) / len(pairs) / 2) ** 0.5 if pairs else None,
+        n_e_n=len(known),
+        n_disagree=sum(e_n > 1 for e_n in known),
+    )
 
 
-def _era(db: duckdb.DuckDBPyConnection, method: str, boat_type: str, era: str) -> Report:
+def _era(db: duckdb.DuckDBPyConnection, method: str, boat_type: str, era: str) -> Row:
     """Whether an era stands apart; the table has no row where a type has no pair at all."""
     matching = rows(db, _ERA, method, boat_type, era)
     if matching:
@@ -152,7 +265,7 @@ def _era(db: duckdb.DuckDBPyConnection, method: str, boat_type: str, era: str) -
     return {"era": era, "n": 0, "apart": None, "reason": "few_pairs"}
 
 
-def differences(first: Report, *others: Report) -> list[str]:
+def differences(first: TypeStatistics, *others: TypeStatistics) -> list[str]:
     """What differs between two types: a slope or shift by more than both intervals, or a verdict.
 
     One that follows weight and one in which no trend is seen do not differ by that alone.
@@ -164,26 +277,26 @@ def differences(first: Report, *others: Report) -> list[str]:
     return [name for second in others for name in _differing(first, second)]
 
 
-def _differing(first: Report, second: Report) -> list[str]:
+def _differing(first: TypeStatistics, second: TypeStatistics) -> list[str]:
     intervals = [_intervals(first), _intervals(second)]
     verdicts = [
-        {"bends": one["bends"]["equal_possible"], "closest": one["closest"]["cw_closest"]}
+        {"bends": one.bends["equal_possible"], "closest": one.closest.cw_closest}
         for one in (first, second)
     ]
     apart = [n for n in intervals[0] if n in intervals[1] and _apart(*(i[n] for i in intervals))]
     return apart + [n for n in verdicts[0] if {v[n] for v in verdicts} == {True, False}]
 
 
-def _intervals(under: Report) -> dict[str, tuple[float, float, float]]:
+def _intervals(under: TypeStatistics) -> dict[str, tuple[float, float, float]]:
     """Every slope and shift with its interval; shifts as logarithms."""
-    slopes = {f"{line['quantity']} {line['explaining']}": line for line in under["lines"]}
-    slopes["speed_trend"] = under["speed_trend"]
+    slopes = {f"{line['quantity']} {line['explaining']}": line for line in under.lines}
+    slopes["speed_trend"] = under.speed_trend
     intervals = {
         name: (line["slope"], line["slope_lo"], line["slope_hi"])
         for name, line in slopes.items()
         if not line["reason"]
     }
-    shifts = {era["era"]: era for era in under["eras"] if not era["reason"]}
+    shifts = {era["era"]: era for era in under.eras if not era["reason"]}
     return intervals | {
         name: (log(era["shift_ratio"]), log(era["lo"]), log(era["hi"]))
         for name, era in shifts.items()
@@ -195,22 +308,21 @@ def _apart(one: tuple[float, float, float], other: tuple[float, float, float]) -
     return abs(one[0] - other[0]) > half
 
 
-def _fleet(db: duckdb.DuckDBPyConnection, method: str) -> Report:
-    """What holds for all types together."""
+def _fleet(db: duckdb.DuckDBPyConnection, method: str) -> Fleet:
     error = rows(db, "SELECT * FROM prediction_error WHERE method = ?", method)
-    return {
-        "reproducibility": rows(
+    return Fleet(
+        reproducibility=rows(
             db, "SELECT * FROM reproducibility WHERE method = ? ORDER BY scope", method
         ),
-        "components": rows(
+        components=rows(
             db,
             "SELECT * FROM variance_components WHERE method = ? AND scope = 'within_type' "
             "ORDER BY component",
             method,
         ),
-        "eras": {row["era"]: row for row in rows(db, _ERAS_OF_ALL, method)},
-        "prediction_error": error[0] if error else None,
-    }
+        eras={row["era"]: row for row in rows(db, _ERAS_OF_ALL, method)},
+        prediction_error=error[0] if error else None,
+    )
 
 
 _LINES = """

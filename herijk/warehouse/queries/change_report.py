@@ -8,7 +8,8 @@ import json
 import os
 import shutil
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final
 
@@ -19,6 +20,7 @@ from herijk.pipeline.errors import UnavailableError
 from herijk.pipeline.recompute.facts import with_boat_types, with_hand_windows
 from herijk.pipeline.register.changes import NO_PARTS, register_changes, side_by_side
 from herijk.pipeline.register.register import LINE, with_empty_thwart
+from herijk.tables.row import Row
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.editions.compare import (
     CODE,
@@ -78,6 +80,30 @@ class ChangeReport:
         return not self.first and all(frame.is_empty() for frame in frames)
 
 
+@dataclass(frozen=True, kw_only=True)
+class ChangeSummary:
+    """A change report for a page, a mail or a program.
+
+    Attributes:
+        first: there was no report before.
+        nothing_changed: whether that is so.
+        tows, set_aside, register: how many (`number`) of each kind.
+        tow_rows, set_aside_rows, factors, lines: rows of the change report.
+        beyond_interval: lines that move by more than both intervals.
+    """
+
+    first: bool
+    nothing_changed: bool
+    tows: list[Row]
+    tow_rows: list[Row]
+    set_aside: list[Row]
+    set_aside_rows: list[Row]
+    factors: list[Row]
+    register: list[Row]
+    beyond_interval: int
+    lines: list[Row]
+
+
 def reported_database(store: Store) -> Path:
     """The database that the last report was about."""
     return store.root / "report" / "reported.duckdb"
@@ -87,8 +113,15 @@ def change_report(store: Store) -> ChangeReport:
     """What changed in the database since the last report."""
     if is_reported(store):
         return _nothing()
-    now = _tables(store.database)
-    was = _reported(store)
+    reported, now = reported_database(store), store.database
+    before = file_sha256(reported) if reported.exists() else ""
+    return _between(reported, now, (before, file_sha256(now)))
+
+
+@lru_cache(maxsize=1)
+def _between(reported: Path, database: Path, _: tuple[str, str]) -> ChangeReport:
+    """What changed from one database to another; kept by their hashes, as many ask."""
+    now, was = _tables(database), _reported(reported)
     before = was or {name: frame.clear() for name, frame in now.items()}
     return ChangeReport(
         first=was is None,
@@ -127,9 +160,8 @@ def remember(store: Store) -> None:
             shutil.copyfile(store.database, beside)
 
 
-def _reported(store: Store) -> Tables | None:
+def _reported(path: Path) -> Tables | None:
     """Tables of the last report; None where there is none, or it is damaged."""
-    path = reported_database(store)
     if not path.exists():
         return None
     try:
@@ -285,33 +317,36 @@ def _ground(tow: bool, own: bool, others: bool, method: bool, code: bool) -> str
     return CODE if code else UNEXPLAINED
 
 
-# As plain data
+# The summary
 
 
-def last_report_with_changes(store: Store) -> dict[str, Any] | None:
-    """What changed since the last report; where nothing did, the last report of a change."""
+def last_changes(store: Store) -> ChangeSummary | None:
+    """What changed since the last report; where nothing did, what the last change was."""
     report = change_report(store)
     if not report.nothing:
-        return as_plain(report)
+        return summary_of(report)
     told = sorted((store.root / "report").glob("2*.json"))
-    return json.loads(told[-1].read_text(encoding="utf-8")) if told else None
+    if not told:
+        return None
+    last = json.loads(told[-1].read_text(encoding="utf-8"))
+    return ChangeSummary(**{field.name: last[field.name] for field in fields(ChangeSummary)})
 
 
-def as_plain(report: ChangeReport) -> dict[str, Any]:
-    """The report as plain data, for a page, a mail or a program."""
-    return {
-        "first": report.first,
-        "nothing_changed": report.nothing,
-        "tows": _counted(report.tows, ["what"]),
-        "tow_rows": [] if report.first else report.tows.to_dicts(),
-        "set_aside": _counted(report.set_aside, ["what", "reason_code"]),
-        "set_aside_rows": report.set_aside.to_dicts(),
-        "factors": report.factors.to_dicts(),
-        "register": _counted(report.lines, ["to_edition", "change"]),
-        "beyond_interval": int(report.lines["exceeds_interval"].fill_null(False).sum()),
-        "lines": report.lines.to_dicts(),
-    }
+def summary_of(report: ChangeReport) -> ChangeSummary:
+    """The report for a page, a mail or a program."""
+    return ChangeSummary(
+        first=report.first,
+        nothing_changed=report.nothing,
+        tows=_counted(report.tows, ["what"]),
+        tow_rows=[] if report.first else report.tows.to_dicts(),
+        set_aside=_counted(report.set_aside, ["what", "reason_code"]),
+        set_aside_rows=report.set_aside.to_dicts(),
+        factors=report.factors.to_dicts(),
+        register=_counted(report.lines, ["to_edition", "change"]),
+        beyond_interval=int(report.lines["exceeds_interval"].fill_null(False).sum()),
+        lines=report.lines.to_dicts(),
+    )
 
 
-def _counted(frame: pl.DataFrame, by: Sequence[str]) -> list[dict[str, Any]]:
+def _counted(frame: pl.DataFrame, by: Sequence[str]) -> list[Row]:
     return frame.group_by(by).agg(pl.len().alias("number")).sort(by).to_dicts()

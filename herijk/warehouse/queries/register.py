@@ -1,17 +1,35 @@
 """The register of an edition as the command prints it, on the day on which it is judged."""
 
 import datetime as dt
-from typing import Any
+from dataclasses import dataclass
 
+from herijk.tables.row import Row
 from herijk.warehouse.queries.answers import current_edition
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.database import no_such_edition
 from herijk.warehouse.store.store import Store
 
 
+@dataclass(frozen=True)
+class RegisterReport:
+    """The register of an edition or draft.
+
+    Attributes:
+        edition: its name.
+        simulated: whether the archive is.
+        as_of: the day on which validity is judged.
+        lines: rows of `register` with `name`.
+    """
+
+    edition: str
+    simulated: bool
+    as_of: dt.date
+    lines: list[Row]
+
+
 def register_report(
     store: Store, edition: str | None = None, as_of: dt.date | None = None
-) -> dict[str, Any]:
+) -> RegisterReport:
     """The lines of an edition or draft, with the boat's name.
 
     Args:
@@ -29,9 +47,4 @@ def register_report(
     of_edition = lines.filter(edition=chosen)
     if of_edition.is_empty():
         raise no_such_edition(chosen, lines["edition"].unique())
-    return {
-        "edition": chosen,
-        "simulated": simulated,
-        "as_of": of_edition["as_of"][0],
-        "lines": of_edition.to_dicts(),
-    }
+    return RegisterReport(chosen, simulated, of_edition["as_of"][0], of_edition.to_dicts())

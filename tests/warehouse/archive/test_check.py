@@ -1,13 +1,14 @@
 """`herijk check`: every fault by cause in one round, and a profile that settles what it can."""
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 
 from herijk.cli.archive import check_text
 from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.warehouse.archive.check import as_report, check_archive
+from herijk.warehouse.archive.check import check_archive, check_report
 from herijk.warehouse.archive.profile import parse_profiles
 from herijk.warehouse.archive.templates import write_templates
 from herijk.words import LANGUAGE, say
@@ -42,17 +43,17 @@ def test_one_round_finds_every_cause_and_its_profile_settles_them(
 ) -> None:
     as_committees_have_it(archive)
     checked = check_archive(archive.root)
-    report = as_report(checked, "nl")
-    assert {cause["reason_code"] for cause in report["causes"]} == {
+    report = check_report(archive.root, checked, "nl")
+    assert {cause.reason_code for cause in report.causes} == {
         *("bad_list_row", "bad_boat_row", "unknown_column", "ambiguous_date", "missing_column")
     }
     assert checked.tows == 3
     before = LANGUAGE.set("nl")
-    text = check_text(report | {"archive": "archief"})
+    text = check_text(report)
     LANGUAGE.reset(before)
     assert "; H of D wordt verwacht." in text
     assert "druk" not in str(checked.profile)
-    json.dumps(report)
+    json.dumps(asdict(report))
     # What is no guess is settled; dates are asked for, in a comment.
     assert '# "sleeplijsten/sleeplijst_2014.csv" = "dmy"' in str(checked.profile)
     answered = str(checked.profile).replace('# "sleeplijsten', '"sleeplijsten')
@@ -81,9 +82,9 @@ def test_files_that_nobody_reads_are_listed(archive: Archive) -> None:
     (archive.root / "meetdata_2014/Möwe 8h 2014.mat").write_bytes(b"x")
     (archive.root / "sleeplijsten/lijst.csv").write_text("x")
     (archive.root / "oud").mkdir()
-    causes = as_report(check_archive(archive.root), "en")["causes"]
-    (unread,) = [c for c in causes if c["reason_code"] == "unrecognised_file"]
-    assert {place["path"] for place in unread["places"]} == {
+    causes = check_report(archive.root, check_archive(archive.root), "en").causes
+    (unread,) = [c for c in causes if c.reason_code == "unrecognised_file"]
+    assert {place.path for place in unread.places} == {
         "sleeplijsten/lijst.csv", "meetdata_2014/Möwe 8h 2014.mat", "oud",
     }  # fmt: skip
 
@@ -93,9 +94,9 @@ def test_extra_runs_are_named_and_a_plan_takes_them(archive: Archive) -> None:
     again = [f"7{line[1:]}" for line in lines if line.startswith("1;")]
     again += [f"8{line[1:]}" for line in lines if line.startswith("4;")]
     archive.edit(FIRST, lambda t: t + "\n".join([*again, ""]))
-    (cause,) = as_report(check_archive(archive.root), "en")["causes"]
-    assert cause["reason_code"] == "run_not_planned"
-    assert "Runs 1, 2, 3, 4, 5, 6, 7, 8 are in the file" in cause["sentence"]
+    (cause,) = check_report(archive.root, check_archive(archive.root), "en").causes
+    assert cause.reason_code == "run_not_planned"
+    assert "Runs 1, 2, 3, 4, 5, 6, 7, 8 are in the file" in cause.sentence
     (archive.root / "archief.toml").write_text(
         '[[plan]]\ntows = ["2014-001"]\ntargets = [0.9, 1.0, 1.1, 0.9, 1.0, 1.1, 0.9, 0.9]\n'
         'directions = ["out", "out", "out", "back", "back", "back", "out", "back"]\n'
@@ -130,7 +131,7 @@ def test_what_libraries_say_is_made_printable() -> None:
 def test_an_empty_archive_to_begin_with(tmp_path: Path) -> None:
     root = tmp_path / "nieuw"
     write_templates(root)
-    (cause,) = as_report(check_archive(root), "nl")["causes"]
-    assert cause["reason_code"] == "samples_missing"  # of the example that is to be removed
+    (cause,) = check_report(root, check_archive(root), "nl").causes
+    assert cause.reason_code == "samples_missing"  # of the example that is to be removed
     with pytest.raises(MissingKnowledgeError, match="not empty"):
         write_templates(root)

@@ -11,7 +11,7 @@ import polars as pl
 import pytest
 import xlsxwriter
 
-from herijk.warehouse.archive.check import Checked, as_report, check_archive
+from herijk.warehouse.archive.check import Checked, check_archive, check_report
 from herijk.warehouse.archive.sheets import read_sheets
 from herijk.warehouse.archive.text import Column, split_header
 from tests.warehouse.archive.conftest import BOATS, FIRST, HEADER, ROWS, TOWS, Archive, Scan
@@ -569,5 +569,5 @@ def test_every_fault_of_a_row_is_told_at_once(archive: Archive) -> None:
 def test_a_setting_for_what_no_list_has_is_told_as_a_sentence(archive: Archive) -> None:
     profile = archive.root / "archief.toml"
     profile.write_text('[[profile]]\nseasons = "1999"\nsample_rate_hz = 20\n')
-    report = as_report(check_archive(archive.root), "nl")
-    assert "[[profile]]" in report["causes"][0]["sentence"]
+    report = check_report(archive.root, check_archive(archive.root), "nl")
+    assert "[[profile]]" in report.causes[0].sentence
