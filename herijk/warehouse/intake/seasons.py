@@ -83,7 +83,7 @@ def _seen(root: Path) -> str:
     one changed just now (`hashes.RACY_SECONDS`).
     """
     stats = dict(_stats(root))
-    newest_ns = max((stat.st_ctime_ns for stat in stats.values()), default=0)
+    newest_ns = max((max(s.st_mtime_ns, s.st_ctime_ns) for s in stats.values()), default=0)
     is_racy = time.time_ns() - newest_ns < RACY_SECONDS * 1e9
     if is_racy or any(S_ISLNK(stat.st_mode) for stat in stats.values()):
         return ""
