@@ -3,7 +3,7 @@
 import os
 import shutil
 from collections.abc import Callable, Collection, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -84,11 +84,14 @@ class _Directly:
 def directly() -> Iterator[None]:
     """Inside, rebuilds do their work without Dagster, and the site counts as made."""
 
-    def unrecorded(setup: Setup, progress: Progress, work: Callable[[Any], None]) -> None:
+    def unrecorded(
+        setup: Setup, progress: Progress, other: object, work: Callable[[Any], None]
+    ) -> None:
         work(_Directly(setup, progress))
 
     no_site = mock.patch.object(herijk.assets.rebuild, "site_is_stale", return_value=False)
-    with no_site, mock.patch.object(herijk.assets.runs, "in_one_run", unrecorded):
+    alone = mock.patch.object(herijk.assets.rebuild, "helper", nullcontext)
+    with no_site, alone, mock.patch.object(herijk.assets.runs, "in_one_run", unrecorded):
         yield
 
 

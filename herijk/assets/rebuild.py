@@ -6,13 +6,14 @@ that there is none takes a second, importing it two.
 
 import datetime as dt
 from collections.abc import Callable, Collection, Sequence
+from concurrent.futures import Executor
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from herijk.assets.progress import Progress
 from herijk.assets.report import Done, Report, write_report
 from herijk.assets.settings import Settings, read_settings
-from herijk.assets.side_by_side import Task, stages
+from herijk.assets.side_by_side import Task, helper, stages
 from herijk.assets.site_state import site_is_stale
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
@@ -130,6 +131,12 @@ class _Rebuild:
 
     def _work(self, seasons: list[int]) -> "Sequence[dg.AssetCheckEvaluation]":
         """Reads seasons and makes what is stale; gives what the checks said."""
+        with helper() as other:  # it imports what it needs while we import Dagster
+            return self._work_with(other, seasons)
+
+    def _work_with(
+        self, other: Executor, seasons: list[int]
+    ) -> "Sequence[dg.AssetCheckEvaluation]":
         from herijk.assets.resources import Setup  # noqa: PLC0415 - see above
         from herijk.assets.runs import in_one_run  # noqa: PLC0415
 
@@ -155,7 +162,7 @@ class _Rebuild:
                 work.check()
             checks.extend(work.checks)
 
-        in_one_run(setup, self.progress, do)
+        in_one_run(setup, self.progress, other, do)
         return checks
 
     def _read(self, work: "Work", stale: list[int]) -> None:

@@ -17,7 +17,7 @@ from herijk.assets.events import Result, events_of
 from herijk.assets.jobs import NAMES, READ
 from herijk.assets.progress import Progress
 from herijk.assets.resources import QUIET_LOG, Setup
-from herijk.assets.side_by_side import Read, Reading, Task, helper, side_by_side
+from herijk.assets.side_by_side import Read, Reading, Task, side_by_side
 from herijk.assets.site import make_site
 from herijk.assets.tables import results_of
 from herijk.pipeline.errors import MissingKnowledgeError
@@ -115,7 +115,9 @@ class Work:
                 self.checks.append(event)
 
 
-def in_one_run(setup: Setup, progress: Progress, work: Callable[[Work], None]) -> None:
+def in_one_run(
+    setup: Setup, progress: Progress, other: Executor, work: Callable[[Work], None]
+) -> None:
     """Has work done in a run of Dagster, by whoever holds the lock; an error comes out as raised.
 
     A run costs a second and more, so a rebuild is one and not one for each of its thirty pieces.
@@ -129,7 +131,7 @@ def in_one_run(setup: Setup, progress: Progress, work: Callable[[Work], None]) -
     def job() -> None:
         whole()
 
-    with helper() as other, instance_of(setup.store) as instance:
+    with instance_of(setup.store) as instance:
         _end_lost_runs(instance)
         job.execute_in_process(instance=instance, run_config=QUIET_LOG, tags={STEP_TAG: WORK})
 

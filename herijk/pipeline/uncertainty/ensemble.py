@@ -6,6 +6,7 @@ single lines cannot show. Belongs here: the draws, and the counting. Does not: t
 (`uncertainty`) and where members are kept (`warehouse.store.ensemble`).
 """
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -99,7 +100,7 @@ def share_heavier(members: pl.DataFrame, tow_id: str, other: str) -> float:
     Raises:
         MissingKnowledgeError: one of them has no members: it has no curve under the method.
     """
-    mine, theirs = (_members_of(members, t) for t in (tow_id, other))
+    mine, theirs = _members_of(members, [tow_id, other])
     return float((mine > theirs).mean())
 
 
@@ -120,22 +121,29 @@ def share_first(members: pl.DataFrame, results: pl.DataFrame) -> pl.DataFrame:
     Raises:
         MissingKnowledgeError: a tow has no members.
     """
-    drawn = np.stack([_members_of(members, t) for t in results["tow_id"]])
+    drawn = _members_of(members, results["tow_id"].to_list())
     per_cw = (results["power_w"] / results["cw_kg_m"]).to_numpy()
     first = (per_cw[:, None] * drawn).argmax(axis=0)
     share = np.bincount(first, minlength=results.height) / drawn.shape[1]
     return results.with_columns(pl.Series("share", share)).sort("power_w", descending=True)
 
 
-def _members_of(members: pl.DataFrame, tow_id: str) -> FloatArray:
-    mine = members.filter(pl.col("tow_id") == tow_id).sort("member")
-    if mine.is_empty():
-        raise MissingKnowledgeError(
-            "tow {} has no members in the ensemble: there is no curve for it; look "
-            "for its status in the table curves",
-            tow_id,
-        )
-    return mine["cw_kg_m"].to_numpy()
+def _members_of(members: pl.DataFrame, tow_ids: Sequence[str]) -> FloatArray:
+    """Cw of the members of each tow, shape (tows, members)."""
+    per_tow = (
+        members.filter(pl.col("tow_id").is_in(tow_ids))
+        .group_by("tow_id")
+        .agg(pl.col("cw_kg_m").sort_by("member"))
+    )
+    known = dict(per_tow.rows())
+    for tow_id in tow_ids:
+        if tow_id not in known:
+            raise MissingKnowledgeError(
+                "tow {} has no members in the ensemble: there is no curve for it; look "
+                "for its status in the table curves",
+                tow_id,
+            )
+    return np.array([known[tow_id] for tow_id in tow_ids])
 
 
 def _errors(

@@ -4,6 +4,7 @@ A recording is columns with a header; each segment, group or file can be a run. 
 channels and what they mean belong to `samples`.
 """
 
+import logging
 import re
 from pathlib import Path
 from typing import Any, Final
@@ -118,7 +119,9 @@ def read_tdms(path: Path, max_bytes: int, most_rows: int | None = None) -> pl.Da
         DefectiveInputError: `unreadable_file` or `too_large`.
     """
     import nptdms  # type: ignore[import-untyped]  # noqa: PLC0415 - seldom needed
+    from nptdms.log import log_manager  # type: ignore[import-untyped]  # noqa: PLC0415
 
+    log_manager.set_level(logging.CRITICAL)  # what is wrong with a file is told with the file
     try:
         if path.stat().st_size > max_bytes:
             raise ValueError(f"larger than {max_bytes} bytes")

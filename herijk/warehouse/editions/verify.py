@@ -8,6 +8,7 @@ Nothing is ever mended here.
 import hashlib
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Final
 
@@ -16,7 +17,7 @@ from pydantic import ValidationError
 
 from herijk.pipeline.errors import BrokenPromiseError, HerijkError
 from herijk.pipeline.recompute.facts import samples_files, with_hand_windows
-from herijk.warehouse.archive import FileHashes, index_archive
+from herijk.warehouse.archive import ArchiveIndex, FileHashes, index_archive
 from herijk.warehouse.archive.files import PARTS
 from herijk.warehouse.build.version import code_version
 from herijk.warehouse.editions import sheets
@@ -91,6 +92,7 @@ def verify(store: Store, afresh: bool = True) -> Verification:
         afresh: read every file of the archive again, instead of trusting its size and time.
     """
     hashes = FileHashes() if afresh else FileHashes.load(store.file_hashes)
+    archive = _Archive.of(store, hashes)
     findings, head = chain_findings(store)
     checked = []
     for name in edition_names(store):
@@ -100,7 +102,7 @@ def verify(store: Store, afresh: bool = True) -> Verification:
         except BrokenPromiseError as error:
             findings.append(Finding(name, "altered", ABOUT, str(error)))
             continue
-        findings += [*_altered(store, path, about), *_archive(store, path, about, hashes)]
+        findings += [*_altered(store, path, about), *_archive(archive, path, about)]
         counts, differing = remade(store, name)
         findings += differing
         checked.append(CheckedEdition(name, about.kind, *counts))
@@ -291,10 +293,29 @@ def _not_too_many(file: str, found: list[tuple[str, str]]) -> list[tuple[str, st
 # Are the archive's files those it was made from?
 
 
-def _archive(store: Store, path: Place, about: About, hashes: FileHashes) -> Iterator[Finding]:
+@dataclass(frozen=True)
+class _Archive:
+    """The archive behind all editions, of which lists and files are read once."""
+
+    root: Path
+    hashes: FileHashes
+
+    @classmethod
+    def of(cls, store: Store, hashes: FileHashes) -> "_Archive | None":
+        """The archive where the last rebuild found it; None if it is no longer there."""
+        known = store.made_from("about_archive") is not None
+        root = intake.archive_root(store) if known else None
+        return None if root is None else cls(root, hashes)
+
+    @cached_property
+    def index(self) -> ArchiveIndex:
+        """What its lists say; raises HerijkError where they cannot be read."""
+        return index_archive(self.root, self.hashes.hash_file)
+
+
+def _archive(archive: _Archive | None, path: Place, about: About) -> Iterator[Finding]:
     name = path.name
-    root = intake.archive_root(store) if store.made_from("about_archive") is not None else None
-    if root is None:
+    if archive is None:
         yield Finding(
             name,
             "unchecked",
@@ -308,12 +329,12 @@ def _archive(store: Store, path: Place, about: About, hashes: FileHashes) -> Ite
     if not (path / INPUTS).exists():
         return
     for file, kind, sha256 in sheets.read_inputs(path):
-        gone = PARTS.join(part for part in file.split(PARTS) if not (root / part).is_file())
+        gone = PARTS.join(part for part in file.split(PARTS) if not (archive.root / part).is_file())
         if gone:
             yield Finding(
                 name, "missing", gone, say("{} is gone from the archive; put it back", gone)
             )
-        elif hashes.hash_samples(root, file) != sha256:
+        elif archive.hashes.hash_samples(archive.root, file) != sha256:
             yield Finding(
                 name,
                 "notice" if kind == LIST else "swapped",
@@ -322,13 +343,13 @@ def _archive(store: Store, path: Place, about: About, hashes: FileHashes) -> Ite
                 wrong=kind != LIST,
             )
     if about.kind == "recomputed" and (path / "tows.parquet").exists():
-        yield from _list_rows(path, root, hashes)
+        yield from _list_rows(path, archive)
 
 
-def _list_rows(path: Place, root: Path, hashes: FileHashes) -> Iterator[Finding]:
+def _list_rows(path: Place, archive: _Archive) -> Iterator[Finding]:
     """Tows of the edition whose rows in the lists are no longer what they were."""
     try:
-        index = index_archive(root, hashes.hash_file)
+        index = archive.index
         was = {name: read_table(path, name) for name in ("tows", "tow_runs")}
     except HerijkError as error:
         yield Finding(path.name, "unchecked", "sleeplijsten", str(error))

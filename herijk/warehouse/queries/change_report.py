@@ -9,6 +9,7 @@ import os
 import shutil
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final
 
@@ -112,8 +113,15 @@ def change_report(store: Store) -> ChangeReport:
     """What changed in the database since the last report."""
     if is_reported(store):
         return _nothing()
-    now = _tables(store.database)
-    was = _reported(store)
+    reported, now = reported_database(store), store.database
+    before = file_sha256(reported) if reported.exists() else ""
+    return _between(reported, now, (before, file_sha256(now)))
+
+
+@lru_cache(maxsize=1)
+def _between(reported: Path, database: Path, _: tuple[str, str]) -> ChangeReport:
+    """What changed from one database to another; kept by their hashes, as many ask."""
+    now, was = _tables(database), _reported(reported)
     before = was or {name: frame.clear() for name, frame in now.items()}
     return ChangeReport(
         first=was is None,
@@ -152,9 +160,8 @@ def remember(store: Store) -> None:
             shutil.copyfile(store.database, beside)
 
 
-def _reported(store: Store) -> Tables | None:
+def _reported(path: Path) -> Tables | None:
     """Tables of the last report; None where there is none, or it is damaged."""
-    path = reported_database(store)
     if not path.exists():
         return None
     try:

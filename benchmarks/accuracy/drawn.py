@@ -1,0 +1,148 @@
+"""Archives drawn at random: what `rebased` makes of faults and gaps that nobody put together.
+
+    PYTHONPATH=. python -m benchmarks.accuracy.drawn [archives]
+
+Each is a named world of which a part of the tows or boats is left, without some seasons, with GPS
+or wind missing in some seasons and tows, and with up to two faults of `benchmarks.accuracy.foreign`
+on top. An archive takes a second or two, and ten once to simulate it.
+"""
+
+import os
+
+os.environ["OMP_NUM_THREADS"] = "1"  # read when numpy is imported
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
+os.environ["POLARS_MAX_THREADS"] = "1"
+
+import sys
+from dataclasses import replace
+
+import numpy as np
+import polars as pl
+
+from benchmarks.accuracy.foreign import FOREIGN
+from benchmarks.accuracy.score import DOUBTED, ESTIMATES, seasons_said
+from benchmarks.accuracy.worlds import FIRST_SEED, ONLY_FROM_FILES, recomputed, simulated
+from herijk.pipeline.arrays import BoolArray
+from herijk.simulate import WORLDS
+from tests.worlds import Measured
+
+SEEDS = 20
+FIRST_DRAW = 50_000
+FEWEST_TOWS = 5
+STILL = {"wind_v": "log1_v", "wind_x": "log1_v", "wind_y": None, "wind_sin": None}
+"""What blocks hold where no wind was measured: the boat's own speed from ahead, or nothing."""
+
+
+def drawn(rng: np.random.Generator) -> Measured:
+    """A random archive of at least `FEWEST_TOWS` tows."""
+    names = [name for name in WORLDS if name not in ONLY_FROM_FILES]
+    whole = simulated(str(rng.choice(names)), FIRST_SEED + int(rng.integers(SEEDS)))
+    keep = _some(whole.tows, rng) & ~_in_seasons(whole.tows, 0.1, rng)
+    if keep.sum() < FEWEST_TOWS:
+        return drawn(rng)
+    world = _of_tows(whole, keep)
+    few = rng.random(world.tows.height) < rng.choice([0.0, 0.0, 0.1, 0.3])
+    world = _without_gps(world, few | _in_seasons(world.tows, 0.15, rng))
+    world = _without_wind(world, _in_seasons(world.tows, 0.08, rng))
+    for fault in rng.choice(list(FOREIGN), size=rng.choice([0, 1, 1, 2]), replace=False):
+        world = FOREIGN[str(fault)](world, rng)
+    return world
+
+
+def _some(tows: pl.DataFrame, rng: np.random.Generator) -> BoolArray:
+    """All tows, or a share of the tows or of the boats."""
+    share = rng.choice([1.0, 1.0, 0.6, 0.35, 0.15])
+    by = "tow_id" if rng.random() < 0.5 else "fsn_no"
+    names = tows[by].unique().sort()
+    kept = names.filter(pl.Series(rng.random(len(names)) < share))
+    return tows[by].is_in(kept.implode()).to_numpy()
+
+
+def _in_seasons(tows: pl.DataFrame, share: float, rng: np.random.Generator) -> BoolArray:
+    """Tows of seasons of which each is chosen with that chance."""
+    seasons = tows["season"].unique().sort()
+    chosen = seasons.filter(pl.Series(rng.random(len(seasons)) < share))
+    return tows["season"].is_in(chosen.implode()).to_numpy()
+
+
+def _of_tows(world: Measured, keep: BoolArray) -> Measured:
+    kept = world.tows.filter(pl.Series(keep)).select("tow_id")
+    frames = {
+        name: getattr(world, name).join(kept, on="tow_id", how="semi", maintain_order="left")
+        for name in ("tows", "runs", "truth")
+    }
+    mine = world.blocks.runs["tow_id"].is_in(kept["tow_id"].implode()).to_numpy()
+    return replace(world, **frames, blocks=world.blocks.take(mine))
+
+
+def _without_gps(world: Measured, lost: BoolArray) -> Measured:
+    runs = _runs_of(world, lost)
+    sums = {
+        name: np.where(runs & name.startswith("gps"), 0.0, values)
+        for name, values in world.blocks.sums.items()
+    }
+    return replace(world, blocks=replace(world.blocks, sums=sums))
+
+
+def _without_wind(world: Measured, lost: BoolArray) -> Measured:
+    runs, sums = _runs_of(world, lost), dict(world.blocks.sums)
+    still = {name: sums[own] if own else 0.0 for name, own in STILL.items()}
+    for name, values in {**still, "wind_cos": world.blocks.n}.items():
+        sums[name] = np.where(runs, values, sums[name])
+    tows = world.tows.with_columns(wind_measured=pl.Series(~lost))
+    return replace(world, tows=tows, blocks=replace(world.blocks, sums=sums))
+
+
+def _runs_of(world: Measured, tows: BoolArray) -> BoolArray:
+    names = world.tows.filter(pl.Series(tows))["tow_id"].implode()
+    return world.blocks.runs["tow_id"].is_in(names).to_numpy()[:, None]
+
+
+def outcome(world: Measured) -> pl.DataFrame:
+    """Per tow and estimate, how far it is off, and whether that is covered and told."""
+    tables = recomputed(world, equal_boats=False)
+    doubted = list(seasons_said(tables, DOUBTED))
+    curves = tables["curves"].join(world.truth.drop("season"), on="tow_id")
+    told = (pl.col("status") != "accepted") | pl.col("season").is_in(doubted)
+    true = pl.col("cw_at_15c_kg_m")
+    return pl.concat(
+        curves.select(
+            pl.lit(what).alias("estimate"),
+            pl.lit(curves.height).alias("tows"),
+            off=pl.col(cw) / true - 1.0,
+            covered=true.is_between(lo, hi),
+            half=(pl.col(hi) - pl.col(lo)) / (2.0 * pl.col(cw)),
+            told=told,
+        )
+        for what, (cw, lo, hi) in ESTIMATES.items()
+    )
+
+
+def table(tows: pl.DataFrame) -> list[str]:
+    """Lines of the table of docs/accuracy.md, by size of the archive."""
+    tows_in = pl.col("tows")
+    size = pl.when(tows_in <= 50).then(50).when(tows_in <= 150).then(150).otherwise(240)
+    rows = tows.group_by("estimate", size=size, maintain_order=True).agg(
+        pl.len(),
+        pl.col("off").null_count().alias("without"),
+        (pl.col("off") ** 2).mean().sqrt().alias("rmse"),
+        pl.col("covered").mean(),
+        pl.col("half").median(),
+        silent=(~pl.col("covered") & ~pl.col("told")).mean(),
+    )
+    return [
+        f"| up to {r['size']} | {r['estimate']} | {r['len']} | {r['without']} | {r['rmse']:.1%} "
+        f"| {r['covered']:.1%} | {r['half']:.1%} | {r['silent']:.1%} |"
+        for r in rows.sort("size", "estimate", descending=[False, True]).iter_rows(named=True)
+    ]
+
+
+def main() -> None:
+    """Prints the table."""
+    archives = int(sys.argv[1]) if len(sys.argv) > 1 else 100
+    draws = (np.random.default_rng(FIRST_DRAW + number) for number in range(archives))
+    print("\n".join(table(pl.concat(outcome(drawn(rng)) for rng in draws))))
+
+
+if __name__ == "__main__":
+    main()
