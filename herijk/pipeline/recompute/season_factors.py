@@ -28,7 +28,6 @@ from herijk.pipeline.season_log import (
 )
 from herijk.pipeline.steps.calibration import gps_factor
 from herijk.pipeline.steps.speed import log_part
-from herijk.pipeline.uncertainty.propagation import Assumed
 
 FEWEST_OF_TYPE: Final = 5
 """A type's own bend is taken from so many anchored tows on."""
@@ -210,7 +209,7 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
 def _unmeasured_wind_kg_m(o: Outcome) -> FloatArray:
     """Standard uncertainty of Cw by wind that nobody measured, shape (tows,); 0 where it was."""
     still = o.batch.mean(o.still_air_kg_m, o.used)
-    return np.where(o.batch.measured("wind"), 0.0, still * Assumed().unmeasured_wind)
+    return np.where(o.batch.measured("wind"), 0.0, still * o.expected_wind.sd)
 
 
 def _water_points(o: Outcome) -> curve.Points:
