@@ -8,6 +8,7 @@ from herijk.warehouse.build.database import DATABASE_TABLE
 from herijk.warehouse.store.code import code_hash
 from herijk.warehouse.store.files import file_sha256
 from herijk.warehouse.store.store import Store, fingerprint
+from herijk.words import LANGUAGES
 
 SITE_CODE: Final = "herijk.dashboards.site"
 SITE_TABLE: Final = "site"
@@ -18,7 +19,7 @@ def site_made_from(store: Store) -> str:
     """The database, and the code and files that make pages of it."""
     folder = Path(__file__).parents[1] / "dashboards"
     files = [f for f in folder.rglob("*.*") if f.parent.name in {"static", "templates"}]
-    files += map(guide_file, GUIDES)
+    files += [guide_file(name, language) for name in GUIDES for language in LANGUAGES]
     return fingerprint(
         store.made_from(DATABASE_TABLE),
         code_hash(SITE_CODE),

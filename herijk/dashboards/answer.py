@@ -225,10 +225,19 @@ def _place(line: Row, speech: Speech) -> Iterator[str]:
 
 
 def _race(race: Row, speech: Speech) -> str:
+    if race["new_rank"] is None:
+        why = [
+            f"{speech.edition(race[edition])}: {speech.say(f'code.{race[remark]}')}"
+            for edition, remark in (("from_edition", "old_remark"), ("to_edition", "new_remark"))
+            if race[remark]
+        ]
+        return speech.say("answer_race_none").format(
+            race=race["race"], day=race["race_date"], why="; ".join(why)
+        )
     moved = race["old_rank"] != race["new_rank"]
     return speech.say("answer_race_moved" if moved else "answer_race").format(
         race=race["race"], day=race["race_date"], size=race["race_size"],
-        old=race["old_rank"] or "?", new=race["new_rank"] or "?",
+        old=race["old_rank"], new=race["new_rank"],
     )  # fmt: skip
 
 

@@ -12,7 +12,11 @@ GUIDES: Final = ("method", "audit")
 _PACKAGE: Final = Path(__file__).parents[1]
 
 
-def guide_file(name: str) -> Path:
+_FOLDERS: Final = {"nl": "docs/nl", "en": "docs"}
+"""Where the documents of a language lie."""
+
+
+def guide_file(name: str, language: str) -> Path:
     """Where the document is: packed with the program, or in its checkout."""
-    packed = _PACKAGE / "docs" / f"{name}.md"
-    return packed if packed.exists() else _PACKAGE.parent / "docs" / f"{name}.md"
+    packed = _PACKAGE / _FOLDERS[language] / f"{name}.md"
+    return packed if packed.exists() else _PACKAGE.parent / _FOLDERS[language] / f"{name}.md"

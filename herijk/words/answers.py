@@ -143,6 +143,10 @@ ANSWERS: Final[dict[str, tuple[str, str]]] = {
         "{race} {day}: de uitslag blijft plaats {new} van {size}.",
         "{race} {day}: the result stays place {new} of {size}.",
     ),
+    "answer_race_none": (
+        "{race} {day}: er zijn geen twee plaatsen te vergelijken ({why}).",
+        "{race} {day}: there are no two places to compare ({why}).",
+    ),
     "answer_race_moved": (
         "{race} {day}: de uitslag wordt plaats {new} van {size}; dat was {old}.",
         "{race} {day}: the result becomes place {new} of {size}; it was {old}.",

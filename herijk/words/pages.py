@@ -29,7 +29,7 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "guide_in_short": ("In het kort", "In short"),
     "guide_whole": ("De hele tekst", "The whole text"),
     "guide_note": (
-        "De hele tekst is er alleen in het Engels.",
+        "Het document van het project, zoals het bij het programma hoort.",
         "The document of the project, as it stands beside the program.",
     ),
     "edition_title": ("Editie", "Edition"),
@@ -233,6 +233,12 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "head_winner_other": (
         "Bij de {people} wint {new} in plaats van {old}.",
         "Among the {people} {new} wins instead of {old}.",
+    ),
+    "head_few_places": (
+        "Bij de {people} hebben maar {number} van de {all} ploegen op die dag in beide edities een "
+        "geldige regel; de plaatsen zijn onder hen. ",
+        "Among the {people} only {number} of {all} crews have a valid line on that day in both "
+        "editions; the places are among these. ",
     ),
     "head_chance": (
         " Kans dat een ander wint dan eerst: {chance} %.",
@@ -455,13 +461,13 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "types_lines_note": (
         "Een rechte lijn per type door n proeven; proeven van een sloep tellen als herhaling. De "
         "pagina van een type heeft ook die door alle proeven en per seizoen. De helling "
-        "is de verandering van de grootheid per kg of per m/s (van ln tegen ln: de macht); een "
+        "is de verandering van de grootheid per kg of per m/s (bij een macht: de exponent); een "
         "helling waarvan het interval 0 bevat, is niet aangetoond. R²: deel van de spreiding dat "
         "de lijn verklaart. q is (v/B)²/(1 - (v/B)²) bij de standaardsnelheid, de middelste "
         "opgegeven snelheid van het type.",
         "A straight line per type through n tows; tows of one boat count as repeats. The page of a "
         "type also has those through all tows and per season. The slope is "
-        "the change of the quantity per kg or per m/s (of ln against ln: the power); a slope whose "
+        "the change of the quantity per kg or per m/s (of a power: the exponent); a slope whose "
         "interval holds 0 is not shown to exist. R²: share of the spread that the line explains. q "
         "is (v/B)²/(1 - (v/B)²) at the standard speed, the median declared speed of the type.",
     ),
@@ -602,9 +608,11 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "race_results": ("Uitslag onder beide edities", "Results under both editions"),
     "race_ranks": ("Plaats oud en nieuw", "Place before and after"),
     "race_note": (
-        "Plaats en vermogen per roeier in deze wedstrijd, per klasse. Op de lijn blijft de plaats "
-        "gelijk.",
-        "Place and power per rower in this race, by class. On the line the place stays the same.",
+        "Vermogen per roeier in deze wedstrijd, en de plaats daarnaar, per klasse: onder de "
+        "ploegen die op die dag in beide edities een geldige regel hebben. Op de lijn blijft de "
+        "plaats gelijk.",
+        "Power per rower in this race, and the place by it, by class: among the crews that have a "
+        "valid line on that day in both editions. On the line the place stays the same.",
     ),
     "no_races": (
         "Het archief bevat geen wedstrijden om opnieuw te rekenen.",
@@ -632,24 +640,24 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "season_steps_note": (
         "Een seizoen kan afwijken van de andere proeven van dezelfde sloepen doordat de log of "
         "doordat de krachtmeter verkeerd wees. De bocht van de krommen onderscheidt die twee. "
-        "Stappen in ln Cw, met hun standaardafwijking (sd); voor een stap onder 0,03 of onder twee "
-        "keer zijn sd is geen oorzaak gezocht.",
+        "Stappen van Cw in procenten, met hun standaardafwijking (sd); voor een stap onder 3 % of "
+        "onder twee keer zijn sd is geen oorzaak gezocht.",
         "A season may differ from the other tows of the same boats because the log or because the "
-        "load cell was wrong. The bend of the curves tells the two apart. Steps in ln Cw, with "
-        "their standard deviation (sd); for a step below 0.03 or below twice its sd no cause is "
-        "looked for.",
+        "load cell was wrong. The bend of the curves tells the two apart. Steps of Cw in per cent, "
+        "with their standard deviation (sd); for a step below 3 % or below twice its sd no cause "
+        "is looked for.",
     ),
     "season_diagnosis": ("Instrumenten per seizoen", "Instruments by season"),
     "season_diagnosis_note": (
         "Wat er in een seizoen mis kan zijn met log, GPS, krachtmeter, windmeter of temperatuur. "
         "Fout: waarschijnlijker wel dan niet. Niet te zeggen: 10 tot 50 %. Alarm: 4 "
         "standaardafwijkingen van wat gewoon is. Zou niet opvallen: een gewone fout zou voor iets "
-        "anders worden aangezien. Grootte: logaritme van een factor (0,04 is "
-        "4 %), of in N. Wat niet in de tabel staat, is in orde.",
+        "anders worden aangezien. Grootte: in procenten, of in N. "
+        "Wat niet in de tabel staat, is in orde.",
         "What may be wrong in a season with log, GPS, load cell, anemometer or temperature. Fault: "
         "likelier than not. Cannot be told: 10 to 50 %. Alarm: 4 standard deviations from what is "
         "usual. Would not show: a fault of the usual size would be taken for something else. "
-        "Size: logarithm of a factor (0.04 is 4 %), or in N. What is not in the table is sound.",
+        "Size: in per cent, or in N. What is not in the table is sound.",
     ),
     "eras": ("Wijkt een tijdvak af?", "Does an era differ?"),
     "eras_note": (

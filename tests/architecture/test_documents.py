@@ -1,12 +1,14 @@
 """The documents say what the code does: options, reason codes, commands, links."""
 
 import re
+from collections import Counter
 from typing import Literal, get_args, get_origin
 
 import pytest
 import typer.main
 
 from herijk.cli.main import app
+from herijk.dashboards.guides import GUIDES
 from herijk.pipeline.method.definition import Steps, shipped_methods
 from herijk.tables.schemas import TABLES
 from herijk.tables.views import VIEWS
@@ -52,6 +54,43 @@ def test_no_option_is_documented_that_is_not_there():
 @pytest.mark.parametrize("name", shipped_methods())
 def test_every_shipped_method_is_documented(name):
     assert f"\n| `{name}` |" in read("docs/method.md")
+
+
+def sections(path):
+    """The sections of a document, without its diagrams and commands."""
+    text = re.sub(r"```.*?```", "", read(path), flags=re.DOTALL)
+    return re.split(r"^(?=#)", text, flags=re.MULTILINE)[1:]
+
+
+WORDS_IN_CODE = re.compile(r"[A-Za-zë]{4,} [a-zë]{3,}|[a-zë]{4,} [-+/(=]|[-+/(=] [a-zë]{4,}")
+
+
+def names_and_formulas(section):
+    """What is set as code, as often as it is; one that holds words only counts."""
+    found = re.findall(r"`([^`]+)`", section)
+    return Counter("words" if WORDS_IN_CODE.search(code) else code for code in found)
+
+
+def numbers(section, comma):
+    """The numbers of a text, as often as they are there, with what a comma in them stands for."""
+    text = re.sub(r"`[^`]*`|\]\([^)]*\)", "", section)
+    return Counter(re.findall(r"\d+(?:\.\d+)?", re.sub(r"(?<=\d),(?=\d)", comma, text)))
+
+
+def shape(section):
+    """Level of the heading, and the columns of every row of a table."""
+    lines = section.splitlines()
+    return [lines[0].count("#"), *(row.count(" | ") for row in lines if row.startswith("|"))]
+
+
+@pytest.mark.parametrize("name", GUIDES)
+def test_the_dutch_text_of_a_guide_has_what_the_english_has(name):
+    """Section by section the same tables, names, formulas and numbers."""
+    english, dutch = sections(f"docs/{name}.md"), sections(f"docs/nl/{name}.md")
+    assert [shape(s) for s in dutch] == [shape(s) for s in english]
+    for nl, en in zip(dutch, english, strict=True):
+        assert names_and_formulas(nl) == names_and_formulas(en), nl.splitlines()[0]
+        assert numbers(nl, ".") == numbers(en, ""), nl.splitlines()[0]
 
 
 def test_every_reason_code_is_documented():

@@ -79,6 +79,14 @@ def test_places_that_swap_on_the_podium_are_told():
     assert "wordt plaats 2" in said(races=[RACE | {"old_rank": 3, "new_rank": 2}])
 
 
+def test_a_race_in_which_only_one_edition_has_a_line_is_not_compared():
+    editions = {"from_edition": "2015-1", "to_edition": "2026-1"}
+    remarks = {"old_remark": "no_line_that_day", "new_remark": ""}
+    text = said(races=[RACE | editions | remarks | {"old_rank": None, "new_rank": None}])
+    assert "geen twee plaatsen te vergelijken (2015-1: op die dag geen geldige regel)" in text
+    assert "wordt plaats" not in text
+
+
 def test_valid_comes_with_its_day():
     assert "telt tot en met 2022-12-31" in said()
     assert "telde tot en met 2022-12-31" in said(status="expired", cw_kg_m=None, cw_ratio=None)

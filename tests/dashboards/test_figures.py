@@ -9,6 +9,7 @@ import pytest
 import vl_convert
 
 from herijk.dashboards.figures import FIGURES, png, slides
+from herijk.dashboards.site.specifications import specification
 from herijk.words import LANGUAGES
 from herijk.words.catalogue import WORDS, both, speaker
 
@@ -140,6 +141,18 @@ def test_one_legend_names_the_methods_that_are_drawn(name):
     labels = re.findall(r'role-legend-label"[^>]*>\s*<text[^>]*>([^<]+)<', picture)
     assert labels == ["zoals gepubliceerd", "werkbank"]
     assert picture.count(">Methode<") == 1
+
+
+@pytest.mark.parametrize("name", ["history", "resistance_curve"])
+def test_a_bar_that_leaves_the_log_out_looks_other_than_an_interval(name):
+    """Bars of a boat's page mean two things, so each is drawn in its own way and named."""
+    text = json.dumps(specification(FIGURES[name], speaker("nl")))
+    bars = re.findall(r'"strokeDash": ({.*?"title": "Interval".*?})', text)
+    assert bars
+    for bar in bars:
+        assert '"field": "interval"' in bar
+        assert '"domain": ["complete", "runs_alone"], "range": [[1, 0], [4, 3]]' in bar
+        assert "de fout van de log zit er niet in" in bar
 
 
 def test_statuses_are_told_apart_in_grey_print():

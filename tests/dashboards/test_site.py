@@ -5,6 +5,7 @@ import json
 import re
 from itertools import accumulate
 
+import duckdb
 import polars as pl
 import pytest
 
@@ -22,7 +23,10 @@ from herijk.dashboards.site.parts import (
     race_path,
     type_path,
 )
+from herijk.dashboards.site.races import _winner
 from herijk.dashboards.site.render import DRAWN
+from herijk.dashboards.site.types import type_pages
+from herijk.dashboards.speech import Speech
 from herijk.warehouse.queries.answers import answers, line_changes, newest_edition
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.store import Store
@@ -42,6 +46,9 @@ def hashes(site):
         for f in sorted(site.rglob("*"))
         if f.is_file()
     }
+
+
+CLASS_OF_RACE = ["from_edition", "to_edition", "race", "race_date", "crew_class"]
 
 
 def test_every_page_is_there(site, built):
@@ -149,6 +156,42 @@ def test_no_two_numbers_of_a_table_go_by_one_name_and_none_is_a_logarithm(site):
     assert len(tables) > 100
     assert [names for names in tables if len(set(names)) < len(names)] == []
     assert not any(re.search(r"\bln\b", name) for names in tables for name in names)
+    assert [key for key, texts in WORDS.items() if re.search(r"\bln\b|logarit", str(texts))] == []
+
+
+def test_power_that_repeats_cw_is_not_shown_beside_it(site):
+    """At one speed both change by the same factor: the note says so, once."""
+    (changes,) = [names for names in headings(site / "changes.html") if "Cw nieuw / oud" in names]
+    assert not any("Vermogen" in name for name in changes)
+    assert "vermogen verandert evenveel" in (site / "changes.html").read_text("utf-8")
+
+
+def test_places_are_compared_among_crews_that_both_editions_rank(bench):
+    with duckdb.connect(bench.store.database) as db:
+        db.execute("UPDATE race_changes SET old_rank = NULL, old_power_w = NULL WHERE old_rank = 1")
+    with Views(bench.store) as views:
+        rows = views.races().with_columns(own=pl.struct(CLASS_OF_RACE))
+    without = rows.filter(pl.col("old_power_w").is_null())
+    assert without.height > 0
+    assert without.select("old_rank", "new_rank", "podium_changed").null_count().row(0) == (
+        (without.height,) * 3
+    )
+    for of_class in rows.drop_nulls("new_rank").partition_by("own"):
+        places = of_class.select("old_rank", "new_rank")
+        assert places.min().row(0) == (1, 1)
+        assert places["old_rank"].max() <= of_class.height
+
+
+def test_a_race_page_says_among_how_many_it_compares():
+    rows = pl.DataFrame(
+        {"name": ["A", "B", "C"], "race": "R", "race_date": "2025-06-04",
+         "old_power_w": [70.0, None, 60.0], "new_power_w": [69.0, 80.0, 61.0],
+         "old_rank": [1, None, 2], "new_rank": [1, None, 2]}
+    )  # fmt: skip
+    text = _winner(Speech("nl"), "H", rows, {("R 2025-06-04", "H"): 0.1})
+    assert "maar 2 van de 3 ploegen" in text
+    assert "wint A, net als eerst" in text
+    assert "Kans" not in text
 
 
 def test_every_crew_stands_on_the_due_list_once_a_method(site, store):
@@ -173,7 +216,12 @@ def test_a_log_s_factors_are_shown_as_often_as_the_table_has_them(site, store):
 
 def test_a_column_and_a_code_on_a_page_have_a_text(store):
     with Views(store) as views:
-        pages_made = [*shared_pages(views), *boat_pages(views, method_names(views))]
+        methods = method_names(views)
+        pages_made = [
+            *shared_pages(views),
+            *boat_pages(views, methods),
+            *type_pages(views, methods),
+        ]
     tables = [t for page in pages_made for s in page.sections for t in s.tables]
     drawn = [
         frame

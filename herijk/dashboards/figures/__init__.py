@@ -13,6 +13,7 @@ import altair as alt
 import polars as pl
 import vl_convert
 
+from herijk.dashboards import drawn
 from herijk.dashboards.figures import (
     boat,
     compared,
@@ -74,8 +75,8 @@ FIGURES: Final[dict[str, Figure]] = {
 
 def png(name: str, frame: pl.DataFrame, say: Say) -> bytes:
     """A figure as a picture, for places that show no Vega."""
-    text = FIGURES[name](frame, say).to_json()
-    return bytes(vl_convert.vegalite_to_png(text))
+    svg = drawn.svg(FIGURES[name](frame, say).to_dict())
+    return bytes(vl_convert.svg_to_png(svg, scale=2.0))
 
 
 def drop_links(part: Any) -> None:

@@ -24,7 +24,7 @@ from herijk.dashboards.site.prose import edition_pages, guide_pages
 from herijk.dashboards.site.races import race_pages
 from herijk.dashboards.site.slides import slides_page
 from herijk.dashboards.site.start import methods_table, start_page, words_page
-from herijk.dashboards.site.types import type_pages, types_page
+from herijk.dashboards.site.types import types_page
 from herijk.warehouse.build.studies import JUDGEMENT
 from herijk.warehouse.queries.answers import line_changes, newest_edition
 from herijk.warehouse.queries.views import Views
@@ -37,14 +37,13 @@ MENU = (
 
 
 def shared_pages(views: Views) -> Iterator[Page]:
-    """Every page of the site but those of the boats."""
+    """Every page of the site but those of boats and types, of which there are many."""
     methods = method_names(views)
     changes = line_changes(views)
     yield start_page(views, methods, changes)
     yield _register(views, methods)
     yield _due(views, methods)
     yield types_page(views, methods)
-    yield from type_pages(views, methods)
     yield _compare(views, methods)
     yield from race_pages(views, methods)
     yield slides_page(views, methods)
@@ -153,8 +152,8 @@ LINK_COLUMNS = (
     *("influence", "influence_boat", "factor_no_boats", "agreement"),
 )
 STEP_COLUMNS = (
-    *("method", "season", "part", "log", "n_boats", "level_step", "level_step_sd", "force_step"),
-    *("force_step_sd", "cause"),
+    *("method", "season", "part", "log", "n_boats", "level_step_percent"),
+    *("level_sd_percent", "force_step_percent", "force_sd_percent", "cause"),
 )
 
 
@@ -175,10 +174,17 @@ def _corrections(views: Views, methods: list[str]) -> Page:
         sections.append(
             Section("log_factors", "log_factors_note", [chart], [table], headline=headline)
         )
-    for name, columns in (("season_links", LINK_COLUMNS), ("season_steps", STEP_COLUMNS)):
-        if views.has(name):
-            table = Table(name, views.table(name), columns, name, ["method"])
-            sections.append(Section(name, f"{name}_note", tables=[table]))
+    if views.has("season_links"):
+        links = Table(
+            "season_links", views.table("season_links"), LINK_COLUMNS, "season_links", ["method"]
+        )
+        sections.append(Section("season_links", "season_links_note", tables=[links]))
+    if views.has("season_steps"):
+        steps = Table(
+            "season_steps", views.season_steps(), STEP_COLUMNS, "season_steps", ["method"],
+            exact=False,
+        )  # fmt: skip
+        sections.append(Section("season_steps", "season_steps_note", tables=[steps]))
     if views.has("correction_steps"):
         data["ladder"] = views.table("season_ladder")
         data["season_change"] = views.table("season_changes")
@@ -391,7 +397,7 @@ def _quality(views: Views, methods: list[str]) -> Page:
 
 SOUND_VERDICTS = ("sound", "estimated")
 DIAGNOSIS_COLUMNS = (
-    *("method", "season", "part", "instrument", "verdict", "p_fault", "estimate", "lo", "hi"),
+    *("method", "season", "part", "instrument", "verdict", "p_fault", "size", "size_lo", "size_hi"),
     *("unit", "first_tow", "confused_with"),
 )
 
@@ -400,12 +406,14 @@ def _season_diagnosis(views: Views) -> Iterator[Section]:
     """What may be wrong with the instruments of a season; none where no method asks."""
     if not views.has("season_diagnosis"):
         return
-    doubted = views.table("season_diagnosis").filter(~pl.col("verdict").is_in(SOUND_VERDICTS))
+    doubted = views.season_diagnosis().filter(~pl.col("verdict").is_in(SOUND_VERDICTS))
     # What else it could be: the kinds, without their seasons.
     rows = doubted.with_columns(
         pl.col("confused_with").str.replace_all(r" \d+", "").str.replace_all(", ", ",")
     )
-    table = Table("season_diagnosis", rows, DIAGNOSIS_COLUMNS, "season_diagnosis", ["method"])
+    table = Table(
+        "season_diagnosis", rows, DIAGNOSIS_COLUMNS, "season_diagnosis", ["method"], exact=False
+    )
     yield Section("season_diagnosis", "season_diagnosis_note", tables=[table])
 
 

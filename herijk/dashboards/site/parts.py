@@ -111,7 +111,6 @@ class Section:
         terms: key of a word and key of its meaning.
         key_figures: key of what is counted, and the figure.
         prose: a text to read, as HTML.
-        prose_language: its language, where that is not the page's.
     """
 
     title: str
@@ -127,7 +126,6 @@ class Section:
     terms: Sequence[tuple[str, str]] = ()
     key_figures: Sequence[tuple[str, str | Headline]] = ()
     prose: Callable[[Speech], Markup] | None = None
-    prose_language: str = ""
 
 
 @dataclass(frozen=True)

@@ -20,13 +20,13 @@ _TEXTS: Final = {"notice": (NOTICE, NOTICE_EN), "release_notes": (NOTES, NOTES_E
 
 
 def guide_pages() -> Iterator[Page]:
-    """The documents in short, then whole: these are in English only, and say so."""
+    """The documents in short, then whole."""
     links = {f"{name}.md": f"{name}.html" for name in GUIDES}
     for name in GUIDES:
-        text = guide_file(name).read_text(encoding="utf-8")
-        prose = _in_language((text, text), links)
+        nl, en = (guide_file(name, language).read_text(encoding="utf-8") for language in LANGUAGES)
+        prose = _in_language((nl, en), links)
         short = Section("guide_in_short", prose=_in_language(GUIDES_IN_SHORT[name], {}))
-        whole = Section("guide_whole", "guide_note", prose=prose, prose_language="en")
+        whole = Section("guide_whole", "guide_note", prose=prose)
         yield Page(f"{name}.html", f"guide_{name}", [short, whole])
 
 

@@ -64,7 +64,7 @@ def _race(
         [Section("race_results", "race_note", [chart], [table], headline=_winners(now, chances))],
         name=name,
         selects=[editions_select("to_edition", editions, chosen)],
-        data={"races": [with_page(rows, "../")]},
+        data={"races": [with_page(rows.drop_nulls("new_rank"), "../")]},
     )
 
 
@@ -89,11 +89,26 @@ def _winner(
     old, new = (
         rows.filter(pl.col(rank) == 1)["name"].to_list() for rank in ("old_rank", "new_rank")
     )
+    few = _few_places(speech, crew_class, rows)
     if not old or not new:
-        return ""
+        return few
     key = "head_winner_same" if old[0] == new[0] else "head_winner_other"
-    text = speech.say(key).format(people=speech.say(f"crew.{crew_class}"), old=old[0], new=new[0])
+    people = speech.say(f"crew.{crew_class}")
+    text = speech.say(key).format(people=people, old=old[0], new=new[0])
+    if few:
+        return few + text  # who else might have won is not known of the others
     chance = chances.get((f"{rows['race'][0]} {rows['race_date'][0]}", crew_class))
     if chance is None:
         return text
     return text + speech.say("head_chance").format(chance=speech.number(100 * chance, 0))
+
+
+def _few_places(speech: Speech, crew_class: str, rows: pl.DataFrame) -> str:
+    """That places are among some of the crews only, where one edition lacks lines of others."""
+    powers = rows.select(pl.any_horizontal(pl.col("old_power_w", "new_power_w").is_not_null()))
+    known, placed = int(powers.to_series().sum()), rows["new_rank"].count()
+    if placed == known:
+        return ""
+    return speech.say("head_few_places").format(
+        people=speech.say(f"crew.{crew_class}"), number=placed, all=known
+    )

@@ -132,7 +132,14 @@ def _type_tables(views: Views, tows: pl.DataFrame) -> list[Section]:
         )
         shown = outliers.with_columns(after="method")
         tables.append(
-            Table("type_outliers", shown, shown_columns, "types_outliers", ["after", "boat_type"])
+            Table(
+                "type_outliers",
+                shown,
+                shown_columns,
+                "types_outliers",
+                ["after", "boat_type"],
+                exact=False,
+            )
         )
     sections = [Section("types_outliers", "types_outliers_note", tables=tables)]
     wanted = {

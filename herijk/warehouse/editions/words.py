@@ -82,7 +82,7 @@ DUTCH: Final = Language(
         "window": "knippen",
         "runs": "runs die tellen",
         "calibration": "ijking",
-        "run_point": "runpunt",
+        "run_point": "gemiddelde per run",
         "wind": "wind",
         "temperature": "watertemperatuur",
         "curve": "kromme",

@@ -184,9 +184,9 @@ def _with_places(lines: pl.DataFrame) -> pl.DataFrame:
 
 
 def own_races(views: Views, old: str | None, edition: str) -> pl.DataFrame:
-    """Results of races under two editions, with how many took part in race and class."""
+    """Results of races under two editions, with how many in race and class have a place in both."""
     races = views.races().filter(from_edition=old or "", to_edition=edition)
-    size = pl.len().over("race", "race_date", "crew_class").alias("race_size")
+    size = pl.col("new_rank").count().over("race", "race_date", "crew_class").alias("race_size")
     return races.with_columns(size)
 
 

@@ -10,6 +10,7 @@ from typing import Self
 
 import polars as pl
 
+from herijk.pipeline.register.replay import PODIUM
 from herijk.warehouse.queries.as_of import lay_over
 from herijk.warehouse.queries.chosen_tows import choose
 from herijk.warehouse.queries.due import RETOW_CHOICE
@@ -163,11 +164,8 @@ class Views:
         )
 
     def outliers(self) -> pl.DataFrame:
-        """Boats that differ from their type, furthest first."""
-        return self.frame(
-            "SELECT o.*, b.name FROM type_outliers AS o LEFT JOIN boats AS b USING (fsn_no) "
-            "WHERE outside ORDER BY method, abs(deviation_sd) DESC, tow_id, quantity"
-        )
+        """Boats that differ from their type, furthest first; Cw itself instead of its logarithm."""
+        return self.frame(_OUTLIERS)
 
     def counts(self, kind: str) -> pl.DataFrame:
         """Counts of one kind over all seasons: `method, code, number`."""
@@ -210,12 +208,65 @@ class Views:
         return days.sort("race_date", "race", descending=[True, False]).rows()
 
     def races(self) -> pl.DataFrame:
-        """Races replayed under two editions, with the boat's name."""
-        return self.frame(
-            "SELECT r.*, b.name FROM race_changes AS r LEFT JOIN boats AS b USING (fsn_no) "
-            "ORDER BY from_edition, to_edition, race_date, race, crew_class, new_rank, fsn_no"
-        )
+        """Races replayed under two editions, with the boat's name; places that can be compared.
 
+        Returns:
+            Rows of `race_changes` in which a place is that among the crews of the class with one
+            under both editions; a crew without has none, and no answer to `podium_changed`.
+        """
+        return self.frame(_RACES)
+
+    def season_steps(self) -> pl.DataFrame:
+        """Steps of seasons in per cent instead of logarithms."""
+        return self.frame(_SEASON_STEPS)
+
+    def season_diagnosis(self) -> pl.DataFrame:
+        """What may be wrong with instruments: `size, size_lo, size_hi` in per cent, or in N."""
+        return self.frame(_SEASON_DIAGNOSIS)
+
+
+_RACES = f"""
+WITH ranked AS (
+  SELECT *, old_rank IS NOT NULL AND new_rank IS NOT NULL AS shared FROM race_changes
+), placed AS (
+  SELECT * REPLACE (
+    CASE WHEN shared THEN rank() OVER (among ORDER BY old_rank) END AS old_rank,
+    CASE WHEN shared THEN rank() OVER (among ORDER BY new_rank) END AS new_rank
+  ), new_rank AS own_rank
+  FROM ranked
+  WINDOW among AS (PARTITION BY from_edition, to_edition, race, race_date, crew_class, shared)
+)
+SELECT r.* EXCLUDE (shared, own_rank) REPLACE (
+  (old_rank <= {PODIUM}) <> (new_rank <= {PODIUM}) AS podium_changed
+), b.name
+FROM placed AS r LEFT JOIN boats AS b USING (fsn_no)
+ORDER BY from_edition, to_edition, race_date, race, crew_class, own_rank NULLS LAST, fsn_no
+"""  # noqa: S608 - a number of ours
+
+_OUTLIERS = """
+SELECT o.* REPLACE (
+  CASE quantity WHEN 'ln_cw_standard' THEN exp("value") ELSE "value" END AS "value",
+  CASE quantity WHEN 'ln_cw_standard' THEN exp(expected) ELSE expected END AS expected,
+  replace(quantity, 'ln_cw_standard', 'cw_standard_kg_m') AS quantity
+), b.name
+FROM type_outliers AS o LEFT JOIN boats AS b USING (fsn_no)
+WHERE outside ORDER BY method, abs(deviation_sd) DESC, tow_id, o.quantity
+"""
+
+_SEASON_STEPS = """
+SELECT *, 100 * (exp(level_step) - 1) AS level_step_percent, 100 * level_step_sd
+       AS level_sd_percent, 100 * (exp(force_step) - 1) AS force_step_percent,
+       100 * force_step_sd AS force_sd_percent
+FROM season_steps
+"""
+
+_SEASON_DIAGNOSIS = """
+SELECT * REPLACE (CASE unit WHEN '1' THEN '%' ELSE unit END AS unit),
+       CASE unit WHEN '1' THEN 100 * (exp(estimate) - 1) ELSE estimate END AS size,
+       CASE unit WHEN '1' THEN 100 * (exp(lo) - 1) ELSE lo END AS size_lo,
+       CASE unit WHEN '1' THEN 100 * (exp(hi) - 1) ELSE hi END AS size_hi
+FROM season_diagnosis
+"""
 
 _REGISTER = """
 SELECT r.edition, r.fsn_no, b.name, b.boat_type, r.rowers, r.crew_class, r.empty_thwart,
