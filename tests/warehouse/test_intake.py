@@ -53,6 +53,23 @@ def test_lists_are_read_again_after_any_change(settled, change):
     assert is_read_again(settled)
 
 
+def test_lists_are_read_again_where_a_file_could_not_be_read(settled, monkeypatch):
+    tow_list = min((settled.archive / "sleeplijsten").iterdir())
+    tow_list.touch()
+
+    def hash_file(self, path):
+        if path == tow_list:
+            raise OSError(5, "I/O error")
+        return "0" * 64
+
+    with monkeypatch.context() as broken:
+        broken.setattr(hashes.FileHashes, "hash_file", hash_file)
+        intake.index(settled.store, settled.archive)
+    assert "unreadable_file" in settled.store.read("list_faults")["reason_code"]
+    assert is_read_again(settled)
+    assert not is_read_again(settled)
+
+
 def test_lists_of_another_folder_are_read(settled):
     shutil.copytree(settled.archive, settled.archive.with_name("moved"))
     intake.index(settled.store, settled.archive.with_name("moved"))

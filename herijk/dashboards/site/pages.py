@@ -23,17 +23,14 @@ from herijk.dashboards.site.parts import (
 from herijk.dashboards.site.prose import edition_pages, guide_pages
 from herijk.dashboards.site.races import race_pages
 from herijk.dashboards.site.slides import slides_page
-from herijk.dashboards.site.start import methods_table, start_page, words_page
+from herijk.dashboards.site.start import CARDS, methods_table, start_page, words_page
 from herijk.dashboards.site.types import types_page
 from herijk.warehouse.build.studies import JUDGEMENT
 from herijk.warehouse.queries.answers import line_changes, newest_edition
 from herijk.warehouse.queries.views import Views
 from herijk.words.tables import TABLES_IN_DUTCH
 
-MENU = (
-    *("index", "register", "due", "types", "compare", "races", "corrections", "reproducibility"),
-    *("changes", "quality", "slides", "words"),
-)
+MENU = ("index", *CARDS)
 
 
 def shared_pages(views: Views) -> Iterator[Page]:

@@ -8,8 +8,9 @@ Women's and men's crews differ in weight and speed, so lines against weight or l
 within a crew; displacement contains the crew.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Final, NamedTuple, Self
 
 import numpy as np
@@ -219,6 +220,7 @@ class _Boats:
     run_sd_ratio: FloatArray
     explaining: Mapping[str, FloatArray]
     type_known: bool
+    _some: dict[bytes, "_Boats"] = field(default_factory=dict, repr=False, compare=False)
 
     @classmethod
     def of(cls, tows: Observed) -> Self:
@@ -234,28 +236,41 @@ class _Boats:
             tows.table["boat_type"][0] != UNKNOWN_TYPE,
         )
 
-    def take(self, rows: IntArray) -> Self:
-        """Some of the tows."""
-        return replace(
-            self,
-            boat=self.boat[rows],
-            crew=self.crew[rows],
-            crew_class=self.crew_class[rows],
-            season=self.season[rows],
-            run_sd_ratio=self.run_sd_ratio[rows],
-            explaining={name: values[rows] for name, values in self.explaining.items()},
-        )
+    def where(self, known: BoolArray) -> "_Boats":
+        """Some of the tows; lines have the same ones time and again."""
+        key = known.tobytes()
+        if key not in self._some:
+            self._some[key] = _Boats(
+                self.boat[known],
+                self.crew[known],
+                self.crew_class[known],
+                self.season[known],
+                self.run_sd_ratio[known],
+                {name: values[known] for name, values in self.explaining.items()},
+                self.type_known,
+            )
+        return self._some[key]
 
-    @property
+    @cached_property
     def number(self) -> int:
         """Number of different boats."""
         return len(np.unique(self.boat))
 
-    @property
+    @cached_property
     def crew_effects(self) -> FloatArray:
         """One indicator column per crew."""
         number = np.unique(self.crew, return_inverse=True)[1]
         return np.asarray(np.eye(int(number.max(initial=0)) + 1)[number])
+
+    @cached_property
+    def classes(self) -> list[tuple[str, BoolArray]]:
+        """The classes, with the tows of each."""
+        return [(name, self.crew_class == name) for name in np.unique(self.crew_class)]
+
+    @cached_property
+    def all(self) -> list[tuple[str, BoolArray]]:
+        """The same with all tows as one."""
+        return [("all", np.ones(len(self.boat), dtype=bool))]
 
 
 def _pairs(boats: Observed, choice: Choice) -> Iterator[tuple[str, str, Measured]]:
@@ -275,16 +290,15 @@ def _line(
     """How many tows a line is of, and the line; without one, why."""
     y, unit = measured
     x = boats.explaining[names["explaining"]]
-    known = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
-    boats, x, y = boats.take(known), x[known], y[known]
+    known = np.isfinite(x) & np.isfinite(y)
+    boats, x, y = boats.where(known), x[known], y[known]
     within_crew = names["explaining"] in OF_THE_BOAT
     crews = boats.crew_effects if within_crew else np.ones((len(y), 1))
     centre = np.asarray(np.linalg.lstsq(crews, x)[0], dtype=np.float64)
     centred = x - crews @ centre
     width = float(np.abs(centred).max(initial=0.0))
-    number = boats.number
-    reason = _no_line(boats.type_known, number, crews, width <= 1e-9 * np.abs(x).max(initial=0.0))
-    counts = {"n": len(y), "n_boats": number, "reason": reason}
+    reason = _no_line(boats, crews, width <= 1e-9 * np.abs(x).max(initial=0.0))
+    counts = {"n": len(y), "n_boats": boats.number, "reason": reason}
     if reason:
         return counts, None
     variance = unit[known] * boats.run_sd_ratio**2
@@ -297,15 +311,15 @@ def _line(
     )
     noise = float(np.sqrt(variance.mean()))
     level = 1.0 if names["quantity"] == LN_CW else abs(y.mean())
-    groups = boats.crew_class if within_crew else np.full(len(y), "all", dtype=object)
+    groups = boats.classes if within_crew else boats.all
     return counts, _Line(problem, crews, x, (centre, width), noise, level, groups)
 
 
-def _no_line(type_known: bool, boats: int, crews: FloatArray, equal_values: bool) -> str:
+def _no_line(boats: _Boats, crews: FloatArray, equal_values: bool) -> str:
     """Why no line is drawn; empty where there is one."""
-    if not type_known:
+    if not boats.type_known:
         return NO_TYPE
-    if boats < max(FEWEST_BOATS, crews.shape[1] + 2):
+    if boats.number < max(FEWEST_BOATS, crews.shape[1] + 2):
         return FEW_BOATS
     return EQUAL_VALUES if equal_values else ""
 
@@ -322,7 +336,7 @@ class _Line:
         scale: the crews' means of x, and what it is divided by.
         noise: root mean square of the measuring errors.
         level: what the spread is a share of.
-        groups: (tows,) of which each gets points of its own.
+        groups: those that get points of their own: name, and which tows.
     """
 
     problem: Problem
@@ -331,7 +345,7 @@ class _Line:
     scale: tuple[FloatArray, float]
     noise: float
     level: float
-    groups: NDArray[np.object_]
+    groups: Sequence[tuple[str, BoolArray]]
 
     def row(self, fit: mixed.Fit) -> Row:
         """The line itself and its spread, as in `type_lines`."""
@@ -354,8 +368,7 @@ class _Line:
         """The line with its interval at some places; for each class at the mean of its crews."""
         centre, width = self.scale
         names, places, designs = [], [], []
-        for name in np.unique(self.groups):
-            rows = self.groups == name
+        for name, rows in self.groups:
             at = np.unique(np.linspace(self.x[rows].min(), self.x[rows].max(), PLACES))
             crew = self.crews[rows].mean(axis=0)
             designs.append(
@@ -410,56 +423,74 @@ def tow_outliers(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
 def _outliers(
     tows: Observed, choice: Choice, names: tuple[str, ...], eras: tuple[Era, ...]
 ) -> pl.DataFrame:
-    parts = [
-        _against_type(group, choice, quantity, eras)
+    compared = [
+        one
         for (_, boat_type), group in tows.groups("method", "boat_type")
         if boat_type != UNKNOWN_TYPE
-        for quantity in names
+        for one in (_Compared.of(group, choice, quantity) for quantity in names)
+        if one is not None
     ]
-    known = (part for part in parts if part is not None)
-    everything = pl.concat([TypeOutliers.create_empty(), *known])
-    return _with_season(everything)
+    fits = mixed.fit_all([one.problem for one in compared], choice.components)
+    parts = [one.frame(fit, eras) for one, fit in zip(compared, fits, strict=True)]
+    return _with_season(pl.concat([TypeOutliers.create_empty(), *parts]))
 
 
-def _against_type(
-    boats: Observed, choice: Choice, quantity: str, eras: tuple[Era, ...]
-) -> pl.DataFrame | None:
-    y, unit = quantities(boats)[quantity]
-    speed = standard_speed_m_s(boats)
-    displacement = _explaining(boats, LN_DISPLACEMENT)
-    weighed = quantity == LN_CW and bool(np.isfinite(displacement).all())
-    known = np.flatnonzero(np.isfinite(y))
-    boats, y, displacement = boats.take(known), y[known], displacement[known]
-    if len(y) == 0:
-        return None
-    x = np.ones((len(y), 1))
-    if weighed and np.ptp(displacement) > 1e-9:
-        x = np.column_stack([x, displacement - displacement.mean()])
-    n_boats = boats.table["fsn_no"].n_unique()
-    if n_boats < x.shape[1] + FEWEST_BOATS:
-        return None
-    variance = unit[known] * boats.column("run_sd_ratio") ** 2
-    fsn_no = boats.table["fsn_no"].to_numpy()
-    season = boats.table["season"].to_numpy().astype(np.int64)
-    problem = Problem.of(y, x, variance, fsn_no, _seasons(season, choice))
-    fit = mixed.fit(problem, choice.components)
-    left_out = fit.leave_boats_out()
-    deviation = _studentised(left_out.error / np.sqrt(left_out.variance * fit.scale), fit)
-    limit = float(scipy.special.stdtrit(max(fit.dof - 1, 1), 1.0 - OUTSIDE_LEVEL / (2.0 * len(y))))
-    return boats.table.select(
-        "method",
-        "tow_id",
-        *LINE,
-        "boat_type",
-        "season",
-        pl.lit(quantity).alias("quantity"),
-        pl.lit(speed).alias("standard_speed_m_s"),
-        pl.Series("value", y),
-        pl.Series("expected", y - left_out.error),
-        pl.Series("deviation_sd", deviation),
-        pl.Series("outside", np.abs(deviation) > limit),
-        pl.Series("candidates", _candidates(boats, quantity, left_out.error, eras)),
-    )
+@dataclass(frozen=True)
+class _Compared:
+    """A quantity of the boats of a type, to be compared with the others' of the type.
+
+    Attributes:
+        boats: those that have it.
+        quantity: its name.
+        problem: what is fitted; `problem.y` is the quantity.
+    """
+
+    boats: Observed
+    quantity: str
+    problem: Problem
+
+    @classmethod
+    def of(cls, boats: Observed, choice: Choice, quantity: str) -> Self | None:
+        """What is compared; None where too few boats have it."""
+        y, unit = quantities(boats)[quantity]
+        displacement = _explaining(boats, LN_DISPLACEMENT)
+        weighed = quantity == LN_CW and bool(np.isfinite(displacement).all())
+        known = np.flatnonzero(np.isfinite(y))
+        boats, y, displacement = boats.take(known), y[known], displacement[known]
+        if len(y) == 0:
+            return None
+        x = np.ones((len(y), 1))
+        if weighed and np.ptp(displacement) > 1e-9:
+            x = np.column_stack([x, displacement - displacement.mean()])
+        n_boats = boats.table["fsn_no"].n_unique()
+        if n_boats < x.shape[1] + FEWEST_BOATS:
+            return None
+        variance = unit[known] * boats.column("run_sd_ratio") ** 2
+        fsn_no = boats.table["fsn_no"].to_numpy()
+        season = boats.table["season"].to_numpy().astype(np.int64)
+        problem = Problem.of(y, x, variance, fsn_no, _seasons(season, choice))
+        return cls(boats, quantity, problem)
+
+    def frame(self, fit: mixed.Fit, eras: tuple[Era, ...]) -> pl.DataFrame:
+        """Rows of the table `type_outliers`, without the candidate `season`."""
+        y, left_out = self.problem.y, fit.leave_boats_out()
+        deviation = _studentised(left_out.error / np.sqrt(left_out.variance * fit.scale), fit)
+        chance = 1.0 - OUTSIDE_LEVEL / (2.0 * len(y))
+        limit = float(scipy.special.stdtrit(max(fit.dof - 1, 1), chance))
+        return self.boats.table.select(
+            "method",
+            "tow_id",
+            *LINE,
+            "boat_type",
+            "season",
+            pl.lit(self.quantity).alias("quantity"),
+            "standard_speed_m_s",
+            pl.Series("value", y),
+            pl.Series("expected", y - left_out.error),
+            pl.Series("deviation_sd", deviation),
+            pl.Series("outside", np.abs(deviation) > limit),
+            pl.Series("candidates", _candidates(self.boats, self.quantity, left_out.error, eras)),
+        )
 
 
 def _studentised(internal: FloatArray, fit: mixed.Fit) -> FloatArray:

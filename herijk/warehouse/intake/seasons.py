@@ -41,6 +41,8 @@ INDEXED: Final = (
     *("printed_registers", "list_faults", "about_archive"),
 )
 """What is kept of the archive's lists."""
+UNREADABLE: Final = "unreadable_file"
+"""Of a file that could not be read: it may be readable the next time, though nothing changed."""
 SEASON_TABLES: Final = ("season_tows", "season_runs", "season_index", "blocks")
 """What is kept of a season, as the archive was when it was read."""
 
@@ -72,8 +74,9 @@ def index(store: Store, root: Path) -> None:
         "list_faults": frame_of(Faults, faults),
         "about_archive": frame_of(AboutArchive, [about]),
     }
+    may_heal = any(fault["reason_code"] == UNREADABLE for fault in faults)
     for name in INDEXED:
-        store.write(name, tables[name], made_from=seen)
+        store.write(name, tables[name], made_from="" if may_heal else seen)
 
 
 def _seen(root: Path) -> str:
@@ -83,7 +86,7 @@ def _seen(root: Path) -> str:
     one changed just now (`hashes.RACY_SECONDS`).
     """
     stats = dict(_stats(root))
-    newest_ns = max((stat.st_ctime_ns for stat in stats.values()), default=0)
+    newest_ns = max((max(s.st_mtime_ns, s.st_ctime_ns) for s in stats.values()), default=0)
     is_racy = time.time_ns() - newest_ns < RACY_SECONDS * 1e9
     if is_racy or any(S_ISLNK(stat.st_mode) for stat in stats.values()):
         return ""
@@ -233,16 +236,3 @@ def archive_root(store: Store) -> Path | None:
         )
     root = Path(store.read("about_archive")["root"][0])
     return root if root.is_dir() else None
-
-
-def bring_in(store: Store, root: Path) -> None:
-    """Brings what changed in an archive into the lake in this process, without a scheduler.
-
-    Raises:
-        HerijkError: as `index`.
-    """
-    index(store, root)
-    forget_unlisted_seasons(store)
-    for season in stale_seasons(store, root):
-        read_season(store, root, season, lambda *_: None)
-        collect_blocks(store, season)
