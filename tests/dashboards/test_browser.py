@@ -405,7 +405,7 @@ def test_a_chart_without_values_says_so(visitor):
         "document.querySelector('select').value = 'none';"
         "document.querySelector('select').dispatchEvent(new Event('change', {bubbles: true}))"
     )
-    page.wait_for_function("document.querySelector('figure .chart').hidden")
+    page.locator("figure .chart").first.wait_for(state="hidden")
     assert page.locator("figure .picked").inner_text() == "none: geen waarden"
 
 
