@@ -429,6 +429,19 @@ def test_dragging_over_the_scatter_fills_the_list_and_a_point_leads_to_its_boat(
     assert page.locator(".answer .headline").count() >= 1
 
 
+def test_ends_that_are_typed_fill_the_list_as_dragging_does(visitor):
+    page = visitor.open("types.html")
+    chart = page.locator("figure[data-figure=b_weight]").first
+    chart.locator(".drawn svg").wait_for()
+    boats = shown(page, "type_boats").count()
+    faint = chart.locator("svg path[opacity='0.2']")
+    assert faint.count() == 0
+    chart.get_by_label("Gewicht [kg], van").press_sequentially("1000")
+    page.wait_for_function("!document.querySelector('.clear').hidden")
+    assert 0 < shown(page, "type_boats").count() < boats
+    assert faint.count() > 0
+
+
 def test_what_a_chart_says_follows_the_selectors(visitor):
     page = visitor.open("slides.html")
     figure = page.locator("#slides-weight figure[data-figure=slide_cw_weight]")
