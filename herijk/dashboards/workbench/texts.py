@@ -135,6 +135,8 @@ TEXTS: Final[Words] = {
         "True speed / log speed per season, with its 95 % interval",
     ),
     "in_types": ("Typen: zijn gelijke sloepen gelijk?", "Types: are equal boats equal?"),
+    "season_first": ("of van seizoen", "or from season"),
+    "season_last": ("tot en met", "up to and including"),
     "in_types_note": (
         "De gekozen proeven, Cw bij de standaardsnelheid van het type. De tabel toetst of sloepen "
         "van een type één B kunnen delen, met van elke ploeg de nieuwste van die proeven: een "
@@ -188,7 +190,7 @@ TEXTS: Final[Words] = {
     "step.calibration": ("IJking op gps", "Calibration on GPS"),
     "step.window": ("Venster (knippen)", "Window"),
     "step.wind": ("Wind", "Wind"),
-    "step.run_point": ("Runpunt", "Run point"),
+    "step.run_point": ("Gemiddelde per run", "Run point"),
     "step.temperature": ("Watertemperatuur", "Water temperature"),
     "step.runs": ("Runs die tellen", "Runs that count"),
     "step.curve": ("Kromme", "Curve"),
