@@ -153,7 +153,7 @@ COMMAND: Final[dict[str, str]] = {
     "The archive folder, if any.": "De map van het archief, als die er is.",
     "Folder with everything Herijk writes.": "Map met alles wat Herijk schrijft.",
     "Print the result as JSON.": "Geef de uitkomst als JSON.",
-    "Judge on this day, as if nothing of later were known; without: on the day of the "
+    "Judge on this day, as if nothing later were known; without: on the day of the "
     "archive's last tow.": (
         "Beoordeel op deze dag, alsof van later niets bekend is; anders op de dag van de "
         "laatste proef van het archief."

@@ -5,7 +5,7 @@ Joins the tables and `pipeline.register.changes`; computes nothing else. Words a
 
 import operator
 from collections import defaultdict
-from typing import Any, Final
+from typing import Final
 
 import polars as pl
 
@@ -18,6 +18,7 @@ from herijk.pipeline.register.replay import (
     replay,
     winner_changes,
 )
+from herijk.tables.row import Row
 from herijk.warehouse.build.studies import STUDIED_METHOD
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.database import no_such_edition
@@ -162,13 +163,13 @@ _BEST_TO_MEASURED: Final = pl.col("cw_best_kg_m") / pl.col("cw_kg_m")
 tows at one speed it gives that of their best estimates."""
 
 
-def season_faults(views: Views) -> dict[tuple[str, int], list[dict[str, Any]]]:
+def season_faults(views: Views) -> dict[tuple[str, int], list[Row]]:
     """What is wrong, or may be, with the instruments of a season, by method and season.
 
     Returns:
         Rows of `season_diagnosis` that a person should look at.
     """
-    found: dict[tuple[str, int], list[dict[str, Any]]] = defaultdict(list)
+    found: dict[tuple[str, int], list[Row]] = defaultdict(list)
     for row in views.table("season_diagnosis").filter("alarm").to_dicts():
         found[row["method"], row["season"]].append(row)
     return found
