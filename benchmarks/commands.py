@@ -46,8 +46,8 @@ WITHIN_S: Final = {
 _READING: Final = """
 import sys
 from pathlib import Path
-from herijk.warehouse.intake.seasons import bring_in
 from herijk.warehouse.store.store import Store
+from tests.intake import bring_in
 bring_in(Store(Path(sys.argv[2])), Path(sys.argv[1]))
 """
 

@@ -20,9 +20,9 @@ from herijk.warehouse.build.graph import ARCHIVE, METHOD
 from herijk.warehouse.editions.compare import diff
 from herijk.warehouse.editions.publish import Terms, publish
 from herijk.warehouse.editions.verify import verify
-from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.editions import read_edition
 from herijk.warehouse.store.store import Store
+from tests.intake import bring_in
 
 DAY = dt.date(2018, 6, 1)
 METHODS = ("as-published", "rebased")
@@ -33,7 +33,7 @@ def rebuilt(root, tows_per_season):
     settings = WorldSettings(tuple(range(2009, 2019)), tows_per_season, 5)
     write_simulated_archive(root / "archive", simulate_world(settings))
     store = Store(root / "data")
-    intake.bring_in(store, root / "archive")
+    bring_in(store, root / "archive")
     ARCHIVE.make(store, (), DAY)
     for name in METHODS:
         METHOD.make(store, [shipped_method(name)])

@@ -13,8 +13,8 @@ import polars as pl
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.warehouse.build.graph import ARCHIVE
-from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.store import Store
+from tests.intake import bring_in
 
 SEASONS = tuple(range(2009, 2026))
 RATE_HZ = 1000
@@ -52,7 +52,7 @@ class World:
         if not self.archive.exists():
             settings = WorldSettings(SEASONS, self.tows_per_season, RATE_HZ)
             write_simulated_archive(self.archive, simulate_world(settings))
-        intake.bring_in(self.store, self.archive)
+        bring_in(self.store, self.archive)
         if ARCHIVE.is_stale(self.store, ()):
             ARCHIVE.make(self.store, (), max(self.store.read("listed_tows")["tow_date"]))
 

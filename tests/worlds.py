@@ -87,6 +87,38 @@ def with_force_error(world: Measured, season: int, ratio: float) -> Measured:
     return replace(world, blocks=replace(world.blocks, sums=sums))
 
 
+STILL_AIR = {"wind_v": "log1_v", "wind_x": "log1_v", "wind_y": None, "wind_sin": None}
+"""What blocks hold where no wind was measured: the boat's own speed from ahead, or nothing."""
+
+
+def without_gps(world: Measured, tows: np.ndarray) -> Measured:
+    """The same world in which some tows, marked in shape (tows,), had no GPS on board."""
+    lost = _runs_of(world, tows)
+    sums = {
+        name: np.where(lost & name.startswith("gps"), 0.0, values)
+        for name, values in world.blocks.sums.items()
+    }
+    return replace(world, blocks=replace(world.blocks, sums=sums))
+
+
+def without_wind(world: Measured, tows: np.ndarray) -> Measured:
+    """The same world in which some tows, marked in shape (tows,), had no anemometer.
+
+    Only for methods that average the wind: terms per sample stay as they were.
+    """
+    lost, sums = _runs_of(world, tows), dict(world.blocks.sums)
+    still = {name: sums[own] if own else 0.0 for name, own in STILL_AIR.items()}
+    for name, values in {**still, "wind_cos": world.blocks.n}.items():
+        sums[name] = np.where(lost, values, sums[name])
+    listed = world.tows.with_columns(wind_measured=pl.Series(~tows))
+    return replace(world, tows=listed, blocks=replace(world.blocks, sums=sums))
+
+
+def _runs_of(world: Measured, tows: np.ndarray) -> np.ndarray:
+    names = world.tows.filter(pl.Series(tows))["tow_id"].implode()
+    return world.blocks.runs["tow_id"].is_in(names).to_numpy()[:, None]
+
+
 def recompute_world(
     settings: WorldSettings, methods: Sequence[Method]
 ) -> tuple[Recomputed, pl.DataFrame]:

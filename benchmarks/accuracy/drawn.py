@@ -24,13 +24,11 @@ from benchmarks.accuracy.score import DOUBTED, ESTIMATES, seasons_said
 from benchmarks.accuracy.worlds import FIRST_SEED, ONLY_FROM_FILES, recomputed, simulated
 from herijk.pipeline.arrays import BoolArray
 from herijk.simulate import WORLDS
-from tests.worlds import Measured
+from tests.worlds import Measured, without_gps, without_wind
 
 SEEDS = 20
 FIRST_DRAW = 50_000
 FEWEST_TOWS = 5
-STILL = {"wind_v": "log1_v", "wind_x": "log1_v", "wind_y": None, "wind_sin": None}
-"""What blocks hold where no wind was measured: the boat's own speed from ahead, or nothing."""
 
 
 def drawn(rng: np.random.Generator) -> Measured:
@@ -42,8 +40,8 @@ def drawn(rng: np.random.Generator) -> Measured:
         return drawn(rng)
     world = _of_tows(whole, keep)
     few = rng.random(world.tows.height) < rng.choice([0.0, 0.0, 0.1, 0.3])
-    world = _without_gps(world, few | _in_seasons(world.tows, 0.15, rng))
-    world = _without_wind(world, _in_seasons(world.tows, 0.08, rng))
+    world = without_gps(world, few | _in_seasons(world.tows, 0.15, rng))
+    world = without_wind(world, _in_seasons(world.tows, 0.08, rng))
     for fault in rng.choice(list(FOREIGN), size=rng.choice([0, 1, 1, 2]), replace=False):
         world = FOREIGN[str(fault)](world, rng)
     return world
@@ -73,29 +71,6 @@ def _of_tows(world: Measured, keep: BoolArray) -> Measured:
     }
     mine = world.blocks.runs["tow_id"].is_in(kept["tow_id"].implode()).to_numpy()
     return replace(world, **frames, blocks=world.blocks.take(mine))
-
-
-def _without_gps(world: Measured, lost: BoolArray) -> Measured:
-    runs = _runs_of(world, lost)
-    sums = {
-        name: np.where(runs & name.startswith("gps"), 0.0, values)
-        for name, values in world.blocks.sums.items()
-    }
-    return replace(world, blocks=replace(world.blocks, sums=sums))
-
-
-def _without_wind(world: Measured, lost: BoolArray) -> Measured:
-    runs, sums = _runs_of(world, lost), dict(world.blocks.sums)
-    still = {name: sums[own] if own else 0.0 for name, own in STILL.items()}
-    for name, values in {**still, "wind_cos": world.blocks.n}.items():
-        sums[name] = np.where(runs, values, sums[name])
-    tows = world.tows.with_columns(wind_measured=pl.Series(~lost))
-    return replace(world, tows=tows, blocks=replace(world.blocks, sums=sums))
-
-
-def _runs_of(world: Measured, tows: BoolArray) -> BoolArray:
-    names = world.tows.filter(pl.Series(tows))["tow_id"].implode()
-    return world.blocks.runs["tow_id"].is_in(names).to_numpy()[:, None]
 
 
 def outcome(world: Measured) -> pl.DataFrame:

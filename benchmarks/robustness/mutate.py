@@ -26,8 +26,8 @@ from herijk.pipeline.method.definition import shipped_method
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.warehouse.build.graph import ARCHIVE, METHOD
-from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.store import Store
+from tests.intake import bring_in
 
 WORLD = WorldSettings(seasons=(2009,), tows_per_season=20, rate_hz=20, seed=3)
 LIST = "sleeplijsten/sleeplijst_2009.csv"
@@ -36,7 +36,10 @@ SEEN = dt.date(2026, 11, 21)
 WHOLE = 2
 """Tows of a round that get no fault."""
 
-JUDGED = ("status", "flags", "doubts", "unusual", "list_line")
+JUDGED = (
+    *("status", "flags", "doubts", "unusual", "list_line"),
+    *("unseen_force_ratio", "unseen_error_ratio"),
+)
 """Judged against other tows, or where a row stands: no number."""
 
 
@@ -85,7 +88,7 @@ class Ground:
     def read(self) -> tuple[Rows, set[str]]:
         """Rows of each tow in each table, and the tows of which something is set aside."""
         store = self.store
-        intake.bring_in(store, self.archive)
+        bring_in(store, self.archive)
         ARCHIVE.make(store, (), SEEN)
         found = {name: store.read(name) for name in ("tows", "tow_runs")}
         for name in METHODS:

@@ -64,7 +64,7 @@ AsOf = Annotated[
         "--as-of",
         parser=read_day,
         metavar="DATE",
-        help="Judge on this day, as if nothing of later were known; without: on the day of the "
+        help="Judge on this day, as if nothing later were known; without: on the day of the "
         "archive's last tow.",
     ),
 ]

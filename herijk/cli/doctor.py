@@ -4,9 +4,10 @@ import shutil
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
@@ -22,12 +23,20 @@ LEAST_FREE: Final = 2 * 2**30
 """Bytes: a rebuild writes some 4 MB per tow, and everything beside the old before it is swapped."""
 
 
-class Finding(NamedTuple):
+@dataclass(frozen=True)
+class Finding:
     """What was looked at, whether it is in order, and what was found or what to do."""
 
     what: str
     sound: bool
     found: str
+
+
+@dataclass(frozen=True)
+class Findings:
+    """Everything that was looked at."""
+
+    findings: list[Finding]
 
 
 def doctor(
@@ -39,9 +48,9 @@ def doctor(
     as_json: AsJson = False,
 ) -> None:
     """Look whether machine, settings, data folder and archive are in order."""
-    findings = list(_findings(data, archive))
-    show({"findings": [finding._asdict() for finding in findings]}, _text, as_json)
-    if not all(finding.sound for finding in findings):
+    report = Findings(list(_findings(data, archive)))
+    show(report, _text, as_json)
+    if not all(finding.sound for finding in report.findings):
         raise typer.Exit(1)
 
 
@@ -102,8 +111,8 @@ def _tows(report: "RebuildReport") -> str:
     return tell("{} tows in {} seasons", tows, len(report.seasons))
 
 
-def _text(report: dict[str, Any]) -> str:
+def _text(report: Findings) -> str:
     return "\n".join(
-        f"{tell('ok' if f['sound'] else 'WRONG'):5}  {tell(f['what'])}: {tell(f['found'])}"
-        for f in report["findings"]
+        f"{tell('ok' if f.sound else 'WRONG'):5}  {tell(f.what)}: {tell(f.found)}"
+        for f in report.findings
     )

@@ -409,7 +409,7 @@ def _due() -> Schema:
                 | {"urgency": text("expired, this_year, later or without_curve")},
             ),
             "retow_choice": rows(
-                "boats that would make the season factors surest",
+                "boats whose next tow narrows the season factors most",
                 columns("retow_choice") | NAME | choice,
             ),
         },

@@ -140,6 +140,8 @@ def _wind(step: Wind) -> str:
     )
     if step.anemometer == "estimated":
         taken += tell(", scaled per season by runs out and back")
+    if step.unmeasured == "expected":
+        taken += tell(", where it was not measured as other tows let expect")
     reading = {
         "as_felt": "",
         "cw_vac_2014": tell("; 'Cw vac' read as on the screens of 2014"),

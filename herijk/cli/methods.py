@@ -1,17 +1,21 @@
 """`herijk methods`: list, show, begin, check and compare methods."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from herijk.cli.arguments import AsJson, DataFolder, show, show_files
+from herijk.cli.arguments import AsJson, DataFolder, as_json_text, show, show_files
 from herijk.cli.overview import Overview
 from herijk.pipeline.errors import HerijkError
 from herijk.words import tell
 
 if TYPE_CHECKING:
     from herijk.pipeline.method.definition import Method
+    from herijk.pipeline.method.variant import Difference
+    from herijk.warehouse.queries.rebase import RebaseReport
     from herijk.warehouse.store.methods import KnownMethods
 
 app = typer.Typer(
@@ -22,6 +26,17 @@ app = typer.Typer(
 Named = Annotated[
     str, typer.Argument(metavar="METHOD_OR_FILE", help="A method's name, or a TOML file.")
 ]
+
+
+@dataclass(frozen=True)
+class MethodReport:
+    """A method, with what it says in words."""
+
+    method: str
+    title: str
+    content_hash: str
+    extends: str | None
+    words: str
 
 
 def known_methods(data: Path) -> "KnownMethods":
@@ -59,7 +74,7 @@ def methods(
 def show_method(name: Named, data: DataFolder = Path("data"), as_json: AsJson = False) -> None:
     """One method in words, with what differs from the one it extends."""
     known = known_methods(data)
-    show(_one(known.named(name), known), lambda found: str(found["words"]), as_json)
+    show(_one(known.named(name), known), lambda report: report.words, as_json)
 
 
 @app.command()
@@ -67,7 +82,7 @@ def check(file: Named, data: DataFolder = Path("data"), as_json: AsJson = False)
     """Read a method file and say in words what it does; an error is told with its line."""
     known = known_methods(data)
     sound = tell("The file is sound. Try it: herijk rebase {}", file)
-    show(_one(known.named(file), known), lambda found: f"{found['words']}\n\n{sound}", as_json)
+    show(_one(known.named(file), known), lambda report: f"{report.words}\n\n{sound}", as_json)
 
 
 @app.command()
@@ -111,52 +126,51 @@ def diff(
 
     known = known_methods(data)
     first, second = known.named(old), known.named(new)
-    options = [vars(one) for one in differences(second, first)]
-    report: dict[str, Any] = {"from": first.name, "to": second.name, "options": options}
+    options, effect = differences(second, first), None
     store = Store(data)
     if store.database.exists():
         from herijk.warehouse.queries.rebase import rebase
 
-        report["effect"] = rebase(store, second, first)
-    show(report, _diff_text, as_json)
+        effect = rebase(store, second, first)
+    if as_json:
+        report = {"from": first.name, "to": second.name, "options": options}
+        typer.echo(as_json_text(report if effect is None else report | {"effect": effect}))
+    else:
+        typer.echo(_diff_text(first.name, second.name, options, effect))
 
 
-def _one(method: "Method", known: "KnownMethods") -> dict[str, Any]:
-    """A method with its words."""
+def _one(method: "Method", known: "KnownMethods") -> MethodReport:
     from herijk.cli.method_text import method_in_words, title_of
 
     parent = None if method.extends is None else known.get(method.extends)
-    return {
-        "method": method.name,
-        "title": title_of(method),
-        "content_hash": method.content_hash,
-        "extends": method.extends,
-        "words": method_in_words(method, parent),
-    }
+    return MethodReport(
+        method=method.name,
+        title=title_of(method),
+        content_hash=method.content_hash,
+        extends=method.extends,
+        words=method_in_words(method, parent),
+    )
 
 
-def _diff_text(report: dict[str, Any]) -> str:
+def _diff_text(
+    first: str, second: str, options: "Sequence[Difference]", effect: "RebaseReport | None"
+) -> str:
     """Options that differ, one per line, and the effect per season."""
     from herijk.cli import text
-
-    if not report["options"]:
-        return tell("{} and {} say the same of every season.", report["from"], report["to"])
-    rows = [
-        (
-            f"{option['step']}.{option['option']}",
-            _seasons(option),
-            ", ".join(map(str, option["before"])),
-            str(option["after"]),
-        )
-        for option in report["options"]
-    ]
-    parts = [text.table(("option", "seasons", report["from"], report["to"]), rows)]
-    if "effect" in report:
-        parts.append(text.rebase(report["effect"]))
-    return "\n\n".join(parts)
-
-
-def _seasons(option: dict[str, Any]) -> str:
     from herijk.pipeline.method.writing import range_text
 
-    return range_text(option["first"], option["last"])
+    if not options:
+        return tell("{} and {} say the same of every season.", first, second)
+    rows = [
+        (
+            f"{one.step}.{one.option}",
+            range_text(one.first, one.last),
+            ", ".join(map(str, one.before)),
+            str(one.after),
+        )
+        for one in options
+    ]
+    parts = [text.table(("option", "seasons", first, second), rows)]
+    if effect is not None:
+        parts.append(text.rebase(effect))
+    return "\n\n".join(parts)

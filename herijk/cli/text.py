@@ -7,7 +7,8 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from herijk.tables.row import Row
-from herijk.words import LANGUAGE, code, number, spoken, tell
+from herijk.words import LANGUAGE, number, spoken, tell
+from herijk.words.catalogue import code
 
 if TYPE_CHECKING:
     from herijk.assets.report import Done

@@ -1,11 +1,14 @@
 """Documents written in Markdown, for pages and for paper."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
+from typing import Any, Final
 
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
 from markupsafe import Markup
+
+_SCROLLED: Final = '<div class="scroll" tabindex="0">'
+"""A table may be wider than a phone: it scrolls in a box of its own, also by keyboard."""
 
 _READER = MarkdownIt("commonmark", {"html": False}).enable("table")
 
@@ -24,7 +27,9 @@ def to_html(text: str, links: Mapping[str, str]) -> Markup:
         if token.type in ("heading_open", "heading_close"):
             token.tag = f"h{int(token.tag[1:]) + 1}"
         _lead(token.children or (), links)
-    return Markup(_READER.renderer.render(tokens, _READER.options, {}))  # noqa: S704 - escaped
+    found = _READER.renderer.render(tokens, _READER.options, {})
+    scrolled = found.replace("<table>", f"{_SCROLLED}<table>").replace("</table>", "</table></div>")
+    return Markup(scrolled)  # noqa: S704 - escaped
 
 
 def _lead(tokens: Iterable[Token], links: Mapping[str, str]) -> None:

@@ -7,7 +7,7 @@ the statistics behind a sentence (`pipeline.consistency`), and files (`dashboard
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import polars as pl
 
@@ -24,6 +24,7 @@ from herijk.dashboards.slide_rows import (
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.studies.tool_options import AS_READ, SPEEDS, TICKS
+from herijk.tables.row import Row
 from herijk.warehouse.queries.chosen_tows import ALL, STATED, rows_of, spoken_range, with_choices
 from herijk.warehouse.queries.views import Views
 from herijk.words.catalogue import Say
@@ -178,7 +179,7 @@ class Book:
         names = self._outliers.get((boat_type, self._stated(tows)))
         return f"{said} {self.say('slide.outside').format(names=names)}" if names else said
 
-    def _counted(self, line: dict[str, Any] | None) -> str:
+    def _counted(self, line: Row | None) -> str:
         """How many tows of how many boats."""
         n, boats = (line["n"], line["n_boats"]) if line else (0, 0)
         return self.say("slide.counted").format(
@@ -220,7 +221,7 @@ class Book:
             share=_share(found["b_share_within_5pct"]),
         )
 
-    def _hull_speed(self, tows: str) -> dict[str, Any]:
+    def _hull_speed(self, tows: str) -> Row:
         """The statistics of all types together."""
         return self._hull_speeds.row(by_predicate=pl.col("tows") == self._stated(tows), named=True)
 
@@ -287,7 +288,7 @@ class Book:
         if said:
             yield Slide("eras", "eras", rows, self.say("slide.eras"), said)
 
-    def _apart(self, row: dict[str, Any]) -> str:
+    def _apart(self, row: Row) -> str:
         """Whether an era's tows stand apart from the next of the same boats, and by how much."""
         ends = sorted(1.0 / row[end] - 1.0 for end in ("shift_ratio", "lo", "hi"))
         key = "slide.is_apart" if row["apart"] else "slide.not_apart"
@@ -396,7 +397,7 @@ def _low_power() -> pl.Expr:
     return pl.col("crew_class").replace_strict({"H": 70.0, "D": 40.0}, return_dtype=pl.Float64)
 
 
-def _direction(line: dict[str, Any]) -> str:
+def _direction(line: Row) -> str:
     """Whether a slope's interval leaves out zero, and on which side; else whether it could."""
     if line["slope_lo"] > 0:
         return "rises"

@@ -14,7 +14,7 @@ from herijk.words.columns import COLUMNS
 from herijk.words.documents import DOCUMENTS
 from herijk.words.pages import PAGES
 from herijk.words.report import REPORT
-from herijk.words.sentences import LANGUAGES
+from herijk.words.sentences import LANGUAGE, LANGUAGES
 from herijk.words.slides import SLIDES
 
 Say = Callable[[str], str]
@@ -40,3 +40,8 @@ def speaker(language: str) -> Say:
     """The texts of one language."""
     place = LANGUAGES.index(language)
     return lambda key: both(key)[place]
+
+
+def code(name: str) -> str:
+    """A code of the tables in words, in the language of this command."""
+    return speaker(LANGUAGE.get())(f"code.{name}")

@@ -153,7 +153,7 @@ COMMAND: Final[dict[str, str]] = {
     "The archive folder, if any.": "De map van het archief, als die er is.",
     "Folder with everything Herijk writes.": "Map met alles wat Herijk schrijft.",
     "Print the result as JSON.": "Geef de uitkomst als JSON.",
-    "Judge on this day, as if nothing of later were known; without: on the day of the "
+    "Judge on this day, as if nothing later were known; without: on the day of the "
     "archive's last tow.": (
         "Beoordeel op deze dag, alsof van later niets bekend is; anders op de dag van de "
         "laatste proef van het archief."
@@ -794,6 +794,9 @@ COMMAND: Final[dict[str, str]] = {
     "one coefficient found for the whole archive": "een coëfficiënt voor het hele archief",
     "wind averaged over {} s": "wind gemiddeld over {} s",
     "sample by sample": "per meting",
+    ", where it was not measured as other tows let expect": (
+        ", waar hij niet gemeten is zoals andere proeven doen verwachten"
+    ),
     ", scaled per season by runs out and back": ", per seizoen geschaald met runs heen en terug",
     "; 'Cw vac' read as on the screens of 2014": "; 'Cw vac' gelezen als op de schermen van 2014",
     "; 'Cw opt' read as on the screens of 2014: no still air put back": (

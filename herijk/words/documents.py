@@ -90,10 +90,10 @@ DOCUMENTS: Final[dict[str, tuple[str, str]]] = {
     "proposal_change": ("Verandering", "Change"),
     "proposal_races": ("De wedstrijden van {year}", "The races of {year}"),
     "proposal_moved": (
-        "Van alle {results} uitslagen in het archief veranderen er {moved} van plaats. De winnaars "
-        "van het laatste jaar:",
-        "Of all {results} results in the archive {moved} change place. The winners of the last "
-        "year:",
+        "Van de {results} uitslagen van ploegen die op die dag in beide een geldige regel hebben, "
+        "veranderen er {moved} van plaats. De winnaars van het laatste jaar:",
+        "Of the {results} results of crews with a valid line on that day in both, {moved} change "
+        "place. The winners of the last year:",
     ),
     "proposal_chance": ("Kans op een ander", "Chance of another"),
     "proposal_undecided": ("Wat open blijft", "What stays undecided"),

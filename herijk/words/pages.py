@@ -39,7 +39,7 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "find": ("Zoek sloep, type of wedstrijd", "Find a boat, type or race"),
     "found": ("Gevonden", "Found"),
     "other_language": ("English", "Nederlands"),
-    "cite": ("Verwijs", "Cite"),
+    "cite": ("Bronvermelding", "Cite"),
     "how_made": ("Hoe deze getallen tot stand kwamen", "How these numbers were made"),
     "curve_caption": (
         "Cw tegen snelheid: kromme met 95 %-band; rond heen, driehoek terug, open telt niet",
@@ -67,6 +67,8 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "no_values": ("geen waarden", "no values"),
     "choose": ("Toon", "Show"),
     "clear": ("Wis keuze", "Clear selection"),
+    "from": ("van", "from"),
+    "to": ("tot", "to"),
     "yes": ("ja", "yes"),
     "no": ("nee", "no"),
     # Index
@@ -170,6 +172,7 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "{known} van {lines} regels hebben een geldige kromme, gezien op {day}.",
         "{known} of {lines} lines have a valid curve, as of {day}.",
     ),
+    "head_from_to": ("Van “{old}” naar “{new}”: ", "From “{old}” to “{new}”: "),
     "head_changes": (
         "{changed} van {lines} regels veranderen; {beyond} met meer dan de onzekerheid van beide "
         "getallen samen",
@@ -233,6 +236,12 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "head_winner_other": (
         "Bij de {people} wint {new} in plaats van {old}.",
         "Among the {people} {new} wins instead of {old}.",
+    ),
+    "head_no_places": (
+        "Bij de {people} heeft geen van de {all} ploegen op die dag in beide edities een geldige "
+        "regel: er zijn geen plaatsen te vergelijken. ",
+        "Among the {people} none of {all} crews has a valid line on that day in both editions: "
+        "there are no places to compare. ",
     ),
     "head_few_places": (
         "Bij de {people} hebben maar {number} van de {all} ploegen op die dag in beide edities een "
@@ -427,15 +436,18 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     # Types
     "types_charts": ("B en Cw per type", "B and Cw per type"),
     "types_note": (
-        "De gekozen proeven onder twee methoden, op dezelfde assen. Sloepen zonder type staan er "
-        "niet bij. Standaardsnelheid: de middelste opgegeven snelheid van het type. Sleep over een "
-        "grafiek om sloepen te kiezen: de lijst eronder toont ze, elk met de nieuwste proef. Klik "
-        "op een punt om naar de sloep te gaan. Twee typen onder vier methoden staan onder "
-        "Presentatie 2015.",
-        "The chosen tows under two methods, on the same axes. Boats without a type are left out. "
-        "Standard speed: the median declared speed of the type. Drag over a chart to select boats: "
-        "the list below shows them, each with its newest tow. Click a point to go to the boat. Two "
-        "types under four methods are on the page Presentation 2015.",
+        "De gekozen proeven onder twee methoden, op dezelfde assen. Sloepen zonder type staan "
+        "er niet bij. Standaardsnelheid: de middelste opgegeven snelheid van het type. Sleep "
+        "over een grafiek om sloepen te kiezen, of vul eronder van en tot in: de lijst toont "
+        "ze, elk met de nieuwste proef. Klik op een punt om naar de sloep te gaan. Twee typen "
+        "onder vier methoden staan onder Presentatie 2015. Van welk seizoen tot welk kiest u "
+        "vrij in de werkbank (herijk workbench), die de statistiek ervoor opnieuw berekent.",
+        "The chosen tows under two methods, on the same axes. Boats without a type are left "
+        "out. Standard speed: the median declared speed of the type. Drag over a chart to "
+        "select boats, or fill in from and to below it: the list shows them, each with its "
+        "newest tow. Click a point to go to the boat. Two types under four methods are on the "
+        "page Presentation 2015. Any range of seasons can be chosen in the workbench (herijk "
+        "workbench), which computes its statistics anew.",
     ),
     "b_weight": ("B tegen gewicht", "B against weight"),
     "b_speed": ("B tegen opgegeven snelheid", "B against declared speed"),

@@ -92,13 +92,6 @@ def number(value: float, form: str) -> str:
     return format(value, form).replace(".", DECIMALS[LANGUAGE.get()])
 
 
-def code(name: str) -> str:
-    """Return a code of the tables in words, in the language of this command."""
-    from herijk.words.catalogue import speaker  # noqa: PLC0415
-
-    return speaker(LANGUAGE.get())(f"code.{name}")
-
-
 def _printable(value: Any) -> Any:
     """Return text or an error as one line without control characters; other values as they are."""
     if isinstance(value, Exception) and value.args and isinstance(value.args[0], Sentence):

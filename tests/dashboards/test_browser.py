@@ -405,7 +405,7 @@ def test_a_chart_without_values_says_so(visitor):
         "document.querySelector('select').value = 'none';"
         "document.querySelector('select').dispatchEvent(new Event('change', {bubbles: true}))"
     )
-    page.wait_for_function("document.querySelector('figure .chart').hidden")
+    page.locator("figure .chart").first.wait_for(state="hidden")
     assert page.locator("figure .picked").inner_text() == "none: geen waarden"
 
 
@@ -427,6 +427,19 @@ def test_dragging_over_the_scatter_fills_the_list_and_a_point_leads_to_its_boat(
     chart.locator("svg .mark-symbol.role-mark path").first.click(force=True)
     page.wait_for_url("**/boats/*.html")
     assert page.locator(".answer .headline").count() >= 1
+
+
+def test_ends_that_are_typed_fill_the_list_as_dragging_does(visitor):
+    page = visitor.open("types.html")
+    chart = page.locator("figure[data-figure=b_weight]").first
+    chart.locator(".drawn svg").wait_for()
+    boats = shown(page, "type_boats").count()
+    faint = chart.locator("svg path[opacity='0.2']")
+    assert faint.count() == 0
+    chart.get_by_label("Gewicht [kg], van").press_sequentially("1000")
+    page.wait_for_function("!document.querySelector('.clear').hidden")
+    assert 0 < shown(page, "type_boats").count() < boats
+    assert faint.count() > 0
 
 
 def test_what_a_chart_says_follows_the_selectors(visitor):

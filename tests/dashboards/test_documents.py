@@ -2,12 +2,14 @@
 
 import io
 
+import polars as pl
 import pytest
 from pypdf import PdfReader
 
 from herijk.dashboards.documents import certificate, proposal
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.races.race import power_per_rower_w
+from herijk.warehouse.queries.answers import replayed
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.methods import KnownMethods
 from tests.conftest import METHODS
@@ -117,3 +119,11 @@ def test_a_proposal_takes_six_pages_at_most_before_its_annex(views):
     made = proposed(views, [METHODS[1]], EDITIONS[0], "nl")
     texts = [page.extract_text() for page in PdfReader(io.BytesIO(made)).pages]
     assert len([text for text in texts if "Bijlage" not in text]) <= 6
+
+
+def test_a_proposal_counts_places_as_the_pages_of_races_do(views):
+    _, (moved, results) = replayed(views, *EDITIONS)
+    rows = views.races().filter(from_edition=EDITIONS[0], to_edition=EDITIONS[1])
+    placed = rows.drop_nulls("new_rank")
+    assert results == placed.height > 0
+    assert moved == placed.filter(pl.col("old_rank") != pl.col("new_rank")).height

@@ -161,12 +161,15 @@ def test_a_change_is_shared_as_a_link(page, bench):
     page.wait_for_function(IDLE)
     page.locator("#against").select_option(METHODS[-1])
     page.wait_for_function(IDLE)
+    page.locator("#last").select_option("2009")
+    page.wait_for_function(IDLE)
     shown, link = median(page), page.url
     page.goto("about:blank")
     page.goto(link)
     page.wait_for_function(IDLE)
     assert median(page) == shown
     assert page.locator("#against").input_value() == METHODS[-1]
+    assert page.locator("#tows").input_value() == "2009"
     assert "15 → 25" in page.locator("#changed").inner_text()
 
 

@@ -12,7 +12,7 @@ from herijk.cli.arguments import as_json_text
 from herijk.cli.audit_text import audit as page_of
 from herijk.cli.main import app
 from herijk.warehouse.queries.audit import audit
-from herijk.words import code
+from herijk.words.catalogue import code
 
 WIDTH = 100
 

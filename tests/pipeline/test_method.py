@@ -257,6 +257,14 @@ def test_the_hash_changes_with_one_season_of_an_override_and_with_the_seasons_co
     assert all(re.fullmatch("[0-9a-f]{64}", h) for h in hashes)
 
 
+@pytest.mark.parametrize(
+    ("name", "begins"), [("as-published", "926ebaeae3135588"), ("rebased-2015", "41732e2592b5d27a")]
+)
+def test_a_new_option_leaves_the_methods_of_history_what_they_were(name, begins):
+    """Editions name them by this hash: a default that is left out of it changes no method."""
+    assert shipped_method(name).content_hash.startswith(begins)
+
+
 def test_a_method_has_an_english_title_or_its_one_title_serves():
     text = method_text()
     assert parse_method(text, "x.toml").title_en == "Test"

@@ -17,7 +17,7 @@ from herijk.pipeline.recompute.recompute import recompute
 from herijk.pipeline.steps.target import above_target
 from herijk.simulate import WorldSettings, simulate_tow, simulate_world
 from tests.pipeline.methods import method, method_text
-from tests.worlds import Measured, measure, run_rows, tow_rows
+from tests.worlds import Measured, measure, run_rows, tow_rows, without_gps, without_wind
 
 SETTINGS = WorldSettings((2010, 2012, 2015), 10, 20, 11)
 RHO = 1.225
@@ -307,27 +307,15 @@ def test_without_gps_a_method_that_calibrates_on_it_has_no_curve():
     assert by_log["cw_kg_m"].null_count() == 0
 
 
-def without_gps(world: Measured, tows: list[str]) -> Measured:
-    """The same world in which the GPS of some tows was not on board."""
-    lost = world.blocks.runs["tow_id"].is_in(tows).to_numpy()[:, None]
-    sums = {
-        name: np.where(lost & name.startswith("gps"), 0.0, values)
-        for name, values in world.blocks.sums.items()
-    }
-    return replace(world, blocks=replace(world.blocks, sums=sums))
-
-
 def test_a_tow_without_gps_gets_the_factor_of_its_log_from_the_other_tows(measured):
-    lost = measured.tows.filter(season=2015)["tow_id"].to_list()[::3]
-    world = without_gps(measured, lost)
+    marked = (measured.tows["tow_id"].is_in(["2015-001", "2015-004", "2015-007"])).to_numpy()
+    world = without_gps(measured, marked)
     made, with_gps = (
         recompute(shipped_method("rebased"), w.tows, w.blocks) for w in (world, measured)
     )
     assert made.curves["cw_kg_m"].null_count() == 0
-    both = made.curves.join(with_gps.curves, on="tow_id", suffix="_with").filter(
-        pl.col("tow_id").is_in(lost)
-    )
-    assert both["calibration_factor"].null_count() == len(lost)
+    both = made.curves.join(with_gps.curves, on="tow_id", suffix="_with").filter(pl.Series(marked))
+    assert both["calibration_factor"].null_count() == 3
     assert both.select(pl.col("cw_kg_m_with").is_between("cw_lo_kg_m", "cw_hi_kg_m").all()).item()
     assert (both["cw_kg_m"] / both["cw_kg_m_with"]).to_numpy() == pytest.approx(1.0, abs=0.03)
     assert made.log_factors["season"].to_list() == [2010, 2012, 2015]
@@ -335,10 +323,9 @@ def test_a_tow_without_gps_gets_the_factor_of_its_log_from_the_other_tows(measur
 
 
 def test_a_season_without_gps_rests_on_boats_towed_in_others(measured):
-    season = measured.tows.filter(season=2012)["tow_id"].to_list()
     text = 'name = "by-gps"\ntitle = "x"\nextends = "rebased"\n[[overrides]]\nrange = "2012"\n'
     rule = 'why = "x"\ncalibration = { rule = "gps_per_tow", without_gps = "estimated" }\n'
-    world = without_gps(measured, season)
+    world = without_gps(measured, (measured.tows["season"] == 2012).to_numpy())
     by_gps = recompute(parse_method(text + rule, "by-gps.toml"), world.tows, world.blocks)
     estimated = recompute(shipped_method("rebased"), world.tows, world.blocks)
     for table in ("curves", "log_factors"):
@@ -364,3 +351,21 @@ def test_wind_that_was_not_measured_is_said_and_in_the_budget():
     without_bow = recompute(method(wind='{ model = "oblique" }'), unsized, blocks).curves
     ratio = (without_bow["cw_kg_m"] / found.curves["cw_kg_m"]).to_numpy()
     assert ratio == pytest.approx(1.0, abs=0.002)
+
+
+def test_of_wind_that_nobody_measured_the_mean_of_the_others_is_taken_off(measured):
+    lost = (measured.tows["season"] == 2012).to_numpy()
+    world = without_wind(measured, lost)
+    made = recompute(shipped_method("rebased"), world.tows, world.blocks)
+    net = pl.col("air_cw_kg_m").mean() / pl.col("still_air_cw_kg_m").mean() - 1.0
+    ratio = made.run_points.filter("used").group_by("tow_id", maintain_order=True).agg(net=net)
+    told = ratio.join(world.tows, on="tow_id").select("net", "wind_measured")
+    others = told.filter("wind_measured")["net"]
+    assert told.filter(~pl.col("wind_measured"))["net"].to_numpy() == pytest.approx(others.mean())
+    wind = made.uncertainty_budget.filter(component="wind").join(world.tows, on="tow_id")
+    still = made.run_points.filter("used").group_by("tow_id").agg(pl.mean("still_air_cw_kg_m"))
+    rows = wind.filter(~pl.col("wind_measured")).join(still, on="tow_id")
+    of_cw = rows.join(made.curves, on="tow_id")
+    expected = others.std() * of_cw["still_air_cw_kg_m"] / of_cw["cw_kg_m"]
+    assert of_cw["u_ratio"].to_numpy() == pytest.approx(expected.to_numpy())
+    assert set(rows["shared"]) == {"single"}

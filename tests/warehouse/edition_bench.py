@@ -14,6 +14,7 @@ from herijk.warehouse.build.graph import ARCHIVE, METHOD
 from herijk.warehouse.editions.publish import Terms, publish
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.store import Store
+from tests.intake import bring_in
 
 SMALL = WorldSettings(seasons=(2009, 2014), tows_per_season=8, rate_hz=10, seed=5)
 """Season 2009 is written as plain CSV; a line of either season is valid in June 2014."""
@@ -51,7 +52,7 @@ class EditionBench:
     def rebuild(self, methods: tuple[Method, ...] = tuple(map(shipped_method, METHODS))) -> None:
         """Everything that a rebuild does up to the curves."""
         store = self.store
-        intake.bring_in(store, self.archive)
+        bring_in(store, self.archive)
         ARCHIVE.make(store, (), today=DAY)
         for method in methods:
             METHOD.make(store, [method])

@@ -6,9 +6,10 @@ import polars as pl
 import pytest
 
 from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.pipeline.register.due import NOT_RACED, SPEED_REASONS
+from herijk.pipeline.register.due import NOT_RACED
 from herijk.warehouse.queries.due import URGENCIES, due_report
 from herijk.warehouse.store.decisions import FILE_NAME
+from herijk.words.catalogue import WORDS
 
 METHOD = "rebased-2015"
 
@@ -17,7 +18,7 @@ def test_every_line_of_the_register_is_on_the_list(built):
     due, register = built.table("due_list"), built.table("register")
     key = ["method", "fsn_no", "rowers", "crew_class"]
     assert due.select(key).equals(register.select(key).sort(key))
-    assert set(due["speed_reason"]) <= set(SPEED_REASONS)
+    assert {f"code.{reason}" for reason in due["speed_reason"]} <= WORDS.keys()
     last_tow, last_race = built.table("tows")["tow_date"].max(), due["as_of"].max()
     assert due["as_of"].n_unique() == 1
     assert last_race >= last_tow

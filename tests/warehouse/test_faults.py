@@ -11,9 +11,9 @@ from polars.testing import assert_frame_equal
 
 from herijk.pipeline.method.definition import shipped_method
 from herijk.warehouse.build.graph import ARCHIVE, METHOD
-from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.database import build_database
 from tests.conftest import METHODS, SMALL, Workbench
+from tests.intake import bring_in
 
 ROWS = 50 * SMALL.rate_hz
 LIST_2009 = "sleeplijsten/sleeplijst_2009.csv"
@@ -237,7 +237,7 @@ def test_boats_are_all_there(spoiled, built):
 def read_again(bench: Workbench, day: dt.date) -> pl.DataFrame:
     """Brings the archive into the lake as a rebuild of that day does; gives what is set aside."""
     store = bench.store
-    intake.bring_in(store, bench.archive)
+    bring_in(store, bench.archive)
     ARCHIVE.make(store, (), today=day)
     return store.read("quarantine")
 

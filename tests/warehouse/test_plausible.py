@@ -23,9 +23,9 @@ from herijk.warehouse.build.graph import ARCHIVE
 from herijk.warehouse.build.graph import METHOD as METHOD_STEP
 from herijk.warehouse.build.plausible import with_doubts
 from herijk.warehouse.editions.publish import Terms, lines_to_look_at, publish
-from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.editions import read_edition
 from herijk.warehouse.store.store import Store
+from tests.intake import bring_in
 from tests.worlds import measure
 
 DAY = dt.date(2026, 11, 22)
@@ -54,7 +54,7 @@ class Archive:
         path.write_bytes(changed(path.read_bytes().decode("utf-8")).encode("utf-8"))
 
     def collect(self) -> None:
-        intake.bring_in(self.store, self.root)
+        bring_in(self.store, self.root)
         ARCHIVE.make(self.store, (), today=DAY)
 
     def quarantined(self) -> dict[str, tuple[str, str]]:
@@ -177,7 +177,7 @@ def test_an_archive_is_simulated_as_long_as_it_says_so(archive):
     for is_simulated in (False, True):
         text = said if is_simulated else said.replace("simulated = true", "simulated = false")
         profile.write_text(text, "utf-8")
-        intake.bring_in(archive.store, archive.root)
+        bring_in(archive.store, archive.root)
         assert archive.store.read("about_archive")["simulated"].to_list() == [is_simulated]
 
 

@@ -21,7 +21,8 @@ from herijk.cli.text import table
 from herijk.pipeline.method.definition import COMPLETE
 from herijk.tables.row import Row
 from herijk.warehouse.queries.audit import BoatAudit
-from herijk.words import LANGUAGE, code, tell
+from herijk.words import LANGUAGE, tell
+from herijk.words.catalogue import code
 
 RUNS_ALONE_MEANS: Final = "runs alone: spread of the runs alone: the log's error is not in it"
 LEAST_FELT: Final = 5e-4

@@ -12,7 +12,8 @@ from typing import Final
 
 from herijk.tables.row import Row
 from herijk.warehouse.queries.audit_types import TypeFacts, TypeStatistics
-from herijk.words import code, number, tell
+from herijk.words import number, tell
+from herijk.words.catalogue import code
 
 REASONS: Final = {
     "no_type": "boats without a type are not compared",

@@ -175,8 +175,15 @@ LETTER: Final = 4.8
 """Mean width of a letter of a name [px]: its true width is not known before it is drawn."""
 
 
+NAME_HEIGHT: Final = 10
+"""Room that a name needs from top to bottom [px]."""
+
+
 def _names(outliers: alt.Chart, x: str, y: str) -> list[alt.Chart]:
-    """Names within their panel: the highest above its point, the lowest below, others beside."""
+    """Names within their panel: the highest above its point, the lowest below, others beside.
+
+    Points that lie together have their names below each other.
+    """
     placed = outliers.transform_window(
         place="row_number()", sort=[alt.SortField(y, order="descending")], groupby=["panel"]
     ).transform_joinaggregate(named="count()", groupby=["panel"])
@@ -184,11 +191,13 @@ def _names(outliers: alt.Chart, x: str, y: str) -> list[alt.Chart]:
     right, left = f"{at} + 7", f"{at} - 7 - {wide}"
     beside = "datum.place > 1 && datum.place < datum.named"
     begin = f"{beside} ? ({right} + {wide} < {end} ? {right} : {left}) : {at} - {wide} / 2"
+    row = f"{NAME_HEIGHT} * (datum.place - (datum.named + 1) / 2)"
+    others = f"{NAME_HEIGHT} / 2 * max(0, datum.named - 3)"
     look: dict[str, Any] = {
         "fontSize": 9,
         "align": "left",
         "dx": alt.ExprRef(f"clamp({begin}, 0, max(0, {end} - {wide})) - {at}"),
-        "dy": alt.ExprRef(f"{beside} ? 0 : datum.place > 1 ? 11 : -9"),
+        "dy": alt.ExprRef(f"{beside} ? {row} : datum.place > 1 ? 11 + {others} : -9 - {others}"),
     }
     return [
         placed.mark_text(stroke="white", strokeWidth=3, opacity=0.8, **look),

@@ -32,7 +32,7 @@ def changes(lines: pl.DataFrame) -> Headline:
     causes = Counter(filter(None, (_largest(text) for text in changed["causes"].to_list())))
 
     def sentence(speech: Speech) -> str:
-        text = speech.say("head_changes").format(
+        text = _from_to(lines, speech) + speech.say("head_changes").format(
             changed=changed.height, lines=lines.height, beyond=beyond or speech.say("none_of_them")
         )
         if not causes:
@@ -41,6 +41,14 @@ def changes(lines: pl.DataFrame) -> Headline:
         return text + speech.say("head_mostly").format(cause=cause)
 
     return sentence
+
+
+def _from_to(lines: pl.DataFrame, speech: Speech) -> str:
+    """Which two editions are compared."""
+    if lines.is_empty():
+        return ""
+    old, new = (speech.edition(lines[f"{side}_edition"][0]) for side in ("from", "to"))
+    return speech.say("head_from_to").format(old=old, new=new)
 
 
 def _largest(causes: str) -> str | None:

@@ -23,17 +23,14 @@ from herijk.dashboards.site.parts import (
 from herijk.dashboards.site.prose import edition_pages, guide_pages
 from herijk.dashboards.site.races import race_pages
 from herijk.dashboards.site.slides import slides_page
-from herijk.dashboards.site.start import methods_table, start_page, words_page
+from herijk.dashboards.site.start import CARDS, methods_table, start_page, words_page
 from herijk.dashboards.site.types import types_page
 from herijk.warehouse.build.studies import JUDGEMENT
 from herijk.warehouse.queries.answers import line_changes, newest_edition
 from herijk.warehouse.queries.views import Views
 from herijk.words.tables import TABLES_IN_DUTCH
 
-MENU = (
-    *("index", "register", "due", "types", "compare", "races", "corrections", "reproducibility"),
-    *("changes", "quality", "slides", "words"),
-)
+MENU = ("index", *CARDS)
 
 
 def shared_pages(views: Views) -> Iterator[Page]:
@@ -119,12 +116,12 @@ def _downloads(views: Views) -> list[Section]:
 
 
 DUE_COLUMNS = (
-    *("valid_until", "name", "fsn_no", "boat_type", "rowers", "crew_class", "empty_thwart"),
+    *("name", "fsn_no", "boat_type", "rowers", "crew_class", "empty_thwart", "valid_until"),
     "status",
     *("tow_speed_m_s", "speed_reason", "beyond_curve", "declared_speed_m_s", "power_w"),
     *("raced_speed_m_s", "lowest_speed_m_s", "highest_speed_m_s", "tow_id", "as_of"),
 )
-DUE_CARDS = ("valid_until", "name", "fsn_no", "rowers", "crew_class", "tow_speed_m_s", "status")
+DUE_CARDS = ("name", "fsn_no", "rowers", "crew_class", "valid_until", "status", "tow_speed_m_s")
 CHOICE_COLUMNS = (
     *("position", "name", "fsn_no", "rowers", "crew_class", "seasons", "valid_until"),
     *("tow_speed_m_s", "factor_sd_before_ratio", "factor_sd_after_ratio"),

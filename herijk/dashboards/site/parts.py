@@ -162,11 +162,6 @@ class Page:
         return {select.name: select.chosen for select in self.selects}
 
     @property
-    def has_charts(self) -> bool:
-        """Whether the page needs Vega."""
-        return any(section.charts for section in self.sections)
-
-    @property
     def root(self) -> str:
         """The way from this page to the first page of its language."""
         return self.site or "../" * self.path.count("/")

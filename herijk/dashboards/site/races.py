@@ -24,10 +24,10 @@ Chances: TypeAlias = dict[tuple[str, str], float | None]
 """How likely another winner is, by race with its day and class."""
 
 COLUMNS = (
-    *("crew_class", "name", "fsn_no", "rowers", "rowing_time_s", "old_power_w", "new_power_w"),
+    *("name", "fsn_no", "crew_class", "rowers", "rowing_time_s", "old_power_w", "new_power_w"),
     *("old_rank", "new_rank", "podium_changed", "old_remark", "new_remark"),
 )
-CARDS = ("name", "fsn_no", "rowing_time_s", "old_rank", "new_rank")
+CARDS = ("name", "fsn_no", "new_power_w", "old_rank", "new_rank")
 
 
 def race_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
@@ -109,6 +109,6 @@ def _few_places(speech: Speech, crew_class: str, rows: pl.DataFrame) -> str:
     known, placed = int(powers.to_series().sum()), rows["new_rank"].count()
     if placed == known:
         return ""
-    return speech.say("head_few_places").format(
+    return speech.say("head_few_places" if placed else "head_no_places").format(
         people=speech.say(f"crew.{crew_class}"), number=placed, all=known
     )

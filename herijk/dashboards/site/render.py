@@ -233,7 +233,7 @@ def charts_script(language: str) -> str:
     named = {
         key: say(key) for key in WORDS if key.startswith(("column.", "code.", "method.", "tip."))
     }
-    words = named | {key: say(key) for key in ("yes", "no", "no_values")}
+    words = named | {key: say(key) for key in ("yes", "no", "no_values", "from", "to")}
     figures = as_json(chart_specifications(language))
     return f"window.HERIJK_FIGURES = {figures};\nwindow.HERIJK_WORDS = {as_json(words)};\n"
 

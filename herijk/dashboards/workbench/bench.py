@@ -135,6 +135,7 @@ class Bench:
             "boats": _rows(boats.select("fsn_no", "name").sort("name", "fsn_no")),
             "types": boats["boat_type"].drop_nulls().unique().sort().to_list(),
             "choices": choices_of(self._seasons),
+            "seasons": self._seasons,
             "digits": DIGITS,
             "long": sorted(LONG),
             "base": DEFAULT_BASE,

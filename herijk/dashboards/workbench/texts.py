@@ -135,6 +135,8 @@ TEXTS: Final[Words] = {
         "True speed / log speed per season, with its 95 % interval",
     ),
     "in_types": ("Typen: zijn gelijke sloepen gelijk?", "Types: are equal boats equal?"),
+    "season_first": ("of van seizoen", "or from season"),
+    "season_last": ("tot en met", "up to and including"),
     "in_types_note": (
         "De gekozen proeven, Cw bij de standaardsnelheid van het type. De tabel toetst of sloepen "
         "van een type één B kunnen delen, met van elke ploeg de nieuwste van die proeven: een "
@@ -188,7 +190,7 @@ TEXTS: Final[Words] = {
     "step.calibration": ("IJking op gps", "Calibration on GPS"),
     "step.window": ("Venster (knippen)", "Window"),
     "step.wind": ("Wind", "Wind"),
-    "step.run_point": ("Runpunt", "Run point"),
+    "step.run_point": ("Gemiddelde per run", "Run point"),
     "step.temperature": ("Watertemperatuur", "Water temperature"),
     "step.runs": ("Runs die tellen", "Runs that count"),
     "step.curve": ("Kromme", "Curve"),
@@ -224,6 +226,7 @@ TEXTS: Final[Words] = {
     "wind.side": ("Coëfficiënt van opzij", "Coefficient of the side"),
     "wind.averaging_s": ("Wind gemiddeld over", "Wind averaged over"),
     "wind.anemometer": ("Windmeter", "Anemometer"),
+    "wind.unmeasured": ("Wind die niet gemeten is", "Wind that was not measured"),
     "wind.reading": ("Hoe de wind gelezen is", "How the wind was read"),
     "run_point.estimator": ("Gemiddelde van een run", "Mean of a run"),
     "run_point.inertia": ("Versnellen van de sloep eraf", "Take acceleration off"),
@@ -259,6 +262,8 @@ TEXTS: Final[Words] = {
     "choice.per_run": ("per run gezocht", "searched per run"),
     "choice.per_tow": ("per proef gezocht", "searched per tow"),
     "choice.archive": ("één uit alle proeven", "one from all tows"),
+    "choice.still_air": ("stil weer", "still air"),
+    "choice.expected": ("zoals bij andere proeven", "as in other tows"),
     "choice.as_read": ("zoals afgelezen", "as it reads"),
     "choice.as_felt": ("zoals gevoeld", "as felt"),
     "choice.cw_vac_2014": ("'Cw vac' van 2014", "'Cw vac' of 2014"),

@@ -4,7 +4,7 @@ One mixed model over all repeated and single tows, by restricted maximum likelih
 makes a new boat. Ageing is not in the model; it counts as season and as boat x season.
 """
 
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import polars as pl
@@ -22,6 +22,7 @@ from herijk.tables.consistency import VarianceComponents
 from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of
 from herijk.tables.keys import LINE
+from herijk.tables.row import Row
 
 FLEET, WITHIN_TYPE = "fleet", "within_type"
 SCOPES: Final = (FLEET, WITHIN_TYPE)
@@ -54,7 +55,7 @@ def variance_components(observed: Observed) -> dy.DataFrame[VarianceComponents]:
     return frame_of(VarianceComponents, rows)
 
 
-def _components(tows: Observed, scope: str) -> list[dict[str, Any]]:
+def _components(tows: Observed, scope: str) -> list[Row]:
     tows = _identified(tows)
     y, variance = _compared(tows)
     known = np.isfinite(y)
@@ -78,11 +79,11 @@ def _components(tows: Observed, scope: str) -> list[dict[str, Any]]:
     return [counts | row for row in _shares(fit, float(np.sqrt(variance.mean())))]
 
 
-def _shares(fit: mixed.Fit, run: float) -> list[dict[str, Any]]:
+def _shares(fit: mixed.Fit, run: float) -> list[Row]:
     sd = dict(zip(NAMES, fit.sd, strict=True)) | {"run": run}
     total = sum(s * s for s in sd.values())
     between_tows = np.sqrt(total - sd["boat"] ** 2)
-    rows: list[dict[str, Any]] = [
+    rows: list[Row] = [
         {"component": name, "sd_ratio": s, "share": s * s / total if total > 0 else None}
         for name, s in sd.items()
     ]

@@ -7,7 +7,7 @@ age. How boats age is seen in the last era, where instruments are alike.
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import comb, exp, hypot
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import polars as pl
@@ -17,6 +17,7 @@ from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
 from herijk.tables.consistency import EraShifts
 from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of
+from herijk.tables.row import Row
 
 ALL_TYPES: Final = "all"
 
@@ -110,12 +111,12 @@ def _years() -> pl.Expr:
     return pl.col("season") - pl.col("season_before")
 
 
-def _shift(pairs: pl.DataFrame, era: Era, ageing: _Ageing) -> dict[str, Any]:
+def _shift(pairs: pl.DataFrame, era: Era, ageing: _Ageing) -> Row:
     across = pairs.filter(
         pl.col("season_before").is_between(era.first, era.last) & (pl.col("season") > era.last)
     )
     per_year, slowest, fastest = ageing.per_year or (0.0, 0.0, 0.0)
-    facts: dict[str, Any] = {"n": across.height, "n_ageing": ageing.n}
+    facts: Row = {"n": across.height, "n_ageing": ageing.n}
     if ageing.per_year is not None:
         facts |= {"ageing_per_year": per_year, "ageing_lo": slowest, "ageing_hi": fastest}
     years = across.select(_years()).to_series().to_numpy()

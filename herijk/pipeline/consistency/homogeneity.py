@@ -6,7 +6,7 @@ pooled over the type. One row per boat and crew, its newest tow. B counts as fre
 method caps it.
 """
 
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 import polars as pl
@@ -21,6 +21,7 @@ from herijk.tables.consistency import PooledCurves, TypeHomogeneity
 from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of
 from herijk.tables.keys import LINE
+from herijk.tables.row import Row
 
 LEVEL: Final = 0.05
 FEWEST_BOATS: Final = 3
@@ -156,7 +157,7 @@ def _rest(
     return float((residual**2).sum()), int(fitted[2])
 
 
-def _tested(boats: Observed, boat_type: str) -> dict[str, Any]:
+def _tested(boats: Observed, boat_type: str) -> Row:
     n_boats = boats.table["fsn_no"].n_unique()
     counts = {"n": boats.table.height, "n_boats": n_boats}
     if boat_type == UNKNOWN_TYPE:
@@ -177,13 +178,11 @@ def _tested(boats: Observed, boat_type: str) -> dict[str, Any]:
     )
 
 
-def _spread(
-    boats: Observed, shared: float, sigma: float, f: float, dof: tuple[int, int]
-) -> dict[str, Any]:
+def _spread(boats: Observed, shared: float, sigma: float, f: float, dof: tuple[int, int]) -> Row:
     """Power, share of noise, and correlation of A and B by noise alone."""
     speed = float(np.median(boats.column("declared_speed_m_s")))
     r = shared * speed**2
-    facts: dict[str, Any] = {
+    facts: Row = {
         "standard_speed_m_s": speed,
         "noise_share": min(1.0, 1.0 / f) if f > 0 else 1.0,
         "cw_noise_sd_ratio": sigma * float(np.sqrt(boats.column("c0_unit_variance").mean())),

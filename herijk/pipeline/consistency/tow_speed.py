@@ -4,7 +4,7 @@ And what a slow tow does to race power: its curve is used at speeds at which it 
 """
 
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import polars as pl
@@ -29,6 +29,7 @@ from herijk.tables.consistency import SlowTows, SpeedTrend
 from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of
 from herijk.tables.keys import LINE
+from herijk.tables.row import Row
 
 SLOW_POWER_W: Final = {"H": 60.0, "D": 34.0}
 """Power per rower below which a tow is too slow. Men: "minder dan 60-70 Watt" (Cw-kromme, R. Pot
@@ -91,7 +92,7 @@ def speed_trend(observed: Observed) -> dy.DataFrame[SpeedTrend]:
     return frame_of(SpeedTrend, rows)
 
 
-def _trend(parts: list[Observed]) -> dict[str, Any]:
+def _trend(parts: list[Observed]) -> Row:
     columns: list[tuple[FloatArray, ...]] = []
     boat: list[str] = []
     for number, part in enumerate(parts):

@@ -84,6 +84,9 @@ class Wind(_Options):
     averaging_s: int = Field(default=0, ge=0, le=15)
     anemometer: Literal["as_read", "estimated"] = "as_read"
     reading: Literal["as_felt", "cw_vac_2014", "cw_opt_2014"] = "as_felt"
+    unmeasured: Literal["still_air", "expected"] = Field(
+        default="still_air", exclude_if=lambda value: value == "still_air"
+    )
 
 
 class RunPoint(_Options):

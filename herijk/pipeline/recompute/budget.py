@@ -313,6 +313,7 @@ def _assumed(o: Outcome, estimated: SeasonFactors | None) -> Assumed:
     assumed = Assumed()
     if estimated is not None:
         assumed = assumed.beside_repeats(estimated.tow_sd, estimated.calibration_sd)
+    assumed = replace(assumed, unmeasured_wind=o.expected_wind.sd)
     if o.steps.wind.coefficients == "archive":
         assumed = replace(assumed, wind_coefficient=o.coefficient_sd)
     return assumed

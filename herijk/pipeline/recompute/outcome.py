@@ -5,7 +5,7 @@ Filled by `pipeline.recompute.recompute`, made into tables by `pipeline.recomput
 
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import Any, TypeAlias
+from typing import Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from herijk.pipeline.channels import BACK, OUT
 from herijk.pipeline.method.definition import Steps
 from herijk.pipeline.steps.resistance import RunMeans
 from herijk.pipeline.steps.window import Windows
+from herijk.pipeline.uncertainty.propagation import Assumed
 
 Texts: TypeAlias = np.ndarray[tuple[int, ...], np.dtype[np.str_]]
 
@@ -42,6 +43,17 @@ class TowFactor:
     askew_ratio: FloatArray
 
 
+class ExpectedWind(NamedTuple):
+    """Net wind correction of a tow / its still-air part, mean of out and back."""
+
+    mean: float
+    sd: float
+
+
+STILL_AIR: Final = ExpectedWind(0.0, Assumed().unmeasured_wind)
+"""Where nothing is expected: as if there was no wind."""
+
+
 @dataclass(frozen=True)
 class Prepared:
     """A batch with everything that does not depend on the wind coefficients.
@@ -57,6 +69,7 @@ class Prepared:
         temperature_known: shape (tows,).
         wind_ln_scale: ln of the anemometer's scale, taken out of `means`, shape (tows,), and
         wind_ln_sd: its standard deviation; NaN where the wind is taken as it reads.
+        expected_wind: what is taken off, and how uncertain that is, where no wind was measured.
     """
 
     batch: Batch
@@ -73,6 +86,7 @@ class Prepared:
     temperature_known: BoolArray
     wind_ln_scale: FloatArray
     wind_ln_sd: FloatArray
+    expected_wind: ExpectedWind
 
     @cached_property
     def speed_factor(self) -> FloatArray:
@@ -124,7 +138,19 @@ class Prepared:
         """The air part that is taken off for given drag coefficients, shape (runs,)."""
         if self.steps.wind.reading == "cw_vac_2014":
             return 2.0 * self.still_air_of(ahead)
-        return self.means.air.total(ahead, behind, self.steps.wind.side) / self.speed_factor**2
+        felt = self.means.air.total(ahead, behind, self.steps.wind.side) / self.speed_factor**2
+        if self.steps.wind.unmeasured == "still_air":
+            return felt
+        expected = (1.0 + self.expected_wind.mean) * self.still_air_of(ahead)
+        return np.where(self.batch.measured("wind")[self.batch.tow], felt, expected)
+
+    def wind_ratio(self, ahead: FloatArray, behind: FloatArray, still: FloatArray) -> FloatArray:
+        """Net wind correction / still-air part, shape (tows,); NaN where no wind was measured."""
+        batch = self.batch
+        put_back = batch.mean(self.still_air_of(still), self.used)
+        net = batch.mean(self.air_of(ahead, behind), self.used) - put_back
+        known = batch.measured("wind") & batch.trusted & (put_back > 0)
+        return np.where(known, net / np.where(known, put_back, 1.0), np.nan)
 
     def still_air_of(self, coefficient: FloatArray) -> FloatArray:
         """The still-air part that is put back for a drag coefficient, shape (runs,)."""

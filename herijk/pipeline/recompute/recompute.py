@@ -21,7 +21,14 @@ from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.pipeline.choice import first_largest
 from herijk.pipeline.method.definition import Method, Steps
 from herijk.pipeline.recompute.anemometer import with_anemometer
-from herijk.pipeline.recompute.outcome import Outcome, Prepared, Texts, TowFactor
+from herijk.pipeline.recompute.outcome import (
+    STILL_AIR,
+    ExpectedWind,
+    Outcome,
+    Prepared,
+    Texts,
+    TowFactor,
+)
 from herijk.pipeline.recompute.results import Recomputed, as_tables
 from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.pipeline.recompute.season_factors import (
@@ -60,6 +67,9 @@ class ArchiveCoefficient(NamedTuple):
 
 PER_TOW_GRID = np.linspace(*PER_TOW_BOUNDS, 41)
 ARCHIVE_GRID = np.linspace(0.0, 1.2, 13)
+
+FEWEST_WINDS = 10
+"""Tows with an anemometer from which those without learn (inferred)."""
 
 
 def recompute(
@@ -162,7 +172,27 @@ def evaluate(
         [_prepare(batch, steps, cache, instruments.of_tows(batch, steps)) for batch, steps in plans]
     )
     shared = _archive_coefficient([p for p in prepared if p.steps.wind.coefficients == "archive"])
-    return [_finish(p, shared) for p in prepared]
+    return [_finish(p, shared) for p in _with_expected_wind(prepared, shared)]
+
+
+def _with_expected_wind(
+    prepared: list[Prepared], shared: ArchiveCoefficient | None
+) -> list[Prepared]:
+    """What tows with an anemometer let expect of the wind of those without, where a method asks.
+
+    Wind along the course adds more on one way than it takes off on the other, so that a tow whose
+    wind nobody measured comes out too high.
+    """
+    asking = [p for p in prepared if p.steps.wind.unmeasured == "expected"]
+    ratios = [p.wind_ratio(*_coefficients(p, shared)) for p in asking]
+    known = np.concatenate([np.zeros(0), *(ratio[np.isfinite(ratio)] for ratio in ratios)])
+    if len(known) < FEWEST_WINDS:
+        return prepared
+    expected = ExpectedWind(float(known.mean()), float(known.std(ddof=1)))
+    return [
+        replace(p, expected_wind=expected) if p.steps.wind.unmeasured == "expected" else p
+        for p in prepared
+    ]
 
 
 def evaluate_each(
@@ -223,6 +253,7 @@ def _prepare(batch: Batch, steps: Steps, cache: RunCache, estimated: TowFactor) 
         temperature_known=temperature_known,
         wind_ln_scale=np.zeros(batch.size),
         wind_ln_sd=np.full(batch.size, np.nan),
+        expected_wind=STILL_AIR,
     )
 
 

@@ -175,8 +175,10 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
     y = np.where(o.calibrated, o.calibration_factor, 1.0)
     numbers = {
         "ln_cw": np.where(sound, np.log(safe), np.nan),
-        "ln_cw_sd": np.hypot(
-            np.where(sure, np.sqrt(errors.c0_variance_kg2_m2) / safe, 1.0), by_log[0] * files_sd
+        "ln_cw_sd": np.sqrt(
+            np.where(sure, errors.c0_variance_kg2_m2 / safe**2, 1.0)
+            + (by_log[0] * files_sd) ** 2
+            + (_unmeasured_wind_kg_m(o) / safe) ** 2
         ),
         "q": q,
         "q_sd": np.hypot(np.where(sure, np.sqrt(errors.q_variance), 1.0), by_log[1] * files_sd),
@@ -202,6 +204,12 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
         pl.Series("reference_ratio", batch.of_tow("declared_speed_m_s") / speed),
         *(pl.Series(name, values).fill_nan(None) for name, values in numbers.items()),
     )
+
+
+def _unmeasured_wind_kg_m(o: Outcome) -> FloatArray:
+    """Standard uncertainty of Cw by wind that nobody measured, shape (tows,); 0 where it was."""
+    still = o.batch.mean(o.still_air_kg_m, o.used)
+    return np.where(o.batch.measured("wind"), 0.0, still * o.expected_wind.sd)
 
 
 def _water_points(o: Outcome) -> curve.Points:

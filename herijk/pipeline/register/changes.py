@@ -7,7 +7,7 @@ about their inputs and code, is not decided here.
 
 import json
 import math
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import polars as pl
@@ -20,6 +20,7 @@ from herijk.pipeline.races.race import power_per_rower_w
 from herijk.pipeline.register.register import LINE
 from herijk.tables.frames import dtypes
 from herijk.tables.register import Register
+from herijk.tables.row import Row
 from herijk.tables.studies import CorrectionSteps
 
 SAME_RATIO: Final = 5e-4
@@ -227,7 +228,7 @@ def _grounds(pairs: pl.DataFrame, grounds: pl.DataFrame | None) -> list[str]:
     return named["ground"].to_list()
 
 
-def _factors(parts: list[dict[str, Any]], total: float, rest: str) -> list[dict[str, Any]]:
+def _factors(parts: list[Row], total: float, rest: str) -> list[Row]:
     """The known parts, and one factor for the rest, which multiply to the total."""
     causes = [{k: v for k, v in part.items() if v is not None} for part in parts]
     left = total / math.prod(part["factor"] for part in parts)

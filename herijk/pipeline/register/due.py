@@ -33,10 +33,6 @@ REALLY_ROWED_SO = "low_but_rowed"
 NOT_RACED = "low_not_raced"
 LIKE_BOATS = "like_boats"
 NOTHING_KNOWN = "nothing_known"
-SPEED_REASONS: Final = (
-    *(IN_RANGE, TOO_FAST, ROWED_FASTER, REALLY_ROWED_SO, NOT_RACED),
-    *(LIKE_BOATS, NOTHING_KNOWN),
-)
 
 
 def due_list(

@@ -262,7 +262,7 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
     }
     shared = {
         "force": pl.lit(SEASON),
-        "wind": pl.lit(ARCHIVE),
+        "wind": pl.when("wind_measured").then(pl.lit(ARCHIVE)).otherwise(pl.lit(SINGLE)),
         "anemometer": pl.lit(SEASON),
         "temperature": pl.when(known).then(pl.lit(SINGLE)).otherwise(pl.lit(SEASON)),
         "season_log": pl.lit(SEASON),

@@ -10,6 +10,7 @@ import polars as pl
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import ListedBoats
+from herijk.tables.row import Row
 from herijk.warehouse.archive.faults import Fault, fault_from
 from herijk.warehouse.archive.files import BOATS_FILE
 from herijk.warehouse.archive.lists import ListRow, Wording, all_of, others_of, read_list
@@ -69,7 +70,7 @@ def _bare(fsn_no: str) -> str:
     return fsn_no.removeprefix("FSN").lstrip("0")
 
 
-def _crew_of(boat: Mapping[str, Any]) -> dict[str, Any]:
+def _crew_of(boat: Mapping[str, Any]) -> Row:
     return {"rowers": boat["rowers"], "crew_class": boat["crew_class"]}
 
 
@@ -104,7 +105,7 @@ def read_boats(data: bytes, path: str = BOATS_FILE, wording: Wording | None = No
     return Boats(usable, rowed, bad, tuple(faults), tuple(more))
 
 
-def _boat(row: ListRow) -> dict[str, Any]:
+def _boat(row: ListRow) -> Row:
     row.check_whole()
     return all_of({key: partial(reader, row, key) for key, reader in _READERS.items()})
 

@@ -15,6 +15,7 @@ import polars as pl
 
 from herijk.pipeline.channels import MOST_RUNS
 from herijk.tables.lake import ListedForceChecks, ListedLamps
+from herijk.tables.row import Row
 from herijk.warehouse.archive.faults import Fault
 from herijk.warehouse.archive.files import FORCE_CHECKS, LAMPS, list_files
 from herijk.warehouse.archive.lists import ListRow, Wording
@@ -66,7 +67,7 @@ def read_lamps(
 ) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
     """Read every list of lamps, and the lines that cannot be read or are of no listed tow."""
 
-    def lamp(row: ListRow, season: int) -> dict[str, Any]:
+    def lamp(row: ListRow, season: int) -> Row:
         return _lamp(row, season, tow_ids)
 
     files = list_files(root, LAMPS, wording.files)
@@ -98,7 +99,7 @@ def lamp_seconds(lamps: pl.DataFrame) -> dict[str, float]:
     return dict(of_run.group_by("tow_id").agg(pl.col("burned").max()).rows())
 
 
-def _force_check(row: ListRow, season: int) -> dict[str, Any]:
+def _force_check(row: ListRow, season: int) -> Row:
     day = row.date("day")
     if day.year != season:
         message = "the date {day} is not in {season}, the year of the file."
@@ -111,7 +112,7 @@ def _force_check(row: ListRow, season: int) -> dict[str, Any]:
     }
 
 
-def _lamp(row: ListRow, season: int, tow_ids: Collection[str]) -> dict[str, Any]:
+def _lamp(row: ListRow, season: int, tow_ids: Collection[str]) -> Row:
     tow_id = row.text("tow_id")
     if tow_id not in tow_ids:
         raise row.fault(say("sleep_id {tow} is not in the tow list of that year.", tow=tow_id))

@@ -16,6 +16,7 @@ from herijk.tables.archive import TowFacts
 from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of, limits
 from herijk.tables.lake import ListedRaces, PrintedLines
+from herijk.tables.row import Row
 from herijk.warehouse.archive.faults import Fault, fault_from
 from herijk.warehouse.archive.files import (
     RACES,
@@ -67,7 +68,7 @@ _ROWING_TIME: Final = re.compile(
     r"([0-9]{1,2})(?::|\.|[uh]\s*)([0-5]?[0-9])(?::|\.|['m]\s*)([0-5]?[0-9])(?:[.,]0*|[\"s])?"
 )
 
-_ReadRow = Callable[[ListRow, int], dict[str, Any]]
+_ReadRow = Callable[[ListRow, int], Row]
 
 
 def read_published_registers(
@@ -157,7 +158,7 @@ def read_lists(
         read_row: from a row and the year in the file's name to the other values.
         wording: how the lists are worded.
     """
-    good: list[dict[str, Any]] = []
+    good: list[Row] = []
     faults: list[Fault] = []
     for file in files:
         try:
@@ -181,7 +182,7 @@ def read_lists(
     return table.filter(frame).result, tuple(faults)
 
 
-def _register_line(row: ListRow, season: int) -> dict[str, Any]:
+def _register_line(row: ListRow, season: int) -> Row:
     cw = row.number("cw_kg_m")
     valid = not NEVER_TOWED_CW[0] <= cw <= NEVER_TOWED_CW[1]
     return {
@@ -199,7 +200,7 @@ def _register_line(row: ListRow, season: int) -> dict[str, Any]:
     }
 
 
-def _fitting_line(row: ListRow, season: int) -> dict[str, Any]:
+def _fitting_line(row: ListRow, season: int) -> Row:
     """A line of a register that is its own curve."""
     line = _register_line(row, season)
     if line["has_valid_curve"]:
@@ -241,7 +242,7 @@ def _half_unit(cell: str) -> float:
     return 0.5 * 10.0 ** -(len(decimals[1]) if decimals else 0)
 
 
-def _race_result(row: ListRow, season: int) -> dict[str, Any]:
+def _race_result(row: ListRow, season: int) -> Row:
     day = row.date("race_date")
     if season and day.year != season:
         message = "the date {day} is not in {season}, the year of the file."
@@ -261,7 +262,7 @@ def _race_result(row: ListRow, season: int) -> dict[str, Any]:
     }
 
 
-def _possible_result(row: ListRow, season: int) -> dict[str, Any]:
+def _possible_result(row: ListRow, season: int) -> Row:
     """A result whose speed through the water a boat can have."""
     result = _race_result(row, season)
     through_water_m = result["distance_m"] - (result["stream_m"] or 0.0)

@@ -12,6 +12,7 @@ from typing import Any, Final
 
 from herijk.pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError
+from herijk.tables.row import Row
 from herijk.warehouse.archive.files import PARTS
 from herijk.warehouse.archive.lists import ListRow, all_of, fold_word
 from herijk.warehouse.archive.profile import Plan
@@ -150,7 +151,7 @@ def _why_not_one(
     return None
 
 
-def read_tow(row: ListRow, season: int, default_rate_hz: int) -> dict[str, Any]:
+def read_tow(row: ListRow, season: int, default_rate_hz: int) -> Row:
     """Return the values of a tow, without its files; empty dimensions are None.
 
     Raises:
@@ -173,7 +174,7 @@ def read_tow(row: ListRow, season: int, default_rate_hz: int) -> dict[str, Any]:
 
 def fill_dimensions(
     tow: Mapping[str, Any], boat: Mapping[str, Any], row: ListRow, has_wind: bool
-) -> dict[str, Any]:
+) -> Row:
     """Return the tow with the boat's dimensions where that day's were not written down.
 
     Args:

@@ -18,6 +18,7 @@ import polars as pl
 from herijk.pipeline.errors import DefectiveInputError, UnavailableError
 from herijk.tables.frames import dtypes, frame_of
 from herijk.tables.lake import SeasonIndex
+from herijk.tables.row import Row
 from herijk.warehouse.archive import (
     FileHashes,
     SeasonProfile,
@@ -73,7 +74,7 @@ def read_season(
     hashes = FileHashes.load(store.file_hashes)
     runs_of = dict(runs.partition_by("tow_id", as_dict=True))
 
-    def read(tow: Tow) -> dict[str, Any]:
+    def read(tow: Tow) -> Row:
         listed_runs = runs_of[tow["tow_id"],]
         key = _samples_key(tow, listed_runs, profile)
         known = before.get(key)
@@ -116,8 +117,8 @@ def _bring_in(
     profile: SeasonProfile,
     key: str,
     hashes: FileHashes,
-    losses: list[dict[str, Any]] | None,
-) -> dict[str, Any]:
+    losses: list[Row] | None,
+) -> Row:
     """Index row of a tow after its samples and blocks are in the lake, or with its fault.
 
     Its samples are read again also where only what was lost of them (`losses`) is not known.
@@ -178,7 +179,7 @@ def forget_season(store: Store, season: int) -> None:
     _remove_unlisted(store, season, SeasonIndex.create_empty())
 
 
-def _known_tows(store: Store, season: int) -> dict[str, dict[str, Any]]:
+def _known_tows(store: Store, season: int) -> dict[str, Row]:
     """What was found of the season's tows at its last reading, by samples key."""
     if str(season) not in store.partitions("season_index"):
         return {}

@@ -236,16 +236,3 @@ def archive_root(store: Store) -> Path | None:
         )
     root = Path(store.read("about_archive")["root"][0])
     return root if root.is_dir() else None
-
-
-def bring_in(store: Store, root: Path) -> None:
-    """Brings what changed in an archive into the lake in this process, without a scheduler.
-
-    Raises:
-        HerijkError: as `index`.
-    """
-    index(store, root)
-    forget_unlisted_seasons(store)
-    for season in stale_seasons(store, root):
-        read_season(store, root, season, lambda *_: None)
-        collect_blocks(store, season)

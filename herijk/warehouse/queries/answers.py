@@ -3,14 +3,22 @@
 Joins the tables and `pipeline.register.changes`; computes nothing else. Words are in `dashboards`.
 """
 
+import operator
 from collections import defaultdict
-from typing import Any, Final
+from typing import Final
 
 import polars as pl
 
 from herijk.pipeline.register.changes import register_changes, side_by_side, steps_of_lines
 from herijk.pipeline.register.register import LINE, draft_name
-from herijk.pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
+from herijk.pipeline.register.replay import (
+    CLASSIFICATION,
+    RaceRules,
+    race_changes,
+    replay,
+    winner_changes,
+)
+from herijk.tables.row import Row
 from herijk.warehouse.build.studies import STUDIED_METHOD
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.database import no_such_edition
@@ -155,13 +163,13 @@ _BEST_TO_MEASURED: Final = pl.col("cw_best_kg_m") / pl.col("cw_kg_m")
 tows at one speed it gives that of their best estimates."""
 
 
-def season_faults(views: Views) -> dict[tuple[str, int], list[dict[str, Any]]]:
+def season_faults(views: Views) -> dict[tuple[str, int], list[Row]]:
     """What is wrong, or may be, with the instruments of a season, by method and season.
 
     Returns:
         Rows of `season_diagnosis` that a person should look at.
     """
-    found: dict[tuple[str, int], list[dict[str, Any]]] = defaultdict(list)
+    found: dict[tuple[str, int], list[Row]] = defaultdict(list)
     for row in views.table("season_diagnosis").filter("alarm").to_dicts():
         found[row["method"], row["season"]].append(row)
     return found
@@ -209,16 +217,19 @@ def replayed(views: Views, old: str, new: str) -> tuple[pl.DataFrame, tuple[int,
     """Who wins the archive's races under two editions, and how many results change place.
 
     Returns:
-        Rows of `pipeline.register.replay.winner_changes`; results that change place, and all.
+        Rows of `pipeline.register.replay.winner_changes`; results that change place among those
+        with one under both, and how many those are.
     """
     history, results = views.table("register_history"), views.store.read("listed_races")
     before, after = (
         replay(history.filter(edition=edition), results, RaceRules()) for edition in (old, new)
     )
-    moved = race_changes(before, after).filter(pl.col("old_rank").ne_missing(pl.col("new_rank")))
+    ranked = race_changes(before, after).drop_nulls(["old_rank", "new_rank"])
+    place = (pl.col(side).rank("min").over(CLASSIFICATION) for side in ("old_rank", "new_rank"))
+    moved = ranked.filter(operator.ne(*place)).height
     method = history.filter(edition=new)["method"].first()
     members = _members(views, new, str(method))
-    return winner_changes(before, after, members), (moved.height, results.height)
+    return winner_changes(before, after, members), (moved, ranked.height)
 
 
 def _members(views: Views, edition: str, method: str) -> pl.DataFrame:

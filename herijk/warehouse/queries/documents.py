@@ -1,6 +1,6 @@
 """What printed documents say: the lines of certificates, and a proposal against what counts now."""
 
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import polars as pl
@@ -9,6 +9,7 @@ from herijk.pipeline.curve import cw
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.races.power import curve_of_lines
 from herijk.pipeline.races.race import power_per_rower_w
+from herijk.tables.row import Row
 from herijk.warehouse.queries.answers import answers
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.database import no_such_edition
@@ -18,7 +19,7 @@ SPEEDS: Final = (0.85, 0.90, 0.95, 1.0, 1.05, 1.10, 1.15)
 """Speeds of the power table, as parts of the declared speed: where the curve holds."""
 
 
-def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[dict[str, Any]]:
+def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[Row]:
     """The valid lines of an edition, of one boat or all, with what their certificates say.
 
     Returns:
@@ -56,11 +57,11 @@ def certificate_lines(views: Views, edition: str, fsn_no: str | None) -> list[di
     ]
 
 
-def _of_tow(rows: pl.DataFrame, line: dict[str, Any]) -> pl.DataFrame:
+def _of_tow(rows: pl.DataFrame, line: Row) -> pl.DataFrame:
     return rows.filter(method=line["method"] or "", tow_id=line["tow_id"] or "")
 
 
-def _powers(line: dict[str, Any]) -> list[tuple[float, float, float]]:
+def _powers(line: Row) -> list[tuple[float, float, float]]:
     """Speed, Cw and power per rower, from the A and B that are printed."""
     speed = np.array(SPEEDS) * line["declared_speed_m_s"]
     a, s = curve_of_lines(pl.DataFrame([{name: line[name] for name in CURVE}], schema=CURVE))

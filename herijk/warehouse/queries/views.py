@@ -190,7 +190,7 @@ class Views:
         return self.frame(_DUE)
 
     def retow_choice(self) -> pl.DataFrame:
-        """Boats that would make the season factors surest, with name and next speed."""
+        """Boats whose next tow narrows the season factors most, with name and next speed."""
         return self.frame(RETOW_CHOICE)
 
     def flagged_boats(self) -> pl.DataFrame:

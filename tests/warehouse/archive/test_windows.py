@@ -8,8 +8,8 @@ import pytest
 
 from herijk.pipeline.method.definition import Method, parse_method
 from herijk.warehouse.build.graph import ARCHIVE, METHOD, REGISTERS
-from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.store import Store
+from tests.intake import bring_in as read_archive
 from tests.warehouse.archive.conftest import TOWS, Archive
 
 WINDOWS = "sleeplijsten/vensters_2014.csv"
@@ -38,7 +38,7 @@ def give(archive: Archive, rows: str, path: str = WINDOWS) -> None:
 
 def bring_in(archive: Archive, store: Store) -> None:
     """A rebuild as far as the tables about the archive, only where something changed."""
-    intake.bring_in(store, archive.root)
+    read_archive(store, archive.root)
     if ARCHIVE.is_stale(store, ()):
         ARCHIVE.make(store, (), today=TODAY)
 

@@ -408,6 +408,27 @@
       });
       select(new Set(shownRows(figure).filter(inside).map((row) => row.fsn_no)));
     });
+    offerEnds(figure, view);
+  }
+
+  // The same by keyboard, or where dragging scrolls the page: from and to on either axis.
+  function offerEnds(figure, view) {
+    const { x, y } = window.HERIJK_FIGURES[figure.dataset.figure].spec.encoding;
+    const ends = [x, y].map(({ title }) => ["from", "to"].map((end) => {
+      const input = Object.assign(document.createElement("input"), { type: "number", step: "any" });
+      input.setAttribute("aria-label", `${title}, ${window.HERIJK_WORDS[end]}`);
+      return input;
+    }));
+    const place = figure.querySelector(".ends") ?? figure.querySelector(".chart").nextElementSibling.appendChild(
+      Object.assign(document.createElement("div"), { className: "ends tools" }));
+    place.replaceChildren(...ends.flatMap(([from, to], i) => [[x, y][i].title, from, "\u2013", to]));
+    place.oninput = () => {
+      const isOpen = ends.flat().every((input) => input.value === "");
+      const values = ends.map(([from, to]) => [
+        from.value === "" ? -Infinity : from.valueAsNumber, to.value === "" ? Infinity : to.valueAsNumber]);
+      const fields = [x, y].map(({ field }) => ({ type: "R", field }));
+      view.data("brush_store", isOpen ? [] : [{ unit: "", fields, values }]).runAsync();
+    };
   }
 
   function select(boats) {

@@ -26,6 +26,9 @@ export const pair = (key) => start.words[key] ?? [key, key].map((k) => k.split("
 export const word = (key) => pair(key)[LANGUAGES.indexOf(root.lang)];
 export const code = (value) => (start.words[`code.${value}`] ? word(`code.${value}`) : String(value));
 
+// A method that ships goes by its name in words.
+export const method = (name) => (start.words[`method.${name}`] ? word(`method.${name}`) : name);
+
 // A text in both languages; the style sheet hides the one that is not chosen.
 export function say(key) {
   const [nl, en] = pair(key);

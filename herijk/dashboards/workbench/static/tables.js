@@ -1,5 +1,5 @@
 // Tables of an answer: sorted, searched, downloaded.
-import { all, byId, code, make, number, say, start, state } from "./page.js";
+import { all, byId, code, make, method, number, say, start, state } from "./page.js";
 import { outdate, watch } from "./seen.js";
 
 export function chooseBoat(fsn_no) {
@@ -86,7 +86,7 @@ function cell(row, column, isOfCounts) {
   }
   const codes = Array.isArray(value) ? value : [value];
   const className = start.long.includes(column) ? "w" : "t";
-  return make("td", { className }, codes.map(code).join(", "));
+  return make("td", { className }, codes.map(column === "method" ? method : code).join(", "));
 }
 
 // Text that a spreadsheet would take for a formula is kept text.

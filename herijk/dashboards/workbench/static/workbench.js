@@ -98,7 +98,8 @@ function changesMade() {
 }
 
 function writeAddress() {
-  const asked = { base: state.source, against: byId("against").value, changes: changesMade() };
+  const asked = { base: state.source, against: byId("against").value, changes: changesMade(),
+    boat: byId("boat").value, tows: byId("tows").value };
   history.replaceState(null, "", `#${encodeURIComponent(JSON.stringify(asked))}`);
   byId("shared").replaceChildren();
 }
@@ -177,6 +178,27 @@ function fillSelect(select, values, texts = values) {
   if (values.includes(chosen)) select.value = chosen;
 }
 
+function addTows(value) {
+  const option = make("option", { value }, value.replace(":", "\u2013"));
+  if (start.words[`code.${value}`]) [option.dataset.nl, option.dataset.en] = pair(`code.${value}`);
+  byId("tows").append(option);
+}
+
+// Tows by name, as the server knows them; a range of seasons of one's own becomes a choice too.
+function chooseTows(value) {
+  if (![...byId("tows").options].some((option) => option.value === value)) addTows(value);
+  byId("tows").value = value;
+  const ends = value.match(/\d{4}/g) ?? [start.seasons[0], start.seasons.at(-1)];
+  byId("first").value = ends[0];
+  byId("last").value = ends.at(-1);
+}
+
+function chooseSeasons() {
+  const ends = ["first", "last"].map((id) => byId(id).value).sort();
+  chooseTows([...new Set(ends)].join(":"));
+  ask();
+}
+
 // A method that ships goes by its name in words.
 function named(name) {
   const option = make("option", { value: name }, name);
@@ -248,7 +270,8 @@ byId("against").addEventListener("change", ask);
 byId("boat").addEventListener("change", ask);
 byId("tow").addEventListener("change", redrawCharts);
 byId("boat_type").addEventListener("change", redrawCharts);
-byId("tows").addEventListener("change", ask);
+byId("tows").addEventListener("change", () => { chooseTows(byId("tows").value); ask(); });
+["first", "last"].forEach((id) => byId(id).addEventListener("change", chooseSeasons));
 all("[data-language]").forEach((button) =>
   button.addEventListener("click", () => setLanguage(button.dataset.language)));
 
@@ -259,13 +282,14 @@ fillSelect(byId("boat"), start.boats.map((b) => b.fsn_no),
 const anyType = make("option", { value: "" });
 [anyType.dataset.nl, anyType.dataset.en] = pair("all");
 byId("boat_type").append(anyType, ...start.types.map((type) => make("option", { value: type }, type)));
-byId("tows").append(...start.choices.map((value) => {
-  const option = make("option", { value }, value.replace(":", "\u2013"));
-  if (start.words[`code.${value}`]) [option.dataset.nl, option.dataset.en] = pair(`code.${value}`);
-  return option;
-}));
+start.choices.forEach(addTows);
+fillSelect(byId("first"), start.seasons.map(String));
+fillSelect(byId("last"), start.seasons.map(String));
+byId("last").value = start.seasons.at(-1);
 fillSources();
 const linked = readAddress();
 byId("base").value = linked.base?.name ?? start.base;
 byId("against").value = linked.against ?? start.against;
+if (linked.tows) chooseTows(linked.tows);
+if (start.boats.some((boat) => boat.fsn_no === linked.boat)) byId("boat").value = linked.boat;
 load(linked.base ?? state.source, linked.changes);
