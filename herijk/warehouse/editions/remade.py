@@ -26,8 +26,9 @@ NEVER_TOWED: Final = "never_towed"
 FLAGS: Final = "flags"
 """Follow from what is known of other tows, which grows."""
 
-LATER: Final = ("unseen_error_ratio",)
-"""Columns that editions of before do not have: they are empty there in all rows."""
+UNSEEN: Final = "unseen_error_ratio"
+"""Follows from all tows, so it moves a little when one of them is gone. Editions of before do not
+have it: it is empty there in all rows."""
 
 _OWN: Final = ("edition", "method", "verification_code", "inputs_sha256")
 """Columns of a line that others check."""
@@ -73,7 +74,8 @@ def _differing(
         store.read("listed_boats").select("fsn_no", *BOAT_FACTS), on="fsn_no", how="left"
     )
     said = [name for name in _recorded(lines) if name in now.columns]
-    known = [name for name in said if name not in (*LINE, "basis", *_OWN)]
+    moved = () if reasons.same_inputs else (UNSEEN,)
+    known = [name for name in said if name not in (*LINE, "basis", *_OWN, *moved)]
     pairs = lines.select(*LINE, "basis", *known).join(
         now.select(*LINE, *known), on=LINE, how="left", suffix="_now"
     )
@@ -117,9 +119,7 @@ def _unequal_columns(was: pl.DataFrame, now: pl.DataFrame, key: list[str]) -> li
 def _recorded(frame: pl.DataFrame) -> list[str]:
     """Columns that a table of an edition had when it was published."""
     return [
-        name
-        for name in frame.columns
-        if name not in LATER or frame[name].null_count() < frame.height
+        name for name in frame.columns if name != UNSEEN or frame[name].null_count() < frame.height
     ]
 
 
