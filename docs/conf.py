@@ -26,6 +26,7 @@ CONTENTS = """
 :glob:
 
 *
+nl/*
 decisions/*
 ```
 """
