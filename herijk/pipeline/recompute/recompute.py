@@ -147,10 +147,11 @@ def batches(
 def _by_gps(batch: Batch, steps: tuple[Steps, ...]) -> Iterator[tuple[Batch, tuple[Steps, ...]]]:
     """A batch as it is, or its tows with GPS and those without."""
     otherwise = tuple(without_gps(one) for one in steps)
-    if otherwise == steps or batch.has_gps.all():
+    has_gps = batch.has_gps
+    if otherwise == steps or has_gps.all():
         yield batch, steps
         return
-    for mine, own in ((batch.has_gps, steps), (~batch.has_gps, otherwise)):
+    for mine, own in ((has_gps, steps), (~has_gps, otherwise)):
         if mine.any():
             yield batch.part(mine), own
 
