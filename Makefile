@@ -13,7 +13,7 @@ unexport PYTHONDONTWRITEBYTECODE
 export DAGSTER_DISABLE_TELEMETRY = 1
 export DAGSTER_DG_UPDATE_CHECK_ENABLED = 0
 
-.PHONY: help env demo test slow lint wheel docs bench scale accuracy accuracy-parts survive fuzz plausible full-scale clean
+.PHONY: help env demo test slow lint wheel docs bench growth scale accuracy accuracy-parts survive fuzz plausible full-scale clean
 
 help:
 	@echo "make demo   simulate an archive of ten seasons and rebuild its history"
@@ -23,6 +23,7 @@ help:
 	@echo "make wheel  build the wheel and try it in a clean environment"
 	@echo "make docs   make the documents and the reference as pages, in docs/_build"
 	@echo "make bench  measure speed and memory"
+	@echo "make growth measure them from one to ten thousand tows"
 	@echo "make scale  measure one Dask worker against two, with an S3 server on this machine"
 	@echo "make accuracy  how near the truth the rebased history comes in every simulated world; it can be stopped"
 	@echo "make accuracy-parts  the same for season factors, methods and the consistency analysis apart"
@@ -100,7 +101,7 @@ wheel: $(DEVELOP)
 docs: $(DEVELOP)
 	@$(BIN)/python -m sphinx -q -W -b html docs docs/_build
 
-# A thousand tows: half an hour to simulate, once. A minute: make bench TOWS=1 REPEATS=1
+# A thousand tows: ten minutes to simulate, once. A minute: make bench TOWS=1 REPEATS=1
 TOWS ?= 60
 REPEATS ?= 5
 
@@ -110,6 +111,10 @@ bench: $(DEVELOP)
 	@PYTHONPATH=. $(BIN)/python -m benchmarks.commands benchmarks/data/$(TOWS)/archive \
 	  --write $(if $(filter 60,$(TOWS)),docs/commands.md,benchmarks/data/commands.md)
 	@for part in fit editions samples_format; do echo "== $$part"; PYTHONPATH=. $(BIN)/python -m benchmarks.$$part || exit 1; done
+
+# From one to ten thousand tows: an hour.
+growth: $(DEVELOP)
+	@PYTHONPATH=. $(BIN)/python -m benchmarks.growth --write docs/growth.md
 
 scale: $(DEVELOP)
 	@PYTHONPATH=. $(BIN)/python -m benchmarks.scale --tows-per-season $(TOWS)

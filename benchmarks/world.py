@@ -1,6 +1,6 @@
 """The archive that is measured on, and which of its tows a comparison uses.
 
-Made once and kept: simulating 1,020 tows takes half an hour. The lake beside it holds what
+Made once and kept: simulating 1,020 tows takes ten minutes. The lake beside it holds what
 `herijk rebuild` would have put there, without Dagster.
 """
 

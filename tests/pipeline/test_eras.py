@@ -32,7 +32,7 @@ def early(*groups, boat_type="like"):
 SCATTER = np.linspace(-0.01, 0.01, 11)
 
 
-@pytest.mark.parametrize("n", [6, 8, 9, 17, 40, 101])
+@pytest.mark.parametrize("n", [6, 8, 9, 17, 40, 101, 3000])
 def test_the_interval_of_a_median_is_that_of_order_statistics(n):
     values = np.random.default_rng(n).normal(size=n)
     found = median_interval(values)

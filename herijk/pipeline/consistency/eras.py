@@ -6,11 +6,12 @@ age. How boats age is seen in the last era, where instruments are alike.
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from math import comb, exp, hypot
+from math import exp, hypot
 from typing import Final
 
 import numpy as np
 import polars as pl
+import scipy.special
 
 from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
@@ -142,10 +143,7 @@ def median_interval(values: FloatArray | Sequence[float]) -> tuple[float, float,
     pulled askew or unreported alterations do not decide.
     """
     ordered, n = np.sort(values), len(values)
-    outside, k = 0.0, 0
-    while k < n and outside + comb(n, k) * 0.5**n <= 0.025:
-        outside += comb(n, k) * 0.5**n
-        k += 1
+    k = int(np.count_nonzero(scipy.special.bdtr(np.arange(n), n, 0.5) <= 0.025))
     if k == 0:
         return None
     return float(np.median(ordered)), float(ordered[k - 1]), float(ordered[n - k])
