@@ -1,9 +1,10 @@
 """The site: every page, escaped, alone, and the same bytes from the same tables."""
 
+import base64
 import hashlib
 import json
 import re
-from itertools import accumulate
+import zlib
 
 import polars as pl
 import pytest
@@ -67,8 +68,7 @@ def test_every_page_says_that_it_is_simulated(site):
 
 def test_names_are_escaped_everywhere(site, attacked):
     escaped = ATTACK.replace("<", "&lt;").replace(">", "&gt;")
-    for file in pages(site):
-        assert ATTACK not in file.read_text("utf-8"), file
+    assert not any(ATTACK in text for text in texts_of(site))
     for name in ("register.html", boat_path(attacked)):
         assert escaped in (site / name).read_text("utf-8")
 
@@ -117,26 +117,47 @@ def test_a_number_on_a_page_is_the_warehouse_s(site, built):
     assert f"data-v={line['cw_kg_m']:.{KEPT}g}>{shown}" in text
 
 
-def keys_of(rows, table, page):
-    """What selectors choose rows of a table by, row by row."""
-    keys = re.search(rf'data-table="{table}".*?data-keys=\'([^\']*)\'', page)[1]
-    known = json.loads(keys)
-    return [known[int(place)] for place in re.findall(r"<tr data-k=(\d+)>", rows)]
+def held(file):
+    """What a page's script holds: data of charts and rows of tables, as `site.js` reads it."""
+    packed = file.read_text("utf-8").removeprefix('window.HERIJK_DATA = "').removesuffix('";\n')
+    return json.loads(zlib.decompress(base64.b64decode(packed)))
 
 
-def test_a_browser_lays_out_only_the_edition_that_is_chosen(site, built, store):
-    text = (site / "register.html").read_text("utf-8")
-    body, rest = (
-        [edition for (edition,) in keys_of(rows, "register", text)]
-        for rows in re.search(
-            r"<tbody>(.*?)</tbody>.*?<template>(.*?)</template>", text, re.DOTALL
-        ).groups()
-    )
+def texts_of(site):
+    """Every page, and its rows of tables that are not shown at first."""
+    for file in pages(site):
+        yield file.read_text("utf-8")
+    for file in site.glob("data/**/*.js"):
+        for tables in held(file)["rows"].values():
+            yield from tables.values()
+
+
+def rows_of(site, page, table):
+    """The rows of a table that are shown at first, and the others."""
+    text = (site / page).read_text("utf-8").partition(f'data-table="{table}"')[2]
+    first = re.search(r"<tbody>(.*?)</tbody>", text, re.DOTALL)[1]
+    more = re.match(r'[^>]* data-more="([^"]+)"', text)
+    script = site / "data" / page.replace(".html", ".js")
+    return first, held(script)["rows"]["nl"][more[1]] if more else ""
+
+
+def keys_of(site, page, table):
+    """What selectors choose rows of a table by, of those shown at first and of the others."""
+    text = (site / page).read_text("utf-8")
+    keys = json.loads(re.search(rf'data-table="{table}".*?data-keys=\'([^\']*)\'', text)[1])
+    return [
+        [keys[int(place)] for place in re.findall(r"<tr data-k=(\d+)>", rows)]
+        for rows in rows_of(site, page, table)
+    ]
+
+
+def test_a_browser_lays_out_only_the_edition_that_is_chosen(site, store):
+    first, others = ([e for (e,) in keys] for keys in keys_of(site, "register.html", "register"))
     with Views(store) as views:
         editions = views.register()["edition"].to_list()
-    assert set(body) == {EDITIONS[-1]}
-    assert EDITIONS[-1] not in rest
-    assert sorted([*body, *rest]) == sorted(editions)
+    assert set(first) == {EDITIONS[-1]}
+    assert EDITIONS[-1] not in others
+    assert sorted([*first, *others]) == sorted(editions)
 
 
 def headings(page):
@@ -177,21 +198,16 @@ def test_a_race_page_says_among_how_many_it_compares():
 def test_every_crew_stands_on_the_due_list_once_a_method(site, store):
     with Views(store) as views:
         due = views.table("due_list")
-    text = (site / "due.html").read_text("utf-8")
-    start = text.index('data-table="due_list"')
-    rows = text[start : text.find("data-table=", start + 1)]
-    assert sorted(method for (method,) in keys_of(rows, "due_list", text)) == sorted(due["method"])
+    first, others = keys_of(site, "due.html", "due_list")
+    assert sorted(method for (method,) in [*first, *others]) == sorted(due["method"])
 
 
 def test_a_log_s_factors_are_shown_as_often_as_the_table_has_them(site, store):
     with Views(store) as views:
         links, steps = views.table("season_links"), views.table("season_steps")
-    text = (site / "corrections.html").read_text("utf-8")
     for name, frame in (("season_links", links), ("season_steps", steps)):
-        _, found, rest = text.partition(f'data-table="{name}"')
-        assert found == f'data-table="{name}"'
-        assert rest.partition("</section>")[0].count("<tr") == 1 + frame.height > 1
-    assert "andere log" in text
+        assert "".join(rows_of(site, "corrections.html", name)).count("<tr") == frame.height > 0
+    assert "andere log" in (site / "corrections.html").read_text("utf-8")
 
 
 def test_a_column_and_a_code_on_a_page_have_a_text(store):
@@ -284,39 +300,19 @@ def warehouse_numbers(store, digits):
 
 def test_every_number_in_a_table_of_a_page_stands_in_the_warehouse(store, site):
     known = warehouse_numbers(store, KEPT)
-    shown = {
-        value
-        for file in pages(site)
-        for value in re.findall(r"<td data-v=([^>]+)>", file.read_text("utf-8"))
-    }
+    shown = {v for text in texts_of(site) for v in re.findall(r"<td data-v=([^>]+)>", text)}
     assert len(shown) > 1000
     assert shown - known == set()
-
-
-def drawn(file):
-    """The data of a page's charts."""
-    text = file.read_text("utf-8")
-    return json.loads(text.removeprefix("window.HERIJK_DATA = ").removesuffix(";\n"))
-
-
-def values_of(column):
-    """The values of a column of a chart's data, as `site.js` reads it."""
-    if isinstance(column, list):
-        return column
-    if "steps" in column:
-        return [total / 100 for total in accumulate(column["steps"])]
-    places, numbers = column["runs"][::2], column["runs"][1::2]
-    return [column["values"][p] for p, n in zip(places, numbers, strict=True) for _ in range(n)]
 
 
 def test_every_number_in_a_chart_stands_in_the_warehouse(store, site):
     known = warehouse_numbers(store, DRAWN)
     shown = set()
     for file in sorted(site.glob("data/**/*.js")):
-        for name, frames in drawn(file).items():
+        for name, frames in held(file)["charts"].items():
             columns = [v for f in frames for v in f.values() if name != "traces"]
             for values in columns:
-                shown |= {f"{v:.{DRAWN}g}" for v in values_of(values) if isinstance(v, float)}
+                shown |= {f"{v:.{DRAWN}g}" for v in values if isinstance(v, float)}
     assert len(shown) > 1000
     assert shown - known == set()
 
@@ -326,9 +322,11 @@ def test_traces_are_those_of_the_warehouse_to_the_digits_of_a_chart(store, site,
         seconds = views.table("trace_seconds")
         tows = views.table("tows").filter(pl.col("fsn_no") == attacked)
     mine = seconds.join(tows, on="tow_id", how="semi", maintain_order="left")
-    traces = drawn(site / "data" / boat_path(attacked).replace(".html", ".js"))["traces"][0]
+    traces = held(site / "data" / boat_path(attacked).replace(".html", ".js"))["charts"]["traces"][
+        0
+    ]
     assert traces["force_n"] == mine["force_n"].round(0).to_list()
-    assert values_of(traces["speed_m_s"]) == mine["speed_m_s"].round(2).to_list()
+    assert traces["speed_m_s"] == mine["speed_m_s"].round(2).to_list()
 
 
 def test_every_page_forbids_the_network_and_eval(site):

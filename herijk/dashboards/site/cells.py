@@ -3,6 +3,7 @@
 import datetime as dt
 import json
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import cache
 from itertools import repeat
 from typing import Any, Final
@@ -57,6 +58,21 @@ _BOAT = Markup(' data-boat="{}"')
 _KEYED = Markup(" data-k={}")
 
 
+@dataclass(frozen=True)
+class Rows:
+    """The rows of a table as HTML.
+
+    Attributes:
+        first: what the selectors show at first.
+        others: all others, which a page does not hold but brings in when they are chosen.
+        keys: the values that selectors choose by; a row has the place of its own.
+    """
+
+    first: Markup
+    others: str
+    keys: Sequence[Key]
+
+
 class Cells:
     """Makes rows of tables in one language."""
 
@@ -69,12 +85,8 @@ class Cells:
         """The cell of a text in a column of this name; the same value comes often."""
         return (_LONG if name in LONG else _SHORT).format(self._shower(name, root)(value))
 
-    def rows(self, page: Page, table: Table) -> tuple[Markup, Markup, list[Key]]:
-        """The rows that the selectors show at first, and all others.
-
-        A browser lays out only the first; `site.js` brings in others when they are chosen. Third
-        come the keys, the values that selectors choose by: a row has the place of its own.
-        """
+    def rows(self, page: Page, table: Table) -> Rows:
+        """The rows of a table on a page."""
         frame, follows = table.frame, list(table.follows)
         # Column by column, because the cells of a column are made in one way.
         cells = zip(
@@ -97,7 +109,7 @@ class Cells:
         for row, boat, key in zip(cells, boats, keys if follows else repeat(()), strict=False):
             place, marks = marked(key)
             place.append(f"<tr{boat}{marks}>{''.join(row)}")
-        return Markup("\n".join(first)), Markup("\n".join(others)), list(places)  # noqa: S704 - escaped parts
+        return Rows(Markup("\n".join(first)), "\n".join(others), list(places))  # noqa: S704 - escaped parts
 
     def _cells(self, column: pl.Series, root: str, exact: bool) -> Sequence[str]:
         name = column.name

@@ -1,21 +1,23 @@
 """From pages to files: HTML with the tables, data for the charts, and what all pages share.
 
 Every page is made once per language, in Dutch at the root and in English under `en/`; the data of
-its charts once, as a script beside them.
+its charts, and the rows of its tables that are not shown at first, once, as a script beside them.
 """
 
+import base64
 import datetime as dt
+import math
 import shutil
 import tempfile
-from collections.abc import Iterable, Iterator
+import zlib
+from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import Executor, wait
 from functools import cache
 from importlib.metadata import version
-from itertools import chain, groupby
+from itertools import chain
 from pathlib import Path
 from typing import Final
 
-import numpy as np
 import polars as pl
 import vl_convert
 
@@ -24,7 +26,7 @@ from herijk.dashboards.answer import told
 from herijk.dashboards.html import as_json, environment
 from herijk.dashboards.kept import kept
 from herijk.dashboards.site.boats import boat_pages
-from herijk.dashboards.site.cells import Cells, hashable
+from herijk.dashboards.site.cells import Cells
 from herijk.dashboards.site.downloads import copy_sheets
 from herijk.dashboards.site.pages import MENU, method_names, shared_pages
 from herijk.dashboards.site.parts import Page, boat_path, race_path, type_path
@@ -41,7 +43,6 @@ from herijk.words.catalogue import WORDS, speaker
 HERE: Final = Path(__file__).parent
 DRAWN: Final = 5
 """Significant digits of what charts draw."""
-HUNDRED: Final = 100
 OWN_FILES: Final = ("site.css", "site.js")
 FOLDERS: Final = {"nl": "", "en": "en/"}
 """Where the pages of each language lie within the site."""
@@ -124,10 +125,12 @@ def _write_shared(views: Views, folder: Path) -> None:
 def _write_pages(views: Views, folder: Path, pages: Iterable[Page]) -> None:
     editions = [Edition(views, language) for language in LANGUAGES]
     for page in pages:
+        others = {}
         for edition in editions:
-            _put(folder / edition.address(page), edition.html(page))
-        if page.data:
-            _put(folder / _data_path(page), _data_script(page))
+            html, others[edition.speech.language] = edition.html(page)
+            _put(folder / edition.address(page), html)
+        if page.data or any(others.values()):
+            _put(folder / _data_path(page), _data_script(page, others))
 
 
 def _put(path: Path, text: str) -> None:
@@ -142,13 +145,12 @@ class Edition:
         self.speech = Speech(language)
         self.about = views.about()
         comments = _by_column(views.comments()) if language == "en" else {}
-        cells = Cells(self.speech)
+        self._cells = Cells(self.speech)
         self._template = environment(
             HERE / "templates",
             policy=POLICY,
             t=self.speech.text,
             speech=self.speech,
-            rows=cells.rows,
             told=lambda answer: told(answer, self.speech),
             still=lambda page: still_pictures(page, self.speech),
             comments=comments,
@@ -160,21 +162,29 @@ class Edition:
         """Where the page lies within the site."""
         return FOLDERS[self.speech.language] + page.path
 
-    def html(self, page: Page) -> str:
-        """The page."""
+    def html(self, page: Page) -> tuple[str, dict[str, str]]:
+        """The page, and by the number of a table its rows that the selectors hide at first."""
         language = self.speech.language
         depth = self.address(page).count("/")
         site = page.site or "../" * depth
         other = next(name for name in LANGUAGES if name != language)
-        return self._template.render(
+        tables = {
+            f"{place}-{number}": self._cells.rows(page, table)
+            for place, section in enumerate(page.sections, 1)
+            for number, table in enumerate(section.tables, 1)
+        }
+        others = {number: rows.others for number, rows in tables.items() if rows.others}
+        html = self._template.render(
             page=page,
+            tables=tables,
             language=language,
             site=site,
             root=(site + FOLDERS[language]) if page.site else page.root,
             other=other,
             other_page=page.others.get(other) or f"{site}{FOLDERS[other]}{page.path}",
-            data_path=_data_path(page) if page.data else "",
+            data_path=_data_path(page) if page.data or others else "",
         )
+        return html, others
 
 
 def _data_path(page: Page) -> str:
@@ -182,13 +192,20 @@ def _data_path(page: Page) -> str:
     return f"data/{page.path.removesuffix('.html')}.js"
 
 
-def _data_script(page: Page) -> str:
-    """A script and not JSON: a page from disk may load nothing else."""
-    held = ",".join(
+def _data_script(page: Page, others: Mapping[str, Mapping[str, str]]) -> str:
+    """A script and not JSON, as a page from disk may load nothing else; deflated, a seventh of it.
+
+    Args:
+        page: gives the data of its charts.
+        others: rows of tables as HTML, by language and number of the table.
+    """
+    charts = ",".join(
         f"{as_json(name)}:[{','.join(_columns(frame) for frame in frames)}]"
         for name, frames in page.data.items()
     )
-    return f"window.HERIJK_DATA = {{{held}}};\n"
+    text = f'{{"charts":{{{charts}}},"rows":{as_json(others)}}}'
+    packed = base64.b64encode(zlib.compress(text.encode())).decode("ascii")
+    return f'window.HERIJK_DATA = "{packed}";\n'
 
 
 def _columns(frame: pl.DataFrame) -> str:
@@ -239,34 +256,10 @@ def charts_script(language: str) -> str:
 
 
 def _column(column: pl.Series) -> str:
-    """A list, or what `site.js` makes one of with fewer characters to read.
-
-    `steps` are the differences of numbers with two decimals at most, in hundredths. `values` of
-    texts and of what stays the same for many rows stand once: `runs` then has the place of a value
-    and for how many rows it holds, one pair after the other.
-    """
-    if column.dtype.is_float():
-        steps = _steps(column)
-        if steps is not None:
-            return f'{{"steps":[{",".join(map(str, steps))}]}}'
-        numbers = ("null" if v is None else f"{v:.{DRAWN}g}" for v in column.to_list())
-        return f"[{','.join(numbers).replace('nan', 'null')}]"
-    values = hashable(column)
-    stretches = [(value, len(list(same))) for value, same in groupby(values)]
-    if column.dtype != pl.String and 2 * len(stretches) >= len(values):
+    """A list, with numbers to the digits that charts draw."""
+    values = column.to_list()
+    if not column.dtype.is_float():
         return as_json(values)
-    places = {value: place for place, value in enumerate(dict.fromkeys(v for v, _ in stretches))}
-    runs = list(chain.from_iterable((places[value], number) for value, number in stretches))
-    return as_json({"values": list(places), "runs": runs})
-
-
-def _steps(column: pl.Series) -> list[int] | None:
-    """Differences in hundredths, where every number is known and has no more decimals."""
-    if column.is_empty() or column.null_count():
-        return None
-    values = column.to_numpy()
-    hundredths = np.round(values * HUNDRED)
-    if not (np.isfinite(values) & (hundredths / HUNDRED == values)).all():
-        return None
-    steps: list[int] = np.diff(hundredths, prepend=0.0).astype(np.int64).tolist()
-    return steps
+    known = [math.nan if v is None else v for v in values] if column.null_count() else values
+    numbers = ",".join([f"%.{DRAWN}g"] * len(known)) % tuple(known)
+    return f"[{numbers.replace('nan', 'null')}]"

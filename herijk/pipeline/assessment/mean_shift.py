@@ -54,11 +54,13 @@ class Candidates:
         directions: one a column, sparse, shape (n, candidates).
         single: whether a column is of one tow, whose scatter the archive itself shows.
         least: smallest size that matters, shape (candidates,).
+        gross: size that no scatter explains, however wide, shape (candidates,).
     """
 
     directions: "scipy.sparse.csc_array"
     single: BoolArray
     least: FloatArray
+    gross: FloatArray
 
 
 @dataclass(frozen=True)
@@ -92,7 +94,8 @@ class Shifted:
 def find_shifts(seen: Observations, may: Candidates, limit: float, look: float) -> Shifted:
     """Shifts beyond so many standard deviations, the clearest first.
 
-    Where tows scatter more or less than is assumed, the limits move with them.
+    Where tows scatter more or less than is assumed, the limits move with them. Shifts too large to
+    be scatter come out before that is measured: a few of these make all others look scattered.
 
     Args:
         seen: what is seen.
@@ -100,31 +103,63 @@ def find_shifts(seen: Observations, may: Candidates, limit: float, look: float) 
         limit: from which chance is ruled out.
         look: from which a single tow is unusual, judged when all clear shifts are taken out.
     """
-    precision = _Precision.of(seen)
-    score = np.asarray(may.directions.T @ precision.times(seen.values))
-    at_first = precision.weights(may.directions)
-    weight = at_first.copy()
-    scales = _scales(score, weight, may.single)
-    limits, clear = limit * scales, True
-    shifts: list[Found] = []
-    while True:
-        told = weight > SAME_DIRECTION * at_first
-        sd = 1.0 / np.sqrt(np.where(told, weight, 1.0))
-        size = score * sd**2
-        beyond = np.abs(size) / (sd * limits)
-        beyond[~told | (np.abs(size) < may.least)] = 0.0
-        best = int(first_largest(beyond))
-        if beyond[best] < 1.0:
-            if not clear:
-                seen_from = np.maximum(sd * (limits + MOSTLY * scales), may.least)
-                return Shifted(shifts, np.where(told, seen_from, np.nan))
-            limits, clear = np.where(may.single, look * scales, np.inf), False
-            continue
-        shifts.append(Found(best, float(size[best]), float(sd[best]), clear))
-        moved = precision.take_out(may.directions[:, [best]].toarray()[:, 0])
-        share = np.asarray(may.directions.T @ moved)
-        score = score - share * size[best]
-        weight = weight - share**2 * sd[best] ** 2
+    left = _Left(seen, may)
+    gross = left.take_out(np.full(len(may.least), limit), np.maximum(may.least, may.gross))
+    scales = left.scales()
+    clear = left.take_out(limit * scales, may.least)
+    limits = np.where(may.single, look * scales, np.inf)
+    unusual = left.take_out(limits, may.least)
+    _, sd = left.sizes()
+    seen_from = np.maximum(sd * (limits + MOSTLY * scales), may.least)
+    shifts = [Found(*one, clear=True) for one in gross + clear]
+    shifts += [Found(*one, clear=False) for one in unusual]
+    return Shifted(shifts, np.where(left.told, seen_from, np.nan))
+
+
+class _Left:
+    """What the candidates show beside all that was taken out before."""
+
+    def __init__(self, seen: Observations, may: Candidates) -> None:
+        self._may = may
+        self._precision = _Precision.of(seen)
+        self._score = np.asarray(may.directions.T @ self._precision.times(seen.values))
+        self._at_first = self._precision.weights(may.directions)
+        self._weight = self._at_first.copy()
+
+    @property
+    def told(self) -> BoolArray:
+        """Which candidates are not taken out already, nor the same as one that is."""
+        return np.asarray(self._weight > SAME_DIRECTION * self._at_first)
+
+    def sizes(self) -> tuple[FloatArray, FloatArray]:
+        """Size of each shift and its standard deviation; of no use where it cannot be told."""
+        sd = 1.0 / np.sqrt(np.where(self.told, self._weight, 1.0))
+        return self._score * sd**2, sd
+
+    def scales(self) -> FloatArray:
+        """How much wider or narrower tows scatter than is assumed; groups never narrower."""
+        single = self._may.single & self.told
+        if single.sum() < FEWEST_FOR_SCALE:
+            return np.ones(len(single))
+        z = self._score[single] / np.sqrt(self._weight[single])
+        scatter = float(np.median(np.abs(z))) / NORMAL_MAD
+        return np.where(self._may.single, max(scatter, NARROWEST), max(scatter, 1.0))
+
+    def take_out(self, limits: FloatArray, least: FloatArray) -> list[tuple[int, float, float]]:
+        """Takes out what is beyond its limit in standard deviations: place, size and sd of each."""
+        taken: list[tuple[int, float, float]] = []
+        while True:
+            size, sd = self.sizes()
+            beyond = np.abs(size) / (sd * limits)
+            beyond[~self.told | (np.abs(size) < least)] = 0.0
+            best = int(first_largest(beyond))
+            if beyond[best] < 1.0:
+                return taken
+            taken.append((best, float(size[best]), float(sd[best])))
+            moved = self._precision.take_out(self._may.directions[:, [best]].toarray()[:, 0])
+            share = np.asarray(self._may.directions.T @ moved)
+            self._score = self._score - share * size[best]
+            self._weight = self._weight - share**2 * sd[best] ** 2
 
 
 class _Precision:
@@ -162,11 +197,3 @@ class _Precision:
             self._root, (self._seen.effects.T @ scaled).toarray(), lower=True
         )
         return np.asarray(own - (shared**2).sum(axis=0))
-
-
-def _scales(score: FloatArray, weight: FloatArray, single: BoolArray) -> FloatArray:
-    """How much wider or narrower tows scatter than is assumed; groups never count as narrower."""
-    if single.sum() < FEWEST_FOR_SCALE:
-        return np.ones(len(score))
-    scatter = float(np.median(np.abs(score[single]) / np.sqrt(weight[single]))) / NORMAL_MAD
-    return np.where(single, max(scatter, NARROWEST), max(scatter, 1.0))

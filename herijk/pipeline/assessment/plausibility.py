@@ -22,7 +22,7 @@ import scipy
 from herijk.pipeline.arrays import FloatArray, IntArray
 from herijk.pipeline.assessment.likely_unit import likely_cause
 from herijk.pipeline.assessment.mean_shift import Candidates, Observations, Shifted, find_shifts
-from herijk.pipeline.assessment.seen import USUAL_BEND, Seen
+from herijk.pipeline.assessment.seen import LEAST_WATER, USUAL_BEND, Seen
 from herijk.pipeline.blocks.batch import Batch
 from herijk.tables.keys import LINE
 
@@ -38,6 +38,9 @@ FEWEST: Final = 3
 
 GROSS: Final = np.log(1.6)
 """Shift of a logarithm that no boat explains: the widest spread within a type is far less."""
+
+_WITH_UNITS: Final = ("force", "wind")
+"""Quantities that a wrong unit shifts so far."""
 
 
 @dataclass(frozen=True)
@@ -78,8 +81,8 @@ class Shift:
     """A shift that chance does not explain.
 
     Attributes:
-        kind, key: what shifted: the `tow`, `day`, `part` (of a season, from a day on), `season` or
-            `archive`, and which.
+        kind, key: what shifted: the `tow`, `day`, `part` (of a season, from a day on), `some` tows
+            of a season, `season` or `archive`, and which.
         quantity: `force`, `zero` (of the load cell), `wind` (its speed), `vane` or `speed`.
         size: of ln force; in N for a zero; relative for the others.
         sd: its standard deviation; 0 where the samples themselves leave no doubt.
@@ -196,6 +199,19 @@ def _parts(tows: pl.DataFrame) -> Iterator[Group]:
                 yield ("part", str(first), after)
 
 
+def _grossly_off(tows: pl.DataFrame, level: FloatArray) -> Iterator[Group]:
+    """Tows of a season that lie grossly above, or below, the archive: half of a season in kgf.
+
+    Without these a season of which only some are wrong looks wrong as a whole, by half as much.
+    """
+    off = level - np.median(level)
+    for season, places in _places(tows["season"].cast(pl.String)):
+        for side in (-1.0, 1.0):
+            some = places[side * off[places] > GROSS]
+            if 1 < len(some) < len(places):
+                yield ("some", str(season), some)
+
+
 def _places(key: pl.Series) -> Iterator[tuple[str, IntArray]]:
     names, rank = np.unique(key.to_numpy(), return_inverse=True)
     order, ends = np.argsort(rank, kind="stable"), np.cumsum(np.bincount(rank))
@@ -240,9 +256,12 @@ def _of_one(
     effects, variance = _effects(tows, spread)
     observed = Observations(values[there], np.full(tows.height, spread.tow**2), effects, variance)
     groups = _groups(tows, kinds)
+    if quantity in _WITH_UNITS:
+        ratio = np.maximum(1.0 + values[there], 0.01)
+        groups += _grossly_off(tows, np.log(ratio))
     columns = [np.where(np.isin(np.arange(tows.height), g[2]), 1.0, 0.0) for g in groups]
     may = [(quantity, group, column) for group, column in zip(groups, columns, strict=True)]
-    return _named(tows, may, _find(observed, may))
+    return _named(tows, may, _find(observed, may), np.zeros(tows.height))
 
 
 def _of_force(seen: Seen) -> tuple[list[Shift], dict[str, float]]:
@@ -266,9 +285,10 @@ def _of_force(seen: Seen) -> tuple[list[Shift], dict[str, float]]:
         scipy.sparse.block_diag([level, bend], format="csr"),
         np.concatenate([level_variance, bend_variance]),
     )
-    per_newton = 1.0 / seen.force_n[known]
+    # Of the force that the size lets expect: a force in kgf is a tenth of it.
+    per_newton = np.exp(seen.level[known]) / seen.force_n[known]
     columns: list[Candidate] = []
-    for group in _groups(tows, _GROUPS):
+    for group in (*_groups(tows, _GROUPS), *_grossly_off(tows, seen.level[known])):
         mine = np.isin(np.arange(tows.height), group[2]).astype(np.float64)
         columns.append(("force", group, np.concatenate([mine, np.zeros(tows.height)])))
         if group[0] == "archive":  # a shape of hulls looks so; load cells are not off for ever
@@ -281,7 +301,7 @@ def _of_force(seen: Seen) -> tuple[list[Shift], dict[str, float]]:
         for (quantity, (kind, key, _), _), size in zip(columns, found.seen_from, strict=True)
         if (quantity, kind) == ("force", "tow") and np.isfinite(size)
     }
-    return _named(tows, columns, found), seen_from
+    return _named(tows, columns, found, seen.air_share[known]), seen_from
 
 
 def _find(observed: Observations, columns: list[Candidate]) -> Shifted:
@@ -290,19 +310,31 @@ def _find(observed: Observations, columns: list[Candidate]) -> Shifted:
         scipy.sparse.csc_array(np.column_stack([c for _, _, c in columns])),
         np.array([kind == "tow" for _, (kind, _, _), _ in columns]),
         np.array([LEAST[quantity] for quantity, _, _ in columns]),
+        np.array([GROSS if quantity in _WITH_UNITS else np.inf for quantity, _, _ in columns]),
     )
     return find_shifts(observed, may, LIMIT, LOOK)
 
 
-def _named(tows: pl.DataFrame, columns: list[Candidate], found: Shifted) -> list[Shift]:
+def _named(
+    tows: pl.DataFrame, columns: list[Candidate], found: Shifted, air_share: FloatArray
+) -> list[Shift]:
     """The shifts that were found, with their tows and what may have caused them."""
     shifts = []
     for one in found.shifts:
         quantity, (kind, key, places), _ = columns[one.place]
+        size = one.size
+        if quantity == "force":
+            size = _of_whole_force(size, air_share[places])
         ids = tuple(tows["tow_id"].gather(np.sort(places)))
-        cause = likely_cause(quantity, _ln_ratio(quantity, one.size), one.sd)
-        shifts.append(Shift(kind, key, quantity, one.size, one.sd, ids, cause, one.clear))
+        cause = likely_cause(quantity, _ln_ratio(quantity, size), one.sd)
+        shifts.append(Shift(kind, key, quantity, size, one.sd, ids, cause, one.clear))
     return shifts
+
+
+def _of_whole_force(ln_size: float, air_share: FloatArray) -> float:
+    """Shift of ln force that gives a shift of its water part: no unit changes what the air took."""
+    water = np.maximum(1.0 - air_share, LEAST_WATER)
+    return float(-np.log(np.median(water * np.exp(-ln_size) + air_share)))
 
 
 def _ln_ratio(quantity: str, size: float) -> float:

@@ -146,6 +146,7 @@ def _best_estimates(views: Views) -> pl.DataFrame:
     moved = pl.col("ln_ratio").exp()
     return (
         best.join(own.select(*key, own_weight="weight"), on=key, how="left")
+        .with_columns(pl.col("own_weight").fill_null(0.0))  # shares of next to nothing are left out
         .join(pairs, on=key, how="left")
         .join(before, on=["method", "tow_id_before"], how="left")
         .with_columns(

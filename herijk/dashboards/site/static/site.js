@@ -31,7 +31,17 @@
     return loaded.get(path);
   }
 
-  const loadData = () => load(document.body.dataset.data);
+  // The page's own data: what its charts draw, and the rows of tables that are not shown at first.
+  let data = null;
+
+  async function loadData() {
+    if (data) return;
+    await load(document.body.dataset.data);
+    const packed = Uint8Array.from(atob(window.HERIJK_DATA), (letter) => letter.charCodeAt(0));
+    const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
+    data = await new Response(stream).json();
+  }
+
   const loadCharts = () => Promise.all([
     loadData(), load(`${site}static/charts-${language}.js`), load(`${site}static/vega.js`),
   ]);
@@ -130,11 +140,27 @@
   // -- Tables -----------------------------------------------------------------------------------
   // A row that is not shown is not in the document: a browser lays out what is seen.
   const tables = all(".table");
-  const rowsOfTable = new Map(tables.map((table) => [table,
-    [...table.querySelector("tbody").rows, ...(table.querySelector("template")?.content.children ?? [])]]));
+  const rowsOfTable = new Map(tables.map((table) => [table, [...table.querySelector("tbody").rows]]));
   let selected = null; // boats chosen in a chart, or null
+  let marked = null; // the boat whose row was clicked, or null
 
-  function filter(table) {
+  // The rows that are not shown at first come with the data of the page.
+  async function allRows(table) {
+    const { more } = table.dataset;
+    if (more) await loadData();
+    if (table.dataset.more) {
+      const place = document.createElement("template");
+      place.innerHTML = data.rows[language][more];
+      rowsOfTable.get(table).push(...place.content.children);
+      delete table.dataset.more;
+      arrange(table);
+    }
+  }
+
+  const isOtherChosen = () => all("select", form ?? undefined).some((field) => field.value !== defaults.get(field.name));
+
+  async function filter(table) {
+    if (isOtherChosen()) await allRows(table);
     const words = plain(table.querySelector(".search")?.value ?? "").split(/\s+/).filter(Boolean);
     const linked = table.querySelector("table.linked");
     const follows = JSON.parse(table.dataset.follows);
@@ -147,7 +173,10 @@
     const body = table.querySelector("tbody");
     const isSame = shown.length === body.rows.length && shown.every((row, i) => row === body.rows[i]);
     if (!isSame) body.replaceChildren(...shown);
-    if (linked) shown.forEach((row, i) => { row.tabIndex = i ? -1 : 0; });
+    if (linked) shown.forEach((row, i) => {
+      row.tabIndex = i ? -1 : 0;
+      row.classList.toggle("chosen", row.dataset.boat === marked);
+    });
     table.querySelector(".count b").textContent = shown.length;
     const clear = table.querySelector(".clear");
     if (clear) clear.hidden = selected === null;
@@ -171,9 +200,18 @@
   const isNumeric = (cell) => cell.className === "";
 
   function sort(table, header, down = header.getAttribute("aria-sort") === "ascending") {
-    const place = [...header.parentElement.children].indexOf(header);
     all("th", table).forEach((other) => other.removeAttribute("aria-sort"));
     header.setAttribute("aria-sort", down ? "descending" : "ascending");
+    arrange(table);
+    filter(table);
+  }
+
+  // Puts all rows that are here in the order that a heading says.
+  function arrange(table) {
+    const header = table.querySelector("th[aria-sort]");
+    if (!header) return;
+    const down = header.getAttribute("aria-sort") === "descending";
+    const place = [...header.parentElement.children].indexOf(header);
     const numeric = header.classList.contains("n");
     const compare = new Intl.Collator("nl", { numeric: true }).compare;
     const key = (cell) => (numeric ? numberOf(cell) : cell.textContent);
@@ -184,7 +222,6 @@
       return down ? -order : order;
     });
     rowsOfTable.set(table, rows.map(([, row]) => row));
-    filter(table);
   }
 
   for (const table of tables) {
@@ -220,28 +257,12 @@
   // Columns to rows.
   function asRows(columns) {
     const names = Object.keys(columns);
-    const values = names.map((name) => valuesOf(columns[name]));
-    return (values[0] ?? []).map((_, i) =>
-      Object.fromEntries(names.map((name, j) => [name, values[j][i]])));
-  }
-
-  // A column may hold differences in hundredths, or its values once, with the place of each and for
-  // how many rows it holds.
-  function valuesOf(column) {
-    if (Array.isArray(column)) return column;
-    if (column.steps) {
-      let sum = 0;
-      return column.steps.map((step) => (sum += step) / 100);
-    }
-    const found = [];
-    for (let i = 0; i < column.runs.length; i += 2) {
-      for (let n = column.runs[i + 1]; n > 0; n -= 1) found.push(column.values[column.runs[i]]);
-    }
-    return found;
+    return (columns[names[0]] ?? []).map((_, i) =>
+      Object.fromEntries(names.map((name) => [name, columns[name][i]])));
   }
 
   function rowsOf(name) {
-    if (!frames.has(name)) frames.set(name, window.HERIJK_DATA[name].flatMap(asRows));
+    if (!frames.has(name)) frames.set(name, data.charts[name].flatMap(asRows));
     return frames.get(name);
   }
 
@@ -438,9 +459,8 @@
 
   // Clicking a row of the list, or going there with the arrows, makes its point large in every scatter.
   function mark(boat) {
-    for (const row of [...rowsOfTable.values()].flat()) {
-      row.classList.toggle("chosen", row.dataset.boat === boat);
-    }
+    marked = boat;
+    tables.forEach(filter);
     for (const { view } of views.values()) {
       if ("chosen" in view.getState().signals) view.signal("chosen", boat).runAsync();
     }
@@ -494,8 +514,7 @@
   // -- Begin ------------------------------------------------------------------------------------
   // A headline says what is shown at first: of another choice it would not be true.
   function hideHeadlines() {
-    const isOther = all("select", form ?? undefined).some((field) => field.value !== defaults.get(field.name));
-    all("section:not(.answer) > .headline").forEach((headline) => { headline.hidden = isOther; });
+    all("section:not(.answer) > .headline").forEach((headline) => { headline.hidden = isOtherChosen(); });
   }
 
   form?.addEventListener("change", () => {
