@@ -8,9 +8,9 @@ Women's and men's crews differ in weight and speed, so lines against weight or l
 within a crew; displacement contains the crew.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache, cached_property
 from typing import Final, NamedTuple, Self
 
 import numpy as np
@@ -182,11 +182,12 @@ def _lines(
     for choice, tows in chosen:
         for (method, boat_type), group in tows.groups("method", "boat_type"):
             boats = _Boats.of(group)
+            some = cache(boats.where)  # lines have the same tows time and again
             speed = {"standard_speed_m_s": standard_speed_m_s(group)}
             for quantity, explaining, measured in _pairs(group, choice):
                 names = {"method": method, "tows": choice.tows, "boat_type": boat_type}
                 names |= {"quantity": quantity, "explaining": explaining}
-                facts, line = _line(boats, choice, names, measured)
+                facts, line = _line(boats, some, choice, names, measured)
                 rows.append(names | speed | facts)
                 if line is not None:
                     to_fit.setdefault(choice.components, []).append((rows[-1], names, line))
@@ -220,7 +221,6 @@ class _Boats:
     run_sd_ratio: FloatArray
     explaining: Mapping[str, FloatArray]
     type_known: bool
-    _some: dict[bytes, "_Boats"] = field(default_factory=dict, repr=False, compare=False)
 
     @classmethod
     def of(cls, tows: Observed) -> Self:
@@ -236,20 +236,18 @@ class _Boats:
             tows.table["boat_type"][0] != UNKNOWN_TYPE,
         )
 
-    def where(self, known: BoolArray) -> "_Boats":
-        """Some of the tows; lines have the same ones time and again."""
-        key = known.tobytes()
-        if key not in self._some:
-            self._some[key] = _Boats(
-                self.boat[known],
-                self.crew[known],
-                self.crew_class[known],
-                self.season[known],
-                self.run_sd_ratio[known],
-                {name: values[known] for name, values in self.explaining.items()},
-                self.type_known,
-            )
-        return self._some[key]
+    def where(self, known: bytes) -> "_Boats":
+        """Some of the tows, by the bytes of a mask."""
+        some = np.frombuffer(known, dtype=bool)
+        return _Boats(
+            self.boat[some],
+            self.crew[some],
+            self.crew_class[some],
+            self.season[some],
+            self.run_sd_ratio[some],
+            {name: values[some] for name, values in self.explaining.items()},
+            self.type_known,
+        )
 
     @cached_property
     def number(self) -> int:
@@ -285,13 +283,17 @@ def _pairs(boats: Observed, choice: Choice) -> Iterator[tuple[str, str, Measured
 
 
 def _line(
-    boats: _Boats, choice: Choice, names: Mapping[str, str], measured: Measured
+    boats: _Boats,
+    some: Callable[[bytes], _Boats],
+    choice: Choice,
+    names: Mapping[str, str],
+    measured: Measured,
 ) -> tuple[Row, "_Line | None"]:
     """How many tows a line is of, and the line; without one, why."""
     y, unit = measured
     x = boats.explaining[names["explaining"]]
     known = np.isfinite(x) & np.isfinite(y)
-    boats, x, y = boats.where(known), x[known], y[known]
+    boats, x, y = some(known.tobytes()), x[known], y[known]
     within_crew = names["explaining"] in OF_THE_BOAT
     crews = boats.crew_effects if within_crew else np.ones((len(y), 1))
     centre = np.asarray(np.linalg.lstsq(crews, x)[0], dtype=np.float64)
