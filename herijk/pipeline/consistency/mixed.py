@@ -66,13 +66,14 @@ class Fit:
         problem: what was fitted.
         free: components that were estimated; the others are 0.
         sd: standard deviations of boat, other and cell.
-        white: the problem at these, as a stack of one.
+        white: problems at these, the own one among them; place: which it is.
     """
 
     problem: Problem
     free: tuple[str, ...]
     sd: tuple[float, float, float]
     white: Whitened
+    place: int = 0
 
     @classmethod
     def at(cls, problem: Problem, free: tuple[str, ...], sd: tuple[float, float, float]) -> Self:
@@ -82,36 +83,35 @@ class Fit:
     @property
     def dof(self) -> int:
         """Degrees of freedom of the boats: rows of one boat do not count twice."""
-        return self.problem.boats - int(self.problem.x.shape[1])
+        design = self.problem.design
+        return design.boats - int(design.x.shape[1])
 
-    @cached_property
-    def _root(self) -> FloatArray:
-        """R with (R'R)^-1 the covariance of the fixed effects, (p, p); upper triangular."""
-        first = self.white.of_others.shape[1]
-        return self.white.r[0, first:, first:]
+    @property
+    def _inverse(self) -> FloatArray:
+        """R with R R' the covariance of the fixed effects, (p, p); upper triangular."""
+        return self.white.inverse[self.place]
 
-    @cached_property
+    @property
     def misfit(self) -> float:
         """Y' P Y: the weighted sum of squares about the fixed effects."""
-        return float(self.white.misfit[0])
+        return float(self.white.misfit[self.place])
 
     @property
     def total_misfit(self) -> float:
         """The same without the last column of X, at the same variances."""
-        last = self._root[-1, -1] * self.beta[-1]
-        return self.misfit + float(last) ** 2
+        return self.misfit + float(self.beta[-1] / self._inverse[-1, -1]) ** 2
 
     @property
     def scale(self) -> float:
         """Misfit per row beyond the fixed effects, at least 1: below, it is only rounding."""
-        rows = len(self.problem.y) - self.problem.x.shape[1]
+        rows = self.problem.rows_beyond
         return max(1.0, self.misfit / rows) if rows > 0 else 1.0
 
     @cached_property
     def beta(self) -> FloatArray:
         """Fixed effects, shape (p,)."""
-        known = self.white.along[0, self.white.of_others.shape[1] :, 0]
-        return np.asarray(self.problem.plain + np.linalg.solve(self._root, known))
+        known = self.white.along[self.place, self.problem.design.others.shape[1] :, 0]
+        return self.problem.plain + self._inverse @ known
 
     def coefficients(self) -> Coefficients:
         """Fixed effects with 95 % intervals; needs `dof` of at least 1.
@@ -119,7 +119,7 @@ class Fit:
         The variance is scaled with the misfit per degree of freedom (Hartung & Knapp 2001): with
         equal errors the interval is that of ordinary least squares, whatever was estimated.
         """
-        return self.line_at(np.eye(self.problem.x.shape[1]))
+        return self.line_at(np.eye(self.problem.design.x.shape[1]))
 
     def line_at(self, x: FloatArray) -> Coefficients:
         """The fixed effects' mean at rows of X, with 95 % intervals as in `coefficients`.
@@ -127,9 +127,8 @@ class Fit:
         Args:
             x: rows of fixed effects, shape (places, p).
         """
-        rows = len(self.problem.y) - self.problem.x.shape[1]
-        spread = (np.linalg.solve(self._root.T, x.T) ** 2).sum(axis=0)
-        sd = np.sqrt(spread * self.misfit / rows)
+        spread = ((x @ self._inverse) ** 2).sum(axis=1)
+        sd = np.sqrt(spread * self.misfit / self.problem.rows_beyond)
         half = float(t_quantile(self.dof)) * sd
         mean = x @ self.beta
         return Coefficients(mean, mean - half, mean + half)
@@ -140,8 +139,8 @@ class Fit:
         For rows g the error is (P_gg)^-1 (P y)_g with variance (P_gg)^-1: no fit is repeated.
         Where the others do not determine the prediction, the variance is infinite.
         """
-        white, order = self.white, self.problem.by_boat
-        n, boat = len(order), self.problem.boat[order]
+        white, order = self.white.of_one(self.place), self.problem.design.by_boat
+        n, boat = len(order), self.problem.design.boat[order]
         weighed = white.weigh(np.concatenate([white.q, white.rest], axis=-1))[0][0, :n]
         known, py = weighed[:, :-1], weighed[:, -1]
         weights, shared = white.weight[0, :n], white.boat[0] / white.inflation[0]
@@ -261,7 +260,7 @@ def fit_all(problems: Sequence[Problem], free: tuple[str, ...]) -> list[Fit]:
     """The same of each of many problems; those of one size are searched side by side."""
     sizes: dict[tuple[int, ...], list[int]] = {}
     for i, problem in enumerate(problems):
-        sizes.setdefault(problem.size, []).append(i)
+        sizes.setdefault(problem.design.size, []).append(i)
     fits: dict[int, Fit] = {}
     for (rows, _, others, effects), numbers in sizes.items():
         at_once = max(1, NUMBERS_AT_ONCE // (rows * (others + effects + 1)))
@@ -270,7 +269,7 @@ def fit_all(problems: Sequence[Problem], free: tuple[str, ...]) -> list[Fit]:
             variances = _most_likely(stack, free)
             white = Whitened.of(stack, variances)
             for place, (i, sd) in enumerate(zip(some, np.sqrt(variances).tolist(), strict=True)):
-                fits[i] = Fit(problems[i], free, tuple(sd), white.of_one(place))
+                fits[i] = Fit(problems[i], free, tuple(sd), white, place)
     return [fits[i] for i in range(len(problems))]
 
 

@@ -55,11 +55,17 @@ class Observed:
         """A column of numbers without nulls, shape (rows,)."""
         return self.table[name].to_numpy().astype(np.float64)
 
+    def rows_by(self, *by: str) -> list[tuple[tuple[str, ...], IntArray]]:
+        """Which rows are of each group, in the order of the group's names."""
+        rows = self.table.select(*by, pl.int_range(pl.len()).alias("row"))
+        grouped = rows.group_by(by, maintain_order=True).agg("row")
+        keys, own = grouped.select(by).rows(), grouped["row"]
+        groups = [(key, rows.to_numpy()) for key, rows in zip(keys, own, strict=True)]
+        return sorted(groups, key=lambda item: tuple(map(str, item[0])))
+
     def groups(self, *by: str) -> list[tuple[tuple[str, ...], "Observed"]]:
         """The rows of each group, in the order of the group's names."""
-        numbered = self.table.with_row_index("row").group_by(by, maintain_order=True)
-        groups = [(key, self.take(group["row"].to_numpy())) for key, group in numbered]
-        return sorted(groups, key=lambda item: tuple(map(str, item[0])))
+        return [(key, self.take(rows)) for key, rows in self.rows_by(*by)]
 
 
 def of_trusted(frame: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
