@@ -191,7 +191,7 @@ def test_problems_side_by_side_are_fitted_as_each_alone():
     rng = np.random.default_rng(4)
     first = grouped_data()
     ones = [replace(first, y=first.y + s * rng.normal(size=len(first.y))) for s in (0.0, 0.5, 20)]
-    problems = [*ones, replace(first, other=None)]
+    problems = [*ones, replace(first, design=replace(first.design, other=None))]
     together = mixed.fit_all(problems, (mixed.BOAT, mixed.CELL))
     for problem, fit in zip(problems, together, strict=True):
         assert fit.sd == pytest.approx(mixed.fit(problem, fit.free).sd, rel=1e-9)

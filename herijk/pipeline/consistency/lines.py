@@ -484,13 +484,16 @@ def _steering_checked(season: int, eras: tuple[Era, ...]) -> bool:
 
 def _unusual(values: FloatArray) -> BoolArray:
     """Whether a value lies far from the other boats', each judged by the others."""
-    unusual = np.zeros(len(values), bool)
-    for i, value in enumerate(values):
-        others = np.delete(values, i)
-        others = others[np.isfinite(others)]
-        if np.isfinite(value) and len(others) >= FEWEST_BOATS:
-            unusual[i] = abs(value - others.mean()) > UNUSUAL_SD * max(others.std(ddof=1), 1e-9)
-    return unusual
+    known = np.isfinite(values)
+    others = int(known.sum()) - 1
+    if others < FEWEST_BOATS:
+        return np.zeros(len(values), bool)
+    # About the mean of the others: with the value itself mean and squares are known.
+    from_all = values - values[known].mean()
+    squares = from_all**2 * (others + 1) / others
+    variance = ((from_all[known] ** 2).sum() - squares) / (others - 1)
+    from_others = np.abs(from_all) * (others + 1) / others
+    return np.asarray(known & (from_others > UNUSUAL_SD * np.sqrt(np.fmax(variance, 1e-18))))
 
 
 def _with_season(outliers: pl.DataFrame) -> pl.DataFrame:

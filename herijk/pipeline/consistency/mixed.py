@@ -26,11 +26,15 @@ COMPONENTS: Final = (BOAT, OTHER, CELL)
 PROFILE_DROP: Final = 3.841458820694124
 """Deviance above its minimum at the ends of a 95 % profile interval (chi-squared, 1 dof)."""
 
-PROFILE_PRECISION: Final = 1e-12
-"""Precision of the ends of a profile interval, as a share of the spread."""
+PROFILE_PRECISION: Final = 1e-7
+"""An end of a profile interval is found when it moves by less, as a share of the spread: Newton's
+method then leaves the square of that."""
 
-PROFILE_TOLERANCE: Final = 1e-6
+PROFILE_TOLERANCE: Final = 1e-5
 """When the search for the other variances is done: their error counts squared in the deviance."""
+
+ROUGHLY: Final = 1e-2
+"""The same where only the side of an end is asked for."""
 
 MAX_STEPS: Final = 60
 MAX_DOUBLINGS: Final = 7
@@ -89,7 +93,7 @@ class Fit:
     @property
     def _inverse(self) -> FloatArray:
         """R with R R' the covariance of the fixed effects, (p, p); upper triangular."""
-        return self.white.inverse[self.place]
+        return np.asarray(self.white.inverse[self.place])
 
     @property
     def misfit(self) -> float:
@@ -145,14 +149,17 @@ class Fit:
         known, py = weighed[:, :-1], weighed[:, -1]
         weights, shared = white.weight[0, :n], white.boat[0] / white.inflation[0]
         error, variance = np.zeros(n), np.full(n, np.inf)
-        for rows in np.split(np.arange(n), np.flatnonzero(np.diff(boat)) + 1):
-            weight = weights[rows]
-            inverse = np.diag(weight) - shared[boat[rows[0]]] * np.outer(weight, weight)
-            block = inverse - known[rows] @ known[rows].T
-            if np.linalg.eigvalsh(block)[0] > 1e-9 * np.diag(inverse).max():
-                covariance = np.linalg.inv(block)
-                error[order[rows]] = covariance @ py[rows]
-                variance[order[rows]] = np.diag(covariance)
+        first, each = np.unique(boat, return_index=True, return_counts=True)[1:]
+        for size in np.unique(each):  # boats of as many rows side by side
+            rows = first[each == size, None] + np.arange(size)
+            weight = weights[rows][..., None]
+            inverse = weight * np.eye(size) - shared[boat[rows], None] * weight * weight.mT
+            block = inverse - known[rows] @ known[rows].mT
+            largest = np.diagonal(inverse, axis1=-2, axis2=-1).max(axis=-1)
+            told = np.linalg.eigvalsh(block)[:, 0] > 1e-9 * largest
+            covariance, rows = np.linalg.inv(block[told]), rows[told]
+            error[order[rows]] = (covariance @ py[rows][..., None])[..., 0]
+            variance[order[rows]] = np.diagonal(covariance, axis1=-2, axis2=-1)
         return LeftOut(error, variance)
 
     def intervals(self) -> dict[str, tuple[float, float | None]]:
@@ -160,17 +167,17 @@ class Fit:
         profile = _Profile.of(self)
         sd, places = np.asarray(self.sd), np.arange(len(COMPONENTS))
         lo, nothing = np.zeros(len(sd)), np.zeros(len(sd))
-        at_nothing, _ = profile.excess(nothing, places)
+        at_nothing, _ = profile.excess(nothing, places, ROUGHLY)
         above = at_nothing > 0.0
         lo[above] = profile.ends(sd[above], nothing[above], at_nothing[above], places[above])
         outside = np.maximum(2.0 * sd, 0.1 * self.problem.spread)
-        at_outside, _ = profile.excess(outside, places)
+        at_outside, _ = profile.excess(outside, places, ROUGHLY)
         for _ in range(MAX_DOUBLINGS):
             within = at_outside <= 0.0
             if not within.any():
                 break
             outside[within] *= 2.0
-            at_outside[within], _ = profile.excess(outside[within], places[within])
+            at_outside[within], _ = profile.excess(outside[within], places[within], ROUGHLY)
         beyond = at_outside > 0.0
         hi = profile.ends(sd[beyond], outside[beyond], at_outside[beyond], places[beyond])
         upper = dict(zip(places[beyond].tolist(), hi.tolist(), strict=True))
@@ -201,7 +208,9 @@ class _Profile:
         at = np.square([fit.sd] * len(COMPONENTS))
         return cls(stack, free, at, float(stack.likelihood(at).deviance[0]))
 
-    def excess(self, sd: FloatArray, place: IntArray) -> tuple[FloatArray, FloatArray]:
+    def excess(
+        self, sd: FloatArray, place: IntArray, tolerance: float = PROFILE_TOLERANCE
+    ) -> tuple[FloatArray, FloatArray]:
         """Root of the deviance at sds of some components, less its value at the ends; its slope.
 
         The root of a deviance is nearly straight, which a search for its zero likes.
@@ -210,7 +219,7 @@ class _Profile:
         start = self.nearest[place]
         start[each, place] = sd**2
         self.nearest[place], there = search(
-            self.stack.take(place), self.free[place], start, PROFILE_TOLERANCE
+            self.stack.take(place), self.free[place], start, tolerance
         )
         root = np.sqrt(np.maximum(there.deviance - self.least, 0.0))
         # Along the profile the other variances are at their best, so they add nothing.

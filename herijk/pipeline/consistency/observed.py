@@ -216,7 +216,7 @@ def ln_cw_variance(observed: Observed, speed_m_s: FloatArray | float) -> FloatAr
     return np.fmax(runs, (half / NORMAL_95) ** 2)
 
 
-def bend_at(observed: Observed, speed_m_s: float) -> tuple[FloatArray, FloatArray]:
+def bend_at(observed: Observed, speed_m_s: FloatArray | float) -> tuple[FloatArray, FloatArray]:
     """Bend (v/B)^2 at a common speed and its variance for a run scatter of 1."""
     r = observed.column("s_s2_m2") * speed_m_s**2
     stretch = (speed_m_s / observed.column("declared_speed_m_s")) ** 2
@@ -224,7 +224,7 @@ def bend_at(observed: Observed, speed_m_s: float) -> tuple[FloatArray, FloatArra
     return r, stretch * stretch * observed.column("q_unit_variance")
 
 
-def q_at(observed: Observed, speed_m_s: float) -> tuple[FloatArray, FloatArray]:
+def q_at(observed: Observed, speed_m_s: FloatArray | float) -> tuple[FloatArray, FloatArray]:
     """Bend q at a common speed and its variance for a run scatter of 1; NaN where v >= B."""
     s, declared = observed.column("s_s2_m2"), observed.column("declared_speed_m_s")
     r = s * speed_m_s**2
