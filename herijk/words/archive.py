@@ -334,6 +334,7 @@ ARCHIVE: Final[dict[str, str]] = {
         "geen kolom voor {} in de kop {!r}; noem hem met --{}"
     ),
     "All {} tows of {}": "Alle {} proeven van {}",
+    "{} tows of season {}": "{} proeven van seizoen {}",
     "All {} tows of season {}": "Alle {} proeven van seizoen {}",
     "This tow": "Deze proef",
     "All tows of the archive": "Alle proeven van het archief",
