@@ -3,7 +3,6 @@
 Joins the tables and `pipeline.register.changes`; computes nothing else. Words are in `dashboards`.
 """
 
-import operator
 from collections import defaultdict
 from typing import Final
 
@@ -12,7 +11,6 @@ import polars as pl
 from herijk.pipeline.register.changes import register_changes, side_by_side, steps_of_lines
 from herijk.pipeline.register.register import LINE, draft_name
 from herijk.pipeline.register.replay import (
-    CLASSIFICATION,
     RaceRules,
     race_changes,
     replay,
@@ -225,9 +223,8 @@ def replayed(views: Views, old: str, new: str) -> tuple[pl.DataFrame, tuple[int,
     before, after = (
         replay(history.filter(edition=edition), results, RaceRules()) for edition in (old, new)
     )
-    ranked = race_changes(before, after).drop_nulls(["old_rank", "new_rank"])
-    place = (pl.col(side).rank("min").over(CLASSIFICATION) for side in ("old_rank", "new_rank"))
-    moved = ranked.filter(operator.ne(*place)).height
+    ranked = race_changes(before, after).drop_nulls("new_rank")
+    moved = ranked.filter(pl.col("old_rank") != pl.col("new_rank")).height
     method = history.filter(edition=new)["method"].first()
     members = _members(views, new, str(method))
     return winner_changes(before, after, members), (moved, ranked.height)
