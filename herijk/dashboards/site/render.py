@@ -20,6 +20,7 @@ from typing import Final
 
 import polars as pl
 import vl_convert
+from markupsafe import Markup
 
 from herijk.dashboards import fonts
 from herijk.dashboards.answer import told
@@ -43,9 +44,18 @@ from herijk.words.catalogue import WORDS, speaker
 HERE: Final = Path(__file__).parent
 DRAWN: Final = 5
 """Significant digits of what charts draw."""
+QUICK: Final = 4
+"""How hard data are deflated: a tenth larger than by default, in half the time."""
 OWN_FILES: Final = ("site.css", "site.js")
 FOLDERS: Final = {"nl": "", "en": "en/"}
 """Where the pages of each language lie within the site."""
+
+HEADING: Final = Markup(
+    '<th scope="col" data-c="{column}"{title}{kind}>'
+    '<button type="button" class="sort">{text}</button></th>'
+)
+TITLE: Final = Markup(' title="{}"')
+NUMERIC: Final = Markup(' class="n"')
 
 POLICY: Final = "; ".join(
     (
@@ -144,7 +154,7 @@ class Edition:
     def __init__(self, views: Views, language: str) -> None:
         self.speech = Speech(language)
         self.about = views.about()
-        comments = _by_column(views.comments()) if language == "en" else {}
+        self._comments = _by_column(views.comments()) if language == "en" else {}
         self._cells = Cells(self.speech)
         self._template = environment(
             HERE / "templates",
@@ -153,10 +163,22 @@ class Edition:
             speech=self.speech,
             told=lambda answer: told(answer, self.speech),
             still=lambda page: still_pictures(page, self.speech),
-            comments=comments,
+            heading=cache(self._heading),
             menu=MENU,
             about=self.about,
         ).get_template("page.html.j2")
+
+    def _heading(self, table: str, column: str, is_number: bool) -> Markup:
+        """The heading of a column, which says what it means when pointed at."""
+        tip = self.speech.say(f"tip.{column}")
+        known = self._comments.get(f"{table}.{column}") or self._comments.get(column)
+        meaning = known or (tip if tip != column else None)
+        return HEADING.format(
+            column=column,
+            title=TITLE.format(meaning) if meaning else "",
+            kind=NUMERIC if is_number else "",
+            text=self.speech.text(f"column.{column}"),
+        )
 
     def address(self, page: Page) -> str:
         """Where the page lies within the site."""
@@ -204,12 +226,12 @@ def _data_script(page: Page, others: Mapping[str, Mapping[str, str]]) -> str:
         for name, frames in page.data.items()
     )
     text = f'{{"charts":{{{charts}}},"rows":{as_json(others)}}}'
-    packed = base64.b64encode(zlib.compress(text.encode())).decode("ascii")
+    packed = base64.b64encode(zlib.compress(text.encode(), QUICK)).decode("ascii")
     return f'window.HERIJK_DATA = "{packed}";\n'
 
 
 def _columns(frame: pl.DataFrame) -> str:
-    return "{" + ",".join(f"{as_json(c.name)}:{_column(c)}" for c in frame) + "}"
+    return "{" + ",".join(f'"{c.name}":{_column(c)}' for c in frame) + "}"
 
 
 def _search_script(views: Views) -> str:

@@ -26,7 +26,23 @@ FEWEST_FOR_SCALE: Final = 10
 MOSTLY: Final = 1.645
 """Standard deviations below its mean that a Gaussian number reaches in 19 of 20 cases."""
 
+AT_A_TIME: Final = 2048
+"""Candidates that are weighed together: all of ten thousand tows would take gigabytes."""
+
 NORMAL_MAD: Final = 0.6745
+
+
+@dataclass(frozen=True)
+class Effects:
+    """Random effects.
+
+    Attributes:
+        of: which each observation has, sparse, shape (n, effects).
+        variance: shape (effects,).
+    """
+
+    of: "scipy.sparse.csr_array"
+    variance: FloatArray
 
 
 @dataclass(frozen=True)
@@ -36,14 +52,14 @@ class Observations:
     Attributes:
         values: deviations from the expected mean, shape (n,).
         variance: of their independent noise, shape (n,).
-        effects: which random effects each one has, sparse, shape (n, effects).
-        effect_variance: shape (effects,).
+        own: the random effects of which each one has one at most: those of its boat.
+        shared: the other random effects.
     """
 
     values: FloatArray
     variance: FloatArray
-    effects: "scipy.sparse.csr_array"
-    effect_variance: FloatArray
+    own: "Effects"
+    shared: "Effects"
 
 
 @dataclass(frozen=True)
@@ -121,7 +137,7 @@ class _Left:
 
     def __init__(self, seen: Observations, may: Candidates) -> None:
         self._may = may
-        self._precision = _Precision.of(seen)
+        self._precision = _Precision(seen)
         self._score = np.asarray(may.directions.T @ self._precision.times(seen.values))
         self._at_first = self._precision.weights(may.directions)
         self._weight = self._at_first.copy()
@@ -163,23 +179,28 @@ class _Left:
 
 
 class _Precision:
-    """The inverse of the covariance of what is seen, less what was taken out (Woodbury)."""
+    """The inverse of the covariance of what is seen, less what was taken out (Woodbury).
 
-    def __init__(self, seen: Observations, root: FloatArray) -> None:
-        self._seen, self._root = seen, root
+    Own effects are dealt with first, in closed form: what is left to invert grows with days and
+    seasons, and not with boats.
+    """
+
+    def __init__(self, seen: Observations) -> None:
+        own, shared = seen.own.of, seen.shared
+        noise = scipy.sparse.diags_array(1.0 / seen.variance)
+        of_own = (own.T @ noise @ own).diagonal() + 1.0 / seen.own.variance
+        by_own = noise @ own @ scipy.sparse.diags_array(1.0 / of_own)
+        self._without_shared = (noise - by_own @ own.T @ noise).tocsr()
+        self._shared = shared.of
+        within = (shared.of.T @ self._without_shared @ shared.of).toarray()
+        self._root = np.linalg.cholesky(within + np.diag(1.0 / shared.variance))
         self._taken: list[tuple[FloatArray, float]] = []
-
-    @classmethod
-    def of(cls, seen: Observations) -> "_Precision":
-        scaled = seen.effects.multiply(1.0 / seen.variance[:, None])
-        within = (seen.effects.T @ scaled).toarray() + np.diag(1.0 / seen.effect_variance)
-        return cls(seen, np.linalg.cholesky(within))
 
     def times(self, values: FloatArray) -> FloatArray:
         """The product with a vector, before anything is taken out."""
-        scaled = values / self._seen.variance
-        effects = scipy.linalg.cho_solve((self._root, True), self._seen.effects.T @ scaled)
-        return np.asarray(scaled - (self._seen.effects @ effects) / self._seen.variance)
+        scaled = self._without_shared @ values
+        effects = scipy.linalg.cho_solve((self._root, True), self._shared.T @ scaled)
+        return np.asarray(scaled - self._without_shared @ (self._shared @ effects))
 
     def take_out(self, direction: FloatArray) -> FloatArray:
         """The product with a direction, which is a fixed effect from then on."""
@@ -191,9 +212,13 @@ class _Precision:
 
     def weights(self, directions: "scipy.sparse.csc_array") -> FloatArray:
         """Gives g'Pg of each direction, before anything is taken out."""
-        scaled = directions.multiply(1.0 / self._seen.variance[:, None]).tocsc()
-        own = np.asarray(directions.multiply(scaled).sum(axis=0)).ravel()
+        starts = range(0, directions.shape[1], AT_A_TIME)
+        return np.concatenate([self._weights(directions[:, k : k + AT_A_TIME]) for k in starts])
+
+    def _weights(self, directions: "scipy.sparse.csc_array") -> FloatArray:
+        scaled = self._without_shared @ directions
+        alone = np.asarray(directions.multiply(scaled).sum(axis=0)).ravel()
         shared = scipy.linalg.solve_triangular(
-            self._root, (self._seen.effects.T @ scaled).toarray(), lower=True
+            self._root, (self._shared.T @ scaled).toarray(), lower=True
         )
-        return np.asarray(own - (shared**2).sum(axis=0))
+        return np.asarray(alone - (shared**2).sum(axis=0))
