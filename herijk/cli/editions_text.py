@@ -220,13 +220,16 @@ def _races(report: "DiffReport") -> str:
     races, rules = report.races, report.race_rules
     if races is None or rules is None or report.winners is None:
         return tell("Races: the archive holds none.")
-    moved = [r for r in races if r["old_rank"] != r["new_rank"]]
-    podium = sum(r["podium_changed"] for r in races)
+    ranked = [r for r in races if r["new_rank"] is not None]
+    moved = [r for r in ranked if r["old_rank"] != r["new_rank"]]
+    podium = sum(r["podium_changed"] for r in ranked)
     head = tell("Races (fatigue {}): ", rules.fatigue)
     text = tell(
-        "{}{} results, {} change rank, {} on or off the podium.",
+        "{}{} results, {} of them ranked by both editions: {} change rank among those, "
+        "{} on or off the podium.",
         head,
         len(races),
+        len(ranked),
         len(moved),
         podium,
     )
@@ -244,7 +247,7 @@ def _winners(winners: list[Row]) -> str:
             _words().crews[w["crew_class"]],
             w["old_winner"],
             w["new_winner"],
-            "changes" if w["winner_changed"] else tell("the same"),
+            _same_winner(w),
             tell("not known")
             if w["change_probability"] is None
             else f"{100 * w['change_probability']:.0f} %",
@@ -256,6 +259,12 @@ def _winners(winners: list[Row]) -> str:
         "  The chance: in how many of the equally likely new registers the old winner loses."
     )
     return f"{table(head, rows)}\n{note}"
+
+
+def _same_winner(winner: Row) -> str:
+    if winner["old_winner"] is None:
+        return ""
+    return tell("changes") if winner["winner_changed"] else tell("the same")
 
 
 def _moved(moved: list[Row]) -> str:

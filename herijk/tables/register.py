@@ -5,6 +5,11 @@ from typing import Final
 from herijk.tables import column
 from herijk.tables.declare import dy
 
+PLACE: Final = (
+    "place in race and class by the old edition, among the crews that both editions rank; null for "
+    "a crew that one of them does not"
+)
+PODIUM_CHANGED: Final = "among the first three in one of the two only; null without a place"
 REMARK: Final = (
     "why there is no power (not_in_register, no_line_that_day, thwart_not_given, "
     "speed_not_below_b), or that the speed lies outside 85-115 % of the declared one "
@@ -130,6 +135,6 @@ class RaceChanges(dy.Schema):
     new_power_w = column.number("W", "the same by the new one", nullable=True)
     old_remark = column.text(REMARK, nullable=True)
     new_remark = column.text("the same by the new one", nullable=True)
-    old_rank = dy.Int32(description="place in race and class by the old edition", nullable=True)
+    old_rank = dy.Int32(description=PLACE, nullable=True)
     new_rank = dy.Int32(description="the same by the new one", nullable=True)
-    podium_changed = dy.Bool(description="among the first three in one of the two only")
+    podium_changed = dy.Bool(description=PODIUM_CHANGED, nullable=True)

@@ -586,8 +586,10 @@ COMMAND: Final[dict[str, str]] = {
     "{} lines, median {}, {} in two hours": "{} regels, mediaan {}, {} in twee uur",
     "Races: the archive holds none.": "Wedstrijden: het archief heeft er geen.",
     "Races (fatigue {}): ": "Wedstrijden (vermoeidheid {}): ",
-    "{}{} results, {} change rank, {} on or off the podium.": (
-        "{}{} uitslagen, {} met een andere plaats, {} op of van het podium."
+    "{}{} results, {} of them ranked by both editions: {} change rank among those, "
+    "{} on or off the podium.": (
+        "{}{} uitslagen, waarvan {} met een plaats in beide edities: {} daarvan krijgen een andere "
+        "plaats, {} komen op of van het podium."
     ),
     "Winners:\n{}": "Winnaars:\n{}",
     "Ranks that change:\n{}": "Plaatsen die veranderen:\n{}",

@@ -6,7 +6,6 @@ import json
 import re
 import zlib
 
-import duckdb
 import polars as pl
 import pytest
 
@@ -47,9 +46,6 @@ def hashes(site):
         for f in sorted(site.rglob("*"))
         if f.is_file()
     }
-
-
-CLASS_OF_RACE = ["from_edition", "to_edition", "race", "race_date", "crew_class"]
 
 
 def test_every_page_is_there(site, built):
@@ -187,22 +183,6 @@ def test_power_that_repeats_cw_is_not_shown_beside_it(site):
     assert "vermogen verandert evenveel" in (site / "changes.html").read_text("utf-8")
 
 
-def test_places_are_compared_among_crews_that_both_editions_rank(bench):
-    with duckdb.connect(bench.store.database) as db:
-        db.execute("UPDATE race_changes SET old_rank = NULL, old_power_w = NULL WHERE old_rank = 1")
-    with Views(bench.store) as views:
-        rows = views.races().with_columns(own=pl.struct(CLASS_OF_RACE))
-    without = rows.filter(pl.col("old_power_w").is_null())
-    assert without.height > 0
-    assert without.select("old_rank", "new_rank", "podium_changed").null_count().row(0) == (
-        (without.height,) * 3
-    )
-    for of_class in rows.drop_nulls("new_rank").partition_by("own"):
-        places = of_class.select("old_rank", "new_rank")
-        assert places.min().row(0) == (1, 1)
-        assert places["old_rank"].max() <= of_class.height
-
-
 def test_a_race_page_says_among_how_many_it_compares():
     rows = pl.DataFrame(
         {"name": ["A", "B", "C"], "race": "R", "race_date": "2025-06-04",
@@ -309,6 +289,7 @@ def warehouse_numbers(store, digits):
     """Every number of every table, by so many digits, as pages and charts have it."""
     with Views(store) as views:
         frames = [views.table(name) for name in views.row_counts()]
+        frames.append(views.run_points())  # angles from ahead
         frames.append(line_changes(views))  # of `pipeline.register.changes`, as `diff` has it
     numbers = set()
     for frame in frames:

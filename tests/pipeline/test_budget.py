@@ -1,5 +1,8 @@
 """Intervals over a curve's valid speeds: at the declared speed the curve's own, wider elsewhere."""
 
+from dataclasses import replace
+
+import numpy as np
 import polars as pl
 import pytest
 
@@ -61,3 +64,16 @@ def test_two_files_with_logs_that_differ_widen_the_interval_where_nothing_calibr
     u = [by_log.filter(two == files, old)["u_ratio"].mean() for files in (True, False)]
     assert u[0] > u[1] + 0.01
     assert by_log.filter(~old)["u_ratio"].max() < u[0]
+
+
+def test_a_tow_whose_water_part_is_less_than_nothing_has_no_curve_and_stops_no_other():
+    """So it is with a force in kgf once the wind is taken off."""
+    world = measure(WorldSettings((2012, 2014), 6, 10, 4))
+    mine = world.blocks.runs["tow_id"].eq("2014-003").to_numpy()[:, None]
+    sums = {
+        name: np.where(mine & (name == "force" or name.endswith("_cw")), 0.07, 1.0) * values
+        for name, values in world.blocks.sums.items()
+    }
+    blocks = replace(world.blocks, sums=sums)
+    made = recompute(shipped_method("rebased"), world.tows, blocks, with_bands=False)
+    assert made.curves.filter(pl.col("cw_kg_m").is_null())["tow_id"].to_list() == ["2014-003"]

@@ -26,7 +26,23 @@ FEWEST_FOR_SCALE: Final = 10
 MOSTLY: Final = 1.645
 """Standard deviations below its mean that a Gaussian number reaches in 19 of 20 cases."""
 
+AT_A_TIME: Final = 2048
+"""Candidates that are weighed together: all of ten thousand tows would take gigabytes."""
+
 NORMAL_MAD: Final = 0.6745
+
+
+@dataclass(frozen=True)
+class Effects:
+    """Random effects.
+
+    Attributes:
+        of: which each observation has, sparse, shape (n, effects).
+        variance: shape (effects,).
+    """
+
+    of: "scipy.sparse.csr_array"
+    variance: FloatArray
 
 
 @dataclass(frozen=True)
@@ -36,14 +52,14 @@ class Observations:
     Attributes:
         values: deviations from the expected mean, shape (n,).
         variance: of their independent noise, shape (n,).
-        effects: which random effects each one has, sparse, shape (n, effects).
-        effect_variance: shape (effects,).
+        own: the random effects of which each one has one at most: those of its boat.
+        shared: the other random effects.
     """
 
     values: FloatArray
     variance: FloatArray
-    effects: "scipy.sparse.csr_array"
-    effect_variance: FloatArray
+    own: "Effects"
+    shared: "Effects"
 
 
 @dataclass(frozen=True)
@@ -54,11 +70,13 @@ class Candidates:
         directions: one a column, sparse, shape (n, candidates).
         single: whether a column is of one tow, whose scatter the archive itself shows.
         least: smallest size that matters, shape (candidates,).
+        gross: size that no scatter explains, however wide, shape (candidates,).
     """
 
     directions: "scipy.sparse.csc_array"
     single: BoolArray
     least: FloatArray
+    gross: FloatArray
 
 
 @dataclass(frozen=True)
@@ -92,7 +110,8 @@ class Shifted:
 def find_shifts(seen: Observations, may: Candidates, limit: float, look: float) -> Shifted:
     """Shifts beyond so many standard deviations, the clearest first.
 
-    Where tows scatter more or less than is assumed, the limits move with them.
+    Where tows scatter more or less than is assumed, the limits move with them. Shifts too large to
+    be scatter come out before that is measured: a few of these make all others look scattered.
 
     Args:
         seen: what is seen.
@@ -100,51 +119,88 @@ def find_shifts(seen: Observations, may: Candidates, limit: float, look: float) 
         limit: from which chance is ruled out.
         look: from which a single tow is unusual, judged when all clear shifts are taken out.
     """
-    precision = _Precision.of(seen)
-    score = np.asarray(may.directions.T @ precision.times(seen.values))
-    at_first = precision.weights(may.directions)
-    weight = at_first.copy()
-    scales = _scales(score, weight, may.single)
-    limits, clear = limit * scales, True
-    shifts: list[Found] = []
-    while True:
-        told = weight > SAME_DIRECTION * at_first
-        sd = 1.0 / np.sqrt(np.where(told, weight, 1.0))
-        size = score * sd**2
-        beyond = np.abs(size) / (sd * limits)
-        beyond[~told | (np.abs(size) < may.least)] = 0.0
-        best = int(first_largest(beyond))
-        if beyond[best] < 1.0:
-            if not clear:
-                seen_from = np.maximum(sd * (limits + MOSTLY * scales), may.least)
-                return Shifted(shifts, np.where(told, seen_from, np.nan))
-            limits, clear = np.where(may.single, look * scales, np.inf), False
-            continue
-        shifts.append(Found(best, float(size[best]), float(sd[best]), clear))
-        moved = precision.take_out(may.directions[:, [best]].toarray()[:, 0])
-        share = np.asarray(may.directions.T @ moved)
-        score = score - share * size[best]
-        weight = weight - share**2 * sd[best] ** 2
+    left = _Left(seen, may)
+    gross = left.take_out(np.full(len(may.least), limit), np.maximum(may.least, may.gross))
+    scales = left.scales()
+    clear = left.take_out(limit * scales, may.least)
+    limits = np.where(may.single, look * scales, np.inf)
+    unusual = left.take_out(limits, may.least)
+    _, sd = left.sizes()
+    seen_from = np.maximum(sd * (limits + MOSTLY * scales), may.least)
+    shifts = [Found(*one, clear=True) for one in gross + clear]
+    shifts += [Found(*one, clear=False) for one in unusual]
+    return Shifted(shifts, np.where(left.told, seen_from, np.nan))
+
+
+class _Left:
+    """What the candidates show beside all that was taken out before."""
+
+    def __init__(self, seen: Observations, may: Candidates) -> None:
+        self._may = may
+        self._precision = _Precision(seen)
+        self._score = np.asarray(may.directions.T @ self._precision.times(seen.values))
+        self._at_first = self._precision.weights(may.directions)
+        self._weight = self._at_first.copy()
+
+    @property
+    def told(self) -> BoolArray:
+        """Which candidates are not taken out already, nor the same as one that is."""
+        return np.asarray(self._weight > SAME_DIRECTION * self._at_first)
+
+    def sizes(self) -> tuple[FloatArray, FloatArray]:
+        """Size of each shift and its standard deviation; of no use where it cannot be told."""
+        sd = 1.0 / np.sqrt(np.where(self.told, self._weight, 1.0))
+        return self._score * sd**2, sd
+
+    def scales(self) -> FloatArray:
+        """How much wider or narrower tows scatter than is assumed; groups never narrower."""
+        single = self._may.single & self.told
+        if single.sum() < FEWEST_FOR_SCALE:
+            return np.ones(len(single))
+        z = self._score[single] / np.sqrt(self._weight[single])
+        scatter = float(np.median(np.abs(z))) / NORMAL_MAD
+        return np.where(self._may.single, max(scatter, NARROWEST), max(scatter, 1.0))
+
+    def take_out(self, limits: FloatArray, least: FloatArray) -> list[tuple[int, float, float]]:
+        """Takes out what is beyond its limit in standard deviations: place, size and sd of each."""
+        taken: list[tuple[int, float, float]] = []
+        while True:
+            size, sd = self.sizes()
+            beyond = np.abs(size) / (sd * limits)
+            beyond[~self.told | (np.abs(size) < least)] = 0.0
+            best = int(first_largest(beyond))
+            if beyond[best] < 1.0:
+                return taken
+            taken.append((best, float(size[best]), float(sd[best])))
+            moved = self._precision.take_out(self._may.directions[:, [best]].toarray()[:, 0])
+            share = np.asarray(self._may.directions.T @ moved)
+            self._score = self._score - share * size[best]
+            self._weight = self._weight - share**2 * sd[best] ** 2
 
 
 class _Precision:
-    """The inverse of the covariance of what is seen, less what was taken out (Woodbury)."""
+    """The inverse of the covariance of what is seen, less what was taken out (Woodbury).
 
-    def __init__(self, seen: Observations, root: FloatArray) -> None:
-        self._seen, self._root = seen, root
+    Own effects are dealt with first, in closed form: what is left to invert grows with days and
+    seasons, and not with boats.
+    """
+
+    def __init__(self, seen: Observations) -> None:
+        own, shared = seen.own.of, seen.shared
+        noise = scipy.sparse.diags_array(1.0 / seen.variance)
+        of_own = (own.T @ noise @ own).diagonal() + 1.0 / seen.own.variance
+        by_own = noise @ own @ scipy.sparse.diags_array(1.0 / of_own)
+        self._without_shared = (noise - by_own @ own.T @ noise).tocsr()
+        self._shared = shared.of
+        within = (shared.of.T @ self._without_shared @ shared.of).toarray()
+        self._root = np.linalg.cholesky(within + np.diag(1.0 / shared.variance))
         self._taken: list[tuple[FloatArray, float]] = []
-
-    @classmethod
-    def of(cls, seen: Observations) -> "_Precision":
-        scaled = seen.effects.multiply(1.0 / seen.variance[:, None])
-        within = (seen.effects.T @ scaled).toarray() + np.diag(1.0 / seen.effect_variance)
-        return cls(seen, np.linalg.cholesky(within))
 
     def times(self, values: FloatArray) -> FloatArray:
         """The product with a vector, before anything is taken out."""
-        scaled = values / self._seen.variance
-        effects = scipy.linalg.cho_solve((self._root, True), self._seen.effects.T @ scaled)
-        return np.asarray(scaled - (self._seen.effects @ effects) / self._seen.variance)
+        scaled = self._without_shared @ values
+        effects = scipy.linalg.cho_solve((self._root, True), self._shared.T @ scaled)
+        return np.asarray(scaled - self._without_shared @ (self._shared @ effects))
 
     def take_out(self, direction: FloatArray) -> FloatArray:
         """The product with a direction, which is a fixed effect from then on."""
@@ -156,17 +212,13 @@ class _Precision:
 
     def weights(self, directions: "scipy.sparse.csc_array") -> FloatArray:
         """Gives g'Pg of each direction, before anything is taken out."""
-        scaled = directions.multiply(1.0 / self._seen.variance[:, None]).tocsc()
-        own = np.asarray(directions.multiply(scaled).sum(axis=0)).ravel()
+        starts = range(0, directions.shape[1], AT_A_TIME)
+        return np.concatenate([self._weights(directions[:, k : k + AT_A_TIME]) for k in starts])
+
+    def _weights(self, directions: "scipy.sparse.csc_array") -> FloatArray:
+        scaled = self._without_shared @ directions
+        alone = np.asarray(directions.multiply(scaled).sum(axis=0)).ravel()
         shared = scipy.linalg.solve_triangular(
-            self._root, (self._seen.effects.T @ scaled).toarray(), lower=True
+            self._root, (self._shared.T @ scaled).toarray(), lower=True
         )
-        return np.asarray(own - (shared**2).sum(axis=0))
-
-
-def _scales(score: FloatArray, weight: FloatArray, single: BoolArray) -> FloatArray:
-    """How much wider or narrower tows scatter than is assumed; groups never count as narrower."""
-    if single.sum() < FEWEST_FOR_SCALE:
-        return np.ones(len(score))
-    scatter = float(np.median(np.abs(score[single]) / np.sqrt(weight[single]))) / NORMAL_MAD
-    return np.where(single, max(scatter, NARROWEST), max(scatter, 1.0))
+        return np.asarray(alone - (shared**2).sum(axis=0))

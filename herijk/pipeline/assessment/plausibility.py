@@ -21,8 +21,14 @@ import scipy
 
 from herijk.pipeline.arrays import FloatArray, IntArray
 from herijk.pipeline.assessment.likely_unit import likely_cause
-from herijk.pipeline.assessment.mean_shift import Candidates, Observations, Shifted, find_shifts
-from herijk.pipeline.assessment.seen import USUAL_BEND, Seen
+from herijk.pipeline.assessment.mean_shift import (
+    Candidates,
+    Effects,
+    Observations,
+    Shifted,
+    find_shifts,
+)
+from herijk.pipeline.assessment.seen import LEAST_WATER, USUAL_BEND, Seen
 from herijk.pipeline.blocks.batch import Batch
 from herijk.tables.keys import LINE
 
@@ -38,6 +44,9 @@ FEWEST: Final = 3
 
 GROSS: Final = np.log(1.6)
 """Shift of a logarithm that no boat explains: the widest spread within a type is far less."""
+
+_WITH_UNITS: Final = ("force", "wind")
+"""Quantities that a wrong unit shifts so far."""
 
 
 @dataclass(frozen=True)
@@ -78,8 +87,8 @@ class Shift:
     """A shift that chance does not explain.
 
     Attributes:
-        kind, key: what shifted: the `tow`, `day`, `part` (of a season, from a day on), `season` or
-            `archive`, and which.
+        kind, key: what shifted: the `tow`, `day`, `part` (of a season, from a day on), `some` tows
+            of a season, `season` or `archive`, and which.
         quantity: `force`, `zero` (of the load cell), `wind` (its speed), `vane` or `speed`.
         size: of ln force; in N for a zero; relative for the others.
         sd: its standard deviation; 0 where the samples themselves leave no doubt.
@@ -164,8 +173,8 @@ def _in_radians(seen: Seen) -> Iterator[Shift]:
 Group = tuple[str, str, IntArray]
 """Kind, key, and the places of its tows."""
 
-Candidate = tuple[str, Group, FloatArray]
-"""Quantity, group, and what a shift of it does to what is observed."""
+Candidate = tuple[str, Group, IntArray, FloatArray]
+"""Quantity, group, and what a shift of it does to which observations."""
 
 
 def _groups(tows: pl.DataFrame, kinds: tuple[str, ...]) -> list[Group]:
@@ -196,37 +205,62 @@ def _parts(tows: pl.DataFrame) -> Iterator[Group]:
                 yield ("part", str(first), after)
 
 
+def _grossly_off(tows: pl.DataFrame, level: FloatArray) -> Iterator[Group]:
+    """Tows of a season that lie grossly above, or below, the archive: half of a season in kgf.
+
+    Without these a season of which only some are wrong looks wrong as a whole, by half as much.
+    """
+    off = level - np.median(level)
+    for season, places in _places(tows["season"].cast(pl.String)):
+        for side in (-1.0, 1.0):
+            some = places[side * off[places] > GROSS]
+            if 1 < len(some) < len(places):
+                yield ("some", str(season), some)
+
+
 def _places(key: pl.Series) -> Iterator[tuple[str, IntArray]]:
     names, rank = np.unique(key.to_numpy(), return_inverse=True)
     order, ends = np.argsort(rank, kind="stable"), np.cumsum(np.bincount(rank))
     yield from zip(names, np.split(order, ends[:-1]), strict=True)
 
 
-def _effects(tows: pl.DataFrame, spread: Spread) -> "tuple[scipy.sparse.csr_array, FloatArray]":
-    """Random effects of tows, shape (tows, effects), and the variance of each."""
-    line = LINE
+def _effects(tows: pl.DataFrame, spread: Spread) -> tuple[Effects, Effects]:
+    """Random effects of tows: the boat's own, and those that boats share."""
     altered = pl.col("altered").cast(pl.Int32)
     keyed = tows.with_columns(
         pl.lit(0).alias("archive"),
-        altered.cum_sum().over(line, order_by=["tow_date", "tow_id"]).alias("state"),
+        altered.cum_sum().over(LINE, order_by=["tow_date", "tow_id"]).alias("state"),
     )
-    kinds = {
+    shared: dict[tuple[str, ...], float] = {
         ("archive",): spread.archive,
         ("season",): spread.season,
         ("log_alone",): spread.log_alone,
         ("tow_date",): spread.day,
         ("boat_type",): spread.boat_type,
-        (*line, "state"): spread.boat,
     }
-    shared, variance = [], []
+    return _of_kinds(keyed, {(*LINE, "state"): spread.boat}), _of_kinds(keyed, shared)
+
+
+def _of_kinds(tows: pl.DataFrame, kinds: Mapping[tuple[str, ...], float]) -> Effects:
+    """Random effects by the columns that tell them apart, each kind with its spread."""
+    of = [scipy.sparse.csr_array((tows.height, 0))]
+    variance = [np.empty(0)]
     for by, sd in kinds.items():
-        if sd == 0.0 or not set(by) <= set(keyed.columns):
+        if sd == 0.0 or not set(by) <= set(tows.columns):
             continue
-        rank = keyed.select(pl.struct(by).rank("dense")).to_series().to_numpy() - 1
+        rank = tows.select(pl.struct(by).rank("dense")).to_series().to_numpy() - 1
         of_kind = scipy.sparse.csr_array((np.ones(tows.height), (np.arange(tows.height), rank)))
-        shared.append(of_kind)
+        of.append(of_kind)
         variance.append(np.full(of_kind.shape[1], sd**2))
-    return scipy.sparse.hstack(shared, format="csr"), np.concatenate(variance)
+    return Effects(scipy.sparse.hstack(of, format="csr"), np.concatenate(variance))
+
+
+def _both(one: Effects, other: Effects) -> Effects:
+    """Effects of two kinds of observations, the one below the other."""
+    return Effects(
+        scipy.sparse.block_diag([one.of, other.of], format="csr"),
+        np.concatenate([one.variance, other.variance]),
+    )
 
 
 def _of_one(
@@ -237,12 +271,14 @@ def _of_one(
     tows = seen.batch.tows.filter(pl.Series(there))
     if tows.is_empty():
         return []
-    effects, variance = _effects(tows, spread)
-    observed = Observations(values[there], np.full(tows.height, spread.tow**2), effects, variance)
+    noise = np.full(tows.height, spread.tow**2)
+    observed = Observations(values[there], noise, *_effects(tows, spread))
     groups = _groups(tows, kinds)
-    columns = [np.where(np.isin(np.arange(tows.height), g[2]), 1.0, 0.0) for g in groups]
-    may = [(quantity, group, column) for group, column in zip(groups, columns, strict=True)]
-    return _named(tows, may, _find(observed, may))
+    if quantity in _WITH_UNITS:
+        ratio = np.maximum(1.0 + values[there], 0.01)
+        groups += _grossly_off(tows, np.log(ratio))
+    may = [(quantity, group, group[2], np.ones(len(group[2]))) for group in groups]
+    return _named(tows, may, _find(observed, may), np.zeros(tows.height))
 
 
 def _of_force(seen: Seen) -> tuple[list[Shift], dict[str, float]]:
@@ -255,54 +291,68 @@ def _of_force(seen: Seen) -> tuple[list[Shift], dict[str, float]]:
     tows = seen.batch.tows.with_columns(alone).filter(pl.Series(known))
     if tows.is_empty():
         return [], {}
-    level, level_variance = _effects(tows, LEVEL)
-    bend, bend_variance = _effects(tows, BEND)
     noise = np.concatenate(
         [np.full(tows.height, LEVEL.tow**2), BEND.tow**2 + seen.bend_sd[known] ** 2]
     )
     observed = Observations(
         np.concatenate([seen.level[known], seen.bend[known]]),
         noise,
-        scipy.sparse.block_diag([level, bend], format="csr"),
-        np.concatenate([level_variance, bend_variance]),
+        *map(_both, _effects(tows, LEVEL), _effects(tows, BEND)),
     )
-    per_newton = 1.0 / seen.force_n[known]
+    # Of the force that the size lets expect: a force in kgf is a tenth of it.
+    per_newton = np.exp(seen.level[known]) / seen.force_n[known]
     columns: list[Candidate] = []
-    for group in _groups(tows, _GROUPS):
-        mine = np.isin(np.arange(tows.height), group[2]).astype(np.float64)
-        columns.append(("force", group, np.concatenate([mine, np.zeros(tows.height)])))
+    for group in (*_groups(tows, _GROUPS), *_grossly_off(tows, seen.level[known])):
+        mine = group[2]
+        columns.append(("force", group, mine, np.ones(len(mine))))
         if group[0] == "archive":  # a shape of hulls looks so; load cells are not off for ever
             continue
-        zero = mine * per_newton
-        columns.append(("zero", group, np.concatenate([zero, -(2.0 + USUAL_BEND) * zero])))
+        zero = per_newton[mine]
+        both = np.concatenate([mine, tows.height + mine])
+        columns.append(("zero", group, both, np.concatenate([zero, -(2.0 + USUAL_BEND) * zero])))
     found = _find(observed, columns)
     seen_from = {
         key: float(np.expm1(size))
-        for (quantity, (kind, key, _), _), size in zip(columns, found.seen_from, strict=True)
+        for (quantity, (kind, key, _), *_), size in zip(columns, found.seen_from, strict=True)
         if (quantity, kind) == ("force", "tow") and np.isfinite(size)
     }
-    return _named(tows, columns, found), seen_from
+    return _named(tows, columns, found, seen.air_share[known]), seen_from
 
 
 def _find(observed: Observations, columns: list[Candidate]) -> Shifted:
     """What is found among the candidates."""
+    ends = np.cumsum([0, *(len(places) for *_, places, _ in columns)])
+    places, sizes = (np.concatenate([c[k] for c in columns]) for k in (2, 3))
+    shape = len(observed.values), len(columns)
     may = Candidates(
-        scipy.sparse.csc_array(np.column_stack([c for _, _, c in columns])),
-        np.array([kind == "tow" for _, (kind, _, _), _ in columns]),
-        np.array([LEAST[quantity] for quantity, _, _ in columns]),
+        scipy.sparse.csc_array((sizes, places, ends), shape=shape),
+        np.array([kind == "tow" for _, (kind, *_), *_ in columns]),
+        np.array([LEAST[quantity] for quantity, *_ in columns]),
+        np.array([GROSS if quantity in _WITH_UNITS else np.inf for quantity, *_ in columns]),
     )
     return find_shifts(observed, may, LIMIT, LOOK)
 
 
-def _named(tows: pl.DataFrame, columns: list[Candidate], found: Shifted) -> list[Shift]:
+def _named(
+    tows: pl.DataFrame, columns: list[Candidate], found: Shifted, air_share: FloatArray
+) -> list[Shift]:
     """The shifts that were found, with their tows and what may have caused them."""
     shifts = []
     for one in found.shifts:
-        quantity, (kind, key, places), _ = columns[one.place]
+        quantity, (kind, key, places), *_ = columns[one.place]
+        size = one.size
+        if quantity == "force":
+            size = _of_whole_force(size, air_share[places])
         ids = tuple(tows["tow_id"].gather(np.sort(places)))
-        cause = likely_cause(quantity, _ln_ratio(quantity, one.size), one.sd)
-        shifts.append(Shift(kind, key, quantity, one.size, one.sd, ids, cause, one.clear))
+        cause = likely_cause(quantity, _ln_ratio(quantity, size), one.sd)
+        shifts.append(Shift(kind, key, quantity, size, one.sd, ids, cause, one.clear))
     return shifts
+
+
+def _of_whole_force(ln_size: float, air_share: FloatArray) -> float:
+    """Shift of ln force that gives a shift of its water part: no unit changes what the air took."""
+    water = np.maximum(1.0 - air_share, LEAST_WATER)
+    return float(-np.log(np.median(water * np.exp(-ln_size) + air_share)))
 
 
 def _ln_ratio(quantity: str, size: float) -> float:

@@ -51,6 +51,7 @@ class Seen:
             the log as the season's GPS corrects it, where there is one.
         bend: dlnCw/dlnv less the usual; `bend_sd`, its random part.
         force_n: mean tow force.
+        air_share: part of it that is the air's, were the force right; more than 1 in a wrong unit.
         wind_ahead, wind_abeam: apparent wind / boat speed, mean of out and back: the true wind
             cancels, and 1 and 0 are left.
         speed: ln(speed / intended speed), median of the runs.
@@ -63,6 +64,7 @@ class Seen:
     bend: FloatArray
     bend_sd: FloatArray
     force_n: FloatArray
+    air_share: FloatArray
     wind_ahead: FloatArray
     wind_abeam: FloatArray
     speed: FloatArray
@@ -94,6 +96,7 @@ class Seen:
             bend - USUAL_BEND,
             bend_sd,
             batch.mean(mean["force"], good),
+            batch.mean(mean["air"] / np.where(good, mean["log1_cw"], 1.0), good),
             ahead,
             _both_ways(batch, mean["wind_y"] / np.where(good, mean["log1_v"], 1.0), windy),
             _median(batch, speed - np.log(batch.target_speed_ratio), good),

@@ -51,7 +51,8 @@ def pooled_scatter(o: Outcome) -> curve.Scatter:
     ratio, used, on_curve = _residuals(o)
     season = o.batch.of_tow("season").astype(np.int64)
     residual, dof = residual_scatter(ratio, used, season)
-    known = np.isfinite(residual)
+    # Without a curve of its own a tow has no height to scale the scatter with: unknown, not 0.
+    known = np.isfinite(residual) & used.any(axis=1)
     relative = np.where(known, residual, 0.0)
     height = np.where(used, on_curve, 0.0).sum(axis=1) / np.maximum(used.sum(axis=1), 1)
     return curve.Scatter((relative * height) ** 2, np.where(known, dof, 0.0))

@@ -5,6 +5,7 @@ whole race file. Which rules a race was rowed under is data: `RaceRules`. Wind, 
 no part of the handicap (presentation R. Pot, 24 January 2015).
 """
 
+import operator
 from dataclasses import dataclass
 from typing import Final, Literal, get_args
 
@@ -25,6 +26,7 @@ FATIGUES: Final = get_args(Fatigue)
 
 RACE: Final = ("race", "race_date")
 CLASSIFICATION: Final = (*RACE, "crew_class")
+RESULT: Final = (*RACE, *LINE[:-1], "rowing_time_s")
 PODIUM: Final = 3
 
 WINNER_SCHEMA: Final = {
@@ -160,22 +162,25 @@ def _with_lines(results: pl.DataFrame, lines: pl.DataFrame) -> pl.DataFrame:
 
 
 def race_changes(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
-    """What another register does to races: power, rank and podium of every result.
+    """What another register does to races: power, place and podium of every result.
+
+    Places are among the crews of a class with a power under both registers: a crew that only one
+    of them ranks would move all others.
 
     Args:
         old, new: `replay` of the same results under two registers.
 
     Returns:
-        One row a result: `old_power_w`, `new_power_w`, `old_remark`, `new_remark`, `old_rank`,
-        `new_rank`, and whether it is on the podium in one of the two only (`podium_changed`).
+        Per result `old_power_w`, `new_power_w`, `old_remark`, `new_remark`, `old_rank`, `new_rank`,
+        and whether it is on the podium in one of the two only (`podium_changed`); the last three
+        are null where a register has no power.
     """
-    key = [*RACE, *LINE[:-1], "rowing_time_s"]
     columns = ["power_w", "rank", "remark"]
-    pairs = old.select(*key, *columns).join(
-        new.select(*key, "empty_thwart", *columns), on=key, suffix="_new"
+    before, after = _placed_under_both(old, new), _placed_under_both(new, old)
+    pairs = before.select(*RESULT, *columns).join(
+        after.select(*RESULT, "empty_thwart", *columns), on=RESULT, suffix="_new"
     )
-    on_podium = (pl.col(name).fill_null(PODIUM + 1) <= PODIUM for name in ("rank", "rank_new"))
-    before, after = on_podium
+    podiums = (pl.col(name) <= PODIUM for name in ("rank", "rank_new"))
     return pairs.select(
         *RACE,
         *LINE,
@@ -186,15 +191,25 @@ def race_changes(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
         pl.col("remark_new").alias("new_remark"),
         pl.col("rank").alias("old_rank"),
         pl.col("rank_new").alias("new_rank"),
-        (before != after).alias("podium_changed"),
+        operator.ne(*podiums).alias("podium_changed"),
     ).sort(*CLASSIFICATION, "new_rank", "fsn_no", nulls_last=True)
+
+
+def _placed_under_both(results: pl.DataFrame, others: pl.DataFrame) -> pl.DataFrame:
+    """Results with `rank` among those of race and class with a power in `others` too, else null."""
+    both = others.drop_nulls("power_w").select(*RESULT, shared=pl.lit(True))
+    placed = results.join(both, on=RESULT, how="left", maintain_order="left")
+    among = pl.when(pl.col("shared")).then("rank")
+    rank = among.rank("min").over(CLASSIFICATION).cast(pl.Int32)
+    return placed.with_columns(rank.alias("rank")).drop("shared")
 
 
 def winner_changes(old: pl.DataFrame, new: pl.DataFrame, members: pl.DataFrame) -> pl.DataFrame:
     """Who wins each race and class under two registers, and how likely it is not the old winner.
 
-    How likely is the share of equally likely new registers in which another crew has the highest
-    power. A line without members (carried over from print) is taken as it stands.
+    Of the crews that both registers rank, as in `race_changes`. How likely is the share of equally
+    likely new registers in which another of them has the highest power. A line without members
+    (carried over from print) is taken as it stands.
 
     Args:
         old, new: `replay` of the same results under two registers.
@@ -206,6 +221,7 @@ def winner_changes(old: pl.DataFrame, new: pl.DataFrame, members: pl.DataFrame) 
         `winner_changed` and `change_probability` (null where it is not known).
     """
     rows = []
+    old, new = _placed_under_both(old, new), _placed_under_both(new, old)
     for key, results in new.group_by(CLASSIFICATION, maintain_order=True):
         before = old.filter(*(pl.col(n) == k for n, k in zip(CLASSIFICATION, key, strict=True)))
         winners = [_winner(results_of) for results_of in (before, results)]
@@ -230,7 +246,7 @@ def _change_probability(
     results: pl.DataFrame, old_winner: tuple[object, ...] | None, members: pl.DataFrame
 ) -> float | None:
     named = pl.col("tow_id").fill_null(pl.concat_str(LINE, separator=" "))
-    crews = results.drop_nulls("power_w").select(
+    crews = results.drop_nulls("rank").select(
         *LINE, "power_w", named, pl.col("declared_cw_kg_m").alias("cw_kg_m")
     )
     if members.is_empty() or old_winner is None or old_winner not in crews.select(LINE).rows():

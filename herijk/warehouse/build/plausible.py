@@ -98,6 +98,7 @@ def _sentence(shift: Shift) -> str:
     whose = {
         "tow": "This tow",
         "day": say("All {} tows of {}", len(shift.tows), shift.key),
+        "some": say("{} tows of season {}", len(shift.tows), shift.key),
         "season": say("All {} tows of season {}", len(shift.tows), shift.key),
         "archive": "All tows of the archive",
     }[shift.kind]

@@ -10,7 +10,6 @@ from typing import Self
 
 import polars as pl
 
-from herijk.pipeline.register.replay import PODIUM
 from herijk.warehouse.queries.as_of import lay_over
 from herijk.warehouse.queries.chosen_tows import choose
 from herijk.warehouse.queries.due import RETOW_CHOICE
@@ -89,9 +88,10 @@ class Views:
         )
 
     def run_points(self) -> pl.DataFrame:
-        """Run points with the boat and season they belong to."""
+        """Run points with boat and season; `wind_angle_deg` is 0 from ahead, minus from port."""
         return self.frame(
-            "SELECT p.*, t.fsn_no, t.season, t.declared_speed_m_s FROM run_points AS p "
+            "SELECT p.* REPLACE ((wind_angle_deg + 180) % 360 - 180 AS wind_angle_deg), "
+            "t.fsn_no, t.season, t.declared_speed_m_s FROM run_points AS p "
             "JOIN tows AS t USING (tow_id) ORDER BY method, tow_id, run"
         )
 
@@ -208,12 +208,7 @@ class Views:
         return days.sort("race_date", "race", descending=[True, False]).rows()
 
     def races(self) -> pl.DataFrame:
-        """Races replayed under two editions, with the boat's name; places that can be compared.
-
-        Returns:
-            Rows of `race_changes` in which a place is that among the crews of the class with one
-            under both editions; a crew without has none, and no answer to `podium_changed`.
-        """
+        """Rows of `race_changes`, with the boat's name."""
         return self.frame(_RACES)
 
     def season_steps(self) -> pl.DataFrame:
@@ -225,23 +220,10 @@ class Views:
         return self.frame(_SEASON_DIAGNOSIS)
 
 
-_RACES = f"""
-WITH ranked AS (
-  SELECT *, old_rank IS NOT NULL AND new_rank IS NOT NULL AS shared FROM race_changes
-), placed AS (
-  SELECT * REPLACE (
-    CASE WHEN shared THEN rank() OVER (among ORDER BY old_rank) END AS old_rank,
-    CASE WHEN shared THEN rank() OVER (among ORDER BY new_rank) END AS new_rank
-  ), new_rank AS own_rank
-  FROM ranked
-  WINDOW among AS (PARTITION BY from_edition, to_edition, race, race_date, crew_class, shared)
-)
-SELECT r.* EXCLUDE (shared, own_rank) REPLACE (
-  (old_rank <= {PODIUM}) <> (new_rank <= {PODIUM}) AS podium_changed
-), b.name
-FROM placed AS r LEFT JOIN boats AS b USING (fsn_no)
-ORDER BY from_edition, to_edition, race_date, race, crew_class, own_rank NULLS LAST, fsn_no
-"""  # noqa: S608 - a number of ours
+_RACES = """
+SELECT r.*, b.name FROM race_changes AS r LEFT JOIN boats AS b USING (fsn_no)
+ORDER BY from_edition, to_edition, race_date, race, crew_class, new_rank NULLS LAST, fsn_no
+"""
 
 _OUTLIERS = """
 SELECT o.* REPLACE (
