@@ -1,5 +1,6 @@
 """`herijk methods`: list, show, begin, check and compare methods."""
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -155,7 +156,7 @@ def _one(method: "Method", known: "KnownMethods") -> MethodReport:
 def _diff_text(
     first: str, second: str, options: "Sequence[Difference]", effect: "RebaseReport | None"
 ) -> str:
-    """Options that differ, one per line, and the effect per season."""
+    """Options that differ, one per line, as a method's file has them, and the effect per season."""
     from herijk.cli import text
     from herijk.pipeline.method.writing import range_text
 
@@ -165,8 +166,8 @@ def _diff_text(
         (
             f"{one.step}.{one.option}",
             range_text(one.first, one.last),
-            ", ".join(map(str, one.before)),
-            str(one.after),
+            ", ".join(map(json.dumps, one.before)),
+            json.dumps(one.after),
         )
         for one in options
     ]

@@ -14,7 +14,7 @@ import polars as pl
 from markupsafe import Markup
 
 from herijk.dashboards import drawn
-from herijk.dashboards.figures import FIGURES, drop_links
+from herijk.dashboards.figures import FIGURES, drop
 from herijk.dashboards.site.parts import default_method
 from herijk.warehouse.queries.audit import BoatAudit
 from herijk.warehouse.queries.audit_types import TypesAudit
@@ -119,7 +119,7 @@ def _write(plot: Plot, report: BoatAudit | TypesAudit, folder: Path) -> Path:
         subtitle=[say("simulated")] if report.simulated else [],
     )
     spec = FIGURES[plot.figure](plot.rows, say).properties(title=title).to_dict()
-    drop_links(spec)
+    drop(spec, "href")
     if plot.beside is not None:
         _widen(spec, plot.beside)
     for parameter in spec.get("params", []):

@@ -135,7 +135,7 @@ class Book:
         """A quantity against an explaining variable, of some types and tows."""
         own = pl.col("boat_type").is_in(types)
         own &= pl.col("method").is_in(methods_of(self.held, tows))
-        drawn = lines_frame(self.views).filter(own, tows=self._stated(tows))
+        drawn = self._line_points.filter(own, tows=self._stated(tows))
         rows = pl.concat([self.compared.filter(rows_of(tows), own), drawn], how="diagonal_relaxed")
         title = self.say(f"slide.{explaining}").format(
             y=self.say(f"slide.{quantity}"), types=" / ".join(types)
@@ -147,6 +147,10 @@ class Book:
         return Slide(
             f"{quantity} {explaining} {tows}", f"slide_{quantity}_{explaining}", rows, title, said
         )
+
+    @cached_property
+    def _line_points(self) -> pl.DataFrame:
+        return lines_frame(self.views)
 
     def _stated(self, tows: str) -> str:
         """The choice as tables have it: statistics of a range of seasons are over all its tows."""

@@ -1,5 +1,7 @@
 """Numbers and texts as people of one language write them."""
 
+from collections.abc import Callable, Sequence
+from functools import cache
 from typing import Final
 
 from markupsafe import Markup, escape
@@ -17,15 +19,18 @@ class Speech:
         self.language = language
         self.say = speaker(language)
         self.decimal = DECIMALS[language]
-        self._marks = str.maketrans({".": self.decimal, "-": MINUS})
-
-    def text(self, key: str) -> Markup:
+        self.text: Callable[[str], Markup] = cache(lambda key: escape(self.say(key)))
         """A text, escaped."""
-        return escape(self.say(key))
+        self._marks = str.maketrans({".": self.decimal, "-": MINUS})
 
     def number(self, value: float, digits: int, sign: str = "") -> str:
         """A number with so many decimals; `sign` is "+" where a plus is to be shown."""
         return f"{value:{sign}z.{digits}f}".translate(self._marks)
+
+    def numbers(self, values: Sequence[float], digits: int) -> list[str]:
+        """Numbers with so many decimals; those that are unknown (nan) as nothing."""
+        text = "\n".join([f"{{:z.{digits}f}}"] * len(values)).format(*values)
+        return text.translate(self._marks).replace("nan", "").split("\n") if values else []
 
     def per_cent(self, ratio: float) -> str:
         """A ratio as a change in per cent, with its sign."""

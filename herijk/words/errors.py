@@ -131,6 +131,8 @@ ERRORS: Final[dict[str, str]] = {
         "{} is er niet; maak het met: herijk rebuild --archive MAP --data {} --method {}"
     ),
     "{} has no tow: {}": "{} bevat geen sleepproef: {}",
+    "there are {}": "er zijn {}",
+    "there is none: {}": "er is er geen: {}",
     "the last rebuild found none that it could use; `herijk check ARCHIVE` and the table "
     "quarantine say why": (
         "de laatste herberekening vond er geen die bruikbaar was; `herijk check ARCHIEF` "

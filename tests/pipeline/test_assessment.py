@@ -360,6 +360,16 @@ def test_what_all_boats_change_between_uncalibrated_seasons_is_not_the_boats(sou
     assert to_scale.filter(check="curve_change_unexplained")["flagged"].all()
 
 
+def test_an_estimated_season_is_in_doubt_where_all_seasons_with_dgps_are(sound: World) -> None:
+    """What its log was wrong rests on these alone."""
+    old = pl.col("season") == 2012
+    curves = sound.curves.with_columns(calibration_factor=pl.when(~old).then("calibration_factor"))
+    world = replace(sound, curves=curves).changed("diagnosis", SUBJECT, verdict="estimated")
+    assert "season_in_doubt" not in world.flagged(SUBJECT)
+    doubted = world.changed("diagnosis", LATER, alarm=True)
+    assert "season_in_doubt" in doubted.flagged(SUBJECT) & doubted.flagged(LATER)
+
+
 def test_a_few_like_boats_or_an_unknown_type_are_no_measure(sound: World) -> None:
     few = pl.col("fsn_no").is_in(["FSN1", "FSN2", "FSN3"])
     for tows in (

@@ -6,6 +6,7 @@ from typing import NamedTuple
 from herijk.cli.audit_text.words import (
     AGAINST,
     QUANTITIES,
+    REASONS,
     apart,
     change,
     heading,
@@ -58,11 +59,12 @@ def _headline(eras: list[str]) -> list[TableRow]:
 
 
 def _trend_seen(line: Row) -> str:
-    return "follows" if line["follows"] else tell("none seen")
+    return tell("follows") if line["follows"] else tell("none seen")
 
 
 def _nothing(row: Row) -> str:
-    return f"- {row['reason'].replace('_', ' ')}, n {row['n']}"
+    reason = str(row["reason"])
+    return f"- {tell(REASONS.get(reason, reason))}, n {row['n']}"
 
 
 def _line(quantity: str, explaining: str) -> Cell:

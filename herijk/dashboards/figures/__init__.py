@@ -79,11 +79,12 @@ def png(name: str, frame: pl.DataFrame, say: Say) -> bytes:
     return bytes(vl_convert.svg_to_png(svg, scale=2.0))
 
 
-def drop_links(part: Any) -> None:
-    """Takes the links to pages of the site out of a specification: a picture cannot keep them."""
+def drop(part: Any, *keys: str) -> None:
+    """Takes out of a specification what a picture cannot keep: links, tooltips."""
     if isinstance(part, dict):
-        part.pop("href", None)
+        for key in keys:
+            part.pop(key, None)
     for inner in (
         part.values() if isinstance(part, dict) else part if isinstance(part, list) else ()
     ):
-        drop_links(inner)
+        drop(inner, *keys)

@@ -2,6 +2,7 @@
 
 import datetime as dt
 import json
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -116,17 +117,18 @@ class Cells:
         if name == "rowing_time_s":
             return [_EMPTY if v is None else _SHORT.format(duration(v)) for v in column]
         if column.dtype.is_float():
-            digits = next((d for ending, d in DIGITS if name.endswith(ending)), 4)
-            return self._numbers(column.to_list(), digits, exact)
+            return self._numbers(column, exact)
         if column.dtype.is_integer() and name != "direction":
             return ["<td>" if v is None else f"<td>{v}" for v in column.to_list()]
         return [_EMPTY if v is None else self._text(name, root, v) for v in hashable(column)]
 
-    def _numbers(self, values: Sequence[float | None], digits: int, exact: bool) -> list[str]:
-        number = self.speech.number
+    def _numbers(self, column: pl.Series, exact: bool) -> list[str]:
+        digits = next((d for ending, d in DIGITS if column.name.endswith(ending)), 4)
+        values = [math.nan if v is None else v for v in column.to_list()]
+        shown = self.speech.numbers(values, digits)
         if not exact:
-            return ["<td>" if v is None else f"<td>{number(v, digits)}" for v in values]
-        return ["<td>" if v is None else _exact(v, number(v, digits)) for v in values]
+            return [f"<td>{text}" for text in shown]
+        return [_exact(*both) for both in zip(values, shown, strict=True)]
 
     def _shower(self, name: str, root: str) -> Show:
         """How values of a column are shown."""
@@ -198,7 +200,7 @@ def hashable(column: pl.Series) -> list[Any]:
 def _exact(value: float, shown: str) -> str:
     """A number that shows fewer digits than it holds, with both."""
     held = f"{value:.{KEPT}g}"
-    return f"<td>{shown}" if shown == held else f"<td data-v={held}>{shown}"
+    return f"<td>{shown}" if not shown or shown == held else f"<td data-v={held}>{shown}"
 
 
 def _hash(value: str) -> Markup:

@@ -10,7 +10,8 @@ import polars as pl
 from markupsafe import Markup
 
 from herijk.dashboards import drawn
-from herijk.dashboards.figures import drop_links
+from herijk.dashboards.figures import drop
+from herijk.dashboards.site.cells import hashable
 from herijk.dashboards.site.parts import Chart, Page, is_chosen
 from herijk.dashboards.site.specifications import chart_specifications
 from herijk.dashboards.speech import Speech
@@ -31,12 +32,13 @@ def still_pictures(page: Page, speech: Speech) -> dict[str, Markup]:
 def still(figure: str, rows: pl.DataFrame, speech: Speech, caption: str) -> Markup:
     """A figure as SVG; a screen reader says its caption."""
     spec = copy.deepcopy(chart_specifications(speech.language)[figure])
-    drop_links(spec)
+    drop(spec, "href", "tooltip")
+    spec["config"]["aria"] = False  # described as a whole
     text = json.dumps(spec)
     seen = rows.select(name for name in rows.columns if name in text)
     spec["datasets"] = {"rows": seen.to_dicts()}
     svg = drawn.svg(spec, speech.language)
-    bare = re.sub(r' (role|aria-[a-z]+)="[^"]*"', "", _renumbered(svg))  # described as a whole
+    bare = re.sub(r' (role|aria-[a-z]+)="[^"]*"', "", _renumbered(svg))
     bare = PLACES.sub(lambda place: DIGITS.sub(r"\1", place[0]), bare)
     bare = _marks_once(bare)
     named = Markup('<svg role="img" aria-label="{}" ').format(caption)
@@ -76,5 +78,7 @@ def _shown(page: Page, chart: Chart) -> pl.DataFrame:
     rows = pl.concat(page.data[chart.data], how="diagonal_relaxed")
     for column, names in chart.follows.items():
         wanted = [page.chosen[name] for name in ([names] if isinstance(names, str) else names)]
-        rows = rows.filter([v is None or is_chosen(v, *wanted) for v in rows[column].to_list()])
+        values = hashable(rows[column])
+        shown = {v for v in set(values) if v is None or is_chosen(v, *wanted)}
+        rows = rows.filter([v in shown for v in values])
     return rows

@@ -68,7 +68,7 @@ def assess(
         _of_correction(run_points, tows),
         _of_sizes(tows),
         _of_freeboards(tows),
-        _of_season(tows, diagnosis),
+        _of_season(curves, tows, diagnosis),
         _of_previous_curve(pairs),
         _of_unseen_errors(pairs, tows),
         _of_like_boats(curves, tows),
@@ -311,9 +311,19 @@ def _cw_at(speed: pl.Expr) -> pl.Expr:
     return pl.when(below_b > 0).then(pl.col("a_kg_m") / below_b)
 
 
-def _of_season(tows: pl.DataFrame, diagnosis: pl.DataFrame) -> pl.DataFrame:
-    """Whether an instrument of the tow's season is in doubt, where the season was diagnosed."""
+def _of_season(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame) -> pl.DataFrame:
+    """Whether an instrument of the tow's season is in doubt, where the season was diagnosed.
+
+    An estimated log factor rests on the seasons with dGPS: where all of these are in doubt, so is
+    its season.
+    """
     seasons = diagnosis.group_by("season").agg(season_in_doubt=pl.col("alarm").any())
+    doubted = seasons.filter("season_in_doubt")["season"]
+    anchors = {*_by_gps(curves)} & {*seasons["season"]}
+    if anchors and anchors <= {*doubted}:
+        estimated = diagnosis.filter(verdict="estimated")["season"]
+        rests = pl.col("season").is_in(estimated.implode())
+        seasons = seasons.with_columns(pl.col("season_in_doubt") | rests)
     return tows.join(seasons, on="season").select("tow_id", "season_in_doubt")
 
 
@@ -384,9 +394,11 @@ def _scatter_of_pairs(ln: pl.Series) -> float:
 
 def _seasons_to_scale(curves: pl.DataFrame, diagnosis: pl.DataFrame) -> set[int]:
     """Seasons whose logs GPS or the other seasons bring to one scale."""
-    by_gps = curves.drop_nulls("calibration_factor")["season"]
-    estimated = diagnosis.filter(verdict="estimated")["season"]
-    return {*by_gps, *estimated}
+    return {*_by_gps(curves), *diagnosis.filter(verdict="estimated")["season"]}
+
+
+def _by_gps(curves: pl.DataFrame) -> pl.Series:
+    return curves.drop_nulls("calibration_factor")["season"]
 
 
 # Against like boats

@@ -178,8 +178,9 @@ CHECKS: Final = (
     ),
     Check(
         "season_in_doubt",
-        "whether an instrument of the season has a fault or may have one (1) or not (0): the table "
-        "`season_diagnosis` says which",
+        "whether an instrument of the season, or of every season with dGPS that its log factor "
+        "rests on, has a fault or may have one (1) or not (0): the table `season_diagnosis` says "
+        "which",
         "1",
         "inferred: a fault that the season log finds, or cannot rule out, concerns all its tows",
         highest=0.0,

@@ -237,8 +237,10 @@ def _confused_with(problem: Problem, posterior: Posterior, columns: list[int]) -
     hidden = ~posterior.shows
     passes = [posterior.fit.active[posterior.taken_for[f]] for f in faults if hidden[f]]
     passes += problem.faults[hidden & np.isin(posterior.taken_for, mine)].tolist()
-    names = [*likely, *(_name(problem, unknown) for unknown in passes)]
-    return ", ".join(dict.fromkeys(names)) or None
+    names = dict.fromkeys([*likely, *(_name(problem, unknown) for unknown in passes)])
+    own = {_name(problem, problem.faults[f]) for f in faults}
+    own |= {_name(problem, posterior.fit.active[c]) for c in mine}
+    return ", ".join(name for name in names if name not in own) or None
 
 
 def _name(problem: Problem, unknown: int) -> str:

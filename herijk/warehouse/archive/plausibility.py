@@ -7,7 +7,7 @@ exchanged, a wrong unit, another boat's samples) costs the tow. Judging a good t
 agreement of out and back) is measuring method and belongs to `pipeline`.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations
 from pathlib import Path
@@ -708,37 +708,44 @@ def _unlikely_mean(run: _Run, key: str) -> Said | None:
 
 def _without_stuck_gps(runs: list[_Run], tow: Mapping[str, Any]) -> tuple[list[_Run], list[Fault]]:
     """GPS has one fix a second in steps of 0.01 m/s, so a steady boat may well hold one value."""
-    stuck: dict[float, _Run] = {}
+    held: dict[float, list[_Run]] = {}
+    for run in runs:
+        gps = run.channels.get("gps")
+        if gps is not None and gps.min() == gps.max():  # NaN differs from itself
+            held.setdefault(float(gps[0]), []).append(run)
+    why = {run.number: said for value in held.values() for run, said in _stuck_gps(value)}
     kept, faults = [], []
     for run in runs:
-        why = _stuck_gps(run, stuck)
-        if why is None:
+        if run.number not in why:
             kept.append(run)
             continue
         message = say(
             "{}: gps holds {:.6g} throughout, {}; the run goes on without this column.",
             run.name,
             run.channels["gps"][0],
-            why,
+            why[run.number],
         )
         faults.append(_cost("stuck_channel", message, run, tow, 0, "seconds", run.seconds))
         kept.append(_without(run, "gps"))
     return kept, faults
 
 
-def _stuck_gps(run: _Run, stuck: dict[float, _Run]) -> str | None:
-    """Why a GPS that holds one value is stuck; `stuck` is added to."""
-    gps = run.channels.get("gps")
-    if gps is None or gps.min() != gps.max():  # NaN differs from itself
-        return None
-    seconds = _second_means(run.channels["log1"], run.rate_hz)
-    span = float(np.nanmax(seconds) - np.nanmin(seconds))
-    before = stuck.setdefault(float(gps[0]), run)
-    if span > GPS_MUST_MOVE_M_S:
-        return say("while log1 changed by {:.2f} m/s", span)
-    if before.intended_m_s != run.intended_m_s:
-        return say("and so in {}, at another speed", before.name.lower())
-    return None
+def _stuck_gps(runs: list[_Run]) -> Iterator[tuple[_Run, str]]:
+    """Runs that hold one value where it is stuck, and why: one of them, or two, cannot be right."""
+    moved = {run.number: _span(_second_means(run.channels["log1"], run.rate_hz)) for run in runs}
+    is_stuck = max(moved.values()) > GPS_MUST_MOVE_M_S
+    for run in runs:
+        other = next((r for r in runs if r.intended_m_s != run.intended_m_s), None)
+        if moved[run.number] > GPS_MUST_MOVE_M_S:
+            yield run, say("while log1 changed by {:.2f} m/s", moved[run.number])
+        elif other is not None:
+            yield run, say("and so in {}, at another speed", other.name.lower())
+        elif is_stuck:
+            yield run, say("and so in a run in which log1 changed")
+
+
+def _span(values: NDArray[np.float64]) -> float:
+    return float(np.nanmax(values) - np.nanmin(values))
 
 
 def _second_means(values: Array, rate_hz: int) -> NDArray[np.float64]:

@@ -17,6 +17,7 @@ from herijk.pipeline.errors import MissingKnowledgeError, UnavailableError
 from herijk.tables.row import Row
 from herijk.tables.views import VIEWS
 from herijk.warehouse.store.files import written_beside
+from herijk.words import say
 
 if TYPE_CHECKING:
     from herijk.tables.declare import dy
@@ -172,7 +173,7 @@ def open_results(path: Path) -> duckdb.DuckDBPyConnection:
 def choice_of(names: Iterable[str]) -> str:
     """What can be chosen, for a sentence: names, or why there is none."""
     known = ", ".join(sorted(names))
-    return f"there are {known}" if known else f"there is none: {NO_TOW}"
+    return say("there are {}", known) if known else say("there is none: {}", NO_TOW)
 
 
 def no_such_edition(edition: str, known: Iterable[str]) -> MissingKnowledgeError:
