@@ -44,12 +44,18 @@ def browser(url):
         browser.close()
 
 
+@pytest.fixture(scope="module")
+def context(browser):
+    """One for all tests, so that the browser reads the scripts once."""
+    with browser.new_context(accept_downloads=True, viewport=site.WIDTHS["desktop"]) as context:
+        yield context
+
+
 @pytest.fixture
-def page(browser, url):
+def page(context, url):
     """The open workbench; what it should not do makes the test fail."""
     faults = []
-    with browser.new_context(accept_downloads=True, viewport={"width": 1280, "height": 900}) as c:
-        page = c.new_page()
+    with context.new_page() as page:
         page.set_default_timeout(30_000)
         page.on("pageerror", lambda error: faults.append(str(error)))
         page.on("console", lambda m: faults.append(m.text) if m.type == "error" else None)
@@ -57,6 +63,7 @@ def page(browser, url):
         page.goto(url)
         page.wait_for_function(IDLE)
         yield page
+        page.evaluate("localStorage.clear()")
     assert faults == []
 
 
