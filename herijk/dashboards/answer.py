@@ -264,4 +264,5 @@ def _waterfall(line: Row, speech: Speech, title: str) -> Markup:
         return Markup()
     old = line["cw_ratio"] and line["old_cw_kg_m"]
     caption = f"{speech.say('waterfall')}: {title}"
-    return waterfall_picture(old, causes_of(line, speech), speech, caption)
+    new = old * line["cw_ratio"]
+    return waterfall_picture((old, new), causes_of(line, speech), speech, caption)

@@ -128,19 +128,20 @@ def _run(x: Axis, y: Axis, row: dict[str, float]) -> str:
 
 
 def waterfall_picture(
-    old: float, causes: Sequence[tuple[str, float]], speech: Speech, title: str
+    numbers: tuple[float, float], causes: Sequence[tuple[str, float]], speech: Speech, title: str
 ) -> Markup:
     """From the old number to the new one: a mark at both, and a bar for each cause.
 
     The axis need not begin at zero: both numbers are marks on it, and only changes have a length.
 
     Args:
-        old: Cw before [kg/m].
-        causes: name and factor of each; they multiply to new / old.
+        numbers: Cw before and after [kg/m].
+        causes: name and factor of each; they multiply to new / old, but for what is too small.
         speech: the language.
         title: what a screen reader says.
     """
-    steps = list(accumulate([old, *(factor for _, factor in causes)], mul))
+    before_all, after_all = numbers
+    steps = list(accumulate([before_all, *(factor for _, factor in causes)], mul))
     x = Axis.over([*steps, *_around(steps)], LABEL, WIDTH - VALUE)
     floor = (len(steps) + 1) * ROW + 4
     parts = [*_scale(x, floor, speech), _number(0, "before_number", steps[0], x, speech)]
@@ -153,9 +154,9 @@ def waterfall_picture(
             _BAR.format(left, row * ROW + 5, width, ink),
             _row(row, name, speech.per_cent(factor)),
         ]
-    row, end = len(steps), x.place(steps[-1])
+    row, end = len(steps), x.place(after_all)
     parts.append(_LINE.format(end, row * ROW - 5, end, row * ROW + 5, GREY, 1))
-    parts.append(_number(row, "after_number", steps[-1], x, speech))
+    parts.append(_number(row, "after_number", after_all, x, speech))
     height = floor + 20
     return _picture(height, title, parts)
 

@@ -154,11 +154,14 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "Het oordeel gaat over de nieuwste proef van elke sloep en ploeg, grafieken en tabellen "
         "over de proeven die u kiest. Standaardsnelheid: de middelste opgegeven snelheid van het "
         "type, waarbij Cw te vergelijken is; de opgegeven snelheid verschilt per ploeg. De lijn is "
-        "de best passende rechte met haar 95 %-interval.",
+        "de best passende rechte met haar 95 %-interval. Een doorgetrokken streep door een punt is "
+        "het 95 %-interval; een gestreepte is alleen de spreiding van de runs: de fout van de log "
+        "zit er niet in.",
         "The verdict is about the newest tow of each boat and crew, charts and tables about the "
         "tows that you choose. Standard speed: the median declared speed of the type, at which Cw "
         "can be compared; the declared speed differs by crew. The line is the best straight fit "
-        "with its 95 % interval.",
+        "with its 95 % interval. A full bar through a point is its 95 % interval; a dashed one is "
+        "the spread of the runs alone: the log's error is not in it.",
     ),
     "flagged_boats": ("Om welke proeven het gaat", "Which tows they are about"),
     "boat_runs_note": (
@@ -179,13 +182,19 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "{changed} of {lines} lines change; {beyond} by more than the uncertainty of both numbers "
         "together",
     ),
+    "head_old_spread": (
+        " In de onzekerheid van {editions} zit de fout van de log niet: in werkelijkheid is zij "
+        "groter.",
+        " The uncertainty of {editions} leaves out the error of the log: in truth it is larger.",
+    ),
+    "and": (" en ", " and "),
     "none_of_them": ("geen", "none"),
-    "head_mostly": ("; meestal vooral door: {cause}.", "; most often mainly: {cause}."),
+    "head_mostly": ("; meestal vooral door: {cause}", "; most often mainly: {cause}"),
     "head_due": (
-        "{soon} ploegen moeten binnen een jaar na {day} slepen; van {over} is de proef dan al "
-        "verlopen.",
-        "{soon} crews have to tow within a year from {day}; the tows of {over} have expired by "
-        "then.",
+        "Ploegen die binnen een jaar na {day} moeten slepen: {soon}; proeven die op die dag al "
+        "verlopen zijn: {over}.",
+        "Crews that have to tow within a year of {day}: {soon}; tows that have expired by that "
+        "day: {over}.",
     ),
     "head_retow": (
         "Deze proeven brengen de onzekerheid van de logfactoren van {before} naar {after} %.",
@@ -364,11 +373,11 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "A en B gelden van 85 tot 115 % van de opgegeven roeisnelheid; Cw geldt bij die snelheid. "
         "Het interval van Cw is 95 % bij een methode die de fout van de log schat. Bij andere "
         "methoden is het alleen de spreiding van de runs: de fout van de log zit er niet in. Een "
-        "verlopen regel heeft geen A, B en Cw. Een editie die concept heet, is niet gepubliceerd.",
+        "verlopen regel heeft geen A, B en Cw. Een concept is niet gepubliceerd.",
         "A and B hold from 85 to 115 % of the declared speed; Cw holds at that speed. Its interval "
         "is a 95 % interval for a method that estimates the log's error. For other methods it is "
         "the spread of the runs alone: the log's error is not in it. An expired line has no A, B "
-        "and Cw. An edition called concept is a draft: not published.",
+        "and Cw. A draft is not published.",
     ),
     # Due
     "due_list": ("Wie moet weer slepen", "Who has to tow again"),
@@ -413,10 +422,10 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     ),
     "boat_traces": ("Wat de instrumenten zeiden", "What the instruments said"),
     "boat_traces_note": (
-        "Gemiddelden per seconde; snelheid: doorgetrokken log 1, gestreept GPS. Wit telt; wat "
-        "grijs is, is weggesneden om de reden die erboven staat.",
-        "Means per second; speed: solid log 1, dashed GPS. White counts; what is "
-        "grey is cut for the reason above it.",
+        "Gemiddelden per seconde; snelheid: doorgetrokken log 1, gestreept GPS. Wat grijs "
+        "is, is weggesneden om de reden die erboven staat; de rest telt.",
+        "Means per second; speed: solid log 1, dashed GPS. What is grey is cut for the "
+        "reason above it; the rest counts.",
     ),
     "boat_runs": ("Runs", "Runs"),
     "boat_out_back": ("Heen tegen terug, en de wind", "Out against back, and the wind"),
@@ -523,7 +532,7 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "Factor on Cw of each step, geometric mean over a season's tows. The factors of a season "
         "multiply to the total.",
     ),
-    "season_change": ("Zoals gepubliceerd tegen herrekend", "As published against re-based"),
+    "season_change": ("Tegenover wat gepubliceerd is", "Against what was published"),
     "season_change_note": (
         "Cw onder de methode / Cw zoals gepubliceerd, van dezelfde proef: mediaan, en laagste tot "
         "hoogste.",

@@ -289,6 +289,7 @@ def warehouse_numbers(store, digits):
     """Every number of every table, by so many digits, as pages and charts have it."""
     with Views(store) as views:
         frames = [views.table(name) for name in views.row_counts()]
+        frames.append(views.run_points())  # angles from ahead
         frames.append(line_changes(views))  # of `pipeline.register.changes`, as `diff` has it
     numbers = set()
     for frame in frames:

@@ -34,7 +34,7 @@ from herijk.pipeline.consistency import (
 )
 from herijk.pipeline.consistency.lines import LN_CW, quantities
 from herijk.pipeline.consistency.observed import newest
-from herijk.pipeline.consistency.reml import Problem, Stack
+from herijk.pipeline.consistency.reml import Design, Problem, Stack
 from herijk.tables.schemas import conform
 from tests.pipeline.consistency_fleet import NO_RACES, fleet
 
@@ -54,7 +54,7 @@ def grouped_data(seed=1, n=60, boats=20, others=5):
     x = np.column_stack([np.ones(n), rng.normal(size=n)])
     known = rng.uniform(0.5, 2.0, n) ** 2
     y = x @ [1.0, 0.5] + 2.0 * rng.normal(size=boats)[boat] + rng.normal(size=others)[other]
-    return Problem.of(y + np.sqrt(known) * rng.normal(size=n), x, known, boat, other)
+    return Problem.of(Design.of(x, boat, other), y + np.sqrt(known) * rng.normal(size=n), known)
 
 
 def deviance(problem, sd):
@@ -64,9 +64,9 @@ def deviance(problem, sd):
 def dense_deviance(problem, sd):
     """-2 log restricted likelihood from the whole covariance matrix, as in the textbooks."""
     v = np.diag(problem.variance + sd[2] ** 2)
-    v += sd[0] ** 2 * (problem.boat[:, None] == problem.boat)
-    v += sd[1] ** 2 * (problem.other[:, None] == problem.other)
-    inverse, x = np.linalg.inv(v), problem.x
+    v += sd[0] ** 2 * (problem.design.boat[:, None] == problem.design.boat)
+    v += sd[1] ** 2 * (problem.design.other[:, None] == problem.design.other)
+    inverse, x = np.linalg.inv(v), problem.design.x
     information = x.T @ inverse @ x
     beta = np.linalg.solve(information, x.T @ inverse @ problem.y)
     r = problem.y - x @ beta
@@ -85,7 +85,8 @@ def test_a_tow_without_any_error_keeps_the_fit_exact():
     x = np.array(
         [[1, 0, 0], [0, 1, 0.009], [0, 1, -0.091], [0, 1, 0.023], [0, 1, 0.059], [1, 0, 0]]
     )
-    problem = Problem.of(y, x, [0.0, 9.6e-5, 1.1e-3, 3.8e-4, 2.2e-4, 7.4e-6], range(6), [0] * 6)
+    variance = [0.0, 9.6e-5, 1.1e-3, 3.8e-4, 2.2e-4, 7.4e-6]
+    problem = Problem.of(Design.of(x, range(6), [0] * 6), y, variance)
     for sd in (0.001, 0.1, 10.0):
         dense = dense_deviance(problem, (sd, 0.0, 0.0))
         assert deviance(problem, (sd, 0.0, 0.0)) == pytest.approx(dense, abs=1e-4)
@@ -112,8 +113,9 @@ def test_the_last_bits_of_the_data_do_not_reach_the_components(boat_sd, other_sd
     y = 3.4 + boat_sd * rng.normal(size=20)[boat] + other_sd * rng.normal(size=6)[other]
     y += np.sqrt(error) * rng.normal(size=n)
     x = np.column_stack([np.ones(n), rng.normal(size=n)])
+    design = Design.of(x, boat, other)
     fits = [
-        mixed.fit(Problem.of(y * noise, x, np.full(n, error**2), boat, other), mixed.COMPONENTS)
+        mixed.fit(Problem.of(design, y * noise, np.full(n, error**2)), mixed.COMPONENTS)
         for noise in (1.0, 1.0 + 4e-16 * rng.normal(size=n))
     ]
     sds, intervals = (
@@ -131,7 +133,7 @@ def one_row_a_boat(variance, true_sd=0.0, seed=3):
     rng = np.random.default_rng(seed)
     x = sm.add_constant(rng.normal(size=12))
     y = x @ [1.0, 2.0] + np.sqrt(variance + true_sd**2) * rng.normal(size=12)
-    return Problem.of(y, x, variance, range(12))
+    return Problem.of(Design.of(x, range(12)), y, variance)
 
 
 def assert_same_line(fit, other):
@@ -143,12 +145,12 @@ def assert_same_line(fit, other):
 
 def test_equal_errors_give_the_line_and_interval_of_ordinary_least_squares():
     problem = one_row_a_boat(np.full(12, 1e-6), true_sd=1.0)
-    assert_same_line(mixed.fit(problem, (mixed.BOAT,)), sm.OLS(problem.y, problem.x).fit())
+    assert_same_line(mixed.fit(problem, (mixed.BOAT,)), sm.OLS(problem.y, problem.design.x).fit())
 
 
 def test_known_variances_give_the_line_and_interval_of_weighted_least_squares():
     problem = one_row_a_boat(np.linspace(0.5, 3.0, 12) ** 2)
-    other = sm.WLS(problem.y, problem.x, weights=1 / problem.variance).fit()
+    other = sm.WLS(problem.y, problem.design.x, weights=1 / problem.variance).fit()
     assert_same_line(mixed.fit(problem, ()), other)
 
 
@@ -156,7 +158,7 @@ def test_the_mean_of_unlike_boats_is_that_of_a_meta_analysis():
     # At the same spread: statsmodels estimates it by Paule and Mandel, not by likelihood.
     problem = one_row_a_boat(np.linspace(0.5, 3.0, 12) ** 2, true_sd=2.0)
     other = combine_effects(problem.y, problem.variance, method_re="iterated", atol=1e-12)
-    only_mean = replace(problem, x=np.ones((12, 1)))
+    only_mean = replace(problem, design=Design.of(np.ones(12), range(12)))
     found = mixed.Fit.at(only_mean, (mixed.BOAT,), (np.sqrt(other.tau2), 0.0, 0.0))
     assert found.beta[0] == pytest.approx(other.mean_effect_re, rel=1e-9)
     half = stats.t.ppf(0.975, 11) * other.sd_eff_w_re_hksj
@@ -166,14 +168,16 @@ def test_the_mean_of_unlike_boats_is_that_of_a_meta_analysis():
 def test_variance_components_are_those_of_another_program():
     problem = grouped_data()
     problem = replace(problem, variance=np.full(len(problem.y), 1e-9))
-    groups = [np.eye(group.max() + 1)[group] for group in (problem.boat, problem.other)]
+    groups = [
+        np.eye(group.max() + 1)[group] for group in (problem.design.boat, problem.design.other)
+    ]
     crossed = VCSpec(
         ["boat", "other"],
         [[[str(i) for i in range(g.shape[1])]] for g in groups],
         [[g] for g in groups],
     )
     whole = np.zeros(len(problem.y))
-    other = MixedLM(problem.y, problem.x, whole, exog_vc=crossed).fit(reml=True)
+    other = MixedLM(problem.y, problem.design.x, whole, exog_vc=crossed).fit(reml=True)
     found = mixed.fit(problem, mixed.COMPONENTS)
     assert found.beta == pytest.approx(other.fe_params, rel=1e-3)
     assert found.sd == pytest.approx(np.sqrt([*other.vcomp, other.scale]), rel=1e-3)
@@ -187,7 +191,7 @@ def test_problems_side_by_side_are_fitted_as_each_alone():
     rng = np.random.default_rng(4)
     first = grouped_data()
     ones = [replace(first, y=first.y + s * rng.normal(size=len(first.y))) for s in (0.0, 0.5, 20)]
-    problems = [*ones, replace(first, other=None)]
+    problems = [*ones, replace(first, design=replace(first.design, other=None))]
     together = mixed.fit_all(problems, (mixed.BOAT, mixed.CELL))
     for problem, fit in zip(problems, together, strict=True):
         assert fit.sd == pytest.approx(mixed.fit(problem, fit.free).sd, rel=1e-9)
@@ -198,15 +202,15 @@ def test_leaving_a_boat_out_equals_fitting_without_it():
     sd = (2.0, 1.0, 0.5)
     found = mixed.Fit.at(problem, mixed.COMPONENTS, sd).leave_boats_out()
     v = np.diag(problem.variance + sd[2] ** 2)
-    v += sd[0] ** 2 * (problem.boat[:, None] == problem.boat)
-    v += sd[1] ** 2 * (problem.other[:, None] == problem.other)
-    out = problem.boat == 3
-    inverse, x = np.linalg.inv(v[np.ix_(~out, ~out)]), problem.x[~out]
+    v += sd[0] ** 2 * (problem.design.boat[:, None] == problem.design.boat)
+    v += sd[1] ** 2 * (problem.design.other[:, None] == problem.design.other)
+    out = problem.design.boat == 3
+    inverse, x = np.linalg.inv(v[np.ix_(~out, ~out)]), problem.design.x[~out]
     information = x.T @ inverse @ x
     beta = np.linalg.solve(information, x.T @ inverse @ problem.y[~out])
     gain = v[np.ix_(out, ~out)] @ inverse
-    predicted = problem.x[out] @ beta + gain @ (problem.y[~out] - x @ beta)
-    rest = problem.x[out] - gain @ x
+    predicted = problem.design.x[out] @ beta + gain @ (problem.y[~out] - x @ beta)
+    rest = problem.design.x[out] - gain @ x
     variance = v[np.ix_(out, out)] - gain @ v[np.ix_(~out, out)]
     variance = variance + rest @ np.linalg.inv(information) @ rest.T
     assert found.error[out] == pytest.approx(problem.y[out] - predicted, rel=1e-8)

@@ -216,17 +216,16 @@ def wind(frame: pl.DataFrame, say: Say) -> alt.Chart:
     """Mean apparent wind of each run, by its angle: 0 is from ahead, minus from port.
 
     Args:
-        frame: rows of `run_points`.
+        frame: rows of `Views.run_points`.
         say: gives texts.
     """
     angles = alt.Scale(domain=[-180, 180])
     return (
         alt.Chart(frame)
-        .transform_calculate(centred_deg="(datum.wind_angle_deg + 180) % 360 - 180")
         .mark_point(size=80, filled=True, opacity=0.9)
         .encode(
             alt.X(
-                "centred_deg:Q",
+                "wind_angle_deg:Q",
                 title=say("wind_angle"),
                 scale=angles,
                 axis=alt.Axis(values=[-180, -135, -90, -45, 0, 45, 90, 135, 180]),

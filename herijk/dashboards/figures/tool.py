@@ -106,7 +106,7 @@ def run_statistics(frame: pl.DataFrame, say: Say) -> Drawing:
         .mark_point(filled=True, size=60, color=OKABE_ITO[0])
         .encode(
             alt.X("run:O", title=say("run")),
-            number(alt.Y, "sd_ratio", say("sd_ratio"), zero=True),
+            number(alt.Y, "sd_ratio", say("sd_mean_ratio"), zero=True),
             tooltip=tips(
                 ("run:O", say("run")),
                 ("mean:Q", say("mean")),

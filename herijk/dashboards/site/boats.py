@@ -98,7 +98,7 @@ def _parts(
 def _frames(views: Views) -> dict[str, pl.DataFrame]:
     """Everything a boat's page draws, of all boats at once."""
     boat_of = views.table("tows").select("tow_id", "fsn_no")
-    points = views.run_points()
+    points = views.run_points().with_columns(run_cw_kg_m="cw_kg_m")
     seconds = views.table("trace_seconds")
     ends = seconds.group_by("tow_id", "run").agg(run_end_s=pl.col("second").max() + 1)
     register = views.register()
@@ -221,7 +221,7 @@ RUN_COLUMNS = (
         "choice",
     ),
     *("speed_m_s", "gross_cw_kg_m", "inertia_cw_kg_m", "air_cw_kg_m", "still_air_cw_kg_m"),
-    *("temperature_cw_kg_m", "cw_kg_m", "cw_sd"),
+    *("temperature_cw_kg_m", "run_cw_kg_m", "cw_sd"),
     *("wind_m_s", "wind_angle_deg"),
 )
 FACT_COLUMNS = (

@@ -35,12 +35,25 @@ def changes(lines: pl.DataFrame) -> Headline:
         text = _from_to(lines, speech) + speech.say("head_changes").format(
             changed=changed.height, lines=lines.height, beyond=beyond or speech.say("none_of_them")
         )
-        if not causes:
-            return text
-        cause = speech.say(f"code.{causes.most_common(1)[0][0]}")
-        return text + speech.say("head_mostly").format(cause=cause)
+        if causes:
+            cause = speech.say(f"code.{causes.most_common(1)[0][0]}")
+            text += speech.say("head_mostly").format(cause=cause)
+        return f"{text}.{_log_unknown(changed, speech)}"
 
     return sentence
+
+
+def _log_unknown(changed: pl.DataFrame, speech: Speech) -> str:
+    """Of which editions the uncertainty is too small, as it leaves out the error of the log."""
+    known = changed.drop_nulls("exceeds_interval")
+    unknown = [
+        speech.edition(known[f"{to}_edition"][0])
+        for side, to in (("old", "from"), ("new", "to"))
+        if not known[f"{side}_log_known"].fill_null(False).all()
+    ]
+    if not unknown:
+        return ""
+    return speech.say("head_old_spread").format(editions=speech.say("and").join(unknown))
 
 
 def _from_to(lines: pl.DataFrame, speech: Speech) -> str:

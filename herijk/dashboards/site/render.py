@@ -18,6 +18,7 @@ from itertools import chain
 from pathlib import Path
 from typing import Final
 
+import jinja2
 import polars as pl
 import vl_convert
 from markupsafe import Markup
@@ -148,6 +149,13 @@ def _put(path: Path, text: str) -> None:
     path.write_text(text, encoding="utf-8")
 
 
+@cache
+def _template() -> jinja2.Template:
+    """The template of every page: to compile it takes as long as a few pages."""
+    names = {"policy": POLICY, "menu": MENU}
+    return environment(HERE / "templates", **names).get_template("page.html.j2")
+
+
 class Edition:
     """The pages in one language."""
 
@@ -156,17 +164,14 @@ class Edition:
         self.about = views.about()
         self._comments = _by_column(views.comments()) if language == "en" else {}
         self._cells = Cells(self.speech)
-        self._template = environment(
-            HERE / "templates",
-            policy=POLICY,
-            t=self.speech.text,
-            speech=self.speech,
-            told=lambda answer: told(answer, self.speech),
-            still=lambda page: still_pictures(page, self.speech),
-            heading=cache(self._heading),
-            menu=MENU,
-            about=self.about,
-        ).get_template("page.html.j2")
+        self._names = {
+            "t": self.speech.text,
+            "speech": self.speech,
+            "heading": cache(self._heading),
+            "told": lambda answer: told(answer, self.speech),
+            "still": lambda page: still_pictures(page, self.speech),
+            "about": self.about,
+        }
 
     def _heading(self, table: str, column: str, is_number: bool) -> Markup:
         """The heading of a column, which says what it means when pointed at."""
@@ -196,7 +201,8 @@ class Edition:
             for number, table in enumerate(section.tables, 1)
         }
         others = {number: rows.others for number, rows in tables.items() if rows.others}
-        html = self._template.render(
+        html = _template().render(
+            **self._names,
             page=page,
             tables=tables,
             language=language,

@@ -17,7 +17,7 @@ from herijk.pipeline.consistency.observed import (
     curve_at,
     ln_cw_unit_variance,
 )
-from herijk.pipeline.consistency.reml import Problem
+from herijk.pipeline.consistency.reml import Design, Problem
 from herijk.tables.consistency import VarianceComponents
 from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of
@@ -75,7 +75,8 @@ def _components(tows: Observed, scope: str) -> list[Row]:
     if repeated < FEWEST_REPEATS or counts["n_seasons"] < 2 or counts["n_boats"] < x.shape[1] + 2:
         names = (*NAMES, "run")
         return [counts | {"component": c, "reason": "too_few_repeats"} for c in names]
-    fit = mixed.fit(Problem.of(y, x, variance, boat, season), mixed.COMPONENTS)
+    problem = Problem.of(Design.of(x, boat, season), y, variance)
+    fit = mixed.fit(problem, mixed.COMPONENTS)
     return [counts | row for row in _shares(fit, float(np.sqrt(variance.mean())))]
 
 

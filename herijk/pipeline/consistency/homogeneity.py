@@ -16,7 +16,7 @@ from herijk.pipeline import curve
 from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.consistency import mixed
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE, Observed, newest, q_at
-from herijk.pipeline.consistency.reml import Problem
+from herijk.pipeline.consistency.reml import Design, Problem
 from herijk.tables.consistency import PooledCurves, TypeHomogeneity
 from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of
@@ -249,12 +249,8 @@ def _bend_prior(boats: Observed, speed_m_s: float, sigma: float) -> tuple[float,
     """Mean of q at the standard speed and its true standard deviation between boats (REML)."""
     q, unit = q_at(boats, speed_m_s)
     known = np.isfinite(q)
-    problem = Problem.of(
-        q[known],
-        np.ones(known.sum()),
-        unit[known] * sigma**2,
-        boats.table["fsn_no"].to_numpy()[known],
-    )
+    design = Design.of(np.ones(known.sum()), boats.table["fsn_no"].to_numpy()[known])
+    problem = Problem.of(design, q[known], unit[known] * sigma**2)
     fit = mixed.fit(problem, (mixed.BOAT,))
     return float(fit.beta[0]), fit.sd[0]
 

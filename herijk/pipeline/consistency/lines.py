@@ -8,15 +8,13 @@ Women's and men's crews differ in weight and speed, so lines against weight or l
 within a crew; displacement contains the crew.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from typing import Final, NamedTuple, Self
 
 import numpy as np
 import polars as pl
 import scipy
-from numpy.typing import NDArray
 
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.consistency import mixed
@@ -30,7 +28,7 @@ from herijk.pipeline.consistency.observed import (
     newest,
     q_at,
 )
-from herijk.pipeline.consistency.reml import Problem
+from herijk.pipeline.consistency.reml import Design, Problem
 from herijk.pipeline.consistency.tow_speed import is_slow
 from herijk.tables.consistency import TypeLinePoints, TypeLines, TypeOutliers
 from herijk.tables.declare import dy
@@ -103,9 +101,9 @@ def chosen_tows(observed: Observed) -> Iterator[tuple[Choice, Observed]]:
         yield Choice(name, ALL_TOWS.components), observed.take(rows)
 
 
-def standard_speed_m_s(observed: Observed) -> float:
+def standard_speed_m_s(tows: Observed) -> float:
     """The common speed at which boats of a type are compared."""
-    return float(observed.table["standard_speed_m_s"][0])
+    return float(tows.table["standard_speed_m_s"][0])
 
 
 Measured = tuple[FloatArray, FloatArray]
@@ -121,11 +119,12 @@ def quantities(observed: Observed) -> dict[str, Measured]:
     Errors of A and B are taken at the type's middle bend, not at each tow's own: else boats with a
     small B, whose error looks small, would weigh most.
     """
-    speed = standard_speed_m_s(observed)
+    speed = observed.column("standard_speed_m_s")
     a, cw = observed.column("a_kg_m"), observed.column("cw_kg_m")
     b = observed.table["b_m_s"].to_numpy().astype(np.float64)
     b = np.where(observed.table["b_capped"].to_numpy(), np.nan, b)
-    q = max(float(np.median(observed.column("q"))), 0.05)
+    middle = pl.col("q").median().over("method", "boat_type")
+    q = np.maximum(observed.table.select(middle).to_series().to_numpy(), 0.05)
     var_c, var_q = observed.column("c0_unit_variance"), observed.column("q_unit_variance")
     cov = observed.column("c0_q_unit_covariance")
     standard = curve_anywhere(observed, speed)
@@ -180,16 +179,21 @@ def _lines(
     rows: list[Row] = []
     to_fit: dict[tuple[str, ...], list[tuple[Row, Row, _Line]]] = {}
     for choice, tows in chosen:
-        for (method, boat_type), group in tows.groups("method", "boat_type"):
-            boats = _Boats.of(group)
-            speed = {"standard_speed_m_s": standard_speed_m_s(group)}
-            for quantity, explaining, measured in _pairs(group, choice):
+        measured, shared = quantities(tows), _Shared(tows, choice)
+        run_variance = tows.column("run_sd_ratio") ** 2
+        speeds = tows.column("standard_speed_m_s")
+        for (method, boat_type), own in tows.rows_by("method", "boat_type"):
+            for quantity, explaining in _pairs(choice):
                 names = {"method": method, "tows": choice.tows, "boat_type": boat_type}
                 names |= {"quantity": quantity, "explaining": explaining}
-                facts, line = _line(boats, choice, names, measured)
-                rows.append(names | speed | facts)
-                if line is not None:
-                    to_fit.setdefault(choice.components, []).append((rows[-1], names, line))
+                y, unit = measured[quantity]
+                mine = own[np.isfinite(y[own]) & np.isfinite(shared.explaining[explaining][own])]
+                facts, across = shared.through(mine, boat_type, explaining)
+                row = names | {"standard_speed_m_s": float(speeds[own[0]])} | facts
+                rows.append(row)
+                if across is not None:
+                    line = _Line.of(across, quantity, y[mine], unit[mine] * run_variance[mine])
+                    to_fit.setdefault(choice.components, []).append((row, names, line))
     points: list[Row] = []
     for components, lines in to_fit.items():
         fits = mixed.fit_all([line.problem for *_, line in lines], components)
@@ -200,128 +204,91 @@ def _lines(
     return frame_of(TypeLines, rows), frame_of(TypeLinePoints, points)
 
 
+def _pairs(choice: Choice) -> Iterator[tuple[str, str]]:
+    """Each quantity with what may explain it, as far as the choice of tows has a line of it."""
+    if choice != NEWEST:
+        yield from SLIDE_PAIRS
+        return
+    for quantity in ("b_m_s", "a_kg_m", "q", "cw_kg_m", "cw_standard_kg_m"):
+        for explaining in EXPLAINING:
+            yield quantity, explaining
+    yield LN_CW, LN_DISPLACEMENT
+
+
 @dataclass(frozen=True)
-class _Boats:
-    """What lines need of the tows of a type, as arrays of shape (tows,): lines are many.
+class _Across:
+    """What lines through the same tows on the same explaining variable have in common.
 
     Attributes:
-        boat, crew: number of the boat, and of rowers and class.
-        crew_class: the class.
-        season: the season.
-        run_sd_ratio: as in `Observed`.
-        explaining: the explaining variables by name, NaN where missing.
-        type_known: whether the type is.
+        design: the crews and x; x is scaled to one so that no power of a unit gets lost in
+            rounding.
+        width: what x is divided by.
+        names, places: class and x of each point that is drawn.
+        at: the same as rows of the design.
     """
 
-    boat: IntArray
-    crew: IntArray
-    crew_class: NDArray[np.object_]
-    season: IntArray
-    run_sd_ratio: FloatArray
-    explaining: Mapping[str, FloatArray]
-    type_known: bool
-    _some: dict[bytes, "_Boats"] = field(default_factory=dict, repr=False, compare=False)
+    design: Design
+    width: float
+    names: list[str]
+    places: list[float]
+    at: FloatArray
 
-    @classmethod
-    def of(cls, tows: Observed) -> Self:
-        """The tows of one type under one method."""
-        crews = tows.table.select(pl.struct("rowers", "crew_class").rank("dense")).to_series()
-        return cls(
-            np.unique(tows.table["fsn_no"].to_numpy(), return_inverse=True)[1],
-            crews.to_numpy().astype(np.int64),
-            tows.table["crew_class"].to_numpy(),
-            tows.table["season"].to_numpy().astype(np.int64),
-            tows.column("run_sd_ratio"),
-            {name: _explaining(tows, name) for name in (*EXPLAINING, LN_DISPLACEMENT)},
-            tows.table["boat_type"][0] != UNKNOWN_TYPE,
+
+class _Shared:
+    """What lines have in common: one design serves all methods and quantities with its tows."""
+
+    def __init__(self, tows: Observed, choice: Choice) -> None:
+        table = tows.table
+        self.explaining = {name: _explaining(tows, name) for name in (*EXPLAINING, LN_DISPLACEMENT)}
+        self._tow, self._boat, self._crew = (
+            table.select(pl.struct(by).rank("dense")).to_series().to_numpy()
+            for by in (("tow_id",), ("fsn_no",), ("rowers", "crew_class"))
         )
+        self._class = table["crew_class"].to_numpy()
+        self._season = _seasons(table["season"].to_numpy().astype(np.int64), choice)
+        self._made: dict[tuple[str, str, bytes], tuple[Row, _Across | None]] = {}
 
-    def where(self, known: BoolArray) -> "_Boats":
-        """Some of the tows; lines have the same ones time and again."""
-        key = known.tobytes()
-        if key not in self._some:
-            self._some[key] = _Boats(
-                self.boat[known],
-                self.crew[known],
-                self.crew_class[known],
-                self.season[known],
-                self.run_sd_ratio[known],
-                {name: values[known] for name, values in self.explaining.items()},
-                self.type_known,
+    def through(
+        self, rows: IntArray, boat_type: str, explaining: str
+    ) -> tuple[Row, _Across | None]:
+        """How many tows lines through some of a type are of, and what they share, or why none."""
+        key = boat_type, explaining, self._tow[rows].tobytes()
+        if key not in self._made:
+            self._made[key] = self._across(rows, boat_type, explaining)
+        return self._made[key]
+
+    def _across(
+        self, rows: IntArray, boat_type: str, explaining: str
+    ) -> tuple[Row, _Across | None]:
+        crew = self._crew[rows] if explaining in OF_THE_BOAT else np.zeros(len(rows))
+        crews = np.asarray(crew[:, None] == np.unique(crew), dtype=np.float64)
+        n_boats = len(np.unique(self._boat[rows]))
+        counts: Row = {"n": len(rows), "n_boats": n_boats}
+        if boat_type == UNKNOWN_TYPE:
+            return counts | {"reason": NO_TYPE}, None
+        if n_boats < max(FEWEST_BOATS, crews.shape[1] + 2):
+            return counts | {"reason": FEW_BOATS}, None
+        x = self.explaining[explaining][rows]
+        centre = np.linalg.lstsq(crews, x)[0]
+        centred = x - crews @ centre
+        width = float(np.abs(centred).max())
+        if width <= 1e-9 * np.abs(x).max():
+            return counts | {"reason": EQUAL_VALUES}, None
+        season = None if self._season is None else self._season[rows]
+        design = Design.of(np.column_stack([crews, centred / width]), self._boat[rows], season)
+        names, places, at = [], [], []
+        whose = self._class[rows] if explaining in OF_THE_BOAT else np.full(len(rows), "all")
+        for name in np.unique(whose):
+            mine = whose == name
+            some = np.unique(np.linspace(x[mine].min(), x[mine].max(), PLACES))
+            mean = crews[mine].mean(axis=0)
+            at.append(
+                np.column_stack([np.tile(mean, (len(some), 1)), (some - mean @ centre) / width])
             )
-        return self._some[key]
-
-    @cached_property
-    def number(self) -> int:
-        """Number of different boats."""
-        return len(np.unique(self.boat))
-
-    @cached_property
-    def crew_effects(self) -> FloatArray:
-        """One indicator column per crew."""
-        number = np.unique(self.crew, return_inverse=True)[1]
-        return np.asarray(np.eye(int(number.max(initial=0)) + 1)[number])
-
-    @cached_property
-    def classes(self) -> list[tuple[str, BoolArray]]:
-        """The classes, with the tows of each."""
-        return [(name, self.crew_class == name) for name in np.unique(self.crew_class)]
-
-    @cached_property
-    def all(self) -> list[tuple[str, BoolArray]]:
-        """The same with all tows as one."""
-        return [("all", np.ones(len(self.boat), dtype=bool))]
-
-
-def _pairs(boats: Observed, choice: Choice) -> Iterator[tuple[str, str, Measured]]:
-    for quantity, measured in quantities(boats).items():
-        if quantity == LN_CW:
-            explaining = [LN_DISPLACEMENT]
-        else:
-            explaining = [] if quantity == BEND else list(EXPLAINING)
-        for name in explaining:
-            if choice == NEWEST or (quantity, name) in SLIDE_PAIRS:
-                yield quantity, name, measured
-
-
-def _line(
-    boats: _Boats, choice: Choice, names: Mapping[str, str], measured: Measured
-) -> tuple[Row, "_Line | None"]:
-    """How many tows a line is of, and the line; without one, why."""
-    y, unit = measured
-    x = boats.explaining[names["explaining"]]
-    known = np.isfinite(x) & np.isfinite(y)
-    boats, x, y = boats.where(known), x[known], y[known]
-    within_crew = names["explaining"] in OF_THE_BOAT
-    crews = boats.crew_effects if within_crew else np.ones((len(y), 1))
-    centre = np.asarray(np.linalg.lstsq(crews, x)[0], dtype=np.float64)
-    centred = x - crews @ centre
-    width = float(np.abs(centred).max(initial=0.0))
-    reason = _no_line(boats, crews, width <= 1e-9 * np.abs(x).max(initial=0.0))
-    counts = {"n": len(y), "n_boats": boats.number, "reason": reason}
-    if reason:
-        return counts, None
-    variance = unit[known] * boats.run_sd_ratio**2
-    problem = Problem.of(
-        y,
-        np.column_stack([crews, centred / width]),
-        variance,
-        boats.boat,
-        _seasons(boats.season, choice),
-    )
-    noise = float(np.sqrt(variance.mean()))
-    level = 1.0 if names["quantity"] == LN_CW else abs(y.mean())
-    groups = boats.classes if within_crew else boats.all
-    return counts, _Line(problem, crews, x, (centre, width), noise, level, groups)
-
-
-def _no_line(boats: _Boats, crews: FloatArray, equal_values: bool) -> str:
-    """Why no line is drawn; empty where there is one."""
-    if not boats.type_known:
-        return NO_TYPE
-    if boats.number < max(FEWEST_BOATS, crews.shape[1] + 2):
-        return FEW_BOATS
-    return EQUAL_VALUES if equal_values else ""
+            names += [str(name)] * len(some)
+            places += some.tolist()
+        across = _Across(design, width, names, places, np.concatenate(at))
+        return counts | {"reason": ""}, across
 
 
 @dataclass(frozen=True)
@@ -329,30 +296,30 @@ class _Line:
     """A line of a quantity on an explaining variable, to be fitted.
 
     Attributes:
-        problem: the quantity, the crews and x; x is scaled to one so that no power of a unit gets
-            lost in rounding.
-        crews: (tows, crews) which crew each tow is of.
-        x: (tows,) the explaining variable.
-        scale: the crews' means of x, and what it is divided by.
+        across: what it shares with others.
+        problem: the quantity.
         noise: root mean square of the measuring errors.
         level: what the spread is a share of.
-        groups: those that get points of their own: name, and which tows.
     """
 
+    across: _Across
     problem: Problem
-    crews: FloatArray
-    x: FloatArray
-    scale: tuple[FloatArray, float]
     noise: float
     level: float
-    groups: Sequence[tuple[str, BoolArray]]
+
+    @classmethod
+    def of(cls, across: _Across, quantity: str, y: FloatArray, variance: FloatArray) -> Self:
+        """A line of values with these variances."""
+        level = 1.0 if quantity == LN_CW else float(abs(y.mean()))
+        problem = Problem.of(across.design, y, variance)
+        return cls(across, problem, float(np.sqrt(variance.mean())), level)
 
     def row(self, fit: mixed.Fit) -> Row:
         """The line itself and its spread, as in `type_lines`."""
         problem = self.problem
-        slope, lo, hi = (float(end[-1]) / self.scale[1] for end in fit.coefficients())
-        residual = problem.y - problem.x @ fit.beta
-        spread = np.sqrt((residual**2).sum() / (len(problem.y) - problem.x.shape[1]))
+        slope, lo, hi = (float(end[-1]) / self.across.width for end in fit.coefficients())
+        residual = problem.y - problem.design.x @ fit.beta
+        spread = np.sqrt((residual**2).sum() / problem.rows_beyond)
         total = fit.total_misfit
         return {
             "slope": slope,
@@ -366,19 +333,9 @@ class _Line:
 
     def points(self, fit: mixed.Fit) -> Iterator[Row]:
         """The line with its interval at some places; for each class at the mean of its crews."""
-        centre, width = self.scale
-        names, places, designs = [], [], []
-        for name, rows in self.groups:
-            at = np.unique(np.linspace(self.x[rows].min(), self.x[rows].max(), PLACES))
-            crew = self.crews[rows].mean(axis=0)
-            designs.append(
-                np.column_stack([np.tile(crew, (len(at), 1)), (at - crew @ centre) / width])
-            )
-            names += [name] * len(at)
-            places += at.tolist()
-        line = fit.line_at(np.concatenate(designs))
+        ends = map(np.ndarray.tolist, fit.line_at(self.across.at))
         for name, at, mean, lo, hi in zip(
-            names, places, *map(np.ndarray.tolist, line), strict=True
+            self.across.names, self.across.places, *ends, strict=True
         ):
             yield {"crew_class": name, "x": at, "y": mean, "lo": lo, "hi": hi}
 
@@ -468,7 +425,8 @@ class _Compared:
         variance = unit[known] * boats.column("run_sd_ratio") ** 2
         fsn_no = boats.table["fsn_no"].to_numpy()
         season = boats.table["season"].to_numpy().astype(np.int64)
-        problem = Problem.of(y, x, variance, fsn_no, _seasons(season, choice))
+        design = Design.of(x, fsn_no, _seasons(season, choice))
+        problem = Problem.of(design, y, variance)
         return cls(boats, quantity, problem)
 
     def frame(self, fit: mixed.Fit, eras: tuple[Era, ...]) -> pl.DataFrame:
@@ -526,13 +484,16 @@ def _steering_checked(season: int, eras: tuple[Era, ...]) -> bool:
 
 def _unusual(values: FloatArray) -> BoolArray:
     """Whether a value lies far from the other boats', each judged by the others."""
-    unusual = np.zeros(len(values), bool)
-    for i, value in enumerate(values):
-        others = np.delete(values, i)
-        others = others[np.isfinite(others)]
-        if np.isfinite(value) and len(others) >= FEWEST_BOATS:
-            unusual[i] = abs(value - others.mean()) > UNUSUAL_SD * max(others.std(ddof=1), 1e-9)
-    return unusual
+    known = np.isfinite(values)
+    others = int(known.sum()) - 1
+    if others < FEWEST_BOATS:
+        return np.zeros(len(values), bool)
+    # About the mean of the others: with the value itself mean and squares are known.
+    from_all = values - values[known].mean()
+    squares = from_all**2 * (others + 1) / others
+    variance = ((from_all[known] ** 2).sum() - squares) / (others - 1)
+    from_others = np.abs(from_all) * (others + 1) / others
+    return np.asarray(known & (from_others > UNUSUAL_SD * np.sqrt(np.fmax(variance, 1e-18))))
 
 
 def _with_season(outliers: pl.DataFrame) -> pl.DataFrame:

@@ -26,11 +26,15 @@ COMPONENTS: Final = (BOAT, OTHER, CELL)
 PROFILE_DROP: Final = 3.841458820694124
 """Deviance above its minimum at the ends of a 95 % profile interval (chi-squared, 1 dof)."""
 
-PROFILE_PRECISION: Final = 1e-12
-"""Precision of the ends of a profile interval, as a share of the spread."""
+PROFILE_PRECISION: Final = 1e-7
+"""An end of a profile interval is found when it moves by less, as a share of the spread: Newton's
+method then leaves the square of that."""
 
-PROFILE_TOLERANCE: Final = 1e-6
+PROFILE_TOLERANCE: Final = 1e-5
 """When the search for the other variances is done: their error counts squared in the deviance."""
+
+ROUGHLY: Final = 1e-2
+"""The same where only the side of an end is asked for."""
 
 MAX_STEPS: Final = 60
 MAX_DOUBLINGS: Final = 7
@@ -66,13 +70,14 @@ class Fit:
         problem: what was fitted.
         free: components that were estimated; the others are 0.
         sd: standard deviations of boat, other and cell.
-        white: the problem at these, as a stack of one.
+        white: problems at these, the own one among them; place: which it is.
     """
 
     problem: Problem
     free: tuple[str, ...]
     sd: tuple[float, float, float]
     white: Whitened
+    place: int = 0
 
     @classmethod
     def at(cls, problem: Problem, free: tuple[str, ...], sd: tuple[float, float, float]) -> Self:
@@ -82,36 +87,35 @@ class Fit:
     @property
     def dof(self) -> int:
         """Degrees of freedom of the boats: rows of one boat do not count twice."""
-        return self.problem.boats - int(self.problem.x.shape[1])
+        design = self.problem.design
+        return design.boats - int(design.x.shape[1])
 
-    @cached_property
-    def _root(self) -> FloatArray:
-        """R with (R'R)^-1 the covariance of the fixed effects, (p, p); upper triangular."""
-        first = self.white.of_others.shape[1]
-        return self.white.r[0, first:, first:]
+    @property
+    def _inverse(self) -> FloatArray:
+        """R with R R' the covariance of the fixed effects, (p, p); upper triangular."""
+        return np.asarray(self.white.inverse[self.place])
 
-    @cached_property
+    @property
     def misfit(self) -> float:
         """Y' P Y: the weighted sum of squares about the fixed effects."""
-        return float(self.white.misfit[0])
+        return float(self.white.misfit[self.place])
 
     @property
     def total_misfit(self) -> float:
         """The same without the last column of X, at the same variances."""
-        last = self._root[-1, -1] * self.beta[-1]
-        return self.misfit + float(last) ** 2
+        return self.misfit + float(self.beta[-1] / self._inverse[-1, -1]) ** 2
 
     @property
     def scale(self) -> float:
         """Misfit per row beyond the fixed effects, at least 1: below, it is only rounding."""
-        rows = len(self.problem.y) - self.problem.x.shape[1]
+        rows = self.problem.rows_beyond
         return max(1.0, self.misfit / rows) if rows > 0 else 1.0
 
     @cached_property
     def beta(self) -> FloatArray:
         """Fixed effects, shape (p,)."""
-        known = self.white.along[0, self.white.of_others.shape[1] :, 0]
-        return np.asarray(self.problem.plain + np.linalg.solve(self._root, known))
+        known = self.white.along[self.place, self.problem.design.others.shape[1] :, 0]
+        return self.problem.plain + self._inverse @ known
 
     def coefficients(self) -> Coefficients:
         """Fixed effects with 95 % intervals; needs `dof` of at least 1.
@@ -119,7 +123,7 @@ class Fit:
         The variance is scaled with the misfit per degree of freedom (Hartung & Knapp 2001): with
         equal errors the interval is that of ordinary least squares, whatever was estimated.
         """
-        return self.line_at(np.eye(self.problem.x.shape[1]))
+        return self.line_at(np.eye(self.problem.design.x.shape[1]))
 
     def line_at(self, x: FloatArray) -> Coefficients:
         """The fixed effects' mean at rows of X, with 95 % intervals as in `coefficients`.
@@ -127,9 +131,8 @@ class Fit:
         Args:
             x: rows of fixed effects, shape (places, p).
         """
-        rows = len(self.problem.y) - self.problem.x.shape[1]
-        spread = (np.linalg.solve(self._root.T, x.T) ** 2).sum(axis=0)
-        sd = np.sqrt(spread * self.misfit / rows)
+        spread = ((x @ self._inverse) ** 2).sum(axis=1)
+        sd = np.sqrt(spread * self.misfit / self.problem.rows_beyond)
         half = float(t_quantile(self.dof)) * sd
         mean = x @ self.beta
         return Coefficients(mean, mean - half, mean + half)
@@ -140,20 +143,23 @@ class Fit:
         For rows g the error is (P_gg)^-1 (P y)_g with variance (P_gg)^-1: no fit is repeated.
         Where the others do not determine the prediction, the variance is infinite.
         """
-        white, order = self.white, self.problem.by_boat
-        n, boat = len(order), self.problem.boat[order]
+        white, order = self.white.of_one(self.place), self.problem.design.by_boat
+        n, boat = len(order), self.problem.design.boat[order]
         weighed = white.weigh(np.concatenate([white.q, white.rest], axis=-1))[0][0, :n]
         known, py = weighed[:, :-1], weighed[:, -1]
         weights, shared = white.weight[0, :n], white.boat[0] / white.inflation[0]
         error, variance = np.zeros(n), np.full(n, np.inf)
-        for rows in np.split(np.arange(n), np.flatnonzero(np.diff(boat)) + 1):
-            weight = weights[rows]
-            inverse = np.diag(weight) - shared[boat[rows[0]]] * np.outer(weight, weight)
-            block = inverse - known[rows] @ known[rows].T
-            if np.linalg.eigvalsh(block)[0] > 1e-9 * np.diag(inverse).max():
-                covariance = np.linalg.inv(block)
-                error[order[rows]] = covariance @ py[rows]
-                variance[order[rows]] = np.diag(covariance)
+        first, each = np.unique(boat, return_index=True, return_counts=True)[1:]
+        for size in np.unique(each):  # boats of as many rows side by side
+            rows = first[each == size, None] + np.arange(size)
+            weight = weights[rows][..., None]
+            inverse = weight * np.eye(size) - shared[boat[rows], None] * weight * weight.mT
+            block = inverse - known[rows] @ known[rows].mT
+            largest = np.diagonal(inverse, axis1=-2, axis2=-1).max(axis=-1)
+            told = np.linalg.eigvalsh(block)[:, 0] > 1e-9 * largest
+            covariance, rows = np.linalg.inv(block[told]), rows[told]
+            error[order[rows]] = (covariance @ py[rows][..., None])[..., 0]
+            variance[order[rows]] = np.diagonal(covariance, axis1=-2, axis2=-1)
         return LeftOut(error, variance)
 
     def intervals(self) -> dict[str, tuple[float, float | None]]:
@@ -161,17 +167,17 @@ class Fit:
         profile = _Profile.of(self)
         sd, places = np.asarray(self.sd), np.arange(len(COMPONENTS))
         lo, nothing = np.zeros(len(sd)), np.zeros(len(sd))
-        at_nothing, _ = profile.excess(nothing, places)
+        at_nothing, _ = profile.excess(nothing, places, ROUGHLY)
         above = at_nothing > 0.0
         lo[above] = profile.ends(sd[above], nothing[above], at_nothing[above], places[above])
         outside = np.maximum(2.0 * sd, 0.1 * self.problem.spread)
-        at_outside, _ = profile.excess(outside, places)
+        at_outside, _ = profile.excess(outside, places, ROUGHLY)
         for _ in range(MAX_DOUBLINGS):
             within = at_outside <= 0.0
             if not within.any():
                 break
             outside[within] *= 2.0
-            at_outside[within], _ = profile.excess(outside[within], places[within])
+            at_outside[within], _ = profile.excess(outside[within], places[within], ROUGHLY)
         beyond = at_outside > 0.0
         hi = profile.ends(sd[beyond], outside[beyond], at_outside[beyond], places[beyond])
         upper = dict(zip(places[beyond].tolist(), hi.tolist(), strict=True))
@@ -202,7 +208,9 @@ class _Profile:
         at = np.square([fit.sd] * len(COMPONENTS))
         return cls(stack, free, at, float(stack.likelihood(at).deviance[0]))
 
-    def excess(self, sd: FloatArray, place: IntArray) -> tuple[FloatArray, FloatArray]:
+    def excess(
+        self, sd: FloatArray, place: IntArray, tolerance: float = PROFILE_TOLERANCE
+    ) -> tuple[FloatArray, FloatArray]:
         """Root of the deviance at sds of some components, less its value at the ends; its slope.
 
         The root of a deviance is nearly straight, which a search for its zero likes.
@@ -211,7 +219,7 @@ class _Profile:
         start = self.nearest[place]
         start[each, place] = sd**2
         self.nearest[place], there = search(
-            self.stack.take(place), self.free[place], start, PROFILE_TOLERANCE
+            self.stack.take(place), self.free[place], start, tolerance
         )
         root = np.sqrt(np.maximum(there.deviance - self.least, 0.0))
         # Along the profile the other variances are at their best, so they add nothing.
@@ -261,7 +269,7 @@ def fit_all(problems: Sequence[Problem], free: tuple[str, ...]) -> list[Fit]:
     """The same of each of many problems; those of one size are searched side by side."""
     sizes: dict[tuple[int, ...], list[int]] = {}
     for i, problem in enumerate(problems):
-        sizes.setdefault(problem.size, []).append(i)
+        sizes.setdefault(problem.design.size, []).append(i)
     fits: dict[int, Fit] = {}
     for (rows, _, others, effects), numbers in sizes.items():
         at_once = max(1, NUMBERS_AT_ONCE // (rows * (others + effects + 1)))
@@ -270,7 +278,7 @@ def fit_all(problems: Sequence[Problem], free: tuple[str, ...]) -> list[Fit]:
             variances = _most_likely(stack, free)
             white = Whitened.of(stack, variances)
             for place, (i, sd) in enumerate(zip(some, np.sqrt(variances).tolist(), strict=True)):
-                fits[i] = Fit(problems[i], free, tuple(sd), white.of_one(place))
+                fits[i] = Fit(problems[i], free, tuple(sd), white, place)
     return [fits[i] for i in range(len(problems))]
 
 

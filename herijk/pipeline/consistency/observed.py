@@ -55,11 +55,17 @@ class Observed:
         """A column of numbers without nulls, shape (rows,)."""
         return self.table[name].to_numpy().astype(np.float64)
 
+    def rows_by(self, *by: str) -> list[tuple[tuple[str, ...], IntArray]]:
+        """Which rows are of each group, in the order of the group's names."""
+        rows = self.table.select(*by, pl.int_range(pl.len()).alias("row"))
+        grouped = rows.group_by(by, maintain_order=True).agg("row")
+        keys, own = grouped.select(by).rows(), grouped["row"]
+        groups = [(key, rows.to_numpy()) for key, rows in zip(keys, own, strict=True)]
+        return sorted(groups, key=lambda item: tuple(map(str, item[0])))
+
     def groups(self, *by: str) -> list[tuple[tuple[str, ...], "Observed"]]:
         """The rows of each group, in the order of the group's names."""
-        numbered = self.table.with_row_index("row").group_by(by, maintain_order=True)
-        groups = [(key, self.take(group["row"].to_numpy())) for key, group in numbered]
-        return sorted(groups, key=lambda item: tuple(map(str, item[0])))
+        return [(key, self.take(rows)) for key, rows in self.rows_by(*by)]
 
 
 def of_trusted(frame: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
@@ -210,7 +216,7 @@ def ln_cw_variance(observed: Observed, speed_m_s: FloatArray | float) -> FloatAr
     return np.fmax(runs, (half / NORMAL_95) ** 2)
 
 
-def bend_at(observed: Observed, speed_m_s: float) -> tuple[FloatArray, FloatArray]:
+def bend_at(observed: Observed, speed_m_s: FloatArray | float) -> tuple[FloatArray, FloatArray]:
     """Bend (v/B)^2 at a common speed and its variance for a run scatter of 1."""
     r = observed.column("s_s2_m2") * speed_m_s**2
     stretch = (speed_m_s / observed.column("declared_speed_m_s")) ** 2
@@ -218,7 +224,7 @@ def bend_at(observed: Observed, speed_m_s: float) -> tuple[FloatArray, FloatArra
     return r, stretch * stretch * observed.column("q_unit_variance")
 
 
-def q_at(observed: Observed, speed_m_s: float) -> tuple[FloatArray, FloatArray]:
+def q_at(observed: Observed, speed_m_s: FloatArray | float) -> tuple[FloatArray, FloatArray]:
     """Bend q at a common speed and its variance for a run scatter of 1; NaN where v >= B."""
     s, declared = observed.column("s_s2_m2"), observed.column("declared_speed_m_s")
     r = s * speed_m_s**2

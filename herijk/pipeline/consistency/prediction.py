@@ -19,7 +19,7 @@ from herijk.pipeline.consistency.observed import (
     ln_cw_variance,
     newest,
 )
-from herijk.pipeline.consistency.reml import Problem
+from herijk.pipeline.consistency.reml import Design, Problem
 from herijk.pipeline.quantiles import t_quantile
 from herijk.tables.consistency import PredictedCw, PredictionError
 from herijk.tables.declare import dy
@@ -78,7 +78,8 @@ def _predicted(fleet: Observed) -> pl.DataFrame:
 def _second_opinion(
     fleet: Observed, x: FloatArray, cw: FloatArray, variance: FloatArray
 ) -> dict[str, FloatArray]:
-    problem = Problem.of(np.log(cw), x, variance, fleet.table["fsn_no"].to_numpy(), _types(fleet))
+    design = Design.of(x, fleet.table["fsn_no"].to_numpy(), _types(fleet))
+    problem = Problem.of(design, np.log(cw), variance)
     fit = mixed.fit(problem, (mixed.BOAT, mixed.OTHER))
     left_out = fit.leave_boats_out()
     known = np.isfinite(left_out.variance)

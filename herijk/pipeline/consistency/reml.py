@@ -61,40 +61,26 @@ class Likelihood(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Problem:
-    """Data of a mixed model.
+class Design:
+    """What is known of the rows of a model before anything is measured; problems may share one.
 
     Attributes:
-        y: (n,) observations.
         x: (n, p) fixed effects, of full column rank.
-        variance: (n,) known variance of each observation.
         boat: (n,) which boat, 0 and up, without gaps.
         other: (n,) which other group, 0 and up; None without.
     """
 
-    y: FloatArray
     x: FloatArray
-    variance: FloatArray
     boat: IntArray
     other: IntArray | None
 
     @classmethod
-    def of(
-        cls,
-        y: ArrayLike,
-        x: ArrayLike,
-        variance: ArrayLike,
-        boat: ArrayLike,
-        other: ArrayLike | None = None,
-    ) -> Self:
-        """A problem from anything array-like; groups may be named by text or number."""
-        values = np.asarray(y, dtype=np.float64)
-        floor = (SMALLEST_SHARE * (np.ptp(values) + abs(values.mean()))) ** 2
+    def of(cls, x: ArrayLike, boat: ArrayLike, other: ArrayLike | None = None) -> Self:
+        """A design from anything array-like; groups may be named by text or number."""
+        number = np.unique(np.asarray(boat), return_inverse=True)[1]
         return cls(
-            values,
-            np.asarray(x, dtype=np.float64).reshape(len(values), -1),
-            np.maximum(np.asarray(variance, dtype=np.float64), max(floor, 1e-300)),
-            np.unique(np.asarray(boat), return_inverse=True)[1],
+            np.asarray(x, dtype=np.float64).reshape(len(number), -1),
+            number,
             None if other is None else np.unique(np.asarray(other), return_inverse=True)[1],
         )
 
@@ -104,25 +90,9 @@ class Problem:
         return int(self.boat.max()) + 1
 
     @cached_property
-    def plain(self) -> FloatArray:
-        """Fixed effects by plain least squares, (p,)."""
-        return np.asarray(np.linalg.lstsq(self.x, self.y)[0])
-
-    @cached_property
-    def residual(self) -> FloatArray:
-        """Y less the plain least-squares fit: the likelihood sees nothing else of y."""
-        return np.asarray(self.y - self.x @ self.plain)
-
-    @cached_property
-    def spread(self) -> float:
-        """Standard deviation of y about the plain least-squares fit, the scale of a search."""
-        dof = max(len(self.y) - self.x.shape[1], 1)
-        return float(np.sqrt((self.residual**2).sum() / dof))
-
-    @cached_property
     def others(self) -> FloatArray:
         """Which other group each row is of, as columns of 0 and 1; (n, groups)."""
-        n = len(self.y)
+        n = len(self.boat)
         return (
             np.zeros((n, 0))
             if self.other is None
@@ -134,14 +104,64 @@ class Problem:
         """The rows boat by boat."""
         return np.argsort(self.boat, kind="stable")
 
-    @property
+    @cached_property
+    def qr(self) -> tuple[FloatArray, FloatArray]:
+        """X as orthogonal columns, (n, p), times a triangular matrix, (p, p)."""
+        q, r = np.linalg.qr(self.x)
+        return q, r
+
+    @cached_property
     def size(self) -> tuple[int, int, int, int]:
         """Rows and boats, each rounded up to a power of two, other groups and fixed effects.
 
         Problems of one size can be searched together.
         """
-        rows, boats = (1 << (n - 1).bit_length() for n in (len(self.y), self.boats))
+        rows, boats = (1 << (n - 1).bit_length() for n in (len(self.boat), self.boats))
         return rows, boats, self.others.shape[1], self.x.shape[1]
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Data of a mixed model.
+
+    Attributes:
+        design: what is known of the rows beforehand.
+        y: (n,) observations.
+        variance: (n,) known variance of each observation.
+    """
+
+    design: Design
+    y: FloatArray
+    variance: FloatArray
+
+    @classmethod
+    def of(cls, design: Design, y: ArrayLike, variance: ArrayLike) -> Self:
+        """A problem from anything array-like."""
+        values = np.asarray(y, dtype=np.float64)
+        floor = (SMALLEST_SHARE * (np.ptp(values) + abs(values.mean()))) ** 2
+        known = np.asarray(variance, dtype=np.float64)
+        return cls(design, values, np.maximum(known, max(floor, 1e-300)))
+
+    @cached_property
+    def plain(self) -> FloatArray:
+        """Fixed effects by plain least squares, (p,)."""
+        q, r = self.design.qr
+        return np.asarray(np.linalg.solve(r, q.T @ self.y))
+
+    @cached_property
+    def residual(self) -> FloatArray:
+        """Y less the plain least-squares fit: the likelihood sees nothing else of y."""
+        return self.y - self.design.x @ self.plain
+
+    @property
+    def rows_beyond(self) -> int:
+        """Rows beyond the number of fixed effects."""
+        return len(self.y) - int(self.design.x.shape[1])
+
+    @cached_property
+    def spread(self) -> float:
+        """Standard deviation of y about the plain least-squares fit, the scale of a search."""
+        return float(np.sqrt((self.residual**2).sum() / max(self.rows_beyond, 1)))
 
 
 @dataclass(frozen=True)
@@ -170,23 +190,26 @@ class Stack:
     @classmethod
     def of(cls, problems: Sequence[Problem]) -> Self:
         """A stack of problems of one size."""
-        size = problems[0].size
+        size = problems[0].design.size
         n, _, k, p = size
         columns = np.zeros((len(problems), n, k + p + 1))
         variance = np.full(columns.shape[:2], np.inf)
         boat = np.empty(columns.shape[:2], np.int64)
         for i, one in enumerate(problems):
-            order, rows = one.by_boat, len(one.y)
-            columns[i, :rows, :k], columns[i, :rows, k:-1] = one.others[order], one.x[order]
+            design, rows = one.design, len(one.y)
+            order = design.by_boat
+            columns[i, :rows, :k], columns[i, :rows, k:-1] = design.others[order], design.x[order]
             columns[i, :rows, -1] = one.residual[order]
             variance[i, :rows] = one.variance[order]
-            boat[i, :rows], boat[i, rows:] = one.boat[order], one.boats - 1
+            boat[i, :rows], boat[i, rows:] = design.boat[order], design.boats - 1
         spread = np.array([p.spread for p in problems])
         unit = np.maximum(spread**2, variance.min(axis=1))
         return cls(columns, variance, boat, size, spread, unit)
 
     def take(self, rows: IntArray | BoolArray) -> Self:
         """Some of the problems."""
+        if np.array_equal(rows, np.arange(len(self.unit))):
+            return self
         names = ("columns", "variance", "boat", "spread", "unit")
         return replace(self, **{name: getattr(self, name)[rows] for name in names})
 
@@ -231,7 +254,7 @@ class Stack:
         at = Whitened.of(self, variances)
         own, of_boats = at.weigh(np.concatenate([at.q, at.rest], axis=-1))
         p_y, boats_p_y = own[..., -1:], of_boats[..., -1:]
-        others_p_y, trace_of_others = at.others()
+        others_p_y, trace_of_others = at.felt_by_others()
         precision, inflation = self.of_rows(at.precision), self.of_rows(at.inflation)
         alone = at.weight * (1.0 + at.boat[:, None] * (precision - at.weight))
         traces = [
@@ -273,6 +296,7 @@ class Whitened:
         boat, other: the variances, (m,).
         weight: (m, n) 1 / variance of error and cell; root: (m, n, 1) its root.
         precision: (m, boats) sum of the weights; inflation: 1 + boat's variance times that.
+        others: (m, n, k) the other groups, whitened.
         q: (m, n, k + p) orthogonal columns, with `of_others`, (m, k, k + p), below.
         r: (m, k + p, k + p) triangular.
         along: (m, k + p, 1) whitened y along the columns.
@@ -285,6 +309,7 @@ class Whitened:
     weight: FloatArray
     precision: FloatArray
     inflation: FloatArray
+    others: FloatArray
     q: FloatArray
     of_others: FloatArray
     r: FloatArray
@@ -299,16 +324,20 @@ class Whitened:
         precision = stack.by_boat(weight[..., None])[..., 0]
         inflation = 1.0 + boat[:, None] * precision
         none = np.zeros((0, 0, 0))
-        bare = cls(stack, boat, other, weight, precision, inflation, *(none,) * 5)
-        n, _, k, _ = stack.size
+        bare = cls(stack, boat, other, weight, precision, inflation, *(none,) * 6)
+        n, _, k, p = stack.size
         white = bare.without_boats(bare.root * stack.columns)
-        known, y = white[..., :-1], white[..., -1:]
-        known[..., :k] *= np.sqrt(other)[:, None, None]
-        below = np.broadcast_to(np.eye(k, known.shape[-1]), (len(known), k, known.shape[-1]))
-        q, r = np.linalg.qr(np.concatenate([known, below], axis=-2))
+        others, y = white[..., :k], white[..., -1:]
+        known = np.zeros((len(white), n + k, k + p))
+        known[:, :n, :k] = others * np.sqrt(other)[:, None, None]
+        known[:, :n, k:] = white[..., k:-1]
+        known[:, n:, :k] = np.eye(k)
+        q, r = np.linalg.qr(known)
         along = q[:, :n].mT @ y
         rest = y - q[:, :n] @ along
-        return replace(bare, q=q[:, :n], of_others=q[:, n:], r=r, along=along, rest=rest)
+        return replace(
+            bare, others=others, q=q[:, :n], of_others=q[:, n:], r=r, along=along, rest=rest
+        )
 
     def of_one(self, place: int) -> Self:
         """One problem of the stack, as a stack of one."""
@@ -321,11 +350,10 @@ class Whitened:
         """Root of the weights, (m, n, 1)."""
         return np.sqrt(self.weight)[..., None]
 
-    def others(self) -> tuple[FloatArray, FloatArray]:
+    def felt_by_others(self) -> tuple[FloatArray, FloatArray]:
         """Y as it weighs on the other groups, (m, k, 1), and the trace of P times their part."""
-        others = self.without_boats(self.root * self.stack.others)
-        weighs = others.mT @ self.rest
-        trace = _squares(others) - _squares(others.mT @ self.q)
+        weighs = self.others.mT @ self.rest
+        trace = _squares(self.others) - _squares(self.others.mT @ self.q)
         # Where they vary they are taken out with the columns, which loses no digits.
         taken = self.other > 0.0
         variance = self.other[taken]
@@ -349,7 +377,13 @@ class Whitened:
         shrink = (1.0 / np.sqrt(self.inflation) - 1.0) / np.maximum(self.precision, 1e-300)
         return rows + self.root * self.stack.of_rows(shrink[..., None] * total)
 
-    @property
+    @cached_property
+    def inverse(self) -> FloatArray:
+        """Inverse of the triangular matrix of the fixed effects, (m, p, p)."""
+        k = self.stack.size[2]
+        return np.asarray(np.linalg.inv(self.r[:, k:, k:]))
+
+    @cached_property
     def misfit(self) -> FloatArray:
         """Y' P Y: the weighted sum of squares about the fixed effects, (m,)."""
         return _squares(self.rest) + _squares(self.of_others @ self.along)

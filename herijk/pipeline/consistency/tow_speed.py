@@ -21,7 +21,7 @@ from herijk.pipeline.consistency.observed import (
     newest,
     q_at,
 )
-from herijk.pipeline.consistency.reml import Problem
+from herijk.pipeline.consistency.reml import Design, Problem
 from herijk.pipeline.curve import VALID_RATIO
 from herijk.pipeline.races.race import mean_speed_m_s, power_per_rower_w
 from herijk.pipeline.steps.hull import hull_speed_m_s
@@ -116,7 +116,7 @@ def _trend(parts: list[Observed]) -> Row:
     centred = x - types @ np.linalg.lstsq(types, x)[0]
     if np.abs(centred).max() < 1e-9:
         return counts | {"reason": "equal_values"}
-    problem = Problem.of(q, np.column_stack([types, centred]), variance, boat)
+    problem = Problem.of(Design.of(np.column_stack([types, centred]), boat), q, variance)
     slope, lo, hi = (float(e[-1]) for e in mixed.fit(problem, (mixed.BOAT,)).coefficients())
     return counts | {"slope": slope, "slope_lo": lo, "slope_hi": hi, "reason": ""}
 

@@ -8,6 +8,7 @@ from typing import Final
 
 import polars as pl
 
+from herijk.pipeline.method.definition import COMPLETE
 from herijk.pipeline.register.changes import register_changes, side_by_side, steps_of_lines
 from herijk.pipeline.register.register import LINE, draft_name
 from herijk.pipeline.register.replay import (
@@ -43,8 +44,9 @@ def line_changes(views: Views) -> pl.DataFrame:
     """Every pair of lines that is compared: `register_changes`, with both numbers beside it.
 
     Returns:
-        Columns of `register_changes` and `side_by_side`, the boat's `name` and `boat_type`; causes
-        of a draft's change by step.
+        Columns of `register_changes` and `side_by_side`, the boat's `name` and `boat_type`, and of
+        both editions whether an interval holds the error of the log (`old_log_known`,
+        `new_log_known`); causes of a draft's change by step.
     """
     register = views.table("register")
     changes = views.table("register_changes")
@@ -54,8 +56,7 @@ def line_changes(views: Views) -> pl.DataFrame:
     ]
     if not parts:
         parts = [_side_by_side(register.clear(), register.clear(), changes)]
-    names = views.table("boats").select("fsn_no", "name", "boat_type")
-    return pl.concat(parts).join(names, on="fsn_no", how="left", maintain_order="left")
+    return _named(views, pl.concat(parts))
 
 
 def compared(views: Views, old: str, new: str) -> pl.DataFrame:
@@ -69,10 +70,25 @@ def compared(views: Views, old: str, new: str) -> pl.DataFrame:
     for edition, side in ((old, before), (new, after)):
         if side.is_empty():
             raise no_such_edition(edition, register["edition"].unique())
-    names = views.table("boats").select("fsn_no", "name", "boat_type")
     steps = steps_of_lines(after, _steps(views, before, after))
-    side_by_side = _side_by_side(before, after, register_changes(before, after, steps))
-    return side_by_side.join(names, on="fsn_no", how="left", maintain_order="left")
+    return _named(views, _side_by_side(before, after, register_changes(before, after, steps)))
+
+
+def _named(views: Views, changes: pl.DataFrame) -> pl.DataFrame:
+    """With the boat, and of both editions whether an interval holds the error of the log."""
+    names = views.table("boats").select("fsn_no", "name", "boat_type")
+    named = changes.join(names, on="fsn_no", how="left", maintain_order="left")
+    methods = views.table("register").select("edition", "method").unique()
+    known = methods.join(_log_known(views), on="method", how="left").drop("method")
+    for side, edition in (("old", "from_edition"), ("new", "to_edition")):
+        mine = known.rename({"edition": edition, "log_known": f"{side}_log_known"})
+        named = named.join(mine, on=edition, how="left", maintain_order="left")
+    return named
+
+
+def _log_known(views: Views) -> pl.DataFrame:
+    """Per method whether its intervals hold the error of the log."""
+    return views.table("methods").select("method", log_known=pl.col("interval") == COMPLETE)
 
 
 def _pair(views: Views, register: pl.DataFrame, changes: pl.DataFrame) -> pl.DataFrame:
@@ -111,9 +127,8 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
     """
     changes = line_changes(views).filter(to_edition=edition)
     lines = views.register().filter(edition=edition)
-    compared = changes.drop("name", "boat_type", "to_edition")
-    known = views.table("methods").select("method", log_known=pl.col("interval") == "complete")
-    methods = dict(views.table("register").select("edition", "method").unique().rows())
+    compared = changes.drop("name", "boat_type", "to_edition", "new_log_known")
+    known = _log_known(views).rename({"log_known": "new_log_known"})
     due = views.table("due_list").select(
         "method", *LINE, "tow_speed_m_s", "speed_reason", "as_of",
         next_before="valid_until",
@@ -124,15 +139,12 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
     seasons = views.table("tows").select("tow_id", "season")
     found = (
         lines.join(compared, on=LINE, how="left", maintain_order="left")
-        .with_columns(old_method=pl.col("from_edition").replace(methods))
+        .join(known, on="method", how="left", maintain_order="left")
         .join(seasons, on="tow_id", how="left", maintain_order="left")
         .join(due, on=["method", *LINE], how="left", maintain_order="left")
         .join(_best_estimates(views), on=["method", "tow_id"], how="left", maintain_order="left")
         .join(logs, on=["method", "season"], how="left", maintain_order="left")
     )
-    for side, method in (("old", "old_method"), ("new", "method")):
-        mine = known.rename({"method": method, "log_known": f"{side}_log_known"})
-        found = found.join(mine, on=method, how="left", maintain_order="left")
     return _with_places(found)
 
 

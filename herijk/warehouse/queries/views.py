@@ -88,9 +88,10 @@ class Views:
         )
 
     def run_points(self) -> pl.DataFrame:
-        """Run points with the boat and season they belong to."""
+        """Run points with boat and season; `wind_angle_deg` is 0 from ahead, minus from port."""
         return self.frame(
-            "SELECT p.*, t.fsn_no, t.season, t.declared_speed_m_s FROM run_points AS p "
+            "SELECT p.* REPLACE ((wind_angle_deg + 180) % 360 - 180 AS wind_angle_deg), "
+            "t.fsn_no, t.season, t.declared_speed_m_s FROM run_points AS p "
             "JOIN tows AS t USING (tow_id) ORDER BY method, tow_id, run"
         )
 
