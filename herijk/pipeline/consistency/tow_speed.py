@@ -79,20 +79,27 @@ def speed_trend(observed: Observed) -> dy.DataFrame[SpeedTrend]:
         Rows of the table `speed_trend`.
     """
     boats = newest(observed)
-    rows = []
+    rows: list[Row] = []
+    to_fit: list[tuple[Row, Problem]] = []
     for (method,), fleet in boats.groups("method"):
         parts = [
             part for (boat_type,), part in fleet.groups("boat_type") if boat_type != UNKNOWN_TYPE
         ]
         named = [(str(part.table["boat_type"][0]), [part]) for part in parts]
-        rows += [
-            {"method": method, "boat_type": name} | _trend(some)
-            for name, some in [*named, (ALL_TYPES, parts)]
-        ]
+        for name, some in [*named, (ALL_TYPES, parts)]:
+            facts, problem = _trend(some)
+            rows.append({"method": method, "boat_type": name} | facts)
+            if problem is not None:
+                to_fit.append((rows[-1], problem))
+    fits = mixed.fit_all([problem for _, problem in to_fit], (mixed.BOAT,))
+    for (row, _), fit in zip(to_fit, fits, strict=True):
+        slope, lo, hi = (float(e[-1]) for e in fit.coefficients())
+        row |= {"slope": slope, "slope_lo": lo, "slope_hi": hi}
     return frame_of(SpeedTrend, rows)
 
 
-def _trend(parts: list[Observed]) -> Row:
+def _trend(parts: list[Observed]) -> tuple[Row, Problem | None]:
+    """How many tows a trend is of, and its problem; without one, why."""
     columns: list[tuple[FloatArray, ...]] = []
     boat: list[str] = []
     for number, part in enumerate(parts):
@@ -105,20 +112,19 @@ def _trend(parts: list[Observed]) -> Row:
         columns.append(tuple(v[known] for v in (q, x, variance, place)))
         boat += part.table["fsn_no"].filter(pl.Series(known)).to_list()
     if not columns:
-        return {"n": 0, "n_boats": 0, "reason": "few_boats"}
+        return {"n": 0, "n_boats": 0, "reason": "few_boats"}, None
     q, x, variance, place = (np.concatenate(c) for c in zip(*columns, strict=True))
     n_boats = len(set(boat))
     counts = {"n": len(q), "n_boats": n_boats}
     levels = np.unique(place)
     if n_boats < max(FEWEST_BOATS, len(levels) + 2):
-        return counts | {"reason": "few_boats"}
+        return counts | {"reason": "few_boats"}, None
     types = (place[:, None] == levels).astype(np.float64)
     centred = x - types @ np.linalg.lstsq(types, x)[0]
     if np.abs(centred).max() < 1e-9:
-        return counts | {"reason": "equal_values"}
-    problem = Problem.of(Design.of(np.column_stack([types, centred]), boat), q, variance)
-    slope, lo, hi = (float(e[-1]) for e in mixed.fit(problem, (mixed.BOAT,)).coefficients())
-    return counts | {"slope": slope, "slope_lo": lo, "slope_hi": hi, "reason": ""}
+        return counts | {"reason": "equal_values"}, None
+    design = Design.of(np.column_stack([types, centred]), boat)
+    return counts | {"reason": ""}, Problem.of(design, q, variance)
 
 
 def raced(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
