@@ -102,7 +102,7 @@ def type_homogeneity(observed: Observed) -> dy.DataFrame[TypeHomogeneity]:
         Rows of the table `type_homogeneity`; where nothing is claimed, `reason` says why.
     """
     groups = newest(observed).groups("method", "boat_type")
-    rows = [
+    rows: list[Row] = [
         {"method": method, "boat_type": boat_type} | _tested(boats, boat_type)
         for (method, boat_type), boats in groups
     ]

@@ -431,8 +431,10 @@ def _newton(
     both = felt[:, :, None] & felt[:, None, :]
     scaled = np.where(both, information / (size[:, :, None] * size[:, None, :]), 0.0)
     slope = np.where(felt, gradient, 0.0) / size
-    inverse = np.linalg.pinv(scaled, rcond=UNFELT, hermitian=True)
-    return np.asarray(-(inverse @ slope[..., None])[..., 0] / size)
+    value, vector = np.linalg.eigh(scaled)
+    told = np.abs(value) > UNFELT * np.abs(value).max(axis=-1, keepdims=True)
+    along = (vector.mT @ slope[..., None])[..., 0] * told / np.where(told, value, 1.0)
+    return np.asarray(-(vector @ along[..., None])[..., 0] / size)
 
 
 def _descend(
