@@ -44,12 +44,18 @@ def browser(url):
         browser.close()
 
 
+@pytest.fixture(scope="module")
+def context(browser):
+    """One for all tests, so that the browser reads the scripts once."""
+    with browser.new_context(accept_downloads=True, viewport=site.WIDTHS["desktop"]) as context:
+        yield context
+
+
 @pytest.fixture
-def page(browser, url):
+def page(context, url):
     """The open workbench; what it should not do makes the test fail."""
     faults = []
-    with browser.new_context(accept_downloads=True, viewport={"width": 1280, "height": 900}) as c:
-        page = c.new_page()
+    with context.new_page() as page:
         page.set_default_timeout(30_000)
         page.on("pageerror", lambda error: faults.append(str(error)))
         page.on("console", lambda m: faults.append(m.text) if m.type == "error" else None)
@@ -57,6 +63,7 @@ def page(browser, url):
         page.goto(url)
         page.wait_for_function(IDLE)
         yield page
+        page.evaluate("localStorage.clear()")
     assert faults == []
 
 
@@ -214,6 +221,22 @@ def test_a_line_and_a_point_lead_to_the_boat(page):
         "click"
     )
     page.wait_for_function("old => document.getElementById('boat').value !== old", arg=number)
+
+
+def test_ends_that_are_typed_list_the_boats_inside(page):
+    """By keyboard, as dragging does; Esc clears them, and a boat of the list is shown above."""
+    figure = page.locator("figure[data-figure=b_weight]")
+    figure.scroll_into_view_if_needed()
+    figure.get_by_label("Gewicht [kg], van").press_sequentially("1000")
+    boats = figure.locator(".brush .to-boat")
+    boats.first.wait_for()
+    boat = boats.first.inner_text()
+    assert 0 < boats.count() < page.locator("#boat option").count()
+    boats.first.press("Enter")
+    assert page.locator("#boat").input_value() == boat
+    figure.get_by_label("Gewicht [kg], van").press("Escape")
+    page.wait_for_function("!document.querySelector('.brush .to-boat')")
+    assert figure.locator(".clear").is_hidden()
 
 
 def test_it_speaks_two_languages(page):

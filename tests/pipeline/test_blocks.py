@@ -188,6 +188,7 @@ def digest_of_sums() -> str:
     return hashlib.sha256(sums.to_numpy().tobytes()).hexdigest()
 
 
+@pytest.mark.slow
 def test_sums_are_the_same_bits_on_any_processor(tmp_path):
     """Compiled for a processor that works on one or two numbers at a time."""
     plain = {

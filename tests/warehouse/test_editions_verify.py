@@ -11,6 +11,7 @@ import polars as pl
 import pytest
 
 import herijk.pipeline.recompute.recompute
+import herijk.warehouse.editions.verify
 from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import parse_method, shipped_method
 from herijk.tables.schemas import conform
@@ -19,6 +20,7 @@ from herijk.warehouse.editions import sheets
 from herijk.warehouse.editions.inputs import same_tows, unchanged_tows
 from herijk.warehouse.editions.lineage import lineage
 from herijk.warehouse.editions.publish import publish_printed
+from herijk.warehouse.editions.remade import Counts
 from herijk.warehouse.editions.verify import verify
 from herijk.warehouse.store.editions import TableDigest, read_about, read_edition
 from herijk.warehouse.store.files import file_sha256
@@ -37,6 +39,17 @@ def found(bench, **wanted):
     ], report.wrong
 
 
+@pytest.fixture
+def _files_alone(monkeypatch):
+    """Editions are not made again, which takes three quarters of the time."""
+    monkeypatch.setattr(
+        herijk.warehouse.editions.verify, "remade", lambda store, name: (Counts(), [])
+    )
+
+
+FILES_ALONE = pytest.mark.usefixtures("_files_alone")
+
+
 def test_untouched_editions_pass_and_come_out_equal_when_made_again(published):
     report = verify(published.store)
     assert report.findings == []
@@ -51,6 +64,7 @@ def test_untouched_editions_pass_and_come_out_equal_when_made_again(published):
         )
 
 
+@FILES_ALONE
 def test_a_changed_digit_in_the_csv_is_named_by_line_and_column(published_copy):
     file = folder(published_copy) / "register.csv"
     lines = file.read_text(encoding="utf-8-sig").splitlines()
@@ -80,6 +94,7 @@ def test_a_changed_number_in_the_table_is_named_and_its_code_no_longer_fits(publ
     assert any(f.kind == "differs" for f in report.findings)
 
 
+@FILES_ALONE
 def test_a_changed_number_in_the_xlsx_is_named_by_its_cell(published_copy):
     file = folder(published_copy) / "register.xlsx"
     with zipfile.ZipFile(file) as book:
@@ -99,6 +114,7 @@ def test_a_changed_number_in_the_xlsx_is_named_by_its_cell(published_copy):
     assert findings[0].message.startswith("it says 12.5; it was ")
 
 
+@FILES_ALONE
 def test_any_changed_file_is_named(published_copy):
     names = ["decisions.json", "inputs.csv", "method.toml", "toelichting.md"]
     for name in names:
@@ -118,6 +134,7 @@ def test_a_missing_file_is_named(published_copy):
     assert [f.where for f in findings] == names
 
 
+@FILES_ALONE
 def test_a_changed_decision_breaks_the_seal(published_copy):
     file = folder(published_copy) / "edition.json"
     about = json.loads(file.read_text(encoding="utf-8"))
@@ -127,6 +144,7 @@ def test_a_changed_decision_breaks_the_seal(published_copy):
     assert "seal" in findings[0].message
 
 
+@FILES_ALONE
 @pytest.mark.parametrize("content", [b"", b"{}", b"\xff\xfe"])
 def test_a_damaged_description_does_not_stop_the_others(published_copy, content):
     (folder(published_copy) / "edition.json").write_bytes(content)
@@ -142,6 +160,7 @@ def test_a_damaged_table_is_told(published_copy):
     assert any("cannot be read" in f.message for f in findings)
 
 
+@FILES_ALONE
 def test_an_added_file_is_a_notice(published_copy):
     (folder(published_copy) / "~lock.register.xlsx#").write_text("x", encoding="utf-8")
     findings, wrong = found(published_copy, kind="notice")
@@ -149,6 +168,7 @@ def test_an_added_file_is_a_notice(published_copy):
     assert findings[0].where == "~lock.register.xlsx#"
 
 
+@FILES_ALONE
 def test_a_swapped_samples_file_is_named(published_copy):
     first, second = (published_copy.tow(season)["samples_path"] for season in (2009, 2014))
     content = (published_copy.archive / first).read_bytes()
@@ -161,6 +181,7 @@ def test_a_swapped_samples_file_is_named(published_copy):
     }
 
 
+@FILES_ALONE
 def test_a_missing_samples_file_is_named(published_copy):
     path = published_copy.tow(2014)["samples_path"]
     (published_copy.archive / path).unlink()
@@ -169,6 +190,7 @@ def test_a_missing_samples_file_is_named(published_copy):
     assert {f.where for f in findings} == {path}
 
 
+@FILES_ALONE
 def test_a_changed_tow_list_is_named_by_tow_and_fact(published_copy):
     tow = published_copy.tow(2014)
     file = published_copy.archive / "sleeplijsten" / "sleeplijst_2014.csv"
@@ -258,6 +280,7 @@ def test_a_fact_that_was_not_recorded_then_is_no_change_of_input(published):
     assert same_tows(heavier, edition.tables) == frozenset()
 
 
+@FILES_ALONE
 def test_an_archive_that_went_away_is_told(published_copy):
     published_copy.archive.rename(published_copy.archive.with_name("elsewhere"))
     findings, wrong = found(published_copy, kind="unchecked")
@@ -422,6 +445,7 @@ def test_an_edition_of_before_a_column_was_added_is_as_it_was_published(publishe
     assert len(fields) == len(sheets.SHEET_FIELDS) - 1
 
 
+@FILES_ALONE
 def test_a_sheet_that_says_something_else_is_told_whatever_its_seal(published_copy):
     path = min((published_copy.data / "editions").glob("[!.]*"))
     first, line, *rest = (path / "register.csv").read_bytes().split(b"\n")
@@ -447,6 +471,7 @@ def test_a_table_behind_the_lines_changed_and_sealed_anew_comes_out_otherwise(pu
     assert all(f"otherwise in {column}: " in told[table] for table, column in changed.items())
 
 
+@FILES_ALONE
 @pytest.mark.parametrize("edition", ["2014-1", "2014-2"])
 def test_a_text_that_says_something_else_is_told_whatever_its_seal(published_copy, edition):
     changes = {
@@ -465,6 +490,7 @@ def test_a_text_that_says_something_else_is_told_whatever_its_seal(published_cop
     assert {finding.where for finding in findings} == changes.keys()
 
 
+@FILES_ALONE
 def test_an_edition_that_is_gone_breaks_the_chain(published_copy):
     editions = published_copy.data / "editions"
     first = min((p for p in editions.glob("[!.]*")), key=lambda path: read_about(path).number or 0)
@@ -474,6 +500,7 @@ def test_an_edition_that_is_gone_breaks_the_chain(published_copy):
     assert findings
 
 
+@FILES_ALONE
 def test_a_link_in_place_of_a_file_is_told(published_copy, tmp_path):
     path = next((published_copy.data / "editions").glob("[!.]*")) / "register.csv"
     path.rename(tmp_path / "elsewhere.csv")

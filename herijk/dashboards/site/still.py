@@ -39,8 +39,7 @@ def still(figure: str, rows: pl.DataFrame, speech: Speech, caption: str) -> Mark
     spec["datasets"] = {"rows": seen.to_dicts()}
     svg = drawn.svg(spec, speech.language)
     bare = re.sub(r' (role|aria-[a-z]+)="[^"]*"', "", _renumbered(svg))
-    bare = PLACES.sub(lambda place: DIGITS.sub(r"\1", place[0]), bare)
-    bare = _marks_once(bare)
+    bare = _marks_once(DIGITS.sub(r"\1", bare))
     named = Markup('<svg role="img" aria-label="{}" ').format(caption)
     return Markup(bare.replace("<svg ", named, 1))  # noqa: S704 - Vega escapes texts
 
@@ -68,9 +67,8 @@ def _marks_once(svg: str) -> str:
 MARK: Final = re.compile(
     r'<path transform="translate\((?P<x>[-\d.]+),(?P<y>[-\d.]+)\)" (?P<look>d="[^>]*")/>'
 )
-PLACES: Final = re.compile(r' (?:d|transform|[xy][12]?)="[^"]*"')
-DIGITS: Final = re.compile(r"(\.\d\d)\d+")
-"""Where a picture says where something lies, and digits there that nobody can see."""
+DIGITS: Final = re.compile(r"(\.\d\d)\d+(?=[^<>]*>)")
+"""Digits within a tag that nobody can see: of where something lies, how wide or light it is."""
 
 
 def _shown(page: Page, chart: Chart) -> pl.DataFrame:

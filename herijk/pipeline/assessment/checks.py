@@ -19,7 +19,7 @@ from herijk.tables.severity import Severity
 Limit: TypeAlias = float | Mapping[str, float] | None
 """One number, one for each class (`H` men, `D` women), or no limit on this side."""
 
-UNSEEN: Final = 0.10
+LARGEST_UNSEEN_RATIO: Final = 0.10
 """Error of Cw that should not stay unseen (inferred): two tows of a boat tell one of some 6 %."""
 
 
@@ -367,7 +367,7 @@ CHECKS: Final = (
         "below it nobody can tell",
         "1",
         "inferred: two tows tell some 6 %; a note beyond 10 %, as for a boat with one tow",
-        highest=UNSEEN,
+        highest=LARGEST_UNSEEN_RATIO,
         severity="note",
     ),
     Check(

@@ -176,15 +176,12 @@ def _length_slope(boats: pl.DataFrame) -> dict[str, float]:
     x, y = (np.log(sorted_boats[name].to_numpy()) for name in ("waterline_length_m", "b_m_s"))
     if len(x) < FEWEST_LENGTHS or np.ptp(x) < 1e-9:
         return {}
-    # Plain least squares; scipy.stats, which has it, takes a second to import.
-    var_x, together, _, var_y = np.cov(x, y, bias=True).flat
-    slope = together / var_x
-    r = min(max(together / np.sqrt(var_x * var_y), -1.0), 1.0) if var_y > 0.0 else 0.0
-    freedom = len(x) - 2
-    half = float(t_quantile(freedom)) * np.sqrt((1.0 - r**2) * var_y / var_x / freedom)
+    (slope, _), residuals, *_ = np.polyfit(x, y, 1, full=True)
+    unexplained = float(residuals.sum())
+    half = t_quantile(len(x) - 2) * np.sqrt(unexplained / (len(x) - 2) / (len(x) * x.var()))
     return {
         "length_slope": float(slope),
         "length_slope_lo": float(slope - half),
         "length_slope_hi": float(slope + half),
-        "length_r2": float(r**2),
+        "length_r2": 1.0 - unexplained / (len(y) * float(y.var())) if y.var() > 0.0 else 0.0,
     }

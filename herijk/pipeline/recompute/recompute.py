@@ -9,6 +9,7 @@ method says what holds when.
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+from itertools import compress
 from typing import NamedTuple
 
 import numpy as np
@@ -184,15 +185,16 @@ def _with_expected_wind(
     Wind along the course adds more on one way than it takes off on the other, so that a tow whose
     wind nobody measured comes out too high.
     """
-    asking = [p for p in prepared if p.steps.wind.unmeasured == "expected"]
-    ratios = [p.wind_ratio(*_coefficients(p, shared)) for p in asking]
-    known = np.concatenate([np.zeros(0), *(ratio[np.isfinite(ratio)] for ratio in ratios)])
+    asks = [p.steps.wind.unmeasured == "expected" for p in prepared]
+    asking = compress(prepared, asks)
+    ratios = np.concatenate([[], *(p.wind_ratio(*_coefficients(p, shared)) for p in asking)])
+    known = ratios[np.isfinite(ratios)]
     if len(known) < FEWEST_WINDS:
         return prepared
     expected = ExpectedWind(float(known.mean()), float(known.std(ddof=1)))
     return [
-        replace(p, expected_wind=expected) if p.steps.wind.unmeasured == "expected" else p
-        for p in prepared
+        replace(p, expected_wind=expected) if asked else p
+        for p, asked in zip(prepared, asks, strict=True)
     ]
 
 

@@ -185,7 +185,7 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
         "ln_cw_q_cov": np.where(sure, errors.c0_q_covariance_kg_m / safe, 0.0)
         + by_log[0] * by_log[1] * files_sd**2,
         "other_ln_ratio": _other_ln_ratio(o),
-        "calibration_ln": np.where(o.calibrated, np.log(o.known_factor * y), np.nan),
+        "own_calibration_ln": np.where(o.calibrated, np.log(o.known_factor * y), np.nan),
         "gps_ln_ratio": np.where(has_gps & (not calibrated), gps, np.nan),
         "gps_sd": np.where(has_gps & (not calibrated), np.hypot(gps_sd, files_sd), np.nan),
     }
@@ -259,15 +259,15 @@ def _gps_ratio(o: Outcome) -> tuple[FloatArray, FloatArray, np.ndarray]:
 
 
 def _with_calibrations(rows: pl.DataFrame) -> pl.DataFrame:
-    """Adds `calibrated_ln` and `calibrated_sd`: what dGPS says of a log in its other tows.
+    """Adds what dGPS says of a log in its other tows: `others_calibration_ln` and its `_sd`.
 
     The mean of ln y over the tows of a season that are calibrated, and its standard deviation by
     the scatter within all such seasons; null where there are none.
     """
-    y = pl.col("calibration_ln")
+    y = pl.col("own_calibration_ln")
     within = (y - y.mean().over(GROUP)) ** 2
     spread, tows, groups = (
-        rows.drop_nulls("calibration_ln")
+        rows.drop_nulls("own_calibration_ln")
         .select(within.sum().alias("spread"), pl.len(), pl.struct(GROUP).n_unique().alias("groups"))
         .row(0)
     )
@@ -275,10 +275,10 @@ def _with_calibrations(rows: pl.DataFrame) -> pl.DataFrame:
         math.sqrt(spread / (tows - groups)) if tows - groups >= FEWEST_OF_TYPE else LOG_SCATTER
     )
     return rows.with_columns(
-        y.mean().over(GROUP).alias("calibrated_ln"),
+        y.mean().over(GROUP).alias("others_calibration_ln"),
         pl.when(y.count().over(GROUP) > 0)
         .then(scatter / y.count().over(GROUP).sqrt())
-        .alias("calibrated_sd"),
+        .alias("others_calibration_sd"),
     )
 
 

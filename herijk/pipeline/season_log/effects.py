@@ -129,7 +129,7 @@ def _log_prior(network: Network, group: int, settings: Settings) -> tuple[float,
     if not network.calibrated[group]:
         return settings.log_sd, 0.0
     first = int(np.flatnonzero(network.group == group)[0])
-    sd, mean = (network.numbers(f"calibrated_{name}")[first] for name in ("sd", "ln"))
+    sd, mean = (network.numbers(f"others_calibration_{name}")[first] for name in ("sd", "ln"))
     return float(sd), float(mean)
 
 

@@ -95,8 +95,8 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
             `boat_type` (may be null); `altered`, reported, since the line's previous tow;
             `declared_speed_m_s`; `gps_ln_ratio`, ln(mean GPS / log), null without, with `gps_sd`,
             its random part; `anchored`, calibrated on dGPS: no log error is left;
-            `calibrated_ln`, ln factor of the log by other tows that are, null without, with
-            `calibrated_sd` (both may be absent);
+            `others_calibration_ln`, ln factor of the log by other tows that are, null without, with
+            `others_calibration_sd` (both may be absent);
             `temperature_known`, of the water.
         settings: what is assumed beforehand.
 

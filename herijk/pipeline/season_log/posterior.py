@@ -302,8 +302,13 @@ def _step(problem: Problem, active: IntArray, now: _State, changes: bool) -> tup
 
 
 def _accelerated(places: list[FloatArray], steps: list[FloatArray]) -> FloatArray:
-    """Next place by Anderson's acceleration (1965) of the last steps."""
-    moved, changed = np.diff(places, axis=0), np.diff(steps, axis=0)
+    """Next place by Anderson's acceleration (1965) of the steps since one last grew.
+
+    On a plateau steps grow before they shrink; those of before it would lead round and round.
+    """
+    grew = np.flatnonzero(np.diff([np.abs(step).max() for step in steps]) >= 0.0)
+    first = int(grew[-1]) + 1 if len(grew) else 0
+    moved, changed = np.diff(places[first:], axis=0), np.diff(steps[first:], axis=0)
     if not len(moved):
         return np.asarray(places[-1] + steps[-1])
     weight = np.linalg.lstsq(changed.T, steps[-1], rcond=1e-10)[0]

@@ -10,7 +10,7 @@ from typing import Any, Final
 import jinja2
 import polars as pl
 
-from herijk.pipeline.assessment.checks import UNSEEN
+from herijk.pipeline.assessment.checks import LARGEST_UNSEEN_RATIO
 from herijk.pipeline.method.definition import COMPLETE
 from herijk.tables.row import Row
 from herijk.warehouse.editions.compare import (
@@ -93,9 +93,9 @@ def _facts(edition: Edition, language: Language) -> dict[str, Any]:
         "carried_from": about.carried_from,
         "members": None if ensemble is None else ensemble["member"].n_unique(),
         "unseen": language.count(
-            edition.register.filter(pl.col("unseen_error_ratio") > UNSEEN).height
+            edition.register.filter(pl.col("unseen_error_ratio") > LARGEST_UNSEEN_RATIO).height
         ),
-        "unseen_limit": round(100 * UNSEEN),
+        "unseen_limit": round(100 * LARGEST_UNSEEN_RATIO),
         "complete": edition.method is not None and edition.method.interval == COMPLETE,
     }
 

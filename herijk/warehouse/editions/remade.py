@@ -26,7 +26,7 @@ NEVER_TOWED: Final = "never_towed"
 FLAGS: Final = "flags"
 """Follow from what is known of other tows, which grows."""
 
-UNSEEN: Final = "unseen_error_ratio"
+UNSEEN_ERROR: Final = "unseen_error_ratio"
 """Follows from all tows, so it moves a little when one of them is gone. Editions of before do not
 have it: it is empty there in all rows."""
 
@@ -74,7 +74,7 @@ def _differing(
         store.read("listed_boats").select("fsn_no", *BOAT_FACTS), on="fsn_no", how="left"
     )
     said = [name for name in _recorded(lines) if name in now.columns]
-    moved = () if reasons.same_inputs else (UNSEEN,)
+    moved = () if reasons.same_inputs else (UNSEEN_ERROR,)
     known = [name for name in said if name not in (*LINE, "basis", *_OWN, *moved)]
     pairs = lines.select(*LINE, "basis", *known).join(
         now.select(*LINE, *known), on=LINE, how="left", suffix="_now"
@@ -119,7 +119,9 @@ def _unequal_columns(was: pl.DataFrame, now: pl.DataFrame, key: list[str]) -> li
 def _recorded(frame: pl.DataFrame) -> list[str]:
     """Columns that a table of an edition had when it was published."""
     return [
-        name for name in frame.columns if name != UNSEEN or frame[name].null_count() < frame.height
+        name
+        for name in frame.columns
+        if name != UNSEEN_ERROR or frame[name].null_count() < frame.height
     ]
 
 
