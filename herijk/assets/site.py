@@ -49,8 +49,7 @@ def make_site(store: Store, other: Executor) -> dg.MaterializeResult:
 def _reproducibility(store: Store) -> str:
     """The figure that says best whether a rebuild made things better, as a picture."""
     from herijk.dashboards.figures import png  # noqa: PLC0415 - Altair takes a second to import
-    from herijk.words.catalogue import speaker  # noqa: PLC0415
 
     with Views(store) as views:
-        picture = png("reproducibility", views.table("reproducibility"), speaker("nl"))
+        picture = png("reproducibility", views.table("reproducibility"), "nl")
     return f"![reproducibility](data:image/png;base64,{base64.b64encode(picture).decode()})"

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from herijk.cli.arguments import AsJson, as_json_text
-from herijk.words import tell
+from herijk.words import LANGUAGE, tell
 
 if TYPE_CHECKING:
     from herijk.library.curves import Estimate, Fit
@@ -37,7 +37,7 @@ def fit(
     if plot is not None:
         from herijk.dashboards.fit_plot import write_fit_plot
 
-        write_fit_plot(fitted, plot)
+        write_fit_plot(fitted, plot, LANGUAGE.get())
     if not as_json:
         typer.echo("\n".join([tell("{}: {} points", file, points.height), *_text(fitted, cw)]))
         return

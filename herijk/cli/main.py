@@ -321,7 +321,7 @@ def _plots(
 
     folder = asked or store.root / "audit" / file_name(name)
     try:
-        return write_audit_plots(store, report, folder)
+        return write_audit_plots(store, report, folder, LANGUAGE.get())
     except OSError as error:
         said = tell(
             "no plots, for {} cannot be written ({}); give another folder with --plots",

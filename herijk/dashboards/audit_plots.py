@@ -26,6 +26,9 @@ from herijk.words.catalogue import speaker
 
 SCATTERS: Final = ("a_weight", "b_weight", "cw_standard_weight", "b_speed", "cw_standard_speed")
 
+CAPTIONS: Final = {"history": "boat_history", "shared_bend": "types_homogeneity"}
+"""Figures that are called otherwise in the texts."""
+
 
 class Plot(NamedTuple):
     """A figure with its rows, and which method or type they are of, if they are of one.
@@ -39,10 +42,12 @@ class Plot(NamedTuple):
     beside: pl.DataFrame | None = None
 
 
-def write_audit_plots(store: Store, report: BoatAudit | TypesAudit, folder: Path) -> list[Path]:
+def write_audit_plots(
+    store: Store, report: BoatAudit | TypesAudit, folder: Path, language: str
+) -> list[Path]:
     """Writes the plots of a report of `warehouse.queries.audit`, replacing those of the same name.
 
-    Beside them `index.html` shows all.
+    In Dutch (nl) or English (en). Beside them `index.html` shows all.
 
     Returns:
         The plots; one without rows is left out.
@@ -51,17 +56,18 @@ def write_audit_plots(store: Store, report: BoatAudit | TypesAudit, folder: Path
         plots = (
             _of_boat(views, report) if isinstance(report, BoatAudit) else _of_types(views, report)
         )
-        files = [_write(plot, report, folder) for plot in plots if plot.rows.height]
+        files = [_write(plot, report, folder, language) for plot in plots if plot.rows.height]
     title = ", ".join(_about(report))
     pictures = Markup("\n").join(_PICTURE.format(f.name, f.stem) for f in files)
     with written_beside(folder / "index.html") as beside:
-        beside.write_text(_INDEX.format(title, title, pictures), encoding="utf-8")
+        beside.write_text(_INDEX.format(language, title, title, pictures), encoding="utf-8")
     return files
 
 
 _INDEX: Final = Markup(
-    '<!doctype html><html lang="en"><meta charset="utf-8"><title>{}</title>'
-    '<meta name="viewport" content="width=device-width, initial-scale=1"><h1>{}</h1>\n{}\n</html>\n'
+    '<!doctype html><html lang="{}"><meta charset="utf-8"><title>{}</title>'
+    '<meta name="viewport" content="width=device-width, initial-scale=1">'
+    '<body style="font-family:sans-serif"><h1>{}</h1>\n{}\n</body></html>\n'
 )
 _PICTURE: Final = Markup('<p><img src="{}" alt="{}" style="max-width:100%"></p>')
 
@@ -109,13 +115,17 @@ def _scatters(boats: pl.DataFrame, method: str) -> Iterator[Plot]:
         yield Plot(name, boats.filter(method=method), method, boats)
 
 
-def _write(plot: Plot, report: BoatAudit | TypesAudit, folder: Path) -> Path:
+def _write(plot: Plot, report: BoatAudit | TypesAudit, folder: Path, language: str) -> Path:
     """One SVG, its title saying of what and whether it was simulated; a boat stands out."""
-    say = speaker("en")
+    say = speaker(language)
     about = _about(report)
-    of = [plot.of] if plot.of in about else [*about, plot.of]
+    if plot.of in about:
+        of = [plot.of]
+    else:
+        of = [*about, *([say(f"method.{plot.of}")] if plot.of else [])]
+    caption = say(CAPTIONS.get(plot.figure, plot.figure))
     title = alt.Title(
-        ", ".join(filter(None, of)),
+        f"{caption} · {', '.join(of)}",
         subtitle=[say("simulated")] if report.simulated else [],
     )
     spec = FIGURES[plot.figure](plot.rows, say).properties(title=title).to_dict()
@@ -127,7 +137,7 @@ def _write(plot: Plot, report: BoatAudit | TypesAudit, folder: Path) -> Path:
             parameter["value"] = about[0]
     path = folder / f"{file_name(f'{plot.figure} {plot.of}')}.svg"
     with written_beside(path) as beside:
-        beside.write_text(drawn.svg(spec), encoding="utf-8")
+        beside.write_text(drawn.svg(spec, language), encoding="utf-8")
     return path
 
 

@@ -20,7 +20,7 @@ LOCALES: Final = {
 vl_convert.register_font_directory(str(fonts.FOLDER))
 
 
-def svg(spec: dict[str, Any], language: str = "en") -> str:
+def svg(spec: dict[str, Any], language: str) -> str:
     """A chart as SVG, its numbers as people of a language write them."""
     return str(
         vl_convert.vegalite_to_svg(

@@ -17,9 +17,9 @@ MARGIN = 0.05
 """The curve is drawn so much beyond the slowest and the fastest point."""
 
 
-def write_fit_plot(fit: Fit, path: Path) -> None:
-    """Writes the picture of a fitted curve."""
-    say = speaker("en")
+def write_fit_plot(fit: Fit, path: Path, language: str) -> None:
+    """Writes the picture of a fitted curve, in Dutch (nl) or English (en)."""
+    say = speaker(language)
     speeds = fit.points.speed_m_s[0]
     speed = np.linspace(speeds.min() * (1 - MARGIN), speeds.max() * (1 + MARGIN), BAND_POINTS)
     band = [{"speed_m_s": v, **fit.cw(float(v))._asdict()} for v in speed]
@@ -34,4 +34,4 @@ def write_fit_plot(fit: Fit, path: Path) -> None:
         alt.Chart(points).mark_point(size=90, filled=True, color=OKABE_ITO[0]).encode(x, y),
     ).properties(width=WIDTH, height=HEIGHT)
     with written_beside(path) as beside:
-        beside.write_text(drawn.svg(chart.to_dict()), encoding="utf-8")
+        beside.write_text(drawn.svg(chart.to_dict(), language), encoding="utf-8")

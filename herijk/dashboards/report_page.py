@@ -30,6 +30,7 @@ TO_SITE: Final = "../site/"
 
 _LATER: Final = Markup(LATER)  # noqa: S704 - a constant
 
+OF_A_CHECK: Final = ("check", "outcome", "quantity", "value")
 _COLUMNS: Final = {
     "tows": ("what", "tow_id", "fsn_no", "season"),
     "set_aside": ("what", "path", "tow_id", "line", "reason_code", "message"),
@@ -39,7 +40,7 @@ _COLUMNS: Final = {
         *("old_cw_kg_m", "new_cw_kg_m", "cw_ratio", "gain_in_two_hours_s"),
         *("exceeds_interval", "causes"),
     ),
-    "checks": ("check", "outcome", "quantity", "value"),
+    "checks": (*OF_A_CHECK, "number"),
 }
 
 
@@ -53,18 +54,19 @@ def report_pages(
     of_checks = pl.DataFrame(
         [
             [check.check, outcome_of(check), *found]
-            for check in checks
+            for check in sorted(checks, key=lambda check: check.passed)
             for found in ([("", "")] if check.passed else values_found(check))
         ],
-        schema=dict.fromkeys(_COLUMNS["checks"], pl.String),
+        schema=dict.fromkeys(OF_A_CHECK, pl.String),
         orient="row",
     )
+    counted = of_checks.group_by(OF_A_CHECK, maintain_order=True).len("number")
     frames = {
         "lines": changes.lines,
         "tows": changes.tows,
         "set_aside": changes.set_aside,
         "factors": changes.factors,
-        "checks": of_checks,
+        "checks": counted,
     }
     sections = [
         Section(f"report_{name}", tables=[Table(name, frame, _COLUMNS[name], f"report_{name}")])

@@ -220,6 +220,7 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "method.as-published": ("zoals gepubliceerd", "as published"),
     "method.as-published-2014": ("zoals gepubliceerd, 2014 eerst", "as published, 2014 at first"),
     "method.corrected-2013": ("gecorrigeerd 2013", "corrected 2013"),
+    "method.werkbank": ("werkbank", "workbench"),
     "method.rebased": ("herijkt", "re-based"),
     "method.rebased-2015": ("regels van 2015", "rules of 2015"),
     "code.complete": ("95 %-interval", "95 % interval"),

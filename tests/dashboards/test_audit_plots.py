@@ -1,6 +1,7 @@
 """The plots beside an audit: whole SVG files that say what they are and fetch nothing."""
 
 import shutil
+from itertools import product
 from xml.etree import ElementTree as ET
 
 import duckdb
@@ -15,7 +16,7 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 def drawn(store, folder, *names):
     report = audit(store, names)
-    return {path.stem: path.read_text() for path in write_audit_plots(store, report, folder)}
+    return {path.stem: path.read_text() for path in write_audit_plots(store, report, folder, "nl")}
 
 
 @pytest.fixture(scope="module")
@@ -39,23 +40,24 @@ def words(svg):
 
 
 def test_a_type_has_its_plots_before_and_after_correction(type_plots):
-    for figure in ("a_weight", "b_weight", "cw_standard_weight", "b_speed", "shared_bend"):
-        for method in ("as-published", "rebased-2015"):
-            assert f"Kuikensloep, Kromhoutwhaler, {method}" in words(
-                type_plots[f"{figure}-{method}"]
-            )
+    captions = {"a_weight": "A tegen gewicht", "b_speed": "B tegen opgegeven snelheid"}
+    methods = {"as-published": "zoals gepubliceerd", "rebased-2015": "regels van 2015"}
+    for (figure, caption), (method, name) in product(captions.items(), methods.items()):
+        title = f"{caption} · Kuikensloep, Kromhoutwhaler, {name}"
+        assert title in words(type_plots[f"{figure}-{method}"])
+    assert {f"shared_bend-{method}" for method in methods} <= type_plots.keys()
     assert {"eras-Kuikensloep", "repeats"} <= type_plots.keys()
 
 
 def test_a_plot_of_one_type_names_no_other(type_plots):
-    assert "Kuikensloep" in words(type_plots["eras-Kuikensloep"])
+    assert "Wijkt een tijdvak af? · Kuikensloep" in words(type_plots["eras-Kuikensloep"])
 
 
 def test_a_plot_says_of_what_it_is_and_that_it_is_simulated(type_plots):
     for name, svg in type_plots.items():
         said = words(svg)
-        assert any(text.startswith("Kuikensloep") for text in said), name
-        assert any(text.startswith("SIMULATED") for text in said), name
+        assert any("· Kuikensloep" in text for text in said), name
+        assert any(text.startswith("GESIMULEERD") for text in said), name
 
 
 def test_a_plot_leads_nowhere_else(type_plots):
@@ -86,7 +88,7 @@ def test_plots_of_two_methods_have_equal_axes(type_plots):
         [
             text
             for text in words(type_plots[f"b_weight-{method}"])
-            if text.replace(".", "").isdigit()
+            if text.replace(",", "").isdigit()
         ]
         for method in ("as-published", "rebased-2015")
     ]
@@ -94,7 +96,7 @@ def test_plots_of_two_methods_have_equal_axes(type_plots):
 
 
 def test_an_index_shows_every_plot(built, tmp_path):
-    files = write_audit_plots(built.store, audit(built.store, ["Kuikensloep"]), tmp_path)
+    files = write_audit_plots(built.store, audit(built.store, ["Kuikensloep"]), tmp_path, "en")
     page = (tmp_path / "index.html").read_text("utf-8")
     assert page.count("<img") == len(files) > 0
     assert f'src="{files[0].name}"' in page

@@ -223,6 +223,22 @@ def test_a_line_and_a_point_lead_to_the_boat(page):
     page.wait_for_function("old => document.getElementById('boat').value !== old", arg=number)
 
 
+def test_ends_that_are_typed_list_the_boats_inside(page):
+    """By keyboard, as dragging does; Esc clears them, and a boat of the list is shown above."""
+    figure = page.locator("figure[data-figure=b_weight]")
+    figure.scroll_into_view_if_needed()
+    figure.get_by_label("Gewicht [kg], van").press_sequentially("1000")
+    boats = figure.locator(".brush .to-boat")
+    boats.first.wait_for()
+    boat = boats.first.inner_text()
+    assert 0 < boats.count() < page.locator("#boat option").count()
+    boats.first.press("Enter")
+    assert page.locator("#boat").input_value() == boat
+    figure.get_by_label("Gewicht [kg], van").press("Escape")
+    page.wait_for_function("!document.querySelector('.brush .to-boat')")
+    assert figure.locator(".clear").is_hidden()
+
+
 def test_it_speaks_two_languages(page):
     assert page.locator("#state").inner_text().startswith("40 proeven")
     page.get_by_role("button", name="English").click()

@@ -24,7 +24,7 @@ from herijk.dashboards.figures import (
     tool,
     types,
 )
-from herijk.words.catalogue import Say
+from herijk.words.catalogue import Say, speaker
 
 alt.data_transformers.disable_max_rows()  # an archive of 1,000 tows has more than 5,000 rows
 
@@ -73,9 +73,9 @@ FIGURES: Final[dict[str, Figure]] = {
 """Every figure by name."""
 
 
-def png(name: str, frame: pl.DataFrame, say: Say) -> bytes:
+def png(name: str, frame: pl.DataFrame, language: str) -> bytes:
     """A figure as a picture, for places that show no Vega."""
-    svg = drawn.svg(FIGURES[name](frame, say).to_dict())
+    svg = drawn.svg(FIGURES[name](frame, speaker(language)).to_dict(), language)
     return bytes(vl_convert.svg_to_png(svg, scale=2.0))
 
 

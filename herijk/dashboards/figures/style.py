@@ -78,15 +78,22 @@ def number(channel: Any, field: str, title: str, zero: bool = False, **more: Any
     return channel(f"{field}:Q", title=title, scale=alt.Scale(zero=zero), **across | more)
 
 
+SCENARIO: Final = "werkbank"
+"""The method that is made on the workbench."""
+
+
 def methods_named(say: Say) -> str:
-    """A Vega expression that gives a method that ships its name in words."""
-    texts = {name: say(f"method.{name}") for name in shipped_methods()}
+    """A Vega expression that gives a method that ships, or the workbench's, its name in words."""
+    texts = {name: say(f"method.{name}") for name in (*shipped_methods(), SCENARIO)}
     return f"({json.dumps(texts)})[datum.value] || datum.value"
 
 
 def editions_legend(say: Say) -> alt.Legend:
-    """A legend of editions: the draft of a method that ships by its name in words."""
-    texts = {draft_name(m): f"{say('draft')}: {say(f'method.{m}')}" for m in shipped_methods()}
+    """A legend of editions: drafts by the name of their method in words."""
+    texts = {
+        draft_name(name): f"{say('draft')}: {say(f'method.{name}')}"
+        for name in (*shipped_methods(), SCENARIO)
+    }
     return alt.Legend(labelExpr=f"({json.dumps(texts)})[datum.value] || datum.value")
 
 

@@ -12,6 +12,7 @@ import polars as pl
 import polars.selectors as cs
 from pydantic import BaseModel, ConfigDict, StringConstraints
 
+from herijk.dashboards.figures.style import SCENARIO
 from herijk.dashboards.site.cells import DIGITS, KEPT, LONG
 from herijk.dashboards.workbench.form import controls
 from herijk.pipeline.errors import HerijkError
@@ -32,9 +33,6 @@ from herijk.warehouse.store.methods import KnownMethods
 from herijk.warehouse.store.store import Store
 
 Answer = dict[str, Any]
-
-SCENARIO: Final = "werkbank"
-"""Name of the scenario, as long as it has none of its own."""
 
 DEFAULT_BASE: Final = "rebased"
 DEFAULT_AGAINST: Final = "as-published"

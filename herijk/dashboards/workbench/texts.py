@@ -137,12 +137,16 @@ TEXTS: Final[Words] = {
     "in_types": ("Typen: zijn gelijke sloepen gelijk?", "Types: are equal boats equal?"),
     "season_first": ("of van seizoen", "or from season"),
     "season_last": ("tot en met", "up to and including"),
+    "boats_inside": ("Sloepen daarin:", "Boats inside:"),
     "in_types_note": (
-        "De gekozen proeven, Cw bij de standaardsnelheid van het type. De tabel toetst of sloepen "
-        "van een type één B kunnen delen, met van elke ploeg de nieuwste van die proeven: een "
-        "kleine p zegt van niet.",
-        "The chosen tows, Cw at the standard speed of the type. The table tests whether boats of a "
-        "type can share one B, with the newest of those tows of each crew: a small p says no.",
+        "De gekozen proeven, Cw bij de standaardsnelheid van het type. Sleep over een grafiek, of "
+        "vul eronder van en tot in (Esc wist ze), om te zien welke sloepen daar liggen; kies er "
+        "een om haar boven te zien. De tabel toetst of sloepen van een type één B kunnen delen, "
+        "met van elke ploeg de nieuwste van die proeven: een kleine p zegt van niet.",
+        "The chosen tows, Cw at the standard speed of the type. Drag over a chart, or fill in from "
+        "and to below it (Esc clears them), to see which boats lie there; choose one to see it "
+        "above. The table tests whether boats of a type can share one B, with the newest of those "
+        "tows of each crew: a small p says no.",
     ),
     "in_repeats": (
         "Herhaalbaarheid: dezelfde sloep nog eens",
@@ -196,8 +200,8 @@ TEXTS: Final[Words] = {
     "step.curve": ("Kromme", "Curve"),
     "step.assessment": ("Beoordeling", "Assessment"),
     # Options
-    "speed.source": ("Welk log", "Which log"),
-    "speed.correction": ("Fout van het log", "Error of the log"),
+    "speed.source": ("Welke log", "Which log"),
+    "speed.correction": ("Fout van de log", "Error of the log"),
     "speed.correction_ratio": (
         "Voorgeschreven correctie (0,06 is 6 %)",
         "Prescribed correction (0.06 is 6 %)",

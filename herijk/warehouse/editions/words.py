@@ -64,7 +64,7 @@ class Language:
 DUTCH: Final = Language(
     code="nl",
     causes={
-        "tow": "andere sleep telt",
+        "tow": "andere proef telt",
         "input": "gegevens van de sleep gewijzigd",
         "other_input": "gegevens van andere sleepproeven gewijzigd",
         "code": "programma gewijzigd",
@@ -72,7 +72,7 @@ DUTCH: Final = Language(
         "code_or_other_input": "programma of gegevens van andere sleepproeven gewijzigd",
         "method": "methode",
         "printed": "gedrukt register: methode niet vastgelegd",
-        "printed_and_tow": "gedrukt register met een andere sleep: methode niet vastgelegd",
+        "printed_and_tow": "gedrukt register met een andere proef: methode niet vastgelegd",
         "closed_form": "gedrukte A en B omgerekend met de logfactor",
         "unseparated": "methode met gegevens of programma, niet te scheiden",
         "unexplained": "onverklaard",

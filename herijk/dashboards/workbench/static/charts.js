@@ -1,4 +1,5 @@
 // Charts of an answer: drawn once, then given new rows, when they are in view.
+import { offerBrush } from "./brush.js";
 import { all, byId, root, state, wide } from "./page.js";
 import { outdate, updateSeen, watch } from "./seen.js";
 import { chooseBoat, downloadRows } from "./tables.js";
@@ -70,6 +71,7 @@ async function drawNow(figure) {
   view.addEventListener("click", (_, item) => {
     if (item?.datum?.fsn_no) chooseBoat(item.datum.fsn_no);
   });
+  if (spec.facet) offerBrush(figure, view, spec.spec.encoding, () => figureRows(figure));
   await mark(view).runAsync();
   const picture = place.querySelector("svg");
   picture.setAttribute("role", "img");
