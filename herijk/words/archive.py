@@ -335,6 +335,20 @@ ARCHIVE: Final[dict[str, str]] = {
         "geen kolom voor {} in de kop {!r}; noem hem met --{}"
     ),
     "All {} tows of {}": "Alle {} proeven van {}",
+    "{} has the very samples of {}; the run is left out.": (
+        "{} bevat precies de metingen van {}; de run telt niet mee."
+    ),
+    "{what}, and it looks like {unit}": "{what}, en het lijkt op {unit}",
+    "column '{column}' is at its highest value, {:.6g}, in {:.0f} % of the samples, as a load "
+    "cell at the end of its range": (
+        "kolom '{column}' staat bij {1:.0f} % van de metingen op zijn hoogste waarde, {0:.6g}, "
+        "zoals een krachtopnemer aan het eind van zijn bereik"
+    ),
+    "Columns '{}' and '{}' seem to be exchanged: the second moves {:.0f} times a second, as log1 "
+    "does, and the first {:.1f} times, as a receiver does.": (
+        "Kolommen '{}' en '{}' lijken verwisseld: de tweede verandert {:.0f} keer per seconde, "
+        "zoals log1, en de eerste {:.1f} keer, zoals een ontvanger."
+    ),
     "{} tows of season {}": "{} proeven van seizoen {}",
     "All {} tows of season {}": "Alle {} proeven van seizoen {}",
     "This tow": "Deze proef",

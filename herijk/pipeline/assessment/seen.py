@@ -85,7 +85,7 @@ class Seen:
         ln_cw = np.log(np.where(good, water, 1.0))
         level, bend, bend_sd = _line(batch, speed, ln_cw, good)
         ln_gps = _season_gps(batch, mean["log1_v"], good)
-        windy = good & (mean["wind_v"] > 0)
+        windy = good.copy()
         if "wind_measured" in batch.tows.columns:
             windy &= batch.tows["wind_measured"].to_numpy()[batch.tow]
         ahead = _both_ways(batch, mean["wind_x"] / np.where(good, mean["log1_v"], 1.0), windy) - 1.0

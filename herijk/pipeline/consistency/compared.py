@@ -15,7 +15,6 @@ from herijk.pipeline.consistency.eras import Era, median_interval, season_ranges
 from herijk.pipeline.consistency.lines import (
     ALL_TOWS,
     NEWEST,
-    standard_speed_m_s,
     tow_outliers,
 )
 from herijk.pipeline.consistency.observed import (
@@ -31,7 +30,7 @@ from herijk.pipeline.consistency.observed import (
 from herijk.pipeline.consistency.tow_speed import is_slow, speed_case
 from herijk.pipeline.quantiles import t_quantile
 from herijk.pipeline.steps.hull import hull_speed_m_s
-from herijk.tables.consistency import ComparedTows, HullSpeed
+from herijk.tables.consistency import HullSpeed
 from herijk.tables.frames import frame_of
 
 ROWED_RATIO: Final = (0.60, 0.70)
@@ -66,22 +65,15 @@ def compared_tows(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
     )
 
 
-def beside_their_type(observed: Observed) -> pl.DataFrame:
-    """The columns of `compared_tows` that follow from a tow and the standard speed of its type."""
-    others = ("newest", "expected_cw_kg_m", "deviation_sd", "outside", "candidates")
-    empty = ComparedTows.create_empty().drop(others)
-    parts = [_of_type(tows) for _, tows in observed.groups("method", "boat_type")]
-    return pl.concat([empty, *parts], how="diagonal")
-
-
 _FROM_CURVES: Final = (
     *("declared_speed_m_s", "weight_kg", "displacement_kg", "waterline_length_m"),
     *("a_kg_m", "b_m_s", "b_lo_m_s", "b_hi_m_s", "power_w"),
 )
 
 
-def _of_type(tows: Observed) -> pl.DataFrame:
-    speed = standard_speed_m_s(tows)
+def beside_their_type(tows: Observed) -> pl.DataFrame:
+    """The columns of `compared_tows` that follow from a tow and the standard speed of its type."""
+    speed = tows.column("standard_speed_m_s")
     cw = curve_anywhere(tows, speed)
     half = NORMAL_95 * np.sqrt(ln_cw_variance(tows, speed))
     a_lo, a_hi = _a_interval(tows)
@@ -94,7 +86,7 @@ def _of_type(tows: Observed) -> pl.DataFrame:
         "hull_speed_m_s": hull,
         "tow_hull_ratio": ratio,
         "b_hull_ratio": b / hull,
-        "standard_speed_m_s": np.full(len(cw), speed),
+        "standard_speed_m_s": speed,
         "cw_standard_kg_m": cw,
         "cw_standard_lo_kg_m": cw * np.exp(-half),
         "cw_standard_hi_kg_m": cw * np.exp(half),

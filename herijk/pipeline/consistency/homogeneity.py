@@ -6,6 +6,7 @@ pooled over the type. One row per boat and crew, its newest tow. B counts as fre
 method caps it.
 """
 
+from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -100,10 +101,15 @@ def type_homogeneity(observed: Observed) -> dy.DataFrame[TypeHomogeneity]:
     Returns:
         Rows of the table `type_homogeneity`; where nothing is claimed, `reason` says why.
     """
-    rows = [
+    groups = newest(observed).groups("method", "boat_type")
+    rows: list[Row] = [
         {"method": method, "boat_type": boat_type} | _tested(boats, boat_type)
-        for (method, boat_type), boats in newest(observed).groups("method", "boat_type")
+        for (method, boat_type), boats in groups
     ]
+    bent = [(row, boats) for row, (_, boats) in zip(rows, groups, strict=True) if "shared_q" in row]
+    priors = _bend_priors([(boats, row["run_sd_ratio"]) for row, boats in bent])
+    for (row, _), (_, between) in zip(bent, priors, strict=True):
+        row["between_b_sd_ratio"] = between / (2.0 * row["shared_q"] * (1.0 + row["shared_q"]))
     return frame_of(TypeHomogeneity, rows)
 
 
@@ -180,7 +186,7 @@ def _tested(boats: Observed, boat_type: str) -> Row:
 
 def _spread(boats: Observed, shared: float, sigma: float, f: float, dof: tuple[int, int]) -> Row:
     """Power, share of noise, and correlation of A and B by noise alone."""
-    speed = float(np.median(boats.column("declared_speed_m_s")))
+    speed = _middle_speed(boats)
     r = shared * speed**2
     facts: Row = {
         "standard_speed_m_s": speed,
@@ -205,7 +211,6 @@ def _spread(boats: Observed, shared: float, sigma: float, f: float, dof: tuple[i
         | {
             "shared_q": q,
             "shared_b_m_s": float(1.0 / np.sqrt(shared)),
-            "between_b_sd_ratio": _bend_prior(boats, speed, sigma)[1] / (2.0 * q * (1.0 + q)),
             "b_sd_ratio": float(b.std(ddof=1) / b.mean()) if several else None,
             "b_noise_sd_ratio": noise,
             "ab_correlation": _correlation(np.log(a), np.log(b)) if several else None,
@@ -245,14 +250,24 @@ def _noise_correlation(boats: Observed, q: float) -> float:
     return float((var_q / (1.0 + q) - cov) / np.sqrt(var_a * var_q))
 
 
-def _bend_prior(boats: Observed, speed_m_s: float, sigma: float) -> tuple[float, float]:
-    """Mean of q at the standard speed and its true standard deviation between boats (REML)."""
-    q, unit = q_at(boats, speed_m_s)
-    known = np.isfinite(q)
-    design = Design.of(np.ones(known.sum()), boats.table["fsn_no"].to_numpy()[known])
-    problem = Problem.of(design, q[known], unit[known] * sigma**2)
-    fit = mixed.fit(problem, (mixed.BOAT,))
-    return float(fit.beta[0]), fit.sd[0]
+def _middle_speed(boats: Observed) -> float:
+    """The median declared speed, at which bends of a type are compared."""
+    return float(np.median(boats.column("declared_speed_m_s")))
+
+
+def _bend_priors(types: Sequence[tuple[Observed, float]]) -> list[tuple[float, float]]:
+    """Mean of q at the middle speed of each type, and its true sd between boats (REML).
+
+    Args:
+        types: boats of a type, and the scatter of a run.
+    """
+    problems = []
+    for boats, sigma in types:
+        q, unit = q_at(boats, _middle_speed(boats))
+        known = np.isfinite(q)
+        design = Design.of(np.ones(known.sum()), boats.table["fsn_no"].to_numpy()[known])
+        problems.append(Problem.of(design, q[known], unit[known] * sigma**2))
+    return [(float(fit.beta[0]), fit.sd[0]) for fit in mixed.fit_all(problems, (mixed.BOAT,))]
 
 
 def pooled_curves(observed: Observed) -> pl.DataFrame:
@@ -265,32 +280,39 @@ def pooled_curves(observed: Observed) -> pl.DataFrame:
         Rows of the table `pooled_curves`, three per method and tow; of types of fewer than three
         boats, and boats of no type, only the own curve.
     """
+    groups = newest(observed).groups("method", "boat_type")
+    alike = {
+        key: (boats, float(boats.column("run_sd_ratio")[0]))
+        for key, boats in groups
+        if key[1] != UNKNOWN_TYPE and boats.table["fsn_no"].n_unique() >= FEWEST_BOATS
+    }
+    priors = dict(zip(alike, _bend_priors(list(alike.values())), strict=True))
     parts = [
-        frame
-        for (_, boat_type), boats in newest(observed).groups("method", "boat_type")
-        for frame in _poolings(boats, boat_type)
+        _pooled(boats, pooling, s)
+        for key, boats in groups
+        for pooling, s in _bends(boats, priors.get(key)).items()
     ]
     return pl.concat([PooledCurves.create_empty(), *parts])
 
 
-def _poolings(boats: Observed, boat_type: str) -> list[pl.DataFrame]:
-    speed = float(np.median(boats.column("declared_speed_m_s")))
-    own = boats.column("s_s2_m2")
-    bends = {OWN: own}
-    if boat_type != UNKNOWN_TYPE and boats.table["fsn_no"].n_unique() >= FEWEST_BOATS:
+def _bends(boats: Observed, prior: tuple[float, float] | None) -> dict[str, FloatArray]:
+    """The s of each boat of a type by what boats share; `prior` is None where they are too few."""
+    bends = {OWN: boats.column("s_s2_m2")}
+    if prior is not None:
+        mean, between = prior
+        speed = _middle_speed(boats)
         q, unit = q_at(boats, speed)
-        sigma = float(boats.column("run_sd_ratio")[0])
-        mean, between = _bend_prior(boats, speed, sigma)
-        noise = unit * sigma**2
+        noise = unit * boats.column("run_sd_ratio") ** 2
         share = between**2 / np.maximum(between**2 + noise, 1e-300)
         drawn = mean + np.where(np.isfinite(q), share * (q - mean), 0.0)
         ceiling = 0.999 / np.where(boats.points.used, boats.points.speed_m_s, 0.0).max(axis=1) ** 2
         bends[PARTIAL] = np.minimum(drawn / (1.0 + drawn) / speed**2, ceiling)
-        bends[SHARED] = np.full(len(own), shared_bend(boats))
-    return [_pooled(boats, pooling, s, speed) for pooling, s in bends.items()]
+        bends[SHARED] = np.full(len(q), shared_bend(boats))
+    return bends
 
 
-def _pooled(boats: Observed, pooling: str, s: FloatArray, speed_m_s: float) -> pl.DataFrame:
+def _pooled(boats: Observed, pooling: str, s: FloatArray) -> pl.DataFrame:
+    speed_m_s = _middle_speed(boats)
     a = height_given_bend(boats.points, s)
     declared = boats.column("declared_speed_m_s")
     q = curve.cw(1.0, s, np.full(len(s), speed_m_s)) - 1.0

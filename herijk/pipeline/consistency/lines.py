@@ -194,14 +194,16 @@ def _lines(
                 if across is not None:
                     line = _Line.of(across, quantity, y[mine], unit[mine] * run_variance[mine])
                     to_fit.setdefault(choice.components, []).append((row, names, line))
-    points: list[Row] = []
+    points: dict[str, list[object]] = {name: [] for name in TypeLinePoints.column_names()}
     for components, lines in to_fit.items():
         fits = mixed.fit_all([line.problem for *_, line in lines], components)
         for (row, names, line), fit in zip(lines, fits, strict=True):
-            row.update(line.row(fit))
+            ends = fit.line_at(line.across.at)
+            row.update(line.row(fit, ends))
             if (names["quantity"], names["explaining"]) in SLIDE_PAIRS:
-                points += [names | point for point in line.points(fit)]
-    return frame_of(TypeLines, rows), frame_of(TypeLinePoints, points)
+                for column, values in line.points(names, ends).items():
+                    points[column] += values
+    return frame_of(TypeLines, rows), TypeLinePoints.cast(pl.DataFrame(points))
 
 
 def _pairs(choice: Choice) -> Iterator[tuple[str, str]]:
@@ -224,7 +226,7 @@ class _Across:
             rounding.
         width: what x is divided by.
         names, places: class and x of each point that is drawn.
-        at: the same as rows of the design.
+        at: the same as rows of the design; the last row is the slope's.
     """
 
     design: Design
@@ -287,7 +289,8 @@ class _Shared:
             )
             names += [str(name)] * len(some)
             places += some.tolist()
-        across = _Across(design, width, names, places, np.concatenate(at))
+        slope = np.eye(design.x.shape[1])[-1:]
+        across = _Across(design, width, names, places, np.concatenate([*at, slope]))
         return counts | {"reason": ""}, across
 
 
@@ -314,10 +317,10 @@ class _Line:
         problem = Problem.of(across.design, y, variance)
         return cls(across, problem, float(np.sqrt(variance.mean())), level)
 
-    def row(self, fit: mixed.Fit) -> Row:
-        """The line itself and its spread, as in `type_lines`."""
+    def row(self, fit: mixed.Fit, ends: mixed.Coefficients) -> Row:
+        """The line itself and its spread, as in `type_lines`; `ends` are at `across.at`."""
         problem = self.problem
-        slope, lo, hi = (float(end[-1]) / self.across.width for end in fit.coefficients())
+        slope, lo, hi = (float(end[-1]) / self.across.width for end in ends)
         residual = problem.y - problem.design.x @ fit.beta
         spread = np.sqrt((residual**2).sum() / problem.rows_beyond)
         total = fit.total_misfit
@@ -331,13 +334,13 @@ class _Line:
             "noise_sd_ratio": self.noise / self.level,
         }
 
-    def points(self, fit: mixed.Fit) -> Iterator[Row]:
+    def points(self, names: Row, ends: mixed.Coefficients) -> dict[str, list[object]]:
         """The line with its interval at some places; for each class at the mean of its crews."""
-        ends = map(np.ndarray.tolist, fit.line_at(self.across.at))
-        for name, at, mean, lo, hi in zip(
-            self.across.names, self.across.places, *ends, strict=True
-        ):
-            yield {"crew_class": name, "x": at, "y": mean, "lo": lo, "hi": hi}
+        across = self.across
+        columns = {name: [value] * len(across.places) for name, value in names.items()}
+        columns |= {"crew_class": list(across.names), "x": list(across.places)}
+        value, lo, hi = (end[:-1].tolist() for end in ends)
+        return columns | {"y": value, "lo": lo, "hi": hi}
 
 
 def _seasons(season: IntArray, choice: Choice) -> IntArray | None:

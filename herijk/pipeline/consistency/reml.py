@@ -105,10 +105,10 @@ class Design:
         return np.argsort(self.boat, kind="stable")
 
     @cached_property
-    def qr(self) -> tuple[FloatArray, FloatArray]:
-        """X as orthogonal columns, (n, p), times a triangular matrix, (p, p)."""
+    def solver(self) -> FloatArray:
+        """Y times this are its fixed effects by plain least squares, (n, p)."""
         q, r = np.linalg.qr(self.x)
-        return q, r
+        return np.asarray(q @ np.linalg.inv(r).T)
 
     @cached_property
     def size(self) -> tuple[int, int, int, int]:
@@ -145,8 +145,7 @@ class Problem:
     @cached_property
     def plain(self) -> FloatArray:
         """Fixed effects by plain least squares, (p,)."""
-        q, r = self.design.qr
-        return np.asarray(np.linalg.solve(r, q.T @ self.y))
+        return self.y @ self.design.solver
 
     @cached_property
     def residual(self) -> FloatArray:
@@ -432,8 +431,10 @@ def _newton(
     both = felt[:, :, None] & felt[:, None, :]
     scaled = np.where(both, information / (size[:, :, None] * size[:, None, :]), 0.0)
     slope = np.where(felt, gradient, 0.0) / size
-    inverse = np.linalg.pinv(scaled, rcond=UNFELT, hermitian=True)
-    return np.asarray(-(inverse @ slope[..., None])[..., 0] / size)
+    value, vector = np.linalg.eigh(scaled)
+    told = np.abs(value) > UNFELT * np.abs(value).max(axis=-1, keepdims=True)
+    along = (vector.mT @ slope[..., None])[..., 0] * told / np.where(told, value, 1.0)
+    return np.asarray(-(vector @ along[..., None])[..., 0] / size)
 
 
 def _descend(

@@ -79,20 +79,27 @@ def speed_trend(observed: Observed) -> dy.DataFrame[SpeedTrend]:
         Rows of the table `speed_trend`.
     """
     boats = newest(observed)
-    rows = []
+    rows: list[Row] = []
+    to_fit: list[tuple[Row, Problem]] = []
     for (method,), fleet in boats.groups("method"):
         parts = [
             part for (boat_type,), part in fleet.groups("boat_type") if boat_type != UNKNOWN_TYPE
         ]
         named = [(str(part.table["boat_type"][0]), [part]) for part in parts]
-        rows += [
-            {"method": method, "boat_type": name} | _trend(some)
-            for name, some in [*named, (ALL_TYPES, parts)]
-        ]
+        for name, some in [*named, (ALL_TYPES, parts)]:
+            facts, problem = _trend(some)
+            rows.append({"method": method, "boat_type": name} | facts)
+            if problem is not None:
+                to_fit.append((rows[-1], problem))
+    fits = mixed.fit_all([problem for _, problem in to_fit], (mixed.BOAT,))
+    for (row, _), fit in zip(to_fit, fits, strict=True):
+        slope, lo, hi = (float(e[-1]) for e in fit.coefficients())
+        row |= {"slope": slope, "slope_lo": lo, "slope_hi": hi}
     return frame_of(SpeedTrend, rows)
 
 
-def _trend(parts: list[Observed]) -> Row:
+def _trend(parts: list[Observed]) -> tuple[Row, Problem | None]:
+    """How many tows a trend is of, and its problem; without one, why."""
     columns: list[tuple[FloatArray, ...]] = []
     boat: list[str] = []
     for number, part in enumerate(parts):
@@ -105,20 +112,19 @@ def _trend(parts: list[Observed]) -> Row:
         columns.append(tuple(v[known] for v in (q, x, variance, place)))
         boat += part.table["fsn_no"].filter(pl.Series(known)).to_list()
     if not columns:
-        return {"n": 0, "n_boats": 0, "reason": "few_boats"}
+        return {"n": 0, "n_boats": 0, "reason": "few_boats"}, None
     q, x, variance, place = (np.concatenate(c) for c in zip(*columns, strict=True))
     n_boats = len(set(boat))
     counts = {"n": len(q), "n_boats": n_boats}
     levels = np.unique(place)
     if n_boats < max(FEWEST_BOATS, len(levels) + 2):
-        return counts | {"reason": "few_boats"}
+        return counts | {"reason": "few_boats"}, None
     types = (place[:, None] == levels).astype(np.float64)
     centred = x - types @ np.linalg.lstsq(types, x)[0]
     if np.abs(centred).max() < 1e-9:
-        return counts | {"reason": "equal_values"}
-    problem = Problem.of(Design.of(np.column_stack([types, centred]), boat), q, variance)
-    slope, lo, hi = (float(e[-1]) for e in mixed.fit(problem, (mixed.BOAT,)).coefficients())
-    return counts | {"slope": slope, "slope_lo": lo, "slope_hi": hi, "reason": ""}
+        return counts | {"reason": "equal_values"}, None
+    design = Design.of(np.column_stack([types, centred]), boat)
+    return counts | {"reason": ""}, Problem.of(design, q, variance)
 
 
 def raced(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
@@ -166,43 +172,45 @@ def slow_tows(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
         raced(observed, results), on=["method", "tow_id"], how="left", maintain_order="left"
     )
     tows = Observed(table, observed.points)
-    parts = [
-        _slow_of_type(group, boat_type)
-        for (_, boat_type), group in tows.groups("method", "boat_type")
-    ]
-    empty = SlowTows.create_empty()
-    return pl.concat([empty, *(part.select(empty.columns) for part in parts)]).sort(
-        "method", "tow_id"
-    )
-
-
-def _slow_of_type(tows: Observed, boat_type: str) -> pl.DataFrame:
-    slow = is_slow(tows.table)
-    raced_speed = tows.table["raced_speed_m_s"].to_numpy().astype(np.float64)
+    slow = is_slow(table)
+    raced_speed = table["raced_speed_m_s"].to_numpy().astype(np.float64)
     beyond = np.isfinite(raced_speed) & ~counts_at(tows, raced_speed)
-    chosen = tows.take(np.flatnonzero(is_slow(tows.table, BORDERLINE_POWER_W) | beyond))
-    others = newest(tows.take(np.flatnonzero(~slow)))
-    known = boat_type != UNKNOWN_TYPE and others.table["fsn_no"].n_unique() >= FEWEST_OTHERS
+    chosen = tows.take(np.flatnonzero(is_slow(table, BORDERLINE_POWER_W) | beyond))
+    rowed, bend = _of_others(chosen, newest(tows.take(np.flatnonzero(~slow))))
     declared = chosen.column("declared_speed_m_s")
-    rowed = _rowed_speed(chosen, others) if known else np.full(len(declared), np.nan)
     raced_speed = chosen.column("raced_speed_m_s")
     columns = {"rowed_speed_m_s": rowed, "raced_power_w": _raced_power(chosen, raced_speed)}
     speeds = (1.1 * declared, 1.2 * declared, rowed, raced_speed)
     for at, speed in zip(COMPARED_AT, speeds, strict=True):
-        ends = np.full((3, len(declared)), np.nan)
-        if known and len(declared):
-            ends = _power_ratio(chosen, shared_bend(others), speed)
+        ends = _power_ratio(chosen, bend, speed)
         columns |= {f"power_ratio_{at}{end}": ends[i] for i, end in enumerate(ENDS)}
     ratio = declared / hull_speed_m_s(chosen.column("waterline_length_m"))
     case = speed_case(ratio)
     high = chosen.table["crew_class"].replace_strict(RACED_POWER_W, return_dtype=pl.Float64)
-    return chosen.table.with_columns(
-        *(pl.Series(k, v, pl.Float64).fill_nan(None) for k, v in columns.items()),
-        pl.Series("slow", is_slow(chosen.table), pl.Boolean),
-        pl.Series("tow_hull_ratio", ratio, pl.Float64),
-        pl.Series("speed_case", case, pl.String),
-        pl.Series("text_says", _text_says(case, raced_speed / declared), pl.String),
-    ).with_columns((pl.col("raced_power_w") > high).alias("raced_high"))
+    return (
+        chosen.table.with_columns(
+            *(pl.Series(k, v, pl.Float64).fill_nan(None) for k, v in columns.items()),
+            pl.Series("slow", is_slow(chosen.table), pl.Boolean),
+            pl.Series("tow_hull_ratio", ratio, pl.Float64),
+            pl.Series("speed_case", case, pl.String),
+            pl.Series("text_says", _text_says(case, raced_speed / declared), pl.String),
+        )
+        .with_columns((pl.col("raced_power_w") > high).alias("raced_high"))
+        .select(SlowTows.column_names())
+        .sort("method", "tow_id")
+    )
+
+
+def _of_others(chosen: Observed, others: Observed) -> tuple[FloatArray, FloatArray]:
+    """Of a type's other boats: the speed they row and the s they share; NaN where too few."""
+    rowed, bend = np.full((2, chosen.table.height), np.nan)
+    by_type = dict(others.rows_by("method", "boat_type"))
+    for key, rows in chosen.rows_by("method", "boat_type"):
+        own = others.take(by_type.get(key, np.zeros(0, np.int64)))
+        if key[1] != UNKNOWN_TYPE and own.table["fsn_no"].n_unique() >= FEWEST_OTHERS:
+            rowed[rows] = _rowed_speed(chosen.table["crew_class"][rows], own)
+            bend[rows] = shared_bend(own)
+    return rowed, bend
 
 
 def speed_case(tow_hull_ratio: FloatArray) -> list[str]:
@@ -227,17 +235,16 @@ def _raced_power(tows: Observed, speed_m_s: FloatArray) -> FloatArray:
     return np.asarray(power_per_rower_w(cw, speed_m_s, tows.column("rowers")), dtype=np.float64)
 
 
-def _rowed_speed(slow: Observed, others: Observed) -> FloatArray:
+def _rowed_speed(crew_class: pl.Series, others: Observed) -> FloatArray:
     """Median declared speed of the others of the same crew class, NaN without any."""
     median = others.table.group_by("crew_class").agg(pl.col("declared_speed_m_s").median())
     by_class = dict(median.iter_rows())
-    return np.array([by_class.get(c, np.nan) for c in slow.table["crew_class"]], dtype=np.float64)
+    return np.array([by_class.get(c, np.nan) for c in crew_class], dtype=np.float64)
 
 
-def _power_ratio(tows: Observed, s_s2_m2: float, speed_m_s: FloatArray) -> FloatArray:
+def _power_ratio(tows: Observed, s_s2_m2: FloatArray, speed_m_s: FloatArray) -> FloatArray:
     """Power by the own curve / by the shared bend with its interval, shape (3, rows)."""
-    s = np.full(len(speed_m_s), s_s2_m2)
-    shared = curve.cw(height_given_bend(tows.points, s), s, speed_m_s)
+    shared = curve.cw(height_given_bend(tows.points, s_s2_m2), s_s2_m2, speed_m_s)
     own_s, q = tows.column("s_s2_m2"), tows.column("q")
     own = curve.cw(tows.column("c0_kg_m") / (1.0 + q), own_s, speed_m_s)
     known = np.isfinite(shared) & np.isfinite(own)

@@ -169,4 +169,4 @@ def _errors(
 
 
 def _stream(seed: int, key: str) -> np.random.Generator:
-    return np.random.default_rng([seed, *key.encode()])
+    return np.random.default_rng(np.array([seed, *key.encode()], dtype=np.uint32))

@@ -270,6 +270,11 @@ REASONS: Final[dict[str, Reason]] = {
         "A channel holds one value for so long that the instrument must have been stuck.",
         "Leave the run out in `gebruik runs`.",
     ),
+    "saturated_force": Reason(
+        "The force stays at its highest value: the load cell or its amplifier was at the end of "
+        "its range, and what is above it is lost.",
+        "Leave the run out in `gebruik runs`.",
+    ),
     "implausible_speed": Reason(
         "The speeds do not fit the declared speed of the tow.",
         "Correct `roeisnelheid`, or look whether this is the right file.",

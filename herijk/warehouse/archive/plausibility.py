@@ -38,6 +38,14 @@ SPEED_SPIKE_RATIO: Final = 0.3
 AROUND_S: Final = 11
 """The speed around a sample: the median over so many seconds of each one's median."""
 SPEEDS_AGREE_RATIO: Final = (0.6, 1.4)
+FOLLOWS_RATIO: Final = 0.1
+"""Spread over the runs of what a log or GPS is times log 1; wind out and back differs far more."""
+MOVES_AS_A_LOG_HZ: Final = 5.0
+HELD_AS_A_FIX_HZ: Final = 2.0
+"""Changes of value a second, at least of a log and at most of a receiver of one fix a second."""
+SATURATED_SHARE: Final = 0.02
+SATURATED_TIMES: Final = 3.0
+"""Samples of a force at its highest value: of all, and times those at the next value below it."""
 RESISTANCE_KG_M: Final = (2.0, 500.0)
 """Mean force over intended speed squared; sloops lie between 15 and 60."""
 FORCE_SPIKE_RATIO: Final = (-3.0, 5.0)
@@ -169,8 +177,11 @@ def judge_samples(samples: pl.DataFrame, tow: Mapping[str, Any], runs: pl.DataFr
         faults += short
         if not any(fault.lost == "run" for fault in short):
             whole.append(run)
+    whole, copies = _without_copies(whole, tow)
+    faults += copies
     _check_left(whole, selected, faults)
     _check_mix_ups(whole, tow)
+    _check_log2_and_gps(whole, tow)
     _check_speed_unit(whole, tow)
     kept: list[_Run] = []
     usual_kg_m = _usual_resistance_kg_m(whole)
@@ -183,6 +194,26 @@ def judge_samples(samples: pl.DataFrame, tow: Mapping[str, Any], runs: pl.DataFr
     _check_left(mended_gps, selected, faults)
     lost = [fault.run for fault in faults if fault.lost == "run" and fault.run is not None]
     return Judged(_with_changes(samples, lost, found, mended_gps), tuple(faults))
+
+
+def _without_copies(runs: list[_Run], tow: Mapping[str, Any]) -> tuple[list[_Run], list[Fault]]:
+    """Of runs with the very same samples, the one at its intended speed is what was measured."""
+    kept: dict[bytes, _Run] = {}
+    faults = []
+    for run in sorted(runs, key=_off_target):
+        content = b"".join(run.channels[key].tobytes() for key in ("log1", "force"))
+        other = kept.setdefault(content, run)
+        if other is not run:
+            message = say(
+                "{} has the very samples of {}; the run is left out.", run.name, other.name.lower()
+            )
+            faults.append(_cost("samples_listed_twice", message, run, tow, 0, "run", run.seconds))
+    return sorted(kept.values(), key=lambda run: run.number), faults
+
+
+def _off_target(run: _Run) -> tuple[float, int]:
+    speed = _median(run.channels["log1"])
+    return abs(speed / run.intended_m_s - 1.0) if np.isfinite(speed) else np.inf, run.number
 
 
 def _check_left(kept: list[_Run], selected: int, faults: list[Fault]) -> None:
@@ -393,7 +424,10 @@ def _check_mix_ups(runs: list[_Run], tow: Mapping[str, Any]) -> None:
             tow,
             0,
         )
+    follows = {key for key in ("log2", "gps") if key in typical and _follows_log(runs, key)}
     for one, other in combinations(typical, 2):
+        if other == "wind_speed" and one in follows:  # in another unit: no wind follows the boat
+            continue
         exchanged = {**typical, one: typical[other], other: typical[one]}
         if (one in wrong or other in wrong) and not _implausible(exchanged, intended):
             raise _fault(
@@ -410,6 +444,37 @@ def _check_mix_ups(runs: list[_Run], tow: Mapping[str, Any]) -> None:
                 tow,
                 1 - runs[0].first_line,
             )
+
+
+def _follows_log(runs: list[_Run], key: str) -> bool:
+    """Whether a column is the same times log 1 in every run."""
+    ratio = [_median(run.channels[key]) / _median(run.channels["log1"]) for run in runs]
+    return bool(np.ptp(ratio) <= FOLLOWS_RATIO * abs(np.median(ratio)))
+
+
+def _check_log2_and_gps(runs: list[_Run], tow: Mapping[str, Any]) -> None:
+    """A receiver gives a fix a second, held in between; a log moves as log 1 does."""
+    if not {"log2", "gps"} <= set(runs[0].channels):
+        return
+    log1, log2, gps = (
+        np.median([np.count_nonzero(np.diff(run.channels[key])) / run.seconds for run in runs])
+        for key in ("log1", "log2", "gps")
+    )
+    if min(log1, gps) > MOVES_AS_A_LOG_HZ and 0.1 < log2 < HELD_AS_A_FIX_HZ:
+        raise _fault(
+            "swapped_columns",
+            say(
+                "Columns '{}' and '{}' seem to be exchanged: the second moves {:.0f} times a "
+                "second, as log1 does, and the first {:.1f} times, as a receiver does.",
+                _WORDS["log2"],
+                _WORDS["gps"],
+                gps,
+                log2,
+            ),
+            runs[0],
+            tow,
+            1 - runs[0].first_line,
+        )
 
 
 def _speed_ratio(runs: list[_Run]) -> float:
@@ -603,7 +668,7 @@ def _judge_whole(
     run: _Run, tow: Mapping[str, Any], faults: list[Fault]
 ) -> tuple[_Run | None, list[Fault]]:
     """Stuck instruments and means that cannot be: they cost the run, or a spare channel in it."""
-    for judge in (_stuck, _unlikely_mean):
+    for judge in (_stuck, _unlikely_mean, _saturated):
         for key in tuple(run.channels):
             if not np.isfinite(run.channels[key]).any():
                 continue
@@ -703,7 +768,37 @@ def _unlikely_mean(run: _Run, key: str) -> Said | None:
         high,
         column=_WORDS[key],
     )
+    likely = [name for name, ratio in _SPEED_UNITS.items() if 0.9 < mean / (ratio * log1) < 1.1]
+    if key in SPARE and likely:
+        what = say("{what}, and it looks like {unit}", what=what, unit=likely[0])
     return reason_code, what, 0
+
+
+_SPEED_UNITS: Final = {"km/h": 3.6, "kn": 1.9438}
+"""Other units of speed in which people have a log or GPS, times m/s."""
+
+
+def _saturated(run: _Run, key: str) -> Said | None:
+    """A force that stays at its highest value: the load cell was at the end of its range."""
+    values = run.channels[key]
+    if key != "force":
+        return None
+    highest = np.nanmax(values)
+    at_end = values == highest
+    share = at_end.sum() / len(values)
+    if share < SATURATED_SHARE:
+        return None
+    next_below = values == np.nanmax(values, where=~at_end & np.isfinite(values), initial=-np.inf)
+    if at_end.sum() <= SATURATED_TIMES * next_below.sum():
+        return None  # written in coarse steps
+    what = say(
+        "column '{column}' is at its highest value, {:.6g}, in {:.0f} % of the samples, as a load "
+        "cell at the end of its range",
+        highest,
+        100.0 * share,
+        column=_WORDS[key],
+    )
+    return "saturated_force", what, int(at_end.argmax())
 
 
 def _without_stuck_gps(runs: list[_Run], tow: Mapping[str, Any]) -> tuple[list[_Run], list[Fault]]:

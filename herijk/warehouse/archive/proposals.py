@@ -6,7 +6,7 @@ written as a comment, with its choices.
 
 import json
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -141,10 +141,20 @@ def _of_decimals(path: str, values: Any, _: int) -> Iterator[Proposal]:
 
 
 def _of_samples(_: str, values: Any, season: int) -> Iterator[Proposal]:
-    """Columns that a samples file lacks: the one column that can be it, or declared absent."""
+    """Columns that a samples file lacks: the one column that can be it, or declared absent.
+
+    A file without a column that can be log 1 or the force is no samples file: notes, say.
+    """
     keys, header = values.get("keys", ()), values.get("header", ())
     if not season or not set(keys) <= set(_SAMPLES):
         return
+    offered = list(_of_columns(keys, header, season))
+    if {"log1", "force"} <= set(keys) and all(p.section == "absent" for p in offered):
+        return
+    yield from offered
+
+
+def _of_columns(keys: Sequence[str], header: Sequence[Any], season: int) -> Iterator[Proposal]:
     free, unmatched = list(header), list[str]()
     if keys == ("run",):  # each of these tells the runs
         is_one = len(header) == 1

@@ -45,13 +45,13 @@ def same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
         .group_by("tow_id", "run", maintain_order=True)
         .agg(pl.col(_CONTENT).sum())
         .pipe(_with_content)
+        .filter(pl.col("content").is_duplicated())
         .join(facts, on="tow_id")
         .sort("tow_date", "tow_id", "run")
     )
     faults = [
         fault
         for _, same in runs.group_by("content", maintain_order=True)
-        if same.height > 1
         for fault in _faults(same)
     ]
     rows = frame_of(Faults, map(dataclasses.asdict, faults))

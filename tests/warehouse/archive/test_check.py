@@ -91,8 +91,8 @@ def test_files_that_nobody_reads_are_listed(archive: Archive) -> None:
 
 def test_extra_runs_are_named_and_a_plan_takes_them(archive: Archive) -> None:
     lines = (archive.root / FIRST).read_text("utf-8").split("\n")
-    again = [f"7{line[1:]}" for line in lines if line.startswith("1;")]
-    again += [f"8{line[1:]}" for line in lines if line.startswith("4;")]
+    again = [f"7{line[1:]}" for line in reversed(lines) if line.startswith("1;")]
+    again += [f"8{line[1:]}" for line in reversed(lines) if line.startswith("4;")]
     archive.edit(FIRST, lambda t: t + "\n".join([*again, ""]))
     (cause,) = check_report(archive.root, check_archive(archive.root), "en").causes
     assert cause.reason_code == "run_not_planned"

@@ -39,6 +39,24 @@ def scaled(column: int, factor: float, first: int = 2, last: int = LAST) -> Spoi
     return lambda a: a.cells(column, change, first, last)
 
 
+def clipped(column: int, most: float, first: int, last: int) -> Spoil:
+    def change(cell: str, line: int) -> str:
+        return cell if float(cell.replace(",", ".")) < most else f"{most:.2f}".replace(".", ",")
+
+    return lambda a: a.cells(column, change, first, last)
+
+
+def run_again(run: int, instead_of: int) -> Spoil:
+    def change(content: list[str]) -> list[str]:
+        rows = content[line_of(run) - 1 : line_of(run, ROWS - 1)]
+        again = [f"{instead_of};{row.split(';', 1)[1]}" for row in rows]
+        return [
+            *content[: line_of(instead_of) - 1], *again, *content[line_of(instead_of, ROWS - 1) :]
+        ]  # fmt: skip
+
+    return lines(change)
+
+
 def several(*spoils: Spoil) -> Spoil:
     def run(a: Archive) -> None:
         for spoil in spoils:
@@ -128,7 +146,9 @@ TOW_CASES: dict[str, tuple[Spoil, str, str, int | None]] = {
     "force stuck": (constant(4, "230", line_of(2, 50), line_of(2, 149)), "stuck_channel", FIRST, line_of(2, 50)),
     "cups stuck": (constant(5, "3,5", line_of(2, 50), line_of(2, 249)), "stuck_channel", FIRST, line_of(2, 50)),
     "vane stuck": (constant(6, "10", line_of(2, 50), line_of(2, 449)), "stuck_channel", FIRST, line_of(2, 50)),
-    "gps stuck over runs": (constant(3, "2,30", line_of(1), line_of(2, ROWS - 1)), "stuck_channel", FIRST, line_of(2)),
+    "force at the end of its range": (clipped(4, 225.0, line_of(2), line_of(2, ROWS - 1)), "saturated_force", FIRST, line_of(2)),
+    "gps under log2": (swap_header("log2 [m/s]", "gps [m/s]"), "swapped_columns", FIRST, 1),
+    "a run twice": (run_again(2, 3), "samples_listed_twice", FIRST, line_of(3)),
     "gps stuck while the speed changes": (
         several(
             constant(3, "2,30", line_of(1), line_of(1, ROWS - 1)),
@@ -196,6 +216,7 @@ COSTS = {
         [
             *("run missing", "cut in mid-row", "log1 drops out", "sign of force in a run"),
             *("log1 stuck", "force stuck", "cups stuck", "vane stuck"),
+            *("force at the end of its range", "a run twice"),
         ],
         RUN,
     ),
@@ -204,7 +225,7 @@ COSTS = {
             *("run short", "too many fields", "blank line", "letters", "empty gps", "log2 low"),
             *("carriage return in a cell", "overflow in 32 bits", "gps drops out", "gps off"),
             *("force spike", "force pushes", "wind too strong", "angle too large"),
-            *("a negative second", "log2 stuck", "gps stuck over runs"),
+            *("a negative second", "log2 stuck"),
             "gps stuck while the speed changes",
         ],
         SECONDS,
