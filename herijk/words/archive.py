@@ -349,6 +349,9 @@ ARCHIVE: Final[dict[str, str]] = {
         "Kolommen '{}' en '{}' lijken verwisseld: de tweede verandert {:.0f} keer per seconde, "
         "zoals log1, en de eerste {:.1f} keer, zoals een ontvanger."
     ),
+    "{} Or are weight and length in its row of the list not this boat's?": (
+        "{} Of zijn gewicht en lengte in de lijst niet van deze sloep?"
+    ),
     "{} tows of season {}": "{} proeven van seizoen {}",
     "All {} tows of season {}": "Alle {} proeven van seizoen {}",
     "This tow": "Deze proef",
