@@ -37,8 +37,8 @@ def certificate(
     """The certificate of a boat, a page per crew; or of all boats of an edition in one file."""
     from herijk.dashboards.documents.certificate import certificates
     from herijk.warehouse.queries.answers import current_edition
-    from herijk.warehouse.queries.boats import the_boat
     from herijk.warehouse.queries.views import Views
+    from herijk.warehouse.store.boats import the_boat
     from herijk.warehouse.store.store import Store
 
     store = Store(data)

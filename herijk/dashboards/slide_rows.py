@@ -7,8 +7,8 @@ import polars as pl
 
 from herijk.dashboards.figures.slides import METHODS, OF_2014
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
-from herijk.warehouse.queries.boats import the_boat
 from herijk.warehouse.queries.views import Views
+from herijk.warehouse.store.boats import the_boat
 
 PAIR: Final = ("kromhout", "kuiken")
 """The two types of the presentation; where an archive has others, its two largest."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from functools import cache
-from typing import Final
+from typing import Final, TypeAlias
 
 from markupsafe import Markup, escape
 
@@ -47,3 +47,7 @@ def duration(seconds: float) -> str:
     """A time rowed as people say it: 1:55:11."""
     minutes, rest = divmod(round(seconds), 60)
     return f"{minutes // 60}:{minutes % 60:02d}:{rest:02d}"
+
+
+Headline: TypeAlias = Callable[[Speech], str]
+"""What a section shows in one sentence, in the language of a page."""

@@ -6,8 +6,8 @@ import re
 import polars as pl
 import pytest
 
+from herijk.dashboards import headlines
 from herijk.dashboards.answer import Answer, curve_caption, told
-from herijk.dashboards.site import headlines
 from herijk.dashboards.speech import Speech, duration
 
 NL, EN = Speech("nl"), Speech("en")

@@ -6,9 +6,9 @@ import numpy as np
 import polars as pl
 import pytest
 
+from herijk.pipeline.hull import hull_speed_m_s
 from herijk.pipeline.method.definition import parse_method, shipped_method
 from herijk.pipeline.recompute.recompute import recompute
-from herijk.pipeline.steps.hull import hull_speed_m_s
 from herijk.pipeline.studies.tool_options import TICKS, option_curves, tick_effects
 from herijk.simulate import WorldSettings
 from tests.worlds import measure

@@ -8,8 +8,8 @@ from typing import Any, Final
 
 import polars as pl
 
+from herijk.dashboards import headlines
 from herijk.dashboards.documents import pdf
-from herijk.dashboards.site import headlines
 from herijk.dashboards.speech import Speech
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.register.register import draft_name

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 import polars as pl
 
-from herijk.dashboards.site import headlines
+from herijk.dashboards import headlines
 from herijk.dashboards.site.downloads import files_of
 from herijk.dashboards.site.parts import (
     Chart,

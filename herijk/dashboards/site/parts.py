@@ -6,19 +6,16 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, TypeAlias
+from typing import Any
 
 import polars as pl
 from markupsafe import Markup
 
 from herijk.dashboards.answer import Answer
-from herijk.dashboards.speech import Speech
+from herijk.dashboards.speech import Headline, Speech
 from herijk.pipeline.register.register import draft_name
 from herijk.warehouse.build.studies import STUDIED_METHOD
 from herijk.warehouse.queries.chosen_tows import ALL, NEWEST, choices_of, spoken_range
-
-Headline: TypeAlias = Callable[[Speech], str]
-"""What a section shows in one sentence, in the language of a page."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +104,7 @@ class Section:
         files: path of a file to download, and its name, which is data.
         empty: key of what is said where there is nothing to show.
         folded: whether it opens only when asked for.
-        headline: what it shows, in each language; see `dashboards.site.headlines`.
+        headline: what it shows, in each language; see `dashboards.headlines`.
         terms: key of a word and key of its meaning.
         key_figures: key of what is counted, and the figure.
         prose: a text to read, as HTML.

@@ -7,7 +7,6 @@ import polars as pl
 
 from herijk.dashboards.site.parts import (
     Chart,
-    Headline,
     Page,
     Section,
     Table,
@@ -16,7 +15,7 @@ from herijk.dashboards.site.parts import (
     race_path,
     with_page,
 )
-from herijk.dashboards.speech import Speech
+from herijk.dashboards.speech import Headline, Speech
 from herijk.warehouse.queries.answers import newest_edition, race_chances
 from herijk.warehouse.queries.views import Views
 

@@ -9,7 +9,6 @@ import polars as pl
 from herijk.dashboards.figures.slides import EXPLAINING, QUANTITIES
 from herijk.dashboards.site.parts import (
     Chart,
-    Headline,
     Page,
     Section,
     Select,
@@ -26,6 +25,7 @@ from herijk.dashboards.slide_rows import (
     methods_of,
     pair_of_types,
 )
+from herijk.dashboards.speech import Headline
 from herijk.warehouse.queries.chosen_tows import ALL, with_choices
 from herijk.warehouse.queries.views import Views
 from herijk.words import LANGUAGES

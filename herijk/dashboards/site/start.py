@@ -4,11 +4,10 @@ from collections.abc import Sequence
 
 import polars as pl
 
+from herijk.dashboards import headlines
 from herijk.dashboards.report import in_short
-from herijk.dashboards.site import headlines
 from herijk.dashboards.site.parts import (
     Chart,
-    Headline,
     Page,
     Section,
     Table,
@@ -16,7 +15,7 @@ from herijk.dashboards.site.parts import (
     methods_select,
 )
 from herijk.dashboards.site.prose import guide_links
-from herijk.dashboards.speech import Speech
+from herijk.dashboards.speech import Headline, Speech
 from herijk.warehouse.queries.answers import newest_edition
 from herijk.warehouse.queries.change_report import last_changes
 from herijk.warehouse.queries.views import Views

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import polars as pl
 
-from herijk.dashboards.site import headlines
+from herijk.dashboards import headlines
 from herijk.dashboards.site.parts import (
     Chart,
     Page,

@@ -14,7 +14,7 @@ import polars as pl
 from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.channels import BACK, OUT
-from herijk.pipeline.steps.hull import AIR_DENSITY_KG_M3, front_area_m2
+from herijk.pipeline.hull import AIR_DENSITY_KG_M3, front_area_m2
 
 POWER_W: Final = {"H": 80.0, "D": 47.0}
 """Middle of what a rower gives at the declared speed (Sleepproef 2017, "Sleepsnelheid")."""

@@ -28,8 +28,8 @@ from herijk.pipeline.consistency.observed import (
     newest,
 )
 from herijk.pipeline.consistency.tow_speed import is_slow, speed_case
+from herijk.pipeline.hull import hull_speed_m_s
 from herijk.pipeline.quantiles import t_quantile
-from herijk.pipeline.steps.hull import hull_speed_m_s
 from herijk.tables.consistency import HullSpeed
 from herijk.tables.frames import frame_of
 

@@ -23,8 +23,8 @@ from herijk.pipeline.consistency.observed import (
 )
 from herijk.pipeline.consistency.reml import Design, Problem
 from herijk.pipeline.curve import VALID_RATIO
+from herijk.pipeline.hull import hull_speed_m_s
 from herijk.pipeline.races.race import mean_speed_m_s, power_per_rower_w
-from herijk.pipeline.steps.hull import hull_speed_m_s
 from herijk.tables.consistency import SlowTows, SpeedTrend
 from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of

@@ -20,6 +20,7 @@ from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.pipeline.choice import first_largest
+from herijk.pipeline.hull import front_area_m2, hull_speed_m_s, still_air_coefficient_kg_m
 from herijk.pipeline.method.definition import Method, Steps
 from herijk.pipeline.recompute.anemometer import with_anemometer
 from herijk.pipeline.recompute.outcome import (
@@ -42,7 +43,6 @@ from herijk.pipeline.recompute.season_factors import (
 )
 from herijk.pipeline.season_log import SeasonFactors
 from herijk.pipeline.steps.calibration import gps_factor_of_files
-from herijk.pipeline.steps.hull import front_area_m2, hull_speed_m_s, still_air_coefficient_kg_m
 from herijk.pipeline.steps.resistance import RunMeans, temperature_change_kg_m
 from herijk.pipeline.steps.speed import log_factor
 from herijk.pipeline.steps.target import above_target

@@ -13,9 +13,9 @@ import numpy as np
 
 from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.blocks.batch import Batch
+from herijk.pipeline.hull import front_area_m2, side_area_m2
 from herijk.pipeline.method.definition import RunPoint, Steps, Temperature
 from herijk.pipeline.steps.friction import friction_cw_kg_m, water_density_kg_m3
-from herijk.pipeline.steps.hull import front_area_m2, side_area_m2
 from herijk.pipeline.steps.wind import AirParts, air_parts, air_sums, averaged_terms
 from herijk.pipeline.steps.window import END_SECONDS, end_masks
 

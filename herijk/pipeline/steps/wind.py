@@ -3,7 +3,7 @@
 The air force is taken away as the wind was felt on the moving boom, and the force in still air
 at boat speed is added (Sleepproef, R. Pot 2017, "Wind"; the same structure as ITTC 7.5-04-01-01.1
 eq. 9). Divided by boat speed squared, the still-air part is a constant of the boat. Here: the two
-formulas and the coefficients that are searched. Areas are in `pipeline.steps.hull`.
+formulas and the coefficients that are searched. Areas are in `pipeline.hull`.
 """
 
 from dataclasses import dataclass
@@ -13,8 +13,8 @@ import numpy as np
 
 from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.blocks.run_blocks import AIR_SUMS, RunBlocks
+from herijk.pipeline.hull import AIR_DENSITY_KG_M3
 from herijk.pipeline.method.definition import Wind
-from herijk.pipeline.steps.hull import AIR_DENSITY_KG_M3
 
 PER_RUN_BOUNDS: Final = (0.0, 1.0)
 """Between which the old tool searched, run by run (presentation 2015, "Tegenwind en

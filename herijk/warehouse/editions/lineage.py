@@ -11,7 +11,7 @@ from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.register.register import LINE
 from herijk.tables.row import Row
 from herijk.warehouse.editions.sheets import CODE_FIELD, REGISTER_FIELDS, printed_cells
-from herijk.warehouse.queries.boats import boats_named, the_boat
+from herijk.warehouse.store.boats import boats_named, the_boat
 from herijk.warehouse.store.editions import Edition, edition_path, read_edition
 from herijk.warehouse.store.store import Store
 

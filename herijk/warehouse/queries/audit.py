@@ -22,8 +22,8 @@ from herijk.warehouse.queries.audit_types import (
     type_facts,
     types_audit,
 )
-from herijk.warehouse.queries.boats import boats_named, plain, the_boat
 from herijk.warehouse.queries.chosen_tows import NEWEST, choose
+from herijk.warehouse.store.boats import boats_named, plain, the_boat
 from herijk.warehouse.store.database import is_simulated, open_results, rows
 from herijk.warehouse.store.store import Store
 

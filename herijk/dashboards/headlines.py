@@ -9,8 +9,7 @@ from collections import Counter
 
 import polars as pl
 
-from herijk.dashboards.site.parts import Headline
-from herijk.dashboards.speech import Speech
+from herijk.dashboards.speech import Headline, Speech
 
 CLEAR_P = 0.05
 STRONG_POWER = 0.8
