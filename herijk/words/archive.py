@@ -341,7 +341,7 @@ ARCHIVE: Final[dict[str, str]] = {
     "{what}, and it looks like {unit}": "{what}, en het lijkt op {unit}",
     "column '{column}' is at its highest value, {:.6g}, in {:.0f} % of the samples, as a load "
     "cell at the end of its range": (
-        "kolom '{column}' staat bij {1:.0f} % van de metingen op zijn hoogste waarde, {0:.6g}, "
+        "kolom '{column}' staat op zijn hoogste waarde, {:.6g}, bij {:.0f} % van de metingen, "
         "zoals een krachtopnemer aan het eind van zijn bereik"
     ),
     "Columns '{}' and '{}' seem to be exchanged: the second moves {:.0f} times a second, as log1 "
