@@ -374,7 +374,7 @@ def simulate(
     directory: Annotated[Path | None, typer.Argument(metavar="DIR", help="Folder to make.")] = None,
     seasons: Seasons = "2009:2018",  # type: ignore[assignment]
     tows_per_season: Annotated[int, typer.Option(min=1, max=1000, help="Tows in each.")] = 24,
-    rate: Annotated[int, typer.Option(min=5, max=1000, help="Samples a second.")] = 1000,
+    rate: Annotated[int, typer.Option(min=5, max=1000, help="Samples per second.")] = 1000,
     seed: Annotated[int, typer.Option(min=0, help="Decides all that is drawn.")] = 1,
     world: Annotated[str, typer.Option(help="What is wrong in it; see --worlds.")] = "history",
     worlds: Annotated[bool, typer.Option("--worlds", help="List the worlds, and stop.")] = False,

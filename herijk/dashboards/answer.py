@@ -50,6 +50,7 @@ class Told:
         headline: the number, or why there is none.
         sentences: the rest, in order of what people ask.
         waterfall, curve: pictures; empty where there is nothing to draw.
+        curve_caption: what the picture of the curve shows.
         certificate: key by which the certificate can be asked for.
     """
 
@@ -58,6 +59,7 @@ class Told:
     sentences: Sequence[str]
     waterfall: Markup
     curve: Markup
+    curve_caption: str
 
 
 def told(answer: Answer, speech: Speech) -> Told:
@@ -73,6 +75,7 @@ def told(answer: Answer, speech: Speech) -> Told:
         curve=curve_picture(
             answer.curve, answer.points, speech, f"{speech.say('boat_curve')}: {title}"
         ),
+        curve_caption=curve_caption(line, speech),
     )
 
 
@@ -159,6 +162,12 @@ def _certainty(line: Row, speech: Speech) -> Iterator[str]:
     yield speech.say(verdict[line["exceeds_interval"]])
     if line["exceeds_interval"] is not None and not line["old_log_known"]:
         yield speech.say("answer_old_spread")
+
+
+def curve_caption(line: Row, speech: Speech) -> str:
+    """What the picture of the curve shows, and what its band leaves out."""
+    band = "band_complete" if line["new_log_known"] else "band_runs_alone"
+    return speech.say("curve_caption").format(band=speech.say(band))
 
 
 def unseen_error(line: Row, speech: Speech) -> Iterator[str]:

@@ -3,4 +3,7 @@
 from typing import Any
 
 Row = dict[str, Any]
-"""A row, by the names of its columns."""
+"""A row, by the names of its columns.
+
+Its table declares their types: a `TypedDict` would say them a second time.
+"""

@@ -99,7 +99,10 @@ ANSWERS: Final[dict[str, tuple[str, str]]] = {
         "het verloop van de log door het seizoen",
         "the drift of the log through the season",
     ),
-    "instrument.log_change": ("de log halverwege het seizoen", "the log part way the season"),
+    "instrument.log_change": (
+        "de log halverwege het seizoen",
+        "the log part way through the season",
+    ),
     "instrument.gps_scale": ("de gewone gps", "the plain GPS"),
     "instrument.force_scale": ("de schaal van de krachtmeter", "the scale of the load cell"),
     "instrument.force_zero": ("het nulpunt van de krachtmeter", "the zero of the load cell"),
@@ -140,16 +143,18 @@ ANSWERS: Final[dict[str, tuple[str, str]]] = {
         "({people}); it was {old}.",
     ),
     "answer_race": (
-        "{race} {day}: de uitslag blijft plaats {new} van {size}.",
-        "{race} {day}: the result stays place {new} of {size}.",
+        "{race} {day}: plaats {new} van de {size} ploegen die in beide edities een plaats hebben, "
+        "net als eerst.",
+        "{race} {day}: place {new} of the {size} crews that both editions rank, as before.",
     ),
     "answer_race_none": (
         "{race} {day}: er zijn geen twee plaatsen te vergelijken ({why}).",
         "{race} {day}: there are no two places to compare ({why}).",
     ),
     "answer_race_moved": (
-        "{race} {day}: de uitslag wordt plaats {new} van {size}; dat was {old}.",
-        "{race} {day}: the result becomes place {new} of {size}; it was {old}.",
+        "{race} {day}: plaats {new} van de {size} ploegen die in beide edities een plaats hebben; "
+        "dat was {old}.",
+        "{race} {day}: place {new} of the {size} crews that both editions rank; it was {old}.",
     ),
     "answer_valid": (
         "De proef van {tow} telt tot en met {until}.",

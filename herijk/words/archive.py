@@ -341,13 +341,16 @@ ARCHIVE: Final[dict[str, str]] = {
     "{what}, and it looks like {unit}": "{what}, en het lijkt op {unit}",
     "column '{column}' is at its highest value, {:.6g}, in {:.0f} % of the samples, as a load "
     "cell at the end of its range": (
-        "kolom '{column}' staat bij {1:.0f} % van de metingen op zijn hoogste waarde, {0:.6g}, "
+        "kolom '{column}' staat op zijn hoogste waarde, {:.6g}, bij {:.0f} % van de metingen, "
         "zoals een krachtopnemer aan het eind van zijn bereik"
     ),
     "Columns '{}' and '{}' seem to be exchanged: the second moves {:.0f} times a second, as log1 "
     "does, and the first {:.1f} times, as a receiver does.": (
         "Kolommen '{}' en '{}' lijken verwisseld: de tweede verandert {:.0f} keer per seconde, "
         "zoals log1, en de eerste {:.1f} keer, zoals een ontvanger."
+    ),
+    "{} Or are weight and length in its row of the list not this boat's?": (
+        "{} Of zijn gewicht en lengte in de lijst niet van deze sloep?"
     ),
     "{} tows of season {}": "{} proeven van seizoen {}",
     "All {} tows of season {}": "Alle {} proeven van seizoen {}",

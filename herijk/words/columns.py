@@ -228,7 +228,7 @@ COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "column.highest_speed_m_s": ("Hoog\u00adste [m/s]", "High\u00adest [m/s]"),
     "column.tow_speed_m_s": ("Sleep met [m/s]", "Tow at [m/s]"),
     "column.beyond_curve": ("Buiten de kromme", "Beyond the curve"),
-    "column.as_of": ("Gezien op", "As of"),
+    "column.as_of": ("Peil\u00addatum", "As of"),
     "column.position": ("Volgorde", "Order"),
     "column.seasons": ("Gesleept in", "Towed in"),
     "column.factor_sd_before_ratio": ("sd voor", "sd before"),

@@ -199,7 +199,7 @@ COMMAND: Final[dict[str, str]] = {
     ),
     "Method whose factors are shown.": "Methode waarvan de factoren getoond worden.",
     "Tows in each.": "Proeven in elk seizoen.",
-    "Samples a second.": "Metingen per seconde.",
+    "Samples per second.": "Metingen per seconde.",
     "Decides all that is drawn.": "Bepaalt alles wat geloot wordt.",
     "What is wrong in it; see --worlds.": "Wat er mis in is; zie --worlds.",
     "List the worlds, and stop.": "Noem de werelden, en stop.",

@@ -15,7 +15,7 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "quality": ("Kwaliteit", "Quality"),
     "compare": ("Vergelijk", "Compare"),
     "races": ("Wedstrijden", "Races"),
-    "words": ("Woorden", "Words"),
+    "words": ("Begrippen", "Glossary"),
     "guide_method": ("De rekenmethode", "The method"),
     "about_guide_method": (
         "Elke formule, van meting tot registerregel, met haar bron.",
@@ -42,8 +42,13 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "cite": ("Bronvermelding", "Cite"),
     "how_made": ("Hoe deze getallen tot stand kwamen", "How these numbers were made"),
     "curve_caption": (
-        "Cw tegen snelheid: kromme met 95 %-band; rond heen, driehoek terug, open telt niet",
-        "Cw against speed: curve with 95 % band; round out, triangle back, open does not count",
+        "Cw tegen snelheid: kromme met {band}; rond heen, driehoek terug, open telt niet",
+        "Cw against speed: curve with {band}; round out, triangle back, open does not count",
+    ),
+    "band_complete": ("95 %-band", "95 % band"),
+    "band_runs_alone": (
+        "de spreiding van de runs alleen (de fout van de log zit er niet in)",
+        "the spread of the runs alone (the log's error is not in it)",
     ),
     "skip": ("Naar de inhoud", "Skip to content"),
     "pages": ("Pagina's", "Pages"),
@@ -125,7 +130,7 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "Two boats compared: which runs easier, and at what speed?",
     ),
     "about_races": (
-        "Elke wedstrijd opnieuw gerekend: wint een ander, en hoe waarschijnlijk is dat?",
+        "Elke wedstrijd opnieuw berekend: wint een ander, en hoe waarschijnlijk is dat?",
         "Every race computed again: is there another winner, and how likely is that?",
     ),
     "about_words": ("Wat de woorden en tekens betekenen.", "What the words and signs mean."),
@@ -134,7 +139,7 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "edition_in_force": ("Geldende editie", "Current edition"),
     "no_edition": ("nog geen: dit is een concept", "none yet: this is a draft"),
     "edition_from": ("{edition}, vanaf {day}", "{edition}, from {day}"),
-    "as_of": ("Gezien op", "As of"),
+    "as_of": ("Peildatum", "As of"),
     "boats_number": ("Sloepen", "Boats"),
     "tows_number": ("Sleepproeven", "Tows"),
     "compare_boats": ("Twee sloepen vergeleken", "Two boats compared"),
@@ -172,8 +177,8 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     ),
     # Headlines
     "head_register": (
-        "{known} van {lines} regels hebben een geldige kromme, gezien op {day}.",
-        "{known} of {lines} lines have a valid curve, as of {day}.",
+        "{known} van {lines} regels hebben een geldige kromme op {day}.",
+        "{known} of {lines} lines have a valid curve on {day}.",
     ),
     "head_from_to": ("Van “{old}” naar “{new}”: ", "From “{old}” to “{new}”: "),
     "head_changes": (
@@ -213,8 +218,8 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "rejected.",
     ),
     "head_reproducibility": (
-        "Een proef herhaalt zich op {now} % ({method}); dat was {then} % ({first}).",
-        "A tow repeats itself to {now} % ({method}); it was {then} % ({first}).",
+        "De toevallige fout van één proef is {now} % ({method}); die was {then} % ({first}).",
+        "The random error of one tow is {now} % ({method}); it was {then} % ({first}).",
     ),
     "head_log": (
         "De log zat er het verst naast in {season}: {by}.",
@@ -342,18 +347,21 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     ),
     "term_power": ("Vermogen per roeier", "Power per rower"),
     "meaning_power": (
-        "Wat elke roeier gemiddeld levert, in watt; wie het meeste levert, wint.",
-        "What each rower gives on average, in watts; who gives most wins.",
+        "Wat elke roeier gemiddeld levert, in watt; de ploeg die het meeste levert, wint.",
+        "What each rower gives on average, in watts; the crew that gives most wins.",
     ),
     "term_type": ("Standaardsnelheid", "Standard speed"),
     "meaning_type": (
-        "De middelste opgegeven snelheid van een type; daarbij zijn sloepen te vergelijken.",
-        "The median declared speed of a type; at it boats can be compared.",
+        "De middelste opgegeven snelheid van een type; bij die snelheid zijn sloepen te "
+        "vergelijken.",
+        "The median declared speed of a type, at which boats can be compared.",
     ),
     "term_verification_code": ("Controlecode", "Verification code"),
     "meaning_verification_code": (
-        "Volgt uit alles wat een regel van een editie heeft gemaakt.",
-        "Follows from all that made a line of an edition.",
+        "Berekend uit alles waar een regel van een editie op rust: verandert daar iets, dan "
+        "verandert de code.",
+        "Computed from everything behind a line of an edition: if any of that changes, so does "
+        "the code.",
     ),
     "tip.a_kg_m": ("A: Cw bij zeer lage snelheid", "A: Cw at very low speed"),
     "tip.b_m_s": (
@@ -382,8 +390,8 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     # Due
     "due_list": ("Wie moet weer slepen", "Who has to tow again"),
     "due_list_note": (
-        "Tot wanneer elke proef telt, beoordeeld op de dag van de laatste proef of wedstrijd "
-        "(Gezien op), en de snelheid voor de volgende. Laagste en Hoogste: 70 tot 90 W per roeier "
+        "Tot wanneer elke proef telt, beoordeeld op de dag van de laatste proef of wedstrijd (de "
+        "peildatum), en de snelheid voor de volgende. Laagste en Hoogste: 70 tot 90 W per roeier "
         "(heren) of 40 tot 55 W (dames) op de bekende kromme. Buiten de kromme: verder dan 85 tot "
         "115 % van de opgegeven snelheid.",
         "Until when each tow counts, as judged on the day of the last tow or race (As of), and the "
@@ -414,10 +422,10 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     ),
     "boat_history": ("Door de jaren", "Through the years"),
     "boat_history_note": (
-        "Cw bij de opgegeven snelheid van elke proef, onder elke methode. Een volle lijn is het "
+        "Cw bij de opgegeven snelheid van elke proef, volgens elke methode. Een volle lijn is het "
         "95 %-interval, een met streepjes de spreiding van de runs alleen: de fout van de log zit "
         "er niet in.",
-        "Cw at the declared speed of every tow, under every method. A full line is its 95 % "
+        "Cw at the declared speed of every tow, by every method. A full line is its 95 % "
         "interval, a dashed one the spread of the runs alone: the log's error is not in it.",
     ),
     "boat_traces": ("Wat de instrumenten zeiden", "What the instruments said"),
@@ -445,16 +453,20 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     # Types
     "types_charts": ("B en Cw per type", "B and Cw per type"),
     "types_note": (
-        "De gekozen proeven onder twee methoden, op dezelfde assen. Sloepen zonder type staan "
+        "De gekozen proeven volgens twee methoden, op dezelfde assen. Sloepen zonder type staan "
         "er niet bij. Standaardsnelheid: de middelste opgegeven snelheid van het type. Sleep "
         "over een grafiek om sloepen te kiezen, of vul eronder van en tot in: de lijst toont "
-        "ze, elk met de nieuwste proef. Klik op een punt om naar de sloep te gaan. Twee typen "
-        "onder vier methoden staan onder Presentatie 2015. Van welk seizoen tot welk kiest u "
+        "ze, elk met de nieuwste proef. Laagste en hoogste zijn een 95 %-interval, of bij een "
+        "methode die de fout van de log niet schat de spreiding van de runs alleen: die fout zit "
+        "er dan niet in. Klik op een punt om naar de sloep te gaan. Twee typen "
+        "volgens vier methoden staan onder Presentatie 2015. Van welk seizoen tot welk kiest u "
         "vrij in de werkbank (herijk workbench), die de statistiek ervoor opnieuw berekent.",
         "The chosen tows under two methods, on the same axes. Boats without a type are left "
         "out. Standard speed: the median declared speed of the type. Drag over a chart to "
         "select boats, or fill in from and to below it: the list shows them, each with its "
-        "newest tow. Click a point to go to the boat. Two types under four methods are on the "
+        "newest tow. Lowest and highest are a 95 % interval, or with a method that does not "
+        "estimate the log's error the spread of the runs alone: that error is then not in it. "
+        "Click a point to go to the boat. Two types by four methods are on the "
         "page Presentation 2015. Any range of seasons can be chosen in the workbench (herijk "
         "workbench), which computes its statistics anew.",
     ),
@@ -495,10 +507,9 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "types_homogeneity": ("Kan één B voor het type?", "Could one B serve the type?"),
     "types_homogeneity_note": (
         "Van de nieuwste proef van elke sloep en ploeg (n). p: kans op zoveel verschil tussen de "
-        "bochten als alle sloepen dezelfde B "
-        "hebben; een kleine p zegt dat ze die niet hebben. Kans 10 % te zien: hoe waarschijnlijk "
-        "een echte spreiding van 10 % in B hier was opgemerkt. Deel ruis: deel van de spreiding "
-        "dat de runs alleen al geven.",
+        "bochten als alle sloepen dezelfde B hebben; een kleine p zegt dat ze die niet hebben. "
+        "Kans 10 % te zien: hoe waarschijnlijk een echte spreiding van 10 % in B hier was "
+        "opgemerkt. Deel ruis: deel van de spreiding dat de runs alleen al geven.",
         "Of the newest tow of each boat and crew (n). p: chance of so large a difference between "
         "the bends if all boats have the same B; a small p says that they have not. Chance to see "
         "10 %: how likely a true spread of B of 10 % would have been noticed here. Share of noise: "
@@ -532,11 +543,11 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "Factor on Cw of each step, geometric mean over a season's tows. The factors of a season "
         "multiply to the total.",
     ),
-    "season_change": ("Tegenover wat gepubliceerd is", "Against what was published"),
+    "season_change": ("Ten opzichte van de gepubliceerde Cw", "Relative to the published Cw"),
     "season_change_note": (
-        "Cw onder de methode / Cw zoals gepubliceerd, van dezelfde proef: mediaan, en laagste tot "
-        "hoogste.",
-        "Cw under the method / Cw as published, of the same tow: median, and lowest to highest.",
+        "Cw volgens de methode / Cw zoals gepubliceerd, van dezelfde proef: mediaan, en laagste "
+        "tot hoogste.",
+        "Cw by the method / Cw as published, of the same tow: median, and lowest to highest.",
     ),
     "options": ("Gevoeligheid voor keuzes", "Sensitivity to choices"),
     "options_note": (
@@ -577,9 +588,11 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "predicted": ("Voorspeld zonder slepen", "Predicted without towing"),
     "predicted_note": (
         "Cw uit lengte, gewicht, breedte en type tegen Cw uit de proef. Op de lijn zijn ze gelijk. "
-        "Verschilt: meer dan de onzekerheid van beide.",
+        "Verschilt: meer dan de onzekerheid van beide; bij een methode die de fout van de log niet "
+        "schat, zit die er niet in.",
         "Cw from length, weight, beam and type against Cw from the tow. On the line they agree. "
-        "Disagrees: by more than the uncertainty of both.",
+        "Disagrees: by more than the uncertainty of both; under a method that does not estimate "
+        "the log's error, that is not in it.",
     ),
     # Changes
     "changes_list": ("Gewijzigde regels", "Changed lines"),
@@ -623,10 +636,10 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "no_changes": ("Er zijn geen gewijzigde regels.", "There are no changed lines."),
     "editions": ("Uitgegeven edities", "Published editions"),
     "races_note": (
-        "Elke uitslag opnieuw gerekend onder de oude en de nieuwe editie; kies een wedstrijd.",
-        "Every result computed again under the old and the new edition; choose a race.",
+        "Elke uitslag opnieuw berekend volgens de oude en de nieuwe editie; kies een wedstrijd.",
+        "Every result computed again by the old and the new edition; choose a race.",
     ),
-    "race_results": ("Uitslag onder beide edities", "Results under both editions"),
+    "race_results": ("Uitslag volgens beide edities", "Results by both editions"),
     "race_ranks": ("Plaats oud en nieuw", "Place before and after"),
     "race_note": (
         "Vermogen per roeier in deze wedstrijd, en de plaats daarnaar, per klasse: onder de "
@@ -636,7 +649,7 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "valid line on that day in both editions. On the line the place stays the same.",
     ),
     "no_races": (
-        "Het archief bevat geen wedstrijden om opnieuw te rekenen.",
+        "Het archief bevat geen wedstrijden om opnieuw te berekenen.",
         "The archive holds no races to compute again.",
     ),
     "downloads": ("Downloads", "Downloads"),

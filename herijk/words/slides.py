@@ -103,7 +103,10 @@ SLIDES: Final[dict[str, tuple[str, str]]] = {
     "slide.no_tow": ("geen proef", "no tow"),
     "slide.rises": ("{y} stijgt met {x}", "{y} rises with {x}"),
     "slide.falls": ("{y} daalt met {x}", "{y} falls with {x}"),
-    "slide.none": ("geen verband van {y} met {x} gezien", "no link of {y} with {x} seen"),
+    "slide.none": (
+        "geen verband tussen {y} en {x} gezien",
+        "no relation seen between {y} and {x}",
+    ),
     "slide.unclear": (
         "te weinig sloepen om te zeggen of {y} met {x} samenhangt",
         "too few boats to tell whether {y} goes with {x}",

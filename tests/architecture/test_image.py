@@ -31,8 +31,9 @@ def test_the_image_copies_and_starts_what_is_there():
     assert set(named[1].split(",")) <= set(PROJECT["optional-dependencies"])
 
 
-def test_who_cites_names_the_version_that_is():
+def test_citation_and_deployment_name_the_version():
     assert f"\nversion: {PROJECT['version']}\n" in read("CITATION.cff")
+    assert f'newTag: "{PROJECT["version"]}"' in read("deploy/kubernetes/kustomization.yaml")
 
 
 def test_no_module_is_imported_that_one_system_alone_has():

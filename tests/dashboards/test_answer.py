@@ -6,7 +6,7 @@ import re
 import polars as pl
 import pytest
 
-from herijk.dashboards.answer import Answer, told
+from herijk.dashboards.answer import Answer, curve_caption, told
 from herijk.dashboards.site import headlines
 from herijk.dashboards.speech import Speech, duration
 
@@ -67,16 +67,22 @@ def test_an_interval_that_leaves_the_log_out_says_so():
     assert "95 %" not in text
     assert "de fout van de log komt daar nog bij" in text
     assert "zit de fout van de log niet" in said(old_log_known=False)
+    caption = curve_caption({"new_log_known": False}, Speech("nl"))
+    assert "de fout van de log zit er niet in" in caption
+    assert "95 %" not in caption
 
 
 def test_the_place_in_a_race_is_not_the_place_at_equal_power():
     text = said(races=[RACE | {"old_rank": 12, "new_rank": 11}])
     assert "naar snelheid op plaats 2 van 5 van het type Vlet (dames); dat was 3" in text
-    assert "Spiegelrace 2018-06-04: de uitslag wordt plaats 11 van 35; dat was 12" in text
+    moved = "plaats 11 van de 35 ploegen die in beide edities een plaats hebben; dat was 12"
+    assert f"Spiegelrace 2018-06-04: {moved}" in text
 
 
 def test_places_that_swap_on_the_podium_are_told():
-    assert "wordt plaats 2" in said(races=[RACE | {"old_rank": 3, "new_rank": 2}])
+    text = said(races=[RACE | {"old_rank": 3, "new_rank": 2}])
+    assert "plaats 2 van de 35 ploegen" in text
+    assert "dat was 3" in text
 
 
 def test_a_race_in_which_only_one_edition_has_a_line_is_not_compared():
@@ -84,7 +90,7 @@ def test_a_race_in_which_only_one_edition_has_a_line_is_not_compared():
     remarks = {"old_remark": "no_line_that_day", "new_remark": ""}
     text = said(races=[RACE | editions | remarks | {"old_rank": None, "new_rank": None}])
     assert "geen twee plaatsen te vergelijken (2015-1: op die dag geen geldige regel)" in text
-    assert "wordt plaats" not in text
+    assert "in beide edities" not in text
 
 
 def test_valid_comes_with_its_day():

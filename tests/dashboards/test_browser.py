@@ -9,6 +9,7 @@ import io
 import os
 import re
 import shutil
+from itertools import product
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
@@ -28,6 +29,8 @@ FLAGS = [
 HIDDEN_BARS = ["--hide-scrollbars"]
 """What a browser without a window is told by itself: people's windows have bars."""
 SHOTS = ROOT / "ci-output"
+WIDE = {"width": 1920, "height": 1080}
+"""Looked at in pictures: nothing that fits 1280 is too wide for it."""
 WIDTHS = {"desktop": {"width": 1280, "height": 900}, "phone": {"width": 390, "height": 844}}
 
 pytestmark = pytest.mark.skipif(
@@ -149,13 +152,21 @@ def barriers(page):
     ]
 
 
+LOOKS = ("desktop", "phone", "wide", "desktop-dark", "phone-dark", "wide-dark")
+FIRST = ("desktop-first", "phone-first")
+
+
 class Pictures:
-    """Pictures of a page in `ci-output/`, for people to look at; taken in CI alone."""
+    """Pictures of a page in `ci-output/`, for people to look at; taken in CI alone.
+
+    `index.html` beside them leads to all.
+    """
 
     def __init__(self, page, name):
         self.page, self.name, self.taken = page, name, "HERIJK_CI" in os.environ
         if self.taken:
             SHOTS.mkdir(exist_ok=True)
+            (SHOTS / "index.html").write_text(index_of_pictures(), encoding="utf-8")
 
     def at_first(self):
         """The print, and what is seen first."""
@@ -166,9 +177,33 @@ class Pictures:
                 self.page.screenshot(path=SHOTS / f"{self.name}-{width}-first.png")
 
     def whole(self, width):
-        """The whole page, unfolded."""
+        """The whole page, unfolded, also in the dark."""
+        if not self.taken:
+            return
+        for scheme, ending in (("dark", "-dark"), ("light", "")):
+            self.page.emulate_media(color_scheme=scheme)
+            path = SHOTS / f"{self.name}-{width}{ending}.png"
+            self.page.screenshot(path=path, full_page=True)
+
+    def wide(self):
+        """The same on a wide screen."""
         if self.taken:
-            self.page.screenshot(path=SHOTS / f"{self.name}-{width}.png", full_page=True)
+            self.page.set_viewport_size(WIDE)
+            self.whole("wide")
+
+
+def index_of_pictures():
+    """A page with a line per kind of page and language, and in it a link to each picture."""
+    lines = []
+    for name, language in product(KINDS, ("nl", "en")):
+        files = [f"{name}-{language}-{look}.png" for look in (*FIRST, *LOOKS)]
+        links = [
+            f'<td><a href="{f}">{look}</a>' for f, look in zip(files, (*FIRST, *LOOKS), strict=True)
+        ]
+        pdf = f'<td><a href="{name}-{language}.pdf">print</a>'
+        lines.append(f"<tr><th>{name} {language}{''.join(links)}{pdf}")
+    head = "<!doctype html><meta charset=utf-8><title>Herijk</title>"
+    return f"{head}<table>{''.join(lines)}</table>"
 
 
 def shown(page, table):
@@ -205,6 +240,7 @@ def fits_at_all_widths(page, pictures):
         assert scrolled(page, NOT_SIDEWAYS[width]) == []
         assert page.locator(".broken").count() == 0
         pictures.whole(width)
+    pictures.wide()
 
 
 @pytest.mark.parametrize("name", KINDS)

@@ -25,7 +25,7 @@ from herijk.dashboards.site.parts import (
 )
 from herijk.dashboards.site.races import _winner
 from herijk.dashboards.site.render import DRAWN
-from herijk.dashboards.site.types import type_pages
+from herijk.dashboards.site.slides import slides_page
 from herijk.dashboards.speech import Speech
 from herijk.warehouse.queries.answers import answers, line_changes, newest_edition
 from herijk.warehouse.queries.views import Views
@@ -216,7 +216,7 @@ def test_a_column_and_a_code_on_a_page_have_a_text(store):
         pages_made = [
             *shared_pages(views),
             *boat_pages(views, methods),
-            *type_pages(views, methods),
+            slides_page(views, methods),
         ]
     tables = [t for page in pages_made for s in page.sections for t in s.tables]
     drawn = [

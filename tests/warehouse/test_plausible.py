@@ -138,6 +138,14 @@ def test_half_a_season_in_another_unit_costs_that_half(archive, half):
     assert not archive.doubts()
 
 
+def test_a_list_with_an_unknown_header_is_lost_as_a_file_not_as_a_row(archive):
+    path = archive.root / "sleeplijsten/sleeplijst_2016.csv"
+    path.write_text(path.read_text("utf-8").replace("verbouwd", "vrbwd"), "utf-8")
+    archive.collect()
+    lost = archive.store.read("quarantine").filter(reason_code="unknown_column")["lost"]
+    assert lost.to_list() == ["file"]
+
+
 def vane(angle: Callable[[float], float], speed: str = "wind") -> Callable[[str], str]:
     """Gives the vane other angles, and the wind the speed of another column."""
 

@@ -5,7 +5,7 @@ from typing import Any, Final
 
 import segno
 
-from herijk.dashboards.answer import crew_name, unseen_error
+from herijk.dashboards.answer import crew_name, curve_caption, unseen_error
 from herijk.dashboards.documents import page, pdf
 from herijk.dashboards.pictures import curve_picture
 from herijk.dashboards.speech import Speech
@@ -34,7 +34,6 @@ def certificates(
         "kind": f"{say('certificate')} · {speech.edition(edition)}",
         "simulated": say("simulated") if about.get("simulated") == "true" else "",
         "curve_title": say("boat_curve"),
-        "curve_note": say("curve_caption"),
         "power_title": say("certificate_power"),
         "power_head": [say("speed_short"), say("cw"), say("certificate_watts")],
         "reading_title": say("certificate_reading"),
@@ -63,6 +62,7 @@ def _one(line: Row, speech: Speech) -> dict[str, Any]:
         "left": _numbers(line, speech),
         "right": _terms(line, speech),
         "curve": str(curve_picture(line["curve"], line["points"], speech, crew)),
+        "curve_note": curve_caption(line, speech),
         "curve_alt": f"{say('boat_curve')} {line['fsn_no']} {crew}",
         "powers": [
             [number(speed, 2), number(cw, 2), number(power, 1)]

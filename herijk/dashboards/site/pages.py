@@ -22,9 +22,8 @@ from herijk.dashboards.site.parts import (
 )
 from herijk.dashboards.site.prose import edition_pages, guide_pages
 from herijk.dashboards.site.races import race_pages
-from herijk.dashboards.site.slides import slides_page
 from herijk.dashboards.site.start import CARDS, methods_table, start_page, words_page
-from herijk.dashboards.site.types import types_page
+from herijk.dashboards.site.types import type_pages, types_page
 from herijk.warehouse.build.studies import JUDGEMENT
 from herijk.warehouse.queries.answers import line_changes, newest_edition
 from herijk.warehouse.queries.views import Views
@@ -34,16 +33,16 @@ MENU = ("index", *CARDS)
 
 
 def shared_pages(views: Views) -> Iterator[Page]:
-    """Every page of the site but those of boats and types, of which there are many."""
+    """Every page of the site but those of boats and slides, which another process may make."""
     methods = method_names(views)
     changes = line_changes(views)
     yield start_page(views, methods, changes)
     yield _register(views, methods)
     yield _due(views, methods)
     yield types_page(views, methods)
+    yield from type_pages(views, methods)
     yield _compare(views, methods)
     yield from race_pages(views, methods)
-    yield slides_page(views, methods)
     yield _corrections(views, methods)
     yield _reproducibility(views, methods)
     yield _changes(methods, changes)

@@ -32,9 +32,9 @@ from herijk.dashboards.site.cells import Cells
 from herijk.dashboards.site.downloads import copy_sheets
 from herijk.dashboards.site.pages import MENU, method_names, shared_pages
 from herijk.dashboards.site.parts import Page, boat_path, race_path, type_path
+from herijk.dashboards.site.slides import slides_page
 from herijk.dashboards.site.specifications import chart_specifications
 from herijk.dashboards.site.still import still_pictures
-from herijk.dashboards.site.types import type_pages
 from herijk.dashboards.speech import Speech
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.files import TEMPORARY_PREFIX, put_in_place
@@ -79,8 +79,8 @@ def build_site(store: Store, other: Executor | None = None) -> dict[str, int]:
 
     Args:
         store: the data folder.
-        other: a second process, for the half of the work that boats and types are; without, all is
-            done here.
+        other: a second process, for the half of the work that boats and slides are; without, all
+            is done here.
 
     Returns:
         Files and bytes of the site.
@@ -96,14 +96,14 @@ def build_pages(
     beside = Path(tempfile.mkdtemp(prefix=TEMPORARY_PREFIX, dir=target.parent))
     try:
         half = store.root, beside, as_of
-        elsewhere = other.submit(write_boats_and_types, *half) if other else None
+        elsewhere = other.submit(write_boats_and_slides, *half) if other else None
         try:
             with Views(store, as_of) as views:
                 _write_shared(views, beside)
                 _write_pages(views, beside, shared_pages(views))
         finally:
             wait([elsewhere] if elsewhere else [])  # it would write in a folder that is gone
-        elsewhere.result() if elsewhere else write_boats_and_types(*half)
+        elsewhere.result() if elsewhere else write_boats_and_slides(*half)
         copy_sheets(store, beside)
         written = [f for f in beside.rglob("*") if f.is_file()]
         size = {"files": len(written), "bytes": sum(f.stat().st_size for f in written)}
@@ -114,11 +114,13 @@ def build_pages(
     return size
 
 
-def write_boats_and_types(data: Path, folder: Path, as_of: dt.date | None) -> None:
-    """Writes the pages of all boats and types of a data folder."""
+def write_boats_and_slides(data: Path, folder: Path, as_of: dt.date | None) -> None:
+    """Writes the pages of all boats and of the slides: half of the work."""
     with Views(Store(data), as_of) as views:
         methods = method_names(views)
-        _write_pages(views, folder, chain(boat_pages(views, methods), type_pages(views, methods)))
+        _write_pages(
+            views, folder, chain(boat_pages(views, methods), [slides_page(views, methods)])
+        )
 
 
 def _write_shared(views: Views, folder: Path) -> None:

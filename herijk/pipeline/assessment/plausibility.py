@@ -7,8 +7,8 @@ out is found and named. Nothing here depends on a method, and nothing here chang
 computes leaves these tows out of what others share.
 
 The expectation is a Gaussian model with known variances (mean-shift outliers; Cook & Weisberg 1982,
-Residuals and Influence in Regression, 2.2.2): the shift of a group of tows is estimated from all
-other tows, the clearest is taken out, and the rest is judged again without it.
+Residuals and Influence in Regression, 2.2.2). The shift of a group of tows is estimated from all
+other tows. The clearest is taken out, and the rest is judged again without it.
 """
 
 from collections.abc import Iterator, Mapping

@@ -116,7 +116,7 @@ def side_by_side(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
     Returns:
         Per line with a curve in either: tow, A, B, Cw, declared speed and rank in both; the power
         per rower at the old declared speed. Also the seconds that the new register gives in a
-        two-hour race (more time for the same power counts as gain), and whether the change is
+        two-hour race; more time for the same power counts as gain. Also whether the change is
         larger than the 95 % intervals of both, null where an interval is not known. The rank is
         among all boats of the class with a curve: 1 is the fastest at equal power per rower.
     """

@@ -4,7 +4,8 @@ Each tow gives three numbers: ln Cw and the bend q of its own curve, and ln(GPS 
 level and bend are random and integrated out. The level drifts in a way of the boat's own, as paint,
 wear and fouling differ: a random walk over the seasons. A boat may have been altered between two
 tows without a report, and any tow of the years before steering was aided may have been pulled
-askew: every pattern of at most `MOST_CHANGES` of these is a component of a normal mixture.
+askew. Every pattern of at most `MOST_CHANGES` of these is a component of a normal mixture.
+
 Belongs here: that density with its slopes, per boat, as arrays. Does not: what moves the numbers of
 a tow (`effects`) and the search for the unknowns (`posterior`).
 """

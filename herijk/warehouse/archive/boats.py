@@ -47,8 +47,8 @@ class Boats:
         more: what else is wrong in those rows.
     """
 
-    good: Mapping[str, Mapping[str, Any]]
-    crews: Sequence[Mapping[str, Any]]
+    good: Mapping[str, Row]
+    crews: Sequence[Row]
     bad: Mapping[str, Fault]
     faults: tuple[Fault, ...]
     more: tuple[Fault, ...] = ()
@@ -58,7 +58,7 @@ class Boats:
         rows = [{**boat, **self.good[boat["fsn_no"]], **_crew_of(boat)} for boat in self.crews]
         return frame_of(ListedBoats, rows).unique(maintain_order=True)
 
-    def find(self, fsn_no: str) -> Mapping[str, Any] | None:
+    def find(self, fsn_no: str) -> Row | None:
         """Return a boat by its number; leading zeros do not matter where that leaves one boat."""
         if fsn_no in self.good:
             return self.good[fsn_no]
@@ -70,7 +70,7 @@ def _bare(fsn_no: str) -> str:
     return fsn_no.removeprefix("FSN").lstrip("0")
 
 
-def _crew_of(boat: Mapping[str, Any]) -> Row:
+def _crew_of(boat: Row) -> Row:
     return {"rowers": boat["rowers"], "crew_class": boat["crew_class"]}
 
 
@@ -82,8 +82,8 @@ def read_boats(data: bytes, path: str = BOATS_FILE, wording: Wording | None = No
     Raises:
         DefectiveInputError: the list as a whole cannot be read.
     """
-    good: dict[str, Mapping[str, Any]] = {}
-    crews: list[Mapping[str, Any]] = []
+    good: dict[str, Row] = {}
+    crews: list[Row] = []
     bad: dict[str, Fault] = {}
     faults: list[Fault] = []
     more: list[Fault] = []
@@ -129,9 +129,7 @@ _READERS: Final[Mapping[str, Callable[[ListRow, str], Any]]] = {
 """How the values of a boat are read."""
 
 
-def _merged(
-    row: ListRow, boat: Mapping[str, Any], before: Mapping[str, Any] | None
-) -> Mapping[str, Any]:
+def _merged(row: ListRow, boat: Row, before: Row | None) -> Row:
     """Return a boat with what its rows so far say; two sizes or types cannot both be right."""
     if before is None:
         return boat

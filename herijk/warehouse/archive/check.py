@@ -282,7 +282,7 @@ def _differ(one: float, other: float) -> bool:
     return abs(one / other - 1) > TIME_TOLERANCE
 
 
-def _rate_of_its_own(tow: Mapping[str, Any], rate: float) -> Fault:
+def _rate_of_its_own(tow: Row, rate: float) -> Fault:
     """Return that a tow was sampled at another rate than the first of its season."""
     said = say(
         "By its times it has {own:.4g} samples per second, other than the first tow of its "
@@ -301,7 +301,7 @@ def _with_columns_of_runs(fault: Fault, root: Path, profile: SeasonProfile) -> F
     return replace(fault, message=say(what.template, **{**what.values, "header": columns}))
 
 
-def _other_rate(samples: pl.DataFrame, tow: Mapping[str, Any], index: ArchiveIndex) -> Fault | None:
+def _other_rate(samples: pl.DataFrame, tow: Row, index: ArchiveIndex) -> Fault | None:
     """Return that the rate cannot be right: at it all runs last half as long as planned, or less.
 
     Files with times say their rate themselves.
@@ -323,7 +323,7 @@ def _other_rate(samples: pl.DataFrame, tow: Mapping[str, Any], index: ArchiveInd
     return Fault(tow["samples_path"], tow["tow_id"], None, "short_run", said)
 
 
-def _other_plan(samples: pl.DataFrame, tow: Mapping[str, Any], index: ArchiveIndex) -> Fault | None:
+def _other_plan(samples: pl.DataFrame, tow: Row, index: ArchiveIndex) -> Fault | None:
     """Return that the file has other runs than are planned, with what their targets can be."""
     found = _mean_speeds(samples)
     runs = index.runs.filter(tow_id=tow["tow_id"])

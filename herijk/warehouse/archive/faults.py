@@ -15,6 +15,10 @@ Lost = Literal["seconds", "run", "tow", "file", "row"]
 that costs no tow, as one of a race."""
 
 
+OF_A_HEADER: Final = ("missing_column", "unknown_column", "duplicate_column", "unknown_unit")
+"""Reason codes of a header: of a list, they cost all of it."""
+
+
 @dataclass(frozen=True)
 class Reason:
     """What a reason code means and what a volunteer can do about it."""

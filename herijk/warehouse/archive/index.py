@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import polars as pl
 
@@ -19,6 +18,7 @@ from herijk.pipeline.errors import DefectiveInputError, MissingKnowledgeError
 from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import ListedFiles, ListedRuns, ListedTows, ListedWindows
+from herijk.tables.row import Row
 from herijk.warehouse.archive import boats as boat_list
 from herijk.warehouse.archive import tows as tow_list
 from herijk.warehouse.archive import windows as window_list
@@ -119,7 +119,7 @@ class _Entry:
     season: int
     profiles: Profiles
     files: list[SamplesFile] = field(default_factory=list)
-    tow: dict[str, Any] = field(default_factory=dict)
+    tow: Row = field(default_factory=dict)
     selection: frozenset[int] = frozenset()
 
     @property
@@ -400,7 +400,7 @@ def _read_windows(
     profiles: Profiles,
     hashes: _Hashes,
     entries: list[_Entry],
-    runs: list[Mapping[str, Any]],
+    runs: list[Row],
     faults: list[Fault],
 ) -> list[window_list.Window]:
     """Return the windows given by hand, of all years."""
@@ -755,7 +755,7 @@ def _place_day(entry: _Entry, profiles: Profiles) -> None:
         entry.tow[f"{log}_part"] = profiles.part_of_log(log, day)
 
 
-def _runs(entry: _Entry) -> list[Mapping[str, Any]]:
+def _runs(entry: _Entry) -> list[Row]:
     plan = entry.plan
     ways_of = {0: plan.directions, SECOND_FILE_OFFSET: plan.second_directions or plan.directions}
     files = list(ways_of.items())[: len(entry.files)]

@@ -6,9 +6,9 @@ burned because the tow line was not square ("Recht sturen"). What they do to a t
 checks belongs to `pipeline`.
 """
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import polars as pl
@@ -74,7 +74,7 @@ def read_lamps(
     return read_lists(root, files, LAMP_COLUMNS, "bad_instrument_row", ListedLamps, lamp, wording)
 
 
-def load_cell_of(tow: Mapping[str, Any], checks: pl.DataFrame) -> dict[str, float | None]:
+def load_cell_of(tow: Row, checks: pl.DataFrame) -> dict[str, float | None]:
     """Reading / weight of the last day up to a tow's on which the cell was checked, and its sd.
 
     Where it was checked only later in the season, the first such day counts. The sd holds the

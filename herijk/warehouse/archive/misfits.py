@@ -1,18 +1,16 @@
 """Rows that a declared table does not allow, each with a sentence that says why."""
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
 
 import polars as pl
 
 from herijk.tables.declare import dy
 from herijk.tables.frames import limits
+from herijk.tables.row import Row
 from herijk.words import Sentence, say
 
 
-def misfits(
-    table: type[dy.Schema], frame: pl.DataFrame
-) -> Iterator[tuple[Mapping[str, Any], Sentence]]:
+def misfits(table: type[dy.Schema], frame: pl.DataFrame) -> Iterator[tuple[Row, Sentence]]:
     """Yield each row outside the declared limits, with the first limit that it breaks."""
     _, failure = table.filter(frame)
     for row in failure.details().iter_rows(named=True):
@@ -20,7 +18,7 @@ def misfits(
         yield row, _why(table, row, *broken.split("|"))
 
 
-def _why(table: type[dy.Schema], row: Mapping[str, Any], column: str, rule: str) -> Sentence:
+def _why(table: type[dy.Schema], row: Row, column: str, rule: str) -> Sentence:
     named = {"column": column, "cell": row[column]}
     if rule not in {"min", "max"}:
         return say("column '{column}' is '{cell}', which cannot be right.", **named)

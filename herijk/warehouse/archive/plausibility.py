@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import polars as pl
@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from herijk.pipeline.arrays import BoolArray
 from herijk.pipeline.channels import SECOND_FILE_OFFSET
+from herijk.tables.row import Row
 from herijk.warehouse.archive.faults import DefectiveFileError, Fault, Lost
 from herijk.warehouse.archive.profile import SeasonProfile
 from herijk.warehouse.archive.samples import OUTPUT_NAMES, place_in_file, run_starts
@@ -125,7 +126,7 @@ class Judged:
 
 def judge_in_files(
     samples: pl.DataFrame,
-    tow: Mapping[str, Any],
+    tow: Row,
     runs: pl.DataFrame,
     root: Path,
     profile: SeasonProfile,
@@ -155,7 +156,7 @@ FIRST_ROW: Final = 2
 """Line of the first row of a tow's samples where nothing but a header stands above it."""
 
 
-def judge_samples(samples: pl.DataFrame, tow: Mapping[str, Any], runs: pl.DataFrame) -> Judged:
+def judge_samples(samples: pl.DataFrame, tow: Row, runs: pl.DataFrame) -> Judged:
     """What of the selected runs of a tow can be used; runs that are not selected stay as they are.
 
     Args:
@@ -196,7 +197,7 @@ def judge_samples(samples: pl.DataFrame, tow: Mapping[str, Any], runs: pl.DataFr
     return Judged(_with_changes(samples, lost, found, mended_gps), tuple(faults))
 
 
-def _without_copies(runs: list[_Run], tow: Mapping[str, Any]) -> tuple[list[_Run], list[Fault]]:
+def _without_copies(runs: list[_Run], tow: Row) -> tuple[list[_Run], list[Fault]]:
     """Of runs with the very same samples, the one at its intended speed is what was measured."""
     kept: dict[bytes, _Run] = {}
     faults = []
@@ -244,7 +245,7 @@ def _with_changes(
 
 
 def _selected_runs(
-    samples: pl.DataFrame, tow: Mapping[str, Any], runs: pl.DataFrame
+    samples: pl.DataFrame, tow: Row, runs: pl.DataFrame
 ) -> tuple[list[_Run], list[Fault]]:
     """The selected runs that are there, and a fault for each that is not."""
     number = samples["run"].to_numpy()
@@ -285,7 +286,7 @@ def _selected_runs(
     return selected, missing
 
 
-def _missing_run(run: int, tow: Mapping[str, Any], present: list[int]) -> Fault:
+def _missing_run(run: int, tow: Row, present: list[int]) -> Fault:
     in_second = run > SECOND_FILE_OFFSET
     offset = SECOND_FILE_OFFSET if in_second else 0
     there = [str(n - offset) for n in present if (n > SECOND_FILE_OFFSET) == in_second]
@@ -305,7 +306,7 @@ def _missing_run(run: int, tow: Mapping[str, Any], present: list[int]) -> Fault:
 
 
 def _fault(
-    reason_code: str, message: str, run: _Run, tow: Mapping[str, Any], row: int | None = None
+    reason_code: str, message: str, run: _Run, tow: Row, row: int | None = None
 ) -> DefectiveFileError:
     """Return the error for a fault that costs the tow; `row` counts from the start of the run."""
     fault = _cost(reason_code, message, run, tow, row)
@@ -316,7 +317,7 @@ def _cost(
     reason_code: str,
     message: str,
     run: _Run,
-    tow: Mapping[str, Any],
+    tow: Row,
     row: int | None,
     lost: Lost = "run",
     lost_s: float | None = None,
@@ -327,7 +328,7 @@ def _cost(
     return Fault(path, tow["tow_id"], line, reason_code, message, lost, run.number, lost_s)
 
 
-def _short(run: _Run, tow: Mapping[str, Any]) -> list[Fault]:
+def _short(run: _Run, tow: Row) -> list[Fault]:
     if run.seconds >= SHORTEST_RUN_RATIO * run.planned_s:
         return []
     missing_s = run.planned_s - run.seconds
@@ -407,7 +408,7 @@ def _within(value: float, limits: tuple[float, float], unit: float = 1.0) -> boo
     return limits[0] * unit <= value <= limits[1] * unit
 
 
-def _check_mix_ups(runs: list[_Run], tow: Mapping[str, Any]) -> None:
+def _check_mix_ups(runs: list[_Run], tow: Row) -> None:
     """A force that is right but for its sign is a sign error; after that come swapped columns."""
     typical = _typical(runs)
     intended = float(np.median([run.intended_m_s for run in runs]))
@@ -452,7 +453,7 @@ def _follows_log(runs: list[_Run], key: str) -> bool:
     return bool(np.ptp(ratio) <= FOLLOWS_RATIO * abs(np.median(ratio)))
 
 
-def _check_log2_and_gps(runs: list[_Run], tow: Mapping[str, Any]) -> None:
+def _check_log2_and_gps(runs: list[_Run], tow: Row) -> None:
     """A receiver gives a fix a second, held in between; a log moves as log 1 does."""
     if not {"log2", "gps"} <= set(runs[0].channels):
         return
@@ -482,7 +483,7 @@ def _speed_ratio(runs: list[_Run]) -> float:
     return float(np.median(means))
 
 
-def _check_speed_unit(runs: list[_Run], tow: Mapping[str, Any]) -> None:
+def _check_speed_unit(runs: list[_Run], tow: Row) -> None:
     ratio = _speed_ratio(runs)
     if _within(ratio, KM_H_RATIO):
         raise _fault(
@@ -509,9 +510,7 @@ def _usual_resistance_kg_m(runs: list[_Run]) -> float:
     return abs(_known(np.nanmedian, np.asarray(each)))
 
 
-def _judge_run(
-    run: _Run, tow: Mapping[str, Any], usual_kg_m: float
-) -> tuple[_Run | None, list[Fault]]:
+def _judge_run(run: _Run, tow: Row, usual_kg_m: float) -> tuple[_Run | None, list[Fault]]:
     """The run without the samples that cannot be, or None where too much or all of it is wrong."""
     wrong = _wrong_samples(run, usual_kg_m * run.intended_m_s**2)
     no_row = np.logical_and.reduce([~np.isfinite(values) for values in run.channels.values()])
@@ -542,7 +541,7 @@ SPARE: Final = ("log2", "gps")
 _NOT_IN_THIS_RUN: Final = say("over {:g} s, so the run goes on without this column", LEFT_OUT_S)
 
 
-def _of_rows(run: _Run, tow: Mapping[str, Any], mask: BoolArray, lost: Lost) -> Fault:
+def _of_rows(run: _Run, tow: Row, mask: BoolArray, lost: Lost) -> Fault:
     """The fault of rows of which nothing can be read."""
     seconds = float(mask.sum()) / run.rate_hz
     message = say(
@@ -556,7 +555,7 @@ def _of_rows(run: _Run, tow: Mapping[str, Any], mask: BoolArray, lost: Lost) -> 
 
 def _of_samples(
     run: _Run,
-    tow: Mapping[str, Any],
+    tow: Row,
     key: str,
     mask: BoolArray,
     lost: Lost,
@@ -664,9 +663,7 @@ def _dead(values: Array, most: float, samples: int) -> BoolArray:
 # What is wrong for longer
 
 
-def _judge_whole(
-    run: _Run, tow: Mapping[str, Any], faults: list[Fault]
-) -> tuple[_Run | None, list[Fault]]:
+def _judge_whole(run: _Run, tow: Row, faults: list[Fault]) -> tuple[_Run | None, list[Fault]]:
     """Stuck instruments and means that cannot be: they cost the run, or a spare channel in it."""
     for judge in (_stuck, _unlikely_mean, _saturated):
         for key in tuple(run.channels):
@@ -801,7 +798,7 @@ def _saturated(run: _Run, key: str) -> Said | None:
     return "saturated_force", what, int(at_end.argmax())
 
 
-def _without_stuck_gps(runs: list[_Run], tow: Mapping[str, Any]) -> tuple[list[_Run], list[Fault]]:
+def _without_stuck_gps(runs: list[_Run], tow: Row) -> tuple[list[_Run], list[Fault]]:
     """GPS has one fix a second in steps of 0.01 m/s, so a steady boat may well hold one value."""
     held: dict[float, list[_Run]] = {}
     for run in runs:

@@ -4,9 +4,9 @@ Both are optional in an archive. Computing with them belongs elsewhere.
 """
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import polars as pl
 
@@ -131,7 +131,7 @@ def _once(results: pl.DataFrame) -> tuple[pl.DataFrame, list[Fault]]:
     return one.filter(pl.struct(_RESULT).is_unique()), faults
 
 
-def _again(row: Mapping[str, Any], message: str) -> Fault:
+def _again(row: Row, message: str) -> Fault:
     crew = f"{row['rowers']}{row['crew_class']}"
     what = say(message, boat=row["fsn_no"], crew=crew, race=row["race"])
     said = say("Line {line}: {what}", line=row["line"], what=what)

@@ -10,7 +10,7 @@ import unicodedata
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import polars as pl
@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from herijk.pipeline.channels import FEWEST_RUNS, MOST_RUNS, SAMPLE_SCHEMA, SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError
+from herijk.tables.row import Row
 from herijk.warehouse.archive.faults import DefectiveFileError
 from herijk.warehouse.archive.files import (
     PARTS,
@@ -164,7 +165,7 @@ def _next_line(row: int) -> int:
 
 
 def place_in_file(
-    root: Path, tow: Mapping[str, Any], profile: SeasonProfile, runs: pl.Series, path: str, row: int
+    root: Path, tow: Row, profile: SeasonProfile, runs: pl.Series, path: str, row: int
 ) -> tuple[str, int]:
     """Return the file of a row of a tow's samples, and the line in it.
 
@@ -253,7 +254,7 @@ def _tells_runs(path: Path, profile: SeasonProfile, key: str, name: str) -> bool
     return runs.n_unique() >= FEWEST_RUNS
 
 
-def read_tow_samples(root: Path, tow: Mapping[str, Any], profile: SeasonProfile) -> pl.DataFrame:
+def read_tow_samples(root: Path, tow: Row, profile: SeasonProfile) -> pl.DataFrame:
     """Read the samples of a tow, both files combined.
 
     Args:
@@ -275,9 +276,7 @@ def read_tow_samples(root: Path, tow: Mapping[str, Any], profile: SeasonProfile)
     return pl.concat(parts)
 
 
-def _read_parts(
-    root: Path, tow: Mapping[str, Any], paths: str, profile: SeasonProfile
-) -> list[pl.DataFrame]:
+def _read_parts(root: Path, tow: Row, paths: str, profile: SeasonProfile) -> list[pl.DataFrame]:
     """Read a file, or the files that are a run each."""
     several = paths.split(PARTS)
     if len(several) == 1:
@@ -297,7 +296,7 @@ def runs_of_parts(names: Sequence[str]) -> list[int]:
 
 
 def _read_part(
-    root: Path, tow: Mapping[str, Any], path: str, profile: SeasonProfile, run: int | None
+    root: Path, tow: Row, path: str, profile: SeasonProfile, run: int | None
 ) -> pl.DataFrame:
     try:
         full = path_inside(root, path)

@@ -172,9 +172,7 @@ def read_tow(row: ListRow, season: int, default_rate_hz: int) -> Row:
     }
 
 
-def fill_dimensions(
-    tow: Mapping[str, Any], boat: Mapping[str, Any], row: ListRow, has_wind: bool
-) -> Row:
+def fill_dimensions(tow: Row, boat: Row, row: ListRow, has_wind: bool) -> Row:
     """Return the tow with the boat's dimensions where that day's were not written down.
 
     Args:

@@ -7,13 +7,14 @@ its samples are read; `outside_run` is asked then.
 from collections import Counter
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import polars as pl
 
 from herijk.pipeline.channels import MOST_RUNS
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.lake import ListedWindows
+from herijk.tables.row import Row
 from herijk.warehouse.archive.faults import Fault, fault_from
 from herijk.warehouse.archive.lists import ListRow, Wording, read_list
 from herijk.warehouse.archive.text import Column, shorten
@@ -27,7 +28,7 @@ COLUMNS: Final = (
     Column("end_s", "tot", "time", "s"),
     Column("reason", "reden"),
 )
-Window = dict[str, Any]
+Window = Row
 
 
 @dataclass(frozen=True)
@@ -130,11 +131,11 @@ def _given_twice(window: Window) -> Fault:
     return _fault(window, "window_given_twice", say(message, **_values(window)))
 
 
-def _values(window: Mapping[str, Any]) -> dict[str, Any]:
+def _values(window: Row) -> Row:
     return {"run": window["run"], "tow": window["tow_id"]}
 
 
-def _fault(window: Mapping[str, Any], reason_code: str, message: str) -> Fault:
+def _fault(window: Row, reason_code: str, message: str) -> Fault:
     line = window["list_line"]
     said = say("Line {line}: {what}", line=line, what=message)
     return Fault(window["list_path"], None, line, reason_code, said)

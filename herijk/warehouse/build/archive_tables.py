@@ -11,6 +11,7 @@ from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.recompute.facts import with_boat_types
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import Faults
+from herijk.warehouse.archive.faults import OF_A_HEADER
 from herijk.warehouse.archive.windows import outside_run
 from herijk.warehouse.build.plausible import gross_faults, judge, with_doubts
 from herijk.warehouse.build.same_samples import same_samples
@@ -149,7 +150,8 @@ def _dated(faults: pl.DataFrame, earlier: pl.DataFrame, today: dt.date) -> pl.Da
     A fault that does not say what it costs has cost a tow, a row of a list or a file.
     """
     key = ["path", "tow_id", "line", "reason_code"]
-    of_list = pl.when(pl.col("line").is_null()).then(pl.lit("file")).otherwise(pl.lit("row"))
+    whole = pl.col("line").is_null() | pl.col("reason_code").is_in(OF_A_HEADER)
+    of_list = pl.when(whole).then(pl.lit("file")).otherwise(pl.lit("row"))
     lost = pl.when(pl.col("tow_id").is_not_null()).then(pl.lit("tow")).otherwise(of_list)
     first = earlier.group_by(key).agg(pl.col("first_seen").min())
     return faults.join(first, on=key, how="left", nulls_equal=True).with_columns(

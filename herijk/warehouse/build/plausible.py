@@ -123,4 +123,7 @@ def _seen(shift: Shift) -> str:
 def _way_out(shift: Shift) -> str:
     if not shift.cause:
         return "Look whether these are this boat's samples, and what the load cell was set to."
-    return say("It looks like {}: correct the unit in the header, or the scale.", shift.cause)
+    likely = say("It looks like {}: correct the unit in the header, or the scale.", shift.cause)
+    if (shift.kind, shift.quantity) != ("tow", "force"):
+        return likely
+    return say("{} Or are weight and length in its row of the list not this boat's?", likely)

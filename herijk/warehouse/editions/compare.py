@@ -7,9 +7,8 @@ one factor, named after what else differs. An edition holds its comparison with 
 """
 
 import json
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Final
+from typing import Final
 
 import polars as pl
 
@@ -232,7 +231,7 @@ def _grounds(old: Edition, new: Edition, separated: set[object], code_known: boo
 
 
 def _ground(
-    line: Mapping[str, Any],
+    line: Row,
     old: Edition,
     new: Edition,
     separated: set[object],
@@ -257,7 +256,7 @@ def _ground(
     return named.get((own, others, code), UNEXPLAINED)
 
 
-def _ground_of_printed(line: Mapping[str, Any], separated: set[object]) -> str:
+def _ground_of_printed(line: Row, separated: set[object]) -> str:
     if line[INPUTS_HASH] == line[f"{INPUTS_HASH}_new"]:
         return CLOSED_FORM
     if tuple(line[name] for name in LINE) in separated:

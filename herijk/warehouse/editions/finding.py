@@ -1,8 +1,8 @@
 """What `verify` finds."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+
+from herijk.tables.row import Row
 
 
 @dataclass(frozen=True)
@@ -25,6 +25,6 @@ class Finding:
     wrong: bool = True
 
 
-def line_name(row: Mapping[str, Any]) -> str:
+def line_name(row: Row) -> str:
     """A line of the register, as findings name it."""
     return f"{row['fsn_no']} {row['rowers']}{row['crew_class']}"

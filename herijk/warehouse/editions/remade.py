@@ -2,13 +2,14 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import polars as pl
 from pydantic import ValidationError
 
 from herijk.pipeline.errors import HerijkError
 from herijk.pipeline.register.register import LINE
+from herijk.tables.row import Row
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.archive.files import BOATS_FILE
 from herijk.warehouse.build.version import code_version
@@ -156,7 +157,7 @@ class _Reasons:
         same_inputs = len(unchanged) == edition.tables["tows"].height
         return cls(edition.about, present, boats_changed, unchanged, same_inputs)
 
-    def why(self, row: dict[str, Any]) -> tuple[str, bool]:
+    def why(self, row: Row) -> tuple[str, bool]:
         """Why a line comes out otherwise, and whether that breaks a promise."""
         if row["basis"] == AS_PRINTED and self.about.kind == "as_printed":
             return say("the printed register in the archive says so now"), True

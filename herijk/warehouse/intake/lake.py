@@ -7,10 +7,10 @@ known to `warehouse.archive`; which sums there are, to `pipeline.blocks.run_bloc
 """
 
 import dataclasses
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import polars as pl
@@ -37,7 +37,7 @@ LAKE_FORM: Final = {
 }
 """How samples and blocks are packed: measured in docs/decisions/0004."""
 
-Tow = Mapping[str, Any]
+Tow = Row
 Report = Callable[[str, bool], None]
 """Called after each tow with its id and whether it was set aside."""
 

@@ -116,14 +116,16 @@ def answers(views: Views, edition: str) -> pl.DataFrame:
     """Every line of an edition with what there is to say of it.
 
     Returns:
-        Rows of `register` of that edition with the columns of `line_changes` where it is compared
-        with another; `old_type_place`, `new_type_place` and `type_size` among boats of its type
-        and class; `old_log_known` and `new_log_known`: whether the interval holds the error of the
-        log; what `due_list` says of the next tow; what the tow weighed and measured; its best
-        estimate `cw_best_*`, what share `own_weight` of that rests on the tow itself, and by what
-        factor the tow (`moved_ratio`) and its best estimate (`best_moved_ratio`) differ from the
-        tow before, `season_before`, of the same, unaltered boat and crew; `log_factor` of its
-        season with `log_lo`, `log_hi` and `log_source`.
+        Rows of `register` of that edition, with the columns of `line_changes` where it is compared
+        with another. Added are:
+
+        - `old_type_place`, `new_type_place` and `type_size` among boats of its type and class;
+        - `old_log_known` and `new_log_known`: whether the interval holds the error of the log;
+        - what `due_list` says of the next tow, and what the tow weighed and measured;
+        - its best estimate `cw_best_*`, and `own_weight`, the share that rests on the tow itself;
+        - by what factor the tow (`moved_ratio`) and its best estimate (`best_moved_ratio`) differ
+          from those of `season_before`, the tow before of the same, unaltered boat and crew;
+        - `log_factor` of its season with `log_lo`, `log_hi` and `log_source`.
     """
     changes = line_changes(views).filter(to_edition=edition)
     lines = views.register().filter(edition=edition)

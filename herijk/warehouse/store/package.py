@@ -1,8 +1,8 @@
 """The tables as files that any program opens: Parquet, described as a data package and for DCAT.
 
-`tables/` in the data folder can be copied and handed on as it is: one Parquet file per table, a
-`datapackage.json` (Frictionless Data Package, version 2) with columns, keys, licence, sources and
-hashes, and the same for catalogues as `dcat.jsonld` (DCAT 3). The folder is swapped in whole.
+`tables/` in the data folder can be copied and handed on as it is: one Parquet file per table. A
+`datapackage.json` (Frictionless Data Package, version 2) gives columns, keys, licence, sources and
+hashes; `dcat.jsonld` (DCAT 3) says the same to catalogues. The folder is swapped in whole.
 """
 
 import hashlib
