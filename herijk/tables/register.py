@@ -26,7 +26,7 @@ def _flags() -> dy.List:
 class _Line(dy.Schema):
     """What every line of a register has."""
 
-    edition = column.text("edition; a draft is called concept-<method>", primary_key=True)
+    edition = column.text("edition; a draft is called concept-METHOD", primary_key=True)
     method = column.method()
     fsn_no = column.fsn_no(primary_key=True)
     rowers = column.rowers(primary_key=True)

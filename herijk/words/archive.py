@@ -338,7 +338,17 @@ ARCHIVE: Final[dict[str, str]] = {
     "{} has the very samples of {}; the run is left out.": (
         "{} bevat precies de metingen van {}; de run telt niet mee."
     ),
-    "{what}, and it looks like {unit}": "{what}, en het lijkt op {unit}",
+    "the mean of column '{column}' is {:.4g}; {:.3g} to {:.3g} can be right, and it looks like "
+    "{unit}": (
+        "het gemiddelde van kolom '{column}' is {:.4g}; {:.3g} tot {:.3g} kan kloppen, en het "
+        "lijkt op {unit}"
+    ),
+    "{} instead of {}": "{} in plaats van {}",
+    "{} or {}": "{} of {}",
+    "a gain of two": "een factor twee",
+    "knots": "knopen",
+    "radians": "radialen",
+    "degrees": "graden",
     "column '{column}' is at its highest value, {:.6g}, in {:.0f} % of the samples, as a load "
     "cell at the end of its range": (
         "kolom '{column}' staat op zijn hoogste waarde, {:.6g}, bij {:.0f} % van de metingen, "

@@ -139,7 +139,6 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
     "edition_in_force": ("Geldende editie", "Current edition"),
     "no_edition": ("nog geen: dit is een concept", "none yet: this is a draft"),
     "edition_from": ("{edition}, vanaf {day}", "{edition}, from {day}"),
-    "as_of": ("Peildatum", "As of"),
     "boats_number": ("Sloepen", "Boats"),
     "tows_number": ("Sleepproeven", "Tows"),
     "compare_boats": ("Twee sloepen vergeleken", "Two boats compared"),

@@ -1,6 +1,7 @@
 """The owner's answer, in words: each sentence says what its numbers say, and no more."""
 
 import datetime as dt
+import json
 import re
 
 import polars as pl
@@ -143,6 +144,13 @@ def test_the_waterfall_has_a_bar_for_every_cause_and_a_mark_for_both_numbers():
     # A bar for a number would have to begin at zero.
     assert (picture.count("<rect"), picture.count("<path")) == (2, 2)
     assert re.search(r'aria-label="[^"]*Tr\w+wes', picture)
+
+
+def test_the_waterfall_ends_at_the_new_number_though_small_causes_have_no_bar():
+    causes = json.dumps([{"cause": "tow", "factor": 0.9674}, {"cause": "code", "factor": 0.9996}])
+    picture = told(Answer(LINE | {"causes": causes}, (), EMPTY, EMPTY), NL).waterfall
+    assert picture.count("<rect") == 1
+    assert ">31,01<" in picture
 
 
 def test_names_in_pictures_are_escaped():

@@ -123,6 +123,7 @@ def test_a_tow_in_another_unit_is_set_aside_with_the_likely_unit(archive, change
     assert set(found) == {"2016-004"}
     assert found["2016-004"][0] == code
     assert word in found["2016-004"][1]
+    assert "instead of" not in str(archive.store.read("quarantine")["message_nl"][0])
     assert not archive.doubts()
 
 

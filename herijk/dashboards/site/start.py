@@ -76,7 +76,7 @@ def _figures(views: Views) -> list[tuple[str, str | Headline]]:
     first, last = views.table("seasons").select(first=season.min(), last=season.max()).row(0)
     return [
         ("edition_in_force", _in_force(editions)),
-        ("as_of", str(views.table("due_list")["as_of"].max())),
+        ("column.as_of", str(views.table("due_list")["as_of"].max())),
         ("boats_number", str(views.table("boats").height)),
         ("tows_number", f"{tows.height} ({first}\u2013{last})"),
     ]

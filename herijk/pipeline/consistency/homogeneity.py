@@ -18,7 +18,7 @@ from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.consistency import mixed
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE, Observed, newest, q_at
 from herijk.pipeline.consistency.reml import Design, Problem
-from herijk.tables.consistency import PooledCurves, TypeHomogeneity
+from herijk.tables.consistency import TypeHomogeneity
 from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of
 from herijk.tables.keys import LINE
@@ -280,42 +280,42 @@ def pooled_curves(observed: Observed) -> pl.DataFrame:
         Rows of the table `pooled_curves`, three per method and tow; of types of fewer than three
         boats, and boats of no type, only the own curve.
     """
-    groups = newest(observed).groups("method", "boat_type")
+    boats = newest(observed)
+    groups = boats.groups("method", "boat_type")
     alike = {
-        key: (boats, float(boats.column("run_sd_ratio")[0]))
-        for key, boats in groups
-        if key[1] != UNKNOWN_TYPE and boats.table["fsn_no"].n_unique() >= FEWEST_BOATS
+        key: (own, float(own.column("run_sd_ratio")[0]))
+        for key, own in groups
+        if key[1] != UNKNOWN_TYPE and own.table["fsn_no"].n_unique() >= FEWEST_BOATS
     }
     priors = dict(zip(alike, _bend_priors(list(alike.values())), strict=True))
+    speed, partial, shared = np.full((3, boats.table.height), np.nan)
+    for (key, own), (_, rows) in zip(groups, boats.rows_by("method", "boat_type"), strict=True):
+        speed[rows] = _middle_speed(own)
+        if key in priors:
+            partial[rows], shared[rows] = _drawn(own, *priors[key]), shared_bend(own)
     parts = [
-        _pooled(boats, pooling, s)
-        for key, boats in groups
-        for pooling, s in _bends(boats, priors.get(key)).items()
+        _pooled(boats.take(rows), pooling, s[rows], speed[rows])
+        for pooling, s in ((OWN, boats.column("s_s2_m2")), (PARTIAL, partial), (SHARED, shared))
+        for rows in [np.flatnonzero(~np.isnan(s))]
     ]
-    return pl.concat([PooledCurves.create_empty(), *parts])
+    return pl.concat(parts).sort("method", "boat_type", maintain_order=True)
 
 
-def _bends(boats: Observed, prior: tuple[float, float] | None) -> dict[str, FloatArray]:
-    """The s of each boat of a type by what boats share; `prior` is None where they are too few."""
-    bends = {OWN: boats.column("s_s2_m2")}
-    if prior is not None:
-        mean, between = prior
-        speed = _middle_speed(boats)
-        q, unit = q_at(boats, speed)
-        noise = unit * boats.column("run_sd_ratio") ** 2
-        share = between**2 / np.maximum(between**2 + noise, 1e-300)
-        drawn = mean + np.where(np.isfinite(q), share * (q - mean), 0.0)
-        ceiling = 0.999 / np.where(boats.points.used, boats.points.speed_m_s, 0.0).max(axis=1) ** 2
-        bends[PARTIAL] = np.minimum(drawn / (1.0 + drawn) / speed**2, ceiling)
-        bends[SHARED] = np.full(len(q), shared_bend(boats))
-    return bends
+def _drawn(boats: Observed, mean: float, between: float) -> FloatArray:
+    """The s of each boat of a type with its q drawn to the mean of the type."""
+    speed = _middle_speed(boats)
+    q, unit = q_at(boats, speed)
+    noise = unit * boats.column("run_sd_ratio") ** 2
+    share = between**2 / np.maximum(between**2 + noise, 1e-300)
+    drawn = mean + np.where(np.isfinite(q), share * (q - mean), 0.0)
+    ceiling = 0.999 / np.where(boats.points.used, boats.points.speed_m_s, 0.0).max(axis=1) ** 2
+    return np.asarray(np.minimum(drawn / (1.0 + drawn) / speed**2, ceiling))
 
 
-def _pooled(boats: Observed, pooling: str, s: FloatArray) -> pl.DataFrame:
-    speed_m_s = _middle_speed(boats)
+def _pooled(boats: Observed, pooling: str, s: FloatArray, speed_m_s: FloatArray) -> pl.DataFrame:
     a = height_given_bend(boats.points, s)
     declared = boats.column("declared_speed_m_s")
-    q = curve.cw(1.0, s, np.full(len(s), speed_m_s)) - 1.0
+    q = curve.cw(1.0, s, speed_m_s) - 1.0
     b = np.where(s > 0, 1.0 / np.sqrt(np.where(s > 0, s, 1.0)), np.inf)
     numbers = {"q": q, "a_kg_m": a, "b_m_s": b} | {
         name: curve.cw(a, s, ratio * declared) for name, ratio in SPEED_RATIOS.items()
@@ -326,7 +326,7 @@ def _pooled(boats: Observed, pooling: str, s: FloatArray) -> pl.DataFrame:
         *LINE,
         "boat_type",
         pl.lit(pooling).alias("pooling"),
-        pl.lit(speed_m_s).alias("standard_speed_m_s"),
+        pl.Series("standard_speed_m_s", speed_m_s),
         *(
             pl.Series(name, np.where(np.isfinite(v), v, np.nan)).fill_nan(None)
             for name, v in numbers.items()

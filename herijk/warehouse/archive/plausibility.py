@@ -767,7 +767,15 @@ def _unlikely_mean(run: _Run, key: str) -> Said | None:
     )
     likely = [name for name, ratio in _SPEED_UNITS.items() if 0.9 < mean / (ratio * log1) < 1.1]
     if key in SPARE and likely:
-        what = say("{what}, and it looks like {unit}", what=what, unit=likely[0])
+        what = say(
+            "the mean of column '{column}' is {:.4g}; {:.3g} to {:.3g} can be right, and it looks "
+            "like {unit}",
+            mean,
+            low,
+            high,
+            column=_WORDS[key],
+            unit=likely[0],
+        )
     return reason_code, what, 0
 
 

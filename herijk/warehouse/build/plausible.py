@@ -10,6 +10,7 @@ faults and needs these tows for it.
 import dataclasses
 import math
 from collections.abc import Mapping, Sequence
+from functools import reduce
 from typing import Final
 
 import polars as pl
@@ -123,7 +124,15 @@ def _seen(shift: Shift) -> str:
 def _way_out(shift: Shift) -> str:
     if not shift.cause:
         return "Look whether these are this boat's samples, and what the load cell was set to."
-    likely = say("It looks like {}: correct the unit in the header, or the scale.", shift.cause)
+    causes = [say(*_template(name)) for name in shift.cause.split(" or ")]
+    cause = reduce(lambda one, other: say("{} or {}", one, other), causes)
+    likely = say("It looks like {}: correct the unit in the header, or the scale.", cause)
     if (shift.kind, shift.quantity) != ("tow", "force"):
         return likely
     return say("{} Or are weight and length in its row of the list not this boat's?", likely)
+
+
+def _template(cause: str) -> tuple[str, ...]:
+    """A cause as what `say` takes: `kgf instead of N` by its two units."""
+    units = cause.split(" instead of ")
+    return ("{} instead of {}", *units) if len(units) > 1 else (cause,)

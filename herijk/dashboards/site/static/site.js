@@ -160,7 +160,8 @@
   const isOtherChosen = () => all("select", form ?? undefined).some((field) => field.value !== defaults.get(field.name));
 
   async function filter(table) {
-    if (isOtherChosen()) await allRows(table);
+    let fault = ""; // rows that cannot be read are missed; others do not take their place
+    if (isOtherChosen()) await allRows(table).catch((error) => { fault = String(error); });
     const words = plain(table.querySelector(".search")?.value ?? "").split(/\s+/).filter(Boolean);
     const linked = table.querySelector("table.linked");
     const follows = JSON.parse(table.dataset.follows);
@@ -177,7 +178,7 @@
       row.tabIndex = i ? -1 : 0;
       row.classList.toggle("chosen", row.dataset.boat === marked);
     });
-    table.querySelector(".count b").textContent = shown.length;
+    table.querySelector(".count b").textContent = fault || shown.length;
     const clear = table.querySelector(".clear");
     if (clear) clear.hidden = selected === null;
   }
