@@ -15,6 +15,7 @@ from typing import Any, Final
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.declare import dy
 from herijk.tables.frames import limits
+from herijk.warehouse.archive.crews import with_crews_apart
 from herijk.warehouse.archive.meaning import Meaning, meanings
 from herijk.warehouse.archive.sheets import Sheet, read_sheets, split_sheet
 from herijk.warehouse.archive.text import (
@@ -477,7 +478,8 @@ def read_list(
     """
     wanted = wording.with_names(columns)
     file, sheet = split_sheet(path)
-    sheets = read_sheets(data, wanted, file[file.rfind(".") :].casefold(), sheet)
+    suffix = file[file.rfind(".") :].casefold()
+    sheets = [with_crews_apart(s, wanted) for s in read_sheets(data, wanted, suffix, sheet)]
     cells = [cell.strip() for sheet in sheets for row in sheet.rows for cell in row.fields]
     order = wording.dates.get(path, wording.dates.get("*", "")) or date_order(cells)
     told = wording.decimals.get(path, wording.decimals.get("*", ""))

@@ -1,6 +1,7 @@
 """What the index says of a good archive, the profile, and archives that are none."""
 
 import datetime as dt
+import re
 from pathlib import Path
 
 import polars as pl
@@ -82,6 +83,20 @@ def test_natural_oddities_are_no_faults(archive: Archive) -> None:
     archive.cells(6, lambda cell, line: "80", line_of(2), line_of(2, 300))  # no wind to turn it
     archive.cells(3, lambda cell, line: "2,40", line_of(2), line_of(2, ROWS - 1))  # held fix
     assert archive.scan().faults == []
+
+
+@pytest.mark.parametrize("header", ["ploeg", "roeiers", "klasse"])
+def test_a_crew_in_one_cell_is_rowers_and_class(archive: Archive, header: str) -> None:
+    as_two = archive.scan().index.tows.select("tow_id", "rowers", "crew_class")
+
+    def in_one(text: str) -> str:
+        text = text.replace("roeiers;klasse", header)
+        return re.sub(r";([0-9]+);([HD]);", r";\1 \2;", text)
+
+    archive.edit(TOWS, in_one)
+    scan = archive.scan()
+    assert scan.index.tows.select("tow_id", "rowers", "crew_class").equals(as_two)
+    assert scan.faults == []
 
 
 def test_the_profile_sets_rate_and_directions(archive: Archive) -> None:
