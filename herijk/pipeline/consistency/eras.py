@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 import polars as pl
-import scipy.special
+import scipy
 
 from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
