@@ -8,6 +8,7 @@ A command imports what it needs when it runs: Polars, SciPy, Altair and Dagster 
 together, and `herijk --help` needs none of them.
 """
 
+import os
 import re
 import sys
 from contextlib import suppress
@@ -50,9 +51,14 @@ app.command()(doctor)
 
 MOST_TYPES: Final = 2
 
+BLAS_THREADS: Final = "OPENBLAS_NUM_THREADS"
+"""Read when NumPy is imported. Both processes of a rebuild work on small matrices: more threads in
+each only wait for each other (5.4 s instead of 3.2 for the consistency of 1,020 tows)."""
+
 
 def main() -> None:
     """Runs the command; an error that a user can act on becomes one sentence and status 1."""
+    os.environ.setdefault(BLAS_THREADS, "1")
     try:
         app()
     except HerijkError as error:
