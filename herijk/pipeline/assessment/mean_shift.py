@@ -58,8 +58,8 @@ class Observations:
 
     values: FloatArray
     variance: FloatArray
-    own: "Effects"
-    shared: "Effects"
+    own: Effects
+    shared: Effects
 
 
 @dataclass(frozen=True)

@@ -24,9 +24,11 @@ def with_crews_apart(sheet: Sheet, wanted: Sequence[Column]) -> Sheet:
         wanted: the columns of that list.
     """
     names = {c.key: c.header for c in wanted if c.key in ("rowers", "crew_class")}
+    if len(names) < 2:
+        return sheet
     optional = [replace(column, required=False) for column in wanted]
     found = find_columns(sheet.header, optional, sheet.line)
-    if len(names) < 2 or names.keys() <= found.keys():
+    if names.keys() <= found.keys():
         return sheet
     known = {column.index for key, column in found.items() if key not in names}
     place = next((k for k in range(len(sheet.header)) if k not in known and _crews(sheet, k)), None)
