@@ -16,8 +16,9 @@ _CREW: Final = re.compile(r"\s*([0-9]{1,2})\s*([^\W\d_]+)\s*")
 def with_crews_apart(sheet: Sheet, wanted: Sequence[Column]) -> Sheet:
     """Return the table with rowers and class in a column each, where one column holds both.
 
-    Only where either column is missing, and a column that is one of them, or that nobody knows,
-    holds crews. A cell that is none stays among the rowers, without a class.
+    Where either column is missing, a column that is one of them, or that nobody knows, may hold
+    crews. A cell that is none stays among the rowers, without a class. Where both are there, crews
+    are taken apart whose class is left empty.
 
     Args:
         sheet: a table of a list.
@@ -29,7 +30,9 @@ def with_crews_apart(sheet: Sheet, wanted: Sequence[Column]) -> Sheet:
     optional = [replace(column, required=False) for column in wanted]
     found = find_columns(sheet.header, optional, sheet.line)
     if names.keys() <= found.keys():
-        return sheet
+        rowers, crew_class = (found[key].index for key in ("rowers", "crew_class"))
+        rows = [replace(r, fields=_filled(r.fields, rowers, crew_class)) for r in sheet.rows]
+        return replace(sheet, rows=rows)
     known = {column.index for key, column in found.items() if key not in names}
     place = next((k for k in range(len(sheet.header)) if k not in known and _crews(sheet, k)), None)
     if place is None:
@@ -54,6 +57,15 @@ def _crew(cell: str) -> tuple[str, str] | None:
     """Return rowers and class as they are written, None where a cell is no crew."""
     match = _CREW.fullmatch(cell)
     return (match[1], match[2]) if match and match[2].casefold() in CLASSES else None
+
+
+def _filled(fields: Sequence[str], rowers: int, crew_class: int) -> list[str]:
+    """Return a row with the class of a crew among the rowers in its own, empty cell."""
+    filled = list(fields)
+    crew = _crew(fields[rowers]) if max(rowers, crew_class) < len(fields) else None
+    if crew and not fields[crew_class].strip():
+        filled[rowers], filled[crew_class] = crew
+    return filled
 
 
 def _apart(fields: Sequence[str], place: int, width: int) -> list[str]:
