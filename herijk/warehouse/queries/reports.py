@@ -14,7 +14,8 @@ BIGGEST = 10
 FIRST_FAULTS = 10
 _FAULTS_BY_REASON = """
 SELECT lost, reason_code, count(*) AS number FROM quarantine GROUP BY lost, reason_code
-ORDER BY list_position(['file', 'tow', 'row', 'run', 'cell', 'seconds'], lost), number DESC, reason_code
+ORDER BY list_position(['file', 'tow', 'row', 'run', 'cell', 'seconds'], lost), number DESC,
+         reason_code
 """
 _FIRST_FAULTS = """
 WITH causes AS (
