@@ -198,6 +198,7 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.no_curve": ("geen kromme", "no curve"),
     "code.power_outside_range": ("vermogen ongewoon", "power outside range"),
     "code.residual_large": ("punten ver van de kromme", "large residual"),
+    "code.log_not_linear": ("log niet evenredig", "log not in proportion"),
     "code.unusual_calibration": ("ijking ongewoon", "unusual calibration"),
     "code.recomputed": ("herrekend", "recomputed"),
     "code.as_printed": ("zoals gedrukt", "as printed"),

@@ -113,6 +113,15 @@ CHECKS: Final = (
         highest=1.02,
     ),
     Check(
+        "log_not_linear",
+        "by how much at least GPS / log changes with speed in that season, as a power of speed: "
+        "one factor does not bring such a log to true speed, and B is off",
+        "1",
+        "inferred: 0.02 changes the bend of a usual curve by a twentieth",
+        lowest=-0.02,
+        highest=0.02,
+    ),
+    Check(
         "b_at_cap",
         "whether B was brought down to its cap (1) or not (0): the bend is then prescribed",
         "1",
@@ -180,7 +189,7 @@ CHECKS: Final = (
         "season_in_doubt",
         "whether an instrument of the season, or of every season with dGPS that its log factor "
         "rests on, has a fault or may have one (1) or not (0): the table `season_diagnosis` says "
-        "which",
+        "which; so it is from a season on in which all boats seem to have changed at once",
         "1",
         "inferred: a fault that the season log finds, or cannot rule out, concerns all its tows",
         highest=0.0,
