@@ -230,10 +230,10 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
 
 
 def _of_logs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
-    """By how much at least the log's factor changes with speed, by the GPS of all its season.
+    """How the log's factor changes with speed, by the GPS of all its season.
 
     Per tow the slope of ln(GPS / log) by ln speed, among runs one way, in which the stream is the
-    same; per season the mean, drawn to 0 by what chance makes of it in 999 of 1000 seasons.
+    same; per season the mean, or 0 where chance makes as much of it in one of 1000 seasons.
     """
     ways = ["tow_id", pl.col("run") > SECOND_FILE_OFFSET, "direction"]
     x, y = (pl.col(name).log() for name in ("speed_m_s", "gps_ratio"))
@@ -250,8 +250,8 @@ def _of_logs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
         .filter(pl.col("n") >= FEWEST_SLOPES)
         .with_columns(pl.col("n").map_batches(_chance, return_dtype=pl.Float64()).alias("chance"))
     )
-    least = (slope.abs() - pl.col("chance") * pl.col("sd")).clip(0.0) * slope.sign()
-    return curves.join(seasons, on="season").select("tow_id", log_not_linear=least)
+    sure = pl.when(slope.abs() > pl.col("chance") * pl.col("sd")).then(slope).otherwise(0.0)
+    return curves.join(seasons, on="season").select("tow_id", log_not_linear=sure)
 
 
 def _chance(tows: pl.Series) -> pl.Series:

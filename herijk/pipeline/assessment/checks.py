@@ -114,8 +114,8 @@ CHECKS: Final = (
     ),
     Check(
         "log_not_linear",
-        "by how much at least GPS / log changes with speed in that season, as a power of speed: "
-        "one factor does not bring such a log to true speed, and B is off",
+        "how GPS / log changes with speed in that season, as a power of speed: one factor does "
+        "not bring such a log to true speed, and B is off",
         "1",
         "inferred: 0.02 changes the bend of a usual curve by a twentieth",
         lowest=-0.02,

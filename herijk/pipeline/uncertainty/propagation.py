@@ -219,8 +219,9 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
             where calibrated), `tow_log_sd` of the log (0 where calibrated); `stream_sd` with
             `stream_dof`, of ln speed by a stream that differs between runs one way; `air_ratio`,
             net wind correction / Cw, and `air_per_coefficient`, change of ln Cw per unit of drag
-            coefficient (both signed); `wind_ln_sd`, of the anemometer's ln scale, null where it is taken as it
-            reads; `wind_measured`, and where it was not `still_air_ratio`, still-air part / Cw;
+            coefficient (both signed); `wind_ln_sd`, of the anemometer's ln scale, null where it is
+            taken as it reads; `wind_measured`, and where it was not `still_air_ratio`, still-air
+            part / Cw;
             `temperature_known`; `askew_ratio`, by being pulled askew, null where repeat tows do not
             tell; `force_sd`, of the load cell by its record, null or absent without one.
         assumed: what the archive cannot show; give `wind_coefficient` what the archive-wide search
