@@ -183,6 +183,7 @@ CODES: Final[dict[str, tuple[str, str]]] = {
         "outside 85-115 % of the declared speed, where the curve does not hold",
     ),
     "code.bow_height_changed": ("boeghoogte veranderd", "bow height changed"),
+    "code.boat_list_differs": ("anders dan in sloependata", "differs from the boat list"),
     "code.length_changed": ("lengte veranderd", "length changed"),
     "code.weight_changed": ("gewicht veranderd", "weight changed"),
     "code.curve_changed": ("kromme veranderd", "curve changed"),

@@ -66,6 +66,8 @@ def _tow(boat: int, season: int) -> dict[str, Any]:
         "waterline_length_m": 8.0,
         "beam_m": 2.2,
         "bow_height_m": 0.9,
+        "listed_length_m": 8.04,
+        "listed_beam_m": 2.2,
         "weight_kg": 1000.0 + 5.0 * boat,
         "weight_after_kg": 1008.0 + 5.0 * boat,
         "crew_weight_kg": 760.0,
@@ -212,6 +214,7 @@ CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
     "slow_tow": ("curves", SUBJECT, {"power_w": 59.0}, 59, 60, {"power_outside_range"}),
     "crew_weight": ("tows", SUBJECT, {"crew_weight_kg": 500.0}, 62.5, 81, {"pulled_askew"}),
     "heavier_after": ("tows", SUBJECT, {"weight_after_kg": 1030.0}, 1030 / 1005 - 1, 0.02, set()),
+    "boat_list_differs": ("tows", LATER, {"listed_length_m": 9.0}, 1 / 9, 0.05, set()),
     "weight_changed": (
         "tows", LATER, {"weight_kg": 980.0}, 980 / 1005 - 1, -0.02, {"heavier_after"},
     ),

@@ -300,6 +300,7 @@ def _of_sizes(tows: pl.DataFrame) -> pl.DataFrame:
         "runs_set_aside": pl.col("runs_set_aside"),
         "lamps_burned": pl.col("lamp_ratio").alias("lamps_burned"),
         "load_cell_off": (pl.col("load_cell_ratio") - 1).alias("load_cell_off"),
+        "boat_list_differs": _off_boat_list().alias("boat_list_differs"),
     }
     known = [e for e in noted.values() if set(e.meta.root_names()) <= set(tows.columns)]
     return tows.sort("tow_date", "tow_id").select(
@@ -313,6 +314,18 @@ def _of_sizes(tows: pl.DataFrame) -> pl.DataFrame:
             for code, column in SIZES.items()
         ),
     )
+
+
+def _off_boat_list() -> pl.Expr:
+    """How far length or breadth is from the boat list; of a boat ever altered that says nothing."""
+    off = [
+        (pl.col(column) / pl.col(listed) - 1).abs()
+        for column, listed in (
+            ("waterline_length_m", "listed_length_m"),
+            ("beam_m", "listed_beam_m"),
+        )
+    ]
+    return pl.when(~pl.col("altered").any().over("fsn_no")).then(pl.max_horizontal(off))
 
 
 def _of_freeboards(tows: pl.DataFrame) -> pl.DataFrame:

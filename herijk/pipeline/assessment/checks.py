@@ -309,6 +309,15 @@ CHECKS: Final = (
         highest=0.02,
     ),
     Check(
+        "boat_list_differs",
+        "how far waterline length or breadth that day is from the boat list, as a part of it, of a "
+        "boat of which no alteration was reported: the row may name another boat",
+        "1",
+        "inferred: measurements of one boat agree within 1 to 2 % (length_changed, beam_changed), "
+        "boats of one type within 5 %",
+        highest=0.05,
+    ),
+    Check(
         "weight_changed",
         "weight / that of the previous tow, less 1, without a reported alteration",
         "1",
