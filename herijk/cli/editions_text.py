@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from herijk.cli.text import SIMULATED, table
 from herijk.tables.row import Row
 from herijk.warehouse.editions.words import LANGUAGES, Language
-from herijk.words import LANGUAGE, tell
+from herijk.words import LANGUAGE, in_per_cent, tell
 
 if TYPE_CHECKING:
     from herijk.warehouse.editions.compare import DiffReport, Group
@@ -250,7 +250,7 @@ def _winners(winners: list[Row]) -> str:
             _same_winner(w),
             tell("not known")
             if w["change_probability"] is None
-            else f"{100 * w['change_probability']:.0f} %",
+            else in_per_cent(w["change_probability"]),
         )
         for w in winners
     ]

@@ -98,7 +98,8 @@ def _faults(first: list[Row], number: int) -> str:
 
 
 def _place(fault: Row) -> str:
-    line = "" if fault["line"] is None else tell(", line {}", fault["line"])
+    said = fault["line"] is None or fault["message"].startswith(f"Line {fault['line']}:")
+    line = "" if said else tell(", line {}", fault["line"])
     tow = "" if fault["tow_id"] is None else tell(" (tow {})", fault["tow_id"])
     more = tell(" and {} more", fault["number"] - 1) if fault["number"] > 1 else ""
     return f"{fault['path']}{line}{tow}{more}"

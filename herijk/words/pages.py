@@ -263,8 +263,8 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "editions; the places are among these. ",
     ),
     "head_chance": (
-        " Kans dat een ander wint dan eerst: {chance} %.",
-        " Chance that another wins than before: {chance} %.",
+        " Kans dat een ander wint dan eerst: {chance}.",
+        " Chance that another wins than before: {chance}.",
     ),
     # Words
     "words_list": ("Wat de woorden betekenen", "What the words mean"),

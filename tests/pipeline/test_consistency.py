@@ -200,7 +200,8 @@ def test_problems_side_by_side_are_fitted_as_each_alone():
 def test_leaving_a_boat_out_equals_fitting_without_it():
     problem = grouped_data()
     sd = (2.0, 1.0, 0.5)
-    found = mixed.Fit.at(problem, mixed.COMPONENTS, sd).leave_boats_out()
+    fit = mixed.Fit.at(problem, mixed.COMPONENTS, sd)
+    found = fit.leave_boats_out()
     v = np.diag(problem.variance + sd[2] ** 2)
     v += sd[0] ** 2 * (problem.design.boat[:, None] == problem.design.boat)
     v += sd[1] ** 2 * (problem.design.other[:, None] == problem.design.other)
@@ -215,6 +216,11 @@ def test_leaving_a_boat_out_equals_fitting_without_it():
     variance = variance + rest @ np.linalg.inv(information) @ rest.T
     assert found.error[out] == pytest.approx(problem.y[out] - predicted, rel=1e-8)
     assert found.variance[out] == pytest.approx(np.diag(variance), rel=1e-8)
+    of_others = problem.y[~out] - x @ beta
+    own = fit.misfit - of_others @ inverse @ of_others
+    rows = problem.rows_beyond
+    scale = (fit.scale * rows - own) / (rows - out.sum())
+    assert found.scale[out] == pytest.approx(np.full(out.sum(), scale), rel=1e-8)
 
 
 # Equal boats, equal B?
