@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from herijk.cli.text import SIMULATED, table
 from herijk.tables.row import Row
 from herijk.warehouse.editions.words import LANGUAGES, Language
-from herijk.words import LANGUAGE, in_per_cent, tell
+from herijk.words import LANGUAGE, in_per_cent, number, tell
 
 if TYPE_CHECKING:
     from herijk.warehouse.editions.compare import DiffReport, Group
@@ -59,7 +59,7 @@ def register(report: "RegisterReport") -> str:
     """The lines of an edition, and the day on which their validity was judged."""
     head = (
         *("boat", "name", "crew", "empty thwart", "status", "valid until", "tow", "v m/s"),
-        *("A kg/m", "B m/s", "Cw kg/m", "length m", "beam m", "bow m", "kg"),
+        *("A kg/m", "B m/s", "Cw kg/m", "from", "to", "length m", "beam m", "bow m", "kg"),
     )
     parts = [tell(SIMULATED)] if report.simulated else []
     counts = Counter(line["status"] for line in report.lines)
@@ -67,6 +67,11 @@ def register(report: "RegisterReport") -> str:
     parts += [
         tell("Register {}, validity judged on {}: {}.", report.edition, report.as_of, statuses),
         table(head, [_register_line(line) for line in report.lines]),
+        tell(
+            "From, to: the 95 % interval of Cw where the method estimates the error of the log; "
+            "else the spread\nof the runs alone, without that error. A and B hold from 85 to 115 % "
+            "of v."
+        ),
     ]
     return "\n\n".join(parts)
 
@@ -80,8 +85,10 @@ def _register_line(line: Row) -> tuple[Any, ...]:
         _words().statuses.get(line["status"], line["status"]),
         line["valid_until"],
         line["tow_id"],
-        *(line[name] for name in ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m")),
-        *(line[name] for name in ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg")),
+        *(_number(line[name], 2) for name in ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m")),
+        *(_number(line[name], 2) for name in ("cw_lo_kg_m", "cw_hi_kg_m", "waterline_length_m")),
+        *(_number(line[name], 2) for name in ("beam_m", "bow_height_m")),
+        _number(line["weight_kg"], 0),
     )
 
 
@@ -391,8 +398,8 @@ def _cause(cause: Row) -> str:
     return _words().cause(cause["cause"], cause.get("step"))
 
 
-def _number(value: float | None) -> str:
-    return "-" if value is None else tell("{:.2f}", value)
+def _number(value: float | None, digits: int = 2) -> str:
+    return "-" if value is None else number(value, f".{digits}f")
 
 
 def _per_cent(ratio: float | None) -> str:

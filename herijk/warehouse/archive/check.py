@@ -276,7 +276,7 @@ def _in_form(root: Path, file: ArchiveFile, profiles: Profiles, season: int) -> 
         samples = read_samples(
             path,
             profile,
-            sample_rate_hz=rate_in_times(path, profile) or profile.sample_rate_hz,
+            sample_rate_hz=round(rate_in_times(path, profile) or profile.sample_rate_hz),
             run=named[1] if named else None,
         )
     except DefectiveInputError as error:
