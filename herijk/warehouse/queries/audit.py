@@ -132,8 +132,8 @@ def _type_named(db: duckdb.DuckDBPyConnection, name: str) -> str:
     example = rows(db, "SELECT min(fsn_no) AS fsn_no FROM tows")[0]["fsn_no"]
     known = ", ".join(f"{row['boat_type']} ({row['n']})" for row in types)
     raise MissingKnowledgeError(
-        "there is no boat and no type {!r}; the types, and how many boats: {}; boats are named by FSN "
-        "number or name, for example {}",
+        "there is no boat and no type {!r}; the types, and how many boats: {}; boats are named by "
+        "FSN number or name, for example {}",
         name,
         known,
         example,
