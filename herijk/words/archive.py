@@ -310,6 +310,7 @@ ARCHIVE: Final[dict[str, str]] = {
     "{}: column '{column}' {} and is wrong for {:.3g} s in all; {}.": (
         "{}: kolom '{column}' {} en klopt samen {:.3g} s niet; {}."
     ),
+    "{what} The cell counts as empty.": "{what} De cel telt als leeg.",
     "holds {:.6g}": "bevat {:.6g}",
     "holds no ordinary number": "bevat geen gewoon getal",
     "{}: {what}; the run is left out.": "{}: {what}; de run valt af.",

@@ -128,6 +128,7 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.lost_tow": ("sleep", "tow"),
     "code.lost_file": ("bestand", "file"),
     "code.lost_row": ("regel", "row"),
+    "code.lost_cell": ("cel", "cell"),
     "code.crew_weight": ("gewicht van de bemanning ongewoon", "crew weight unusual"),
     "code.runs_set_aside": ("runs terzijde gelegd", "runs set aside"),
     "code.look": ("nakijken", "look"),

@@ -19,9 +19,10 @@ _CREW: Final = re.compile(r"\s*([0-9]{1,2})\s*([^\W\d_]+)\s*")
 def with_crews_apart(sheet: Sheet, wanted: Sequence[Column]) -> Sheet:
     """Return the table with rowers and class in a column each, where one column holds both.
 
-    Only where either column is missing, and a column that is one of them, or that nobody knows,
-    holds crews. A number and letters are apart in every cell, also where the letters are no class;
-    another cell stays among the rowers.
+    Where either column is missing, a column that is one of them, or that nobody knows, may hold
+    crews. A number and letters are then apart in every cell, also where the letters are no class;
+    another cell stays among the rowers. Where both are there, crews are taken apart whose class is
+    left empty.
 
     Args:
         sheet: a table of a list.
@@ -33,7 +34,9 @@ def with_crews_apart(sheet: Sheet, wanted: Sequence[Column]) -> Sheet:
     optional = [replace(column, required=False) for column in wanted]
     found = find_columns(sheet.header, optional, sheet.line)
     if names.keys() <= found.keys():
-        return sheet
+        rowers, crew_class = (found[key].index for key in ("rowers", "crew_class"))
+        rows = [replace(r, fields=_filled(r.fields, rowers, crew_class)) for r in sheet.rows]
+        return replace(sheet, rows=rows)
     known = {column.index for key, column in found.items() if key not in names}
     place = next((k for k in range(len(sheet.header)) if k not in known and _crews(sheet, k)), None)
     if place is None:
@@ -58,6 +61,16 @@ def _crews(sheet: Sheet, place: int) -> bool:
 def _is_crew(cell: str) -> bool:
     match = _CREW.fullmatch(cell)
     return match is not None and match[2].casefold() in CLASSES
+
+
+def _filled(fields: Sequence[str], rowers: int, crew_class: int) -> list[str]:
+    """Return a row with the class of a crew among the rowers in its own, empty cell."""
+    filled = list(fields)
+    there = max(rowers, crew_class) < len(fields)
+    match = _CREW.fullmatch(fields[rowers]) if there and _is_crew(fields[rowers]) else None
+    if match and not fields[crew_class].strip():
+        filled[rowers], filled[crew_class] = match.groups()
+    return filled
 
 
 def _apart(fields: Sequence[str], place: int, width: int) -> list[str]:

@@ -189,6 +189,7 @@ TOW_CASES: dict[str, tuple[Spoil, str, str, int | None]] = {
     "run b1 without second file": (text("1,2,3,4,5,6", "1,2,3,b4"), "bad_list_row", TOWS, 2),
     "run 9": (text("1,2,3,4,5,6", "1,2,9"), "bad_list_row", TOWS, 2),
     "verbouwd": (text("nee", "misschien"), "bad_list_row", TOWS, 2),
+    "temperature": (text(";8,7;", ";n.b.;"), "bad_list_row", TOWS, 2),
     "quote not closed": (text("8,7;6;", '8,7;6;"'), "bad_list_row", TOWS, 2),
     "row too short": (text(";20;\n", "\n"), "bad_list_row", TOWS, 2),
 }  # fmt: skip
@@ -210,8 +211,9 @@ def test_good_archive_has_no_faults(good_scan: Scan) -> None:
     assert set(good_scan.good) == ALL
 
 
-SECONDS, RUN = "seconds", "run"
+SECONDS, RUN, CELL = "seconds", "run", "cell"
 COSTS = {
+    **dict.fromkeys(["length in cm", "verbouwd", "temperature"], CELL),
     **dict.fromkeys(
         [
             *("run missing", "cut in mid-row", "log1 drops out", "sign of force in a run"),
