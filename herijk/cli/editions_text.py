@@ -1,12 +1,13 @@
 """Results of the commands about editions as text for a person."""
 
 from collections import Counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from herijk.cli.text import SIMULATED, table
 from herijk.tables.row import Row
 from herijk.warehouse.editions.words import LANGUAGES, Language
 from herijk.words import LANGUAGE, in_per_cent, number, tell
+from herijk.words.catalogue import code
 
 if TYPE_CHECKING:
     from herijk.warehouse.editions.compare import DiffReport, Group
@@ -39,7 +40,7 @@ def _to_look_at(lines: list[Row]) -> list[str]:
     rows = [
         f"  {line['fsn_no']} {line['rowers']}{line['crew_class']}: "
         + (
-            tell("tow {}: {}", line["tow_id"], ", ".join(line["flags"]))
+            tell("tow {}: {}", line["tow_id"], ", ".join(map(code, line["flags"])))
             if line["tow_id"]
             else tell("no numbers: the archive rules its tows out (see doubts in the table tows)")
         )
@@ -223,6 +224,15 @@ def _line(row: Row) -> tuple[Any, ...]:
     )
 
 
+_FATIGUE: Final = {
+    "none": "Races, not corrected for fatigue: ",
+    "known": "Races, corrected for fatigue as published: ",
+    "extend": (
+        "Races, corrected for fatigue (beyond 2 to 3 hours by the same power law, inferred): "
+    ),
+}
+
+
 def _races(report: "DiffReport") -> str:
     races, rules = report.races, report.race_rules
     if races is None or rules is None or report.winners is None:
@@ -230,7 +240,7 @@ def _races(report: "DiffReport") -> str:
     ranked = [r for r in races if r["new_rank"] is not None]
     moved = [r for r in ranked if r["old_rank"] != r["new_rank"]]
     podium = sum(r["podium_changed"] for r in ranked)
-    head = tell("Races (fatigue {}): ", rules.fatigue)
+    head = tell(_FATIGUE[rules.fatigue])
     text = tell(
         "{}{} results, {} of them ranked by both editions: {} change rank among those, "
         "{} on or off the podium.",

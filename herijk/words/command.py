@@ -585,7 +585,14 @@ COMMAND: Final[dict[str, str]] = {
     ),
     "{} lines, median {}, {} in two hours": "{} regels, mediaan {}, {} in twee uur",
     "Races: the archive holds none.": "Wedstrijden: het archief heeft er geen.",
-    "Races (fatigue {}): ": "Wedstrijden (vermoeidheid {}): ",
+    "Races, not corrected for fatigue: ": "Wedstrijden, zonder uitputtingscorrectie: ",
+    "Races, corrected for fatigue as published: ": (
+        "Wedstrijden, met de uitputtingscorrectie zoals gepubliceerd: "
+    ),
+    "Races, corrected for fatigue (beyond 2 to 3 hours by the same power law, inferred): ": (
+        "Wedstrijden, met uitputtingscorrectie (buiten 2 tot 3 uur met dezelfde machtswet, een "
+        "aanname): "
+    ),
     "{}{} results, {} of them ranked by both editions: {} change rank among those, "
     "{} on or off the podium.": (
         "{}{} uitslagen, waarvan {} met een plaats in beide edities: {} daarvan krijgen een andere "
