@@ -44,8 +44,8 @@ ARCHIVE: Final[dict[str, str]] = {
     "{names} must be there, here or in the boat list.": (
         "{names} moet er zijn, hier of in de lijst van sloepen."
     ),
-    "column '{column}' is {cell}; {low} to {high} can be right.": (
-        "kolom '{column}' is {cell}; {low} tot {high} kan kloppen."
+    "column '{column}' is {cell}; {low:g} to {high:g} can be right.": (
+        "kolom '{column}' is {cell}; {low:g} tot {high:g} kan kloppen."
     ),
     "column '{column}' is {cell}; it must be a whole number.": (
         "kolom '{column}' is {cell}; het moet een geheel getal zijn."
@@ -185,9 +185,6 @@ ARCHIVE: Final[dict[str, str]] = {
         "'{name}' is een pad; hier kan alleen de naam staan van een bestand in {folder}."
     ),
     "No row of a tow list names this file.": "Geen rij van een sleeplijst noemt dit bestand.",
-    "No row of the tow list of {season} names this file.": (
-        "Geen rij van de sleeplijst van {season} noemt dit bestand."
-    ),
     "'{path}' is not read, as nobody knows what it is.": (
         "'{path}' wordt niet gelezen: het is onbekend wat het is."
     ),

@@ -272,9 +272,9 @@ ERRORS: Final[dict[str, str]] = {
     "{} boats are called {!r}: {}; give the FSN number": (
         "{} sloepen heten {!r}: {}; geef het FSN-nummer"
     ),
-    "there is no boat and no type {!r}; the types are {}; boats are named by FSN number or "
-    "name, for example {}": (
-        "er is geen sloep en geen type {!r}; de types zijn {}; een sloep heeft een "
+    "there is no boat and no type {!r}; the types, and how many boats: {}; boats are named by FSN "
+    "number or name, for example {}": (
+        "er is geen sloep en geen type {!r}; de types, en hoeveel sloepen: {}; een sloep heeft een "
         "FSN-nummer of een naam, bijvoorbeeld {}"
     ),
     "{} is a boat, not a type; a boat has a page of its own: herijk audit {}": (

@@ -534,11 +534,7 @@ def _not_listed(
         if not file.inside:
             faults.append(fault_from(outside_archive(file.path), file.path))
         elif not unread_seasons & {file.season, 0} and (file.season or not unread_seasons):
-            message = (
-                say("No row of the tow list of {season} names this file.", season=file.season)
-                if file.season
-                else say("No row of a tow list names this file.")
-            )
+            message = say("No row of a tow list names this file.")
             faults.append(Fault(file.path, None, None, "samples_not_listed", message))
     return faults
 
