@@ -371,6 +371,16 @@ ARCHIVE: Final[dict[str, str]] = {
     "the wind is {:.2g} times what out and back together give, which is the boat's own speed": (
         "de wind is {:.2g} keer wat heen en terug samen geven, de eigen snelheid van de sloep"
     ),
+    "the wind out and back together comes from {:.0f} degrees; it is the wind of the boat's own "
+    "speed, from straight ahead": (
+        "de wind komt heen en terug samen uit {:.0f} graden; het is de wind van de eigen snelheid, "
+        "van recht voren"
+    ),
+    "If the vane is turned, or counts from another 0, declare wind_zero_deg = {:.0f} under "
+    "[[profile]] in archief.toml.": (
+        "Als de windvaan gedraaid zit, of van een andere 0 telt, zet dan wind_zero_deg = {:.0f} "
+        "onder [[profile]] in archief.toml."
+    ),
     "all wind angles lie between -3.14 and 6.28, as angles in radians do": (
         "alle windhoeken liggen tussen -3,14 en 6,28, zoals hoeken in radialen"
     ),

@@ -197,6 +197,14 @@ def test_problems_side_by_side_are_fitted_as_each_alone():
         assert fit.sd == pytest.approx(mixed.fit(problem, fit.free).sd, rel=1e-9)
 
 
+def test_a_mask_takes_the_problems_that_it_names():
+    """`[False, True]` equals the places `[0, 1]`: such a mask once took both."""
+    problem = grouped_data()
+    stack = Stack.of([replace(problem, y=problem.y * scale) for scale in (1.0, 2.0)])
+    for mask in ([False, True], [True, False], [True, True]):
+        assert stack.take(np.array(mask)).spread.tolist() == stack.spread[mask].tolist()
+
+
 def test_leaving_a_boat_out_equals_fitting_without_it():
     problem = grouped_data()
     sd = (2.0, 1.0, 0.5)
