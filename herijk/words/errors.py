@@ -302,6 +302,11 @@ ERRORS: Final[dict[str, str]] = {
     "{} speeds and {} values; give as many of each": (
         "{} snelheden en {} waarden; geef er van elk evenveel"
     ),
+    "A and B must be positive numbers": "A en B moeten positieve getallen zijn",
+    "every speed and every power must be a number, 0 or more": (
+        "elke snelheid en elk vermogen moet een getal van 0 of meer zijn"
+    ),
+    "sample_rate_hz is {}; 1 or more can be right": ("sample_rate_hz is {}; 1 of meer kan kloppen"),
     "every speed and every force must be a positive number": (
         "elke snelheid en elke kracht moet een positief getal zijn"
     ),
