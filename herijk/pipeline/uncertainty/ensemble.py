@@ -7,6 +7,7 @@ single lines cannot show. Belongs here: the draws, and the counting. Does not: t
 """
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
 MEMBERS: Final = 200
 SEED: Final = 2009
+REMEMBERED: Final = 1 << 14
+"""So many keys' errors are kept for the next method, whose keys are the same: 26 MB."""
 
 
 def register_ensemble(
@@ -151,7 +154,7 @@ def _errors(
 ) -> tuple[pl.DataFrame, FloatArray]:
     """Standard normal errors of every key, shape (keys, members), season factors correlated."""
     keys = budget.select("key").unique().sort("key").with_row_index("index")
-    independent = [_stream(seed, key).standard_normal(members) for key in keys["key"]]
+    independent = [_independent(seed, key, members) for key in keys["key"]]
     errors = np.array(independent).reshape(-1, members)
     if estimated is None:
         return keys, errors
@@ -160,7 +163,7 @@ def _errors(
     )
     sd = np.sqrt(np.diag(estimated.covariance))
     root = np.linalg.cholesky(estimated.covariance / np.outer(sd, sd))
-    independent = [_stream(seed, key).standard_normal(members) for key in determined["key"]]
+    independent = [_independent(seed, key, members) for key in determined["key"]]
     if independent:
         joint = root @ np.stack(independent)
         used = determined.with_row_index("row").join(keys, on="key")
@@ -168,5 +171,8 @@ def _errors(
     return keys, errors
 
 
-def _stream(seed: int, key: str) -> np.random.Generator:
-    return np.random.default_rng(np.array([seed, *key.encode()], dtype=np.uint32))
+@lru_cache(maxsize=REMEMBERED)
+def _independent(seed: int, key: str, members: int) -> FloatArray:
+    """Standard normal errors of a key, from a stream of its own; not to be written to."""
+    stream = np.random.default_rng(np.array([seed, *key.encode()], dtype=np.uint32))
+    return stream.standard_normal(members)
