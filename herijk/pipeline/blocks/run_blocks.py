@@ -19,7 +19,7 @@ The sums of one block, over its `n` samples, with F the tow force, v a speed sou
 - `gps`, `gps_n`: ground speed, and how many samples have one
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
@@ -44,16 +44,23 @@ PLACE: Final = ("tow_id", "run", "second", "n")
 """Columns of blocks beside their sums."""
 
 
-class _WhenAsked(dict[str, FloatArray]):
+class _WhenAsked(Mapping[str, FloatArray]):
     """Sums that are made when they are first asked for: no method uses half of them."""
 
-    def __init__(self, make: Callable[[str], FloatArray]) -> None:
-        super().__init__()
-        self._make = make
+    def __init__(self, names: Collection[str], make: Callable[[str], FloatArray]) -> None:
+        self._names, self._make = names, make
+        self._made: dict[str, FloatArray] = {}
 
-    def __missing__(self, name: str) -> FloatArray:
-        self[name] = self._make(name)
-        return self[name]
+    def __getitem__(self, name: str) -> FloatArray:
+        if name not in self._made:
+            self._made[name] = self._make(name)
+        return self._made[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
 
 
 @dataclass(frozen=True)
@@ -92,7 +99,7 @@ class RunBlocks:
         return RunBlocks(
             self.runs.filter(pl.Series(rows)),
             self.n[chosen],
-            _WhenAsked(lambda name: self.sums[name][chosen]),
+            _WhenAsked(self.sums.keys(), lambda name: self.sums[name][chosen]),
         )
 
     def total(self, name: str, window: BoolArray) -> FloatArray:
@@ -169,5 +176,5 @@ def stack_blocks(
         cells[cell] = values.to_numpy()[known]
         return cells.reshape(runs.height, seconds)
 
-    sums = _WhenAsked(lambda name: placed(column(name)))
+    sums = _WhenAsked(SUM_NAMES, lambda name: placed(column(name)))
     return RunBlocks(runs.drop("row"), placed(blocks["n"]), sums)

@@ -120,9 +120,8 @@ class Told:
     Attributes:
         ln_density: (boats,) of what was observed, over all patterns.
         weight: (boats, patterns) posterior of each pattern.
-        precision: (boats, patterns, n, n) of the numbers.
-        pull: (boats, patterns, n) precision times residual.
-        mean_precision, mean_pull: the same, averaged over patterns.
+        pull: (boats, patterns, n) precision of the numbers times their residual.
+        mean_precision, mean_pull: that precision and pull, averaged over patterns.
         drift: (boats, n, n) part of the covariance of the numbers that is the boats' drift.
         slope: (boats, n, unknowns) of the numbers by the unknowns.
     """
@@ -130,7 +129,6 @@ class Told:
     patterns: Patterns
     ln_density: FloatArray
     weight: FloatArray
-    precision: FloatArray
     pull: FloatArray
     mean_precision: FloatArray
     mean_pull: FloatArray
@@ -179,18 +177,8 @@ def tell(
     """
     for group in groups:
         boats, tows = group.tow.shape
-        n, z = 3 * tows, state[group.tow].reshape(boats, 3 * tows, 2)
-        by_level, by_bend = (z[:, :, None, i] * z[:, None, :, i] for i in range(2))
-        full = by_level[:, None] * _per_number(group.level)
-        full += by_bend[:, None] * _per_number(group.bend)
-        drift = by_level * _per_number(drift_variance * group.drift)
-        full += drift[:, None]
-        full = full.reshape(boats, -1, tows, 3, tows, 3)
-        each = np.arange(tows)
-        # Indexing twice with one array puts that axis first.
-        full[:, :, each, :, each, :] += covariance[group.tow].swapaxes(0, 1)[:, :, None]
-        full[:, :, each, LEVEL, each, LEVEL] += group.excess_variance * group.askew
-        full = full.reshape(boats, -1, n, n)
+        n = 3 * tows
+        full, drift = covariance_of(group, covariance, state, drift_variance)
         precision = np.linalg.inv(full)
         own = np.repeat(residual[group.tow][:, None], len(group.askew), axis=1)
         own[..., LEVEL] -= group.excess
@@ -203,13 +191,40 @@ def tell(
             group,
             ln_all,
             weight,
-            precision,
             pull,
             np.einsum("bp,bpij->bij", weight, precision),
             np.einsum("bp,bpi->bi", weight, pull),
             drift,
             slope[group.tow].reshape(boats, n, -1),
         )
+
+
+def covariance_of(
+    group: Patterns, covariance: FloatArray, state: FloatArray, drift_variance: float
+) -> tuple[FloatArray, FloatArray]:
+    """Covariance of the numbers of each boat.
+
+    Args:
+        group: the boats.
+        covariance, state, drift_variance: as `tell` takes them.
+
+    Returns:
+        Under each pattern, (boats, patterns, n, n), and the part of it that is drift, (boats, n,
+        n).
+    """
+    boats, tows = group.tow.shape
+    z = state[group.tow].reshape(boats, 3 * tows, 2)
+    by_level, by_bend = (z[:, :, None, i] * z[:, None, :, i] for i in range(2))
+    full = by_level[:, None] * _per_number(group.level)
+    full += by_bend[:, None] * _per_number(group.bend)
+    drift = by_level * _per_number(drift_variance * group.drift)
+    full += drift[:, None]
+    of_pairs = full.reshape(boats, -1, tows, 3, tows, 3)
+    each = np.arange(tows)
+    # Indexing twice with one array puts that axis first.
+    of_pairs[:, :, each, :, each, :] += covariance[group.tow].swapaxes(0, 1)[:, :, None]
+    of_pairs[:, :, each, LEVEL, each, LEVEL] += group.excess_variance * group.askew
+    return full, drift
 
 
 def _per_number(of_tows: FloatArray) -> FloatArray:
@@ -223,7 +238,7 @@ def _normalised(ln_weight: FloatArray) -> tuple[FloatArray, FloatArray]:
     What others add to the largest counts in full, as in `scipy.special.logsumexp`, which takes ten
     times as long on arrays as small as these.
     """
-    top = ln_weight.max(axis=-1, keepdims=True)
+    top: FloatArray = ln_weight.max(axis=-1, keepdims=True)
     weight, largest = np.exp(ln_weight - top), ln_weight == top
     often = largest.sum(axis=-1)
     others = np.where(largest, 0.0, weight).sum(axis=-1) / often

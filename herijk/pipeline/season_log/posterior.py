@@ -28,7 +28,14 @@ from herijk.pipeline.season_log.effects import (
     slopes,
     unknowns_of,
 )
-from herijk.pipeline.season_log.likelihood import GPS, Patterns, Told, patterns_of, tell
+from herijk.pipeline.season_log.likelihood import (
+    GPS,
+    Patterns,
+    Told,
+    covariance_of,
+    patterns_of,
+    tell,
+)
 from herijk.pipeline.season_log.network import Network
 
 MAX_ITERATIONS: Final = 100
@@ -217,6 +224,11 @@ class Fit:
     def value(self) -> FloatArray:
         """Values of the active unknowns, (k,)."""
         return self.state.value
+
+    def precision(self, told: Told) -> FloatArray:
+        """Of the numbers of boats, (boats, patterns, n, n): too large to keep of every fit."""
+        by_state = self.slopes.state, self.state.drift_variance
+        return np.asarray(np.linalg.inv(covariance_of(told.patterns, self.own, *by_state)[0]))
 
     def dof(self, direction: FloatArray) -> FloatArray:
         """Satterthwaite's degrees of freedom of combinations of the active unknowns.
