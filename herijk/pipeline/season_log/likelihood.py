@@ -11,7 +11,7 @@ a tow (`effects`) and the search for the unknowns (`posterior`).
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from itertools import combinations
 from typing import Final
 
@@ -24,6 +24,8 @@ LEVEL, BEND, GPS = range(3)
 """The numbers of a tow."""
 
 MOST_CHANGES: Final = 2
+
+FEW_BOATS: Final = 128
 
 LEVEL_SD: Final = 1.0
 """Of ln Cw between boats: so wide that a boat's level is its own."""
@@ -134,6 +136,15 @@ class Told:
     mean_pull: FloatArray
     drift: FloatArray
     slope: FloatArray
+
+    def few(self) -> Iterator["Told"]:
+        """The same of a few boats at a time, for what would be too large of all."""
+        arrays = [getattr(self, one.name) for one in fields(self)[1:]]
+        for first in range(0, len(self.weight), FEW_BOATS):
+            some = slice(first, first + FEW_BOATS)
+            patterns = self.patterns
+            of_some = replace(patterns, tow=patterns.tow[some], drift=patterns.drift[some])
+            yield Told(of_some, *(array[some] for array in arrays))
 
     @property
     def information(self) -> FloatArray:

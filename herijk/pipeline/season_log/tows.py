@@ -116,7 +116,7 @@ def best_estimates(
     away[: len(posterior.fit.value)] -= posterior.fit.value
     numbers = np.zeros((len(problem.q), 4))
     shares = []
-    for told in posterior.fit.told:
+    for told in (few for every in posterior.fit.told for few in every.few()):
         found = _of_boats(told, posterior, (design, true_level, away))
         numbers[told.patterns.tow] = found[0]
         tows = told.patterns.tow.shape[1]
