@@ -336,10 +336,10 @@ ARCHIVE: Final[dict[str, str]] = {
     "{} has the very samples of {}; the run is left out.": (
         "{} bevat precies de metingen van {}; de run telt niet mee."
     ),
-    "the mean of column '{column}' is {:.4g}; {:.3g} to {:.3g} can be right, and it looks like "
-    "{unit}": (
-        "het gemiddelde van kolom '{column}' is {:.4g}; {:.3g} tot {:.3g} kan kloppen, en het "
-        "lijkt op {unit}"
+    "column '{column}' holds {:.3g} in a typical run and log1 {:.3g}, so it looks like {unit}; the "
+    "tow goes on without this column.": (
+        "kolom '{column}' is {:.3g} in een gewone run en log1 {:.3g}, dus het lijkt {unit}; de "
+        "sleep gaat verder zonder deze kolom."
     ),
     "{} instead of {}": "{} in plaats van {}",
     "{} or {}": "{} of {}",

@@ -82,6 +82,7 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.force_unusual": ("kracht valt op", "force stands out"),
     "code.wind_unusual": ("wind valt op", "wind stands out"),
     "code.speed_unusual": ("snelheid valt op", "speed stands out"),
+    "code.days_differ": ("dagen verschillen", "days differ"),
     "code.season_in_doubt": ("instrument van het seizoen onzeker", "season's instrument in doubt"),
     "code.correction_not_used": (
         "correctie uit de sleeplijst niet gebruikt",

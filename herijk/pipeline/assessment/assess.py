@@ -15,6 +15,7 @@ import polars as pl
 import scipy
 
 from herijk.pipeline.assessment.checks import CHECKS, CODES, DOUBTS, UNUSUAL
+from herijk.pipeline.assessment.days import days_apart
 from herijk.pipeline.assessment.freeboard import by_freeboard
 from herijk.pipeline.assessment.mean_shift import MOSTLY, NORMAL_MAD
 from herijk.pipeline.assessment.season_levels import season_levels
@@ -79,6 +80,7 @@ def assess(
         _of_sizes(tows),
         _of_freeboards(tows),
         _of_season(curves, tows, diagnosis),
+        days_apart(curves, tows),
         _of_previous_curve(pairs),
         _of_unseen_errors(pairs, tows),
         _of_like_boats(curves, tows),

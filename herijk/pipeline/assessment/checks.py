@@ -194,6 +194,15 @@ CHECKS: Final = (
         "inferred: a fault that the season log finds, or cannot rule out, concerns all its tows",
         highest=0.0,
     ),
+    Check(
+        "days_differ",
+        "standard deviation of Cw that the tows of one day share in that season, against their "
+        "boats' best estimates, where chance does not explain it: a load cell may have been "
+        "exchanged or zeroed otherwise between days",
+        "1",
+        "inferred: half of the 2 % by which tows of a boat agree (presentation 24-01-2015)",
+        highest=0.01,
+    ),
     # The runs
     Check(
         "log2_differs",
