@@ -1,5 +1,6 @@
 """The commands about an archive that come before a rebuild: `check` and `init`."""
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -68,7 +69,10 @@ def check_text(report: "CheckReport") -> str:
     parts = [head, *(_cause(cause) for cause in causes)]
     if report.profile is not None:
         parts.append(
-            tell("Write what is proposed with: herijk check {} --write-profile", report.archive)
+            tell(
+                "Write what is proposed with: herijk check {} --write-profile",
+                shlex.quote(report.archive),
+            )
         )
     return "\n\n".join(parts)
 

@@ -4,6 +4,7 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any, Final
 
 from herijk.cli.text import SIMULATED, table
+from herijk.warehouse.queries.due import WORTH
 from herijk.words import tell
 
 if TYPE_CHECKING:
@@ -77,7 +78,7 @@ def _line(line: "Row") -> tuple[Any, ...]:
         line["fsn_no"],
         line["name"] or "-",
         f"{line['rowers']}{line['crew_class']}",
-        line["tow_id"],
+        _day(line["tow_date"]),
         _speed(line["declared_speed_m_s"]),
         "-" if line["power_w"] is None else f"{line['power_w']:.0f}",
         _speed(line["raced_speed_m_s"]),
@@ -110,13 +111,15 @@ def _choice(choice: list["Row"]) -> str:
     head = ("", "boat", "name", "crew", "towed in", "valid until", "tow at m/s", "uncertainty then")
     before = 100 * choice[0]["factor_sd_before_ratio"]
     after = 100 * choice[-1]["factor_sd_after_ratio"]
+    worth = "It is not worth it for that alone." if after >= WORTH * before else ""
     return tell(
         "{}.\nAll of them together bring the uncertainty of a season's log error from "
         "{:.3f} % to {:.3f} % of speed (standard\ndeviation); the last column says "
-        "how far it is after each.\n{}",
+        "how far it is after each. {}\n{}",
         title,
         before,
         after,
+        tell(worth),
         table(head, rows),
     )
 

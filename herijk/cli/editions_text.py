@@ -1,12 +1,13 @@
 """Results of the commands about editions as text for a person."""
 
 from collections import Counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from herijk.cli.text import SIMULATED, table
 from herijk.tables.row import Row
 from herijk.warehouse.editions.words import LANGUAGES, Language
-from herijk.words import LANGUAGE, tell
+from herijk.words import LANGUAGE, in_per_cent, number, tell
+from herijk.words.catalogue import code
 
 if TYPE_CHECKING:
     from herijk.warehouse.editions.compare import DiffReport, Group
@@ -39,7 +40,7 @@ def _to_look_at(lines: list[Row]) -> list[str]:
     rows = [
         f"  {line['fsn_no']} {line['rowers']}{line['crew_class']}: "
         + (
-            tell("tow {}: {}", line["tow_id"], ", ".join(line["flags"]))
+            tell("tow {}: {}", line["tow_id"], ", ".join(map(code, line["flags"])))
             if line["tow_id"]
             else tell("no numbers: the archive rules its tows out (see doubts in the table tows)")
         )
@@ -59,7 +60,7 @@ def register(report: "RegisterReport") -> str:
     """The lines of an edition, and the day on which their validity was judged."""
     head = (
         *("boat", "name", "crew", "empty thwart", "status", "valid until", "tow", "v m/s"),
-        *("A kg/m", "B m/s", "Cw kg/m", "length m", "beam m", "bow m", "kg"),
+        *("A kg/m", "B m/s", "Cw kg/m", "from", "to", "length m", "beam m", "bow m", "kg"),
     )
     parts = [tell(SIMULATED)] if report.simulated else []
     counts = Counter(line["status"] for line in report.lines)
@@ -67,6 +68,11 @@ def register(report: "RegisterReport") -> str:
     parts += [
         tell("Register {}, validity judged on {}: {}.", report.edition, report.as_of, statuses),
         table(head, [_register_line(line) for line in report.lines]),
+        tell(
+            "From, to: the 95 % interval of Cw where the method estimates the error of the log; "
+            "else the spread\nof the runs alone, without that error. A and B hold from 85 to 115 % "
+            "of v."
+        ),
     ]
     return "\n\n".join(parts)
 
@@ -80,8 +86,10 @@ def _register_line(line: Row) -> tuple[Any, ...]:
         _words().statuses.get(line["status"], line["status"]),
         line["valid_until"],
         line["tow_id"],
-        *(line[name] for name in ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m")),
-        *(line[name] for name in ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg")),
+        *(_number(line[name], 2) for name in ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m")),
+        *(_number(line[name], 2) for name in ("cw_lo_kg_m", "cw_hi_kg_m", "waterline_length_m")),
+        *(_number(line[name], 2) for name in ("beam_m", "bow_height_m")),
+        _number(line["weight_kg"], 0),
     )
 
 
@@ -216,6 +224,15 @@ def _line(row: Row) -> tuple[Any, ...]:
     )
 
 
+_FATIGUE: Final = {
+    "none": "Races, not corrected for fatigue: ",
+    "known": "Races, corrected for fatigue as published: ",
+    "extend": (
+        "Races, corrected for fatigue (beyond 2 to 3 hours by the same power law, inferred): "
+    ),
+}
+
+
 def _races(report: "DiffReport") -> str:
     races, rules = report.races, report.race_rules
     if races is None or rules is None or report.winners is None:
@@ -223,7 +240,7 @@ def _races(report: "DiffReport") -> str:
     ranked = [r for r in races if r["new_rank"] is not None]
     moved = [r for r in ranked if r["old_rank"] != r["new_rank"]]
     podium = sum(r["podium_changed"] for r in ranked)
-    head = tell("Races (fatigue {}): ", rules.fatigue)
+    head = tell(_FATIGUE[rules.fatigue])
     text = tell(
         "{}{} results, {} of them ranked by both editions: {} change rank among those, "
         "{} on or off the podium.",
@@ -250,7 +267,7 @@ def _winners(winners: list[Row]) -> str:
             _same_winner(w),
             tell("not known")
             if w["change_probability"] is None
-            else f"{100 * w['change_probability']:.0f} %",
+            else in_per_cent(w["change_probability"]),
         )
         for w in winners
     ]
@@ -391,8 +408,8 @@ def _cause(cause: Row) -> str:
     return _words().cause(cause["cause"], cause.get("step"))
 
 
-def _number(value: float | None) -> str:
-    return "-" if value is None else tell("{:.2f}", value)
+def _number(value: float | None, digits: int = 2) -> str:
+    return "-" if value is None else number(value, f".{digits}f")
 
 
 def _per_cent(ratio: float | None) -> str:

@@ -13,7 +13,7 @@ import re
 import sys
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Final, NoReturn
 
 import typer
 
@@ -59,6 +59,8 @@ each only wait for each other (5.4 s instead of 3.2 for the consistency of 1,020
 def main() -> None:
     """Runs the command; an error that a user can act on becomes one sentence and status 1."""
     os.environ.setdefault(BLAS_THREADS, "1")
+    if sys.getfilesystemencoding() != "utf-8":
+        _begin_in_utf8()
     try:
         app()
     except HerijkError as error:
@@ -69,6 +71,15 @@ def main() -> None:
     except BaseException as error:  # a panic of a library in Rust is no Exception
         typer.echo(f"herijk: {_written_down(error)}", err=True)
         sys.exit(1)
+
+
+def _begin_in_utf8() -> NoReturn:
+    """Begins this command again with names of files in UTF-8, also for the processes it starts.
+
+    In an old locale `Tréwes 8h.csv` would be another name than the one in the list.
+    """
+    os.environ["PYTHONUTF8"] = "1"
+    os.execv(sys.executable, [sys.executable, "-X", "utf8", *sys.orig_argv[1:]])  # noqa: S606
 
 
 def _written_down(error: BaseException) -> str:

@@ -3,11 +3,12 @@
 The pages of `herijk audit` are in `cli.audit_text`.
 """
 
+import re
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from herijk.tables.row import Row
-from herijk.words import LANGUAGE, number, spoken, tell
+from herijk.words import LANGUAGE, in_per_cent, number, spoken, tell
 from herijk.words.catalogue import code
 
 if TYPE_CHECKING:
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
 
 SIMULATED = "SIMULATED archive: made by `herijk simulate`, not the federation's measurements."
 
+_NUMBER: Final = re.compile(r"[-+]?[0-9]+([.,][0-9]+)?( %| N)?\*?|-?")
+"""A cell that stands to the right."""
+
 
 def table(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
     """Columns lined up, their heads and what they say in words; numbers to the right."""
@@ -25,7 +29,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
     held = [list(row) for row in rows]
     cells = [[_cell(value) for value in row] for row in held]
     widths = [max(len(line[i]) for line in [list(head), *cells]) for i in range(len(head))]
-    right = [any(isinstance(row[i], int | float) for row in held) for i in range(len(head))]
+    right = [all(_NUMBER.fullmatch(line[i]) for line in cells) for i in range(len(head))]
     lines = [
         "  ".join(
             c.rjust(w) if r else c.ljust(w) for c, w, r in zip(line, widths, right, strict=True)
@@ -98,7 +102,8 @@ def _faults(first: list[Row], number: int) -> str:
 
 
 def _place(fault: Row) -> str:
-    line = "" if fault["line"] is None else tell(", line {}", fault["line"])
+    said = fault["line"] is None or fault["message"].startswith(f"Line {fault['line']}:")
+    line = "" if said else tell(", line {}", fault["line"])
     tow = "" if fault["tow_id"] is None else tell(" (tow {})", fault["tow_id"])
     more = tell(" and {} more", fault["number"] - 1) if fault["number"] > 1 else ""
     return f"{fault['path']}{line}{tow}{more}"
@@ -225,12 +230,25 @@ def _diagnosis(report: "LogErrorReport") -> str:
             _what(r),
             code(r["verdict"]),
             *(_size(r[name], r["unit"]) for name in ("estimate", "lo", "hi")),
-            "-" if r["p_fault"] is None else f"{r['p_fault']:.0%}",
-            code(r["confused_with"] or "-"),
+            "-" if r["p_fault"] is None else in_per_cent(r["p_fault"]),
+            _or_else(r["confused_with"]),
         )
         for r in report.diagnosis
     ]
-    return table(head, rows)
+    note = tell(
+        "would not show: a fault of the usual size would be taken for what stands under 'or else'. "
+        "The interval\ncounts how seldom such a fault is, so where nothing points to one it can be "
+        "0 to 0."
+    )
+    return f"{table(head, rows)}\n\n{note}"
+
+
+def _or_else(confused_with: str | None) -> str:
+    """What else would explain it: kinds of faults, and their seasons."""
+    if confused_with is None:
+        return "-"
+    kinds = (kind.partition(" ") for kind in confused_with.split(", "))
+    return ", ".join(f"{code(kind)}{space}{season}" for kind, space, season in kinds)
 
 
 def _what(row: Row) -> str:
@@ -240,7 +258,7 @@ def _what(row: Row) -> str:
 
 
 def _size(value: float, unit: str) -> str:
-    return number(value, "+.1f") + " N" if unit == "N" else number(value, "+.1%")
+    return number(value, "+z.1f") + " N" if unit == "N" else number(100 * value, "+z.1f") + " %"
 
 
 def _parts(report: "LogErrorReport") -> str:

@@ -10,6 +10,7 @@ from collections import Counter
 import polars as pl
 
 from herijk.dashboards.speech import Headline, Speech
+from herijk.warehouse.queries.due import WORTH
 
 CLEAR_P = 0.05
 STRONG_POWER = 0.8
@@ -91,10 +92,6 @@ def retow(choice: pl.DataFrame) -> Headline:
         )
 
     return sentence
-
-
-WORTH = 0.9
-"""A set of tows is worth its trouble where it takes a tenth or more off the uncertainty."""
 
 
 def statuses(rows: pl.DataFrame) -> Headline:

@@ -42,9 +42,14 @@ class Curve:
     def of(cls, a_kg_m: float, b_m_s: float | None) -> Self:
         """The curve of an A and a B; no B is a flat curve.
 
+        Raises:
+            HerijkError: A or B is not a positive number.
+
         >>> Curve.of(20.0, 4.0).cw_kg_m(2.0)
         array(26.66666667)
         """
+        if not all(0.0 < number < np.inf for number in (a_kg_m, 1.0 if b_m_s is None else b_m_s)):
+            raise HerijkError("A and B must be positive numbers")
         return cls(a_kg_m, 0.0 if b_m_s is None else float(hyperbola.s_of_b(b_m_s)))
 
     @property
@@ -53,8 +58,12 @@ class Curve:
         return float(self.s_s2_m2**-0.5) if self.s_s2_m2 > 0 else None
 
     def cw_kg_m(self, speed_m_s: ArrayLike) -> FloatArray:
-        """Cw at speeds of any shape; infinite from B on."""
-        return hyperbola.cw(self.a_kg_m, self.s_s2_m2, speed_m_s)
+        """Cw at speeds of any shape; infinite from B on.
+
+        Raises:
+            HerijkError: a speed is negative or not a number.
+        """
+        return hyperbola.cw(self.a_kg_m, self.s_s2_m2, _none_below_zero(speed_m_s))
 
     def power_w(self, speed_m_s: ArrayLike) -> FloatArray:
         """Power through the water, P = Cw v^3, of the whole crew.
@@ -68,10 +77,13 @@ class Curve:
     def speed_m_s(self, power_w: ArrayLike) -> FloatArray:
         """The speed at which the whole crew gives a power; inverse of `power_w`.
 
+        Raises:
+            HerijkError: a power is negative or not a number.
+
         >>> Curve.of(20.0, None).speed_m_s(540.0).round(9)
         np.float64(3.0)
         """
-        power = np.asarray(power_w, dtype=np.float64)
+        power = _none_below_zero(power_w)
         a, s = (np.broadcast_to(x, power.shape) for x in (self.a_kg_m, self.s_s2_m2))
         return speed_at_power(a, s, power)
 
@@ -103,11 +115,15 @@ class Fit:
         return None not in self.b
 
     def cw(self, speed_m_s: float) -> Estimate:
-        """Cw [kg/m] at a speed with its 95 % interval, from the scatter of the points alone."""
+        """Cw [kg/m] at a speed with its 95 % interval, from the scatter of the points alone.
+
+        Raises:
+            HerijkError: the speed is negative or not a number.
+        """
+        value = float(self.curve.cw_kg_m(speed_m_s))
         scatter = hyperbola.own_scatter(self._fitted)
         errors = hyperbola.covariance(self.points, self._fitted, scatter, speed_m_s)
         bounds = hyperbola.cw_interval(self._fitted, errors, scatter.dof, speed_m_s)
-        value = float(self.curve.cw_kg_m(speed_m_s))
         return Estimate(_finite(value), _finite(bounds.lo[0]), _finite(bounds.hi[0]))
 
 
@@ -144,6 +160,14 @@ def fit(
     if not fitted.converged[0]:
         raise HerijkError("the points determine no curve; two different speeds are the least")
     return Fit(Curve(float(fitted.a_kg_m[0]), float(fitted.s_s2_m2[0])), points, fitted)
+
+
+def _none_below_zero(numbers: ArrayLike) -> FloatArray:
+    """Speeds or powers as an array."""
+    array = np.asarray(numbers, dtype=np.float64)
+    if not (array >= 0.0).all():
+        raise HerijkError("every speed and every power must be a number, 0 or more")
+    return array
 
 
 def _finite(value: float) -> float | None:

@@ -90,12 +90,15 @@ def apply_method(
         sample_rate_hz: samples per second.
 
     Raises:
-        HerijkError: a column is missing, or the method says nothing about the season.
+        HerijkError: a column is missing, the rate is not at least 1, or the method says nothing
+            about the season.
     """
     missing = [name for name in ("tow_date", *REQUIRED) if tow.get(name) is None]
     missing += [name for name in SAMPLE_SCHEMA if name not in samples.columns]
     if missing:
         raise HerijkError("missing: {}", ", ".join(missing))
+    if sample_rate_hz < 1:
+        raise HerijkError("sample_rate_hz is {}; 1 or more can be right", sample_rate_hz)
     day: dt.date = tow["tow_date"]
     columns = {**Tows.create_empty().schema, "boat_type": pl.String()}
     known = {"season": day.year, "sample_rate_hz": sample_rate_hz, **DEFAULTS, **tow}

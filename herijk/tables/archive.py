@@ -8,8 +8,8 @@ from herijk.tables.declare import dy
 
 LOST: Final = partial(
     column.text,
-    "what it costs: seconds, run, tow, file, or a row of a list that costs no tow",
-    regex="^(seconds|run|tow|file|row)$",
+    "what it costs: seconds, run, tow, file, or a row of a list, or a cell, that costs no tow",
+    regex="^(seconds|run|tow|file|row|cell)$",
 )
 
 

@@ -44,8 +44,8 @@ ARCHIVE: Final[dict[str, str]] = {
     "{names} must be there, here or in the boat list.": (
         "{names} moet er zijn, hier of in de lijst van sloepen."
     ),
-    "column '{column}' is {cell}; {low} to {high} can be right.": (
-        "kolom '{column}' is {cell}; {low} tot {high} kan kloppen."
+    "column '{column}' is {cell}; {low:g} to {high:g} can be right.": (
+        "kolom '{column}' is {cell}; {low:g} tot {high:g} kan kloppen."
     ),
     "column '{column}' is {cell}; it must be a whole number.": (
         "kolom '{column}' is {cell}; het moet een geheel getal zijn."
@@ -185,9 +185,6 @@ ARCHIVE: Final[dict[str, str]] = {
         "'{name}' is een pad; hier kan alleen de naam staan van een bestand in {folder}."
     ),
     "No row of a tow list names this file.": "Geen rij van een sleeplijst noemt dit bestand.",
-    "No row of the tow list of {season} names this file.": (
-        "Geen rij van de sleeplijst van {season} noemt dit bestand."
-    ),
     "'{path}' is not read, as nobody knows what it is.": (
         "'{path}' wordt niet gelezen: het is onbekend wat het is."
     ),
@@ -313,6 +310,7 @@ ARCHIVE: Final[dict[str, str]] = {
     "{}: column '{column}' {} and is wrong for {:.3g} s in all; {}.": (
         "{}: kolom '{column}' {} en klopt samen {:.3g} s niet; {}."
     ),
+    "{what} The cell counts as empty.": "{what} De cel telt als leeg.",
     "holds {:.6g}": "bevat {:.6g}",
     "holds no ordinary number": "bevat geen gewoon getal",
     "{}: {what}; the run is left out.": "{}: {what}; de run valt af.",
@@ -338,10 +336,10 @@ ARCHIVE: Final[dict[str, str]] = {
     "{} has the very samples of {}; the run is left out.": (
         "{} bevat precies de metingen van {}; de run telt niet mee."
     ),
-    "the mean of column '{column}' is {:.4g}; {:.3g} to {:.3g} can be right, and it looks like "
-    "{unit}": (
-        "het gemiddelde van kolom '{column}' is {:.4g}; {:.3g} tot {:.3g} kan kloppen, en het "
-        "lijkt op {unit}"
+    "column '{column}' holds {:.3g} in a typical run and log1 {:.3g}, so it looks like {unit}; the "
+    "tow goes on without this column.": (
+        "kolom '{column}' is {:.3g} in een gewone run en log1 {:.3g}, dus het lijkt {unit}; de "
+        "sleep gaat verder zonder deze kolom."
     ),
     "{} instead of {}": "{} in plaats van {}",
     "{} or {}": "{} of {}",
@@ -372,6 +370,16 @@ ARCHIVE: Final[dict[str, str]] = {
     ),
     "the wind is {:.2g} times what out and back together give, which is the boat's own speed": (
         "de wind is {:.2g} keer wat heen en terug samen geven, de eigen snelheid van de sloep"
+    ),
+    "the wind out and back together comes from {:.0f} degrees; it is the wind of the boat's own "
+    "speed, from straight ahead": (
+        "de wind komt heen en terug samen uit {:.0f} graden; het is de wind van de eigen snelheid, "
+        "van recht voren"
+    ),
+    "If the vane is turned, or counts from another 0, declare wind_zero_deg = {:.0f} under "
+    "[[profile]] in archief.toml.": (
+        "Als de windvaan gedraaid zit, of van een andere 0 telt, zet dan wind_zero_deg = {:.0f} "
+        "onder [[profile]] in archief.toml."
     ),
     "all wind angles lie between -3.14 and 6.28, as angles in radians do": (
         "alle windhoeken liggen tussen -3,14 en 6,28, zoals hoeken in radialen"

@@ -234,7 +234,7 @@ COMMAND: Final[dict[str, str]] = {
     ),
     "Day of publication; else today.": "Dag van uitgave; anders vandaag.",
     "Fatigue correction of races: none, known (2 to 3 h only) or extend.": (
-        "Correctie voor vermoeidheid in wedstrijden: none, known (alleen 2 tot 3 uur) of extend."
+        "Uitputtingscorrectie in wedstrijden: none, known (alleen 2 tot 3 uur) of extend."
     ),
     "Method whose curves are asked for the speeds.": (
         "Methode waarvan de krommen de snelheden geven."
@@ -450,7 +450,7 @@ COMMAND: Final[dict[str, str]] = {
     "factor": "factor",
     "from": "van",
     "to": "tot",
-    "gross": "bruto",
+    "gross kg/m": "bruto kg/m",
     "hash": "hash",
     "highest": "hoogste",
     "lowest": "laagste",
@@ -585,7 +585,14 @@ COMMAND: Final[dict[str, str]] = {
     ),
     "{} lines, median {}, {} in two hours": "{} regels, mediaan {}, {} in twee uur",
     "Races: the archive holds none.": "Wedstrijden: het archief heeft er geen.",
-    "Races (fatigue {}): ": "Wedstrijden (vermoeidheid {}): ",
+    "Races, not corrected for fatigue: ": "Wedstrijden, zonder uitputtingscorrectie: ",
+    "Races, corrected for fatigue as published: ": (
+        "Wedstrijden, met de uitputtingscorrectie zoals gepubliceerd: "
+    ),
+    "Races, corrected for fatigue (beyond 2 to 3 hours by the same power law, inferred): ": (
+        "Wedstrijden, met uitputtingscorrectie (buiten 2 tot 3 uur met dezelfde machtswet, een "
+        "aanname): "
+    ),
     "{}{} results, {} of them ranked by both editions: {} change rank among those, "
     "{} on or off the podium.": (
         "{}{} uitslagen, waarvan {} met een plaats in beide edities: {} daarvan krijgen een andere "
@@ -680,10 +687,24 @@ COMMAND: Final[dict[str, str]] = {
     ),
     "{}.\nAll of them together bring the uncertainty of a season's log error from {:.3f} % "
     "to {:.3f} % of speed (standard\ndeviation); the last column says how far it is after "
-    "each.\n{}": (
+    "each. {}\n{}": (
         "{}.\nAllemaal samen brengen ze de onzekerheid van de logfout van een seizoen van "
         "{:.3f} % naar {:.3f} % van de snelheid\n(standaardafwijking); de laatste kolom "
-        "zegt hoe ver het na elk is.\n{}"
+        "zegt hoe ver het na elk is. {}\n{}"
+    ),
+    "0.1 m/s": "0,1 m/s",
+    "It is not worth it for that alone.": "Daarvoor alleen loont het niet.",
+    "From, to: the 95 % interval of Cw where the method estimates the error of the log; else "
+    "the spread\nof the runs alone, without that error. A and B hold from 85 to 115 % of v.": (
+        "Van, tot: het 95 %-interval van Cw als de methode de fout van de log schat; anders alleen "
+        "de spreiding\nvan de runs, zonder die fout. A en B gelden van 85 tot 115 % van v."
+    ),
+    "would not show: a fault of the usual size would be taken for what stands under 'or else'. "
+    "The interval\ncounts how seldom such a fault is, so where nothing points to one it can be "
+    "0 to 0.": (
+        "zou niet opvallen: een fout van gewone grootte zou worden aangezien voor wat bij 'of "
+        "anders' staat. Het\ninterval rekent mee hoe zelden zo'n fout voorkomt; waar niets erop "
+        "wijst kan het 0 tot 0 zijn."
     ),
     # Log-error, rebase, methods, fit
     "True speed = log speed x factor, under {} (95 % intervals):": (
@@ -882,7 +903,7 @@ COMMAND: Final[dict[str, str]] = {
     "  {} to {}: Cw {} %{}{}": "  {} naar {}: Cw {} %{}{}",
     "standard uncertainty of Cw: {}": "standaardonzekerheid van Cw: {}",
     "no curve, {}{}": "geen kromme, {}{}",
-    "an error would be seen from {:.0%} on": "een fout zou opvallen vanaf {:.0%}",
+    "an error would be seen from {:.0f} % on": "een fout zou opvallen vanaf {:.0f} %",
     "A {:.2f} kg/m, {} ({}), Cw {:.2f} kg/m ({}: {:.2f} to {:.2f}), {:.1f} W per rower, {}{}": (
         "A {:.2f} kg/m, {} ({}), Cw {:.2f} kg/m ({}: {:.2f} tot {:.2f}), {:.1f} W per roeier, {}{}"
     ),

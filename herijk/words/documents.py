@@ -122,5 +122,8 @@ DOCUMENTS: Final[dict[str, tuple[str, str]]] = {
         "measurements below. If something is wrong, tell the committee before the vote, with the "
         "FSN number and what you think it should be.",
     ),
-    "proposal_annex": ("Bijlage: de methode in tekst", "Annex: the text of the method"),
+    "proposal_annex": (
+        "Bijlage: het bestand van de methode (uitleg in het Engels)",
+        "Annex: the file of the method",
+    ),
 }

@@ -272,9 +272,9 @@ ERRORS: Final[dict[str, str]] = {
     "{} boats are called {!r}: {}; give the FSN number": (
         "{} sloepen heten {!r}: {}; geef het FSN-nummer"
     ),
-    "there is no boat and no type {!r}; the types are {}; boats are named by FSN number or "
-    "name, for example {}": (
-        "er is geen sloep en geen type {!r}; de types zijn {}; een sloep heeft een "
+    "there is no boat and no type {!r}; the types, and how many boats: {}; boats are named by FSN "
+    "number or name, for example {}": (
+        "er is geen sloep en geen type {!r}; de types, en hoeveel sloepen: {}; een sloep heeft een "
         "FSN-nummer of een naam, bijvoorbeeld {}"
     ),
     "{} is a boat, not a type; a boat has a page of its own: herijk audit {}": (
@@ -302,6 +302,11 @@ ERRORS: Final[dict[str, str]] = {
     "{} speeds and {} values; give as many of each": (
         "{} snelheden en {} waarden; geef er van elk evenveel"
     ),
+    "A and B must be positive numbers": "A en B moeten positieve getallen zijn",
+    "every speed and every power must be a number, 0 or more": (
+        "elke snelheid en elk vermogen moet een getal van 0 of meer zijn"
+    ),
+    "sample_rate_hz is {}; 1 or more can be right": ("sample_rate_hz is {}; 1 of meer kan kloppen"),
     "every speed and every force must be a positive number": (
         "elke snelheid en elke kracht moet een positief getal zijn"
     ),
@@ -321,7 +326,7 @@ ERRORS: Final[dict[str, str]] = {
     ),
     "The fatigue reference is known from {:g} to {:g} h; {} race times lie outside, the "
     "first is {:.2f} h. Leave these without correction, or extend it.": (
-        "De vermoeidheid is bekend van {:g} tot {:g} uur; {} wedstrijdtijden liggen "
+        "De uitputtingscorrectie is bekend van {:g} tot {:g} uur; {} wedstrijdtijden liggen "
         "daarbuiten, de eerste is {:.2f} uur. Corrigeer die niet, of trek de lijn door."
     ),
     # Methods

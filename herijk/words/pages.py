@@ -205,10 +205,10 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "These tows bring the uncertainty of the log factors from {before} to {after} %.",
     ),
     "head_retow_not": (
-        "Het loont niet: deze proeven brengen de onzekerheid van de logfactoren van {before} naar "
-        "{after} %.",
-        "It is not worth it: these tows bring the uncertainty of the log factors from {before} to "
-        "{after} %.",
+        "Daarvoor alleen loont het niet: deze proeven brengen de onzekerheid van de logfactoren "
+        "van {before} naar {after} %.",
+        "For that alone it is not worth it: these tows bring the uncertainty of the log factors "
+        "from {before} to {after} %.",
     ),
     "head_statuses": (
         "Van {curves} krommen zijn er {accepted} goed, {flagged} om na te kijken en {rejected} "
@@ -263,8 +263,8 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "editions; the places are among these. ",
     ),
     "head_chance": (
-        " Kans dat een ander wint dan eerst: {chance} %.",
-        " Chance that another wins than before: {chance} %.",
+        " Kans dat een ander wint dan eerst: {chance}.",
+        " Chance that another wins than before: {chance}.",
     ),
     # Words
     "words_list": ("Wat de woorden betekenen", "What the words mean"),
@@ -362,6 +362,7 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "Computed from everything behind a line of an edition: if any of that changes, so does "
         "the code.",
     ),
+    "tip.crew_class": ("H: heren, D: dames", "H: men, D: women"),
     "tip.a_kg_m": ("A: Cw bij zeer lage snelheid", "A: Cw at very low speed"),
     "tip.b_m_s": (
         "B: de snelheid waarbij de weerstand oneindig wordt",

@@ -92,6 +92,13 @@ def number(value: float, form: str) -> str:
     return format(value, form).replace(".", DECIMALS[LANGUAGE.get()])
 
 
+def in_per_cent(probability: float) -> str:
+    """Return a probability that was counted in draws, which never make it certain."""
+    if probability < 0.01:
+        return "<\u00a01\u00a0%"
+    return ">\u00a099\u00a0%" if probability > 0.99 else f"{100 * probability:.0f}\u00a0%"
+
+
 def _printable(value: Any) -> Any:
     """Return text or an error as one line without control characters; other values as they are."""
     if isinstance(value, Exception) and value.args and isinstance(value.args[0], Sentence):

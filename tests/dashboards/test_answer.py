@@ -163,7 +163,9 @@ def test_a_time_rowed_is_in_hours(seconds, shown):
     assert duration(seconds) == shown
 
 
-@pytest.mark.parametrize(("after", "words"), [(0.004606, "loont niet"), (0.003, "Deze proeven")])
+@pytest.mark.parametrize(
+    ("after", "words"), [(0.004606, "loont het niet"), (0.003, "Deze proeven")]
+)
 def test_tows_that_are_not_worth_it_are_told(after, words):
     choice = pl.DataFrame({"factor_sd_before_ratio": [0.004667], "factor_sd_after_ratio": [after]})
     assert words in headlines.retow(choice)(NL)

@@ -58,7 +58,7 @@ def test_diff_names_gain_loss_causes_and_races(herijk, bench):
         "Lose",
         "method: water temperature",
         "in 2 h",
-        "Races (fatigue extend",
+        "Races, corrected for fatigue",
         "Winners",
     ):
         assert part in out

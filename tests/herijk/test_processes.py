@@ -42,3 +42,16 @@ def test_a_fresh_process_with_other_threads_gives_the_same_tables(built: Workben
     for name, frame in built.tables().items():
         days = [c for c in frame.columns if c == "first_seen"]  # the day is not the archive's
         assert table_digest(made[name].drop(days)) == table_digest(frame.drop(days)), name
+
+
+def test_names_of_files_are_utf8_in_an_old_locale(tmp_path: Path):
+    locale = {"LC_ALL": "POSIX", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    run = subprocess.run(
+        [sys.executable, "-m", "herijk", "fit", tmp_path / "Tréwes.csv"],
+        cwd=ROOT,
+        env=os.environ | locale,
+        capture_output=True,
+        check=False,
+    )
+    assert run.returncode == 1
+    assert "Tréwes.csv" in run.stderr.decode("utf-8")

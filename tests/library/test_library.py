@@ -48,6 +48,21 @@ def test_points_without_a_curve_are_refused(speed, force):
         herijk.fit(speed, force)
 
 
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda curve: curve.cw_kg_m([3.0, float("nan")]),
+        lambda curve: curve.power_w(-3.0),
+        lambda curve: curve.speed_m_s(-1.0),
+        lambda curve: curve.of(-20.0, 4.0),
+        lambda curve: curve.of(20.0, 0.0),
+    ],
+)
+def test_what_no_boat_can_have_is_refused(ask):
+    with pytest.raises(herijk.HerijkError):
+        ask(herijk.Curve.of(21.0, 4.4))
+
+
 def test_one_tow_under_a_method(small_world):
     world, tow, samples = small_world
     facts = {
@@ -65,6 +80,8 @@ def test_one_tow_under_a_method(small_world):
     assert made.curves["cw_kg_m"][0] == pytest.approx(tow.truth.cw_at_15c_kg_m, rel=0.05)
     with pytest.raises(herijk.HerijkError, match="beam_m"):
         herijk.apply_method(herijk.method("rebased"), samples, {**facts, "beam_m": None}, 100)
+    with pytest.raises(herijk.HerijkError, match="sample_rate_hz"):
+        herijk.apply_method(herijk.method("rebased"), samples, facts, 0)
 
 
 @pytest.fixture(scope="module")

@@ -197,10 +197,19 @@ def test_problems_side_by_side_are_fitted_as_each_alone():
         assert fit.sd == pytest.approx(mixed.fit(problem, fit.free).sd, rel=1e-9)
 
 
+def test_a_mask_takes_the_problems_that_it_names():
+    """`[False, True]` equals the places `[0, 1]`: such a mask once took both."""
+    problem = grouped_data()
+    stack = Stack.of([replace(problem, y=problem.y * scale) for scale in (1.0, 2.0)])
+    for mask in ([False, True], [True, False], [True, True]):
+        assert stack.take(np.array(mask)).spread.tolist() == stack.spread[mask].tolist()
+
+
 def test_leaving_a_boat_out_equals_fitting_without_it():
     problem = grouped_data()
     sd = (2.0, 1.0, 0.5)
-    found = mixed.Fit.at(problem, mixed.COMPONENTS, sd).leave_boats_out()
+    fit = mixed.Fit.at(problem, mixed.COMPONENTS, sd)
+    found = fit.leave_boats_out()
     v = np.diag(problem.variance + sd[2] ** 2)
     v += sd[0] ** 2 * (problem.design.boat[:, None] == problem.design.boat)
     v += sd[1] ** 2 * (problem.design.other[:, None] == problem.design.other)
@@ -215,6 +224,11 @@ def test_leaving_a_boat_out_equals_fitting_without_it():
     variance = variance + rest @ np.linalg.inv(information) @ rest.T
     assert found.error[out] == pytest.approx(problem.y[out] - predicted, rel=1e-8)
     assert found.variance[out] == pytest.approx(np.diag(variance), rel=1e-8)
+    of_others = problem.y[~out] - x @ beta
+    own = fit.misfit - of_others @ inverse @ of_others
+    rows = problem.rows_beyond
+    scale = (fit.scale * rows - own) / (rows - out.sum())
+    assert found.scale[out] == pytest.approx(np.full(out.sum(), scale), rel=1e-8)
 
 
 # Equal boats, equal B?

@@ -355,6 +355,18 @@ def test_a_fault_of_the_load_cell_is_found_beside_dgps_and_corrected():
     assert corrected.height == found.tows.filter(pl.col("season") == 2016).height
 
 
+@pytest.mark.parametrize(("ln_y", "cause"), [(0.03, "not told"), (-0.03, "force"), (0.01, "force")])
+def test_a_stream_along_both_ways_is_not_told_from_a_load_cell(ln_y, cause):
+    """It makes dGPS over log unusual, and Cw err the other way; a load cell leaves it as it is."""
+    tows = simulate(replace(CLEAN, force_step=(2016, -0.07)), 3).tows
+    own = pl.when(pl.col("season") == 2016).then(ln_y).otherwise(0.0)
+    found = estimate_season_factors(tows.with_columns(own_calibration_ln=own))
+    mine = pl.col("season") == 2016
+    assert found.steps.filter(mine)["cause"].to_list() == [cause]
+    told = found.diagnosis.filter(mine, instrument="force_scale")["confused_with"][0]
+    assert ("gps_scale 2016" in (told or "")) == (cause == "not told")
+
+
 @pytest.mark.parametrize("seed", [2, 9])
 def test_a_log_replaced_is_not_taken_for_many_tows_pulled_askew(seed):
     """Of an earlier log 8 of 24 tows: so few may have been pulled askew, each by 10 %."""

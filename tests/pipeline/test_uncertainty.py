@@ -22,7 +22,8 @@ def tows(**changed):
         "kappa": 2.86,
         "misfit_ratio": 0.0, "wind_ln_sd": None,
         "random_ratio": 0.0061, "random_dof": 96.0, "calibrated": True, "log_sd": 0.0,
-        "log_dof": np.inf, "tow_log_sd": 0.0, "air_ratio": 0.025, "air_per_coefficient": 0.05,
+        "log_dof": np.inf, "tow_log_sd": 0.0, "stream_sd": 0.0, "stream_dof": 4,
+        "air_ratio": 0.025, "air_per_coefficient": 0.05,
         "wind_measured": True, "still_air_ratio": 0.025, "temperature_known": False,
         "askew_ratio": None,
     }  # fmt: skip

@@ -11,10 +11,11 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import polars as pl
 import pytest
 
-from herijk.pipeline.assessment.plausibility import plausibility
+from herijk.pipeline.assessment.plausibility import Shift, plausibility
 from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.method.definition import shipped_method
 from herijk.simulate import WorldSettings, simulate_world, world_settings
@@ -189,6 +190,33 @@ def test_a_log_replaced_within_a_season_is_seen_as_a_part_and_doubts_no_tow():
         with_doubts(world.tows, replace(judged, shifts=tuple(speeds)))["doubts"].list.len().sum()
         == 0
     )
+
+
+def wind_changed(world, tows: list[str], **factors: float) -> list[Shift]:
+    """What is said of the wind when it is multiplied in some tows; `back` means their runs back."""
+    runs = world.blocks.runs
+    mine = runs["tow_id"].is_in(tows).to_numpy()
+    if factors.pop("back", False):
+        mine &= runs["run"].to_numpy() > 3
+    sums = {
+        name: np.where(mine[:, None], factors.get(name, 1.0), 1.0) * values
+        for name, values in world.blocks.sums.items()
+    }
+    blocks = replace(world.blocks, sums=sums)
+    shifts = plausibility(Batch.of(world.tows, blocks)).shifts
+    return [s for s in shifts if s.quantity in ("wind", "vane") and s.clear]
+
+
+def test_a_turned_vane_is_gross_in_a_tow_and_in_a_season_and_a_dead_anemometer_in_no_other_unit():
+    world = measure(WorldSettings((2015, 2016, 2017), 6, 10, 4))
+    season = world.tows.filter(season=2016)["tow_id"].to_list()
+    assert wind_changed(world, []) == []
+    for kind, tows in (("tow", season[:1]), ("season", season)):
+        first = wind_changed(world, tows, wind_x=-1.0, wind_y=-1.0)[0]
+        assert (first.kind, first.tows, first.is_gross) == (kind, tuple(sorted(tows)), True)
+        assert abs(first.size - 180.0) < 20.0
+    dead = wind_changed(world, season[4:5], wind_x=0.0, wind_y=0.0, wind_v=0.0, back=True)
+    assert [(s.cause, s.is_gross) for s in dead if s.quantity == "wind"] == [("", False)]
 
 
 def test_an_archive_is_simulated_as_long_as_it_says_so(archive):

@@ -262,12 +262,12 @@ def _curve(curve: Row) -> str:
         "cut because",
         "factor",
         "v m/s",
-        "gross",
+        "gross kg/m",
         "-inertia",
         "-air",
         "+still",
         "+temp",
-        "Cw",
+        "Cw kg/m",
         "curve",
         "",
     )
@@ -332,7 +332,7 @@ def _unseen(curve: Row) -> list[str]:
     """From which size on an error would have been seen."""
     if curve["unseen_error_ratio"] is None:
         return []
-    return [tell("an error would be seen from {:.0%} on", curve["unseen_error_ratio"])]
+    return [tell("an error would be seen from {:.0f} % on", 100 * curve["unseen_error_ratio"])]
 
 
 def _interval_of_b(curve: Row) -> str:

@@ -16,6 +16,7 @@ from herijk.pipeline.register.register import draft_name
 from herijk.warehouse.queries.answers import compared, replayed
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.methods import KnownMethods
+from herijk.words import in_per_cent
 
 Part = dict[str, Any]
 
@@ -237,6 +238,4 @@ def _races(views: Views, lines: pl.DataFrame, speech: Speech) -> Part:
 
 
 def _chance(chance: float | None, speech: Speech) -> str:
-    if chance is None:
-        return speech.say("unknown_word")
-    return f"{speech.number(100 * chance, 0)}\u00a0%"
+    return speech.say("unknown_word") if chance is None else in_per_cent(chance)

@@ -19,7 +19,7 @@ from herijk.words import LANGUAGES
 
 DIGITS: Final = (
     ("_kg_m", 2), ("_m_s", 2), ("_deg", 0), ("_kg", 0), ("_w", 1), ("_s", 0), ("cw_sd", 2),
-    ("_m", 2), ("step_sd", 4), ("_sd", 1), ("dof", 1), ("before_ratio", 6), ("after_ratio", 6),
+    ("_m", 2), ("step_sd", 4), ("_sd", 1), ("dof", 1), ("before_percent", 3), ("after_percent", 3),
     ("slope", 5), ("slope_lo", 5), ("slope_hi", 5), ("_percent", 1), ("size", 1), ("size_lo", 1),
     ("size_hi", 1),
 )  # fmt: skip

@@ -118,24 +118,26 @@ DUE_COLUMNS = (
     *("name", "fsn_no", "boat_type", "rowers", "crew_class", "empty_thwart", "valid_until"),
     "status",
     *("tow_speed_m_s", "speed_reason", "beyond_curve", "declared_speed_m_s", "power_w"),
-    *("raced_speed_m_s", "lowest_speed_m_s", "highest_speed_m_s", "tow_id", "as_of"),
+    *("raced_speed_m_s", "lowest_speed_m_s", "highest_speed_m_s", "last_tow", "as_of"),
 )
 DUE_CARDS = ("name", "fsn_no", "rowers", "crew_class", "valid_until", "status", "tow_speed_m_s")
 CHOICE_COLUMNS = (
     *("position", "name", "fsn_no", "rowers", "crew_class", "seasons", "valid_until"),
-    *("tow_speed_m_s", "factor_sd_before_ratio", "factor_sd_after_ratio"),
+    *("tow_speed_m_s", "factor_sd_before_percent", "factor_sd_after_percent"),
 )
 
 
 def _due(views: Views, methods: Sequence[str]) -> Page:
     """Who has to tow again, at what speed, and which boats to tow again."""
-    rows = views.due_list()
+    rows = views.due_list().rename({"tow_date": "last_tow"})
     due = Table("due_list", rows, DUE_COLUMNS, "due_list", ["method"], search=True, cards=DUE_CARDS)
     headline = headlines.due(rows.filter(method=default_method(methods)))
     sections = [Section("due_list", "due_list_note", tables=[due], headline=headline)]
     choice = views.retow_choice()
     if choice.height:
-        table = Table("retow_choice", choice, CHOICE_COLUMNS, "retow_choice", ["method"])
+        sd = choice.select((pl.col("^factor_sd.*$") * 100).name.replace("ratio", "percent"))
+        frame = choice.hstack(sd)
+        table = Table("retow_choice", frame, CHOICE_COLUMNS, "retow_choice", ["method"])
         headline = headlines.retow(choice)
         sections.append(
             Section("retow_choice", "retow_choice_note", tables=[table], headline=headline)

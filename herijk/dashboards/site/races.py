@@ -18,6 +18,7 @@ from herijk.dashboards.site.parts import (
 from herijk.dashboards.speech import Headline, Speech
 from herijk.warehouse.queries.answers import newest_edition, race_chances
 from herijk.warehouse.queries.views import Views
+from herijk.words import in_per_cent
 
 Chances: TypeAlias = dict[tuple[str, str], float | None]
 """How likely another winner is, by race with its day and class."""
@@ -99,7 +100,7 @@ def _winner(
     chance = chances.get((f"{rows['race'][0]} {rows['race_date'][0]}", crew_class))
     if chance is None:
         return text
-    return text + speech.say("head_chance").format(chance=speech.number(100 * chance, 0))
+    return text + speech.say("head_chance").format(chance=in_per_cent(chance))
 
 
 def _few_places(speech: Speech, crew_class: str, rows: pl.DataFrame) -> str:

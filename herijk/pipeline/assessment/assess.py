@@ -12,12 +12,17 @@ from typing import Final
 
 import numpy as np
 import polars as pl
+import scipy
 
 from herijk.pipeline.assessment.checks import CHECKS, CODES, DOUBTS, UNUSUAL
+from herijk.pipeline.assessment.days import days_apart
 from herijk.pipeline.assessment.freeboard import by_freeboard
 from herijk.pipeline.assessment.mean_shift import MOSTLY, NORMAL_MAD
 from herijk.pipeline.assessment.season_levels import season_levels
+from herijk.pipeline.channels import SECOND_FILE_OFFSET
 from herijk.pipeline.choice import SAME_SHARE
+from herijk.pipeline.season_log.diagnosis import FAULT
+from herijk.pipeline.season_log.effects import FLEET
 from herijk.tables.keys import LINE
 
 LIKE: Final = ("boat_type", "rowers", "crew_class")
@@ -40,6 +45,11 @@ AGREE: Final = 0.02
 themselves (presentation 24-01-2015: tows agree within 2 %)."""
 
 FEWEST_PAIRS: Final = 10
+
+FEWEST_SLOPES: Final = 4
+"""Tows that a season needs before they tell how its log goes with speed (inferred)."""
+LEAST_SPREAD: Final = 0.01
+"""Sum of squares of ln speed within which a tow tells a slope; runs at 90 to 110 % have 0.04."""
 
 _HIGHEST: Final = {check.code: check.limits("H")[1] for check in CHECKS}
 _LAST_SEASON: Final = {check.code: check.last_season for check in CHECKS}
@@ -64,11 +74,13 @@ def assess(
     observed = [
         _of_curves(curves),
         _of_runs(curves, run_points),
+        _of_logs(curves, run_points),
         _of_doubts(tows),
         _of_correction(run_points, tows),
         _of_sizes(tows),
         _of_freeboards(tows),
         _of_season(curves, tows, diagnosis),
+        days_apart(curves, tows),
         _of_previous_curve(pairs),
         _of_unseen_errors(pairs, tows),
         _of_like_boats(curves, tows),
@@ -219,6 +231,36 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
     )
 
 
+def _of_logs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
+    """How the log's factor changes with speed, by the GPS of all its season.
+
+    Per tow the slope of ln(GPS / log) by ln speed, among runs one way, in which the stream is the
+    same; per season the mean, or 0 where chance makes as much of it in one of 1000 seasons.
+    """
+    ways = ["tow_id", pl.col("run") > SECOND_FILE_OFFSET, "direction"]
+    x, y = (pl.col(name).log() for name in ("speed_m_s", "gps_ratio"))
+    slope, x2 = pl.col("slope"), pl.col("x") ** 2
+    seasons = (
+        run_points.filter("used", pl.col("gps_ratio") > 0)
+        .select("tow_id", x=x - x.mean().over(ways), y=y - y.mean().over(ways))
+        .group_by("tow_id")
+        .agg(slope=(pl.col("x") * pl.col("y")).sum() / x2.sum(), spread=x2.sum())
+        .filter(pl.col("spread") > LEAST_SPREAD)
+        .join(curves.select("tow_id", "season"), on="tow_id")
+        .group_by("season")
+        .agg(slope.mean(), sd=slope.std() / pl.len().sqrt(), n=pl.len())
+        .filter(pl.col("n") >= FEWEST_SLOPES)
+        .with_columns(pl.col("n").map_batches(_chance, return_dtype=pl.Float64()).alias("chance"))
+    )
+    sure = pl.when(slope.abs() > pl.col("chance") * pl.col("sd")).then(slope).otherwise(0.0)
+    return curves.join(seasons, on="season").select("tow_id", log_not_linear=sure)
+
+
+def _chance(tows: pl.Series) -> pl.Series:
+    """Standard errors that the mean of so many tows exceeds in one of 1000 cases (Student)."""
+    return pl.Series(scipy.special.stdtrit(tows.to_numpy() - 1.0, 0.9995))
+
+
 def _of_doubts(tows: pl.DataFrame) -> pl.DataFrame:
     """What the rest of the archive says of a tow, judged before any method."""
     judged = {"doubts": DOUBTS, "unusual": UNUSUAL}
@@ -260,6 +302,7 @@ def _of_sizes(tows: pl.DataFrame) -> pl.DataFrame:
         "runs_set_aside": pl.col("runs_set_aside"),
         "lamps_burned": pl.col("lamp_ratio").alias("lamps_burned"),
         "load_cell_off": (pl.col("load_cell_ratio") - 1).alias("load_cell_off"),
+        "boat_list_differs": _off_boat_list().alias("boat_list_differs"),
     }
     known = [e for e in noted.values() if set(e.meta.root_names()) <= set(tows.columns)]
     return tows.sort("tow_date", "tow_id").select(
@@ -273,6 +316,18 @@ def _of_sizes(tows: pl.DataFrame) -> pl.DataFrame:
             for code, column in SIZES.items()
         ),
     )
+
+
+def _off_boat_list() -> pl.Expr:
+    """How far length or breadth is from the boat list; of a boat ever altered that says nothing."""
+    off = [
+        (pl.col(column) / pl.col(listed) - 1).abs()
+        for column, listed in (
+            ("waterline_length_m", "listed_length_m"),
+            ("beam_m", "listed_beam_m"),
+        )
+    ]
+    return pl.when(~pl.col("altered").any().over("fsn_no")).then(pl.max_horizontal(off))
 
 
 def _of_freeboards(tows: pl.DataFrame) -> pl.DataFrame:
@@ -315,9 +370,13 @@ def _of_season(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame
     """Whether an instrument of the tow's season is in doubt, where the season was diagnosed.
 
     An estimated log factor rests on the seasons with dGPS: where all of these are in doubt, so is
-    its season.
+    its season. All boats do not change at once: where they seem to, another load cell may have come
+    on board, and that season and all later ones are in doubt.
     """
+    first_step = diagnosis.filter(instrument=FLEET, verdict=FAULT)["season"].min()
+    after_step = (pl.col("season") >= pl.lit(first_step, pl.Int32)).fill_null(False)
     seasons = diagnosis.group_by("season").agg(season_in_doubt=pl.col("alarm").any())
+    seasons = seasons.with_columns(pl.col("season_in_doubt") | after_step)
     doubted = seasons.filter("season_in_doubt")["season"]
     anchors = {*_by_gps(curves)} & {*seasons["season"]}
     if anchors and anchors <= {*doubted}:

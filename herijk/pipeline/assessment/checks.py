@@ -113,6 +113,15 @@ CHECKS: Final = (
         highest=1.02,
     ),
     Check(
+        "log_not_linear",
+        "how GPS / log changes with speed in that season, as a power of speed: one factor does "
+        "not bring such a log to true speed, and B is off",
+        "1",
+        "inferred: 0.02 changes the bend of a usual curve by a twentieth",
+        lowest=-0.02,
+        highest=0.02,
+    ),
+    Check(
         "b_at_cap",
         "whether B was brought down to its cap (1) or not (0): the bend is then prescribed",
         "1",
@@ -180,10 +189,19 @@ CHECKS: Final = (
         "season_in_doubt",
         "whether an instrument of the season, or of every season with dGPS that its log factor "
         "rests on, has a fault or may have one (1) or not (0): the table `season_diagnosis` says "
-        "which",
+        "which; so it is from a season on in which all boats seem to have changed at once",
         "1",
         "inferred: a fault that the season log finds, or cannot rule out, concerns all its tows",
         highest=0.0,
+    ),
+    Check(
+        "days_differ",
+        "standard deviation of Cw that the tows of one day share in that season, against their "
+        "boats' best estimates, where chance does not explain it: a load cell may have been "
+        "exchanged or zeroed otherwise between days",
+        "1",
+        "inferred: half of the 2 % by which tows of a boat agree (presentation 24-01-2015)",
+        highest=0.01,
     ),
     # The runs
     Check(
@@ -298,6 +316,15 @@ CHECKS: Final = (
         "1",
         "inferred: Sleepproef 2017, 'Opmetingen en keuring' says much higher",
         highest=0.02,
+    ),
+    Check(
+        "boat_list_differs",
+        "how far waterline length or breadth that day is from the boat list, as a part of it, of a "
+        "boat of which no alteration was reported: the row may name another boat",
+        "1",
+        "inferred: measurements of one boat agree within 1 to 2 % (length_changed, beam_changed), "
+        "boats of one type within 5 %",
+        highest=0.05,
     ),
     Check(
         "weight_changed",

@@ -19,7 +19,7 @@ import numpy as np
 import polars as pl
 import scipy
 
-from herijk.pipeline.arrays import FloatArray, IntArray
+from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.assessment.likely_unit import likely_cause
 from herijk.pipeline.assessment.mean_shift import (
     Candidates,
@@ -90,7 +90,8 @@ class Shift:
         kind, key: what shifted: the `tow`, `day`, `part` (of a season, from a day on), `some` tows
             of a season, `season` or `archive`, and which.
         quantity: `force`, `zero` (of the load cell), `wind` (its speed), `vane` or `speed`.
-        size: of ln force; in N for a zero; relative for the others.
+        size: of ln force; in N for a zero; degrees for a vane that is turned; relative for the
+            others.
         sd: its standard deviation; 0 where the samples themselves leave no doubt.
         tows: the tows in it, sorted.
         cause: what would do this; empty where nothing known does.
@@ -143,6 +144,7 @@ def plausibility(batch: Batch) -> Plausibility:
     of_force, force_seen_from = _of_force(seen)
     shifts = (
         *_in_radians(seen),
+        *_turned(seen),
         *of_force,
         *_of_one(seen, "wind", seen.wind_ahead, WIND_AHEAD, _GROUPS),
         *_of_one(seen, "vane", seen.wind_abeam, WIND_ABEAM, _GROUPS),
@@ -152,6 +154,14 @@ def plausibility(batch: Batch) -> Plausibility:
 
 
 _RADIANS: Final = "radians instead of degrees"
+TURNED: Final = "a vane that is turned"
+_TURNED_DEG: Final = {"season": 45.0, "tow": 90.0}
+"""Where the wind out and back together comes from at least, for the vane to be turned (inferred):
+in a single tow the true wind may change by as much as the boat's speed, in a season not."""
+_TURNED_WIND: Final = (0.6, 1.6)
+"""That wind over the boat's speed: less or more is not the vane's doing alone."""
+_TURNED_ALIKE: Final = 0.9
+"""Length of the mean direction of tows that have one vane."""
 _GROUPS: Final = ("tow", "day", "season", "archive")
 
 
@@ -166,6 +176,28 @@ def _in_radians(seen: Seen) -> Iterator[Shift]:
         else:
             for tow in tows[written_so]:
                 yield Shift("tow", str(tow), "vane", 1.0, 0.0, (str(tow),), _RADIANS)
+
+
+def _turned(seen: Seen) -> Iterator[Shift]:
+    """Tows, or seasons, whose vane is turned.
+
+    Out and back together leave the wind of the boat's own speed, which comes from straight ahead.
+    """
+    felt = (1.0 + seen.wind_ahead) + 1j * seen.wind_abeam
+    low, high = _TURNED_WIND
+    known = (np.abs(felt) > low) & (np.abs(felt) < high)  # NaN is not
+    tows = seen.batch.tows
+    found: set[str] = set()
+    for kind, key, places in _groups(tows, ("season", "tow")):
+        mine = places[known[places]]
+        if kind == "season" and len(mine) < FEWEST:
+            continue
+        mean = (felt[mine] / np.abs(felt[mine])).sum() / max(len(mine), 1)
+        angle = float(np.degrees(np.angle(mean)))
+        ids = tuple(tows["tow_id"].gather(np.sort(places)))
+        if abs(mean) > _TURNED_ALIKE and abs(angle) > _TURNED_DEG[kind] and not found & {*ids}:
+            found |= {*ids}
+            yield Shift(kind, key, "vane", round(angle) % 360, 0.0, ids, TURNED)
 
 
 # What may have shifted, and how much it scatters by itself
@@ -278,7 +310,8 @@ def _of_one(
         ratio = np.maximum(1.0 + values[there], 0.01)
         groups += _grossly_off(tows, np.log(ratio))
     may = [(quantity, group, group[2], np.ones(len(group[2]))) for group in groups]
-    return _named(tows, may, _find(observed, may), np.zeros(tows.height))
+    still = seen.wind_stands_still[there]
+    return _named(tows, may, _find(observed, may), np.zeros(tows.height), still)
 
 
 def _of_force(seen: Seen) -> tuple[list[Shift], dict[str, float]]:
@@ -316,7 +349,8 @@ def _of_force(seen: Seen) -> tuple[list[Shift], dict[str, float]]:
         for (quantity, (kind, key, _), *_), size in zip(columns, found.seen_from, strict=True)
         if (quantity, kind) == ("force", "tow") and np.isfinite(size)
     }
-    return _named(tows, columns, found, seen.air_share[known]), seen_from
+    none = np.zeros(tows.height, dtype=bool)
+    return _named(tows, columns, found, seen.air_share[known], none), seen_from
 
 
 def _find(observed: Observations, columns: list[Candidate]) -> Shifted:
@@ -334,7 +368,11 @@ def _find(observed: Observations, columns: list[Candidate]) -> Shifted:
 
 
 def _named(
-    tows: pl.DataFrame, columns: list[Candidate], found: Shifted, air_share: FloatArray
+    tows: pl.DataFrame,
+    columns: list[Candidate],
+    found: Shifted,
+    air_share: FloatArray,
+    stands_still: BoolArray,
 ) -> list[Shift]:
     """The shifts that were found, with their tows and what may have caused them."""
     shifts = []
@@ -345,6 +383,8 @@ def _named(
             size = _of_whole_force(size, air_share[places])
         ids = tuple(tows["tow_id"].gather(np.sort(places)))
         cause = likely_cause(quantity, _ln_ratio(quantity, size), one.sd)
+        if quantity == "wind" and stands_still[places].any():
+            cause = ""  # an anemometer that died on the way is in no other unit
         shifts.append(Shift(kind, key, quantity, size, one.sd, ids, cause, one.clear))
     return shifts
 

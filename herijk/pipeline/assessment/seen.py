@@ -37,6 +37,9 @@ RADIANS: Final = 2.0 * np.pi
 TOO_MUCH_AHEAD: Final = 0.1
 """Angles in radians read as degrees put all wind ahead: more than the boat's own speed is left."""
 
+NO_WIND_M_S: Final = 0.1
+"""Mean wind of a run that an anemometer standing still shows."""
+
 LEAST_RESULTANT: Final = float(np.cos(np.radians(3.3)))
 """Length of the mean direction of angles of which half are 0 and half 6.28 degrees."""
 
@@ -56,6 +59,7 @@ class Seen:
             cancels, and 1 and 0 are left.
         speed: ln(speed / intended speed), median of the runs.
         in_radians: all wind angles lie where radians do.
+        wind_stands_still: the anemometer shows no wind through a whole run, and some in another.
     """
 
     batch: Batch
@@ -69,6 +73,7 @@ class Seen:
     wind_abeam: FloatArray
     speed: FloatArray
     in_radians: BoolArray
+    wind_stands_still: BoolArray
 
     @classmethod
     def of(cls, batch: Batch) -> "Seen":
@@ -101,6 +106,8 @@ class Seen:
             _both_ways(batch, mean["wind_y"] / np.where(good, mean["log1_v"], 1.0), windy),
             _median(batch, speed - np.log(batch.target_speed_ratio), good),
             _angles_in_radians(batch, windy) & (ahead > TOO_MUCH_AHEAD),
+            batch.any(windy & (mean["wind_v"] < NO_WIND_M_S))
+            & batch.any(windy & (mean["wind_v"] >= NO_WIND_M_S)),
         )
 
 

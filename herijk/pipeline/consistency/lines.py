@@ -435,7 +435,7 @@ class _Compared:
     def frame(self, fit: mixed.Fit, eras: tuple[Era, ...]) -> pl.DataFrame:
         """Rows of the table `type_outliers`, without the candidate `season`."""
         y, left_out = self.problem.y, fit.leave_boats_out()
-        deviation = _studentised(left_out.error / np.sqrt(left_out.variance * fit.scale), fit)
+        deviation = left_out.error / np.sqrt(left_out.variance * left_out.scale)
         chance = 1.0 - OUTSIDE_LEVEL / (2.0 * len(y))
         limit = float(scipy.special.stdtrit(max(fit.dof - 1, 1), chance))
         return self.boats.table.select(
@@ -452,12 +452,6 @@ class _Compared:
             pl.Series("outside", np.abs(deviation) > limit),
             pl.Series("candidates", _candidates(self.boats, self.quantity, left_out.error, eras)),
         )
-
-
-def _studentised(internal: FloatArray, fit: mixed.Fit) -> FloatArray:
-    """Deviation with the boat itself taken out of the spread (Cook & Weisberg 1982, 2.2.1)."""
-    dof = max(fit.dof, 2)
-    return np.asarray(internal * np.sqrt((dof - 1) / np.maximum(dof - internal**2, 0.05)))
 
 
 def _candidates(

@@ -43,6 +43,9 @@ MAX_DOUBLINGS: Final = 7
 NUMBERS_AT_ONCE: Final = 1 << 16
 """Numbers of a stack: enough to make calls cheap, few enough for the nearer cache."""
 
+LEAST_MISFIT: Final = 0.05
+"""Misfit that the other boats' rows are taken to have, also where they agree by chance."""
+
 NO_GAIN: Final = 1e-4
 """A component that lowers the deviance by no more than this is 0."""
 
@@ -56,10 +59,17 @@ class Coefficients(NamedTuple):
 
 
 class LeftOut(NamedTuple):
-    """Error of predicting a row from the rows of the other boats, and its variance; (n,)."""
+    """Predictions of the rows from those of the other boats, each of shape (n,).
+
+    Attributes:
+        error: what the row has above its prediction.
+        variance: of that, at a scale of 1.
+        scale: that of the other boats' rows, as `Fit.scale` is of all.
+    """
 
     error: FloatArray
     variance: FloatArray
+    scale: FloatArray
 
 
 @dataclass(frozen=True)
@@ -141,14 +151,17 @@ class Fit:
         """Prediction of each row from all other boats, at the estimated variances.
 
         For rows g the error is (P_gg)^-1 (P y)_g with variance (P_gg)^-1: no fit is repeated.
-        Where the others do not determine the prediction, the variance is infinite.
+        Where the others do not determine the prediction, the variance is infinite. The boat's own
+        misfit (P y)_g' (P_gg)^-1 (P y)_g is taken out of the scale, as in externally studentised
+        residuals (Cook & Weisberg 1982, 2.2.1).
         """
         white, order = self.white.of_one(self.place), self.problem.design.by_boat
         n, boat = len(order), self.problem.design.boat[order]
         weighed = white.weigh(np.concatenate([white.q, white.rest], axis=-1))[0][0, :n]
         known, py = weighed[:, :-1], weighed[:, -1]
         weights, shared = white.weight[0, :n], white.boat[0] / white.inflation[0]
-        error, variance = np.zeros(n), np.full(n, np.inf)
+        error, variance, scale = np.zeros(n), np.full(n, np.inf), np.ones(n)
+        misfit, beyond = self.scale * self.problem.rows_beyond, self.problem.rows_beyond
         first, each = np.unique(boat, return_index=True, return_counts=True)[1:]
         for size in np.unique(each):  # boats of as many rows side by side
             rows = first[each == size, None] + np.arange(size)
@@ -158,9 +171,12 @@ class Fit:
             largest = np.diagonal(inverse, axis1=-2, axis2=-1).max(axis=-1)
             told = np.linalg.eigvalsh(block)[:, 0] > 1e-9 * largest
             covariance, rows = np.linalg.inv(block[told]), rows[told]
-            error[order[rows]] = (covariance @ py[rows][..., None])[..., 0]
+            missed = (covariance @ py[rows][..., None])[..., 0]
+            own = (missed * py[rows]).sum(axis=1, keepdims=True)
+            error[order[rows]] = missed
             variance[order[rows]] = np.diagonal(covariance, axis1=-2, axis2=-1)
-        return LeftOut(error, variance)
+            scale[order[rows]] = np.maximum(misfit - own, LEAST_MISFIT) / max(beyond - size, 1)
+        return LeftOut(error, variance, scale)
 
     def intervals(self) -> dict[str, tuple[float, float | None]]:
         """95 % profile-likelihood intervals of the components' sds; None without an upper bound."""

@@ -206,8 +206,9 @@ class Stack:
         return cls(columns, variance, boat, size, spread, unit)
 
     def take(self, rows: IntArray | BoolArray) -> Self:
-        """Some of the problems."""
-        if np.array_equal(rows, np.arange(len(self.unit))):
+        """Some of the problems, by their places or by a mask."""
+        every = np.arange(len(self.unit))
+        if np.array_equal(every[rows], every):
             return self
         names = ("columns", "variance", "boat", "spread", "unit")
         return replace(self, **{name: getattr(self, name)[rows] for name in names})

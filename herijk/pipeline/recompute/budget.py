@@ -14,7 +14,7 @@ import numpy as np
 import polars as pl
 
 from herijk.pipeline import curve
-from herijk.pipeline.arrays import BoolArray, FloatArray
+from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.recompute.outcome import Outcome
 from herijk.pipeline.season_log import SeasonFactors
 from herijk.pipeline.steps.speed import log_part
@@ -36,6 +36,10 @@ CURVE_SPEED_RATIOS: Final = tuple(thousandths / 1000 for thousandths in range(85
 
 MOST_BENT: Final = 0.9
 """r beyond which a curve tells nothing."""
+
+USUAL_RUN_SCATTER: Final = 0.004
+"""Standard deviation of dGPS over log between runs one way in a steady stream (inferred: half of
+simulated sound tows stay under 0.3 %, one in twenty exceeds 0.55 %)."""
 
 USUAL_BEND: Final = 0.4
 """q where the archive is not asked for it (inferred: r of 0.3)."""
@@ -102,6 +106,26 @@ def files_log_sd(o: Outcome) -> FloatArray:
     season = np.unique(o.batch.of_tow("season"), return_inverse=True)[1]
     square = np.bincount(season, apart**2) / np.maximum(np.bincount(season, combined), 1)
     return np.where(combined, 0.5 * np.sqrt(square[season]), 0.0)
+
+
+def stream_scatter(o: Outcome) -> tuple[FloatArray, IntArray]:
+    """Standard deviation of ln y by a stream that is not the same in runs one way, and its dof.
+
+    Of these, in one file, GPS over log differs by no more than `USUAL_RUN_SCATTER`. What is beyond
+    moves the mean of n runs by its root-n-th part. Both of shape (tows,); 0 where no tow is
+    calibrated by itself.
+    """
+    batch, gps, log = o.batch, o.means.gps_m_s, o.means.speed_m_s
+    used = o.used & np.isfinite(gps) & (log > 0) & o.calibrated[batch.tow]
+    used &= o.steps.calibration.rule == "gps_per_tow"
+    ratio = np.where(used, gps, 1.0) / np.where(used, log, 1.0)
+    group = 4 * batch.tow + 2 * batch.in_second_file + (batch.direction > 0)
+    count = np.bincount(group, used, 4 * batch.size)
+    mean = np.bincount(group, used * ratio, 4 * batch.size) / np.maximum(count, 1)
+    square = np.bincount(batch.tow, used * (ratio - mean[group]) ** 2, batch.size)
+    dof = np.maximum(count - 1, 0).reshape(-1, 4).sum(axis=1).astype(np.int64)
+    beyond = np.maximum(square / np.maximum(dof, 1) - USUAL_RUN_SCATTER**2, 0.0)
+    return np.where(dof > 0, np.sqrt(beyond / np.maximum(batch.count(used), 1)), 0.0), dof
 
 
 def run_point_ratio(o: Outcome) -> FloatArray:
@@ -257,6 +281,7 @@ def _terms_of_tows(o: Outcome, found: SeasonFactors | None, scatter: curve.Scatt
     # A larger coefficient takes more off as felt and puts more back for still air.
     still_unit = o.still_air_kg_m / np.maximum(o.still_air_coefficient, 1e-9)
     per_coefficient = batch.mean(still_unit - o.air_unit_kg_m, o.used)
+    stream_sd, stream_dof = stream_scatter(o)
     return batch.tows.select(
         "tow_id",
         "season",
@@ -269,6 +294,8 @@ def _terms_of_tows(o: Outcome, found: SeasonFactors | None, scatter: curve.Scatt
         pl.Series("log_sd", np.where(estimated, o.estimated.ln_sd, 0.0)),
         pl.Series("log_dof", np.where(estimated, o.estimated.dof, np.inf)),
         pl.Series("tow_log_sd", _tow_log_sd(o, found)),
+        pl.Series("stream_sd", stream_sd),
+        pl.Series("stream_dof", stream_dof),
         pl.Series("net_air_kg_m", net_air),
         pl.Series("wind_ln_sd", o.wind_ln_sd).fill_nan(None),
         pl.Series("air_per_coefficient_kg_m", per_coefficient),

@@ -10,6 +10,16 @@ def with_boat_types(tows: pl.DataFrame, boats: pl.DataFrame) -> pl.DataFrame:
     return tows.join(boats.select("fsn_no", "boat_type"), on="fsn_no", how="left")
 
 
+def with_boats(tows: pl.DataFrame, boats: pl.DataFrame) -> pl.DataFrame:
+    """Rows of `tows` with the type of their boat, and its length and breadth in the boat list."""
+    listed = boats.select(
+        "fsn_no",
+        listed_length_m=pl.col("waterline_length_m"),
+        listed_beam_m=pl.col("beam_m"),
+    )
+    return with_boat_types(tows, boats).join(listed, on="fsn_no", how="left")
+
+
 def with_hand_windows(runs: pl.DataFrame, windows: pl.DataFrame) -> pl.DataFrame:
     """Rows of `tow_runs` with the windows that were given by hand (`hand_windows`)."""
     return runs.join(windows.rename(HAND_COLUMNS), on=["tow_id", "run"], how="left")

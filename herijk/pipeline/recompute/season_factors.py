@@ -17,7 +17,12 @@ from herijk.pipeline import curve
 from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.method.definition import Calibration, Steps, Wind
-from herijk.pipeline.recompute.budget import files_log_sd, force_uncertainty, pooled_scatter
+from herijk.pipeline.recompute.budget import (
+    files_log_sd,
+    force_uncertainty,
+    pooled_scatter,
+    stream_scatter,
+)
 from herijk.pipeline.recompute.outcome import Outcome, TowFactor
 from herijk.pipeline.season_log import (
     GROUP,
@@ -170,24 +175,24 @@ def _rows(o: Outcome, reference: pl.DataFrame) -> pl.DataFrame:
     safe, safe_r = np.where(sound, cw, 1.0), np.where(sound, r, 0.0)
     calibrated = steps.calibration.rule == GPS
     gps, gps_sd, has_gps = _gps_ratio(o)
-    files_sd, q = files_log_sd(o), safe_r / (1.0 - safe_r)
+    own_sd, q = np.hypot(files_log_sd(o), stream_scatter(o)[0]), safe_r / (1.0 - safe_r)
     by_log = (2.0 + 2.0 * q, 2.0 * q * (1.0 + q))
     y = np.where(o.calibrated, o.calibration_factor, 1.0)
     numbers = {
         "ln_cw": np.where(sound, np.log(safe), np.nan),
         "ln_cw_sd": np.sqrt(
             np.where(sure, errors.c0_variance_kg2_m2 / safe**2, 1.0)
-            + (by_log[0] * files_sd) ** 2
+            + (by_log[0] * own_sd) ** 2
             + (_unmeasured_wind_kg_m(o) / safe) ** 2
         ),
         "q": q,
-        "q_sd": np.hypot(np.where(sure, np.sqrt(errors.q_variance), 1.0), by_log[1] * files_sd),
+        "q_sd": np.hypot(np.where(sure, np.sqrt(errors.q_variance), 1.0), by_log[1] * own_sd),
         "ln_cw_q_cov": np.where(sure, errors.c0_q_covariance_kg_m / safe, 0.0)
-        + by_log[0] * by_log[1] * files_sd**2,
+        + by_log[0] * by_log[1] * own_sd**2,
         "other_ln_ratio": _other_ln_ratio(o),
         "own_calibration_ln": np.where(o.calibrated, np.log(o.known_factor * y), np.nan),
         "gps_ln_ratio": np.where(has_gps & (not calibrated), gps, np.nan),
-        "gps_sd": np.where(has_gps & (not calibrated), np.hypot(gps_sd, files_sd), np.nan),
+        "gps_sd": np.where(has_gps & (not calibrated), np.hypot(gps_sd, own_sd), np.nan),
     }
     names = ("tow_id", *LINE, "altered", "declared_speed_m_s")
     return batch.tows.select(

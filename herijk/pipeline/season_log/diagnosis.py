@@ -11,7 +11,15 @@ import polars as pl
 import scipy
 
 from herijk.pipeline.arrays import FloatArray
-from herijk.pipeline.season_log.effects import CHANGE, FORCE, LOG, OF_BOATS, ZERO, ZERO_DRIFT
+from herijk.pipeline.season_log.effects import (
+    CHANGE,
+    FORCE,
+    GPS_SCALE,
+    LOG,
+    OF_BOATS,
+    ZERO,
+    ZERO_DRIFT,
+)
 from herijk.pipeline.season_log.likelihood import LEVEL as LEVEL_NUMBER
 from herijk.pipeline.season_log.network import GROUP, Network
 from herijk.pipeline.season_log.posterior import Posterior, Problem
@@ -32,6 +40,8 @@ SOUND: Final = "sound"
 CANNOT_BE_TOLD: Final = "cannot be told"
 WOULD_NOT_SHOW: Final = "would not show"
 NOT_DETERMINED: Final = "not determined"
+USUAL_CALIBRATION: Final = 0.02
+"""Size of ln(dGPS / log) that logs normally keep within (Sleepproef 2017, "IJking snelheid")."""
 FORCES: Final = (FORCE, ZERO, ZERO_DRIFT)
 _VERDICT: Final = ("season", "part", "instrument", "verdict")
 
@@ -71,8 +81,9 @@ def season_steps(
     Returns:
         Rows of `STEP_SCHEMA`: `level_step`, what log and load cell together do to ln Cw, and
         `force_step`, the part of the load cell, with standard deviations; `cause` is `force` where
-        a fault of the load cell is likelier than not, `not told` where one cannot be told or the
-        season is not determined, or where a load cell fault would not show and one no larger than
+        a fault of the load cell is likelier than not, `not told` where one cannot be told, where it
+        looks like a stream that runs with the boat both ways, where the season is not determined,
+        or where a load cell fault would not show and one no larger than
         usual could be the whole step; `log` where the level differs by more than twice its standard
         deviation, else `none`.
     """
@@ -91,6 +102,7 @@ def season_steps(
         of_force = {verdicts.get((season, 0, name)) for name in FORCES}
         lost = verdicts.get((season, int(str(key[1])), LOG)) == NOT_DETERMINED
         hidden = verdicts.get((season, 0, FORCE)) == WOULD_NOT_SHOW
+        streams = _may_be_a_stream(network, season, force)
         lost |= hidden and 2.0 * step_sd < abs(step) < USUAL_SIZES * problem.settings.force_fault_sd
         rows.append(
             dict(zip(GROUP, key, strict=True))
@@ -100,7 +112,7 @@ def season_steps(
                 "level_step_sd": step_sd,
                 "force_step": force,
                 "force_step_sd": force_sd,
-                "cause": _cause(of_force, lost, abs(step) > 2.0 * step_sd),
+                "cause": _cause(of_force, lost, abs(step) > 2.0 * step_sd, streams),
             }
         )
     return pl.DataFrame(rows, schema=STEP_SCHEMA).sort(GROUP)
@@ -113,9 +125,22 @@ def _mean_effect(posterior: Posterior, effects: FloatArray) -> tuple[float, floa
     return float(along @ posterior.mean), float(np.sqrt(variance))
 
 
-def _cause(of_force: set[str | None], lost: bool, steps: bool) -> str:
+def _may_be_a_stream(network: Network, season: int, force: float) -> bool:
+    """Whether dGPS that is off in a whole season would look like this error of the load cell.
+
+    A stream that runs with the boat both ways, or against it, does that: it makes dGPS over log
+    unusual, and Cw err the other way.
+    """
+    if "own_calibration_ln" not in network.tows.columns:
+        return False
+    own = network.tows.filter(season=season)["own_calibration_ln"].drop_nulls()
+    ln_y = 0.0 if own.is_empty() else float(own.to_numpy().mean())
+    return abs(ln_y) > USUAL_CALIBRATION and force * ln_y < 0.0
+
+
+def _cause(of_force: set[str | None], lost: bool, steps: bool, may_be_a_stream: bool) -> str:
     if of_force & {FAULT, ALARM}:
-        return "force"
+        return "not told" if may_be_a_stream else "force"
     if lost or CANNOT_BE_TOLD in of_force:
         return "not told"
     return "log" if steps else "none"
@@ -138,6 +163,9 @@ def _row(
     chance = min(float(posterior.chance[faults].sum()), 1.0) if faults else None
     distance = _distance(problem, posterior, columns)
     verdict = _verdict(network, key, chance, distance, bool(posterior.shows[faults].any()))
+    confused = _confused_with(problem, posterior, columns)
+    if name == FORCE and verdict == FAULT and _may_be_a_stream(network, season, mean):
+        confused = ", ".join(filter(None, (f"{GPS_SCALE} {season}", confused)))
     return {
         "season": season,
         "part": part,
@@ -152,7 +180,7 @@ def _row(
         "alarm": verdict in (FAULT, ALARM, CANNOT_BE_TOLD),
         "first_tow": _first_tow(problem, posterior, network, faults, chance),
         "rests_on": _rests_on(network, season),
-        "confused_with": _confused_with(problem, posterior, columns),
+        "confused_with": confused,
     }
 
 

@@ -216,10 +216,12 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
             `season, part, log`; `kappa`; `random_ratio` (of C0, from the scatter of the run
             points) with `random_dof`; `misfit_ratio`, of the hull about its hyperbola;
             `calibrated` (on dGPS); `log_sd` and `log_dof` of the season's ln factor (0 and any
-            where calibrated), `tow_log_sd` of the log (0 where calibrated); `air_ratio`, net wind
-            correction / Cw, and `air_per_coefficient`, change of ln Cw per unit of drag coefficient
-            (both signed); `wind_ln_sd`, of the anemometer's ln scale, null where it is taken as it
-            reads; `wind_measured`, and where it was not `still_air_ratio`, still-air part / Cw;
+            where calibrated), `tow_log_sd` of the log (0 where calibrated); `stream_sd` with
+            `stream_dof`, of ln speed by a stream that differs between runs one way; `air_ratio`,
+            net wind correction / Cw, and `air_per_coefficient`, change of ln Cw per unit of drag
+            coefficient (both signed); `wind_ln_sd`, of the anemometer's ln scale, null where it is
+            taken as it reads; `wind_measured`, and where it was not `still_air_ratio`, still-air
+            part / Cw;
             `temperature_known`; `askew_ratio`, by being pulled askew, null where repeat tows do not
             tell; `force_sd`, of the load cell by its record, null or absent without one.
         assumed: what the archive cannot show; give `wind_coefficient` what the archive-wide search
@@ -239,7 +241,9 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
     speed_ratio = (
         pl.when(calibrated).then(assumed.calibration_speed_ratio).otherwise(pl.col("tow_log_sd"))
     )
-    drift_ratio = pl.when(calibrated).then(assumed.stream_drift_speed_ratio).otherwise(0.0)
+    drift = pl.when(calibrated).then(assumed.stream_drift_speed_ratio).otherwise(0.0)
+    drift_ratio = (drift**2 + pl.col("stream_sd") ** 2).sqrt()
+    drift_dof = pl.when(pl.col("stream_sd") > drift).then("stream_dof").otherwise(np.inf)
     coefficient = pl.col("air_per_coefficient") * assumed.wind_coefficient
     wind_speed = pl.col("wind_ln_sd").fill_null(assumed.anemometer_ratio)
     no_wind = pl.col("still_air_ratio") * assumed.unmeasured_wind
@@ -267,7 +271,11 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
         "temperature": pl.when(known).then(pl.lit(SINGLE)).otherwise(pl.lit(SEASON)),
         "season_log": pl.lit(SEASON),
     }
-    dof = {"random": pl.col("random_dof"), "season_log": pl.col("log_dof")}
+    dof = {
+        "random": pl.col("random_dof"),
+        "season_log": pl.col("log_dof"),
+        "stream_drift": drift_dof,
+    }
     parts = [
         tows.select(
             "tow_id",

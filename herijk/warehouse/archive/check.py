@@ -7,7 +7,7 @@ rebuild's; here every header is read, and one tow of each season whole.
 
 import hashlib
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
@@ -195,9 +195,10 @@ def _faults(root: Path, profiles: Profiles) -> tuple[ArchiveIndex | None, list[F
     index = index_archive(root, quick_hash, profiles)
     _, in_races = read_races(root, profiles.wording)
     _, in_registers = read_published_registers(root, profiles.wording)
-    in_headers = list(_in_headers(root, index))
+    unused = {fault.path for fault in index.faults if fault.reason_code == "samples_not_listed"}
+    in_headers = list(_in_headers(root, index, unused))
     wrong = {fault.path for fault in in_headers}
-    in_samples = list(_in_samples(root, index, wrong))
+    in_samples = list(_in_samples(root, index, wrong | unused))
     in_lists = [*index.faults, *index.more]
     return index, [*in_lists, *in_races, *in_registers, *in_headers, *in_samples]
 
@@ -211,9 +212,14 @@ def quick_hash(path: Path) -> str:
         return hashlib.sha256(start + file.read(_PIECE) + str(size).encode()).hexdigest()
 
 
-def _in_headers(root: Path, index: ArchiveIndex) -> Iterator[Fault]:
-    """Read the header of every samples file, whatever is wrong with the row that names it."""
+def _in_headers(root: Path, index: ArchiveIndex, unused: Collection[str]) -> Iterator[Fault]:
+    """Read the header of every samples file, whatever is wrong with the row that names it.
+
+    Files that lists which can be read do not name say nothing of their season.
+    """
     for file in list_sample_files(root, index.profiles.wording.files):
+        if file.path in unused:
+            continue
         season = index.seasons.get(file.path, file.season)
         try:
             check_header(path_inside(root, file.path), index.profiles.for_season(season))
@@ -259,14 +265,18 @@ def _in_samples(root: Path, index: ArchiveIndex, wrong: set[str]) -> Iterator[Fa
 
 
 def _in_form(root: Path, file: ArchiveFile, profiles: Profiles, season: int) -> Iterator[Fault]:
-    """Read a samples file that no sound row names, and look which runs are in it."""
+    """Read a samples file that no sound row names, and look which runs are in it.
+
+    Its rate is that of its times: what a list says that cannot be read yet is not known.
+    """
     profile = profiles.for_season(season)
     named = as_one_run(file.full_path.name)
+    path = path_inside(root, file.path)
     try:
         samples = read_samples(
-            path_inside(root, file.path),
+            path,
             profile,
-            sample_rate_hz=profile.sample_rate_hz,
+            sample_rate_hz=round(rate_in_times(path, profile) or profile.sample_rate_hz),
             run=named[1] if named else None,
         )
     except DefectiveInputError as error:

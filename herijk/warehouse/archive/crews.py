@@ -10,26 +10,33 @@ from herijk.warehouse.archive.sheets import Sheet
 from herijk.warehouse.archive.text import Column, find_columns
 from herijk.warehouse.archive.words import CLASSES
 
+CREW: Final = ("rowers", "crew_class")
+"""Keys of the columns that one cell can hold together."""
+
 _CREW: Final = re.compile(r"\s*([0-9]{1,2})\s*([^\W\d_]+)\s*")
 
 
 def with_crews_apart(sheet: Sheet, wanted: Sequence[Column]) -> Sheet:
     """Return the table with rowers and class in a column each, where one column holds both.
 
-    Only where either column is missing, and a column that is one of them, or that nobody knows,
-    holds crews. A cell that is none stays among the rowers, without a class.
+    Where either column is missing, a column that is one of them, or that nobody knows, may hold
+    crews. A number and letters are then apart in every cell, also where the letters are no class;
+    another cell stays among the rowers. Where both are there, crews are taken apart whose class is
+    left empty.
 
     Args:
         sheet: a table of a list.
         wanted: the columns of that list.
     """
-    names = {c.key: c.header for c in wanted if c.key in ("rowers", "crew_class")}
-    if len(names) < 2:
+    names = {c.key: c.header for c in wanted if c.key in CREW}
+    if len(names) < len(CREW):
         return sheet
     optional = [replace(column, required=False) for column in wanted]
     found = find_columns(sheet.header, optional, sheet.line)
     if names.keys() <= found.keys():
-        return sheet
+        rowers, crew_class = (found[key].index for key in ("rowers", "crew_class"))
+        rows = [replace(r, fields=_filled(r.fields, rowers, crew_class)) for r in sheet.rows]
+        return replace(sheet, rows=rows)
     known = {column.index for key, column in found.items() if key not in names}
     place = next((k for k in range(len(sheet.header)) if k not in known and _crews(sheet, k)), None)
     if place is None:
@@ -40,6 +47,7 @@ def with_crews_apart(sheet: Sheet, wanted: Sequence[Column]) -> Sheet:
         sheet,
         header=header,
         rows=[replace(row, fields=_apart(row.fields, place, len(header))) for row in sheet.rows],
+        crews=sheet.header[place].strip(),
     )
 
 
@@ -47,17 +55,27 @@ def _crews(sheet: Sheet, place: int) -> bool:
     """Return whether a column holds crews."""
     cells = [row.fields[place] for row in sheet.rows if place < len(row.fields)]
     there = [cell for cell in cells if cell.strip()]
-    return bool(there) and sum(_crew(cell) is not None for cell in there) >= FITS * len(there)
+    return bool(there) and sum(_is_crew(cell) for cell in there) >= FITS * len(there)
 
 
-def _crew(cell: str) -> tuple[str, str] | None:
-    """Return rowers and class as they are written, None where a cell is no crew."""
+def _is_crew(cell: str) -> bool:
     match = _CREW.fullmatch(cell)
-    return (match[1], match[2]) if match and match[2].casefold() in CLASSES else None
+    return match is not None and match[2].casefold() in CLASSES
+
+
+def _filled(fields: Sequence[str], rowers: int, crew_class: int) -> list[str]:
+    """Return a row with the class of a crew among the rowers in its own, empty cell."""
+    filled = list(fields)
+    there = max(rowers, crew_class) < len(fields)
+    match = _CREW.fullmatch(fields[rowers]) if there and _is_crew(fields[rowers]) else None
+    if match and not fields[crew_class].strip():
+        filled[rowers], filled[crew_class] = match.groups()
+    return filled
 
 
 def _apart(fields: Sequence[str], place: int, width: int) -> list[str]:
     """Return a row with the class in the last column of so many."""
     apart = [*fields[: width - 1], *[""] * (width - 1 - len(fields))]
-    apart[place], crew_class = _crew(apart[place]) or (apart[place], "")
+    match = _CREW.fullmatch(apart[place])
+    apart[place], crew_class = match.groups() if match else (apart[place], "")
     return [*apart, crew_class, *fields[width - 1 :]]

@@ -10,9 +10,9 @@ from typing import Final, Literal
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.words import cause_of, spoken
 
-Lost = Literal["seconds", "run", "tow", "file", "row"]
+Lost = Literal["seconds", "run", "tow", "file", "row", "cell"]
 """What a fault costs: seconds of one channel of a run, a run, a tow, or a file; or a row of a list
-that costs no tow, as one of a race."""
+that costs no tow, as one of a race, or one of its cells."""
 
 
 OF_A_HEADER: Final = ("missing_column", "unknown_column", "duplicate_column", "unknown_unit")

@@ -7,7 +7,7 @@ are compared with each other here, one question after the other; a tow falls out
 import datetime as dt
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
@@ -121,6 +121,7 @@ class _Entry:
     files: list[SamplesFile] = field(default_factory=list)
     tow: Row = field(default_factory=dict)
     selection: frozenset[int] = frozenset()
+    lost_cells: list[DefectiveInputError] = field(default_factory=list)
 
     @property
     def tow_id(self) -> str | None:
@@ -219,6 +220,7 @@ def index_archive(
     good = _keep(lambda entry: _join_boat(entry, boats), good, faults)
     good = _keep(lambda entry: _place_day(entry, profiles), good, faults)
     good = _keep(_fits_table(good), good, faults)
+    faults += [fault for entry in good for fault in _lost_cells(entry)]
     _add_instruments(root, profiles, entries, good, faults)
     runs = [run for entry in good for run in _runs(entry)]
     windows = _read_windows(root, profiles, hashes, entries, runs, faults)
@@ -532,11 +534,7 @@ def _not_listed(
         if not file.inside:
             faults.append(fault_from(outside_archive(file.path), file.path))
         elif not unread_seasons & {file.season, 0} and (file.season or not unread_seasons):
-            message = (
-                say("No row of the tow list of {season} names this file.", season=file.season)
-                if file.season
-                else say("No row of a tow list names this file.")
-            )
+            message = say("No row of a tow list names this file.")
             faults.append(Fault(file.path, None, None, "samples_not_listed", message))
     return faults
 
@@ -605,11 +603,19 @@ def _read_values(entry: _Entry, profiles: Profiles) -> None:
             "file": partial(entry.row.text, "file"),
         }
     )
-    entry.tow, entry.selection = read["tow"], read["selection"]
+    (entry.tow, entry.lost_cells), entry.selection = read["tow"], read["selection"]
     day = entry.tow["tow_date"]
     if day.year != entry.season:
         message = "the date {day} is not in {season}, the year of the list."
         raise entry.fault("date_outside_season", say(message, day=day, season=entry.season))
+
+
+def _lost_cells(entry: _Entry) -> Iterator[Fault]:
+    """Return a fault for each cell that the tow does without."""
+    for error in entry.lost_cells:
+        fault = fault_from(error, entry.list_path, entry.tow_id)
+        message = say("{what} The cell counts as empty.", what=fault.message)
+        yield replace(fault, message=message, lost="cell")
 
 
 def _find_files(entry: _Entry, by_name: _FilesByName, hashes: _Hashes) -> None:

@@ -15,7 +15,7 @@ from typing import Any, Final
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.declare import dy
 from herijk.tables.frames import limits
-from herijk.warehouse.archive.crews import with_crews_apart
+from herijk.warehouse.archive.crews import CREW, with_crews_apart
 from herijk.warehouse.archive.meaning import Meaning, meanings
 from herijk.warehouse.archive.sheets import Sheet, read_sheets, split_sheet
 from herijk.warehouse.archive.text import (
@@ -196,10 +196,10 @@ class ListRow:
             if lowest <= thousands <= highest:
                 value = value if self._is_in_ones(key, digits, value) else thousands
         if not lowest <= value <= highest:
-            low, high = (f"{scale.from_si(limit):g}" for limit in (lowest, highest))
+            low, high = (scale.from_si(limit) for limit in (lowest, highest))
             raise self.fault(
                 say(
-                    "column '{column}' is {cell}; {low} to {high} can be right.",
+                    "column '{column}' is {cell}; {low:g} to {high:g} can be right.",
                     column=self.named(key),
                     cell=shorten(cell),
                     low=low,
@@ -515,7 +515,11 @@ def _columns_of(
         raise DefectiveInputError(
             "unknown_column", _strange(_meanings(strange, free, sheet, table)), sheet.line
         )
-    return find_columns(sheet.header, wanted, sheet.line)
+    found = find_columns(sheet.header, wanted, sheet.line)
+    if not sheet.crews:
+        return found
+    of_crews = {key: replace(found[key], header=sheet.crews) for key in CREW if key in found}
+    return found | of_crews
 
 
 def _check_named(sheet: Sheet, known: Collection[int]) -> None:

@@ -23,5 +23,5 @@ def _why(table: type[dy.Schema], row: Row, column: str, rule: str) -> Sentence:
     if rule not in {"min", "max"}:
         return say("column '{column}' is '{cell}', which cannot be right.", **named)
     low, high = limits(table, column)
-    message = "column '{column}' is {cell}; {low} to {high} can be right."
+    message = "column '{column}' is {cell}; {low:g} to {high:g} can be right."
     return say(message, **named, low=low, high=high)

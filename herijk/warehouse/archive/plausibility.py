@@ -7,7 +7,7 @@ exchanged, a wrong unit, another boat's samples) costs the tow. Judging a good t
 agreement of out and back) is measuring method and belongs to `pipeline`.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations
 from pathlib import Path
@@ -184,10 +184,12 @@ def judge_samples(samples: pl.DataFrame, tow: Row, runs: pl.DataFrame) -> Judged
     _check_mix_ups(whole, tow)
     _check_log2_and_gps(whole, tow)
     _check_speed_unit(whole, tow)
+    whole, gone, in_other_units = _without_other_units(whole, tow)
+    faults += in_other_units
     kept: list[_Run] = []
     usual_kg_m = _usual_resistance_kg_m(whole)
     for run in whole:
-        mended, of_run = _judge_run(run, tow, usual_kg_m)
+        mended, of_run = _judge_run(run, tow, usual_kg_m, gone)
         faults += of_run
         kept += [] if mended is None else [mended]
     mended_gps, of_gps = _without_stuck_gps(kept, tow)
@@ -501,6 +503,38 @@ def _check_speed_unit(runs: list[_Run], tow: Row) -> None:
         )
 
 
+def _without_other_units(runs: list[_Run], tow: Row) -> tuple[list[_Run], list[str], list[Fault]]:
+    """A log 2 or GPS in another unit of speed: one fault, and the runs go on without it."""
+    gone = []
+    faults, header = [], 1 - runs[0].first_line
+    for key in SPARE:
+        if key not in runs[0].channels:
+            continue
+        seen, log1 = (
+            float(np.median([_median(run.channels[k]) for run in runs])) for k in (key, "log1")
+        )
+        units = [u for u, ratio in _SPEED_UNITS.items() if 0.9 < seen / (ratio * log1) < 1.1]
+        if not units:
+            continue
+        message = say(
+            "column '{column}' holds {:.3g} in a typical run and log1 {:.3g}, so it looks like "
+            "{unit}; the tow goes on without this column.",
+            seen,
+            log1,
+            column=_WORDS[key],
+            unit=units[0],
+        )
+        seconds = sum(run.seconds for run in runs)
+        lost = _cost("implausible_value", message, runs[0], tow, header, "seconds", seconds)
+        faults.append(replace(lost, run=None))
+        runs = [_without(run, key) for run in runs]
+        gone.append(key)
+    return runs, gone, faults
+
+
+_SPEED_UNITS: Final = {"km/h": 3.6, "kn": 1.9438}
+"""Other units of speed in which people have a log or GPS, times m/s."""
+
 # Samples that are left out
 
 
@@ -510,9 +544,15 @@ def _usual_resistance_kg_m(runs: list[_Run]) -> float:
     return abs(_known(np.nanmedian, np.asarray(each)))
 
 
-def _judge_run(run: _Run, tow: Row, usual_kg_m: float) -> tuple[_Run | None, list[Fault]]:
-    """The run without the samples that cannot be, or None where too much or all of it is wrong."""
+def _judge_run(
+    run: _Run, tow: Row, usual_kg_m: float, gone: Collection[str]
+) -> tuple[_Run | None, list[Fault]]:
+    """The run without the samples that cannot be, or None where too much or all of it is wrong.
+
+    Channels that are `gone` were told before.
+    """
     wrong = _wrong_samples(run, usual_kg_m * run.intended_m_s**2)
+    wrong = {key: mask for key, mask in wrong.items() if key not in gone}
     no_row = np.logical_and.reduce([~np.isfinite(values) for values in run.channels.values()])
     needed = np.logical_or.reduce([mask for key, mask in wrong.items() if key not in SPARE])
     lost: Lost = "run" if needed.sum() > LEFT_OUT_S * run.rate_hz else "seconds"
@@ -765,22 +805,7 @@ def _unlikely_mean(run: _Run, key: str) -> Said | None:
         high,
         column=_WORDS[key],
     )
-    likely = [name for name, ratio in _SPEED_UNITS.items() if 0.9 < mean / (ratio * log1) < 1.1]
-    if key in SPARE and likely:
-        what = say(
-            "the mean of column '{column}' is {:.4g}; {:.3g} to {:.3g} can be right, and it looks "
-            "like {unit}",
-            mean,
-            low,
-            high,
-            column=_WORDS[key],
-            unit=likely[0],
-        )
     return reason_code, what, 0
-
-
-_SPEED_UNITS: Final = {"km/h": 3.6, "kn": 1.9438}
-"""Other units of speed in which people have a log or GPS, times m/s."""
 
 
 def _saturated(run: _Run, key: str) -> Said | None:

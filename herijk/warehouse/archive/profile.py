@@ -136,6 +136,7 @@ class _ProfileTable(_Strict):
     sample_rate_hz: Annotated[int, Field(gt=0, le=100_000)] = 1000
     absent: list[Absent] = []
     reversed: list[Literal["force"]] = []
+    wind_zero_deg: Annotated[float, Field(ge=-360, le=360, strict=False)] = 0.0
     header: Annotated[str, Field(min_length=1)] | None = None
     ignore: list[str] = []
     directions: _Directions | None = None
@@ -219,6 +220,7 @@ class SeasonProfile:
         columns: the columns to look for, with name and default unit of that season.
         sample_rate_hz: samples per second where the tow list does not say.
         absent: what was not on board, or is not to be used: `wind`, `log2`, `gps`.
+        wind_zero_deg: what the vane reads when the wind comes from straight ahead.
         header: the names of the columns of files that have none.
         ignore: names of columns that are known and not used.
     """
@@ -227,6 +229,7 @@ class SeasonProfile:
     columns: tuple[Column, ...] = SAMPLE_COLUMNS
     sample_rate_hz: int = 1000
     absent: tuple[str, ...] = ()
+    wind_zero_deg: float = 0.0
     header: str | None = None
     ignore: tuple[str, ...] = ()
 
@@ -263,6 +266,7 @@ class Profiles:
             columns=self._columns(table),
             sample_rate_hz=table.sample_rate_hz,
             absent=tuple(sorted(table.absent)),
+            wind_zero_deg=table.wind_zero_deg,
             header=table.header,
             ignore=(*self.wording.ignore, *(fold(name) for name in table.ignore)),
         )

@@ -148,7 +148,7 @@ def read_samples(
     else:
         body = _split_header(read_bytes(path, max_bytes), profile)
         raw, line_of = _read_text(body), body.line
-    samples = _to_schema(_with_runs(raw, run), line_of)
+    samples = _to_schema(_with_runs(raw, run), line_of, profile.wind_zero_deg)
     _check_runs(samples["run"], line_of)
     if "time" in raw.columns:
         _check_time(samples["run"], raw["time"].to_numpy(), sample_rate_hz, line_of)
@@ -621,7 +621,7 @@ def _to_si(frame: pl.DataFrame, columns: Mapping[str, FoundColumn]) -> pl.DataFr
     return frame.with_columns(scaled)
 
 
-def _to_schema(raw: pl.DataFrame, line_of: LineOf) -> pl.DataFrame:
+def _to_schema(raw: pl.DataFrame, line_of: LineOf, wind_zero_deg: float) -> pl.DataFrame:
     """Return the frame of `SAMPLE_SCHEMA` from Float64 columns in SI units."""
     if raw["run"].is_nan().any():
         raw = _with_known_runs(raw)
@@ -629,13 +629,14 @@ def _to_schema(raw: pl.DataFrame, line_of: LineOf) -> pl.DataFrame:
     absent = (key for key in OUTPUT_NAMES if key not in raw.columns)
     raw = raw.with_columns(pl.lit(None, pl.Float64).alias(key) for key in absent)
     angle = pl.col("wind_angle")
-    wrapped = pl.when(angle.is_between(-180, 360)).then(angle % 360).otherwise(angle)
+    turned = (angle - wind_zero_deg) % 360
+    wrapped = pl.when(angle.is_between(-180, 360)).then(turned).otherwise(angle)
     samples = raw.with_columns(wrapped).select(
         pl.col(key).cast(SAMPLE_SCHEMA[name]).alias(name) for key, name in OUTPUT_NAMES.items()
     )
     # 359.99999999 rounds to 360 in 32 bits; the promise is [0, 360).
-    turned = pl.when(pl.col("wind_angle_deg") == 360).then(0.0).otherwise(pl.col("wind_angle_deg"))
-    samples = samples.with_columns(turned.cast(pl.Float32()).alias("wind_angle_deg"))
+    below = pl.when(pl.col("wind_angle_deg") == 360).then(0.0).otherwise(pl.col("wind_angle_deg"))
+    samples = samples.with_columns(below.cast(pl.Float32()).alias("wind_angle_deg"))
     # A number such as 1e39 is finite in 64 bits and not in 32.
     floats = pl.selectors.float()
     finite = pl.when(floats.is_infinite()).then(float("nan")).otherwise(floats)

@@ -14,7 +14,13 @@ from herijk.pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.row import Row
 from herijk.warehouse.archive.files import PARTS
-from herijk.warehouse.archive.lists import ListRow, all_of, fold_word
+from herijk.warehouse.archive.lists import (
+    DefectiveRowError,
+    ListRow,
+    all_of,
+    fold_word,
+    others_of,
+)
 from herijk.warehouse.archive.profile import Plan
 from herijk.warehouse.archive.text import Column, shorten
 from herijk.warehouse.archive.words import ALL_RUNS
@@ -77,6 +83,14 @@ _READERS: Final[Mapping[str, Callable[[ListRow, str], Any]]] = {
     "remark": ListRow.optional_text,
 }
 """How the values of a tow are read."""
+_DECISIVE: Final = frozenset({"speed_correction_ratio", "sample_rate_hz"})
+"""Optional, but where one cannot be read another value is sure to be wrong."""
+_DISPENSABLE: Final = frozenset(
+    column.key
+    for column in COLUMNS
+    if not column.required and column.key in _READERS and column.key not in _DECISIVE
+)
+"""Values whose absence makes a tow less sure, and not wrong."""
 _OF_A_RUN: Final = frozenset({"run", "file", "use_runs", "remark"})
 """What may differ between the rows of one tow, in a list with a row for each run."""
 _RUN: Final = re.compile(r"(b?)([1-9][0-9]?)", re.IGNORECASE)
@@ -151,8 +165,13 @@ def _why_not_one(
     return None
 
 
-def read_tow(row: ListRow, season: int, default_rate_hz: int) -> Row:
+def read_tow(
+    row: ListRow, season: int, default_rate_hz: int
+) -> tuple[Row, list[DefectiveInputError]]:
     """Return the values of a tow, without its files; empty dimensions are None.
+
+    Returns:
+        The values; and what is wrong in cells that the tow can do without, which count as empty.
 
     Raises:
         DefectiveInputError: `bad_list_row` with the line.
@@ -162,14 +181,29 @@ def read_tow(row: ListRow, season: int, default_rate_hz: int) -> Row:
     if not _TOW_ID.fullmatch(tow_id):
         message = "'{tow}' cannot be a sleep_id: it is too long, or has a slash."
         raise row.fault(say(message, tow=shorten(tow_id)))
-    readings = {key: partial(reader, row, key) for key, reader in _READERS.items()}
-    values = all_of(readings)
+    readable, lost = _without_bad_cells(row)
+    readings = {key: partial(reader, readable, key) for key, reader in _READERS.items()}
+    try:
+        values = all_of(readings)
+    except DefectiveInputError as error:
+        raise DefectiveRowError([error, *others_of(error), *lost]) from error
     return {
         "tow_id": tow_id,
         "season": season,
         **values,
         "sample_rate_hz": values["sample_rate_hz"] or default_rate_hz,
-    }
+    }, lost
+
+
+def _without_bad_cells(row: ListRow) -> tuple[ListRow, list[DefectiveInputError]]:
+    """Return the row with cells empty that it can do without and that cannot be read; and why."""
+    lost = {}
+    for key in sorted(_DISPENSABLE):
+        try:
+            _READERS[key](row, key)
+        except DefectiveInputError as error:
+            lost[key] = error
+    return replace(row, cells=row.cells | dict.fromkeys(lost, "")), [*lost.values()]
 
 
 def fill_dimensions(tow: Row, boat: Row, row: ListRow, has_wind: bool) -> Row:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 from herijk.pipeline.blocks.run_blocks import RunBlocks
-from herijk.pipeline.recompute.facts import with_boat_types, with_hand_windows
+from herijk.pipeline.recompute.facts import with_boats, with_hand_windows
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.pipeline.uncertainty.ensemble import tow_ensemble
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def method_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     """Run points, curves, log factors, assessments and members of all tows under one method."""
     (method,) = inputs.methods
-    tows = with_boat_types(inputs["tows"], inputs["boats"])
+    tows = with_boats(inputs["tows"], inputs["boats"])
     made = recompute(method, tows, blocks_of(inputs))
     members = tow_ensemble(method.name, made.curves, made.uncertainty_budget, made.factors)
     return {**vars(made), "ensemble": members}

@@ -15,7 +15,7 @@ from typing import Final
 
 import polars as pl
 
-from herijk.pipeline.assessment.plausibility import Plausibility, Shift, plausibility
+from herijk.pipeline.assessment.plausibility import TURNED, Plausibility, Shift, plausibility
 from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.tables.declare import dy
@@ -117,12 +117,24 @@ def _seen(shift: Shift) -> str:
             "boat's own speed",
             1.0 + shift.size,
         )
+    if shift.cause == TURNED:
+        return say(
+            "the wind out and back together comes from {:.0f} degrees; it is the wind of the "
+            "boat's own speed, from straight ahead",
+            shift.size,
+        )
     return "all wind angles lie between -3.14 and 6.28, as angles in radians do"
 
 
 def _way_out(shift: Shift) -> str:
     if not shift.cause:
         return "Look whether these are this boat's samples, and what the load cell was set to."
+    if shift.cause == TURNED:
+        return say(
+            "If the vane is turned, or counts from another 0, declare wind_zero_deg = {:.0f} under "
+            "[[profile]] in archief.toml.",
+            shift.size,
+        )
     causes = [say(*_template(name)) for name in shift.cause.split(" or ")]
     cause = reduce(lambda one, other: say("{} or {}", one, other), causes)
     likely = say("It looks like {}: correct the unit in the header, or the scale.", cause)

@@ -130,10 +130,10 @@ def _type_named(db: duckdb.DuckDBPyConnection, name: str) -> str:
             boat["fsn_no"],
         )
     example = rows(db, "SELECT min(fsn_no) AS fsn_no FROM tows")[0]["fsn_no"]
-    known = ", ".join(f"{row['boat_type']} ({row['n']} boats)" for row in types)
+    known = ", ".join(f"{row['boat_type']} ({row['n']})" for row in types)
     raise MissingKnowledgeError(
-        "there is no boat and no type {!r}; the types are {}; boats are named by FSN "
-        "number or name, for example {}",
+        "there is no boat and no type {!r}; the types, and how many boats: {}; boats are named by "
+        "FSN number or name, for example {}",
         name,
         known,
         example,

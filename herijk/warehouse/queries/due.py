@@ -17,6 +17,10 @@ EXPIRED, THIS_YEAR, LATER, NEVER = "expired", "this_year", "later", "without_cur
 URGENCIES: Final = (EXPIRED, THIS_YEAR, NEVER, LATER)
 
 
+WORTH: Final = 0.9
+"""A set of tows is worth its trouble where it takes a tenth or more off the uncertainty."""
+
+
 @dataclass(frozen=True)
 class DueReport:
     """Who is due under a method.

@@ -14,7 +14,8 @@ BIGGEST = 10
 FIRST_FAULTS = 10
 _FAULTS_BY_REASON = """
 SELECT lost, reason_code, count(*) AS number FROM quarantine GROUP BY lost, reason_code
-ORDER BY list_position(['file', 'tow', 'row', 'run', 'seconds'], lost), number DESC, reason_code
+ORDER BY list_position(['file', 'tow', 'row', 'run', 'cell', 'seconds'], lost), number DESC,
+         reason_code
 """
 _FIRST_FAULTS = """
 WITH causes AS (
@@ -23,7 +24,7 @@ WITH causes AS (
     FROM quarantine GROUP BY lost, reason_code, cause
 )
 SELECT one.path, one.tow_id, one.line, reason_code, one.message, one.message_nl, number FROM causes
-ORDER BY list_position(['file', 'tow', 'row', 'run', 'seconds'], lost), number DESC,
+ORDER BY list_position(['file', 'tow', 'row', 'run', 'cell', 'seconds'], lost), number DESC,
          one.path, one.line
 LIMIT ?
 """

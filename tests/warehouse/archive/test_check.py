@@ -89,6 +89,31 @@ def test_files_that_nobody_reads_are_listed(archive: Archive) -> None:
     }  # fmt: skip
 
 
+def test_a_samples_file_that_no_list_names_says_nothing_of_its_season(archive: Archive) -> None:
+    (archive.root / "meetdata_2014/kladje.csv").write_text("los bestand\n")
+    checked = check_archive(archive.root)
+    assert [cause.reason_code for cause in checked.causes] == ["samples_not_listed"]
+    assert checked.profile is None
+
+
+def test_a_class_that_nobody_knows_is_one_fault_under_the_heading_as_typed(
+    archive: Archive,
+) -> None:
+    header, *rows = (archive.root / TOWS).read_text("utf-8").splitlines()
+    cells = [row.split(";") for row in rows]
+    place = header.split(";").index("roeiers")
+    apart = [[*c[:place], c[place] + c[place + 1], *c[place + 2 :]] for c in cells]
+    apart += [[f"{c[0]}-{i}", *c[1:]] for i in range(2) for c in apart]
+    apart[0][place] = "8X"
+    heading = header.replace("roeiers;klasse", "Ploeg")
+    text = "\n".join([heading, *(";".join(c) for c in apart), ""])
+    (archive.root / TOWS).write_text(text, "utf-8")
+    faults = [fault for fault in archive.scan().faults if fault.reason_code == "bad_list_row"]
+    assert [fault.message for fault in faults] == [
+        "Line 2: column 'Ploeg' is 'X'; H or D is expected."
+    ]
+
+
 def test_extra_runs_are_named_and_a_plan_takes_them(archive: Archive) -> None:
     lines = (archive.root / FIRST).read_text("utf-8").split("\n")
     again = [f"7{line[1:]}" for line in reversed(lines) if line.startswith("1;")]

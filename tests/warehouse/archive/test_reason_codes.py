@@ -138,6 +138,8 @@ TOW_CASES: dict[str, tuple[Spoil, str, str, int | None]] = {
     "wind too strong": (constant(5, "41", line_of(4, 9), line_of(4, 9)), "implausible_value", FIRST, line_of(4, 9)),
     "angle too large": (constant(6, "361", line_of(4, 9), line_of(4, 9)), "implausible_value", FIRST, line_of(4, 9)),
     "gps off": (scaled(3, 1.5, line_of(2), line_of(2, ROWS - 1)), "implausible_value", FIRST, line_of(2)),
+    "gps in knots": (scaled(3, 1.9438), "implausible_value", FIRST, 1),
+    "log2 in km/h": (scaled(2, 3.6), "implausible_value", FIRST, 1),
     "sign of force": (scaled(4, -1), "negative_force", FIRST, line_of(1)),
     "sign of force in a run": (scaled(4, -1, line_of(2), line_of(2, ROWS - 1)), "negative_force", FIRST, line_of(2)),
     "a negative second": (scaled(4, -1, line_of(2, 40), line_of(2, 59)), "negative_force", FIRST, line_of(2, 40)),
@@ -189,6 +191,7 @@ TOW_CASES: dict[str, tuple[Spoil, str, str, int | None]] = {
     "run b1 without second file": (text("1,2,3,4,5,6", "1,2,3,b4"), "bad_list_row", TOWS, 2),
     "run 9": (text("1,2,3,4,5,6", "1,2,9"), "bad_list_row", TOWS, 2),
     "verbouwd": (text("nee", "misschien"), "bad_list_row", TOWS, 2),
+    "temperature": (text(";8,7;", ";n.b.;"), "bad_list_row", TOWS, 2),
     "quote not closed": (text("8,7;6;", '8,7;6;"'), "bad_list_row", TOWS, 2),
     "row too short": (text(";20;\n", "\n"), "bad_list_row", TOWS, 2),
 }  # fmt: skip
@@ -210,8 +213,9 @@ def test_good_archive_has_no_faults(good_scan: Scan) -> None:
     assert set(good_scan.good) == ALL
 
 
-SECONDS, RUN = "seconds", "run"
+SECONDS, RUN, CELL = "seconds", "run", "cell"
 COSTS = {
+    **dict.fromkeys(["length in cm", "verbouwd", "temperature"], CELL),
     **dict.fromkeys(
         [
             *("run missing", "cut in mid-row", "log1 drops out", "sign of force in a run"),
@@ -225,7 +229,7 @@ COSTS = {
             *("run short", "too many fields", "blank line", "letters", "empty gps", "log2 low"),
             *("carriage return in a cell", "overflow in 32 bits", "gps drops out", "gps off"),
             *("force spike", "force pushes", "wind too strong", "angle too large"),
-            *("a negative second", "log2 stuck"),
+            *("a negative second", "log2 stuck", "gps in knots", "log2 in km/h"),
             "gps stuck while the speed changes",
         ],
         SECONDS,
