@@ -101,7 +101,7 @@ def _of_boat(views: Views, report: BoatAudit) -> Iterator[Plot]:
     """Its history under all methods, and its place in its type by the default method."""
     methods, boat = report.methods, report.boat
     own = (pl.col("fsn_no") == boat["fsn_no"]) & pl.col("method").is_in(methods)
-    tow = pl.format("{} {}{}", "tow_id", "rowers", "crew_class")
+    tow = pl.format("{} · {}{}", "tow_date", "rowers", "crew_class")
     yield Plot("history", views.curves().filter(own).with_columns(tow=tow))
     yield Plot("repeats", views.repeat_pairs().filter(own))
     like = views.type_tows().filter(

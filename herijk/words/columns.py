@@ -74,6 +74,7 @@ COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "column.crew_class": ("Klas\u00adse", "Class"),
     "column.tow_id": ("Proef", "Tow"),
     "column.tow_date": ("Datum", "Date"),
+    "column.last_tow": ("Laatste proef", "Last tow"),
     "column.valid_until": ("Geldig tot", "Valid until"),
     "column.status": ("Stand", "Status"),
     "column.season": ("Seizoen", "Season"),

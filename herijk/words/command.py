@@ -234,7 +234,7 @@ COMMAND: Final[dict[str, str]] = {
     ),
     "Day of publication; else today.": "Dag van uitgave; anders vandaag.",
     "Fatigue correction of races: none, known (2 to 3 h only) or extend.": (
-        "Correctie voor vermoeidheid in wedstrijden: none, known (alleen 2 tot 3 uur) of extend."
+        "Uitputtingscorrectie in wedstrijden: none, known (alleen 2 tot 3 uur) of extend."
     ),
     "Method whose curves are asked for the speeds.": (
         "Methode waarvan de krommen de snelheden geven."

@@ -326,7 +326,7 @@ ERRORS: Final[dict[str, str]] = {
     ),
     "The fatigue reference is known from {:g} to {:g} h; {} race times lie outside, the "
     "first is {:.2f} h. Leave these without correction, or extend it.": (
-        "De vermoeidheid is bekend van {:g} tot {:g} uur; {} wedstrijdtijden liggen "
+        "De uitputtingscorrectie is bekend van {:g} tot {:g} uur; {} wedstrijdtijden liggen "
         "daarbuiten, de eerste is {:.2f} uur. Corrigeer die niet, of trek de lijn door."
     ),
     # Methods

@@ -362,6 +362,7 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "Computed from everything behind a line of an edition: if any of that changes, so does "
         "the code.",
     ),
+    "tip.crew_class": ("H: heren, D: dames", "H: men, D: women"),
     "tip.a_kg_m": ("A: Cw bij zeer lage snelheid", "A: Cw at very low speed"),
     "tip.b_m_s": (
         "B: de snelheid waarbij de weerstand oneindig wordt",

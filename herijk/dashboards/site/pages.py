@@ -118,7 +118,7 @@ DUE_COLUMNS = (
     *("name", "fsn_no", "boat_type", "rowers", "crew_class", "empty_thwart", "valid_until"),
     "status",
     *("tow_speed_m_s", "speed_reason", "beyond_curve", "declared_speed_m_s", "power_w"),
-    *("raced_speed_m_s", "lowest_speed_m_s", "highest_speed_m_s", "tow_date", "as_of"),
+    *("raced_speed_m_s", "lowest_speed_m_s", "highest_speed_m_s", "last_tow", "as_of"),
 )
 DUE_CARDS = ("name", "fsn_no", "rowers", "crew_class", "valid_until", "status", "tow_speed_m_s")
 CHOICE_COLUMNS = (
@@ -129,7 +129,7 @@ CHOICE_COLUMNS = (
 
 def _due(views: Views, methods: Sequence[str]) -> Page:
     """Who has to tow again, at what speed, and which boats to tow again."""
-    rows = views.due_list()
+    rows = views.due_list().rename({"tow_date": "last_tow"})
     due = Table("due_list", rows, DUE_COLUMNS, "due_list", ["method"], search=True, cards=DUE_CARDS)
     headline = headlines.due(rows.filter(method=default_method(methods)))
     sections = [Section("due_list", "due_list_note", tables=[due], headline=headline)]
