@@ -279,7 +279,7 @@ class Ground:
         )
         together = pl.concat([blocks[tow] for tow in sound["tow_id"]])
         runs = self.runs.join(together, on=["tow_id", "run"], how="semi")
-        kept, _ = judged_tows(sound, runs, together)
+        kept, _ = judged_tows(sound, stack_blocks(together, runs), together)
         stacked = stack_blocks(together, runs.join(kept, on="tow_id", how="semi"))
         made = recompute(shipped_method(METHOD), kept, stacked, with_bands=False)
         return Result(

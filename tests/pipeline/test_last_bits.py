@@ -47,7 +47,7 @@ def test_the_last_bits_of_the_blocks_stay_the_last_bits_of_the_tables(world):
         for name, values in blocks.sums.items()
         if name != "gps_n"
     }
-    other = replace(blocks, sums=blocks.sums | moved)
+    other = replace(blocks, sums={**blocks.sums, **moved})
     found, again = (everything(tows, b, boats) for b in (blocks, other))
     assert unequal(found, again) == []
     assert any(not found[name].equals(again[name]) for name in found)

@@ -468,17 +468,20 @@ def _of_like_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
 
     Cw at the type's common speed, over its size, against the type's median; less the season's
     median, which holds the error of its log. Medians, so that a tow pulled askew does not move
-    what it is compared with.
+    what it is compared with. As far as the boat is over them in all of its later tows, in which it
+    was steered straight, it is a boat like that.
     """
     boats = _with_boats(curves, tows)
     if "boat_type" not in boats.columns:
         return pl.DataFrame(schema={"tow_id": pl.String(), "pulled_askew": pl.Float64()})
     common_speed = pl.col("declared_speed_m_s").median().over(LIKE)
+    ln, straight = pl.col("ln_excess"), pl.col("season") > _LAST_SEASON["pulled_askew"]
+    later = ln.filter(straight).min().over("fsn_no")
     return (
         boats.drop_nulls(["boat_type", "size"])
         .filter(pl.col("fsn_no").n_unique().over(LIKE) >= FEWEST_LIKE_BOATS)
         .with_columns(ln_excess=(_cw_at(common_speed) / pl.col("size")).log())
-        .with_columns(pl.col("ln_excess") - pl.col("ln_excess").median().over(LIKE))
-        .with_columns(pl.col("ln_excess") - pl.col("ln_excess").median().over("season"))
-        .select("tow_id", pulled_askew=pl.col("ln_excess").exp() - 1)
+        .with_columns(ln - ln.median().over(LIKE))
+        .with_columns(ln - ln.median().over("season"))
+        .select("tow_id", pulled_askew=(ln - later.fill_null(0.0).clip(0.0)).exp() - 1)
     )

@@ -19,6 +19,7 @@ The sums of one block, over its `n` samples, with F the tow force, v a speed sou
 - `gps`, `gps_n`: ground speed, and how many samples have one
 """
 
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
@@ -39,6 +40,28 @@ SUM_NAMES: Final = (
     *("gps", "gps_n"),
 )
 
+PLACE: Final = ("tow_id", "run", "second", "n")
+"""Columns of blocks beside their sums."""
+
+
+class _WhenAsked(Mapping[str, FloatArray]):
+    """Sums that are made when they are first asked for: no method uses half of them."""
+
+    def __init__(self, names: Collection[str], make: Callable[[str], FloatArray]) -> None:
+        self._names, self._make = names, make
+        self._made: dict[str, FloatArray] = {}
+
+    def __getitem__(self, name: str) -> FloatArray:
+        if name not in self._made:
+            self._made[name] = self._make(name)
+        return self._made[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
 
 @dataclass(frozen=True)
 class RunBlocks:
@@ -52,7 +75,7 @@ class RunBlocks:
 
     runs: pl.DataFrame
     n: FloatArray
-    sums: dict[str, FloatArray]
+    sums: Mapping[str, FloatArray]
 
     def __getitem__(self, name: str) -> FloatArray:
         return self.sums[name]
@@ -76,7 +99,7 @@ class RunBlocks:
         return RunBlocks(
             self.runs.filter(pl.Series(rows)),
             self.n[chosen],
-            {name: values[chosen] for name, values in self.sums.items()},
+            _WhenAsked(self.sums.keys(), lambda name: self.sums[name][chosen]),
         )
 
     def total(self, name: str, window: BoolArray) -> FloatArray:
@@ -112,12 +135,18 @@ def _masked_sum(values: FloatArray, window: BoolArray) -> FloatArray:
     return np.asarray(np.where(window, values, 0.0).sum(axis=1), dtype=np.float64)
 
 
-def stack_blocks(blocks: pl.DataFrame, runs: pl.DataFrame) -> RunBlocks:
+def stack_blocks(
+    blocks: pl.DataFrame,
+    runs: pl.DataFrame,
+    sums_of: Callable[[str], pl.Series] | None = None,
+) -> RunBlocks:
     """Arranges blocks of many tows as arrays of one row per run.
 
     Args:
-        blocks: `tow_id`, and the columns that `block_sums` gives.
+        blocks: `tow_id`, and the columns that `block_sums` gives; those of `PLACE` are enough where
+            the others can be asked for.
         runs: one row per run with at least `tow_id` and `run`.
+        sums_of: reads one of the sums, a value per block; None where it is a column of `blocks`.
 
     Raises:
         BrokenPromiseError: a run without blocks.
@@ -136,16 +165,16 @@ def stack_blocks(blocks: pl.DataFrame, runs: pl.DataFrame) -> RunBlocks:
             tow,
             run,
         )
-    if place.null_count():
-        blocks, place = blocks.filter(place.is_not_null()), place.drop_nulls()
-    second = blocks["second"].to_numpy()
+    column = sums_of or blocks.get_column
+    known = place.is_not_null().to_numpy()
+    second = blocks["second"].to_numpy()[known]
     seconds = int(second.max()) + 1 if len(second) else 0
-    cell = place.to_numpy() * seconds + second
+    cell = place.drop_nulls().to_numpy() * seconds + second
 
     def placed(values: pl.Series) -> FloatArray:
         cells = np.zeros(runs.height * seconds)
-        cells[cell] = values.to_numpy()
+        cells[cell] = values.to_numpy()[known]
         return cells.reshape(runs.height, seconds)
 
-    sums = {name: placed(blocks[name]) for name in SUM_NAMES}
+    sums = _WhenAsked(SUM_NAMES, lambda name: placed(column(name)))
     return RunBlocks(runs.drop("row"), placed(blocks["n"]), sums)

@@ -11,12 +11,11 @@ a tow (`effects`) and the search for the unknowns (`posterior`).
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from itertools import combinations
 from typing import Final
 
 import numpy as np
-import scipy
 
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.season_log.assumed import Settings
@@ -25,6 +24,8 @@ LEVEL, BEND, GPS = range(3)
 """The numbers of a tow."""
 
 MOST_CHANGES: Final = 2
+
+FEW_BOATS: Final = 128
 
 LEVEL_SD: Final = 1.0
 """Of ln Cw between boats: so wide that a boat's level is its own."""
@@ -69,7 +70,7 @@ class Patterns:
         """Ln prior of each pattern, given the shares of gaps with an alteration and tows askew."""
         not_found = self.possible - self.found
         ln_prior = self.found @ np.log(shares) + not_found @ np.log1p(-shares)
-        return np.asarray(ln_prior - scipy.special.logsumexp(ln_prior))
+        return ln_prior - _normalised(ln_prior)[0]
 
 
 def patterns_of(
@@ -121,9 +122,8 @@ class Told:
     Attributes:
         ln_density: (boats,) of what was observed, over all patterns.
         weight: (boats, patterns) posterior of each pattern.
-        precision: (boats, patterns, n, n) of the numbers.
-        pull: (boats, patterns, n) precision times residual.
-        mean_precision, mean_pull: the same, averaged over patterns.
+        pull: (boats, patterns, n) precision of the numbers times their residual.
+        mean_precision, mean_pull: that precision and pull, averaged over patterns.
         drift: (boats, n, n) part of the covariance of the numbers that is the boats' drift.
         slope: (boats, n, unknowns) of the numbers by the unknowns.
     """
@@ -131,12 +131,20 @@ class Told:
     patterns: Patterns
     ln_density: FloatArray
     weight: FloatArray
-    precision: FloatArray
     pull: FloatArray
     mean_precision: FloatArray
     mean_pull: FloatArray
     drift: FloatArray
     slope: FloatArray
+
+    def few(self) -> Iterator["Told"]:
+        """The same of a few boats at a time, for what would be too large of all."""
+        arrays = [getattr(self, one.name) for one in fields(self)[1:]]
+        for first in range(0, len(self.weight), FEW_BOATS):
+            some = slice(first, first + FEW_BOATS)
+            patterns = self.patterns
+            of_some = replace(patterns, tow=patterns.tow[some], drift=patterns.drift[some])
+            yield Told(of_some, *(array[some] for array in arrays))
 
     @property
     def information(self) -> FloatArray:
@@ -180,17 +188,8 @@ def tell(
     """
     for group in groups:
         boats, tows = group.tow.shape
-        n, z = 3 * tows, state[group.tow]
-        full = np.einsum("bki,blj,pkl->bpkilj", z[..., 0], z[..., 0], group.level)
-        full += np.einsum("bki,blj,pkl->bpkilj", z[..., 1], z[..., 1], group.bend)
-        drift = drift_variance * group.drift
-        drift = np.einsum("bki,blj,bkl->bkilj", z[..., 0], z[..., 0], drift)
-        full += drift[:, None]
-        each = np.arange(tows)
-        # Indexing twice with one array puts that axis first.
-        full[:, :, each, :, each, :] += covariance[group.tow].swapaxes(0, 1)[:, :, None]
-        full[:, :, each, LEVEL, each, LEVEL] += group.excess_variance * group.askew
-        full = full.reshape(boats, -1, n, n)
+        n = 3 * tows
+        full, drift = covariance_of(group, covariance, state, drift_variance)
         precision = np.linalg.inv(full)
         own = np.repeat(residual[group.tow][:, None], len(group.askew), axis=1)
         own[..., LEVEL] -= group.excess
@@ -198,15 +197,61 @@ def tell(
         pull = np.einsum("bpij,bpj->bpi", precision, own)
         ln_density = -0.5 * ((pull * own).sum(axis=2) + np.linalg.slogdet(full)[1])
         ln_joint = ln_density + group.prior(shares)
-        weight = scipy.special.softmax(ln_joint, axis=1)
+        ln_all, weight = _normalised(ln_joint)
         yield Told(
             group,
-            scipy.special.logsumexp(ln_joint, axis=1),
+            ln_all,
             weight,
-            precision,
             pull,
             np.einsum("bp,bpij->bij", weight, precision),
             np.einsum("bp,bpi->bi", weight, pull),
-            drift.reshape(boats, n, n),
+            drift,
             slope[group.tow].reshape(boats, n, -1),
         )
+
+
+def covariance_of(
+    group: Patterns, covariance: FloatArray, state: FloatArray, drift_variance: float
+) -> tuple[FloatArray, FloatArray]:
+    """Covariance of the numbers of each boat.
+
+    Args:
+        group: the boats.
+        covariance, state, drift_variance: as `tell` takes them.
+
+    Returns:
+        Under each pattern, (boats, patterns, n, n), and the part of it that is drift, (boats, n,
+        n).
+    """
+    boats, tows = group.tow.shape
+    z = state[group.tow].reshape(boats, 3 * tows, 2)
+    by_level, by_bend = (z[:, :, None, i] * z[:, None, :, i] for i in range(2))
+    full = by_level[:, None] * _per_number(group.level)
+    full += by_bend[:, None] * _per_number(group.bend)
+    drift = by_level * _per_number(drift_variance * group.drift)
+    full += drift[:, None]
+    of_pairs = full.reshape(boats, -1, tows, 3, tows, 3)
+    each = np.arange(tows)
+    # Indexing twice with one array puts that axis first.
+    of_pairs[:, :, each, :, each, :] += covariance[group.tow].swapaxes(0, 1)[:, :, None]
+    of_pairs[:, :, each, LEVEL, each, LEVEL] += group.excess_variance * group.askew
+    return full, drift
+
+
+def _per_number(of_tows: FloatArray) -> FloatArray:
+    """What each pair of tows has, (..., tows, tows), for each pair of their numbers."""
+    return np.repeat(np.repeat(of_tows, 3, axis=-1), 3, axis=-2)
+
+
+def _normalised(ln_weight: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Ln of the sum of weights along the last axis, and the weights with a sum of 1.
+
+    What others add to the largest counts in full, as in `scipy.special.logsumexp`, which takes ten
+    times as long on arrays as small as these.
+    """
+    top: FloatArray = ln_weight.max(axis=-1, keepdims=True)
+    weight, largest = np.exp(ln_weight - top), ln_weight == top
+    often = largest.sum(axis=-1)
+    others = np.where(largest, 0.0, weight).sum(axis=-1) / often
+    ln_sum = np.log1p(others) + np.log(often) + top[..., 0]
+    return ln_sum, weight / weight.sum(axis=-1, keepdims=True)

@@ -98,10 +98,12 @@ class Network:
         """Whether a group is tied to the anchor no more without a boat, (boats, groups)."""
         lost = np.zeros((len(self.boat_names), len(self.has_gps)), dtype=bool)
         anchors = self.has_gps | self.calibrated
+        rows = np.stack([self.cluster, self.group, self.boat])
+        cluster_of, group, boat = np.unique(rows, axis=1)  # once each of a boat's groups
         for cluster in range(len(self.boat_names)):
-            others = self.cluster != cluster
-            if len(np.unique(self.group[~others])) > 1:
-                component = _connect(self.group[others], self.boat[others], anchors)[1]
+            others = cluster_of != cluster
+            if len(np.unique(group[~others])) > 1:
+                component = _connect(group[others], boat[others], anchors)[1]
                 lost[cluster] = self.determined & (component != 0)
         return lost
 
@@ -126,17 +128,18 @@ def index_of(tows: pl.DataFrame, columns: tuple[str, ...]) -> IntArray:
 def _connect(group: IntArray, boat: IntArray, by_gps: BoolArray) -> tuple[IntArray, IntArray]:
     """Links and connected component of each group; GPS ties a group to the anchor."""
     groups, boats = len(by_gps), int(boat.max(initial=-1)) + 1
-    edges = np.unique(np.stack([boat, group + 1]), axis=1)  # node 0 is the anchor
+    nodes_of_groups = groups + 1  # node 0 is the anchor
+    edges = np.divmod(np.unique(boat * nodes_of_groups + group + 1), nodes_of_groups)
     degree = np.bincount(edges[0], minlength=boats)
     linking = edges[1][degree[edges[0]] > 1]
-    links = np.bincount(linking, minlength=groups + 1)[1:].astype(np.int64)
+    links = np.bincount(linking, minlength=nodes_of_groups)[1:].astype(np.int64)
     gps_nodes = np.flatnonzero(by_gps) + 1
-    nodes = groups + 1 + boats
+    nodes = nodes_of_groups + boats
     start = np.concatenate([edges[1], np.zeros(len(gps_nodes), np.int64)])
-    end = np.concatenate([edges[0] + groups + 1, gps_nodes])
+    end = np.concatenate([edges[0] + nodes_of_groups, gps_nodes])
     graph = scipy.sparse.coo_array((np.ones(len(start)), (start, end)), shape=(nodes, nodes))
     label = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
-    other, component = np.unique(label[1 : groups + 1], return_inverse=True)
+    other, component = np.unique(label[1:nodes_of_groups], return_inverse=True)
     # The anchor's part is 0, the others follow in the order of their seasons.
     first = [int(np.flatnonzero(component == i)[0]) for i in range(len(other))]
     rank = np.argsort(np.argsort(np.where(other == label[0], -1, first)))

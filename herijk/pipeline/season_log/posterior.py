@@ -9,6 +9,7 @@ or one for another (Bayesian model averaging in Occam's window: Madigan & Rafter
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -27,7 +28,14 @@ from herijk.pipeline.season_log.effects import (
     slopes,
     unknowns_of,
 )
-from herijk.pipeline.season_log.likelihood import GPS, Patterns, Told, patterns_of, tell
+from herijk.pipeline.season_log.likelihood import (
+    GPS,
+    Patterns,
+    Told,
+    covariance_of,
+    patterns_of,
+    tell,
+)
 from herijk.pipeline.season_log.network import Network
 
 MAX_ITERATIONS: Final = 100
@@ -217,6 +225,11 @@ class Fit:
         """Values of the active unknowns, (k,)."""
         return self.state.value
 
+    def precision(self, told: Told) -> FloatArray:
+        """Of the numbers of boats, (boats, patterns, n, n): too large to keep of every fit."""
+        by_state = self.slopes.state, self.state.drift_variance
+        return np.asarray(np.linalg.inv(covariance_of(told.patterns, self.own, *by_state)[0]))
+
     def dof(self, direction: FloatArray) -> FloatArray:
         """Satterthwaite's degrees of freedom of combinations of the active unknowns.
 
@@ -224,17 +237,24 @@ class Fit:
             direction: (combinations, k).
         """
         along = direction @ self.covariance
-        by = np.zeros((len(direction), len(self.state.ln_variance)))
-        for told in self.told:
-            boats, tows = told.patterns.tow.shape
-            moved = told.mean_precision @ told.slope @ along.T
-            by[:, -1] += np.einsum("bic,bij,bjc->c", moved, told.drift, moved, optimize=True)
-            moved = moved.reshape(boats, tows, 3, -1)
-            part = self.parts[:, told.patterns.tow]
-            by[:, :-1] += np.einsum("btic,abtij,btjc->ca", moved, part, moved, optimize=True)
+        by = np.stack([((along @ one) * along).sum(axis=1) for one in self.moved], axis=1)
         variance = (along * direction).sum(axis=1)
         spread = np.einsum("ca,ab,cb->c", by, self.ln_variance_covariance, by)
         return np.asarray(2.0 * variance**2 / np.maximum(spread, 1e-300))
+
+    @cached_property
+    def moved(self) -> FloatArray:
+        """Slope of the covariance of the scores by each ln variance, (variances, k, k)."""
+        k = len(self.active)
+        by_tow = np.zeros((len(self.own), 3, k))
+        by_drift = np.zeros((k, k))
+        for told in self.told:
+            weighed = told.mean_precision @ told.slope
+            by_drift += np.einsum("bik,bil->kl", weighed, told.drift @ weighed, optimize=True)
+            by_tow[told.patterns.tow] = weighed.reshape(*told.patterns.tow.shape, 3, k)
+        rows = by_tow.reshape(-1, k)
+        by_parts = [rows.T @ (part @ by_tow).reshape(-1, k) for part in self.parts]
+        return np.stack([*by_parts, by_drift])
 
 
 def fit(

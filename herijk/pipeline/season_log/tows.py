@@ -15,7 +15,7 @@ from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.season_log.effects import FORCE, OF_BOATS, WAYS, ZERO, ZERO_DRIFT, slopes
 from herijk.pipeline.season_log.likelihood import LEVEL, Told
 from herijk.pipeline.season_log.network import Network
-from herijk.pipeline.season_log.posterior import WINDOW, Posterior, Problem
+from herijk.pipeline.season_log.posterior import WINDOW, Fit, Posterior, Problem
 
 LEVEL_OF_INTERVALS: Final = 0.95
 BISECTIONS: Final = 40
@@ -68,20 +68,20 @@ def instrument_errors(
         pl.Series("force_factor", np.exp(share[:, force] @ posterior.mean[force])),
         pl.Series("force_zero_n", share[:, zero] @ posterior.mean[zero]),
         pl.Series("bend", problem.q),
-        pl.Series("askew_ratio", _askew(posterior.fit.told, len(problem.q))),
+        pl.Series("askew_ratio", _askew(posterior.fit, len(problem.q))),
         pl.Series("ln_sd", np.where(determined, known, problem.settings.log_sd)),
         pl.Series("dof", posterior.fit.dof(level[:, :k])),
         _where(determined, "others_ln_ratio", others),
     )
 
 
-def _askew(told: list[Told], tows: int) -> FloatArray:
+def _askew(fit: Fit, tows: int) -> FloatArray:
     """Root mean square of what being pulled askew added to ln Cw of each tow."""
     square = np.zeros(tows)
-    for t in told:
+    for t in fit.told:
         boats, of_boat = t.patterns.tow.shape
         pull = t.pull.reshape(boats, -1, of_boat, 3)[..., LEVEL]
-        own = np.einsum("bpkk->bpk", t.precision)[..., LEVEL::3]
+        own = np.einsum("bpkk->bpk", fit.precision(t))[..., LEVEL::3]
         variance = t.patterns.excess_variance
         mean = t.patterns.excess + variance * pull
         weight = t.weight[:, :, None] * t.patterns.askew
@@ -116,7 +116,7 @@ def best_estimates(
     away[: len(posterior.fit.value)] -= posterior.fit.value
     numbers = np.zeros((len(problem.q), 4))
     shares = []
-    for told in posterior.fit.told:
+    for told in (few for every in posterior.fit.told for few in every.few()):
         found = _of_boats(told, posterior, (design, true_level, away))
         numbers[told.patterns.tow] = found[0]
         tows = told.patterns.tow.shape[1]
@@ -205,7 +205,7 @@ def _of_boats(
     level = told.patterns.level + drift[:, None]
     with_level = np.einsum("bpkl,bli->bpkli", level, state)
     with_level = with_level.reshape(boats, -1, tows, 3 * tows)
-    gain = with_level @ told.precision
+    gain = with_level @ posterior.fit.precision(told)
     prior = np.einsum("bpkk->bpk", level)
     variance = prior - (gain * with_level).sum(axis=3)
     by = true_level[tow][:, None] - gain @ design[tow].reshape(boats, 1, 3 * tows, -1)

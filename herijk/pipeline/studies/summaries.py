@@ -121,6 +121,10 @@ def check_counts(assessments: pl.DataFrame) -> pl.DataFrame:
     )
 
 
+SUMS: Final = ("log1_v", "gps", "gps_n", "force", "wind_v", "wind_sin", "wind_cos")
+"""The sums that `second_means` takes."""
+
+
 def second_means(blocks: pl.DataFrame) -> pl.DataFrame:
     """Means over every second of every run: what the instruments said.
 

@@ -7,6 +7,7 @@ single lines cannot show. Belongs here: the draws, and the counting. Does not: t
 """
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -21,6 +22,10 @@ if TYPE_CHECKING:
 
 MEMBERS: Final = 200
 SEED: Final = 2009
+FEW_ROWS: Final = 8192
+"""So many errors are added up at a time: those of all tows take as much again as the tables."""
+REMEMBERED: Final = 1 << 14
+"""So many keys' errors are kept for the next method, whose keys are the same: 26 MB."""
 
 
 def register_ensemble(
@@ -51,10 +56,12 @@ def register_ensemble(
     tows = budget["tow_id"].unique().sort()
     place = pl.DataFrame({"tow_id": tows}).with_row_index("place")
     row = budget.select("tow_id").join(place, on="tow_id", maintain_order="left")["place"]
-    ln_error = np.zeros((tows.len(), members))
-    effect = budget["effect_ratio"].to_numpy()[:, None]
     index = budget.select("key").join(keys, on="key", maintain_order="left")["index"]
-    np.add.at(ln_error, row.to_numpy(), effect * errors[index.to_numpy()])
+    of_rows = row.to_numpy(), index.to_numpy(), budget["effect_ratio"].to_numpy()
+    ln_error = np.zeros((tows.len(), members))
+    for first in range(0, budget.height, FEW_ROWS):
+        few_row, few_index, effect = (of_all[first : first + FEW_ROWS] for of_all in of_rows)
+        np.add.at(ln_error, few_row, effect[:, None] * errors[few_index])
     mine = lines.select("tow_id").join(place, on="tow_id", how="left", maintain_order="left")
     cw = lines["cw_kg_m"].to_numpy()
     return np.asarray(cw[None, :] * np.exp(ln_error[mine["place"].to_numpy()].T))
@@ -151,8 +158,9 @@ def _errors(
 ) -> tuple[pl.DataFrame, FloatArray]:
     """Standard normal errors of every key, shape (keys, members), season factors correlated."""
     keys = budget.select("key").unique().sort("key").with_row_index("index")
-    independent = [_stream(seed, key).standard_normal(members) for key in keys["key"]]
-    errors = np.array(independent).reshape(-1, members)
+    errors = np.zeros((keys.height, members))
+    for own, key in zip(errors, keys["key"], strict=True):
+        own[:] = _independent(seed, key, members)
     if estimated is None:
         return keys, errors
     determined = estimated.factors.filter(pl.col("factor").is_not_null()).select(
@@ -160,7 +168,7 @@ def _errors(
     )
     sd = np.sqrt(np.diag(estimated.covariance))
     root = np.linalg.cholesky(estimated.covariance / np.outer(sd, sd))
-    independent = [_stream(seed, key).standard_normal(members) for key in determined["key"]]
+    independent = [_independent(seed, key, members) for key in determined["key"]]
     if independent:
         joint = root @ np.stack(independent)
         used = determined.with_row_index("row").join(keys, on="key")
@@ -168,5 +176,8 @@ def _errors(
     return keys, errors
 
 
-def _stream(seed: int, key: str) -> np.random.Generator:
-    return np.random.default_rng(np.array([seed, *key.encode()], dtype=np.uint32))
+@lru_cache(maxsize=REMEMBERED)
+def _independent(seed: int, key: str, members: int) -> FloatArray:
+    """Standard normal errors of a key, from a stream of its own; not to be written to."""
+    stream = np.random.default_rng(np.array([seed, *key.encode()], dtype=np.uint32))
+    return stream.standard_normal(members)

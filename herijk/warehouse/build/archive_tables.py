@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import polars as pl
 
+from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.recompute.facts import with_boat_types
 from herijk.tables.frames import frame_of
@@ -14,7 +15,7 @@ from herijk.tables.lake import Faults
 from herijk.warehouse.archive.faults import OF_A_HEADER
 from herijk.warehouse.archive.windows import outside_run
 from herijk.warehouse.build.plausible import gross_faults, judge, with_doubts
-from herijk.warehouse.build.same_samples import same_samples
+from herijk.warehouse.build.same_samples import CONTENT, same_samples
 from herijk.words import say
 
 if TYPE_CHECKING:
@@ -43,11 +44,12 @@ def archive_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     """
     index = inputs["season_index"]
     sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
-    present = _present_runs(inputs["blocks"])
+    contents = inputs.blocks("tow_id", "run", "second", *CONTENT)
+    present = _present_runs(contents)
     listed = inputs["season_tows"].join(sound, on="tow_id", how="semi")
     runs_read = inputs["season_runs"].join(present, on=["tow_id", "run"], how="semi")
     tows, contradicted = judged_tows(
-        with_boat_types(listed, inputs["listed_boats"]), runs_read, inputs["blocks"]
+        with_boat_types(listed, inputs["listed_boats"]), inputs.run_blocks(runs_read), contents
     )
     sound, runs = (frame.join(tows, on="tow_id", how="semi") for frame in (sound, runs_read))
     windows = inputs["listed_windows"].join(runs, on=["tow_id", "run"], how="semi")
@@ -95,12 +97,18 @@ def _with_lost_seconds(runs: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame
 
 
 def judged_tows(
-    tows: pl.DataFrame, runs: pl.DataFrame, blocks: pl.DataFrame
+    tows: pl.DataFrame, blocks: RunBlocks, contents: pl.DataFrame
 ) -> tuple[pl.DataFrame, pl.DataFrame]:
-    """The tows with their doubts, and the faults of those that the other tows contradict."""
-    twice = same_samples(tows, blocks)
+    """The tows with their doubts, and the faults of those that the other tows contradict.
+
+    Args:
+        tows: rows of `tows` with `boat_type`.
+        blocks: their runs.
+        contents: what `same_samples` takes of the same blocks.
+    """
+    twice = same_samples(tows, contents)
     once = tows.join(twice, on="tow_id", how="anti")
-    judged = judge(once, runs.join(once, on="tow_id", how="semi"), blocks)
+    judged = judge(once, blocks)
     gross = gross_faults(judged.shifts, once)
     kept = with_doubts(once.join(gross, on="tow_id", how="anti"), judged)
     return kept, pl.concat([twice, gross])

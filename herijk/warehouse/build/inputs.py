@@ -13,6 +13,7 @@ from typing import Any, Final
 import duckdb
 import polars as pl
 
+from herijk.pipeline.blocks.run_blocks import PLACE, RunBlocks, stack_blocks
 from herijk.pipeline.errors import HerijkError
 from herijk.pipeline.method.definition import Method
 from herijk.tables.lake import SEASON_TABLES
@@ -79,6 +80,16 @@ class Inputs:
         if name not in self._read:
             self._read[name] = _kind(name).read(self, name)
         return self._read[name]
+
+    def blocks(self, *columns: str) -> pl.DataFrame:
+        """Some columns of the declared input `blocks`: all are most of what a step holds."""
+        if BLOCKS not in self.names:
+            raise KeyError(f"{BLOCKS} is not a declared input: {', '.join(self.names)}")
+        return intake.all_blocks(self.store, columns)
+
+    def run_blocks(self, runs: pl.DataFrame) -> RunBlocks:
+        """The blocks of runs, their sums read when they are asked for."""
+        return stack_blocks(self.blocks(*PLACE), runs, lambda name: self.blocks(name)[name])
 
     def earlier(self, table: str) -> pl.DataFrame:
         """A table as it was before; from the database where the lake lost it."""

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import polars as pl
 
-from herijk.pipeline.blocks.run_blocks import RunBlocks, stack_blocks
+from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.pipeline.recompute.facts import with_boats, with_hand_windows
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.pipeline.uncertainty.ensemble import tow_ensemble
@@ -26,7 +26,7 @@ def method_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
 def blocks_of(inputs: "Inputs") -> RunBlocks:
     """The runs of all sound tows as arrays, with the windows given by hand."""
     runs = with_hand_windows(inputs["tow_runs"], inputs["hand_windows"])
-    return stack_blocks(inputs["blocks"], runs)
+    return inputs.run_blocks(runs)
 
 
 def tows_without_curve_row(inputs: "Inputs", made: Mapping[str, pl.DataFrame]) -> list[str]:

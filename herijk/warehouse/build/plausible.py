@@ -17,7 +17,7 @@ import polars as pl
 
 from herijk.pipeline.assessment.plausibility import TURNED, Plausibility, Shift, plausibility
 from herijk.pipeline.blocks.batch import Batch
-from herijk.pipeline.blocks.run_blocks import stack_blocks
+from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of
 from herijk.tables.lake import Faults
@@ -46,17 +46,16 @@ _CODES: Final = {
 """Reason code of a tow set aside, and check of one that is doubted."""
 
 
-def judge(tows: pl.DataFrame, runs: pl.DataFrame, blocks: pl.DataFrame) -> Plausibility:
+def judge(tows: pl.DataFrame, blocks: RunBlocks) -> Plausibility:
     """What an archive's tows say of each other.
 
     Args:
         tows: rows of `tows` with `boat_type`.
-        runs: their rows of `tow_runs`.
-        blocks: blocks of at least these.
+        blocks: their runs, and perhaps others.
     """
     if tows.is_empty():
         return Plausibility((), {})
-    return plausibility(Batch.of(tows, stack_blocks(blocks, runs)))
+    return plausibility(Batch.of(tows, blocks))
 
 
 def gross_faults(shifts: Sequence[Shift], tows: pl.DataFrame) -> dy.DataFrame[Faults]:

@@ -24,7 +24,8 @@ from herijk.tables.lake import Faults
 from herijk.warehouse.archive.faults import Fault
 from herijk.words import say
 
-_CONTENT: Final = ("n", "force", "log1_v", "log2_v", "log1_cw", "log1_cw2", "wind_v")
+CONTENT: Final = ("n", "force", "log1_v", "log2_v", "log1_cw", "log1_cw2", "wind_v")
+"""Sums of a run that tell it from others."""
 
 ROUNDING: Final = 2e-4
 """Relative: what rounding to two decimals leaves of a mean over a thousand samples, and more."""
@@ -35,7 +36,7 @@ def same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
 
     Args:
         tows: rows of `tows`.
-        blocks: their blocks, with `tow_id`.
+        blocks: their blocks: `tow_id`, `run` and `CONTENT`.
     """
     if tows.is_empty():
         return Faults.create_empty()
@@ -43,7 +44,7 @@ def same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
     runs = (
         blocks.join(facts, on="tow_id", how="semi")
         .group_by("tow_id", "run", maintain_order=True)
-        .agg(pl.col(_CONTENT).sum())
+        .agg(pl.col(CONTENT).sum())
         .pipe(_with_content)
         .filter(pl.col("content").is_duplicated())
         .join(facts, on="tow_id")
@@ -60,7 +61,7 @@ def same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
 
 def _with_content(runs: pl.DataFrame) -> pl.DataFrame:
     """The runs with `content`, a number that runs which were measured once have in common."""
-    sums = runs.select(_CONTENT).to_numpy()
+    sums = runs.select(CONTENT).to_numpy()
     means = sums[:, 1:] / np.maximum(sums[:, :1], 1.0)
     one, other = _near(means)
     tow = runs["tow_id"].rank("dense").to_numpy().astype(np.int64)

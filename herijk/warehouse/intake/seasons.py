@@ -8,7 +8,7 @@ is `warehouse.intake.lake`.
 import dataclasses
 import os
 import time
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 from stat import S_ISLNK
@@ -16,7 +16,7 @@ from typing import Final
 
 import polars as pl
 
-from herijk.pipeline.blocks.run_blocks import RunBlocks, stack_blocks
+from herijk.pipeline.blocks.run_blocks import SUM_NAMES, RunBlocks, stack_blocks
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.recompute.facts import with_boat_types, with_hand_windows
 from herijk.tables.archive import TraceSeconds
@@ -184,10 +184,11 @@ def collect_blocks(store: Store, season: int) -> pl.DataFrame:
     return season_blocks
 
 
-def all_blocks(store: Store) -> pl.DataFrame:
-    """Blocks of all seasons; those without a sound tow have none."""
-    frames = [store.read("blocks", season) for season in store.partitions("blocks")]
-    nothing = TraceSeconds.create_empty().select("tow_id", "run", "second")
+def all_blocks(store: Store, columns: Sequence[str] | None = None) -> pl.DataFrame:
+    """Blocks of all seasons, or some of their columns; those without a sound tow have none."""
+    frames = [store.read("blocks", season, columns) for season in store.partitions("blocks")]
+    sums = (pl.lit(0.0).alias(name) for name in ("n", *SUM_NAMES))
+    nothing = TraceSeconds.create_empty().select("tow_id", "run", "second", *sums)
     return pl.concat([f for f in frames if f.height] or [nothing])
 
 

@@ -9,7 +9,7 @@ means is in `tables.schemas`; the database that readers use is `warehouse.store.
 
 import hashlib
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -106,9 +106,11 @@ class Store:
         """Writes a table or partition with the fingerprint of what it was made from."""
         write_parquet(frame, self.table_path(table, partition), {FINGERPRINT_KEY: made_from})
 
-    def read(self, table: str, partition: str | None = None) -> pl.DataFrame:
-        """A table or partition as written."""
-        return read_parquet(self.table_path(table, partition))
+    def read(
+        self, table: str, partition: str | None = None, columns: Sequence[str] | None = None
+    ) -> pl.DataFrame:
+        """A table or partition as written, or some of its columns."""
+        return read_parquet(self.table_path(table, partition), columns)
 
     def read_all(self, table: str, partitions: Iterable[str] | None = None) -> pl.DataFrame:
         """Partitions of a table, one below the other: the given ones, or all."""
@@ -157,11 +159,14 @@ _UNREADABLE: Final = (
 )
 
 
-def read_parquet(path: Place, use_threads: bool = True) -> pl.DataFrame:
+def read_parquet(
+    path: Place, columns: Sequence[str] | None = None, use_threads: bool = True
+) -> pl.DataFrame:
     """A frame that was written with `write_parquet`, its checksums verified.
 
     Args:
         path: the file.
+        columns: those to read; None for all.
         use_threads: decode columns side by side; not where files already are.
 
     Raises:
@@ -172,7 +177,7 @@ def read_parquet(path: Place, use_threads: bool = True) -> pl.DataFrame:
         source = path if isinstance(path, Path) else pa.BufferReader(path.read_bytes())
         # Not read_table: it imports Arrow's data sets, and with them pandas if that is there.
         with pq.ParquetFile(source, page_checksum_verification=True) as file:
-            return pl.DataFrame(pl.from_arrow(file.read(use_threads=use_threads)))
+            return pl.DataFrame(pl.from_arrow(file.read(columns, use_threads=use_threads)))
 
 
 def count_rows(path: Place) -> int:
