@@ -142,7 +142,7 @@ def residual_scatter(
 
 UNRECORDED_WATER_C: Final = 4.0
 """Standard deviation of a season's water about the reference where nobody wrote it down: boats are
-towed in February to May. The season log assumes the same (`season_log.assumed`)."""
+towed early in the year. The season log assumes the same (`season_log.assumed`)."""
 
 
 @dataclass(frozen=True)
