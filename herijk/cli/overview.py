@@ -112,7 +112,7 @@ USAGE: Final = (
     "Missing option {}.",
     "Missing argument {}.",
     "Missing command.",
-    "No such option: {} Did you mean {}?",
+    "No such option: {} (Possible options: {})",
     "No such command {}. Did you mean {}?",
     "No such option: {}",
     "No such command {}.",
@@ -130,8 +130,8 @@ def _usage_in_words(error: ClickException) -> str:
         match = re.fullmatch(re.escape(text).replace(r"\{\}", "(.*?)"), said, re.DOTALL)
         if match:
             own = {str(error.message): spoken(error.message, LANGUAGE.get())}
-            parts = (own.get(part, part) for part in match.groups())
-            return tell(text, *(part.replace("env var", tell("env var")) for part in parts))
+            parts = (part.replace("env var", tell("env var")) for part in match.groups())
+            return tell(text, *(own.get(part, part) for part in parts))
     return said
 
 
