@@ -107,13 +107,17 @@ def statuses(rows: pl.DataFrame) -> Headline:
 
 def reproducibility(rows: pl.DataFrame, method: str) -> Headline | None:
     """How well a tow repeats itself, as published and now."""
-    spread = dict(rows.filter(scope="all").select("method", "sd_ratio").drop_nulls().rows())
+    known = rows.filter(scope="all").drop_nulls("sd_ratio")
+    spread = {row["method"]: row for row in known.iter_rows(named=True)}
     if method not in spread:
         return None
-    first = next(iter(spread))
+    first, now = next(iter(spread)), spread[method]
     return lambda speech: speech.say("head_reproducibility").format(
-        now=speech.number(100 * spread[method], 1), method=speech.say(f"method.{method}"),
-        then=speech.number(100 * spread[first], 1), first=speech.say(f"method.{first}"),
+        now=speech.number(100 * now["sd_ratio"], 1), method=speech.say(f"method.{method}"),
+        low=speech.number(100 * now["lo"], 1), high=speech.number(100 * now["hi"], 1),
+        pairs=now["n_pairs"],
+        then=speech.number(100 * spread[first]["sd_ratio"], 1),
+        first=speech.say(f"method.{first}"),
     )  # fmt: skip
 
 
@@ -123,8 +127,14 @@ def log_factors(rows: pl.DataFrame) -> Headline | None:
     if known.is_empty():
         return None
     off = known.sort((pl.col("factor") - 1).abs(), descending=True).row(0, named=True)
-    return lambda speech: speech.say("head_log").format(
-        season=off["season"], by=speech.per_cent(1 / off["factor"])
+    key = "head_log" if off["lo"] is None else "head_log_interval"
+    return lambda speech: speech.say(key).format(
+        season=off["season"],
+        **{
+            name: speech.per_cent(1 / off[bound])
+            for name, bound in {"by": "factor", "low": "hi", "high": "lo"}.items()
+            if off[bound] is not None
+        },
     )
 
 

@@ -217,12 +217,18 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "rejected.",
     ),
     "head_reproducibility": (
-        "De toevallige fout van één proef is {now} % ({method}); die was {then} % ({first}).",
-        "The random error of one tow is {now} % ({method}); it was {then} % ({first}).",
+        "De toevallige fout van één proef is {now} % ({method}; 95 %: {low} tot {high} %, uit "
+        "{pairs} paren); die was {then} % ({first}).",
+        "The random error of one tow is {now} % ({method}; 95 %: {low} to {high} %, from {pairs} "
+        "pairs); it was {then} % ({first}).",
     ),
     "head_log": (
         "De log zat er het verst naast in {season}: {by}.",
         "The log was furthest off in {season}: {by}.",
+    ),
+    "head_log_interval": (
+        "De log zat er het verst naast in {season}: {by} (95 %: {low} tot {high}).",
+        "The log was furthest off in {season}: {by} (95 %: {low} to {high}).",
     ),
     "head_type_equal": (
         "Geen teken dat de krommen van deze {n} proeven in bocht verschillen (p = {p}).",

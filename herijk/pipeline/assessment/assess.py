@@ -371,18 +371,18 @@ def _of_season(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame
 
     An estimated log factor rests on the seasons with dGPS: where all of these are in doubt, so is
     its season. All boats do not change at once: where they seem to, another load cell may have come
-    on board, and that season and all later ones are in doubt.
+    on board, and that season and all later ones are in doubt. Log factors do not rest on that.
     """
-    first_step = diagnosis.filter(instrument=FLEET, verdict=FAULT)["season"].min()
-    after_step = (pl.col("season") >= pl.lit(first_step, pl.Int32)).fill_null(False)
     seasons = diagnosis.group_by("season").agg(season_in_doubt=pl.col("alarm").any())
-    seasons = seasons.with_columns(pl.col("season_in_doubt") | after_step)
     doubted = seasons.filter("season_in_doubt")["season"]
     anchors = {*_by_gps(curves)} & {*seasons["season"]}
     if anchors and anchors <= {*doubted}:
         estimated = diagnosis.filter(verdict="estimated")["season"]
         rests = pl.col("season").is_in(estimated.implode())
         seasons = seasons.with_columns(pl.col("season_in_doubt") | rests)
+    first_step = diagnosis.filter(instrument=FLEET, verdict=FAULT)["season"].min()
+    after_step = (pl.col("season") >= pl.lit(first_step, pl.Int32)).fill_null(False)
+    seasons = seasons.with_columns(pl.col("season_in_doubt") | after_step)
     return tows.join(seasons, on="season").select("tow_id", "season_in_doubt")
 
 
@@ -468,17 +468,20 @@ def _of_like_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
 
     Cw at the type's common speed, over its size, against the type's median; less the season's
     median, which holds the error of its log. Medians, so that a tow pulled askew does not move
-    what it is compared with.
+    what it is compared with. As far as the boat is over them in all of its later tows, in which it
+    was steered straight, it is a boat like that.
     """
     boats = _with_boats(curves, tows)
     if "boat_type" not in boats.columns:
         return pl.DataFrame(schema={"tow_id": pl.String(), "pulled_askew": pl.Float64()})
     common_speed = pl.col("declared_speed_m_s").median().over(LIKE)
+    ln, straight = pl.col("ln_excess"), pl.col("season") > _LAST_SEASON["pulled_askew"]
+    later = ln.filter(straight).min().over("fsn_no")
     return (
         boats.drop_nulls(["boat_type", "size"])
         .filter(pl.col("fsn_no").n_unique().over(LIKE) >= FEWEST_LIKE_BOATS)
         .with_columns(ln_excess=(_cw_at(common_speed) / pl.col("size")).log())
-        .with_columns(pl.col("ln_excess") - pl.col("ln_excess").median().over(LIKE))
-        .with_columns(pl.col("ln_excess") - pl.col("ln_excess").median().over("season"))
-        .select("tow_id", pulled_askew=pl.col("ln_excess").exp() - 1)
+        .with_columns(ln - ln.median().over(LIKE))
+        .with_columns(ln - ln.median().over("season"))
+        .select("tow_id", pulled_askew=(ln - later.fill_null(0.0).clip(0.0)).exp() - 1)
     )

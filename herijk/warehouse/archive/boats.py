@@ -13,8 +13,16 @@ from herijk.tables.lake import ListedBoats
 from herijk.tables.row import Row
 from herijk.warehouse.archive.faults import Fault, fault_from
 from herijk.warehouse.archive.files import BOATS_FILE
-from herijk.warehouse.archive.lists import ListRow, Wording, all_of, others_of, read_list
+from herijk.warehouse.archive.lists import (
+    ListRow,
+    Wording,
+    all_of,
+    fold_word,
+    others_of,
+    read_list,
+)
 from herijk.warehouse.archive.text import Column
+from herijk.warehouse.archive.words import NO_TYPE
 from herijk.words import say
 
 COLUMNS: Final = (
@@ -110,6 +118,11 @@ def _boat(row: ListRow) -> Row:
     return all_of({key: partial(reader, row, key) for key, reader in _READERS.items()})
 
 
+def _optional_type(row: ListRow, key: str) -> str | None:
+    boat_type = row.optional_text(key)
+    return None if boat_type is None or fold_word(boat_type) in NO_TYPE else boat_type
+
+
 def _optional_class(row: ListRow, key: str) -> str | None:
     return row.crew_class(key) if row.optional_text(key) else None
 
@@ -118,7 +131,7 @@ _READERS: Final[Mapping[str, Callable[[ListRow, str], Any]]] = {
     "fsn_no": ListRow.boat,
     "ht_no": ListRow.optional_text,
     "name": ListRow.text,
-    "boat_type": ListRow.optional_text,
+    "boat_type": _optional_type,
     "waterline_length_m": ListRow.optional_number,
     "beam_m": ListRow.optional_number,
     "bow_height_m": ListRow.optional_number,

@@ -123,6 +123,13 @@ NOTHING: Final = frozenset(
 )  # fmt: skip
 """Values that say that there is none."""
 
+NO_TYPE: Final = frozenset(
+    {"overig", "overige", "overigen", "anders", "andere", "divers", "diverse", "diversen",
+     "eenling", "eigen ontwerp", "other", "others", "misc", "miscellaneous", "one-off", "sonstige",
+     "sonstiges", "autre", "autres"}
+)  # fmt: skip
+"""Types of boats that say that a boat is of none: those named so are not alike."""
+
 CLASSES: Final[Mapping[str, str]] = {
     "h": "H", "heren": "H", "heer": "H", "mannen": "H", "man": "H", "men": "H", "herren": "H",
     "männer": "H", "male": "H", "hommes": "H", "homme": "H", "messieurs": "H",

@@ -384,6 +384,15 @@ def test_a_row_of_data_is_no_second_row_of_the_header() -> None:
     assert [row.fields for row in sheet.rows] == [["FSN1", "m", "2,1"]]
 
 
+def test_a_type_that_says_there_is_none_is_none(archive: Archive) -> None:
+    lines = (archive.root / BOATS).read_text("utf-8").splitlines()
+    place = lines[0].split(";").index("type")
+    cells = [line.split(";") for line in lines]
+    cells[1][place], cells[2][place] = "Overig", "Whaler"
+    (archive.root / BOATS).write_text("\n".join(";".join(c) for c in cells), "utf-8")
+    assert archive.scan().index.boats["boat_type"].to_list()[:2] == [None, "Whaler"]
+
+
 def test_a_sheet_that_is_not_there_is_told_with_those_that_are(archive: Archive) -> None:
     lists_in_one_workbook(archive)
     (archive.root / "archief.toml").write_text(
