@@ -371,18 +371,18 @@ def _of_season(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame
 
     An estimated log factor rests on the seasons with dGPS: where all of these are in doubt, so is
     its season. All boats do not change at once: where they seem to, another load cell may have come
-    on board, and that season and all later ones are in doubt.
+    on board, and that season and all later ones are in doubt. Log factors do not rest on that.
     """
-    first_step = diagnosis.filter(instrument=FLEET, verdict=FAULT)["season"].min()
-    after_step = (pl.col("season") >= pl.lit(first_step, pl.Int32)).fill_null(False)
     seasons = diagnosis.group_by("season").agg(season_in_doubt=pl.col("alarm").any())
-    seasons = seasons.with_columns(pl.col("season_in_doubt") | after_step)
     doubted = seasons.filter("season_in_doubt")["season"]
     anchors = {*_by_gps(curves)} & {*seasons["season"]}
     if anchors and anchors <= {*doubted}:
         estimated = diagnosis.filter(verdict="estimated")["season"]
         rests = pl.col("season").is_in(estimated.implode())
         seasons = seasons.with_columns(pl.col("season_in_doubt") | rests)
+    first_step = diagnosis.filter(instrument=FLEET, verdict=FAULT)["season"].min()
+    after_step = (pl.col("season") >= pl.lit(first_step, pl.Int32)).fill_null(False)
+    seasons = seasons.with_columns(pl.col("season_in_doubt") | after_step)
     return tows.join(seasons, on="season").select("tow_id", "season_in_doubt")
 
 
