@@ -16,6 +16,7 @@ INDEX, READ, SITE, CHECK = "index_archive", "read_season", "make_site", "check"
 
 BUILD_JOBS: Final = {
     graph.ARCHIVE: "collect_archive",
+    graph.RECORDINGS: "average_recordings",
     graph.METHOD: "apply_method",
     graph.STUDIES: "study_methods",
     graph.LINES: "draw_lines",

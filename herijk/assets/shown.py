@@ -6,6 +6,8 @@ from typing import Final
 import dagster as dg
 import polars as pl
 
+from herijk.warehouse.build.step import FIRST_ROWS
+
 PAGES: Final[Mapping[str, str]] = {
     "site": "index.html",
     "register": "register.html",
@@ -23,7 +25,6 @@ PAGES: Final[Mapping[str, str]] = {
 }
 """The page of the site that shows a table; these tables are shown in Dagster too."""
 
-ROWS: Final = 20
 COLUMNS: Final = 12
 
 
@@ -35,13 +36,13 @@ def preview(table: str, frame: pl.DataFrame) -> dict[str, dg.MetadataValue]:
         tbl_formatting="MARKDOWN",
         tbl_hide_column_data_types=True,
         tbl_hide_dataframe_shape=True,
-        tbl_rows=ROWS,
+        tbl_rows=FIRST_ROWS,
         tbl_cols=COLUMNS,
         tbl_width_chars=10_000,
         fmt_str_lengths=60,
         float_precision=4,
     ):
-        return {"preview": dg.MetadataValue.md(str(frame.head(ROWS)))}
+        return {"preview": dg.MetadataValue.md(str(frame.head(FIRST_ROWS)))}
 
 
 def with_site(assets: Sequence[dg.AssetsDefinition], address: str) -> Sequence[dg.AssetsDefinition]:

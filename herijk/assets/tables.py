@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from typing import Any
 
 import dagster as dg
-import polars as pl
 
 from herijk.assets.events import Result
 from herijk.assets.partitions import methods
@@ -15,7 +14,7 @@ from herijk.tables.lake import SEASON_TABLES
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.build.graph import STEPS
 from herijk.warehouse.build.inputs import BLOCKS, DECISIONS, PUBLISHED
-from herijk.warehouse.build.step import Made, Step
+from herijk.warehouse.build.step import Glance, Seen, Step
 from herijk.warehouse.intake.seasons import INDEXED
 
 KINDS = {"warehouse_database": "duckdb"}
@@ -50,7 +49,7 @@ def step_asset(step: Step) -> dg.AssetsDefinition:
         asked = {key.to_user_string() for key in context.selected_asset_keys}
         made = step.make(setup.store, chosen, wanted=asked)
         checks = {key.name for key in context.selected_asset_check_keys}
-        for result in results_of(made):
+        for result in results_of(made.seen):
             if isinstance(result, dg.MaterializeResult) or result.check_name in checks:
                 yield result
 
@@ -98,19 +97,18 @@ def _columns(schema: type[dy.Schema]) -> dg.TableSchema:
     )
 
 
-def _metadata(table: str, frame: pl.DataFrame) -> dict[str, Any]:
-    metadata: dict[str, Any] = {"dagster/row_count": frame.height}
-    if "status" in frame.columns:
-        counts = frame["status"].value_counts().sort("status").rows()
-        metadata["statuses"] = dg.MetadataValue.json(dict(counts))
-    return metadata | preview(table, frame)
+def _metadata(table: str, seen: Glance) -> dict[str, Any]:
+    metadata: dict[str, Any] = {"dagster/row_count": seen.rows}
+    if seen.statuses:
+        metadata["statuses"] = dg.MetadataValue.json(seen.statuses)
+    return metadata | preview(table, seen.first)
 
 
-def results_of(made: Made) -> Iterator[Result]:
+def results_of(seen: Seen) -> Iterator[Result]:
     """What a step made, and what does not hold of it."""
-    for table, frame in made.tables.items():
-        yield dg.MaterializeResult(asset_key=table, metadata=_metadata(table, frame))
-    for check, faults in made.faults.items():
+    for table, glance in seen.tables.items():
+        yield dg.MaterializeResult(asset_key=table, metadata=_metadata(table, glance))
+    for check, faults in seen.faults.items():
         yield dg.AssetCheckResult(
             check_name=check.name,
             asset_key=check.table,

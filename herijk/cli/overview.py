@@ -112,6 +112,8 @@ USAGE: Final = (
     "Missing option {}.",
     "Missing argument {}.",
     "Missing command.",
+    "No such option: {} (Possible options: {})",
+    "No such command {}. Did you mean {}?",
     "No such option: {}",
     "No such command {}.",
     "Got unexpected extra argument(s) ({})",
@@ -128,7 +130,8 @@ def _usage_in_words(error: ClickException) -> str:
         match = re.fullmatch(re.escape(text).replace(r"\{\}", "(.*?)"), said, re.DOTALL)
         if match:
             own = {str(error.message): spoken(error.message, LANGUAGE.get())}
-            return tell(text, *(own.get(part, part) for part in match.groups()))
+            parts = (part.replace("env var", tell("env var")) for part in match.groups())
+            return tell(text, *(own.get(part, part) for part in parts))
     return said
 
 

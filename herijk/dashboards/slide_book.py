@@ -341,11 +341,20 @@ class Book:
         held = self.views.table("option_summary").filter(study="tool")["method"].to_list()
         return ([name for name in methods_of(self.held) if name in held] or [""])[-1]
 
-    def _effects(self, of: dict[str, float | None]) -> str:
-        """What ticks and speeds do to Cw, the largest first."""
+    def _effects(self, of: dict[str, float | None], tows: dict[str, int] | None = None) -> str:
+        """What ticks and speeds do to Cw, the largest first.
+
+        Args:
+            of: the ratio that each makes.
+            tows: over how many; told of those over fewer than the others.
+        """
+        most = max(tows.values()) if tows else 0
+        fewer = {o: f" ({self._number(n, 'tow')})" for o, n in (tows or {}).items() if n < most}
         known = {o: e - 1.0 for o, e in of.items() if e is not None and o in (*TICKS, *SPEEDS)}
         largest = sorted(known, key=lambda option: -abs(known[option]))
-        return ", ".join(f"{self.say(f'code.{o}')} {self._signed(known[o])}" for o in largest)
+        return ", ".join(
+            f"{self.say(f'code.{o}')} {self._signed(known[o])}{fewer.get(o, '')}" for o in largest
+        )
 
     def tick_effects(self) -> Iterator[Slide]:
         """What the ticks do to all boats."""
@@ -356,7 +365,10 @@ class Book:
         sentence = self.say("slide.tick_effects_said").format(
             method=self.method(self._ticked()),
             tows=self._number(max(own["tows"].to_list()), "tow"),
-            effects=self._effects(dict(own.select("option", "median_ratio").rows())),
+            effects=self._effects(
+                dict(own.select("option", "median_ratio").rows()),
+                dict(own.select("option", "tows").rows()),
+            ),
         )
         title = self.say("slide.tick_effects")
         yield Slide("ticks fleet", "slide_tick_effects", rows, title, [sentence])

@@ -329,8 +329,8 @@ ARCHIVE: Final[dict[str, str]] = {
     "while log1 changed by {:.2f} m/s": "terwijl log1 {:.2f} m/s veranderde",
     "and so in {}, at another speed": "en net zo in {}, bij een andere snelheid",
     "and so in a run in which log1 changed": "en net zo in een run waarin log1 veranderde",
-    "no column for {} in the header {!r}; name it with --{}": (
-        "geen kolom voor {} in de kop {!r}; noem hem met --{}"
+    "no column for {} in the header {!r}; name it with {}": (
+        "geen kolom voor {} in de kop {!r}; noem hem met {}"
     ),
     "All {} tows of {}": "Alle {} proeven van {}",
     "{} has the very samples of {}; the run is left out.": (

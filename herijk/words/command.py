@@ -30,6 +30,8 @@ COMMAND: Final[dict[str, str]] = {
     "Missing option {}.": "Optie {} ontbreekt.",
     "Missing argument {}.": "Argument {} ontbreekt.",
     "Missing command.": "Noem een opdracht.",
+    "No such option: {} (Possible options: {})": "Er is geen optie {}. Bedoelt u {}?",
+    "No such command {}. Did you mean {}?": "Er is geen opdracht {}. Bedoelt u {}?",
     "No such option: {}": "Er is geen optie {}",
     "No such command {}.": "Er is geen opdracht {}.",
     "Got unexpected extra argument(s) ({})": "Te veel argumenten ({})",

@@ -692,12 +692,14 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         "Wat er in een seizoen mis kan zijn met log, GPS, krachtmeter, windmeter of temperatuur. "
         "Fout: waarschijnlijker wel dan niet. Niet te zeggen: 10 tot 50 %. Alarm: 4 "
         "standaardafwijkingen van wat gewoon is. Zou niet opvallen: een gewone fout zou voor iets "
-        "anders worden aangezien. Grootte: in procenten, of in N. "
-        "Wat niet in de tabel staat, is in orde.",
+        "anders worden aangezien. Grootte: in procenten, of in N; het interval rekent mee hoe "
+        "zelden zo'n fout is, en kan dus 0 tot 0 zijn. Wat niet in de tabel staat: geen fout "
+        "gezien, en een gewone zou opvallen.",
         "What may be wrong in a season with log, GPS, load cell, anemometer or temperature. Fault: "
         "likelier than not. Cannot be told: 10 to 50 %. Alarm: 4 standard deviations from what is "
         "usual. Would not show: a fault of the usual size would be taken for something else. "
-        "Size: in per cent, or in N. What is not in the table is sound.",
+        "Size: in per cent, or in N; the interval counts how seldom such a fault is, so it can be "
+        "0 to 0. What is not in the table: no fault was seen, and a usual one would show.",
     ),
     "eras": ("Wijkt een tijdvak af?", "Does an era differ?"),
     "eras_note": (

@@ -141,9 +141,10 @@ def test_the_language_is_that_asked_for_or_that_of_the_system(arguments, environ
 
 def test_wrong_arguments_are_told_in_dutch(monkeypatch, capsys):
     for arguments, said in (
-        (["rebuild"], "Optie '--archive' (env var: 'HERIJK_ARCHIVE') ontbreekt."),
+        (["rebuild"], "Optie '--archive' (omgevingsvariabele: 'HERIJK_ARCHIVE') ontbreekt."),
         (["due", "--as-of", "gisteren"], "schrijf een dag als 2026-05-08"),
         (["frob"], "Er is geen opdracht 'frob'."),
+        (["rebuildd"], "Er is geen opdracht 'rebuildd'. Bedoelt u 'rebuild'?"),
         (["due", "--frob"], "Er is geen optie --frob"),
     ):
         monkeypatch.setattr("sys.argv", ["herijk", "--lang", "nl", *arguments])

@@ -141,27 +141,25 @@ def run_statistics(blocks: pl.DataFrame) -> pl.DataFrame:
         Rows of the table `run_statistics`, one per tow, run and channel that was recorded.
     """
     key = ["tow_id", "run"]
-    seconds = blocks.select(
-        *key,
-        *(
-            pl.when(pl.col("gps_n" if name == "gps" else "n") > 0)
-            .then(pl.col(column) / pl.col("gps_n" if name == "gps" else "n"))
-            .alias(name)
-            for name, column in CHANNELS.items()
-        ),
-    )
-    long = seconds.unpivot(index=key, variable_name="channel", value_name="value").drop_nulls()
     value = pl.col("value")
-    log1 = pl.col("mean").filter(pl.col("channel") == "log1").first().over(key)
-    is_speed = pl.col("channel").is_in(["log1", "log2", "gps"])
-    return (
-        long.sort(*key, "channel")
-        .group_by(*key, "channel", maintain_order=True)
+    of_channels = [  # one at a time: all of them are several times as large as the blocks
+        blocks.select(*key, n="gps_n" if name == "gps" else "n", value=column)
+        .filter(pl.col("n") > 0)
+        .with_columns(value / pl.col("n"))
+        .group_by(key, maintain_order=True)
         .agg(
+            pl.lit(name).alias("channel"),
             value.mean().alias("mean"),
             value.std().fill_null(0.0).alias("sd"),
             value.median().alias("median"),
         )
+        for name, column in CHANNELS.items()
+    ]
+    log1 = pl.col("mean").filter(pl.col("channel") == "log1").first().over(key)
+    is_speed = pl.col("channel").is_in(["log1", "log2", "gps"])
+    return (
+        pl.concat(of_channels)
+        .sort(*key, "channel")
         .with_columns(
             pl.when(pl.col("mean") > 0).then(pl.col("sd") / pl.col("mean")).alias("sd_ratio"),
             pl.when(pl.col("mean") > 0)

@@ -61,7 +61,9 @@ def _first(names: list[str], key: str, header: str) -> str:
             return name
     raise DefectiveInputError(
         "missing_column",
-        say("no column for {} in the header {!r}; name it with --{}", key, header.strip(), key),
+        say(
+            "no column for {} in the header {!r}; name it with {}", key, header.strip(), f"--{key}"
+        ),
     )
 
 

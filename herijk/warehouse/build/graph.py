@@ -14,6 +14,7 @@ from herijk.warehouse.build.database import (
 )
 from herijk.warehouse.build.inputs import METHOD_TABLES, PUBLISHED
 from herijk.warehouse.build.method_tables import method_tables, tows_without_curve_row
+from herijk.warehouse.build.recordings import recording_tables
 from herijk.warehouse.build.registers import register_tables
 from herijk.warehouse.build.step import Check, Step
 from herijk.warehouse.build.studies import ladders_that_do_not_multiply, study_tables
@@ -40,6 +41,13 @@ ARCHIVE: Final = Step(
     outputs=("boats", "seasons", "tows", "tow_runs", "hand_windows", "quarantine"),
     compute=archive_tables,
     checks=(Check("every_listed_tow_accounted_for", "tows", unaccounted_tows),),
+)
+RECORDINGS: Final = Step(
+    name="recordings",
+    says="averaging what the instruments said",
+    inputs=("blocks",),
+    outputs=("trace_seconds", "run_statistics"),
+    compute=recording_tables,
 )
 METHOD: Final = Step(
     name="method",
@@ -105,7 +113,7 @@ SUMMARIES: Final = Step(
     name="summaries",
     says="summing up",
     inputs=(
-        *("tows", "blocks", "curves", "run_points", "assessments", "listed_races"),
+        *("tows", "curves", "run_points", "assessments", "listed_races"),
         *("register_history", "register_changes", "correction_steps", "option_effects"),
         *("repeat_pairs", "printed_registers"),
     ),
@@ -116,11 +124,9 @@ SUMMARIES: Final = Step(
         "option_summary",
         "quality_counts",
         "check_counts",
-        "trace_seconds",
         "promise",
         "print_reproduction",
         "print_summary",
-        "run_statistics",
     ),
     compute=summary_tables,
 )
@@ -134,5 +140,8 @@ DATABASE: Final = Step(
     is_whole=is_whole,
 )
 
-STEPS: Final = (ARCHIVE, METHOD, STUDIES, LINES, CONSISTENCY, REGISTERS, SUMMARIES, DATABASE)
+STEPS: Final = (
+    *(ARCHIVE, RECORDINGS, METHOD, STUDIES, LINES),
+    *(CONSISTENCY, REGISTERS, SUMMARIES, DATABASE),
+)
 """Every step comes after those whose tables it reads."""

@@ -23,6 +23,9 @@ from herijk.warehouse.store.store import Store, fingerprint
 
 QUARANTINE: Final = "quarantine"
 
+FIRST_ROWS: Final = 20
+"""Rows of a table that Dagster's page shows."""
+
 
 @dataclass(frozen=True)
 class Check:
@@ -119,14 +122,14 @@ class Step:
         made_from = self.made_from(store, methods)
         inputs = Inputs(store, self.inputs, methods, today or dt.date.today())
         try:
-            made = self.compute(inputs)
+            made = dict(self.compute(inputs))
         except NothingSoundError as error:
             store.write(QUARANTINE, conform(QUARANTINE, error.tables[QUARANTINE]), "")
             database_without_tows(store, error.tables)
             raise
         partition = self._partition(methods)
         tables = {
-            name: conform(name, made[name]) if name in TABLES else made[name]
+            name: conform(name, made.pop(name)) if name in TABLES else made.pop(name)
             for name in self.outputs
             if wanted is None or name in wanted
         }
@@ -153,4 +156,46 @@ class Made:
     """
 
     tables: Mapping[str, pl.DataFrame]
+    faults: Mapping[Check, Sequence[str]]
+
+    @property
+    def seen(self) -> "Seen":
+        """What is told of it."""
+        glances = {name: Glance.of(frame) for name, frame in self.tables.items()}
+        return Seen(glances, self.faults)
+
+
+@dataclass(frozen=True)
+class Glance:
+    """What is told of a table; whole, those of all methods would fill the memory.
+
+    Attributes:
+        rows: how many it has.
+        statuses: how many of them have each status, where they have one.
+        first: the first of them.
+    """
+
+    rows: int
+    statuses: Mapping[str, int]
+    first: pl.DataFrame
+
+    @classmethod
+    def of(cls, frame: pl.DataFrame) -> "Glance":
+        """A glance at a table."""
+        known = "status" in frame.columns
+        statuses = frame["status"].value_counts().sort("status").rows() if known else ()
+        first = pl.all().gather(range(min(FIRST_ROWS, frame.height)))  # a slice would keep all
+        return cls(frame.height, dict(statuses), frame.select(first))
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What is told of what a step made: a helping process hands this over.
+
+    Attributes:
+        tables: the outputs, by name.
+        faults: what does not hold of them, by check.
+    """
+
+    tables: Mapping[str, Glance]
     faults: Mapping[Check, Sequence[str]]

@@ -1,4 +1,4 @@
-"""Tables that sum up other tables: per season, per code, per second, and races replayed.
+"""Tables that sum up other tables: per season, per code, and races replayed.
 
 What a page or command says of many tows together is in a table too. The sums are
 `pipeline.studies.summaries`, `pipeline.studies.claims` and `pipeline.register.replay`.
@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Final
 
 import polars as pl
 
-from herijk.pipeline.blocks.run_blocks import PLACE
 from herijk.pipeline.register.replay import RaceRules, race_changes, replay
 from herijk.pipeline.studies import claims, summaries
 from herijk.tables.register import RaceChanges
@@ -25,7 +24,6 @@ def summary_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     The first method is the one that others are compared with.
     """
     curves = inputs["curves"]
-    blocks = inputs.blocks(*PLACE, *summaries.SUMS, *claims.CHANNELS.values())
     printed = claims.print_reproduction(inputs["printed_registers"], curves, inputs["tows"])
     return {
         "race_changes": _race_changes(inputs),
@@ -34,11 +32,9 @@ def summary_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
         "option_summary": summaries.option_summary(inputs["option_effects"]),
         "quality_counts": summaries.quality_counts(curves, inputs["run_points"]),
         "check_counts": summaries.check_counts(inputs["assessments"]),
-        "trace_seconds": summaries.second_means(blocks),
         "promise": claims.promise(curves, inputs["repeat_pairs"]),
         "print_reproduction": printed,
         "print_summary": claims.print_summary(printed),
-        "run_statistics": claims.run_statistics(blocks),
     }
 
 
