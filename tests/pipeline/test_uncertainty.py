@@ -5,6 +5,7 @@ import polars as pl
 import pytest
 from scipy import stats
 
+from herijk.pipeline.season_log.assumed import Settings
 from herijk.pipeline.uncertainty.propagation import (
     COMPONENTS,
     Assumed,
@@ -151,6 +152,12 @@ def test_a_recorded_temperature_is_the_tows_own():
     kind = pl.col("component") == "temperature"
     assert known.filter(kind)["shared"].to_list() == ["single"]
     assert unknown.filter(kind)["shared"].to_list() == ["season"]
+
+
+def test_where_logs_are_estimated_unrecorded_water_is_as_uncertain_as_in_the_log_factors():
+    held = budget(tows(), Assumed().beside_repeats(0.01, 0.003))
+    formula = Assumed().temperature_formula_ratio
+    assert u_of(held, "temperature") == pytest.approx(np.hypot(Settings().water_sd, formula))
 
 
 def test_interval_takes_few_degrees_of_freedom_into_account():

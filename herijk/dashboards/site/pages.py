@@ -145,6 +145,9 @@ def _due(views: Views, methods: Sequence[str]) -> Page:
     return Page("due.html", "due", sections, selects=[methods_select(methods)])
 
 
+PART = pl.col("part") + 1
+"""Parts of a season as people count them."""
+
 LINK_COLUMNS = (
     *("method", "season", "part", "log", "source", "n_tows", "n_links", "factor", "lo", "hi"),
     *("influence", "influence_boat", "factor_no_boats", "agreement"),
@@ -173,14 +176,13 @@ def _corrections(views: Views, methods: list[str]) -> Page:
             Section("log_factors", "log_factors_note", [chart], [table], headline=headline)
         )
     if views.has("season_links"):
-        links = Table(
-            "season_links", views.table("season_links"), LINK_COLUMNS, "season_links", ["method"]
-        )
+        rows = views.table("season_links").with_columns(PART)
+        links = Table("season_links", rows, LINK_COLUMNS, "season_links", ["method"])
         sections.append(Section("season_links", "season_links_note", tables=[links]))
     if views.has("season_steps"):
         steps = Table(
-            "season_steps", views.season_steps(), STEP_COLUMNS, "season_steps", ["method"],
-            exact=False,
+            "season_steps", views.season_steps().with_columns(PART), STEP_COLUMNS, "season_steps",
+            ["method"], exact=False,
         )  # fmt: skip
         sections.append(Section("season_steps", "season_steps_note", tables=[steps]))
     if views.has("correction_steps"):
@@ -407,7 +409,7 @@ def _season_diagnosis(views: Views) -> Iterator[Section]:
     doubted = views.season_diagnosis().filter(~pl.col("verdict").is_in(SOUND_VERDICTS))
     # What else it could be: the kinds, without their seasons.
     rows = doubted.with_columns(
-        pl.col("confused_with").str.replace_all(r" \d+", "").str.replace_all(", ", ",")
+        PART, pl.col("confused_with").str.replace_all(r" \d+", "").str.replace_all(", ", ",")
     )
     table = Table(
         "season_diagnosis", rows, DIAGNOSIS_COLUMNS, "season_diagnosis", ["method"], exact=False

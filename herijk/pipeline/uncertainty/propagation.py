@@ -140,6 +140,11 @@ def residual_scatter(
 # The budget of a tow
 
 
+UNRECORDED_WATER_C: Final = 4.0
+"""Standard deviation of a season's water about the reference where nobody wrote it down: boats are
+towed early in the year. The season log assumes the same (`season_log.assumed`)."""
+
+
 @dataclass(frozen=True)
 class Assumed:
     """Standard uncertainties that the archive itself cannot show (docs/method.md, 9).
@@ -154,7 +159,8 @@ class Assumed:
             as fast as the boat, from ahead out and from behind back, makes it 1.
         anemometer_ratio: wind speed by an anemometer that is taken as it reads.
         mass_ratio: crew and gear, on Cw.
-        temperature_known_c, temperature_unknown_c: water temperature with and without a record.
+        temperature_known_c, temperature_unknown_c: water temperature with and without a record,
+            this one where a method does not estimate the logs.
         temperature_ratio_per_c: change of Cw with water temperature.
         temperature_formula_ratio: wetted surface and friction formula.
         straightness_ratio: tows that are pulled slightly askew.
@@ -201,6 +207,7 @@ class Assumed:
             stream_drift_speed_ratio=0.0,
             mass_ratio=self.mass_standard_ratio,
             temperature_known_c=0.0,
+            temperature_unknown_c=UNRECORDED_WATER_C,
             straightness_ratio=0.0,
         )
 

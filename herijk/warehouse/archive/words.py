@@ -23,7 +23,8 @@ HEADERS: Final[Mapping[str, tuple[str, ...]]] = {
                            "length at waterline", "length waterline", "longueur",
                            "longueur flottaison", "longueur à la flottaison",
                            "ligne de flottaison"),
-    "beam_m": ("breed", "beam", "breadth", "width", "breite", "largeur"),
+    "beam_m": ("breed", "beam", "breadth", "width", "breite", "largeur",
+               "grootste breedte"),
     "bow_height_m": ("hoogte boeg", "boeghoogte", "height", "bow height", "höhe", "bughöhe",
                      "hauteur", "hauteur d'étrave", "hauteur étrave"),
     "weight_kg": ("gewicht voor", "gewicht sloep", "sloepgewicht", "gewicht leeg", "leeggewicht",
@@ -35,7 +36,7 @@ HEADERS: Final[Mapping[str, tuple[str, ...]]] = {
                "number of rowers", "no of rowers", "rameurs", "nombre de rameurs"),
     "crew_class": ("class", "crew class", "categorie", "category", "kategorie", "geslacht",
                    "gender", "sex", "geschlecht", "h/d", "m/v", "m/w", "catégorie", "classe",
-                   "sexe"),
+                   "sexe", "heren/dames"),
     "tow_id": ("sleep", "sleepnummer", "sleepnr", "sleep nummer", "proef", "proefnummer",
                "proefnr", "id", "tow", "tow id", "tow number", "test number", "test no", "test id",
                "schleppnummer", "versuch", "versuchsnummer", "proef nr", "test nr", "n essai",
@@ -53,14 +54,15 @@ HEADERS: Final[Mapping[str, tuple[str, ...]]] = {
                            "declared speed", "rowing speed", "rudergeschwindigkeit",
                            "streefsnelheid", "doelsnelheid", "target speed", "design speed",
                            "sollgeschwindigkeit", "vitesse déclarée", "vitesse", "vitesse cible",
-                           "vitesse d'aviron"),
+                           "vitesse d'aviron", "speed"),
     "weight_after_kg": ("gewicht na afloop", "gewicht achteraf", "weight after", "poids après"),
     "crew_weight_kg": ("gewicht bemanning", "bemanningsgewicht", "gewicht ploeg", "ploeggewicht",
                        "crew weight", "crew mass", "mannschaftsgewicht", "poids équipage",
                        "poids de l'équipage"),
     "water_temperature_c": ("temperatuur", "temperatuur water", "temp", "water temp", "watertemp",
                             "water temperature", "temperature", "wassertemperatur", "temp water",
-                            "température", "température eau", "température de l'eau"),
+                            "température", "température eau", "température de l'eau",
+                            "t water"),
     "speed_correction_ratio": ("snelheidscorrectie", "correction", "speed correction",
                                "korrektur"),
     "use_runs": ("runs", "gebruikte runs", "te gebruiken runs", "runs gebruikt", "geldige runs",
@@ -119,7 +121,7 @@ HEADERS: Final[Mapping[str, tuple[str, ...]]] = {
 NOTHING: Final = frozenset(
     {"-", "--", "---", "n.v.t.", "nvt", "n.v.t", "n/a", "na", "n.a.", "onbekend", "unknown",
      "unbekannt", "geen", "none", "?", "...", "niet gemeten", "entfällt", "inconnu", "néant",
-     "pas mesuré"}
+     "pas mesuré", "n.b.", "nb"}
 )  # fmt: skip
 """Values that say that there is none."""
 

@@ -33,12 +33,12 @@ MOST_CAUSES: Final = 5
 HEADS: Final = {
     "nl": (
         ("oorzaak", "regels", "mediaan", "laagst", "hoogst"),
-        ("sloep", "naam", "ploeg", "Cw oud", "Cw nieuw", "vermogen", "in twee uur"),
+        ("sloep", "naam", "ploeg", "Cw oud [kg/m]", "Cw nieuw [kg/m]", "vermogen", "in twee uur"),
         "oorzaken",
     ),
     "en": (
         ("cause", "lines", "median", "lowest", "highest"),
-        ("boat", "name", "crew", "Cw old", "Cw new", "power", "in two hours"),
+        ("boat", "name", "crew", "Cw old [kg/m]", "Cw new [kg/m]", "power", "in two hours"),
         "causes",
     ),
 }

@@ -191,7 +191,7 @@ TOW_CASES: dict[str, tuple[Spoil, str, str, int | None]] = {
     "run b1 without second file": (text("1,2,3,4,5,6", "1,2,3,b4"), "bad_list_row", TOWS, 2),
     "run 9": (text("1,2,3,4,5,6", "1,2,9"), "bad_list_row", TOWS, 2),
     "verbouwd": (text("nee", "misschien"), "bad_list_row", TOWS, 2),
-    "temperature": (text(";8,7;", ";n.b.;"), "bad_list_row", TOWS, 2),
+    "temperature": (text(";8,7;", ";koud;"), "bad_list_row", TOWS, 2),
     "quote not closed": (text("8,7;6;", '8,7;6;"'), "bad_list_row", TOWS, 2),
     "row too short": (text(";20;\n", "\n"), "bad_list_row", TOWS, 2),
 }  # fmt: skip
