@@ -52,6 +52,10 @@ class Curve:
             raise HerijkError("A and B must be positive numbers")
         return cls(a_kg_m, 0.0 if b_m_s is None else float(hyperbola.s_of_b(b_m_s)))
 
+    def __repr__(self) -> str:
+        """The curve by the numbers that people know."""
+        return f"Curve(a_kg_m={self.a_kg_m}, b_m_s={self.b_m_s})"
+
     @property
     def b_m_s(self) -> float | None:
         """B, the speed at which the hyperbola goes to infinity; None for a flat curve."""
@@ -100,6 +104,10 @@ class Fit:
     curve: Curve
     points: hyperbola.Points
     _fitted: hyperbola.Curves
+
+    def __repr__(self) -> str:
+        """The curve, B with its interval, and how many points."""
+        return f"Fit(curve={self.curve}, b={self.b}, points={self.points.speed_m_s.size})"
 
     @property
     def b(self) -> Estimate:

@@ -18,6 +18,10 @@ class DataFolder:
         self._database = self._store.database
         self.tables  # noqa: B018 - says at once when there is no database
 
+    def __repr__(self) -> str:
+        """Which folder it is."""
+        return f"DataFolder({str(self._store.root)!r})"
+
     @property
     def tables(self) -> dict[str, str]:
         """The tables by name, each with what a row of it is."""

@@ -35,6 +35,10 @@ def test_a_real_drag_without_a_bend_has_no_b():
     assert found.cw(0.8).lo < found.cw(0.8).value < found.cw(0.8).hi
 
 
+def test_a_curve_shows_the_numbers_that_people_know():
+    assert repr(herijk.Curve.of(21.0, 4.0)) == "Curve(a_kg_m=21.0, b_m_s=4.0)"
+
+
 def test_power_and_speed_are_inverse():
     curve = herijk.Curve.of(21.0, 4.4)
     assert curve.speed_m_s(curve.power_w(3.1)) == pytest.approx(3.1)

@@ -17,11 +17,10 @@ from herijk.warehouse.archive.lists import (
     ListRow,
     Wording,
     all_of,
-    fold_word,
     others_of,
     read_list,
 )
-from herijk.warehouse.archive.text import Column
+from herijk.warehouse.archive.text import Column, fold_word
 from herijk.warehouse.archive.words import NO_TYPE
 from herijk.words import say
 

@@ -7,7 +7,7 @@ from typing import Final
 
 from herijk.warehouse.archive.meaning import FITS
 from herijk.warehouse.archive.sheets import Sheet
-from herijk.warehouse.archive.text import Column, find_columns
+from herijk.warehouse.archive.text import Column, find_columns, fold_word
 from herijk.warehouse.archive.words import CLASSES
 
 CREW: Final = ("rowers", "crew_class")
@@ -60,7 +60,7 @@ def _crews(sheet: Sheet, place: int) -> bool:
 
 def _is_crew(cell: str) -> bool:
     match = _CREW.fullmatch(cell)
-    return match is not None and match[2].casefold() in CLASSES
+    return match is not None and fold_word(match[2]) in CLASSES
 
 
 def _filled(fields: Sequence[str], rowers: int, crew_class: int) -> list[str]:

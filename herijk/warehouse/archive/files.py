@@ -17,7 +17,7 @@ from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.faults import DefectiveFileError
 from herijk.warehouse.archive.limits import check_rows
 from herijk.warehouse.archive.sheets import split_sheet
-from herijk.warehouse.archive.text import fold_name
+from herijk.warehouse.archive.text import fold_word
 from herijk.words import say
 
 BOATS_FILE: Final = "sloepregister/sloependata.csv"
@@ -260,7 +260,7 @@ def can_hold_data(path: Path) -> bool:
 
 def match_key(name: str) -> str:
     """Return the name of a samples file for comparing: folded, without suffix."""
-    folded = fold_name(name)
+    folded = fold_word(name)
     return folded.removesuffix(sample_suffix(folded)).strip()
 
 

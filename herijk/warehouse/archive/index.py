@@ -59,7 +59,7 @@ from herijk.warehouse.archive.lists import ListRow, all_of, others_of, read_list
 from herijk.warehouse.archive.misfits import misfits
 from herijk.warehouse.archive.profile import Plan, Profiles, read_profiles
 from herijk.warehouse.archive.recognise import guessed, recognised
-from herijk.warehouse.archive.text import fold, fold_name, shorten
+from herijk.warehouse.archive.text import fold, fold_word, shorten
 from herijk.words import say
 
 _FilesByName = dict[tuple[int, str], list["SamplesFile"]]
@@ -493,7 +493,7 @@ def _by_name(sample_files: Iterable[ArchiveFile], entries: Iterable[_Entry]) -> 
         by_name[key].append(SamplesFile((file,)))
         run = as_one_run(file.full_path.name)
         if run is not None and key not in named:
-            tow = run[0] or fold_name(file.full_path.parent.name)
+            tow = run[0] or fold_word(file.full_path.parent.name)
             by_run[file.season, tow].setdefault(run[1], []).append(file)
     for key, runs in by_run.items():
         if key not in by_name and all(len(files) == 1 for files in runs.values()):
@@ -505,7 +505,7 @@ def _candidates(name: str, season: int, by_name: _FilesByName) -> list[SamplesFi
     """Return the files a name in a list can mean; a name with its extension is more precise."""
     key = match_key(name)
     alike = by_name.get((season, key)) or by_name.get((0, key), [])
-    exact = [file for file in alike if fold_name(file.parts[0].full_path.name) == fold_name(name)]
+    exact = [file for file in alike if fold_word(file.parts[0].full_path.name) == fold_word(name)]
     return exact if len(exact) == 1 else alike
 
 

@@ -23,6 +23,7 @@ from herijk.warehouse.archive.text import (
     FoundColumn,
     find_columns,
     fold,
+    fold_word,
     parse_number,
     shorten,
     unknown_headers,
@@ -71,11 +72,6 @@ def ungrouped(cell: str) -> str:
     if match is None or not (match["more"] or match["decimals"] or match["mark"] in _GAPS):
         return cell
     return cell.replace(match["mark"], "")
-
-
-def fold_word(text: str) -> str:
-    """Return a value for comparing: without case, outer blanks and ways to write an accent."""
-    return " ".join(unicodedata.normalize("NFC", text).casefold().split())
 
 
 @dataclass(frozen=True)

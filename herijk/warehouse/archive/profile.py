@@ -25,8 +25,8 @@ from herijk.pipeline.channels import (
 from herijk.pipeline.errors import DefectiveInputError, MissingKnowledgeError
 from herijk.pipeline.toml_text import decoded, parse_toml, problem_in_words
 from herijk.warehouse.archive.files import PROFILE_FILE, STANDS_FOR, path_inside
-from herijk.warehouse.archive.lists import Wording, fold_word
-from herijk.warehouse.archive.text import Column, fold, split_header
+from herijk.warehouse.archive.lists import Wording
+from herijk.warehouse.archive.text import Column, fold, fold_word, split_header
 from herijk.warehouse.archive.units import UNITS, find_scale
 from herijk.words import Sentence, say
 

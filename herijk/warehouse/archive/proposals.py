@@ -15,9 +15,9 @@ from tomlkit.items import InlineTable, Table
 
 from herijk.warehouse.archive.faults import Fault
 from herijk.warehouse.archive.files import PARTS
-from herijk.warehouse.archive.lists import Wording, fold_word
+from herijk.warehouse.archive.lists import Wording
 from herijk.warehouse.archive.profile import MAY_BE_ABSENT, SAMPLE_COLUMNS, STANDARD
-from herijk.warehouse.archive.text import Column, fold, nearest_column, split_header
+from herijk.warehouse.archive.text import Column, fold, fold_word, nearest_column, split_header
 from herijk.warehouse.archive.units import find_scale
 from herijk.words import Sentence, innermost
 

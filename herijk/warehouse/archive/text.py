@@ -163,8 +163,8 @@ def _folded(names: tuple[str, ...]) -> frozenset[str]:
     return frozenset(fold(name) for name in names)
 
 
-def fold_name(text: str) -> str:
-    """Return a file name for comparing: as `fold`, but blanks inside count, once."""
+def fold_word(text: str) -> str:
+    """Return a value or a file name for comparing: without case; blanks inside count once."""
     return " ".join(unicodedata.normalize("NFC", text).casefold().split())
 
 

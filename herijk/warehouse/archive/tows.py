@@ -18,11 +18,10 @@ from herijk.warehouse.archive.lists import (
     DefectiveRowError,
     ListRow,
     all_of,
-    fold_word,
     others_of,
 )
 from herijk.warehouse.archive.profile import Plan
-from herijk.warehouse.archive.text import Column, shorten
+from herijk.warehouse.archive.text import Column, fold_word, shorten
 from herijk.warehouse.archive.words import ALL_RUNS
 from herijk.words import say
 

@@ -34,7 +34,7 @@ MEANINGS: Final = str(
 
 def warehouse_database(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     """All tables in one DuckDB file, and each as Parquet; both swapped in whole."""
-    tables = {name: ordered(name, inputs[name]) for name in inputs.names if name in TABLES}
+    tables = {name: ordered(name, inputs.take(name)) for name in inputs.names if name in TABLES}
     tables["about"] = _about(inputs.store)
     tables["contents"] = _contents(tables)
     build_database(inputs.store.database, tables)

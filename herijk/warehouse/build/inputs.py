@@ -81,6 +81,12 @@ class Inputs:
             self._read[name] = _kind(name).read(self, name)
         return self._read[name]
 
+    def take(self, name: str) -> pl.DataFrame:
+        """A declared input that is asked for once, and not kept."""
+        frame = self[name]
+        del self._read[name]
+        return frame
+
     def blocks(self, *columns: str) -> pl.DataFrame:
         """Some columns of the declared input `blocks`: all are most of what a step holds."""
         if BLOCKS not in self.names:
