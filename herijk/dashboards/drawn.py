@@ -1,6 +1,9 @@
 """Charts drawn without a browser, with the font of the pages: the same on every machine."""
 
 import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any, Final
 
 import altair as alt
@@ -17,7 +20,25 @@ LOCALES: Final = {
 }
 """How numbers on axes are written."""
 
-vl_convert.register_font_directory(str(fonts.FOLDER))
+FONTS_OF_MACHINE: Final = "FONTCONFIG_FILE"
+"""The variable that says where fontconfig learns which fonts there are; browsers use it, too."""
+
+
+@contextmanager
+def _only_our_fonts() -> Iterator[None]:
+    """Hides the machine's fonts: one may be named like ours, and each is opened per chart."""
+    before = os.environ.get(FONTS_OF_MACHINE)
+    os.environ[FONTS_OF_MACHINE] = str(fonts.SETTINGS)
+    try:
+        yield
+    finally:
+        del os.environ[FONTS_OF_MACHINE]
+        if before is not None:
+            os.environ[FONTS_OF_MACHINE] = before
+
+
+with _only_our_fonts():
+    vl_convert.register_font_directory(str(fonts.FOLDER))
 
 
 def svg(spec: dict[str, Any], language: str) -> str:

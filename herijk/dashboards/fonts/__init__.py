@@ -11,6 +11,8 @@ from typing import Final
 
 FAMILY: Final = "Open Sans"
 FOLDER: Final = Path(__file__).parent
+SETTINGS: Final = FOLDER / "fonts.conf"
+"""Tells fontconfig of this folder only."""
 WEIGHTS: Final = {"Regular": 400, "Bold": 700}
 
 _FACE: Final = (
