@@ -216,7 +216,7 @@ def test_a_turned_vane_is_gross_in_a_tow_and_in_a_season_and_a_dead_anemometer_i
         assert (first.kind, first.tows, first.is_gross) == (kind, tuple(sorted(tows)), True)
         assert abs(first.size - 180.0) < 20.0
     dead = wind_changed(world, season[4:5], wind_x=0.0, wind_y=0.0, wind_v=0.0, back=True)
-    assert [(s.cause, s.is_gross) for s in dead if s.quantity == "wind"] == [("", False)]
+    assert [(s.causes, s.is_gross) for s in dead if s.quantity == "wind"] == [((), False)]
 
 
 def test_an_archive_is_simulated_as_long_as_it_says_so(archive):

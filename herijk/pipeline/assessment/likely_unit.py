@@ -7,26 +7,35 @@ import numpy as np
 TOLERANCE: Final = 0.12
 """How far a logarithm may lie from that of an exchange, when it is known exactly."""
 
-_EXCHANGES: Final = {
+Cause = tuple[str, ...]
+"""A text, and what goes between its braces."""
+
+
+def instead_of(unit: str, meant: str) -> Cause:
+    """A number in one unit that is read as in another."""
+    return "{} instead of {}", unit, meant
+
+
+_EXCHANGES: Final[dict[str, dict[Cause, float]]] = {
     "force": {
-        "kgf instead of N": 9.80665,
-        "daN instead of N": 10.0,
-        "lbf instead of N": 4.4482216,
-        "kN instead of N": 1e3,
-        "a gain of two": 2.0,
+        instead_of("kgf", "N"): 9.80665,
+        instead_of("daN", "N"): 10.0,
+        instead_of("lbf", "N"): 4.4482216,
+        instead_of("kN", "N"): 1e3,
+        ("a gain of two",): 2.0,
     },
     "wind": {
-        "km/h instead of m/s": 3.6,
-        "knots instead of m/s": 1.9438445,
-        "mph instead of m/s": 2.2369363,
-        "ft/s instead of m/s": 3.2808399,
+        instead_of("km/h", "m/s"): 3.6,
+        instead_of("knots", "m/s"): 1.9438445,
+        instead_of("mph", "m/s"): 2.2369363,
+        instead_of("ft/s", "m/s"): 3.2808399,
     },
 }
 """Size of an exchange, whichever way round. kgf and daN differ by 2 % and are named together."""
 
 
-def likely_cause(quantity: str, ln_size: float, sd: float) -> str:
-    """The exchange that gives a shift; several where they cannot be told apart, else empty.
+def likely_causes(quantity: str, ln_size: float, sd: float) -> tuple[Cause, ...]:
+    """The exchanges that give a shift, likeliest first; several where they cannot be told apart.
 
     Args:
         quantity: `force` or `wind`; nothing is known of others.
@@ -34,6 +43,6 @@ def likely_cause(quantity: str, ln_size: float, sd: float) -> str:
         sd: its standard deviation.
     """
     known = _EXCHANGES.get(quantity, {})
-    far = {name: abs(abs(ln_size) - np.log(ratio)) for name, ratio in known.items()}
-    near = sorted((d, name) for name, d in far.items() if d <= TOLERANCE + 2.0 * sd)
-    return " or ".join(name for d, name in near if d <= near[0][0] + TOLERANCE)
+    far = {cause: abs(abs(ln_size) - np.log(ratio)) for cause, ratio in known.items()}
+    near = sorted((d, cause) for cause, d in far.items() if d <= TOLERANCE + 2.0 * sd)
+    return tuple(cause for d, cause in near if d <= near[0][0] + TOLERANCE)

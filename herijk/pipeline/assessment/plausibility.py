@@ -20,7 +20,7 @@ import polars as pl
 import scipy
 
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
-from herijk.pipeline.assessment.likely_unit import likely_cause
+from herijk.pipeline.assessment.likely_unit import Cause, instead_of, likely_causes
 from herijk.pipeline.assessment.mean_shift import (
     Candidates,
     Effects,
@@ -94,7 +94,7 @@ class Shift:
             others.
         sd: its standard deviation; 0 where the samples themselves leave no doubt.
         tows: the tows in it, sorted.
-        cause: what would do this; empty where nothing known does.
+        causes: what would do this, likeliest first; empty where nothing known does.
         clear: chance is ruled out; else the tow is only unusual.
     """
 
@@ -104,7 +104,7 @@ class Shift:
     size: float
     sd: float
     tows: tuple[str, ...]
-    cause: str
+    causes: tuple[Cause, ...]
     clear: bool = True
 
     @property
@@ -113,9 +113,9 @@ class Shift:
         if not self.clear:
             return False
         if self.quantity == "vane":
-            return self.cause != ""
+            return bool(self.causes)
         if self.quantity == "wind":
-            return self.cause != "" and abs(np.log1p(self.size)) > GROSS
+            return bool(self.causes) and abs(np.log1p(self.size)) > GROSS
         return self.quantity == "force" and abs(self.size) > GROSS
 
 
@@ -153,8 +153,8 @@ def plausibility(batch: Batch) -> Plausibility:
     return Plausibility(shifts, force_seen_from)
 
 
-_RADIANS: Final = "radians instead of degrees"
-TURNED: Final = "a vane that is turned"
+_RADIANS: Final = (instead_of("radians", "degrees"),)
+TURNED: Final = (("a vane that is turned",),)
 _TURNED_DEG: Final = {"season": 45.0, "tow": 90.0}
 """Where the wind out and back together comes from at least, for the vane to be turned (inferred):
 in a single tow the true wind may change by as much as the boat's speed, in a season not."""
@@ -382,10 +382,10 @@ def _named(
         if quantity == "force":
             size = _of_whole_force(size, air_share[places])
         ids = tuple(tows["tow_id"].gather(np.sort(places)))
-        cause = likely_cause(quantity, _ln_ratio(quantity, size), one.sd)
+        causes = likely_causes(quantity, _ln_ratio(quantity, size), one.sd)
         if quantity == "wind" and stands_still[places].any():
-            cause = ""  # an anemometer that died on the way is in no other unit
-        shifts.append(Shift(kind, key, quantity, size, one.sd, ids, cause, one.clear))
+            causes = ()  # an anemometer that died on the way is in no other unit
+        shifts.append(Shift(kind, key, quantity, size, one.sd, ids, causes, one.clear))
     return shifts
 
 

@@ -117,7 +117,7 @@ def _seen(shift: Shift) -> str:
             "boat's own speed",
             1.0 + shift.size,
         )
-    if shift.cause == TURNED:
+    if shift.causes == TURNED:
         return say(
             "the wind out and back together comes from {:.0f} degrees; it is the wind of the "
             "boat's own speed, from straight ahead",
@@ -127,23 +127,17 @@ def _seen(shift: Shift) -> str:
 
 
 def _way_out(shift: Shift) -> str:
-    if not shift.cause:
+    if not shift.causes:
         return "Look whether these are this boat's samples, and what the load cell was set to."
-    if shift.cause == TURNED:
+    if shift.causes == TURNED:
         return say(
             "If the vane is turned, or counts from another 0, declare wind_zero_deg = {:.0f} under "
             "[[profile]] in archief.toml.",
             shift.size,
         )
-    causes = [say(*_template(name)) for name in shift.cause.split(" or ")]
+    causes = [say(text, *values) for text, *values in shift.causes]
     cause = reduce(lambda one, other: say("{} or {}", one, other), causes)
     likely = say("It looks like {}: correct the unit in the header, or the scale.", cause)
     if (shift.kind, shift.quantity) != ("tow", "force"):
         return likely
     return say("{} Or are weight and length in its row of the list not this boat's?", likely)
-
-
-def _template(cause: str) -> tuple[str, ...]:
-    """A cause as what `say` takes: `kgf instead of N` by its two units."""
-    units = cause.split(" instead of ")
-    return ("{} instead of {}", *units) if len(units) > 1 else (cause,)

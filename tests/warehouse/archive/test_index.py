@@ -100,6 +100,15 @@ def test_a_crew_in_one_cell_is_rowers_and_class(archive: Archive, header: str) -
     assert scan.faults == []
 
 
+def test_the_profile_says_what_the_vane_reads_for_wind_from_ahead(archive: Archive) -> None:
+    as_read = archive.scan().good["2014-001"]["wind_angle_deg"]
+    (archive.root / "archief.toml").write_text(
+        '[[profile]]\nseasons = "2014"\nwind_zero_deg = 90\n'
+    )
+    turned = archive.scan().good["2014-001"]["wind_angle_deg"]
+    assert ((as_read - turned) % 360 - 90).abs().max() < 1e-3
+
+
 def test_the_profile_sets_rate_and_directions(archive: Archive) -> None:
     (archive.root / "archief.toml").write_text(
         'simulated = true\n[[profile]]\nseasons = "2014"\nsample_rate_hz = 20\n'
