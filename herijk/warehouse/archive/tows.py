@@ -82,8 +82,8 @@ _READERS: Final[Mapping[str, Callable[[ListRow, str], Any]]] = {
     "remark": ListRow.optional_text,
 }
 """How the values of a tow are read."""
-_DECISIVE: Final = frozenset({"speed_correction_ratio", "sample_rate_hz"})
-"""Optional, but where one cannot be read another value is sure to be wrong."""
+_DECISIVE: Final = frozenset({"speed_correction_ratio", "sample_rate_hz", "altered"})
+"""Optional, but where one cannot be read an empty cell would say something else: no alteration."""
 _DISPENSABLE: Final = frozenset(
     column.key
     for column in COLUMNS

@@ -215,7 +215,7 @@ def test_good_archive_has_no_faults(good_scan: Scan) -> None:
 
 SECONDS, RUN, CELL = "seconds", "run", "cell"
 COSTS = {
-    **dict.fromkeys(["length in cm", "verbouwd", "temperature"], CELL),
+    **dict.fromkeys(["length in cm", "temperature"], CELL),
     **dict.fromkeys(
         [
             *("run missing", "cut in mid-row", "log1 drops out", "sign of force in a run"),
