@@ -15,7 +15,7 @@ import polars as pl
 import scipy
 
 from herijk.pipeline.assessment.checks import CHECKS, CODES, DOUBTS, UNUSUAL
-from herijk.pipeline.assessment.days import days_apart
+from herijk.pipeline.assessment.days import CHANCE, days_apart
 from herijk.pipeline.assessment.freeboard import by_freeboard
 from herijk.pipeline.assessment.mean_shift import MOSTLY, NORMAL_MAD
 from herijk.pipeline.assessment.season_levels import season_levels
@@ -235,7 +235,7 @@ def _of_logs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
     """How the log's factor changes with speed, by the GPS of all its season.
 
     Per tow the slope of ln(GPS / log) by ln speed, among runs one way, in which the stream is the
-    same; per season the mean, or 0 where chance makes as much of it in one of 1000 seasons.
+    same; per season the mean, or 0 where chance makes as much of it in a share `CHANCE` of seasons.
     """
     ways = ["tow_id", pl.col("run") > SECOND_FILE_OFFSET, "direction"]
     x, y = (pl.col(name).log() for name in ("speed_m_s", "gps_ratio"))
@@ -257,8 +257,8 @@ def _of_logs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
 
 
 def _chance(tows: pl.Series) -> pl.Series:
-    """Standard errors that the mean of so many tows exceeds in one of 1000 cases (Student)."""
-    return pl.Series(scipy.special.stdtrit(tows.to_numpy() - 1.0, 0.9995))
+    """Standard errors that the mean of so many tows exceeds in a share `CHANCE` (Student)."""
+    return pl.Series(scipy.special.stdtrit(tows.to_numpy() - 1.0, 1.0 - CHANCE / 2.0))
 
 
 def _of_doubts(tows: pl.DataFrame) -> pl.DataFrame:

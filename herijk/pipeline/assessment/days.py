@@ -16,7 +16,7 @@ from herijk.tables.keys import LINE
 PRIOR_DOF: Final = 10
 """Degrees of freedom that other seasons count for (inferred)."""
 CHANCE: Final = 0.001
-"""Share of seasons whose days differ so much by chance."""
+"""Share of sound seasons in which chance alone shows as much."""
 
 
 def days_apart(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:

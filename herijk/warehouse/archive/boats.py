@@ -13,13 +13,7 @@ from herijk.tables.lake import ListedBoats
 from herijk.tables.row import Row
 from herijk.warehouse.archive.faults import Fault, fault_from
 from herijk.warehouse.archive.files import BOATS_FILE
-from herijk.warehouse.archive.lists import (
-    ListRow,
-    Wording,
-    all_of,
-    others_of,
-    read_list,
-)
+from herijk.warehouse.archive.lists import ListRow, Wording, all_of, others_of, read_list
 from herijk.warehouse.archive.text import Column, fold_word
 from herijk.warehouse.archive.words import NO_TYPE
 from herijk.words import say

@@ -14,12 +14,7 @@ from herijk.pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.row import Row
 from herijk.warehouse.archive.files import PARTS
-from herijk.warehouse.archive.lists import (
-    DefectiveRowError,
-    ListRow,
-    all_of,
-    others_of,
-)
+from herijk.warehouse.archive.lists import DefectiveRowError, ListRow, all_of, others_of
 from herijk.warehouse.archive.profile import Plan
 from herijk.warehouse.archive.text import Column, fold_word, shorten
 from herijk.warehouse.archive.words import ALL_RUNS
