@@ -78,9 +78,7 @@ def _shown(page: Page, chart: Chart) -> pl.DataFrame:
     for column, names in chart.follows.items():
         wanted = [page.chosen[name] for name in ([names] if isinstance(names, str) else names)]
         values = rows[column].unique()
-        shown = [v is None or is_chosen(v, *wanted) for v in values.to_list()]
-        rows = rows.join(
-            values.filter(shown).to_frame(), on=column, how="semi",
-            nulls_equal=True, maintain_order="left",
-        )  # fmt: skip
+        is_shown = [v is None or is_chosen(v, *wanted) for v in values.to_list()]
+        shown = values.filter(pl.Series(is_shown, dtype=pl.Boolean)).to_frame()
+        rows = rows.join(shown, on=column, how="semi", nulls_equal=True, maintain_order="left")
     return rows
