@@ -3,6 +3,7 @@
 import base64
 import hashlib
 import json
+import math
 import re
 import zlib
 from concurrent.futures import ThreadPoolExecutor
@@ -15,6 +16,7 @@ from herijk.dashboards.html import as_json
 from herijk.dashboards.site import build_site
 from herijk.dashboards.site.boats import boat_pages
 from herijk.dashboards.site.cells import CODES, KEPT
+from herijk.dashboards.site.columns import DRAWN, json_by, json_of
 from herijk.dashboards.site.downloads import SHEETS
 from herijk.dashboards.site.pages import MENU, method_names, shared_pages
 from herijk.dashboards.site.parts import (
@@ -25,7 +27,6 @@ from herijk.dashboards.site.parts import (
     type_path,
 )
 from herijk.dashboards.site.races import _winner
-from herijk.dashboards.site.render import DRAWN
 from herijk.dashboards.site.slides import slides_page
 from herijk.dashboards.speech import Speech
 from herijk.warehouse.queries.answers import answers, line_changes, newest_edition
@@ -212,7 +213,7 @@ def test_a_log_s_factors_are_shown_as_often_as_the_table_has_them(site, store):
     assert "andere log" in (site / "corrections.html").read_text("utf-8")
 
 
-def test_a_column_and_a_code_on_a_page_have_a_text(store):
+def test_a_column_and_a_code_on_a_page_have_a_text(store, site):
     with Views(store) as views:
         methods = method_names(views)
         pages_made = [
@@ -221,14 +222,15 @@ def test_a_column_and_a_code_on_a_page_have_a_text(store):
             slides_page(views, methods),
         ]
     tables = [t for page in pages_made for s in page.sections for t in s.tables]
-    drawn = [
-        frame
-        for page in pages_made
-        for name, frames in page.data.items()
+    drawn = {
+        column
+        for file in site.glob("data/**/*.js")
+        for name, frames in held(file)["charts"].items()
         if name != "said"  # sentences above charts
         for frame in frames
-    ]
-    columns = {c for found in (*tables, *drawn) for c in found.columns}
+        for column in frame
+    }
+    columns = drawn.union(*(table.columns for table in tables))
     assert {c for c in columns if f"column.{c}" not in WORDS} <= {"page"}  # a link, not shown
     codes = {
         code
@@ -287,37 +289,56 @@ def test_a_curve_s_line_goes_through_its_declared_point(store):
     assert (both["cw_kg_m"] / both["cw_kg_m_declared"] - 1.0).abs().max() < 1e-12
 
 
-def warehouse_numbers(store, digits):
-    """Every number of every table, by so many digits, as pages and charts have it."""
+def warehouse_numbers(store):
+    """Every column of numbers of every table."""
     with Views(store) as views:
         frames = [views.table(name) for name in views.row_counts()]
         frames.append(views.run_points())  # angles from ahead
         frames.append(line_changes(views))  # of `pipeline.register.changes`, as `diff` has it
-    numbers = set()
-    for frame in frames:
-        for column in frame.iter_columns():
-            if column.dtype.is_float():
-                numbers |= {f"{value:.{digits}g}" for value in column.drop_nulls()}
-    return numbers
+    columns = [column for frame in frames for column in frame.iter_columns()]
+    return pl.concat([c.drop_nulls().rename("") for c in columns if c.dtype == pl.Float64]).unique()
 
 
 def test_every_number_in_a_table_of_a_page_stands_in_the_warehouse(store, site):
-    known = warehouse_numbers(store, KEPT)
+    known = {f"{value:.{KEPT}g}" for value in warehouse_numbers(store)}
     shown = {v for text in texts_of(site) for v in re.findall(r"<td data-v=([^>]+)>", text)}
     assert len(shown) > 1000
     assert shown - known == set()
 
 
 def test_every_number_in_a_chart_stands_in_the_warehouse(store, site):
-    known = warehouse_numbers(store, DRAWN)
+    known = set(warehouse_numbers(store).round_sig_figs(DRAWN))
     shown = set()
     for file in sorted(site.glob("data/**/*.js")):
         for name, frames in held(file)["charts"].items():
             columns = [v for f in frames for v in f.values() if name != "traces"]
             for values in columns:
-                shown |= {f"{v:.{DRAWN}g}" for v in values if isinstance(v, float)}
+                shown |= {v for v in values if isinstance(v, float)}
     assert len(shown) > 1000
     assert shown - known == set()
+
+
+def test_rows_of_many_pages_are_written_as_those_of_one():
+    frame = pl.DataFrame(
+        {
+            "fsn_no": ["b", "a", "b"],
+            "cw_kg_m": [27.123456, math.nan, None],
+            "method": [["rebased"], [], ["as-published", "rebased"]],
+            "name": ['"</script>\n', "Tréwes", "\u2028"],
+            "used": [True, None, False],
+        }
+    )
+    texts = json_by(frame, "fsn_no")
+    assert list(texts) == ["b", "a"]
+    for fsn_no, text in texts.items():
+        assert text == json_of(frame.filter(fsn_no=fsn_no).drop("fsn_no"))
+    assert json.loads(texts["b"]) == {
+        "cw_kg_m": [27.123, None],
+        "method": [["rebased"], ["as-published", "rebased"]],
+        "name": ['"</script>\n', "\u2028"],
+        "used": [True, False],
+    }
+    assert json.loads(texts["a"])["cw_kg_m"] == [None]
 
 
 def test_traces_are_those_of_the_warehouse_to_the_digits_of_a_chart(store, site, attacked):

@@ -3,12 +3,13 @@
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Final, NamedTuple
 
 import polars as pl
 
 from herijk.dashboards.answer import Answer
 from herijk.dashboards.figures.slides import METHODS
+from herijk.dashboards.site.columns import json_by, json_of
 from herijk.dashboards.site.parts import (
     Chart,
     Page,
@@ -39,24 +40,91 @@ EXTRA = {
 method they are of, the selectors say."""
 
 
+AT_ONCE: Final = 64
+"""So many boats' rows are formatted in one go: each go costs time, and each boat memory."""
+
+
 def boat_pages(views: Views, methods: Sequence[str]) -> Iterator[Page]:
     """The page of every boat that the archive lists."""
     frames = _frames(views)
     editions = frames["register"]["edition"].unique().sort().to_list()
     crews = _answers(views, newest_edition(editions, draft_of(methods)), frames)
     frames |= {name: once_for_methods(frames[name]) for name in ALIKE if name in frames}
-    by_boat = {name: _parts(frame, ["fsn_no"], name in KEEP) for name, frame in frames.items()}
-    for fsn_no in frames["boats"]["fsn_no"]:
-        key = (fsn_no,)
-        own = {name: by_boat[name].get(key, frame.head(0)) for name, frame in frames.items()}
-        yield _page(fsn_no, own, methods, crews.get(fsn_no, ()))
+    for boats in frames["boats"].iter_slices(AT_ONCE):
+        those = boats[["fsn_no"]]
+        some = _Boats(
+            {
+                n: f.join(those, on="fsn_no", how="semi", maintain_order="left")
+                for n, f in frames.items()
+            }
+        )
+        for fsn_no in boats["fsn_no"]:
+            yield _page(fsn_no, some, methods, crews.get(fsn_no, ()))
+
+
+class _Boats:
+    """Everything that the pages of some boats show, split by boat."""
+
+    def __init__(self, frames: dict[str, pl.DataFrame]) -> None:
+        drawn = {part for parts in DRAWN.values() for part in parts}
+        self._json = {name: json_by(frames[name], "fsn_no") for name in drawn}
+        self._none = {name: json_of(frames[name].drop("fsn_no").clear()) for name in drawn}
+        self._listed = {
+            name: frame.sort("fsn_no", maintain_order=True)
+            for name, frame in frames.items()
+            if name not in drawn
+        }
+        self._places = {name: _places(frame["fsn_no"]) for name, frame in self._listed.items()}
+
+    def json(self, fsn_no: str) -> dict[str, str]:
+        """What the charts of a boat draw."""
+        return {
+            name: ",".join(self._json[part].get(fsn_no, self._none[part]) for part in parts)
+            for name, parts in DRAWN.items()
+        }
+
+    def tables(self, fsn_no: str) -> "dict[str, _Own]":
+        """The rows of a boat, by what they are about."""
+        return {
+            name: _Own(frame, *self._places[name].get(fsn_no, (0, 0)))
+            for name, frame in self._listed.items()
+        }
+
+
+class _Own(NamedTuple):
+    """Rows of a boat within those of several."""
+
+    whole: pl.DataFrame
+    start: int
+    number: int
+
+    @property
+    def rows(self) -> pl.DataFrame:
+        """The boat's rows."""
+        return self.whole.slice(self.start, self.number)
+
+    def table(
+        self,
+        name: str,
+        columns: Sequence[str],
+        caption: str,
+        follows: Sequence[str] = (),
+        exact: bool = True,
+    ) -> Table:
+        """The table of these rows."""
+        within = self.whole, self.start
+        return Table(name, self.rows, columns, caption, follows, exact=exact, within=within)
+
+
+def _places(keys: pl.Series) -> dict[str, tuple[int, int]]:
+    """Where the rows of each key begin, and how many they are; the keys are sorted."""
+    runs = keys.rle().struct.unnest()
+    starts = runs["len"].cum_sum() - runs["len"]
+    return dict(zip(runs["value"], zip(starts, runs["len"], strict=True), strict=True))
 
 
 ALIKE = ("wind", "line", "point", "declared", "stages", "assessments")
 """Frames of which most rows are the same under several methods."""
-
-KEEP = ("boats",)
-"""Frames whose rows are shown with the number of their boat."""
 
 
 def _answers(
@@ -88,11 +156,9 @@ def _answers(
     return found
 
 
-def _parts(
-    frame: pl.DataFrame, by: Sequence[str], keep: bool = True
-) -> dict[tuple[Any, ...], pl.DataFrame]:
-    """The rows of each key, in their order; without the key unless it is kept."""
-    return frame.partition_by(by, as_dict=True, maintain_order=True, include_key=keep)
+def _parts(frame: pl.DataFrame, by: Sequence[str]) -> dict[tuple[Any, ...], pl.DataFrame]:
+    """The rows of each key, in their order."""
+    return frame.partition_by(by, as_dict=True, maintain_order=True)
 
 
 def _frames(views: Views) -> dict[str, pl.DataFrame]:
@@ -231,14 +297,14 @@ FACT_COLUMNS = (
 LINEAGE_COLUMNS = ("edition", "crew", "tow_id", "path", "sha256", "method_hash", "code_version")
 
 
-def _page(
-    fsn_no: str, own: dict[str, pl.DataFrame], methods: Sequence[str], told: Sequence[Answer]
-) -> Page:
-    facts = Section("facts", tables=[Table("boats", own["boats"], FACT_COLUMNS, "facts")])
-    boat = own["boats"].row(0, named=True)
+def _page(fsn_no: str, boats: _Boats, methods: Sequence[str], told: Sequence[Answer]) -> Page:
+    own = boats.tables(fsn_no)
+    facts = Section("facts", tables=[own["boats"].table("boats", FACT_COLUMNS, "facts")])
+    boat = own["boats"].rows.row(0, named=True)
     name = boat["name"]
     subtitle = " · ".join(filter(None, (fsn_no, boat["ht_no"], boat["boat_type"])))
-    named = dict(zip(own["curves"]["tow_id"], own["curves"]["tow"], strict=True))
+    curves = own["curves"].rows
+    named = dict(zip(curves["tow_id"], curves["tow"], strict=True))
     if not named:
         return Page(boat_path(fsn_no), "boat", [facts], name=name, subtitle=subtitle)
     tows = list(named)
@@ -252,7 +318,7 @@ def _page(
         [replace(facts, folded=True), *_sections(own)],
         name=name,
         selects=selects,
-        data={name: [own[part] for part in parts] for name, parts in DRAWN.items()},
+        json=boats.json(fsn_no),
         answers=told,
         subtitle=subtitle,
     )
@@ -272,7 +338,7 @@ DRAWN = {
 """What the charts draw, by name; rows of several kinds stand one below the other."""
 
 
-def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
+def _sections(own: dict[str, _Own]) -> list[Section]:
     """How the numbers were made: all of it folded."""
     curve = Chart("resistance_curve", "curve", "boat_curve", OF_THE_CURVE)
     history = Chart("history", "curves", "boat_history")
@@ -288,9 +354,9 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
         Chart("slide_tick_effects", "choices", "slide_tick_effects", of_tow),
     ]
     statistics = Chart("run_statistics", "statistics", "run_statistics", of_tow)
-    curves = Table("curves", own["curves"], CURVE_COLUMNS, "boat_history", exact=False)
-    runs = Table("run_points", own["runs"], RUN_COLUMNS, "boat_runs", FOLLOWS, exact=False)
-    lines = Table("register", own["register"], LINE_COLUMNS, "boat_lines")
+    curves = own["curves"].table("curves", CURVE_COLUMNS, "boat_history", exact=False)
+    runs = own["runs"].table("run_points", RUN_COLUMNS, "boat_runs", FOLLOWS, exact=False)
+    lines = own["register"].table("register", LINE_COLUMNS, "boat_lines")
     sections = [
         Section("boat_lines", tables=[lines]),
         Section("boat_history", "boat_history_note", [history], [curves]),
@@ -304,12 +370,12 @@ def _sections(own: dict[str, pl.DataFrame]) -> list[Section]:
     ]
     for name, columns in EXTRA.items():
         rows = own.get(name)
-        if rows is not None and rows.height:
-            follows = [c for c in FOLLOWS if c in rows.columns]
-            table = Table(name, rows, columns, name, follows, exact=False)
+        if rows is not None and rows.number:
+            follows = [c for c in FOLLOWS if c in rows.whole.columns]
+            table = rows.table(name, columns, name, follows, exact=False)
             sections.append(Section(name, f"{name}_note", tables=[table]))
-    lineage = Table("lineage", own["lineage"], LINEAGE_COLUMNS, "boat_lineage")
-    if own["lineage"].height:
+    lineage = own["lineage"].table("lineage", LINEAGE_COLUMNS, "boat_lineage")
+    if own["lineage"].number:
         sections.append(Section("boat_lineage", "boat_lineage_note", tables=[lineage]))
     return [replace(section, folded=True) for section in sections]
 

@@ -81,6 +81,7 @@ class Cells:
         self.speech = speech
         self.text = speech.text
         self._text = cache(self._made)
+        self._of_many: dict[str, tuple[pl.DataFrame, list[str]]] = {}
 
     def _made(self, name: str, root: str, value: Any) -> Markup:
         """The cell of a text in a column of this name; the same value comes often."""
@@ -89,10 +90,7 @@ class Cells:
     def rows(self, page: Page, table: Table) -> Rows:
         """The rows of a table on a page."""
         frame, follows = table.frame, list(table.follows)
-        # Column by column, because the cells of a column are made in one way.
-        cells = zip(
-            *(self._cells(frame[c], page.root, table.exact) for c in table.columns), strict=True
-        )
+        cells = self._cells_by_row(page, table)
         boats = [_BOAT.format(n) for n in frame["fsn_no"]] if table.linked else repeat("")
         keys = zip(*(hashable(frame[name]) for name in follows), strict=True)
         places: dict[Key, int] = {}
@@ -109,8 +107,20 @@ class Cells:
         others: list[str] = []
         for row, boat, key in zip(cells, boats, keys if follows else repeat(()), strict=False):
             place, marks = marked(key)
-            place.append(f"<tr{boat}{marks}>{''.join(row)}")
+            place.append(f"<tr{boat}{marks}>{row}")
         return Rows(Markup("\n".join(first)), "\n".join(others), list(places))  # noqa: S704 - escaped parts
+
+    def _cells_by_row(self, page: Page, table: Table) -> list[str]:
+        """The cells of each row, one text; of rows of many pages they are made once."""
+        whole, start = table.within or (table.frame, 0)
+        known, rows = self._of_many.get(table.name, (None, []))
+        if known is not whole:
+            # Column by column, because the cells of a column are made in one way.
+            cells = (self._cells(whole[c], page.root, table.exact) for c in table.columns)
+            rows = list(map("".join, zip(*cells, strict=True)))
+        if table.within:
+            self._of_many[table.name] = whole, rows
+        return rows[start : start + table.frame.height]
 
     def _cells(self, column: pl.Series, root: str, exact: bool) -> Sequence[str]:
         name = column.name

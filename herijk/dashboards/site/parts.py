@@ -32,6 +32,8 @@ class Table:
         linked: whether a selection in a chart filters it by boat.
         exact: whether cells carry more digits than they show, for the download.
         cards: on a narrow screen, the columns of a card: its name, then its numbers.
+        within: the rows of many pages, and at which of them `frame` begins: their cells are made
+            at once.
     """
 
     name: str
@@ -43,6 +45,7 @@ class Table:
     linked: bool = False
     exact: bool = True
     cards: Sequence[str] = ()
+    within: tuple[pl.DataFrame, int] | None = None
 
     @cached_property
     def numeric(self) -> set[str]:
@@ -137,6 +140,7 @@ class Page:
         subtitle: what tells a boat from one of the same name: its numbers and type.
         selects: selectors.
         data: frames that charts draw, by name; of several, the rows come one below the other.
+        json: the same as `site.columns` writes it, where it is made for many pages at once.
         site: the way to the site, of a page that lies outside it.
         answers: what an owner asks, of each crew of a boat.
         others: the same page in other languages, where it lies elsewhere.
@@ -148,6 +152,7 @@ class Page:
     name: str = ""
     selects: Sequence[Select] = ()
     data: Mapping[str, Sequence[pl.DataFrame]] = field(default_factory=dict)
+    json: Mapping[str, str] = field(default_factory=dict)
     site: str = ""
     answers: Sequence[Answer] = ()
     others: Mapping[str, str] = field(default_factory=dict)

@@ -6,7 +6,6 @@ its charts, and the rows of its tables that are not shown at first, once, as a s
 
 import base64
 import datetime as dt
-import math
 import shutil
 import tempfile
 import zlib
@@ -19,7 +18,6 @@ from types import MappingProxyType
 from typing import Final
 
 import jinja2
-import polars as pl
 import vl_convert
 from markupsafe import Markup
 
@@ -29,6 +27,7 @@ from herijk.dashboards.html import as_json, environment
 from herijk.dashboards.kept import kept
 from herijk.dashboards.site.boats import boat_pages
 from herijk.dashboards.site.cells import Cells
+from herijk.dashboards.site.columns import json_of
 from herijk.dashboards.site.downloads import copy_sheets
 from herijk.dashboards.site.pages import MENU, method_names, shared_pages
 from herijk.dashboards.site.parts import Page, boat_path, race_path, type_path
@@ -43,8 +42,6 @@ from herijk.words import LANGUAGES
 from herijk.words.catalogue import WORDS, speaker
 
 HERE: Final = Path(__file__).parent
-DRAWN: Final = 5
-"""Significant digits of what charts draw."""
 QUICK: Final = 4
 """How hard data are deflated: a tenth larger than by default, in half the time."""
 NO_STILLS: Final[Mapping[str, Markup]] = MappingProxyType({})
@@ -151,7 +148,7 @@ def _write_page(folder: Path, page: Page, editions: Sequence["Edition"], drawn: 
         language = edition.speech.language
         html, others[language] = edition.html(page, drawn.get(language, {}))
         _put(folder / edition.address(page), html)
-    if page.data or any(others.values()):
+    if page.data or page.json or any(others.values()):
         _put(folder / _data_path(page), _data_script(page, others))
 
 
@@ -228,7 +225,7 @@ class Edition:
             root=(site + FOLDERS[language]) if page.site else page.root,
             other=other,
             other_page=page.others.get(other) or f"{site}{FOLDERS[other]}{page.path}",
-            data_path=_data_path(page) if page.data or others else "",
+            data_path=_data_path(page) if page.data or page.json or others else "",
         )
         return html, others
 
@@ -245,17 +242,11 @@ def _data_script(page: Page, others: Mapping[str, Mapping[str, str]]) -> str:
         page: gives the data of its charts.
         others: rows of tables as HTML, by language and number of the table.
     """
-    charts = ",".join(
-        f"{as_json(name)}:[{','.join(_columns(frame) for frame in frames)}]"
-        for name, frames in page.data.items()
-    )
-    text = f'{{"charts":{{{charts}}},"rows":{as_json(others)}}}'
+    charts = {name: ",".join(map(json_of, frames)) for name, frames in page.data.items()}
+    named = ",".join(f"{as_json(name)}:[{text}]" for name, text in {**charts, **page.json}.items())
+    text = f'{{"charts":{{{named}}},"rows":{as_json(others)}}}'
     packed = base64.b64encode(zlib.compress(text.encode(), QUICK)).decode("ascii")
     return f'window.HERIJK_DATA = "{packed}";\n'
-
-
-def _columns(frame: pl.DataFrame) -> str:
-    return "{" + ",".join(f'"{c.name}":{_column(c)}' for c in frame) + "}"
 
 
 def _search_script(views: Views) -> str:
@@ -299,13 +290,3 @@ def charts_script(language: str) -> str:
     words = named | {key: say(key) for key in ("yes", "no", "no_values", "from", "to")}
     figures = as_json(chart_specifications(language))
     return f"window.HERIJK_FIGURES = {figures};\nwindow.HERIJK_WORDS = {as_json(words)};\n"
-
-
-def _column(column: pl.Series) -> str:
-    """A list, with numbers to the digits that charts draw."""
-    values = column.to_list()
-    if not column.dtype.is_float():
-        return as_json(values)
-    known = [math.nan if v is None else v for v in values] if column.null_count() else values
-    numbers = ",".join([f"%.{DRAWN}g"] * len(known)) % tuple(known)
-    return f"[{numbers.replace('nan', 'null')}]"
