@@ -34,7 +34,7 @@ from herijk.words import say
 
 _ISO_DATE: Final = re.compile(r"([0-9]{4})[-/.]([0-9]{1,2})[-/.]([0-9]{1,2})")
 _DAY_FIRST: Final = re.compile(r"([0-9]{1,2})([-./ ])([0-9]{1,2})\2([0-9]{4}|[0-9]{2})")
-_MONTH_NAMED: Final = re.compile(r"([0-9]{1,2})[. -]+([a-zäé]{3,9})[. -]+([0-9]{4})")
+_MONTH_NAMED: Final = re.compile(r"([0-9]{1,2})[. -]+([a-zäé]{3,9})[. -]+'?([0-9]{4}|[0-9]{2})")
 _SERIAL_DATE: Final = re.compile(r"(?:3[3-9]|4[0-9]|5[0-4])[0-9]{3}")
 """What a spreadsheet shows of a date in a cell that is not set to show dates: 1990 to 2050."""
 _EXCEL_DAY_0: Final = dt.date(1899, 12, 30)
@@ -389,8 +389,8 @@ def parse_date(text: str, order: str = "") -> dt.date:
     """Return the date in a text, the year first or the day first; a time of day is left out.
 
     Args:
-        text: `2014-03-01`, `1-3-2014`, `01.03.14`, `1/3/2014`, `za 1 maart 2014`, or the number of
-            days that a spreadsheet holds.
+        text: `2014-03-01`, `1-3-2014`, `01.03.14`, `1/3/2014`, `za 1 maart 2014`, `1-mrt-14`,
+            or the number of days that a spreadsheet holds.
         order: `dmy` or `mdy` for dates with slashes; without, only one meaning may be possible.
 
     Raises:
@@ -405,16 +405,19 @@ def parse_date(text: str, order: str = "") -> dt.date:
     if _SERIAL_DATE.fullmatch(text):
         return _EXCEL_DAY_0 + dt.timedelta(days=int(text))
     if named and named[2][:3] in _MONTHS:
-        return dt.date(int(named[3]), _MONTHS[named[2][:3]], int(named[1]))
+        return dt.date(_year(named[3]), _MONTHS[named[2][:3]], int(named[1]))
     if not day_first:
         raise ValueError(text)
     first, second = int(day_first[1]), int(day_first[3])
-    year = int(day_first[4]) + (2000 if len(day_first[4]) == 2 else 0)
     if day_first[2] == "/" and not order and first != second and max(first, second) <= 12:
         raise AmbiguousDateError(text)
     month_first = day_first[2] == "/" and (order == "mdy" or (not order and second > 12))
     day, month = (second, first) if month_first else (first, second)
-    return dt.date(year, month, day)
+    return dt.date(_year(day_first[4]), month, day)
+
+
+def _year(digits: str) -> int:
+    return int(digits) + (2000 if len(digits) == 2 else 0)
 
 
 def date_order(cells: Iterable[str]) -> str:

@@ -268,7 +268,7 @@ def run_number(part: str, row: ListRow, header: str, planned: Collection[int]) -
         raise row.fault(
             say(
                 "column '{column}' has '{part}'; runs are 1 to {last}, or b1 to b{last} for the "
-                "second file, with commas between them.",
+                "second file, with commas between them. Runs beyond these need a [[plan]].",
                 column=header,
                 part=shorten(part),
                 last=max(planned),
