@@ -10,7 +10,7 @@ import unicodedata
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.declare import dy
@@ -31,6 +31,8 @@ from herijk.warehouse.archive.text import (
 from herijk.warehouse.archive.units import UNITS, Scale, find_scale
 from herijk.warehouse.archive.words import ALL_RUNS, CLASSES, HEADERS, NO, NOTHING, YES
 from herijk.words import say
+
+T = TypeVar("T")
 
 _ISO_DATE: Final = re.compile(r"([0-9]{4})[-/.]([0-9]{1,2})[-/.]([0-9]{1,2})")
 _DAY_FIRST: Final = re.compile(r"([0-9]{1,2})([-./ ])([0-9]{1,2})\2([0-9]{4}|[0-9]{2})")
@@ -174,7 +176,10 @@ class ListRow:
 
     def text(self, key: str) -> str:
         """Return the text of a cell that must not be empty."""
-        value = self.optional_text(key)
+        return self._there(key, self.optional_text(key))
+
+    def _there(self, key: str, value: T | None) -> T:
+        """Return the value of a cell that must not be empty."""
         if value is None:
             raise self.fault(say("column '{column}' is empty.", column=self.named(key)))
         return value
@@ -253,10 +258,7 @@ class ListRow:
 
     def number(self, key: str) -> float:
         """Return a number that must be there."""
-        self.text(key)
-        value = self.optional_number(key)
-        assert value is not None  # noqa: S101 - the cell is not empty
-        return value
+        return self._there(key, self.optional_number(key))
 
     def optional_integer(self, key: str) -> int | None:
         """Return a whole number, None when the cell is empty."""
@@ -275,10 +277,7 @@ class ListRow:
 
     def integer(self, key: str) -> int:
         """Return a whole number that must be there."""
-        self.text(key)
-        value = self.optional_integer(key)
-        assert value is not None  # noqa: S101 - the cell is not empty
-        return value
+        return self._there(key, self.optional_integer(key))
 
     def optional_date(self, key: str) -> dt.date | None:
         """Return a date, None when the cell is empty."""
@@ -305,10 +304,7 @@ class ListRow:
 
     def date(self, key: str) -> dt.date:
         """Return a date that must be there."""
-        self.text(key)
-        value = self.optional_date(key)
-        assert value is not None  # noqa: S101 - the cell is not empty
-        return value
+        return self._there(key, self.optional_date(key))
 
     def crew_class(self, key: str) -> str:
         """Return `H` or `D`."""
