@@ -89,7 +89,7 @@ CODES: Final[dict[str, tuple[str, str]]] = {
         "correction of the tow list not used",
     ),
     "code.lamps_burned": ("lampjes brandden lang", "warning lamps burned long"),
-    "code.load_cell_off": ("krachtopnemer wijkt af van ijkgewicht", "load cell off"),
+    "code.load_cell_off": ("krachtmeter wijkt af van ijkgewicht", "load cell off"),
     "code.weight_by_freeboard": (
         "gewicht volgens vrijboord wijkt af",
         "weight by freeboard differs",

@@ -165,6 +165,14 @@ class ListRow:
         said = say("Line {line}: {what}", line=self.line, what=message)
         return DefectiveInputError(reason_code or self.reading.reason_code, said, self.line)
 
+    def wrong(
+        self, message: str, key: str, reason_code: str | None = None, **values: Any
+    ) -> DefectiveInputError:
+        """Return the error for a cell; the message may have `{column}` and `{cell}` in it."""
+        cell = shorten(self.cells.get(key, ""))
+        said = say(message, column=self.named(key), cell=cell, **values)
+        return self.fault(said, reason_code)
+
     def check_whole(self) -> None:
         """Raise when something is wrong with the row as a whole."""
         if self.row_problem is not None:
@@ -198,15 +206,8 @@ class ListRow:
                 value = value if self._is_in_ones(key, digits, value) else thousands
         if not lowest <= value <= highest:
             low, high = (scale.from_si(limit) for limit in (lowest, highest))
-            raise self.fault(
-                say(
-                    "column '{column}' is {cell}; {low:g} to {high:g} can be right.",
-                    column=self.named(key),
-                    cell=shorten(cell),
-                    low=low,
-                    high=high,
-                )
-            )
+            message = "column '{column}' is {cell}; {low:g} to {high:g} can be right."
+            raise self.wrong(message, key, low=low, high=high)
         return value
 
     def _digits_and_scale(self, key: str, cell: str) -> tuple[str, Scale]:
@@ -220,13 +221,8 @@ class ListRow:
             digits = ungrouped(own[1] if own and scale else cell)
             parse_number(digits)
         except ValueError as error:
-            raise self.fault(
-                say(
-                    "column '{column}' is '{cell}', which is not an ordinary number.",
-                    column=self.named(key),
-                    cell=shorten(cell),
-                )
-            ) from error
+            message = "column '{column}' is '{cell}', which is not an ordinary number."
+            raise self.wrong(message, key) from error
         return digits, scale or column.scale
 
     def _is_in_ones(self, key: str, cell: str, value: float) -> bool:
@@ -266,13 +262,7 @@ class ListRow:
         if value is None:
             return None
         if value != int(value):
-            raise self.fault(
-                say(
-                    "column '{column}' is {cell}; it must be a whole number.",
-                    column=self.named(key),
-                    cell=shorten(self.cells[key]),
-                )
-            )
+            raise self.wrong("column '{column}' is {cell}; it must be a whole number.", key)
         return int(value)
 
     def integer(self, key: str) -> int:
@@ -287,20 +277,11 @@ class ListRow:
         try:
             return parse_date(cell, self.reading.date_order)
         except AmbiguousDateError as error:
-            message = say(
-                "column '{column}' is '{cell}': is the first number the day or the month?",
-                column=self.named(key),
-                cell=shorten(cell),
-            )
-            raise self.fault(message, "ambiguous_date") from error
+            message = "column '{column}' is '{cell}': is the first number the day or the month?"
+            raise self.wrong(message, key, "ambiguous_date") from error
         except ValueError as error:
-            raise self.fault(
-                say(
-                    "column '{column}' is '{cell}', not a date such as 2014-03-01 or 01-03-2014.",
-                    column=self.named(key),
-                    cell=shorten(cell),
-                )
-            ) from error
+            message = "column '{column}' is '{cell}', not a date such as 2014-03-01 or 01-03-2014."
+            raise self.wrong(message, key) from error
 
     def date(self, key: str) -> dt.date:
         """Return a date that must be there."""
@@ -311,13 +292,8 @@ class ListRow:
         cell = self.text(key)
         value = CLASSES.get(fold_word(cell))
         if value is None:
-            message = say(
-                "column '{column}' is '{cell}'; H or D is expected.",
-                column=self.named(key),
-                cell=shorten(cell),
-                expected="HD",
-            )
-            raise self.fault(message)
+            message = "column '{column}' is '{cell}'; H or D is expected."
+            raise self.wrong(message, key, expected="HD")
         return value
 
     def yes_or_no(self, key: str) -> bool:
@@ -325,13 +301,7 @@ class ListRow:
         cell = fold_word(self.optional_text(key) or "nee")
         if cell in YES or cell in NO:
             return cell in YES
-        message = say(
-            "column '{column}' is '{cell}', not ja, nee or empty.",
-            choice="ja",
-            column=self.named(key),
-            cell=shorten(cell),
-        )
-        raise self.fault(message)
+        raise self.wrong("column '{column}' is '{cell}', not ja, nee or empty.", key, choice="ja")
 
     def boat(self, key: str) -> str:
         """Return the number of a boat: `FSN 101`, `fsn101` and `101` are FSN101."""

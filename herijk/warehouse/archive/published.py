@@ -30,7 +30,7 @@ from herijk.warehouse.archive.limits import LIST_MAX_BYTES
 from herijk.warehouse.archive.lists import ListRow, Wording, read_list
 from herijk.warehouse.archive.misfits import misfits
 from herijk.warehouse.archive.profile import read_profiles
-from herijk.warehouse.archive.text import Column, shorten
+from herijk.warehouse.archive.text import Column
 from herijk.words import say
 
 NEVER_TOWED_CW: Final = (0.995, 1.005)
@@ -275,8 +275,7 @@ def _rowing_time(row: ListRow) -> float:
     cell = row.text("rowing_time_s")
     match = _ROWING_TIME.fullmatch(cell)
     if match is None:
-        message = "'roeitijd' is '{cell}', not a time such as 2:10:25."
-        raise row.fault(say(message, cell=shorten(cell)))
+        raise row.wrong("'roeitijd' is '{cell}', not a time such as 2:10:25.", "rowing_time_s")
     seconds = int(match[1]) * 3600 + int(match[2]) * 60 + int(match[3])
     if seconds == 0:
         raise row.fault(say("'roeitijd' is 0."))

@@ -231,11 +231,10 @@ def read_selection(row: ListRow, plan: Plan) -> frozenset[int]:
         return frozenset(planned) | {SECOND_FILE_OFFSET + run for run in planned if both}
     parts = re.split(r"[\s,;+&]+", _spelled_out(fold_word(cell)).strip(" ,;"))
     runs = [run_number(part, row, row.named("use_runs"), planned) for part in parts]
-    values = {"column": row.named("use_runs"), "cell": shorten(cell)}
     if len(set(runs)) < len(runs):
-        raise row.fault(say("column '{column}' is '{cell}'; it names one run twice.", **values))
+        raise row.wrong("column '{column}' is '{cell}'; it names one run twice.", "use_runs")
     if max(runs) > SECOND_FILE_OFFSET and row.optional_text("second_file") is None:
-        raise row.fault(say("column '{column}' is '{cell}', but there is no meetfile2.", **values))
+        raise row.wrong("column '{column}' is '{cell}', but there is no meetfile2.", "use_runs")
     return frozenset(runs)
 
 
