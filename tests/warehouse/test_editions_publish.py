@@ -461,7 +461,7 @@ def with_printed(bench_of_editions):
     text = PRINTED.format(boat=tow["fsn_no"], rowers=tow["rowers"], crew=tow["crew_class"])
     file = bench_of_editions.archive / "sloepregister" / "sloepregister_2012.csv"
     file.write_text(text, encoding="utf-8")
-    bench_of_editions.rebuild()
+    bench_of_editions.rebuild(())
     return bench_of_editions
 
 
