@@ -163,7 +163,10 @@ def _run_point(step: RunPoint) -> str:
 def _temperature(step: Temperature) -> str:
     if step.rule == "none":
         return tell("the water as it was.")
-    return tell("friction brought to water of {:g} C by the ITTC-57 line.", step.reference_c)
+    words = tell("friction brought to water of {:g} C by the ITTC-57 line.", step.reference_c)
+    if step.unrecorded == "unchanged":
+        return words
+    return f"{words} {tell('Where nobody recorded it: as other tows let expect.')}"
 
 
 def _runs(step: Runs) -> str:

@@ -821,6 +821,9 @@ COMMAND: Final[dict[str, str]] = {
     "friction brought to water of {:g} C by the ITTC-57 line.": (
         "wrijving omgerekend naar water van {:g} C met de ITTC-57-lijn."
     ),
+    "Where nobody recorded it: as other tows let expect.": (
+        "Waar niemand haar noteerde: zoals andere proeven doen verwachten."
+    ),
     "at least {} runs, both ways; none faster than {:g} % of the declared speed.": (
         "minstens {} runs, beide kanten op; geen sneller dan {:g} % van de opgegeven snelheid."
     ),

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from datetime import date
 
 import numpy as np
 import polars as pl
@@ -13,6 +14,7 @@ from herijk.pipeline.blocks.run_blocks import stack_blocks
 from herijk.pipeline.blocks.sums import block_sums
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import parse_method, shipped_method
+from herijk.pipeline.recompute.facts import with_expected_water
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.pipeline.steps.target import above_target
 from herijk.simulate import WorldSettings, simulate_tow, simulate_world
@@ -369,3 +371,37 @@ def test_of_wind_that_nobody_measured_the_mean_of_the_others_is_taken_off(measur
     expected = others.std() * of_cw["still_air_cw_kg_m"] / of_cw["cw_kg_m"]
     assert of_cw["u_ratio"].to_numpy() == pytest.approx(expected.to_numpy())
     assert set(rows["shared"]) == {"single"}
+
+
+def test_water_that_nobody_measured_is_as_warm_as_other_tows_say(measured):
+    rebased = shipped_method("rebased")
+    lost = (measured.tows["season"] == 2015).to_numpy()
+    water = measured.tows["water_temperature_c"]
+    tows = measured.tows.with_columns(water_temperature_c=water.set(pl.Series(lost), None))
+    said, unsaid = (recompute(rebased, t, measured.blocks) for t in (measured.tows, tows))
+    moved = (unsaid.curves["cw_kg_m"] / said.curves["cw_kg_m"]).log().to_numpy()[lost]
+    expected = with_expected_water(tows)["expected_water_c"]
+    assert moved == pytest.approx(0.003 * (expected - water).to_numpy()[lost], abs=0.003)
+    assert expected.to_numpy()[lost] == pytest.approx(np.mean(water.to_numpy()[~lost]), abs=3.0)
+    budget = unsaid.uncertainty_budget.filter(component="temperature")
+    assert (budget["u_ratio"].to_numpy()[lost] > 0.01).all()
+
+
+def test_water_is_expected_of_the_nearest_days_that_have_a_record():
+    tows = pl.DataFrame(
+        {
+            "tow_date": [
+                *(date(2014, 3, day) for day in (1, 1, 9)),
+                *(date(2016, 3, 2), date(2016, 5, 1), date(2015, 4, 1)),
+            ],
+            "water_temperature_c": [4.0, None, None, None, 12.0, None],
+        }
+    )
+    assert with_expected_water(tows)["expected_water_c"].to_list() == [
+        4.0,
+        4.0,
+        4.0,
+        4.0,
+        12.0,
+        8.0,
+    ]

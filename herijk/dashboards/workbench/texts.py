@@ -237,6 +237,7 @@ TEXTS: Final[Words] = {
     "run_point.added_mass_ratio": ("Meegesleept water", "Added mass"),
     "temperature.rule": ("Watertemperatuur verrekenen", "Correct for water temperature"),
     "temperature.reference_c": ("Naar water van", "To water of"),
+    "temperature.unrecorded": ("Temperatuur die niemand noteerde", "Temperature nobody recorded"),
     "runs.highest_target_ratio": (
         "Snelste run / opgegeven snelheid",
         "Fastest run / declared speed",

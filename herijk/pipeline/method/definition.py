@@ -102,6 +102,9 @@ class Temperature(_Options):
 
     rule: Literal["none", "ittc57"]
     reference_c: float = Field(default=15.0, ge=0.0, le=30.0)
+    unrecorded: Literal["unchanged", "expected"] = Field(
+        default="unchanged", exclude_if=lambda value: value == "unchanged"
+    )
 
 
 class Runs(_Options):

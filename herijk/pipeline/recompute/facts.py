@@ -20,6 +20,18 @@ def with_boats(tows: pl.DataFrame, boats: pl.DataFrame) -> pl.DataFrame:
     return with_boat_types(tows, boats).join(listed, on="fsn_no", how="left")
 
 
+def with_expected_water(tows: pl.DataFrame) -> pl.DataFrame:
+    """Rows of `tows` with `expected_water_c`: what recorded temperatures say of the water of a day.
+
+    Their mean on that day, else in that month of that year, else in that month, else in all of the
+    archive; null where none is recorded.
+    """
+    water, day = pl.col("water_temperature_c"), pl.col("tow_date")
+    alike = ([day], [day.dt.year(), day.dt.month()], [day.dt.month()])
+    means = [water.mean().over(group) for group in alike]
+    return tows.with_columns(expected_water_c=pl.coalesce(*means, water.mean()))
+
+
 def with_hand_windows(runs: pl.DataFrame, windows: pl.DataFrame) -> pl.DataFrame:
     """Rows of `tow_runs` with the windows that were given by hand (`hand_windows`)."""
     return runs.join(windows.rename(HAND_COLUMNS), on=["tow_id", "run"], how="left")

@@ -23,6 +23,7 @@ from herijk.pipeline.choice import first_largest
 from herijk.pipeline.hull import front_area_m2, hull_speed_m_s, still_air_coefficient_kg_m
 from herijk.pipeline.method.definition import Method, Steps
 from herijk.pipeline.recompute.anemometer import with_anemometer
+from herijk.pipeline.recompute.facts import with_expected_water
 from herijk.pipeline.recompute.outcome import (
     STILL_AIR,
     ExpectedWind,
@@ -134,6 +135,7 @@ def batches(
     Returns:
         Batches, each with its steps under each of the methods.
     """
+    tows = with_expected_water(tows)
     seasons: dict[str, tuple[tuple[Steps, ...], list[int]]] = {}
     for season in tows["season"].unique().sort():
         steps = tuple(method.for_season(season) for method in methods)

@@ -173,17 +173,22 @@ def temperature_change_kg_m(
         speed_m_s: true speed of each run, shape (runs,).
 
     Returns:
-        Change of Cw, shape (runs,), kg/m; and for which tows it is known, shape (tows,): 0 and
-        False where temperature or weight is missing.
+        Change of Cw, shape (runs,), kg/m, 0 where temperature or weight is missing; and for which
+        tows both were recorded, shape (tows,). Where the rule expects a temperature that nobody
+        recorded, the change is that of `expected_water_c`.
     """
-    temperature = batch.of_tow("water_temperature_c")
+    recorded = batch.of_tow("water_temperature_c")
     mass = displaced_mass_kg(batch)
-    known = np.isfinite(temperature) & np.isfinite(mass)
+    known = np.isfinite(recorded) & np.isfinite(mass)
     if rule.rule == "none":
         return np.zeros_like(speed_m_s), known
-    celsius = np.where(known, temperature, rule.reference_c)
+    temperature = recorded
+    if rule.unrecorded == "expected":
+        temperature = np.where(known, recorded, batch.of_tow("expected_water_c"))
+    told = np.isfinite(temperature) & np.isfinite(mass)
+    celsius = np.where(told, temperature, rule.reference_c)
     length = batch.of_run("waterline_length_m")
-    surface = wetted_surface_m2(np.where(known, mass, 0.0)[batch.tow], length)
+    surface = wetted_surface_m2(np.where(told, mass, 0.0)[batch.tow], length)
     speed = _or_one(speed_m_s)
     at_reference, as_towed = (
         friction_cw_kg_m(speed, length, surface, t) for t in (rule.reference_c, celsius[batch.tow])
