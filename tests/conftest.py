@@ -3,7 +3,8 @@
 import os
 import shutil
 from collections.abc import Callable, Collection, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -18,11 +19,10 @@ from hypothesis import settings
 
 import herijk.assets.rebuild
 import herijk.assets.runs
-from herijk.assets import archive
-from herijk.assets.progress import Progress, Quiet
+from herijk.assets.progress import Quiet
 from herijk.assets.report import Report
 from herijk.assets.resources import Setup
-from herijk.assets.side_by_side import Task
+from herijk.assets.side_by_side import Read, Task
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.tables.schemas import TABLES
@@ -55,16 +55,14 @@ class _Directly:
 
     checks: Final = ()
 
-    def __init__(self, setup: Setup, progress: Progress) -> None:
-        self.setup, self.progress = setup, progress
+    def __init__(self, setup: Setup) -> None:
+        self.setup = setup
 
     def record_index(self) -> None:
         """Keeps no records."""
 
-    def read(self, seasons: Sequence[int]) -> None:
-        for season in seasons:
-            archive.read(self.setup, season, self.progress)
-            archive.add_up(self.setup, season)
+    def record_seasons(self, seasons: Sequence[int], found: Sequence[Read]) -> None:
+        """Keeps no records."""
 
     def build(self, tasks: Sequence[Task]) -> None:
         store, known = self.setup.store, self.setup.known_methods
@@ -84,13 +82,14 @@ class _Directly:
 def directly() -> Iterator[None]:
     """Inside, rebuilds do their work without Dagster, and the site counts as made."""
 
-    def unrecorded(
-        setup: Setup, progress: Progress, other: object, work: Callable[[Any], None]
-    ) -> None:
-        work(_Directly(setup, progress))
+    def unrecorded(setup: Setup, other: object, work: Callable[[Any], None]) -> None:
+        work(_Directly(setup))
+
+    def thread() -> Executor:
+        return ThreadPoolExecutor(1)
 
     no_site = mock.patch.object(herijk.assets.rebuild, "site_is_stale", return_value=False)
-    alone = mock.patch.object(herijk.assets.rebuild, "helper", nullcontext)
+    alone = mock.patch.object(herijk.assets.rebuild, "helper", thread)
     with no_site, alone, mock.patch.object(herijk.assets.runs, "in_one_run", unrecorded):
         yield
 

@@ -7,13 +7,14 @@ that there is none takes a second, importing it two.
 import datetime as dt
 from collections.abc import Callable, Collection, Sequence
 from concurrent.futures import Executor
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from herijk.assets.progress import Progress
 from herijk.assets.report import Done, Report, write_report
 from herijk.assets.settings import Settings, read_settings
-from herijk.assets.side_by_side import Task, helper, stages
+from herijk.assets.side_by_side import Join, Read, Reading, Task, helper, shared, stages
 from herijk.assets.site_state import site_is_stale
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
@@ -129,13 +130,18 @@ class _Rebuild:
             or not is_reported(self.store)
         )
 
-    def _work(self, seasons: list[int]) -> "Sequence[dg.AssetCheckEvaluation]":
+    def _work(self, stale: list[int]) -> "Sequence[dg.AssetCheckEvaluation]":
         """Reads seasons and makes what is stale; gives what the checks said."""
-        with helper() as other:  # it imports what it needs while we import Dagster
-            return self._work_with(other, seasons)
+        self.done.seasons = sorted({*self.done.seasons, *stale})
+        with helper() as other:
+            address = self.settings.dask
+            if address is not None and stale:
+                return self._work_with(other, lambda w: self._read_elsewhere(w, address, stale))
+            with self._reading(stale, other) as join:  # it begins while we import Dagster
+                return self._work_with(other, lambda work: self._read(work, stale, join))
 
     def _work_with(
-        self, other: Executor, seasons: list[int]
+        self, other: Executor, read: "Callable[[Work], None]"
     ) -> "Sequence[dg.AssetCheckEvaluation]":
         from herijk.assets.resources import Setup  # noqa: PLC0415 - see above
         from herijk.assets.runs import in_one_run  # noqa: PLC0415
@@ -151,7 +157,7 @@ class _Rebuild:
 
         def do(work: "Work") -> None:
             work.record_index()
-            self._read(work, seasons)
+            read(work)
             for stage in stages(STEPS):
                 self._build(work, stage)
             if site_is_stale(self.store):
@@ -162,18 +168,27 @@ class _Rebuild:
                 work.check()
             checks.extend(work.checks)
 
-        in_one_run(setup, self.progress, other, do)
+        in_one_run(setup, other, do)
         return checks
 
-    def _read(self, work: "Work", stale: list[int]) -> None:
-        self.done.seasons = sorted({*self.done.seasons, *stale})
-        if self.settings.dask is not None and stale:
-            stale = self._read_elsewhere(work, self.settings.dask, stale)
-        self.progress.expect(intake.count_listed(self.store, stale))
-        work.read(stale)
+    def _reading(
+        self, seasons: Sequence[int], other: Executor
+    ) -> "AbstractContextManager[Join[Reading, Read]]":
+        """Has the other process begin to read seasons."""
+        self.progress.expect(intake.count_listed(self.store, seasons))
+        readings = [Reading(self.archive, self.store.root, season) for season in seasons]
+        return shared(readings, other, Reading.do, came=self._tell)
 
-    def _read_elsewhere(self, work: "Work", address: str, seasons: Sequence[int]) -> list[int]:
-        """Has a Dask cluster read seasons; gives those to read here, where an error comes out."""
+    def _tell(self, read: Read) -> None:
+        for tow_id, reason in read.index.select("tow_id", "reason_code").rows():
+            self.progress.tow_read(tow_id, reason is not None)
+
+    def _read(self, work: "Work", seasons: Sequence[int], join: "Join[Reading, Read]") -> None:
+        """Joins in reading seasons."""
+        work.record_seasons(seasons, join(lambda reading: reading.do(self.progress.tow_read)))
+
+    def _read_elsewhere(self, work: "Work", address: str, seasons: Sequence[int]) -> None:
+        """Has a Dask cluster read seasons; those it cannot are read here: an error comes out."""
         self.progress.step(
             tell("reading {} seasons on the Dask cluster at {}", len(seasons), address)
         )
@@ -182,7 +197,8 @@ class _Rebuild:
             self.progress.step(
                 tell("season {} could not be read there ({}); reading it here", season, why)
             )
-        return list(failed)
+        with self._reading(list(failed), work.other) as join:
+            self._read(work, list(failed), join)
 
     def _applied_by(self, step: Step) -> list[list[Method]]:
         """The methods, one at a time where the step is made per method.

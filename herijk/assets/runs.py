@@ -3,7 +3,7 @@
 import os
 import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import Executor
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
@@ -15,9 +15,8 @@ from herijk.assets import checks, partitions
 from herijk.assets.archive import blocks_result, index_metadata, read_result
 from herijk.assets.events import Result, events_of
 from herijk.assets.jobs import NAMES, READ
-from herijk.assets.progress import Progress
 from herijk.assets.resources import QUIET_LOG, Setup
-from herijk.assets.side_by_side import Read, Reading, Task, side_by_side
+from herijk.assets.side_by_side import Read, Task, side_by_side
 from herijk.assets.site import make_site
 from herijk.assets.tables import results_of
 from herijk.pipeline.errors import MissingKnowledgeError
@@ -36,13 +35,17 @@ WORK: Final = "make_what_is_stale"
 
 
 class Work:
-    """The pieces of a rebuild, each recorded in the rebuild's run as its asset would be."""
+    """The pieces of a rebuild, each recorded in the rebuild's run as its asset would be.
+
+    A thread of its own writes the records, in order: each waits for the disk four times.
+    """
 
     def __init__(
-        self, setup: Setup, progress: Progress, run: dg.OpExecutionContext, other: Executor
+        self, setup: Setup, run: dg.OpExecutionContext, other: Executor, clerk: Executor
     ) -> None:
-        self.setup, self.progress, self.run, self.other = setup, progress, run, other
+        self.setup, self.run, self.other, self.clerk = setup, run, other, clerk
         self.checks: list[dg.AssetCheckEvaluation] = []
+        self.records: list[Future[None]] = []
 
     def record_index(self) -> None:
         """Notes that the archive was looked through."""
@@ -51,24 +54,12 @@ class Work:
         )
         self._record(seen)
 
-    def read(self, seasons: Sequence[int]) -> None:
-        """Reads seasons."""
+    def record_seasons(self, seasons: Sequence[int], found: Sequence[Read]) -> None:
+        """Notes what reading seasons gave."""
         self._add_partition(partitions.seasons, *map(str, seasons))
-        readings = [Reading(self.setup.archive_root, self.setup.store.root, s) for s in seasons]
-        found = side_by_side(
-            readings,
-            self.other,
-            Reading.do,
-            here=lambda reading: reading.do(self.progress.tow_read),
-            came=self._tell,
-        )
         for season, read in zip(seasons, found, strict=True):
             self._record(read_result(read.index), str(season))
             self._record(blocks_result(read.blocks), str(season))
-
-    def _tell(self, read: Read) -> None:
-        for tow_id, reason in read.index.select("tow_id", "reason_code").rows():
-            self.progress.tow_read(tow_id, reason is not None)
 
     def build(self, tasks: Sequence[Task]) -> None:
         """Makes the tables of steps that do not wait for each other."""
@@ -110,14 +101,18 @@ class Work:
 
     def _record(self, result: Result, partition: str | None = None) -> None:
         for event in events_of(result, partition):
-            self.run.log_event(event)  # type: ignore[arg-type]  # it takes checks too
+            # Its annotation leaves out checks, which it takes too.
+            self.records.append(self.clerk.submit(self.run.log_event, event))  # type: ignore[arg-type]
             if isinstance(event, dg.AssetCheckEvaluation):
                 self.checks.append(event)
 
+    def wait_for_records(self) -> None:
+        """Waits until everything is written; an error in writing comes out."""
+        for record in self.records:
+            record.result()
 
-def in_one_run(
-    setup: Setup, progress: Progress, other: Executor, work: Callable[[Work], None]
-) -> None:
+
+def in_one_run(setup: Setup, other: Executor, work: Callable[[Work], None]) -> None:
     """Has work done in a run of Dagster, by whoever holds the lock; an error comes out as raised.
 
     A run costs a second and more, so a rebuild is one and not one for each of its thirty pieces.
@@ -125,7 +120,10 @@ def in_one_run(
 
     @dg.op(name=WORK)
     def whole(context: dg.OpExecutionContext) -> None:
-        work(Work(setup, progress, context, other))
+        with ThreadPoolExecutor(1) as clerk:
+            pieces = Work(setup, context, other, clerk)
+            work(pieces)
+            pieces.wait_for_records()
 
     @dg.job(name=WORK)
     def job() -> None:

@@ -5,6 +5,7 @@ not do. Which process does it changes nothing in what is made.
 """
 
 import multiprocessing
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -104,23 +105,28 @@ def _import_all() -> None:
     import herijk.dashboards.site  # noqa: F401, PLC0415
 
 
-def side_by_side(
+Join = Callable[[Callable[[T], M]], list[M]]
+"""Does, in this process, the tasks that are left; gives what all of them made, in their order."""
+
+
+@contextmanager
+def shared(
     tasks: Sequence[T],
     other: Executor,
     do: Callable[[T], M],
-    here: Callable[[T], M] | None = None,
     came: Callable[[M], None] = lambda _: None,
-) -> list[M]:
-    """What the tasks make, in their order; each process takes the next when it has done one.
+) -> Iterator[Join[T, M]]:
+    """The other process begins with tasks; this one joins in when it is ready.
+
+    Each process takes the next task when it has done one. Where something goes wrong, none that is
+    left is begun.
 
     Args:
         tasks: what to do.
         other: the other process.
-        do: does a task.
-        here: the same in this process, where it differs.
+        do: does a task there.
         came: is told what the other process made.
     """
-    here = here or do
     made: dict[int, M] = {}
     queue = iter(enumerate(tasks))
 
@@ -133,13 +139,26 @@ def side_by_side(
         made.update((place, do_next(task)) for place, task in queue)
 
     with ThreadPoolExecutor(1) as waiting:
-        first = next(queue, None)  # a single task is not handed over
         done = waiting.submit(make, there)
-        if first is not None:
-            made[first[0]] = here(first[1])
-        make(here)
-        done.result()
-    return [made[place] for place in range(len(tasks))]
+
+        def join(here: Callable[[T], M]) -> list[M]:
+            make(here)
+            done.result()
+            return [made[place] for place in range(len(tasks))]
+
+        try:
+            yield join
+        finally:
+            deque(queue, maxlen=0)
+
+
+def side_by_side(tasks: Sequence[T], other: Executor, do: Callable[[T], M]) -> list[M]:
+    """What the tasks make, in their order; the first is done here, so a single one is."""
+    if not tasks:
+        return []
+    first, *rest = tasks
+    with shared(rest, other, do) as join:
+        return [do(first), *join(do)]
 
 
 def stages(steps: Sequence[Step]) -> list[list[Step]]:

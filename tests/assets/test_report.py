@@ -17,8 +17,10 @@ import duckdb
 import polars as pl
 import pytest
 
+from herijk.assets.checks import results
 from herijk.assets.notify import Message, Notifier, notifier_of
 from herijk.assets.report import Done, failed_checks, tell
+from herijk.assets.resources import Setup
 from herijk.assets.settings import read_settings
 from herijk.dashboards.report import Check
 from herijk.pipeline.errors import MissingKnowledgeError
@@ -122,6 +124,11 @@ def test_all_checks_pass_on_a_sound_archive(built):
     assert {c["check"] for c in report["checks"]} >= {"counts_agree", "tables_fit_their_schemas"}
     assert [c for c in report["checks"] if not c["passed"]] == []
     assert failed_checks([Check(**check) for check in report["checks"]]) == []
+
+
+def test_all_checks_can_be_run_again_after_the_report(built):
+    again = results(Setup(archive="", data=str(built.data), methods=list(METHODS)))
+    assert all(check.passed for check in again)
 
 
 def test_a_failing_check_of_a_promise_is_an_error_and_a_warning_is_none():

@@ -6,10 +6,11 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Event
 
 import pytest
 
-from herijk.assets.side_by_side import helper, side_by_side, stages
+from herijk.assets.side_by_side import helper, shared, side_by_side, stages
 from herijk.pipeline.errors import UnavailableError
 from herijk.warehouse.build.graph import STEPS
 from herijk.warehouse.store.store import DamagedFileError
@@ -40,12 +41,45 @@ def test_what_the_other_process_made_is_told():
         here.append(task.place)
         return task.do()
 
-    with ThreadPoolExecutor(1) as other:
-        tasks = [Slow(place, 5) for place in range(5)]
-        side_by_side(tasks, other, Slow.do, here=do_here, came=told.append)
+    tasks = [Slow(place, 5) for place in range(5)]
+    with ThreadPoolExecutor(1) as other, shared(tasks, other, Slow.do, told.append) as join:
+        assert join(do_here) == list(range(5))
     assert sorted(here + told) == list(range(5))
     assert here
     assert told
+
+
+def test_the_other_process_begins_before_this_one_joins_in():
+    told, came = [], Event()
+
+    def tell(place):
+        told.append(place)
+        came.set()
+
+    tasks = [Slow(place, 5) for place in range(5)]
+    with ThreadPoolExecutor(1) as other, shared(tasks, other, Slow.do, tell) as join:
+        assert came.wait(10)
+        assert told[0] == 0
+        assert join(Slow.do) == list(range(5))
+
+
+def test_where_something_goes_wrong_the_rest_is_not_begun():
+    begun, tasks = [], [Slow(place, 50) for place in range(50)]
+
+    def fail(_):
+        raise ValueError("spoilt")
+
+    def noted(task):
+        begun.append(task.place)
+        return task.do()
+
+    with (
+        ThreadPoolExecutor(1) as other,
+        pytest.raises(ValueError, match="spoilt"),
+        shared(tasks, other, noted) as join,
+    ):
+        join(fail)
+    assert len(begun) < len(tasks)
 
 
 def test_steps_stand_together_where_none_reads_what_another_makes():

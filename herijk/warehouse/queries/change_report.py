@@ -127,7 +127,8 @@ def _nothing() -> ChangeReport:
     keys = {name: TABLES[name].create_empty() for name in ("tows", "quarantine", "log_factors")}
     what = pl.lit(None, pl.String).alias("what")
     tows, faults = (keys[name].with_columns(what) for name in ("tows", "quarantine"))
-    return ChangeReport(False, tows, faults, keys["log_factors"], _no_lines())
+    factors = _factors(keys["log_factors"], keys["log_factors"])
+    return ChangeReport(False, tows, faults, factors, _no_lines())
 
 
 def is_reported(store: Store) -> bool:
