@@ -13,7 +13,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import frictionless
 import polars as pl
 import pytest
 
@@ -220,12 +219,16 @@ def test_numbers_in_the_xlsx_are_numbers_and_days_are_days(published):
 
 
 def test_the_data_package_validates_with_its_own_tool(published):
+    import frictionless  # noqa: PLC0415 - takes seconds to import
+
     report = frictionless.validate(str(folder(published) / "datapackage.json"))
     assert report.valid, report.flatten(["type", "message"])
     assert report.stats["tasks"] == 2
 
 
 def test_the_data_package_tool_would_see_a_changed_number(published_copy):
+    import frictionless  # noqa: PLC0415 - takes seconds to import
+
     file = folder(published_copy) / "register.csv"
     file.write_bytes(file.read_bytes().replace(b";8;", b";acht;", 1))
     assert not frictionless.validate(str(file.parent / "datapackage.json")).valid
