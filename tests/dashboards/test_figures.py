@@ -9,8 +9,10 @@ import polars as pl
 import pytest
 import vl_convert
 
+from herijk.dashboards import drawn
 from herijk.dashboards.figures import FIGURES, png, slides
-from herijk.dashboards.site.specifications import specification
+from herijk.dashboards.site.specifications import chart_specifications, specification
+from herijk.dashboards.site.still import still
 from herijk.words import LANGUAGES
 from herijk.words.catalogue import WORDS, both, speaker
 
@@ -184,6 +186,18 @@ def test_a_trace_says_why_it_was_cut():
 def test_a_figure_is_also_a_picture():
     frame = pl.DataFrame({"season": [2010], "status": ["accepted"], "number": [3]})
     assert png("statuses", frame, "nl").startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_a_picture_is_compiled_once_and_drawn_with_any_rows(language):
+    rows = [{"season": season, "status": "accepted", "number": season - 2000} for season in (9, 10)]
+    frame = pl.DataFrame(rows)
+    spec = chart_specifications(language)["statuses"] | {"datasets": {"rows": rows}}
+    bare = re.sub(r' (role|aria-[a-z]+|clip-path|id)="[^"]*"', "", drawn.svg(spec, language))
+    picture = still("statuses", frame, language, "a <caption>")
+    assert picture.startswith('<svg role="img" aria-label="a &lt;caption&gt;" ')
+    assert re.findall(">([^<>]+)<", picture) == re.findall(">([^<>]+)<", bare)
+    assert picture.count("<path") == bare.count("<path")
 
 
 def test_every_text_is_there_in_every_language():
