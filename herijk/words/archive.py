@@ -356,7 +356,7 @@ ARCHIVE: Final[dict[str, str]] = {
     "column '{column}' is at its highest value, {:.6g}, in {:.0f} % of the samples, as a load "
     "cell at the end of its range": (
         "kolom '{column}' staat op zijn hoogste waarde, {:.6g}, bij {:.0f} % van de metingen, "
-        "zoals een krachtopnemer aan het eind van zijn bereik"
+        "zoals een krachtmeter aan het eind van zijn bereik"
     ),
     "Columns '{}' and '{}' seem to be exchanged: the second moves {:.0f} times a second, as log1 "
     "does, and the first {:.1f} times, as a receiver does.": (

@@ -197,6 +197,10 @@ class Method(_Options):
     ranges: tuple[SeasonSteps, ...]
     validity: RegisterRule = RegisterRule()
 
+    def titled(self, language: str) -> str:
+        """The title in `nl` or `en`."""
+        return self.title if language == "nl" else self.title_en
+
     def for_season(self, season: int) -> Steps:
         """The steps of a season.
 
