@@ -3,6 +3,7 @@
 import itertools
 import json
 import re
+from functools import cache
 
 import polars as pl
 import pytest
@@ -70,20 +71,25 @@ def encodings(part):
             yield from encodings(value)
 
 
+@cache
+def english(name):
+    """The specification of a figure, whose texts are English."""
+    return FIGURES[name](FRAME, speaker("en")).to_dict()
+
+
 def axes(spec):
     return [e[c] for e in encodings(spec) for c in ("x", "y") if "field" in e.get(c, {})]
 
 
 @pytest.mark.parametrize("name", FIGURES)
 def test_a_figure_draws_its_columns(name):
-    spec = FIGURES[name](FRAME, speaker("en")).to_dict()
-    assert {axis["field"] for axis in axes(spec)} == AXES[name]
+    assert {axis["field"] for axis in axes(english(name))} == AXES[name]
 
 
 @pytest.mark.parametrize("name", FIGURES)
 def test_an_axis_with_a_unit_in_its_name_has_it_in_its_title(name):
     units = {"_kg_m": "kg/m", "_m_s": "m/s", "_kg": "kg", "_n": "N", "_deg": "deg", "_s": "s"}
-    for axis in axes(FIGURES[name](FRAME, speaker("en")).to_dict()):
+    for axis in axes(english(name)):
         unit = next((u for ending, u in units.items() if axis["field"].endswith(ending)), None)
         if unit is not None and axis["title"]:
             assert f"[{unit}]" in axis["title"], axis
@@ -92,7 +98,7 @@ def test_an_axis_with_a_unit_in_its_name_has_it_in_its_title(name):
 @pytest.mark.parametrize("name", FIGURES)
 def test_a_specification_does_not_depend_on_the_data(name):
     def bare(frame):
-        spec = FIGURES[name](frame, speaker("nl")).to_dict()
+        spec = FIGURES[name](frame, speaker("nl")).to_dict(validate=False)
         (placeholder,) = spec.pop("datasets")
         return json.dumps(spec).replace(placeholder, "rows")
 
