@@ -140,18 +140,18 @@ def batches(
     for season in tows["season"].unique().sort():
         steps = tuple(method.for_season(season) for method in methods)
         seasons.setdefault(str(steps), (steps, []))[1].append(season)
-    whole = [
-        (Batch.of(tows.filter(pl.col("season").is_in(season_batch)), blocks), steps)
+    whole = Batch.of(tows, blocks)
+    alike = [
+        (whole.part(np.isin(whole.of_tow("season"), season_batch)), steps)
         for steps, season_batch in seasons.values()
     ]
-    return [part for batch, steps in whole for part in _by_gps(batch, steps)]
+    return [part for batch, steps in alike for part in _by_gps(batch, steps)]
 
 
 def _by_gps(batch: Batch, steps: tuple[Steps, ...]) -> Iterator[tuple[Batch, tuple[Steps, ...]]]:
     """A batch as it is, or its tows with GPS and those without."""
     otherwise = tuple(without_gps(one) for one in steps)
-    has_gps = batch.has_gps
-    if otherwise == steps or has_gps.all():
+    if otherwise == steps or (has_gps := batch.has_gps).all():
         yield batch, steps
         return
     for mine, own in ((has_gps, steps), (~has_gps, otherwise)):
