@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from unittest import mock
 
-from distributed import Client
 from polars.testing import assert_frame_equal
 
 from herijk.warehouse.build.database import DATABASE_TABLE
@@ -102,6 +101,8 @@ def dask_cluster(workers: int, dagster_home: Path) -> Iterator[Cluster]:
         started = [start("worker", *alone) for _ in range(workers)]  # they wait for the file
         address = _wait_for(file)
         if workers:
+            from distributed import Client  # noqa: PLC0415 - takes seconds to import
+
             with Client(address) as client:
                 client.wait_for_workers(workers, timeout=PATIENCE_S)
         yield Cluster(address, started)

@@ -2,6 +2,7 @@
 
 import base64
 from concurrent.futures import Executor
+from typing import Final
 
 import dagster as dg
 import polars as pl
@@ -13,6 +14,9 @@ from herijk.warehouse.build.database import DATABASE_TABLE
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.code import code_hash
 from herijk.warehouse.store.store import Store
+
+SPREAD: Final = "reproducibility"
+"""The figure that says best whether a rebuild made things better, which Dagster shows."""
 
 
 @dg.asset(
@@ -31,25 +35,21 @@ def site(setup: Setup) -> dg.MaterializeResult:
 
 def make_site(store: Store, other: Executor) -> dg.MaterializeResult:
     """Makes the pages with the help of a second process, and remembers from what."""
-    from herijk.dashboards.site import build_site  # noqa: PLC0415 - Altair takes a second to import
+    from herijk.dashboards.figures import png  # noqa: PLC0415 - Altair takes a second to import
+    from herijk.dashboards.site import build_site  # noqa: PLC0415
 
+    with Views(store) as views:
+        spread = views.table(SPREAD)
+    picture = other.submit(png, SPREAD, spread, "nl")
     size = build_site(store, other)
     store.write(SITE_TABLE, pl.DataFrame(), site_made_from(store))
     index = store.root / "site" / "index.html"
+    encoded = base64.b64encode(picture.result()).decode()
     return dg.MaterializeResult(
         asset_key="site",
         metadata={
             **size,
             "index": dg.MetadataValue.path(str(index.resolve())),
-            "reproducibility": dg.MetadataValue.md(_reproducibility(store)),
+            SPREAD: dg.MetadataValue.md(f"![{SPREAD}](data:image/png;base64,{encoded})"),
         },
     )
-
-
-def _reproducibility(store: Store) -> str:
-    """The figure that says best whether a rebuild made things better, as a picture."""
-    from herijk.dashboards.figures import png  # noqa: PLC0415 - Altair takes a second to import
-
-    with Views(store) as views:
-        picture = png("reproducibility", views.table("reproducibility"), "nl")
-    return f"![reproducibility](data:image/png;base64,{base64.b64encode(picture).decode()})"

@@ -3,23 +3,15 @@
 from collections import Counter
 from typing import TYPE_CHECKING, Any, Final
 
-from herijk.cli.text import SIMULATED, table
+from herijk.cli.text import SIMULATED, decimals, table
 from herijk.warehouse.queries.due import WORTH
 from herijk.words import tell
+from herijk.words.catalogue import code
 
 if TYPE_CHECKING:
     from herijk.tables.row import Row
     from herijk.warehouse.queries.due import DueReport
 
-REASONS: Final = {
-    "in_range": "as declared",
-    "brought_down": "declared speed takes too much: upper end",
-    "brought_up": "declared speed is low and was rowed faster",
-    "low_but_rowed": "low, but really rowed so: if the crew expects no more",
-    "low_not_raced": "declared speed is low and no race tells: lower end, ask the crew",
-    "like_boats": "no curve yet: middle of boats of this type",
-    "nothing_known": "no curve and no boats like it: the committee decides",
-}
 LAST_DAY: Final = ", the day of the last tow or race"
 URGENCIES: Final = {
     "expired": "Expired: does not count any more",
@@ -72,20 +64,20 @@ def _lines(lines: list["Row"]) -> str:
 
 
 def _line(line: "Row") -> tuple[Any, ...]:
-    tow_at = _speed(line["tow_speed_m_s"]) + ("*" if line["beyond_curve"] else "")
+    tow_at = decimals(line["tow_speed_m_s"], 2) + ("*" if line["beyond_curve"] else "")
     return (
         _day(line["valid_until"]),
         line["fsn_no"],
         line["name"] or "-",
         f"{line['rowers']}{line['crew_class']}",
         _day(line["tow_date"]),
-        _speed(line["declared_speed_m_s"]),
+        decimals(line["declared_speed_m_s"], 2),
         "-" if line["power_w"] is None else f"{line['power_w']:.0f}",
-        _speed(line["raced_speed_m_s"]),
-        _speed(line["lowest_speed_m_s"]),
-        _speed(line["highest_speed_m_s"]),
+        decimals(line["raced_speed_m_s"], 2),
+        decimals(line["lowest_speed_m_s"], 2),
+        decimals(line["highest_speed_m_s"], 2),
         tow_at,
-        REASONS[line["speed_reason"]],
+        code(line["speed_reason"]),
     )
 
 
@@ -103,7 +95,7 @@ def _choice(choice: list["Row"]) -> str:
             f"{c['rowers']}{c['crew_class']}",
             c["seasons"],
             _day(c["valid_until"]),
-            _speed(c["tow_speed_m_s"]),
+            decimals(c["tow_speed_m_s"], 2),
             tell("{:.3f} %", 100 * c["factor_sd_after_ratio"]),
         )
         for c in choice
@@ -122,10 +114,6 @@ def _choice(choice: list["Row"]) -> str:
         tell(worth),
         table(head, rows),
     )
-
-
-def _speed(value: float | None) -> str:
-    return "-" if value is None else tell("{:.2f}", value)
 
 
 def _day(value: Any) -> str:

@@ -3,10 +3,10 @@
 from collections import Counter
 from typing import TYPE_CHECKING, Any, Final
 
-from herijk.cli.text import SIMULATED, table
+from herijk.cli.text import SIMULATED, decimals, table
 from herijk.tables.row import Row
 from herijk.warehouse.editions.words import LANGUAGES, Language
-from herijk.words import LANGUAGE, in_per_cent, number, tell
+from herijk.words import LANGUAGE, in_per_cent, tell
 from herijk.words.catalogue import code
 
 if TYPE_CHECKING:
@@ -16,16 +16,6 @@ if TYPE_CHECKING:
     from herijk.warehouse.editions.publish import Published
     from herijk.warehouse.editions.verify import Verification
     from herijk.warehouse.queries.register import RegisterReport
-
-KINDS = {"recomputed": "recomputed", "as_printed": "as printed"}
-FINDINGS = {
-    "altered": "altered",
-    "missing": "missing",
-    "swapped": "swapped",
-    "differs": "differs",
-    "unchecked": "unchecked",
-    "notice": "notice",
-}
 
 
 def _words() -> Language:
@@ -86,10 +76,10 @@ def _register_line(line: Row) -> tuple[Any, ...]:
         _words().statuses.get(line["status"], line["status"]),
         line["valid_until"],
         line["tow_id"],
-        *(_number(line[name], 2) for name in ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m")),
-        *(_number(line[name], 2) for name in ("cw_lo_kg_m", "cw_hi_kg_m", "waterline_length_m")),
-        *(_number(line[name], 2) for name in ("beam_m", "bow_height_m")),
-        _number(line["weight_kg"], 0),
+        *(decimals(line[name], 2) for name in ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m")),
+        *(decimals(line[name], 2) for name in ("cw_lo_kg_m", "cw_hi_kg_m", "waterline_length_m")),
+        *(decimals(line[name], 2) for name in ("beam_m", "bow_height_m")),
+        decimals(line["weight_kg"], 0),
     )
 
 
@@ -201,7 +191,7 @@ def _lines(rows: list[Row]) -> str:
 
 def _line(row: Row) -> tuple[Any, ...]:
     pairs = [
-        _number(row[f"{side}_{name}"])
+        decimals(row[f"{side}_{name}"], 2)
         for name in ("a_kg_m", "b_m_s", "cw_kg_m", "power_w")
         for side in ("old", "new")
     ]
@@ -291,8 +281,8 @@ def _moved(moved: list[Row]) -> str:
             str(r["race_date"]),
             r["fsn_no"],
             f"{r['rowers']}{r['crew_class']}",
-            _number(r["old_power_w"]),
-            _number(r["new_power_w"]),
+            decimals(r["old_power_w"], 2),
+            decimals(r["new_power_w"], 2),
             r["old_rank"],
             r["new_rank"],
             "podium" if r["podium_changed"] else "",
@@ -307,7 +297,7 @@ def verify(report: "Verification") -> str:
     """What was checked and what is wrong."""
     if not report.editions and not report.findings:
         return tell("No edition was published yet; nothing to verify.")
-    rows = [(e.edition, KINDS[e.kind], e.lines, e.made_again, e.equal) for e in report.editions]
+    rows = [(e.edition, code(e.kind), e.lines, e.made_again, e.equal) for e in report.editions]
     head = ("edition", "kind", "lines", "made again", "equal")
     parts = [
         tell(
@@ -320,13 +310,7 @@ def verify(report: "Verification") -> str:
     ]
     if report.findings:
         findings = [
-            (
-                f.edition,
-                "WRONG" if f.wrong else "notice",
-                FINDINGS[f.kind],
-                f.where,
-                f.message,
-            )
+            (f.edition, "WRONG" if f.wrong else "notice", f.kind, f.where, f.message)
             for f in report.findings
         ]
         parts.append(table(("edition", "", "kind", "where", "what"), findings))
@@ -406,10 +390,6 @@ def _seconds_of(run: Row) -> str:
 
 def _cause(cause: Row) -> str:
     return _words().cause(cause["cause"], cause.get("step"))
-
-
-def _number(value: float | None, digits: int = 2) -> str:
-    return "-" if value is None else number(value, f".{digits}f")
 
 
 def _per_cent(ratio: float | None) -> str:

@@ -20,14 +20,9 @@ from herijk.words import LANGUAGE, tell
 DIFFERS = "*"
 
 
-def title_of(method: Method) -> str:
-    """The title of a method, in the language of this command."""
-    return method.title if LANGUAGE.get() == "nl" else method.title_en
-
-
 def method_in_words(shown: Method, parent: Method | None) -> str:
     """The whole method; sentences that differ from those of `parent` are marked."""
-    lines = [f"{shown.name}: {title_of(shown)}", "", shown.description.strip(), ""]
+    lines = [f"{shown.name}: {shown.titled(LANGUAGE.get())}", "", shown.description.strip(), ""]
     if parent is not None:
         lines += [tell("Extends {}; what differs from it is marked {}.", parent.name, DIFFERS), ""]
     for block in shown.ranges:
@@ -88,7 +83,8 @@ def _speed(step: Speed) -> str:
 
 def _calibration(step: Calibration) -> str:
     without = [] if step.without_gps == "no_curve" else [tell("Without GPS: as estimated.")]
-    return " ".join([_calibration_rule(step), *without])
+    stream = [] if step.stream == "steady" else [tell("A drift of the stream is taken off.")]
+    return " ".join([_calibration_rule(step), *stream, *without])
 
 
 def _calibration_rule(step: Calibration) -> str:

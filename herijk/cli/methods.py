@@ -11,7 +11,7 @@ import typer
 from herijk.cli.arguments import AsJson, DataFolder, as_json_text, show, show_files
 from herijk.cli.overview import Overview
 from herijk.pipeline.errors import HerijkError
-from herijk.words import tell
+from herijk.words import LANGUAGE, tell
 
 if TYPE_CHECKING:
     from herijk.pipeline.method.definition import Method
@@ -54,14 +54,13 @@ def methods(
 ) -> None:
     """List the methods: those that ship, and those in the folder `methods` of --data."""
     from herijk.cli import text
-    from herijk.cli.method_text import title_of
 
     if context.invoked_subcommand is None:
         known = known_methods(data)
         rows = [
             {
                 "method": method.name,
-                "title": title_of(method),
+                "title": method.titled(LANGUAGE.get()),
                 "content_hash": method.content_hash,
                 "ships": name not in known.own,
             }
@@ -141,12 +140,12 @@ def diff(
 
 
 def _one(method: "Method", known: "KnownMethods") -> MethodReport:
-    from herijk.cli.method_text import method_in_words, title_of
+    from herijk.cli.method_text import method_in_words
 
     parent = None if method.extends is None else known.get(method.extends)
     return MethodReport(
         method=method.name,
-        title=title_of(method),
+        title=method.titled(LANGUAGE.get()),
         content_hash=method.content_hash,
         extends=method.extends,
         words=method_in_words(method, parent),

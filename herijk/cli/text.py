@@ -47,6 +47,11 @@ def _cell(value: Any) -> str:
     return str(spoken(value, LANGUAGE.get()))
 
 
+def decimals(value: float | None, digits: int) -> str:
+    """A number with so many decimals, a dash where it is not known."""
+    return "-" if value is None else number(value, f".{digits}f")
+
+
 def _per_cent(ratio: float | None) -> str:
     return "-" if ratio is None else number(100 * (ratio - 1), "+z.1f") + " %"
 
@@ -172,13 +177,13 @@ def log_error(report: "LogErrorReport") -> str:
     rows = [
         (
             r["season"],
-            _factor(r["factor"]),
-            _factor(r["lo"]),
-            _factor(r["hi"]),
+            decimals(r["factor"], 4),
+            decimals(r["lo"], 4),
+            decimals(r["hi"], 4),
             code(r["source"]),
             r["n_tows"],
             r["n_links"],
-            _factor(r["factor_no_boats"]),
+            decimals(r["factor_no_boats"], 4),
             "-" if r["agreement"] is None else tell("{:+.1f}", r["agreement"]),
             code(r["cause"]),
         )
@@ -268,7 +273,7 @@ def _parts(report: "LogErrorReport") -> str:
             r["season"],
             r["log"],
             r["part"] + 1,
-            *(_factor(r[name]) for name in ("factor", "lo", "hi")),
+            *(decimals(r[name], 4) for name in ("factor", "lo", "hi")),
             code(r["source"]),
             r["n_tows"],
             r["n_links"],
@@ -276,10 +281,6 @@ def _parts(report: "LogErrorReport") -> str:
         for r in report.parts
     ]
     return table(head, rows)
-
-
-def _factor(value: float | None) -> str:
-    return "-" if value is None else number(value, ".4f")
 
 
 def _plot(row: Row) -> str:

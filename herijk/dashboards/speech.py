@@ -23,6 +23,10 @@ class Speech:
         """A text, escaped."""
         self._marks = str.maketrans({".": self.decimal, "-": MINUS})
 
+    def unbroken(self, key: str) -> str:
+        """A heading without the places where it may be broken."""
+        return self.say(key).replace("\u00ad", "").replace("\u200b", "")
+
     def number(self, value: float, digits: int, sign: str = "") -> str:
         """A number with so many decimals; `sign` is "+" where a plus is to be shown."""
         return f"{value:{sign}z.{digits}f}".translate(self._marks)

@@ -68,9 +68,9 @@ class Points:
                 "Points need three arrays of one shape (n_fits, n_points), not {}.", shapes
             )
         for name, values in (("speed_m_s", self.speed_m_s), ("cw_kg_m", self.cw_kg_m)):
-            sound = np.isfinite(values) & (values > 0)
-            faulty = np.flatnonzero((self.used & ~sound).any(axis=1))
-            if faulty.size:
+            unsound = self.used & ~(np.isfinite(values) & (values > 0))
+            if unsound.any():
+                faulty = np.flatnonzero(unsound.any(axis=1))
                 raise BrokenPromiseError(
                     "{}: {} curves use a point that is not a positive number, the first is curve "
                     "{}. Set such points to unused beforehand.",
@@ -360,7 +360,7 @@ def _fit_chunk(
     solvable = np.flatnonzero((n >= 2) & (_sum(z * z) > n * MIN_SPREAD**2))
     if not solvable.size:
         return
-    q, c0, rss, converged = _gauss_newton(z[:, solvable], c[:, solvable], w[:, solvable])
+    q, c0, rss, converged = _gauss_newton(*(x.take(solvable, axis=1) for x in (z, c, w)))
     solved = solvable[converged]
     a, s = from_c0_q(c0[converged], q[converged], np.sqrt(u_mean[solved]))
     rows = start + solved
@@ -402,20 +402,22 @@ def _gauss_newton(
             rows = open_fits[done]
             q_out[rows], c0_out[rows] = state.q[done], state.c0[done]
             rss_out[rows], converged[rows] = state.rss[done], True
-            going = ~done
-            if not going.any():
+            going = np.flatnonzero(~done)
+            if not going.size:
                 break
             open_fits, damping = open_fits[going], damping[going]
             upper, cc = upper[going], cc[going]
-            z, c, w = z[:, going], c[:, going], w[:, going]
+            z, c, w = (x.take(going, axis=1) for x in (z, c, w))
             state = _State(*(x[going] for x in state))
-        trial_q = state.q + damping * state.step
-        trial_q = np.clip(trial_q, 0.5 * (state.q - 1.0), 0.5 * (state.q + upper))
-        trial = _evaluate(trial_q, z, c, w)
+        trial_q = np.maximum(state.q + damping * state.step, 0.5 * (state.q - 1.0))
+        trial = _evaluate(np.minimum(trial_q, 0.5 * (state.q + upper)), z, c, w)
         # The slack lets the last steps pass, whose gain is below the rounding of the sum.
         better = trial.rss <= state.rss + TOLERANCE * cc
-        state = _State(*(np.where(better, t, old) for t, old in zip(trial, state, strict=True)))
         damping = np.where(better, 1.0, 0.5 * damping)
+        if better.all():
+            state = trial
+        else:
+            state = _State(*(np.where(better, t, old) for t, old in zip(trial, state, strict=True)))
     return q_out, c0_out, rss_out, converged
 
 
@@ -445,11 +447,11 @@ def _evaluate(q: FloatArray, z: FloatArray, c: FloatArray, w: FloatArray) -> _St
 
 
 def _sum(x: FloatArray) -> FloatArray:
-    """Sum over points (axis 0), one after the other: the same to the bit in any batch."""
-    total: FloatArray = x[0].copy()
-    for row in x[1:]:
-        total += row
-    return total
+    """Sum over points (axis 0), one after the other: the same to the bit in any batch.
+
+    NumPy adds rows one after the other, but the numbers of a single column in pairs.
+    """
+    return np.asarray(np.add.reduce(x) if x.shape[1] > 1 else x.cumsum(axis=0)[-1])
 
 
 # Intervals

@@ -56,7 +56,7 @@ class TowFacts(dy.Schema):
     crew_weight_kg = column.number(
         "kg", "crew and ballast on board", nullable=True, min=0, max=6_000
     )
-    water_temperature_c = column.number("C", "water temperature", nullable=True, min=-2, max=35)
+    water_temperature_c = column.number("C", "water temperature", nullable=True, min=0, max=35)
     speed_correction_ratio = column.number(
         "1", "speed correction entered by hand, 0.06 for 6 %", nullable=True, min=-0.5, max=0.5
     )

@@ -56,7 +56,7 @@ ANSWERS: Final[dict[str, tuple[str, str]]] = {
         "log comes on top of that and is not known under this method.",
     ),
     "answer_unseen": (
-        "Een fout in de meting zelf, bijvoorbeeld in de krachtopnemer, zou vanaf ongeveer "
+        "Een fout in de meting zelf, bijvoorbeeld in de krachtmeter, zou vanaf ongeveer "
         "{percent} % opvallen naast de andere proeven; een kleinere is niet te zien.",
         "An error in the measurement itself, of the load cell for example, would stand out among "
         "the other tows from about {percent} % on; a smaller one cannot be seen.",

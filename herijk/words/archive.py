@@ -80,9 +80,9 @@ ARCHIVE: Final[dict[str, str]] = {
         "kolom '{column}' is '{cell}', maar er is geen meetfile2."
     ),
     "column '{column}' has '{part}'; runs are 1 to {last}, or b1 to b{last} for the second file, "
-    "with commas between them.": (
+    "with commas between them. Runs beyond these need a [[plan]].": (
         "kolom '{column}' heeft '{part}'; runs zijn 1 tot {last}, of b1 tot b{last} voor het "
-        "tweede bestand, met komma's ertussen."
+        "tweede bestand, met komma's ertussen. Voor meer runs is een [[plan]] nodig."
     ),
     "Nobody knows column {names}. Correct it, name it under [headers] in archief.toml, or put it "
     "there under ignore.": (
@@ -185,6 +185,12 @@ ARCHIVE: Final[dict[str, str]] = {
         "'{name}' is een pad; hier kan alleen de naam staan van een bestand in {folder}."
     ),
     "No row of a tow list names this file.": "Geen rij van een sleeplijst noemt dit bestand.",
+    "'{path}' is not read: it is packed. Unpack it in its folder.": (
+        "'{path}' wordt niet gelezen: het is ingepakt. Pak het uit in zijn map."
+    ),
+    "'{path}' is not read: samples are read from text. Save the sheet as CSV.": (
+        "'{path}' wordt niet gelezen: metingen worden uit tekst gelezen. Bewaar het blad als CSV."
+    ),
     "'{path}' is not read, as nobody knows what it is.": (
         "'{path}' wordt niet gelezen: het is onbekend wat het is."
     ),
@@ -247,7 +253,7 @@ ARCHIVE: Final[dict[str, str]] = {
         "In het bestand staan runs {present} en gepland zijn runs {planned}. Geef de doelen en "
         "richtingen van alle runs onder [[plan]] in archief.toml."
     ),
-    "No row says which run it belongs to.": "Geen rij zegt bij welke run hij hoort.",
+    "No row has a number in column 'run'.": "Geen rij heeft een getal in de kolom 'run'.",
     "There are no samples in the file.": "Er staan geen metingen in het bestand.",
     "There are no samples below the header.": "Er staan geen metingen onder de kop.",
     "run {run:g} does not exist; runs are numbered 1 to {last}.": (
@@ -257,14 +263,14 @@ ARCHIVE: Final[dict[str, str]] = {
         "run {run} begint opnieuw; zijn rijen moeten bij elkaar staan."
     ),
     "the time does not increase within the run.": "de tijd loopt niet op binnen de run.",
-    "By its times it has {own:.4g} samples per second, other than the first tow of its season: "
+    "By its times it has {own:g} samples per second, other than the first tow of its season: "
     "write that into the tow list, in a column 'meetfrequentie [Hz]'.": (
-        "Volgens de tijden heeft hij {own:.4g} metingen per seconde, anders dan de eerste sleep "
+        "Volgens de tijden heeft hij {own:g} metingen per seconde, anders dan de eerste sleep "
         "van het seizoen: schrijf dat in de sleeplijst, in een kolom 'meetfrequentie [Hz]'."
     ),
-    "Run {run}: by its times it has {observed:.4g} samples per second, by the list or the profile "
+    "Run {run}: by its times it has {observed:g} samples per second, by the list or the profile "
     "{rate}; they may differ by {most:.0%}.": (
-        "Run {run}: volgens de tijden heeft hij {observed:.4g} metingen per seconde, volgens de "
+        "Run {run}: volgens de tijden heeft hij {observed:g} metingen per seconde, volgens de "
         "lijst of het profiel {rate}; dat mag {most:.0%} verschillen."
     ),
     # Judging samples
@@ -350,7 +356,7 @@ ARCHIVE: Final[dict[str, str]] = {
     "column '{column}' is at its highest value, {:.6g}, in {:.0f} % of the samples, as a load "
     "cell at the end of its range": (
         "kolom '{column}' staat op zijn hoogste waarde, {:.6g}, bij {:.0f} % van de metingen, "
-        "zoals een krachtopnemer aan het eind van zijn bereik"
+        "zoals een krachtmeter aan het eind van zijn bereik"
     ),
     "Columns '{}' and '{}' seem to be exchanged: the second moves {:.0f} times a second, as log1 "
     "does, and the first {:.1f} times, as a receiver does.": (

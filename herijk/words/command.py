@@ -656,23 +656,6 @@ COMMAND: Final[dict[str, str]] = {
         "Zonder kromme: nooit gesleept, of geen proef gaf er een"
     ),
     "Later": "Later",
-    "as declared": "zoals opgegeven",
-    "declared speed takes too much: upper end": "opgegeven snelheid vraagt te veel: bovengrens",
-    "declared speed is low and was rowed faster": (
-        "opgegeven snelheid is laag en er is sneller geroeid"
-    ),
-    "low, but really rowed so: if the crew expects no more": (
-        "laag, maar echt zo geroeid: als de ploeg niet meer verwacht"
-    ),
-    "declared speed is low and no race tells: lower end, ask the crew": (
-        "opgegeven snelheid is laag en geen wedstrijd zegt iets: ondergrens, vraag de ploeg"
-    ),
-    "no curve yet: middle of boats of this type": (
-        "nog geen kromme: midden van sloepen van dit type"
-    ),
-    "no curve and no boats like it: the committee decides": (
-        "geen kromme en geen vergelijkbare sloepen: de commissie beslist"
-    ),
     "The speed takes 70-90 W per rower (men) or 40-55 W (women) on the known curve. A boat "
     "that was altered\nsince may be towed at another one. * lies outside 85-115 % of the "
     "last declared speed, where its curve does not hold.": (
@@ -792,6 +775,7 @@ COMMAND: Final[dict[str, str]] = {
     "one factor per file from GPS speed / log speed, as many runs out as back.": (
         "een factor per bestand uit GPS-snelheid / logsnelheid, evenveel runs heen als terug."
     ),
+    "A drift of the stream is taken off.": "Een verloop van de stroom gaat eraf.",
     "Without GPS: as estimated.": "Zonder GPS: zoals geschat.",
     "one factor a season, the mean of its tows' GPS speed / log speed.": (
         "een factor per seizoen, het gemiddelde van GPS-snelheid / logsnelheid van de proeven."
@@ -1015,7 +999,6 @@ COMMAND: Final[dict[str, str]] = {
     "spread by cause: nothing claimed, {}.": "spreiding per oorzaak: niet te zeggen, {}.",
     "within types, at one speed: {} (n {}).": "binnen types, bij een snelheid: {} (n {}).",
     "boats": "sloepen",
-    "a boat's seasons": "seizoenen van een sloep",
     "not known (n 0 pairs)": "niet bekend (n 0 paren)",
     "{} ({}, n {} pairs)": "{} ({}, n {} paren)",
     "{}: off by {} (n {}; all types {}, n {}); the tow test itself {}, between seasons {}; "
@@ -1045,13 +1028,6 @@ COMMAND: Final[dict[str, str]] = {
         "Wat verschilt: hellingen en verschuivingen met meer dan beide intervallen samen, "
         "en oordelen"
     ),
-    "boats without a type are not compared": "sloepen zonder type worden niet vergeleken",
-    "too few boats": "te weinig sloepen",
-    "all boats have the same value": "alle sloepen hebben dezelfde waarde",
-    "runs without scatter": "runs zonder spreiding",
-    "no curve of this type": "geen kromme van dit type",
-    "fewer than six pairs": "minder dan zes paren",
-    "too few repeat tows": "te weinig herhaalde proeven",
     "unusual weight": "opvallend gewicht",
     "unusual length": "opvallende lengte",
     "its season lies to the same side": "haar seizoen ligt aan dezelfde kant",

@@ -7,11 +7,9 @@ import threading
 import time
 
 import dagster as dg
-import dask
 import pytest
 
 from herijk.assets import rebuild, runs
-from herijk.assets.cluster import read_seasons
 from herijk.assets.progress import Quiet
 from herijk.pipeline.errors import UnavailableError
 from herijk.pipeline.method.definition import shipped_method
@@ -91,6 +89,8 @@ def test_a_rebuild_of_which_a_worker_is_killed_makes_what_is_made_here(
 
 
 def test_a_season_that_a_worker_cannot_read_is_told(built, remote, cluster):
+    from herijk.assets.cluster import read_seasons  # noqa: PLC0415 - takes seconds to import
+
     elsewhere = remote.data / "without-settings"  # so the worker looks for a lake in it
     with runs.instance_of(remote.store) as instance:
         read = read_seasons(instance, cluster.address, (built.archive, elsewhere), [2009], {})
@@ -99,6 +99,10 @@ def test_a_season_that_a_worker_cannot_read_is_told(built, remote, cluster):
 
 
 def test_a_cluster_that_is_not_there_is_told_with_the_way_out(built, remote):
+    import dask  # noqa: PLC0415 - takes seconds to import
+
+    from herijk.assets.cluster import read_seasons  # noqa: PLC0415 - takes seconds to import
+
     with (
         runs.instance_of(remote.store) as instance,
         dask.config.set({"distributed.comm.timeouts.connect": "0.2s"}),
@@ -108,6 +112,8 @@ def test_a_cluster_that_is_not_there_is_told_with_the_way_out(built, remote):
 
 
 def test_a_scheduler_without_workers_is_not_waited_for_without_end(built, remote, monkeypatch):
+    from herijk.assets.cluster import read_seasons  # noqa: PLC0415 - takes seconds to import
+
     monkeypatch.setenv("DASK_DISTRIBUTED__SCHEDULER__NO_WORKERS_TIMEOUT", "1s")
     with (
         runs.instance_of(remote.store) as instance,

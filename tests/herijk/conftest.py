@@ -8,6 +8,9 @@ import pytest
 
 from herijk.cli.json_schemas import schema_of, schemas
 from herijk.cli.main import main
+from tests.warehouse.conftest import edition_archive, published
+
+__all__ = ["edition_archive", "published"]
 
 
 def _closed(schema):

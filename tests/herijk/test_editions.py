@@ -5,23 +5,13 @@ import json
 import pytest
 
 from herijk.pipeline.recompute import recompute
-from tests.warehouse.edition_bench import EditionBench
 
 DECISION = ("--decision", "ALV 12-5-2014")
 FROM = ("--valid-from", "2014-06-01", "--published-on", "2014-05-13")
 
 
-@pytest.fixture(scope="module")
-def bench(tmp_path_factory):
-    """Rebuilt, with two editions published through the command."""
-    made = EditionBench.simulated(tmp_path_factory.mktemp("command"))
-    for edition, method in (("2014-1", "as-published"), ("2014-2", "rebased")):
-        made.publish(edition, method)
-    return made
-
-
-def test_publish_tells_where_the_edition_is_and_only_once(herijk, bench, tmp_path):
-    copy = bench.copy(tmp_path)
+def test_publish_tells_where_the_edition_is_and_only_once(herijk, published, tmp_path):
+    copy = published.copy(tmp_path)
     call = ("publish", "x", "--method", "rebased", *FROM, *DECISION, "--data", copy.data)
     status, out, err = herijk(*call)
     assert (status, err) == (0, "")
@@ -46,12 +36,12 @@ def test_publish_tells_where_the_edition_is_and_only_once(herijk, bench, tmp_pat
         ("diff", "2014-1"),
     ],
 )
-def test_wrong_arguments_are_status_2(herijk, bench, arguments):
-    assert herijk(*arguments, "--data", bench.data)[0] == 2
+def test_wrong_arguments_are_status_2(herijk, published, arguments):
+    assert herijk(*arguments, "--data", published.data)[0] == 2
 
 
-def test_diff_names_gain_loss_causes_and_races(herijk, bench):
-    status, out, err = herijk("diff", "2014-1", "2014-2", "--data", bench.data)
+def test_diff_names_gain_loss_causes_and_races(herijk, published):
+    status, out, err = herijk("diff", "2014-1", "2014-2", "--data", published.data)
     assert (status, err) == (0, "")
     for part in (
         "Gain",
@@ -62,17 +52,17 @@ def test_diff_names_gain_loss_causes_and_races(herijk, bench):
         "Winners",
     ):
         assert part in out
-    status, out, _ = herijk("diff", "2014-1", "2014-2", "--data", bench.data, "--json")
+    status, out, _ = herijk("diff", "2014-1", "2014-2", "--data", published.data, "--json")
     report = json.loads(out)
     assert len(report["rows"]) == report["lines"]
     assert {"cw_ratio", "old_rank", "new_rank", "old_power_w", "causes"} <= set(report["rows"][0])
 
 
-def test_verify_is_0_when_all_is_well_and_1_when_not(herijk, bench, tmp_path):
-    status, out, err = herijk("verify", "--data", bench.data)
+def test_verify_is_0_when_all_is_well_and_1_when_not(herijk, published, tmp_path):
+    status, out, err = herijk("verify", "--data", published.data)
     assert (status, err) == (0, "")
     assert "Everything is as it was published." in out
-    copy = bench.copy(tmp_path)
+    copy = published.copy(tmp_path)
     file = copy.data / "editions" / "2014-1" / "register.csv"
     file.write_bytes(file.read_bytes().replace(b",1", b",2", 1))
     status, out, _ = herijk("verify", "--data", copy.data)
@@ -81,7 +71,9 @@ def test_verify_is_0_when_all_is_well_and_1_when_not(herijk, bench, tmp_path):
     assert "WRONG" in out
 
 
-def test_verify_under_other_code_says_that_what_was_published_stands(herijk, bench, monkeypatch):
+def test_verify_under_other_code_says_that_what_was_published_stands(
+    herijk, published, monkeypatch
+):
     original = recompute.still_air_coefficient_kg_m
     monkeypatch.setattr(
         recompute,
@@ -89,7 +81,7 @@ def test_verify_under_other_code_says_that_what_was_published_stands(herijk, ben
         lambda area, drag: 1.5 * original(area, drag),
     )
     monkeypatch.setattr("herijk.warehouse.editions.remade.code_version", lambda: "0.2.0+other")
-    status, out, _ = herijk("verify", "--data", bench.data)
+    status, out, _ = herijk("verify", "--data", published.data)
     assert status == 0
     assert "the code changed, from" in out
     assert "what was published stands" in out
@@ -101,13 +93,13 @@ def test_verify_without_any_edition_says_so(herijk, tmp_path):
     assert (status, out) == (0, "No edition was published yet; nothing to verify.\n")
 
 
-def test_lineage_goes_from_line_to_files_runs_and_seconds(herijk, bench):
-    tow = bench.tow(2014)
-    status, out, err = herijk("lineage", "2014-2", tow["fsn_no"], "--data", bench.data)
+def test_lineage_goes_from_line_to_files_runs_and_seconds(herijk, published):
+    tow = published.tow(2014)
+    status, out, err = herijk("lineage", "2014-2", tow["fsn_no"], "--data", published.data)
     assert (status, err) == (0, "")
     for part in ("Verification code", tow["samples_path"], tow["samples_sha256"], "seconds"):
         assert part in out
-    assert herijk("lineage", "2014-2", tow["fsn_no"], "--data", bench.data, "--json")[0] == 0
-    status, _, err = herijk("lineage", "2014-2", "FSN000", "--data", bench.data)
+    assert herijk("lineage", "2014-2", tow["fsn_no"], "--data", published.data, "--json")[0] == 0
+    status, _, err = herijk("lineage", "2014-2", "FSN000", "--data", published.data)
     assert status == 1
     assert "boat FSN000 is not in edition 2014-2" in err

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from herijk.pipeline.blocks.run_blocks import SUM_NAMES, stack_blocks
+from herijk.pipeline.blocks.run_blocks import SUM_NAMES, WindowSums, stack_blocks
 from herijk.pipeline.blocks.sums import block_sums
 from herijk.pipeline.channels import SAMPLE_SCHEMA
 from herijk.pipeline.errors import BrokenPromiseError
@@ -88,16 +88,16 @@ def test_every_window_mean_is_that_over_samples(rate_hz, lengths, window, gps, s
     start, end = window[0], window[0] + window[1]
     second = np.arange(blocks.seconds)
     mask = np.broadcast_to((second >= start) & (second < end), blocks.n.shape)
-    counts = blocks.count(mask)
+    sums = WindowSums(blocks, mask)
     for i, run in enumerate(samples["run"].unique().sort()):
         rows = samples.filter(pl.col("run") == run).rows(named=True)
         chosen = [quantities(r) for k, r in enumerate(rows) if start * rate_hz <= k < end * rate_hz]
-        assert counts[i] == len(chosen)
+        assert sums.count[i] == len(chosen)
         for name in SUM_NAMES:
             values = [q[name] for q in chosen]
             size = math.fsum(map(abs, values)) / max(len(values), 1)
             mean = math.fsum(values) / max(len(values), 1)
-            assert abs(blocks.mean(name, mask)[i] - mean) <= EXACT * size, name
+            assert abs(sums.mean(name)[i] - mean) <= EXACT * size, name
 
 
 @given(angle=st.integers(0, 64 * 360 - 1), spread=st.integers(8, 64 * 60), seed=st.integers(0, 99))
@@ -107,7 +107,7 @@ def test_mean_wind_angle_goes_round_north(angle, spread, seed):
     around = np.mod(angle + np.concatenate([offsets, -offsets]), 64 * 360) / 64  # exact in 32 bits
     samples = samples.with_columns(pl.Series("wind_angle_deg", around, pl.Float32))
     blocks = stacked(samples, 10)
-    found = mean_wind_angle_deg(blocks, blocks.n > 0)[0]
+    found = mean_wind_angle_deg(WindowSums(blocks, blocks.n > 0))[0]
     assert abs((found - angle / 64 + 180.0) % 360.0 - 180.0) < 1e-9
 
 
@@ -180,7 +180,7 @@ def test_a_run_without_blocks_breaks_a_promise():
 def test_means_over_an_empty_window_are_zero_not_nan():
     blocks = stacked(samples_of([30]), 10)
     nothing = np.zeros(blocks.n.shape, dtype=bool)
-    assert blocks.mean("force", nothing).tolist() == [0.0]
+    assert WindowSums(blocks, nothing).mean("force").tolist() == [0.0]
 
 
 def digest_of_sums() -> str:

@@ -7,10 +7,7 @@ from itertools import product
 import numpy as np
 import polars as pl
 import pytest
-import statsmodels.api as sm
 from scipy import optimize, stats
-from statsmodels.regression.mixed_linear_model import MixedLM, VCSpec
-from statsmodels.stats.meta_analysis import combine_effects
 
 from herijk.pipeline.consistency import (
     ERAS,
@@ -131,7 +128,7 @@ def test_the_last_bits_of_the_data_do_not_reach_the_components(boat_sd, other_sd
 
 def one_row_a_boat(variance, true_sd=0.0, seed=3):
     rng = np.random.default_rng(seed)
-    x = sm.add_constant(rng.normal(size=12))
+    x = np.column_stack([np.ones(12), rng.normal(size=12)])
     y = x @ [1.0, 2.0] + np.sqrt(variance + true_sd**2) * rng.normal(size=12)
     return Problem.of(Design.of(x, range(12)), y, variance)
 
@@ -144,17 +141,23 @@ def assert_same_line(fit, other):
 
 
 def test_equal_errors_give_the_line_and_interval_of_ordinary_least_squares():
+    import statsmodels.api as sm  # noqa: PLC0415 - takes seconds to import
+
     problem = one_row_a_boat(np.full(12, 1e-6), true_sd=1.0)
     assert_same_line(mixed.fit(problem, (mixed.BOAT,)), sm.OLS(problem.y, problem.design.x).fit())
 
 
 def test_known_variances_give_the_line_and_interval_of_weighted_least_squares():
+    import statsmodels.api as sm  # noqa: PLC0415 - takes seconds to import
+
     problem = one_row_a_boat(np.linspace(0.5, 3.0, 12) ** 2)
     other = sm.WLS(problem.y, problem.design.x, weights=1 / problem.variance).fit()
     assert_same_line(mixed.fit(problem, ()), other)
 
 
 def test_the_mean_of_unlike_boats_is_that_of_a_meta_analysis():
+    from statsmodels.stats.meta_analysis import combine_effects  # noqa: PLC0415 - takes seconds to import
+
     # At the same spread: statsmodels estimates it by Paule and Mandel, not by likelihood.
     problem = one_row_a_boat(np.linspace(0.5, 3.0, 12) ** 2, true_sd=2.0)
     other = combine_effects(problem.y, problem.variance, method_re="iterated", atol=1e-12)
@@ -171,6 +174,8 @@ def test_variance_components_are_those_of_another_program():
     groups = [
         np.eye(group.max() + 1)[group] for group in (problem.design.boat, problem.design.other)
     ]
+    from statsmodels.regression.mixed_linear_model import MixedLM, VCSpec  # noqa: PLC0415 - takes seconds to import
+
     crossed = VCSpec(
         ["boat", "other"],
         [[[str(i) for i in range(g.shape[1])]] for g in groups],
@@ -299,6 +304,8 @@ def test_a_line_of_a_type_is_that_of_weighted_least_squares():
     row = type_consistency(observed).row(by_predicate=(pl.col("quantity") == LN_CW), named=True)
     y, unit = quantities(observed)[LN_CW]
     variance = unit * observed.column("run_sd_ratio") ** 2 + row["between_sd_ratio"] ** 2
+    import statsmodels.api as sm  # noqa: PLC0415 - takes seconds to import
+
     x = sm.add_constant(np.log(observed.column("displacement_kg")))
     other = sm.WLS(y, x, weights=1 / variance).fit()
     assert row["slope"] == pytest.approx(other.params[1], rel=1e-6)

@@ -5,7 +5,12 @@ import polars as pl
 import pytest
 
 from herijk.pipeline.blocks.batch import Batch
-from herijk.pipeline.steps.resistance import run_means, temperature_change_kg_m, wetted_surface_m2
+from herijk.pipeline.steps.resistance import (
+    OverWindow,
+    run_means,
+    temperature_change_kg_m,
+    wetted_surface_m2,
+)
 from herijk.simulate import Defects, WorldSettings
 from tests.pipeline.methods import method
 from tests.worlds import measure
@@ -17,7 +22,8 @@ def batch_of(defects: Defects, **columns: pl.Expr) -> Batch:
 
 
 def means(batch: Batch, **steps: str):
-    return run_means(batch, batch.blocks.n > 0, method(**steps).for_season(2015))
+    sums = OverWindow.of(batch.blocks, batch.blocks.n > 0)
+    return run_means(batch, sums, method(**steps).for_season(2015))
 
 
 MEAN_OF_LOGS = '{ source = "mean", correction = "none" }'
@@ -46,7 +52,7 @@ def test_an_empty_window_gives_zero_not_nan():
             run_point=f'{{ estimator = "{estimator}", inertia = "end_speeds" }}',
             wind='{ model = "oblique", averaging_s = 5 }',
         ).for_season(2015)
-        found = run_means(batch, nothing, steps)
+        found = run_means(batch, OverWindow.of(batch.blocks, nothing), steps)
         for values in (found.speed_m_s, found.gross_kg_m, found.inertia_kg_m, found.air.ahead):
             assert np.array_equal(values, np.zeros(36))
 

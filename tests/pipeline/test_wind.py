@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from herijk.pipeline.blocks.run_blocks import AIR_SUMS, RunBlocks, stack_blocks
+from herijk.pipeline.blocks.run_blocks import AIR_SUMS, RunBlocks, WindowSums, stack_blocks
 from herijk.pipeline.blocks.sums import block_sums
 from herijk.pipeline.channels import SAMPLE_SCHEMA
 from herijk.pipeline.method.definition import Wind
@@ -37,8 +37,8 @@ def blocks_of(wind_m_s: object, angle_deg: object, seconds: int = 4, rate_hz: in
 
 
 def parts(blocks: RunBlocks, model: str) -> AirParts:
-    everything = blocks.n > 0
-    terms = {name: blocks.mean(f"log1_{name}", everything) for name in AIR_SUMS}
+    everything = WindowSums(blocks, blocks.n > 0)
+    terms = {name: everything.mean(f"log1_{name}") for name in AIR_SUMS}
     return air_parts(blocks, terms, Wind(model=model), FRONT, SIDE)
 
 

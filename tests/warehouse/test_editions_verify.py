@@ -241,7 +241,7 @@ def test_a_new_season_is_no_fault(published_copy):
 def test_a_file_changed_and_rebuilt_makes_another_number_and_says_why(published_copy):
     path = published_copy.tow(2009)["samples_path"]
     published_copy.stretch_force(path, 1.02)
-    published_copy.rebuild()
+    published_copy.rebuild((shipped_method("as-published"),))
     tow = published_copy.tow(2009)["tow_id"]
     report = verify(published_copy.store)
     assert report.wrong
@@ -325,16 +325,22 @@ FSN901;6;H;0,99;25,00;1,00;2,20;
 """
 
 
-@pytest.fixture
-def carrying(bench_of_editions):
-    """A printed edition, and one that carries over its line."""
-    bench = bench_of_editions
+@pytest.fixture(scope="module")
+def carried(edition_archive, tmp_path_factory):
+    """A printed edition, and one that carries over its line; read only."""
+    bench = edition_archive.copy(tmp_path_factory.mktemp("carried"))
     file = bench.archive / "sloepregister" / "sloepregister_2012.csv"
     file.write_text(PRINTED, encoding="utf-8")
     bench.rebuild((shipped_method("corrected-2013"),))
     publish_printed(bench.store, 2012, terms("printed", dt.date(2012, 5, 1)))
     bench.publish("2014-1", "corrected-2013", carry="printed")
     return bench
+
+
+@pytest.fixture
+def carrying(carried, tmp_path):
+    """The same, to change at will."""
+    return carried.copy(tmp_path)
 
 
 def test_carried_and_printed_lines_are_made_again_too(carrying):

@@ -4,8 +4,6 @@ import json
 from pathlib import Path
 
 import duckdb
-import frictionless
-import pandas as pd
 import polars as pl
 import pytest
 
@@ -31,6 +29,8 @@ def _read(path: Path) -> dict:
 
 def test_the_folder_is_a_data_package(folder: Path):
     """By the standard's own program; its reader of Parquet gives NaN for an empty field."""
+    import frictionless  # noqa: PLC0415 - takes seconds to import
+
     package = frictionless.Package(str(folder / "datapackage.json"))
     misread = frictionless.Checklist(skip_errors=["type-error", "constraint-error"])
     for name in ("boats", "curves", "register"):
@@ -48,6 +48,8 @@ def test_the_folder_is_a_data_package(folder: Path):
 
 def test_other_programs_read_what_the_database_holds(built: Workbench, folder: Path):
     """Declared keys single out rows, and DuckDB, pandas and Polars read the same."""
+    import pandas as pd  # noqa: PLC0415 - takes seconds to import
+
     for resource in _read(folder / "datapackage.json")["resources"]:
         path = folder / resource["path"]
         frame = pl.read_parquet(path)

@@ -17,7 +17,9 @@ from herijk.words import LANGUAGE, dutch, say, spoken, tell
 
 DUTCH = dutch()
 ROOT = Path(str(herijk.__file__)).parent
-SPEAKERS = {"say", "tell", "MethodFileError"} | {n for n in dir(errors) if n.endswith("Error")}
+SPEAKERS = {"say", "tell", "wrong", "MethodFileError"} | {
+    n for n in dir(errors) if n.endswith("Error")
+}
 OF_LIBRARY = {
     *("Arguments", "Options", "Commands", "default", "required", "env var"),
     *("Show this message and exit.", *USAGE),
@@ -46,18 +48,23 @@ def texts(node):
         yield from texts(element)
 
 
+def name_of(node):
+    """The last part of a name: `table` of `text.table`."""
+    return getattr(node, "attr", None) or getattr(node, "id", "")
+
+
 def head_of_table(node):
     """The head of a table where it is written in place."""
-    if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) in ("head", "columns"):
+    if isinstance(node, ast.Assign) and name_of(node.targets[0]) in ("head", "columns"):
         return node.value
-    is_table = isinstance(node, ast.Call) and ast.unparse(node.func) in ("table", "text.table")
+    is_table = isinstance(node, ast.Call) and name_of(node.func) == "table" and node.args
     return node.args[0] if is_table else None
 
 
 def said_in_code():
     for tree, room in sources():
         for node in ast.walk(tree):
-            name = ast.unparse(node.func) if isinstance(node, ast.Call) and node.args else ""
+            name = name_of(node.func) if isinstance(node, ast.Call) and node.args else ""
             if name in SPEAKERS - {"DefectiveInputError"} and (name, room) != ("say", "dashboards"):
                 yield from texts(node.args[0])
             if room == "cli":

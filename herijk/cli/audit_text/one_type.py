@@ -8,7 +8,6 @@ from herijk.cli.audit_text.words import (
     LETTERS,
     LINES,
     QUANTITIES,
-    REASONS,
     apart,
     change,
     heading,
@@ -33,15 +32,11 @@ from herijk.pipeline.consistency.tow_speed import SLOW_POWER_W
 from herijk.tables.row import Row
 from herijk.warehouse.queries.audit_types import Fleet, TypesAudit, TypeStatistics
 from herijk.words import tell
+from herijk.words.catalogue import code
 
 T = TypeVar("T")
 
-NAMES: Final = {
-    "boat": "boats",
-    "season": "seasons",
-    "boat_season": "a boat's seasons",
-    "run": "runs",
-}
+CAUSES: Final = ("boat", "season", "boat_season", "run")
 """Causes of spread, by the codes in `variance_components`."""
 
 
@@ -341,7 +336,7 @@ def _eras(under: Mapping[str, TypeStatistics], fleet: Mapping[str, Fleet]) -> li
 
 def _shift(era: Row) -> tuple[str, str, int]:
     if era["reason"]:
-        return REASONS[era["reason"]], "-", era["n"]
+        return code(era["reason"]), "-", era["n"]
     shift, lo, hi = (change(era[end]) for end in ("shift_ratio", "lo", "hi"))
     return tell("{} ({} to {})", shift, lo, hi), apart(era), era["n"]
 
@@ -436,8 +431,8 @@ def _causes(fleet: Fleet) -> list[str]:
     by_component = {row["component"]: row for row in fleet.components}
     if "boat" not in by_component or by_component["boat"]["reason"]:
         reason = by_component["boat"]["reason"] if "boat" in by_component else "no_curves"
-        return [tell("spread by cause: nothing claimed, {}.", REASONS[reason])]
-    causes = ", ".join(f"{words} {_cause(by_component[name])}" for name, words in NAMES.items())
+        return [tell("spread by cause: nothing claimed, {}.", code(reason))]
+    causes = ", ".join(f"{code(name)} {_cause(by_component[name])}" for name in CAUSES)
     return [tell("within types, at one speed: {} (n {}).", causes, by_component["boat"]["n"])]
 
 

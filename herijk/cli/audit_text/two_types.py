@@ -6,7 +6,6 @@ from typing import NamedTuple
 from herijk.cli.audit_text.words import (
     AGAINST,
     QUANTITIES,
-    REASONS,
     apart,
     change,
     heading,
@@ -21,6 +20,7 @@ from herijk.cli.text import table
 from herijk.tables.row import Row
 from herijk.warehouse.queries.audit_types import TypesAudit, TypeStatistics
 from herijk.words import tell
+from herijk.words.catalogue import code
 
 Cell = Callable[[TypeStatistics], str]
 """The words in a cell, from the figures of a type."""
@@ -63,8 +63,7 @@ def _trend_seen(line: Row) -> str:
 
 
 def _nothing(row: Row) -> str:
-    reason = str(row["reason"])
-    return f"- {tell(REASONS.get(reason, reason))}, n {row['n']}"
+    return f"- {code(row['reason'])}, n {row['n']}"
 
 
 def _line(quantity: str, explaining: str) -> Cell:

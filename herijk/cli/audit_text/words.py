@@ -15,17 +15,6 @@ from herijk.warehouse.queries.audit_types import TypeFacts, TypeStatistics
 from herijk.words import number, tell
 from herijk.words.catalogue import code
 
-REASONS: Final = {
-    "no_type": "boats without a type are not compared",
-    "few_boats": "too few boats",
-    "equal_values": "all boats have the same value",
-    "no_scatter": "runs without scatter",
-    "no_curves": "no curve of this type",
-    "few_pairs": "fewer than six pairs",
-    "too_few_repeats": "too few repeat tows",
-}
-"""Why nothing is claimed, by the codes in the tables."""
-
 EXPLANATIONS: Final = {
     "weight": "unusual weight",
     "length": "unusual length",
@@ -115,7 +104,7 @@ def nothing(row: Row) -> str:
     """That nothing is claimed, why, and from how many boats."""
     n = row.get("n_boats", row["n"])
     counted = tell("{} boats", n) if "n_boats" in row else f"n {n}"
-    return tell("nothing claimed: {} ({})", REASONS.get(row["reason"], row["reason"]), counted)
+    return tell("nothing claimed: {} ({})", code(row["reason"]), counted)
 
 
 def yes(verdict: bool | None) -> str:

@@ -1,6 +1,5 @@
 """The certificate of a boat and crew: one page A4, and all of an edition in one file."""
 
-import re
 from typing import Any, Final
 
 import segno
@@ -103,7 +102,7 @@ def _numbers(line: Row, speech: Speech) -> list[tuple[str, str]]:
 
 def _fact(line: Row, column: str, digits: int, speech: Speech) -> tuple[str, str]:
     """A measure with its unit, by the heading of its column."""
-    name = re.sub("[\u00ad\u200b]", "", speech.say(f"column.{column}"))
+    name = speech.unbroken(f"column.{column}")
     value = line[column]
     return name, "\u2013" if value is None else speech.number(value, digits)
 

@@ -11,7 +11,6 @@ import polars as pl
 from herijk.dashboards import headlines
 from herijk.dashboards.documents import pdf
 from herijk.dashboards.speech import Speech
-from herijk.pipeline.method.definition import Method
 from herijk.pipeline.register.register import draft_name
 from herijk.warehouse.queries.answers import compared, replayed
 from herijk.warehouse.queries.views import Views
@@ -37,7 +36,7 @@ def proposal(
     say = speech.say
     lines = {method: compared(views, against, draft_name(method)) for method in methods}
     about = views.about()
-    titles = {method: _title(known.get(method), language) for method in methods}
+    titles = {method: known.get(method).titled(language) for method in methods}
     content = {
         "language": language,
         "title": say("proposal_title" if len(methods) == 1 else "proposal_ballot").format(
@@ -66,10 +65,6 @@ def proposal(
 NO_ROWS: Final[Part] = {"head": [], "rows": []}
 
 
-def _title(method: Method, language: str) -> str:
-    return method.title if language == "nl" else method.title_en
-
-
 def _ballot(lines: dict[str, pl.DataFrame], speech: Speech) -> Part:
     """The methods side by side."""
     rows = []
@@ -87,7 +82,7 @@ def _ballot(lines: dict[str, pl.DataFrame], speech: Speech) -> Part:
     return {
         "title": speech.say("proposal_side_by_side"),
         "sentences": [],
-        "head": [_plain(speech.say(key)) for key in heads],
+        "head": [speech.unbroken(key) for key in heads],
         "rows": rows,
     }
 
@@ -102,10 +97,6 @@ def _middle_and_ends(changes: pl.DataFrame) -> tuple[float, float, float]:
 
 def _beyond(changes: pl.DataFrame) -> int:
     return int(changes["exceeds_interval"].fill_null(False).sum())
-
-
-def _plain(text: str) -> str:
-    return text.replace("\u00ad", "").replace("\u200b", "")
 
 
 def _parts(views: Views, method: str, lines: pl.DataFrame, speech: Speech) -> Iterator[Part]:
@@ -162,8 +153,8 @@ def _types(lines: pl.DataFrame, speech: Speech) -> Part:
         "title": speech.say("proposal_types"),
         "sentences": [speech.say("proposal_seconds")],
         "head": [
-            *(_plain(speech.say(key)) for key in heads),
-            _plain(speech.say("column.exceeds_interval")),
+            *map(speech.unbroken, heads),
+            speech.unbroken("column.exceeds_interval"),
         ],
         "rows": [
             [
@@ -193,8 +184,8 @@ def _boats(lines: pl.DataFrame, speech: Speech) -> Part:
         "title": speech.say("proposal_boats"),
         "sentences": [],
         "head": [
-            *(_plain(speech.say(key)) for key in heads),
-            _plain(speech.say("column.exceeds_interval")),
+            *map(speech.unbroken, heads),
+            speech.unbroken("column.exceeds_interval"),
         ],
         "rows": [_boat(line, speech) for line in shown.to_dicts()],
     }

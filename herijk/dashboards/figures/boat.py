@@ -28,25 +28,15 @@ from herijk.words.catalogue import Say
 DIRECTION = "datum.value == 1 ? '{out}' : '{back}'"
 
 
-def _direction_legend(say: Say) -> alt.Legend:
-    return alt.Legend(labelExpr=DIRECTION.format(out=say("out"), back=say("back")))
-
-
-def _direction_colour(say: Say) -> alt.Color:
-    return alt.Color(
-        "direction:N",
-        title=say("direction"),
-        scale=alt.Scale(domain=[1, -1], range=[OUT, BACK]),
-        legend=_direction_legend(say),
-    )
-
-
-def _direction_shape(say: Say) -> alt.Shape:
-    return alt.Shape(
-        "direction:N",
-        title=say("direction"),
-        scale=alt.Scale(domain=[1, -1], range=["circle", "triangle-up"]),
-        legend=_direction_legend(say),
+def _directions(say: Say) -> tuple[alt.Color, alt.Shape]:
+    """Out and back apart by colour and shape, in one legend."""
+    legend = alt.Legend(labelExpr=DIRECTION.format(out=say("out"), back=say("back")))
+    inks = alt.Scale(domain=[1, -1], range=[OUT, BACK])
+    shapes = alt.Scale(domain=[1, -1], range=["circle", "triangle-up"])
+    title = say("direction")
+    return (
+        alt.Color("direction:N", title=title, scale=inks, legend=legend),
+        alt.Shape("direction:N", title=title, scale=shapes, legend=legend),
     )
 
 
@@ -69,6 +59,7 @@ def resistance_curve(frame: pl.DataFrame, say: Say) -> Drawing:
         ("run:O", say("run")), ("speed_m_s:Q", say("speed")), ("cw_kg_m:Q", say("cw"))
     )
     declared_tips = tips(("speed_m_s:Q", say("tow_speed")), ("cw_kg_m:Q", say("cw_declared")))
+    ink, form = _directions(say)
     dash, complete = interval_dash(say), f"datum.interval == '{COMPLETE}'"
     full, light = alt.value(0.35), alt.value(0.12)
     return alt.layer(
@@ -83,10 +74,10 @@ def resistance_curve(frame: pl.DataFrame, say: Say) -> Drawing:
         point.mark_point(size=90, strokeWidth=2).encode(
             x,
             y,
-            _direction_colour(say),
-            _direction_shape(say),
+            ink,
+            form,
             fillOpacity=alt.condition("datum.used", alt.value(0.9), alt.value(0)),
-            fill=_direction_colour(say),
+            fill=ink,
             tooltip=point_tips,
         ),
     ).properties(width=WIDTH, height=HEIGHT)
@@ -203,8 +194,7 @@ def out_and_back(frame: pl.DataFrame, say: Say) -> Drawing:
         .encode(
             number(alt.X, "speed_m_s", say("speed")),
             number(alt.Y, "cw_kg_m", say("cw")),
-            _direction_colour(say),
-            _direction_shape(say),
+            *_directions(say),
             tooltip=tips(("run:O", say("run")), ("cw_kg_m:Q", say("cw"))),
         )
         .properties(width=280, height=240)
@@ -231,8 +221,7 @@ def wind(frame: pl.DataFrame, say: Say) -> alt.Chart:
                 axis=alt.Axis(values=[-180, -135, -90, -45, 0, 45, 90, 135, 180]),
             ),
             number(alt.Y, "wind_m_s", say("wind"), zero=True),
-            _direction_colour(say),
-            _direction_shape(say),
+            *_directions(say),
             tooltip=tips(("run:O", say("run")), ("wind_m_s:Q", say("wind"))),
         )
         .properties(width=WIDTH, height=200)

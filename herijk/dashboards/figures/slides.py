@@ -1,8 +1,8 @@
 """The charts of the presentation of 24 January 2015, over all seasons and under every method.
 
-Methods stand side by side on equal axes, below each other where there is no room; men and women
-differ in shape; a tow made too slowly for the common speed is open; a tow outside its type is named
-with its season and crew. Frames come from `dashboards.slides`.
+Methods stand side by side on equal axes, below each other where there is no room. Men and women
+differ in shape. A tow made too slowly for the common speed is open, and a tow outside its type is
+named with its season and crew. Frames come from `dashboards.slides`.
 """
 
 import json

@@ -4,7 +4,8 @@ Each is a scatter with a selection by dragging (`brush`, read by the page to fil
 parameter `chosen` that the list sets, and points that link to their boat.
 """
 
-from typing import Any
+from collections.abc import Callable
+from typing import Final
 
 import altair as alt
 import polars as pl
@@ -20,92 +21,58 @@ from herijk.dashboards.figures.style import (
 )
 from herijk.words.catalogue import Say
 
-Axes = tuple[tuple[str, str], tuple[str, str]]
+QUANTITIES: Final = {
+    "b": ("b_m_s", "b"),
+    "a": ("a_kg_m", "a"),
+    "cw_standard": ("cw_standard_kg_m", "cw_standard"),
+}
+EXPLAINING: Final = {
+    "weight": ("weight_kg", "weight"),
+    "speed": ("declared_speed_m_s", "tow_speed"),
+}
+"""Columns of the axes, with the keys of their titles."""
 
 
-def _points(frame: pl.DataFrame, say: Say, axes: Axes, more: dict[str, Any]) -> alt.Chart:
-    """Boats as points that link to their page; `axes` are column and title of x and y."""
-    x, y = axes
-    return (
-        alt.Chart(frame)
-        .mark_point(filled=True, strokeWidth=2, cursor="pointer")
-        .encode(
-            number(alt.X, *x),
-            number(alt.Y, *y),
-            href="page:N",
-            tooltip=tips(
-                ("name:N", say("name")),
-                ("fsn_no:N", "FSN"),
-                ("boat_type:N", say("type")),
-                ("season:O", say("season")),
-                (f"{x[0]}:Q", x[1]),
-                (f"{y[0]}:Q", y[1]),
-            ),
-            **more,
+def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Drawing]:
+    """The figure of a quantity against weight or tow speed, as points that link to their boat.
+
+    It draws `Views.type_tows` with `page`: all types, and methods side by side on the same axes, so
+    that they can be compared.
+    """
+    (x, x_title), (y, y_title) = EXPLAINING[explaining], QUANTITIES[quantity]
+
+    def figure(frame: pl.DataFrame, say: Say) -> Drawing:
+        brush = alt.selection_interval(name="brush")
+        chosen = alt.param(name="chosen", value="")
+        legend = type_legend(say, orient="top", columns=3)
+        points = (
+            alt.Chart(frame)
+            .mark_point(filled=True, strokeWidth=2, cursor="pointer")
+            .encode(
+                number(alt.X, x, say(x_title)),
+                number(alt.Y, y, say(y_title)),
+                colour("boat_type", say("type"), legend=legend),
+                shape("boat_type", say("type"), legend=legend),
+                size=alt.condition("datum.fsn_no == chosen", alt.value(320), alt.value(70)),
+                opacity=alt.condition(brush, alt.value(0.9), alt.value(0.2)),
+                href="page:N",
+                tooltip=tips(
+                    ("name:N", say("name")),
+                    ("fsn_no:N", "FSN"),
+                    ("boat_type:N", say("type")),
+                    ("season:O", say("season")),
+                    (f"{x}:Q", say(x_title)),
+                    (f"{y}:Q", say(y_title)),
+                ),
+            )
+            .add_params(brush, chosen)
         )
-    )
+        header = alt.Header(labelExpr=methods_named(say))
+        return points.properties(width=400, height=280).facet(
+            alt.Facet("method:N", title=None, header=header), columns=2
+        )
 
-
-def _scatter(frame: pl.DataFrame, say: Say, axes: Axes) -> Drawing:
-    """All types; methods side by side on the same axes, so that they can be compared."""
-    brush = alt.selection_interval(name="brush")
-    chosen = alt.param(name="chosen", value="")
-    legend = type_legend(say, orient="top", columns=3)
-    more = {
-        "color": colour("boat_type", say("type"), legend=legend),
-        "shape": shape("boat_type", say("type"), legend=legend),
-        "size": alt.condition("datum.fsn_no == chosen", alt.value(320), alt.value(70)),
-        "opacity": alt.condition(brush, alt.value(0.9), alt.value(0.2)),
-    }
-    points = _points(frame, say, axes, more).add_params(brush, chosen)
-    return points.properties(width=400, height=280).facet(
-        alt.Facet("method:N", title=None, header=_methods(say)), columns=2
-    )
-
-
-def _methods(say: Say) -> alt.Header:
-    return alt.Header(labelExpr=methods_named(say))
-
-
-def _weight(say: Say) -> tuple[str, str]:
-    return "weight_kg", say("weight")
-
-
-def _speed(say: Say) -> tuple[str, str]:
-    return "declared_speed_m_s", say("tow_speed")
-
-
-def _b(say: Say) -> tuple[str, str]:
-    return "b_m_s", say("b")
-
-
-def _cw_standard(say: Say) -> tuple[str, str]:
-    return "cw_standard_kg_m", say("cw_standard")
-
-
-def b_against_weight(frame: pl.DataFrame, say: Say) -> Drawing:
-    """B against weight; `frame` is `Views.type_tows` with `page`."""
-    return _scatter(frame, say, (_weight(say), _b(say)))
-
-
-def b_against_speed(frame: pl.DataFrame, say: Say) -> Drawing:
-    """B against tow speed."""
-    return _scatter(frame, say, (_speed(say), _b(say)))
-
-
-def a_against_weight(frame: pl.DataFrame, say: Say) -> Drawing:
-    """A against weight."""
-    return _scatter(frame, say, (_weight(say), ("a_kg_m", say("a"))))
-
-
-def cw_standard_against_weight(frame: pl.DataFrame, say: Say) -> Drawing:
-    """Cw at the type's standard speed against weight."""
-    return _scatter(frame, say, (_weight(say), _cw_standard(say)))
-
-
-def cw_standard_against_speed(frame: pl.DataFrame, say: Say) -> Drawing:
-    """Cw at the type's standard speed against tow speed."""
-    return _scatter(frame, say, (_speed(say), _cw_standard(say)))
+    return figure
 
 
 def shared_bend(frame: pl.DataFrame, say: Say) -> alt.Chart:

@@ -33,7 +33,7 @@ MENU = ("index", *CARDS)
 
 
 def shared_pages(views: Views) -> Iterator[Page]:
-    """Every page of the site but those of boats and slides, which another process may make."""
+    """Every page of the site but those of boats and slides."""
     methods = method_names(views)
     changes = line_changes(views)
     yield start_page(views, methods, changes)

@@ -10,12 +10,12 @@ import math
 import shutil
 import tempfile
 import zlib
-from collections.abc import Iterable, Iterator, Mapping
-from concurrent.futures import Executor, wait
-from functools import cache
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from functools import cache, partial
 from importlib.metadata import version
-from itertools import chain
 from pathlib import Path
+from types import MappingProxyType
 from typing import Final
 
 import jinja2
@@ -34,7 +34,7 @@ from herijk.dashboards.site.pages import MENU, method_names, shared_pages
 from herijk.dashboards.site.parts import Page, boat_path, race_path, type_path
 from herijk.dashboards.site.slides import slides_page
 from herijk.dashboards.site.specifications import chart_specifications
-from herijk.dashboards.site.still import still_pictures
+from herijk.dashboards.site.still import Stills, first_chart, stills
 from herijk.dashboards.speech import Speech
 from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.files import TEMPORARY_PREFIX, put_in_place
@@ -47,6 +47,7 @@ DRAWN: Final = 5
 """Significant digits of what charts draw."""
 QUICK: Final = 4
 """How hard data are deflated: a tenth larger than by default, in half the time."""
+NO_STILLS: Final[Mapping[str, Markup]] = MappingProxyType({})
 OWN_FILES: Final = ("site.css", "site.js")
 FOLDERS: Final = {"nl": "", "en": "en/"}
 """Where the pages of each language lie within the site."""
@@ -79,8 +80,7 @@ def build_site(store: Store, other: Executor | None = None) -> dict[str, int]:
 
     Args:
         store: the data folder.
-        other: a second process, for the half of the work that boats and slides are; without, all
-            is done here.
+        other: a second process, which draws the pictures meanwhile; without, all is done here.
 
     Returns:
         Files and bytes of the site.
@@ -95,15 +95,9 @@ def build_pages(
     target.parent.mkdir(parents=True, exist_ok=True)
     beside = Path(tempfile.mkdtemp(prefix=TEMPORARY_PREFIX, dir=target.parent))
     try:
-        half = store.root, beside, as_of
-        elsewhere = other.submit(write_boats_and_slides, *half) if other else None
-        try:
-            with Views(store, as_of) as views:
-                _write_shared(views, beside)
-                _write_pages(views, beside, shared_pages(views))
-        finally:
-            wait([elsewhere] if elsewhere else [])  # it would write in a folder that is gone
-        elsewhere.result() if elsewhere else write_boats_and_slides(*half)
+        with Views(store, as_of) as views:
+            _write_pages(views, beside, other)
+            _write_shared(views, beside)
         copy_sheets(store, beside)
         written = [f for f in beside.rglob("*") if f.is_file()]
         size = {"files": len(written), "bytes": sum(f.stat().st_size for f in written)}
@@ -112,15 +106,6 @@ def build_pages(
     finally:
         shutil.rmtree(beside, ignore_errors=True)
     return size
-
-
-def write_boats_and_slides(data: Path, folder: Path, as_of: dt.date | None) -> None:
-    """Writes the pages of all boats and of the slides: half of the work."""
-    with Views(Store(data), as_of) as views:
-        methods = method_names(views)
-        _write_pages(
-            views, folder, chain(boat_pages(views, methods), [slides_page(views, methods)])
-        )
 
 
 def _write_shared(views: Views, folder: Path) -> None:
@@ -135,15 +120,39 @@ def _write_shared(views: Views, folder: Path) -> None:
     (static / "find.js").write_text(_search_script(views), encoding="utf-8")
 
 
-def _write_pages(views: Views, folder: Path, pages: Iterable[Page]) -> None:
+def _write_pages(views: Views, folder: Path, other: Executor | None) -> None:
+    """Writes every page; those with a picture last, when the other process has drawn it."""
     editions = [Edition(views, language) for language in LANGUAGES]
-    for page in pages:
-        others = {}
-        for edition in editions:
-            html, others[edition.speech.language] = edition.html(page)
-            _put(folder / edition.address(page), html)
-        if page.data or any(others.values()):
-            _put(folder / _data_path(page), _data_script(page, others))
+    methods = method_names(views)
+    shared = [*shared_pages(views), slides_page(views, methods)]
+    drawn = [_draw(page, editions, other) for page in shared]
+    for page in boat_pages(views, methods):
+        _write_page(folder, page, editions, {})
+    for page, pictures in zip(shared, drawn, strict=True):
+        _write_page(folder, page, editions, pictures())
+
+
+def _draw(
+    page: Page, editions: Sequence["Edition"], other: Executor | None
+) -> Callable[[], Stills]:
+    """Has the picture of a page drawn, if it has one; gives what waits for it."""
+    found = first_chart(page)
+    if found is None:
+        return dict
+    chart, rows = found
+    captions = {e.speech.language: e.speech.say(chart.caption) for e in editions}
+    task = chart.figure, rows, captions
+    return other.submit(stills, *task).result if other else partial(stills, *task)
+
+
+def _write_page(folder: Path, page: Page, editions: Sequence["Edition"], drawn: Stills) -> None:
+    others = {}
+    for edition in editions:
+        language = edition.speech.language
+        html, others[language] = edition.html(page, drawn.get(language, {}))
+        _put(folder / edition.address(page), html)
+    if page.data or any(others.values()):
+        _put(folder / _data_path(page), _data_script(page, others))
 
 
 def _put(path: Path, text: str) -> None:
@@ -171,7 +180,6 @@ class Edition:
             "speech": self.speech,
             "heading": cache(self._heading),
             "told": lambda answer: told(answer, self.speech),
-            "still": lambda page: still_pictures(page, self.speech),
             "about": self.about,
         }
 
@@ -191,8 +199,15 @@ class Edition:
         """Where the page lies within the site."""
         return FOLDERS[self.speech.language] + page.path
 
-    def html(self, page: Page) -> tuple[str, dict[str, str]]:
-        """The page, and by the number of a table its rows that the selectors hide at first."""
+    def html(
+        self, page: Page, stills: Mapping[str, Markup] = NO_STILLS
+    ) -> tuple[str, dict[str, str]]:
+        """The page, and by the number of a table its rows that the selectors hide at first.
+
+        Args:
+            page: what it shows.
+            stills: pictures of its charts, by the name of the figure.
+        """
         language = self.speech.language
         depth = self.address(page).count("/")
         site = page.site or "../" * depth
@@ -206,6 +221,7 @@ class Edition:
         html = _template().render(
             **self._names,
             page=page,
+            stills=stills,
             tables=tables,
             language=language,
             site=site,

@@ -1,15 +1,17 @@
 """Every figure's Vega-Lite without data: pages load it once, and fill in what they draw."""
 
+import copy
 import json
 from collections.abc import Callable
 from functools import cache
+from importlib.metadata import version
 from typing import Any
 
-import altair as alt
 import polars as pl
 from altair.utils.schemapi import debug_mode
 
-from herijk.dashboards.figures import FIGURES
+from herijk.dashboards import drawn
+from herijk.dashboards.figures import FIGURES, drop
 from herijk.dashboards.html import as_json
 from herijk.dashboards.kept import kept
 from herijk.warehouse.store.code import code_hash
@@ -25,9 +27,28 @@ def chart_specifications(language: str) -> dict[str, Any]:
         say = speaker(language)
         return as_json({name: specification(figure, say) for name, figure in FIGURES.items()})
 
-    made_from = fingerprint(alt.__version__, WORDS, code_hash("herijk.dashboards.figures"))
-    found: dict[str, Any] = json.loads(kept(f"charts-{language}", made_from, make))
+    found: dict[str, Any] = json.loads(kept(f"charts-{language}", _made_from(), make))
     return found
+
+
+@cache
+def picture_specification(figure: str, language: str) -> dict[str, Any]:
+    """A figure's Vega for a picture: without data, and without what a picture cannot keep."""
+
+    def make() -> str:
+        spec = copy.deepcopy(chart_specifications(language)[figure])
+        drop(spec, "href", "tooltip")
+        spec["config"]["aria"] = False  # described as a whole
+        return json.dumps(drawn.compiled(spec))
+
+    found: dict[str, Any] = json.loads(kept(f"picture-{figure}-{language}", _made_from(), make))
+    return found
+
+
+@cache
+def _made_from() -> str:
+    versions = [version(name) for name in ("altair", "vl-convert-python")]
+    return fingerprint(versions, WORDS, code_hash(__name__))
 
 
 def specification(figure: Callable[..., Any], say: Callable[[str], str]) -> dict[str, Any]:

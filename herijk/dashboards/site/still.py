@@ -1,45 +1,46 @@
 """A page's first chart as a picture made with the page, to be seen before any script is there."""
 
-import copy
-import json
 import re
 from collections import Counter
+from collections.abc import Mapping
 from typing import Final
 
 import polars as pl
 from markupsafe import Markup
 
 from herijk.dashboards import drawn
-from herijk.dashboards.figures import drop
-from herijk.dashboards.site.cells import hashable
 from herijk.dashboards.site.parts import Chart, Page, is_chosen
-from herijk.dashboards.site.specifications import chart_specifications
-from herijk.dashboards.speech import Speech
+from herijk.dashboards.site.specifications import picture_specification
+
+Stills = Mapping[str, Mapping[str, Markup]]
+"""Pictures by language and name of the figure."""
 
 
-def still_pictures(page: Page, speech: Speech) -> dict[str, Markup]:
-    """The first chart that is seen at once, by its name."""
-    charts = [c for s in page.sections if not s.folded for c in s.charts]
-    if not charts:
-        return {}
-    rows = _shown(page, charts[0])
-    if rows.is_empty():
-        return {}
-    first = charts[0]
-    return {first.figure: still(first.figure, rows, speech, speech.say(first.caption))}
+def first_chart(page: Page) -> tuple[Chart, pl.DataFrame] | None:
+    """The first chart that is seen at once, with the rows it shows; None where there is none."""
+    chart = next((c for s in page.sections if not s.folded for c in s.charts), None)
+    if chart is None:
+        return None
+    rows = _shown(page, chart)
+    return None if rows.is_empty() else (chart, rows)
 
 
-def still(figure: str, rows: pl.DataFrame, speech: Speech, caption: str) -> Markup:
+def stills(figure: str, rows: pl.DataFrame, captions: Mapping[str, str]) -> Stills:
+    """A figure in every language that has a caption."""
+    return {
+        language: {figure: still(figure, rows, language, caption)}
+        for language, caption in captions.items()
+    }
+
+
+def still(figure: str, rows: pl.DataFrame, language: str, caption: str) -> Markup:
     """A figure as SVG; a screen reader says its caption."""
-    spec = copy.deepcopy(chart_specifications(speech.language)[figure])
-    drop(spec, "href", "tooltip")
-    spec["config"]["aria"] = False  # described as a whole
-    text = json.dumps(spec)
+    vega = picture_specification(figure, language)
+    text = str(vega)
     seen = rows.select(name for name in rows.columns if name in text)
-    spec["datasets"] = {"rows": seen.to_dicts()}
-    svg = drawn.svg(spec, speech.language)
+    svg = drawn.compiled_svg(vega, seen.to_dicts(), language)
     bare = re.sub(r' (role|aria-[a-z]+)="[^"]*"', "", _renumbered(svg))
-    bare = _marks_once(DIGITS.sub(r"\1", bare))
+    bare = _marks_once(DIGITS.sub("", bare))
     named = Markup('<svg role="img" aria-label="{}" ').format(caption)
     return Markup(bare.replace("<svg ", named, 1))  # noqa: S704 - Vega escapes texts
 
@@ -67,7 +68,7 @@ def _marks_once(svg: str) -> str:
 MARK: Final = re.compile(
     r'<path transform="translate\((?P<x>[-\d.]+),(?P<y>[-\d.]+)\)" (?P<look>d="[^>]*")/>'
 )
-DIGITS: Final = re.compile(r"(\.\d\d)\d+(?=[^<>]*>)")
+DIGITS: Final = re.compile(r"(?<=\.\d\d)\d+(?=[^<>]*>)")
 """Digits within a tag that nobody can see: of where something lies, how wide or light it is."""
 
 
@@ -76,7 +77,8 @@ def _shown(page: Page, chart: Chart) -> pl.DataFrame:
     rows = pl.concat(page.data[chart.data], how="diagonal_relaxed")
     for column, names in chart.follows.items():
         wanted = [page.chosen[name] for name in ([names] if isinstance(names, str) else names)]
-        values = hashable(rows[column])
-        shown = {v for v in set(values) if v is None or is_chosen(v, *wanted)}
-        rows = rows.filter([v in shown for v in values])
+        values = rows[column].unique()
+        is_shown = [v is None or is_chosen(v, *wanted) for v in values.to_list()]
+        shown = values.filter(pl.Series(is_shown, dtype=pl.Boolean)).to_frame()
+        rows = rows.join(shown, on=column, how="semi", nulls_equal=True, maintain_order="left")
     return rows

@@ -234,8 +234,9 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
 def _of_logs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
     """How the log's factor changes with speed, by the GPS of all its season.
 
-    Per tow the slope of ln(GPS / log) by ln speed, among runs one way, in which the stream is the
-    same; per season the mean, or 0 where chance makes as much of it in a share `CHANCE` of seasons.
+    Per tow it is the slope of ln(GPS / log) by ln speed, among runs one way, in which the stream is
+    the same. Per season it is their mean, or 0 where chance alone makes as much of it in a share
+    `CHANCE` of seasons.
     """
     ways = ["tow_id", pl.col("run") > SECOND_FILE_OFFSET, "direction"]
     x, y = (pl.col(name).log() for name in ("speed_m_s", "gps_ratio"))

@@ -310,8 +310,7 @@ def _of_one(
         ratio = np.maximum(1.0 + values[there], 0.01)
         groups += _grossly_off(tows, np.log(ratio))
     may = [(quantity, group, group[2], np.ones(len(group[2]))) for group in groups]
-    still = seen.wind_stands_still[there]
-    return _named(tows, may, _find(observed, may), np.zeros(tows.height), still)
+    return _named(seen, there, may, _find(observed, may))
 
 
 def _of_force(seen: Seen) -> tuple[list[Shift], dict[str, float]]:
@@ -349,8 +348,7 @@ def _of_force(seen: Seen) -> tuple[list[Shift], dict[str, float]]:
         for (quantity, (kind, key, _), *_), size in zip(columns, found.seen_from, strict=True)
         if (quantity, kind) == ("force", "tow") and np.isfinite(size)
     }
-    none = np.zeros(tows.height, dtype=bool)
-    return _named(tows, columns, found, seen.air_share[known], none), seen_from
+    return _named(seen, known, columns, found), seen_from
 
 
 def _find(observed: Observations, columns: list[Candidate]) -> Shifted:
@@ -367,21 +365,17 @@ def _find(observed: Observations, columns: list[Candidate]) -> Shifted:
     return find_shifts(observed, may, LIMIT, LOOK)
 
 
-def _named(
-    tows: pl.DataFrame,
-    columns: list[Candidate],
-    found: Shifted,
-    air_share: FloatArray,
-    stands_still: BoolArray,
-) -> list[Shift]:
-    """The shifts that were found, with their tows and what may have caused them."""
+def _named(seen: Seen, there: BoolArray, columns: list[Candidate], found: Shifted) -> list[Shift]:
+    """The shifts that were found among the tows that are there, and what may have caused them."""
+    tow_ids = seen.batch.tows["tow_id"].filter(pl.Series(there))
+    air_share, stands_still = seen.air_share[there], seen.wind_stands_still[there]
     shifts = []
     for one in found.shifts:
         quantity, (kind, key, places), *_ = columns[one.place]
         size = one.size
         if quantity == "force":
             size = _of_whole_force(size, air_share[places])
-        ids = tuple(tows["tow_id"].gather(np.sort(places)))
+        ids = tuple(tow_ids.gather(np.sort(places)))
         causes = likely_causes(quantity, _ln_ratio(quantity, size), one.sd)
         if quantity == "wind" and stands_still[places].any():
             causes = ()  # an anemometer that died on the way is in no other unit

@@ -13,6 +13,7 @@ import polars as pl
 
 from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.blocks.batch import Batch
+from herijk.pipeline.blocks.run_blocks import WindowSums
 from herijk.pipeline.channels import BACK, OUT
 from herijk.pipeline.hull import AIR_DENSITY_KG_M3, front_area_m2
 
@@ -78,9 +79,9 @@ class Seen:
     @classmethod
     def of(cls, batch: Batch) -> "Seen":
         """What the selected runs of each tow show."""
-        whole = batch.blocks.n > 0
+        whole = WindowSums(batch.blocks, batch.blocks.n > 0)
         mean = {
-            name: batch.blocks.mean(name, whole)
+            name: whole.mean(name)
             for name in ("force", "log1_v", "log1_cw", "wind_x", "wind_y", "wind_v")
         } | {"air": _air_kg_m(batch, whole)}
         good = batch.selected & (mean["log1_v"] > 0) & (mean["log1_cw"] > 0)
@@ -126,10 +127,10 @@ def _season_gps(batch: Batch, log_m_s: FloatArray, runs: BoolArray) -> FloatArra
     return tows.select(pl.col("ratio").median().over("season"))["ratio"].to_numpy()
 
 
-def _air_kg_m(batch: Batch, whole: BoolArray) -> FloatArray:
+def _air_kg_m(batch: Batch, whole: WindowSums) -> FloatArray:
     """Most of the air's part of Cw, shape (runs,)."""
     front = front_area_m2(batch.of_run("beam_m"), batch.of_run("bow_height_m"))
-    felt = sum(batch.blocks.mean(f"log1_head_{way}", whole) for way in ("ahead", "behind"))
+    felt = sum(whole.mean(f"log1_head_{way}") for way in ("ahead", "behind"))
     return np.asarray(0.5 * AIR_DENSITY_KG_M3 * DRAG * front * felt)
 
 

@@ -4,7 +4,7 @@ Here the bookkeeping between tows and runs: which run is whose, columns as array
 tow spread over its runs. No formula of the method.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final
 
@@ -27,11 +27,14 @@ class Batch:
         tows: rows of the table `tows`.
         blocks: their runs; `blocks.runs` has the columns of the table `tow_runs`.
         tow: index of each run's tow, shape (runs,).
+        cut_from: the batch that it is a part of, with its rows among the runs of that.
     """
 
     tows: pl.DataFrame
     blocks: RunBlocks
     tow: IntArray
+    cut_from: "tuple[Batch, IntArray] | None" = None
+    _columns: dict[str, FloatArray] = field(default_factory=dict, repr=False)
 
     @classmethod
     def of(cls, tows: pl.DataFrame, blocks: RunBlocks) -> "Batch":
@@ -56,7 +59,7 @@ class Batch:
         """What tells this batch from others of the same tables: its tows."""
         return tuple(self.tows["tow_id"])
 
-    @property
+    @cached_property
     def has_gps(self) -> BoolArray:
         """Tows with fixes in runs that are to be used, out and back, shape (tows,)."""
         fixed = self.selected & (self.blocks["gps_n"].sum(axis=1) > 0)
@@ -66,11 +69,22 @@ class Batch:
 
     def part(self, tows: BoolArray) -> "Batch":
         """Some of its tows, marked in shape (tows,)."""
-        return Batch.of(self.tows.filter(pl.Series(tows)), self.blocks)
+        runs = tows[self.tow]
+        tow = (np.cumsum(tows) - 1)[self.tow[runs]]
+        whole, rows = self.whole
+        cut_from = whole, rows[runs]
+        return Batch(self.tows.filter(pl.Series(tows)), self.blocks.take(runs), tow, cut_from)
+
+    @property
+    def whole(self) -> "tuple[Batch, IntArray]":
+        """The largest batch that this is a part of, and its rows among the runs of that."""
+        return self.cut_from or (self, np.arange(len(self.tow)))
 
     def of_tow(self, column: str) -> FloatArray:
         """A number of each tow, shape (tows,); NaN where it is not known."""
-        return self.tows[column].cast(pl.Float64).to_numpy()
+        if column not in self._columns:
+            self._columns[column] = self.tows[column].cast(pl.Float64).to_numpy()
+        return self._columns[column]
 
     def of_run(self, column: str) -> FloatArray:
         """A number of each run's tow, shape (runs,); NaN where it is not known."""
@@ -81,9 +95,9 @@ class Batch:
         name = f"{channel}_measured"
         if name not in self.tows.columns:
             return np.ones(self.size, dtype=bool)
-        return self.tows[name].fill_null(value=True).to_numpy()
+        return np.asarray(self.of_tow(name) != 0.0)  # also where it is not known
 
-    @property
+    @cached_property
     def trusted(self) -> BoolArray:
         """Tows that the rest of the archive does not rule out, shape (tows,).
 
@@ -94,12 +108,12 @@ class Batch:
         others = pl.col("doubts").list.set_difference(pl.lit([DOUBTED_SPEED]))
         return self.tows.select(others.list.len() == 0).to_series().to_numpy()
 
-    @property
+    @cached_property
     def direction(self) -> IntArray:
         """1 out, -1 back, shape (runs,)."""
         return self.blocks.runs["direction"].to_numpy().astype(np.int64)
 
-    @property
+    @cached_property
     def in_second_file(self) -> BoolArray:
         """Runs of the second file of a combined tow, shape (runs,)."""
         return self.blocks.runs["run"].to_numpy() > SECOND_FILE_OFFSET

@@ -20,7 +20,7 @@ The sums of one block, over its `n` samples, with F the tow force, v a speed sou
 """
 
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Final
 
@@ -102,17 +102,9 @@ class RunBlocks:
             _WhenAsked(self.sums.keys(), lambda name: self.sums[name][chosen]),
         )
 
-    def total(self, name: str, window: BoolArray) -> FloatArray:
-        """Sum over the blocks marked in `window`, shape (runs, seconds), giving shape (runs,)."""
-        return _masked_sum(self.sums[name], window)
-
-    def count(self, window: BoolArray) -> FloatArray:
-        """Samples in the blocks marked in `window`, shape (runs,)."""
-        return _masked_sum(self.n, window)
-
-    def mean(self, name: str, window: BoolArray) -> FloatArray:
-        """Mean over the samples of a window, shape (runs,); 0 where the window is empty."""
-        return self.total(name, window) / np.maximum(self.count(window), 1.0)
+    def with_sums(self, make: Callable[[str], FloatArray]) -> "RunBlocks":
+        """The same runs with other sums, each made when it is asked for."""
+        return replace(self, sums=_WhenAsked(self.sums.keys(), make))
 
     def block_means(self, name: str) -> FloatArray:
         """Mean of each block, shape (runs, seconds); 0 after the run.
@@ -131,8 +123,36 @@ class RunBlocks:
         return np.where(self.inside, filled, 0.0)
 
 
-def _masked_sum(values: FloatArray, window: BoolArray) -> FloatArray:
-    return np.asarray(np.where(window, values, 0.0).sum(axis=1), dtype=np.float64)
+@dataclass(frozen=True)
+class WindowSums:
+    """Sums over one window of every run, each added up when it is first asked for.
+
+    Attributes:
+        blocks: the runs.
+        window: blocks that count, shape (runs, seconds).
+    """
+
+    blocks: RunBlocks
+    window: BoolArray
+    _totals: dict[str, FloatArray] = field(default_factory=dict, repr=False)
+
+    @cached_property
+    def count(self) -> FloatArray:
+        """Samples, shape (runs,)."""
+        return self._sum(self.blocks.n)
+
+    def total(self, name: str) -> FloatArray:
+        """Sum over the samples, shape (runs,)."""
+        if name not in self._totals:
+            self._totals[name] = self._sum(self.blocks[name])
+        return self._totals[name]
+
+    def mean(self, name: str) -> FloatArray:
+        """Mean over the samples, shape (runs,); 0 where the window is empty."""
+        return self.total(name) / np.maximum(self.count, 1.0)
+
+    def _sum(self, values: FloatArray) -> FloatArray:
+        return np.asarray(np.where(self.window, values, 0.0).sum(axis=1), dtype=np.float64)
 
 
 def stack_blocks(

@@ -154,8 +154,8 @@ def _cos_sin(angle_deg: float) -> tuple[float, float]:
     """Cosine and sine, to 2e-15: from the tangent of a quarter of what is left after whole turns.
 
     The tangent is the eighth convergent of Lambert's continued fraction,
-    tan x = x / (1 - x^2 / (3 - x^2 / (5 - ...))), as a fraction n / d; twice the angle of
-    a vector (d, n) has that of (d^2 - n^2, 2 n d).
+    tan x = x / (1 - x^2 / (3 - x^2 / (5 - ...))), as a fraction n / d. Twice the angle of
+    a vector (d, n) is the angle of (d^2 - n^2, 2 n d).
     """
     turns = np.rint(angle_deg * (1.0 / 360.0))
     x = (angle_deg - 360.0 * turns) * (math.pi / 720.0)

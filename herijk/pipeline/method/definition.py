@@ -58,6 +58,9 @@ class Calibration(_Options):
     without_gps: Literal["no_curve", "estimated"] = Field(
         default="no_curve", exclude_if=lambda value: value == "no_curve"
     )
+    stream: Literal["steady", "drifting"] = Field(
+        default="steady", exclude_if=lambda value: value == "steady"
+    )
 
 
 class Window(_Options):
@@ -193,6 +196,10 @@ class Method(_Options):
     extends: str | None
     ranges: tuple[SeasonSteps, ...]
     validity: RegisterRule = RegisterRule()
+
+    def titled(self, language: str) -> str:
+        """The title in `nl` or `en`."""
+        return self.title if language == "nl" else self.title_en
 
     def for_season(self, season: int) -> Steps:
         """The steps of a season.

@@ -17,6 +17,7 @@ from herijk.pipeline import curve
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.recompute.outcome import Outcome
 from herijk.pipeline.season_log import SeasonFactors
+from herijk.pipeline.steps.calibration import USUAL_RUN_SCATTER, mean_over_both_ways
 from herijk.pipeline.steps.speed import log_part
 from herijk.pipeline.uncertainty.misfit import Departure, departure_of_boats
 from herijk.pipeline.uncertainty.propagation import (
@@ -37,9 +38,9 @@ CURVE_SPEED_RATIOS: Final = tuple(thousandths / 1000 for thousandths in range(85
 MOST_BENT: Final = 0.9
 """r beyond which a curve tells nothing."""
 
-USUAL_RUN_SCATTER: Final = 0.006
-"""Standard deviation of dGPS over log between runs one way in a steady stream (inferred: half of
-simulated sound tows stay under 0.3 %, one in a hundred exceeds 0.6 %)."""
+UNTOLD_DRIFT: Final = 0.5
+"""Standard uncertainty of a stream's drift, as a share of what was taken off: nobody wrote down how
+long the turn took between the runs out and those back (inferred)."""
 
 USUAL_BEND: Final = 0.4
 """q where the archive is not asked for it (inferred: r of 0.3)."""
@@ -112,10 +113,10 @@ def stream_scatter(o: Outcome) -> tuple[FloatArray, IntArray]:
     """Standard deviation of ln y by a stream that is not the same in runs one way, and its dof.
 
     Of these, in one file, GPS over log differs by no more than `USUAL_RUN_SCATTER`. What is beyond
-    moves the mean of n runs by its root-n-th part. Both of shape (tows,); 0 where no tow is
-    calibrated by itself.
+    moves the mean of n runs by its root-n-th part. A drift that was taken off is uncertain too.
+    Both of shape (tows,); 0 where no tow is calibrated by itself.
     """
-    batch, gps, log = o.batch, o.means.gps_m_s, o.means.speed_m_s
+    batch, gps, log = o.batch, o.means.gps_m_s - o.stream_m_s, o.means.speed_m_s
     used = o.used & np.isfinite(gps) & (log > 0) & o.calibrated[batch.tow]
     used &= o.steps.calibration.rule == "gps_per_tow"
     ratio = np.where(used, gps, 1.0) / np.where(used, log, 1.0)
@@ -125,7 +126,13 @@ def stream_scatter(o: Outcome) -> tuple[FloatArray, IntArray]:
     square = np.bincount(batch.tow, used * (ratio - mean[group]) ** 2, batch.size)
     dof = np.maximum(count - 1, 0).reshape(-1, 4).sum(axis=1).astype(np.int64)
     beyond = np.maximum(square / np.maximum(dof, 1) - USUAL_RUN_SCATTER**2, 0.0)
-    return np.where(dof > 0, np.sqrt(beyond / np.maximum(batch.count(used), 1)), 0.0), dof
+    scatter = np.sqrt(beyond / np.maximum(batch.count(used), 1))
+    drifts = (np.where(used, x, 0.0) for x in (o.stream_m_s, log))
+    drift, speed = (
+        mean_over_both_ways(x, batch.direction, batch.tow, used, batch.size)[0] for x in drifts
+    )
+    drift_sd = UNTOLD_DRIFT * drift / np.where(speed > 0, speed, 1.0)
+    return np.where(dof > 0, np.hypot(scatter, drift_sd), 0.0), dof
 
 
 def run_point_ratio(o: Outcome) -> FloatArray:

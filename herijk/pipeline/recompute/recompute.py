@@ -43,7 +43,7 @@ from herijk.pipeline.recompute.season_factors import (
     without_gps,
 )
 from herijk.pipeline.season_log import SeasonFactors
-from herijk.pipeline.steps.calibration import gps_factor_of_files
+from herijk.pipeline.steps.calibration import gps_factor_of_files, stream_drift_m_s
 from herijk.pipeline.steps.resistance import RunMeans, temperature_change_kg_m
 from herijk.pipeline.steps.speed import log_factor
 from herijk.pipeline.steps.target import above_target
@@ -140,18 +140,18 @@ def batches(
     for season in tows["season"].unique().sort():
         steps = tuple(method.for_season(season) for method in methods)
         seasons.setdefault(str(steps), (steps, []))[1].append(season)
-    whole = [
-        (Batch.of(tows.filter(pl.col("season").is_in(season_batch)), blocks), steps)
+    whole = Batch.of(tows, blocks)
+    alike = [
+        (whole.part(np.isin(whole.of_tow("season"), season_batch)), steps)
         for steps, season_batch in seasons.values()
     ]
-    return [part for batch, steps in whole for part in _by_gps(batch, steps)]
+    return [part for batch, steps in alike for part in _by_gps(batch, steps)]
 
 
 def _by_gps(batch: Batch, steps: tuple[Steps, ...]) -> Iterator[tuple[Batch, tuple[Steps, ...]]]:
     """A batch as it is, or its tows with GPS and those without."""
     otherwise = tuple(without_gps(one) for one in steps)
-    has_gps = batch.has_gps
-    if otherwise == steps or has_gps.all():
+    if otherwise == steps or (has_gps := batch.has_gps).all():
         yield batch, steps
         return
     for mine, own in ((has_gps, steps), (~has_gps, otherwise)):
@@ -236,7 +236,8 @@ def _prepare(batch: Batch, steps: Steps, cache: RunCache, estimated: TowFactor) 
     tow_list = batch.of_tow("speed_correction_ratio")
     known = log_factor(steps.speed, tow_list, estimated.factor)
     reasons = _reasons(batch, steps, windows, means)
-    y, determined = _calibrate(batch, steps, windows, means, known, reasons == "")
+    stream = _stream_drift(batch, steps, means, reasons == "")
+    y, determined = _calibrate(batch, steps, windows, means, stream, known, reasons == "")
     calibrated = batch.any(determined & (reasons == "")) & (steps.calibration.rule != "none")
     reasons = np.where((reasons == "") & ~determined, NOT_CALIBRATED, reasons)
     speed = means.speed_m_s * known[batch.tow] * y
@@ -251,6 +252,7 @@ def _prepare(batch: Batch, steps: Steps, cache: RunCache, estimated: TowFactor) 
         known,
         y,
         calibrated,
+        stream,
         estimated,
         reasons,
         still_unit_kg_m=still_air_coefficient_kg_m(front, has_wind),
@@ -273,11 +275,26 @@ def _reasons(batch: Batch, steps: Steps, windows: Windows, means: RunMeans) -> T
     )
 
 
+def _stream_drift(batch: Batch, steps: Steps, means: RunMeans, used: BoolArray) -> FloatArray:
+    """Part of the GPS speed that is a drift of the stream, as far as asked for, shape (runs,)."""
+    if steps.calibration.stream == "steady":
+        return np.zeros(len(batch.tow))
+    return stream_drift_m_s(
+        means.gps_m_s,
+        means.speed_m_s,
+        batch.direction,
+        batch.blocks.runs["run"].to_numpy().astype(np.int64),
+        2 * batch.tow + batch.in_second_file,
+        used,
+    )
+
+
 def _calibrate(
     batch: Batch,
     steps: Steps,
     windows: Windows,
     means: RunMeans,
+    stream_m_s: FloatArray,
     known_factor: FloatArray,
     used: BoolArray,
 ) -> tuple[FloatArray, BoolArray]:
@@ -286,7 +303,7 @@ def _calibrate(
         return np.ones(len(batch.tow)), np.ones(len(batch.tow), dtype=bool)
     log = means.speed_m_s * known_factor[batch.tow]
     y, determined = gps_factor_of_files(
-        means.gps_m_s,
+        means.gps_m_s - stream_m_s,
         log,
         batch.direction,
         batch.tow,

@@ -37,7 +37,6 @@ from herijk.pipeline.season_log import SeasonFactors, other_log_factors, retow_c
 from herijk.pipeline.season_log.diagnosis import DIAGNOSIS_SCHEMA, STEP_SCHEMA
 from herijk.pipeline.season_log.retow_design import RETOW_SCHEMA
 from herijk.pipeline.steps.speed import log_factor
-from herijk.pipeline.steps.wind import mean_wind_angle_deg
 from herijk.tables.frames import dtypes
 from herijk.tables.season_log import BestEstimateWeights, LogFactors, SeasonLinks, TowInstruments
 
@@ -118,13 +117,12 @@ def as_tables(
 
 
 def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
-    blocks, mask, has_window = o.batch.blocks, o.windows.mask, o.windows.found
-    tow = o.batch.tow
+    means, has_window, tow = o.means, o.windows.found, o.batch.tow
     on_curve = curve.cw(o.curves.a_kg_m[tow], o.curves.s_s2_m2[tow], o.speed_m_s)
-    log1 = np.where(has_window, blocks.mean("log1_v", mask), 1.0)
+    log1 = np.where(has_window, means.log1_m_s, 1.0)
     has_limits = o.steps.window.rule != "all"
     wind, log2 = (o.batch.measured(channel)[tow] for channel in ("wind", "log2"))
-    log2_ratio = blocks.mean("log2_v", mask) / log1
+    log2_ratio = means.log2_m_s / log1
     log2 &= log2_ratio != 1.0  # a run without its log 2 has log 1 in its place
     numbers = {
         "window_start_s": o.windows.start_s,
@@ -144,11 +142,13 @@ def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
         "cw_kg_m": o.cw_kg_m,
         "cw_sd": o.sd_kg_m,
         "u_ratio": run_point_ratio(o) if pooled else np.full(len(tow), np.nan),
-        "wind_m_s": np.where(wind, blocks.mean("wind_v", mask), np.nan),
-        "wind_angle_deg": np.where(wind, mean_wind_angle_deg(blocks, mask), np.nan),
+        "wind_m_s": np.where(wind, means.wind_m_s, np.nan),
+        "wind_angle_deg": np.where(wind, means.wind_angle_deg, np.nan),
         "log2_ratio": np.where(log2, log2_ratio, np.nan),
     }
-    return blocks.runs.select("tow_id", "run", "direction", "target_speed_ratio").with_columns(
+    return o.batch.blocks.runs.select(
+        "tow_id", "run", "direction", "target_speed_ratio"
+    ).with_columns(
         pl.Series("lost_s", o.batch.lost_s),
         *(_column(name, values, has_window) for name, values in numbers.items()),
         _column("ends_ratio", o.windows.ends.in_limits(o.steps.window), has_window & has_limits),

@@ -1,18 +1,23 @@
 """Windows and means of runs that were found before: half of the time of a recompute goes into them.
 
 Most changes of a method leave them as they are: they depend on few of its options. Only those
-belong here that do not depend on a log factor or on other tows.
+belong here that do not depend on a log factor or on other tows. They are found of all tows
+together, however a method parts them.
 """
 
-from dataclasses import dataclass, field
-from typing import TypeAlias
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields, is_dataclass, replace
+from typing import Any, TypeAlias, TypeVar
 
+from herijk.pipeline.arrays import IntArray
 from herijk.pipeline.blocks.batch import Batch
-from herijk.pipeline.method.definition import RunPoint, Steps, Window
-from herijk.pipeline.steps.resistance import RunMeans, run_means
+from herijk.pipeline.method.definition import Steps, Window
+from herijk.pipeline.steps.resistance import OverWindow, RunMeans, run_means
 from herijk.pipeline.steps.window import Windows, choose_windows
 
 Tows: TypeAlias = tuple[str, ...]
+Options: TypeAlias = tuple[Any, ...]
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -22,31 +27,58 @@ class RunCache:
     Of one set of blocks; another needs a cache of its own.
     """
 
-    _windows: dict[tuple[Tows, Window], Windows] = field(default_factory=dict)
-    _means: dict[tuple[Tows, Window, str, RunPoint, str, int], RunMeans] = field(
-        default_factory=dict
-    )
+    _found: dict[tuple[Tows, Options], Any] = field(default_factory=dict)
+    _sums: dict[tuple[Tows, Options], OverWindow] = field(default_factory=dict)
 
     def windows(self, batch: Batch, steps: Steps) -> Windows:
         """The window of every run of a batch."""
-        key = (batch.key, steps.window)
-        if key not in self._windows:
-            self._windows[key] = choose_windows(batch.blocks, steps.window)
-        return self._windows[key]
+        rule = _rule(steps)
+        return self._of_part(batch, (rule,), lambda of: choose_windows(of.blocks, rule))
 
     def means(self, batch: Batch, steps: Steps) -> RunMeans:
         """The means of every run of a batch over its window: coefficients are not in them yet."""
         of_wind = (steps.wind.model, steps.wind.averaging_s)
-        key = (batch.key, steps.window, steps.speed.source, steps.run_point, *of_wind)
-        if key not in self._means:
-            self._means[key] = run_means(batch, self.windows(batch, steps).mask, steps)
-        return self._means[key]
+        options = (_rule(steps), steps.speed.source, steps.run_point, *of_wind)
+        return self._of_part(batch, options, lambda of: run_means(of, self._over(of, steps), steps))
+
+    def _over(self, batch: Batch, steps: Steps) -> OverWindow:
+        key = batch.key, (_rule(steps),)
+        if key not in self._sums:
+            self._sums[key] = OverWindow.of(batch.blocks, self.windows(batch, steps).mask)
+        return self._sums[key]
+
+    def _of_part(self, batch: Batch, options: Options, find: Callable[[Batch], T]) -> T:
+        """What is found of a batch: the rows that it has of what is found of the whole."""
+        key = batch.key, options
+        if key not in self._found:
+            whole, rows = batch.whole
+            found = find(batch) if whole is batch else self._of_part(whole, options, find)
+            self._found[key] = found if whole is batch else _rows(found, rows)
+        known: T = self._found[key]
+        return known
 
     def __len__(self) -> int:
         """Entries held."""
-        return len(self._windows) + len(self._means)
+        return len(self._found) + len(self._sums)
+
+    def let_go(self) -> None:
+        """Lets go of the blocks, which take most of the memory; what was found of them stays."""
+        self._sums.clear()
 
     def clear(self) -> None:
         """Forgets everything."""
-        self._windows.clear()
-        self._means.clear()
+        self._found.clear()
+        self._sums.clear()
+
+
+def _rule(steps: Steps) -> Window:
+    """The rule for the window, without what it does not ask for: all of a run is all of it."""
+    return Window(rule="all") if steps.window.rule == "all" else steps.window
+
+
+def _rows(found: Any, rows: IntArray) -> Any:
+    """The rows of some runs of all arrays of what was found."""
+    if is_dataclass(found) and not isinstance(found, type):
+        parts = {f.name: _rows(getattr(found, f.name), rows) for f in fields(found)}
+        return replace(found, **parts)
+    return tuple(found[row] for row in rows) if isinstance(found, tuple) else found[rows]

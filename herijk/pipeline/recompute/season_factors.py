@@ -228,7 +228,7 @@ def _other_ln_ratio(o: Outcome) -> FloatArray:
     source = o.steps.speed.source
     if source not in OTHER_LOG:
         return np.full(o.batch.size, np.nan)
-    mean = {log: o.batch.blocks.mean(f"{log}_v", o.windows.mask) for log in ("log1", "log2")}
+    mean = {"log1": o.means.log1_m_s, "log2": o.means.log2_m_s}
     turning = o.used & (mean["log1"] > 0) & (mean["log2"] > 0)
     turning &= o.batch.measured("log2")[o.batch.tow]
     turning &= mean["log1"] != mean["log2"]  # a run without its log 2 has log 1 in its place

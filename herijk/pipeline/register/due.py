@@ -56,9 +56,9 @@ def due_list(
 
     Returns:
         Per line `as_of`, `status`, `tow_id`, `tow_date`, `valid_until`, `declared_speed_m_s`,
-        `power_w` (per rower, there), `raced_speed_m_s` (fastest of the past year),
-        `lowest_speed_m_s` and `highest_speed_m_s` (the realistic range), `tow_speed_m_s`,
-        `speed_reason` and `beyond_curve` (that speed lies outside 85-115 % of the last one); sorted
+        `power_w` (per rower, there) and `raced_speed_m_s` (fastest of the past year). Of the next
+        tow `lowest_speed_m_s` and `highest_speed_m_s` (the realistic range), `tow_speed_m_s`,
+        `speed_reason` and `beyond_curve` (that speed lies outside 85-115 % of the last one). Sorted
         by line.
     """
     lines = (

@@ -83,10 +83,10 @@ def draft_register(
         decisions: `tow_id` and `verdict`: a tow to `exclude`, or to `prefer` over newer ones.
 
     Returns:
-        Rows of the table `register`, `as_of` that day, with status `valid`, `expired`, `rejected`
-        (towed, but no tow gives a curve), `doubted` (the rest of the archive rules its tows out; a
-        person may look and prefer one), `excluded` (by decision, and there is no other tow) or
-        `never_towed`.
+        Rows of the table `register`, `as_of` that day. Their status is `valid`, `expired`,
+        `never_towed` or one of these. `rejected`: towed, but no tow gives a curve. `doubted`: the
+        rest of the archive rules its tows out; a person may look and prefer one. `excluded`: by
+        decision, and there is no other tow.
     """
     towed = _towed(_as_ruled(curves, rule), tows.filter(pl.col("tow_date") <= on_date))
     curved = towed.filter(pl.col("status") != "rejected")

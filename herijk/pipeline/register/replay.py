@@ -72,12 +72,12 @@ def replay(lines: pl.DataFrame, results: pl.DataFrame, rules: RaceRules) -> pl.D
         rules: how they are computed.
 
     Returns:
-        The results with `tow_id` and `declared_cw_kg_m` (Cw at the declared speed) of the line that
-        counted, `speed_m_s`, `cw_kg_m`, `fatigue_factor`, `power_w` (per rower, corrected,
-        less the penalty), `rank` within the race and class, and `remark`: why there is no power
-        (`not_in_register`, `no_line_that_day`, `thwart_not_given`, `speed_not_below_b`), or that
-        the speed lies outside 85-115 % of the declared one, where the curve does not hold
-        (`beyond_curve`); else empty. Sorted by race, class and rank.
+        The results, sorted by race, class and rank. Added are `tow_id` and `declared_cw_kg_m` (Cw
+        at the declared speed) of the line that counted, `speed_m_s`, `cw_kg_m`, `fatigue_factor`,
+        `power_w` (per rower, corrected, less the penalty) and `rank` within the race and class.
+        `remark` says why there is no power (`not_in_register`, `no_line_that_day`,
+        `thwart_not_given`, `speed_not_below_b`), or that the speed lies outside 85-115 % of the
+        declared one, where the curve does not hold (`beyond_curve`); else it is empty.
 
     Raises:
         MissingKnowledgeError: a race time outside what is known of fatigue.

@@ -5,13 +5,18 @@ speed log. A speed error acts on Cw at a fixed speed with the elasticity kappa =
 repeat tows determine it well (docs/method.md, 4). It is the ubercalibration of astronomy:
 boats are the stars, seasons the nights, tows calibrated on dGPS the absolute anchor.
 
-Belongs here: what is assumed (`assumed`), the unknowns and their effects (`effects`), the density
-of a boat's tows (`likelihood`), the posterior of everything (`posterior`), what it says of tows
-(`tows`), seasons (`diagnosis`) and factors (`estimate`); what it all rests on (`network`) and what
-tows of one day share (`days`); which boats to tow again (`retow_design`); the second estimate
-without boat identity (`without_boats`); the factor of the log that is not in use (`other_log`).
-Does not: how Cw of a tow is computed, prescribed corrections (never data here) and what is done
-with the factors.
+Belongs here:
+
+- what is assumed (`assumed`), and the unknowns with their effects (`effects`);
+- the density of a boat's tows (`likelihood`), and the posterior of everything (`posterior`);
+- what it says of tows (`tows`), seasons (`diagnosis`) and factors (`estimate`);
+- what it all rests on (`network`), and what tows of one day share (`days`);
+- which boats to tow again (`retow_design`);
+- the second estimate, without boat identity (`without_boats`);
+- the factor of the log that is not in use (`other_log`).
+
+Does not belong here: how Cw of a tow is computed, prescribed corrections (never data here), and
+what is done with the factors.
 
 The model, for tow k of boat i in season j, with lambda = ln(true speed / log speed):
 

@@ -54,12 +54,12 @@ def season_diagnosis(problem: Problem, posterior: Posterior, network: Network) -
 
     Returns:
         Rows of `DIAGNOSIS_SCHEMA`. `estimate` with its 95 % interval is the logarithm of a factor,
-        or newtons; `p_fault` the probability that there is such a fault, null for what there always
-        is; `distance_sd` how far what is seen lies from what is assumed, in standard deviations;
-        `verdict` is `sound`, `would not show` (a fault of the usual size would most likely not be
-        found: something else would be taken for it), `cannot be told`, `fault` or, for the factor
-        of a log, `estimated` or `not determined`; a distance of 4 is an `alarm`. `alarm`: a person
-        should look.
+        or newtons. `p_fault` is the probability that there is such a fault, null for what there
+        always is. `distance_sd` is how far what is seen lies from what is assumed, in standard
+        deviations. `verdict` is `sound`, `cannot be told`, `fault`, or `would not show`: a fault of
+        the usual size would most likely be taken for something else. For the factor of a log it
+        is `estimated` or `not determined`; a distance of 4 is an `alarm`. `alarm`: a person should
+        look.
     """
     keys: dict[tuple[int, int, str], list[int]] = {}
     for column, place in enumerate(posterior.places):
@@ -80,12 +80,14 @@ def season_steps(
 
     Returns:
         Rows of `STEP_SCHEMA`: `level_step`, what log and load cell together do to ln Cw, and
-        `force_step`, the part of the load cell, with standard deviations; `cause` is `force` where
-        a fault of the load cell is likelier than not, `not told` where one cannot be told, where it
-        looks like a stream that runs with the boat both ways, where the season is not determined,
-        or where a load cell fault would not show and one no larger than
-        usual could be the whole step; `log` where the level differs by more than twice its standard
-        deviation, else `none`.
+        `force_step`, the part of the load cell, with standard deviations. `cause` is
+
+        - `force` where a fault of the load cell is likelier than not;
+        - `not told` where one cannot be told, where it looks like a stream that runs with the boat
+          both ways, where the season is not determined, or where a fault of the load cell would not
+          show and one no larger than usual could be the whole step;
+        - `log` where the level differs by more than twice its standard deviation;
+        - else `none`.
     """
     names = np.array([problem.unknowns[i].name for i in posterior.places])
     level = problem.design(posterior.fit.slopes, posterior.places)[:, LEVEL_NUMBER]

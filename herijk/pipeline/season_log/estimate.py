@@ -103,10 +103,10 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
     Returns:
         The factors. `source` is `estimated` with boats that link the season to others, `gps` with
         GPS alone, `not determined` (numbers null) where neither ties it to an anchored season.
-        `n_links` counts boats also towed elsewhere, `component` the connected part of the network
-        (0 has the anchor), `influence` is the largest change of the factor when one boat
-        (`influence_boat`) is left out, `critical_boats` how many boats would leave the season
-        undetermined, `weakest_mode` its share in the combination of seasons that is known worst,
+        `n_links` counts boats also towed elsewhere; `component` is the connected part of the
+        network (0 has the anchor). `influence` is the largest change of the factor when one boat
+        (`influence_boat`) is left out, and `critical_boats` how many boats would leave the season
+        undetermined. `weakest_mode` is its share in the combination of seasons that is known worst,
         `agreement` (factor - the one without boat identity) in standard deviations.
 
     Raises:

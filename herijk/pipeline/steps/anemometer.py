@@ -15,6 +15,7 @@ import scipy
 
 from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.blocks.batch import Batch
+from herijk.pipeline.blocks.run_blocks import WindowSums
 from herijk.pipeline.channels import BACK, OUT
 
 UNKNOWN_LOG_SD: Final = 0.06
@@ -68,9 +69,8 @@ class WindRatio:
             water_m_s: speed by the log as corrected so far, taken where there is no GPS.
             log_sd: of the ln factor of the log, shape (tows,); NaN where nothing is known.
         """
-        blocks = batch.blocks
-        speed = blocks.mean("wind_v", window)
-        cos, sin = blocks.total("wind_cos", window), blocks.total("wind_sin", window)
+        sums = WindowSums(batch.blocks, window)
+        speed, cos, sin = sums.mean("wind_v"), sums.total("wind_cos"), sums.total("wind_sin")
         length = np.maximum(np.hypot(cos, sin), 1e-9)
         blows = used & (speed > 0) & (water_m_s > 0)
         blows &= (batch.measured("wind") & batch.trusted)[batch.tow]

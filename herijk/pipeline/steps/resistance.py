@@ -6,17 +6,24 @@ speed divides every coefficient by k^2, and is applied last (`true_cw_kg_m`). Wh
 which factor holds is decided elsewhere.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
 
 from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.blocks.batch import Batch
+from herijk.pipeline.blocks.run_blocks import RunBlocks, WindowSums
 from herijk.pipeline.hull import front_area_m2, side_area_m2
 from herijk.pipeline.method.definition import RunPoint, Steps, Temperature
 from herijk.pipeline.steps.friction import friction_cw_kg_m, water_density_kg_m3
-from herijk.pipeline.steps.wind import AirParts, air_parts, air_sums, averaged_terms
+from herijk.pipeline.steps.wind import (
+    AirParts,
+    air_parts,
+    air_sums,
+    mean_wind_angle_deg,
+    with_averaged_wind,
+)
 from herijk.pipeline.steps.window import END_SECONDS, end_masks
 
 LOG2_AGREES_RATIO: Final = 0.01
@@ -39,6 +46,8 @@ class RunMeans:
         inertia_kg_m: part of it that accelerated the boat.
         air: air resistance / v^2 for drag coefficients of 1.
         gps_m_s: mean ground speed, NaN without a fix.
+        log1_m_s, log2_m_s, wind_m_s: mean reading of each log and of the anemometer.
+        wind_angle_deg: circular mean of the vane.
     """
 
     speed_m_s: FloatArray
@@ -47,6 +56,10 @@ class RunMeans:
     inertia_kg_m: FloatArray
     air: AirParts
     gps_m_s: FloatArray
+    log1_m_s: FloatArray
+    log2_m_s: FloatArray
+    wind_m_s: FloatArray
+    wind_angle_deg: FloatArray
 
     def with_force(self, factor: FloatArray, zero_n: FloatArray) -> "RunMeans":
         """These means for a load cell that reads true force x factor + zero, shape (runs,)."""
@@ -59,84 +72,113 @@ class RunMeans:
 
     def where(self, chosen: BoolArray, other: "RunMeans") -> "RunMeans":
         """These means for the chosen runs, shape (runs,), those of the other elsewhere."""
-        return RunMeans(
+        return replace(
+            self,
             speed_m_s=np.where(chosen, self.speed_m_s, other.speed_m_s),
             gross_kg_m=np.where(chosen, self.gross_kg_m, other.gross_kg_m),
             sd_kg_m=np.where(chosen, self.sd_kg_m, other.sd_kg_m),
             inertia_kg_m=np.where(chosen, self.inertia_kg_m, other.inertia_kg_m),
             air=self.air.where(chosen, other.air),
-            gps_m_s=self.gps_m_s,
         )
 
 
-def run_means(batch: Batch, window: BoolArray, steps: Steps) -> RunMeans:
+@dataclass(frozen=True)
+class OverWindow:
+    """Sums over the window of every run, for means of all kinds.
+
+    Attributes:
+        whole: over all of it.
+        first, last: over its two ends.
+    """
+
+    whole: WindowSums
+    first: WindowSums
+    last: WindowSums
+    _with_averaged_wind: dict[int, WindowSums] = field(default_factory=dict, repr=False)
+
+    @classmethod
+    def of(cls, blocks: RunBlocks, window: BoolArray) -> "OverWindow":
+        """Of blocks that count, shape (runs, seconds)."""
+        first, last = (WindowSums(blocks, end) for end in end_masks(window))
+        return cls(WindowSums(blocks, window), first, last)
+
+    def with_wind(self, averaging_s: int) -> WindowSums:
+        """Over all of it, with the air terms of a wind that is averaged over some seconds."""
+        known = self._with_averaged_wind
+        if not averaging_s:
+            return self.whole
+        if averaging_s not in known:
+            blocks = with_averaged_wind(self.whole.blocks, averaging_s)
+            known[averaging_s] = WindowSums(blocks, self.whole.window)
+        return known[averaging_s]
+
+
+def run_means(batch: Batch, sums: OverWindow, steps: Steps) -> RunMeans:
     """Means of every run over its window.
 
     Args:
         batch: tows and runs.
-        window: blocks that count, shape (runs, seconds).
+        sums: of its blocks.
         steps: speed source, estimator, wind model and inertia of the method.
     """
     if steps.speed.source != "mean":
-        return _means_of_source(batch, window, steps, steps.speed.source)
-    of_both, of_log1 = (_means_of_source(batch, window, steps, s) for s in ("mean", "log1"))
-    return of_both.where(_both_logs_good(batch, window), of_log1)
+        return _means_of_source(batch, sums, steps, steps.speed.source)
+    of_both, of_log1 = (_means_of_source(batch, sums, steps, s) for s in ("mean", "log1"))
+    return of_both.where(_both_logs_good(batch, sums.whole), of_log1)
 
 
-def _both_logs_good(batch: Batch, window: BoolArray) -> BoolArray:
+def _both_logs_good(batch: Batch, sums: WindowSums) -> BoolArray:
     """Runs of tows in which log 2 agrees with log 1 over all runs together."""
-    log1, log2 = (batch.blocks.mean(f"{log}_v", window) for log in ("log1", "log2"))
+    log1, log2 = (sums.mean(f"{log}_v") for log in ("log1", "log2"))
     seen = log1 > 0
     ratio = batch.mean(log2, seen) / _or_one(batch.mean(log1, seen))
     return ((np.abs(ratio - 1.0) <= LOG2_AGREES_RATIO) & batch.measured("log2"))[batch.tow]
 
 
-def _means_of_source(batch: Batch, window: BoolArray, steps: Steps, source: str) -> RunMeans:
+def _means_of_source(batch: Batch, sums: OverWindow, steps: Steps, source: str) -> RunMeans:
     """Means of every run by one speed source of `pipeline.blocks.run_blocks`."""
-    blocks = batch.blocks
-    speed, samples_cw = (blocks.mean(f"{source}_{name}", window) for name in ("v", "cw"))
-    variance = np.maximum(blocks.mean(f"{source}_cw2", window) - samples_cw**2, 0.0)
+    whole = sums.whole
+    speed, samples_cw = (whole.mean(f"{source}_{name}") for name in ("v", "cw"))
+    variance = np.maximum(whole.mean(f"{source}_cw2") - samples_cw**2, 0.0)
     if steps.run_point.estimator == "mean_of_ratios":
         gross = samples_cw
     else:
-        gross = blocks.mean("force", window) / _or_one(speed) ** 2
-    terms = _air_terms(batch, window, steps, speed, source)
+        gross = whole.mean("force") / _or_one(speed) ** 2
+    terms = _air_terms(sums.with_wind(steps.wind.averaging_s), steps, speed, source)
     front = front_area_m2(batch.of_run("beam_m"), batch.of_run("bow_height_m"))
     side = side_area_m2(batch.of_run("waterline_length_m"), batch.of_run("bow_height_m"))
-    air = air_parts(blocks, terms, steps.wind, front, side)
-    change = _end_speed_change(batch, window, source)
-    inertia = _inertia(batch, steps.run_point, change, speed)
-    fixes = blocks.total("gps_n", window)
-    gps = np.where(fixes > 0, blocks.total("gps", window) / np.maximum(fixes, 1.0), np.nan)
-    return RunMeans(speed, gross, np.sqrt(variance), inertia, air, gps)
+    air = air_parts(batch.blocks, terms, steps.wind, front, side)
+    inertia = _inertia(batch, steps.run_point, _end_speed_change(sums, source), speed)
+    fixes = whole.total("gps_n")
+    gps = np.where(fixes > 0, whole.total("gps") / np.maximum(fixes, 1.0), np.nan)
+    return RunMeans(
+        speed,
+        gross,
+        np.sqrt(variance),
+        inertia,
+        air,
+        gps,
+        log1_m_s=whole.mean("log1_v"),
+        log2_m_s=whole.mean("log2_v"),
+        wind_m_s=whole.mean("wind_v"),
+        wind_angle_deg=mean_wind_angle_deg(whole),
+    )
 
 
 def _air_terms(
-    batch: Batch, window: BoolArray, steps: Steps, speed: FloatArray, source: str
+    sums: WindowSums, steps: Steps, speed: FloatArray, source: str
 ) -> dict[str, FloatArray]:
-    """Mean of each air term / v^2, per sample or from the averaged wind vector."""
-    blocks = batch.blocks
-    by_ratio = steps.run_point.estimator == "ratio_of_means"
-    smooth = averaged_terms(blocks, steps.wind.averaging_s) if steps.wind.averaging_s else None
-    count = np.maximum(blocks.count(window), 1.0)
-    terms = {}
-    for name in air_sums(steps.wind):
-        if by_ratio:
-            sums = blocks[name] if smooth is None else smooth[name] * blocks.n
-            terms[name] = np.where(window, sums, 0.0).sum(axis=1) / count / _or_one(speed) ** 2
-        elif smooth is None:
-            terms[name] = blocks.mean(f"{source}_{name}", window)
-        else:
-            sums = smooth[name] * blocks[f"{source}_inv_v2"]
-            terms[name] = np.where(window, sums, 0.0).sum(axis=1) / count
-    return terms
+    """Mean of each air term / v^2, per sample or of the means."""
+    names = air_sums(steps.wind)
+    if steps.run_point.estimator == "ratio_of_means":
+        return {name: sums.mean(name) / _or_one(speed) ** 2 for name in names}
+    return {name: sums.mean(f"{source}_{name}") for name in names}
 
 
-def _end_speed_change(batch: Batch, window: BoolArray, source: str) -> FloatArray:
+def _end_speed_change(sums: OverWindow, source: str) -> FloatArray:
     """Rise of speed over the window / its length, from the means of its two ends, m/s2."""
-    length = window.sum(axis=1)
-    first, last = end_masks(window)
-    rise = batch.blocks.mean(f"{source}_v", last) - batch.blocks.mean(f"{source}_v", first)
+    length = sums.whole.window.sum(axis=1)
+    rise = sums.last.mean(f"{source}_v") - sums.first.mean(f"{source}_v")
     return np.asarray(rise / np.maximum(length - END_SECONDS, 1), dtype=np.float64)
 
 

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from herijk.pipeline.arrays import BoolArray, FloatArray
-from herijk.pipeline.blocks.run_blocks import AIR_SUMS, RunBlocks
+from herijk.pipeline.blocks.run_blocks import AIR_SUMS, RunBlocks, WindowSums
 from herijk.pipeline.hull import AIR_DENSITY_KG_M3
 from herijk.pipeline.method.definition import Wind
 
@@ -125,6 +125,19 @@ def averaged_terms(blocks: RunBlocks, averaging_s: int) -> dict[str, FloatArray]
     return dict(zip(AIR_SUMS, terms, strict=True))
 
 
+def with_averaged_wind(blocks: RunBlocks, averaging_s: int) -> RunBlocks:
+    """The same blocks with the sums of their air terms as `averaged_terms` gives them."""
+    terms = averaged_terms(blocks, averaging_s)
+
+    def made(name: str) -> FloatArray:
+        if name in AIR_SUMS:
+            return terms[name] * blocks.n
+        source, _, term = name.partition("_")
+        return terms[term] * blocks[f"{source}_inv_v2"] if term in AIR_SUMS else blocks[name]
+
+    return blocks.with_sums(made)
+
+
 def _centred_sum(values: FloatArray, width: int) -> FloatArray:
     """Sum over `width` neighbours along axis 1, centred, cut off at the ends."""
     total = np.zeros_like(values)
@@ -166,7 +179,7 @@ def _clipped_quotient(numerator: FloatArray, denominator: FloatArray) -> FloatAr
     )
 
 
-def mean_wind_angle_deg(blocks: RunBlocks, window: BoolArray) -> FloatArray:
+def mean_wind_angle_deg(sums: WindowSums) -> FloatArray:
     """Circular mean of the vane over each window, shape (runs,), degrees in [0, 360)."""
-    sin, cos = blocks.total("wind_sin", window), blocks.total("wind_cos", window)
+    sin, cos = sums.total("wind_sin"), sums.total("wind_cos")
     return np.asarray(np.degrees(np.arctan2(sin, cos)) % 360.0, dtype=np.float64)

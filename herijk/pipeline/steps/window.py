@@ -17,7 +17,7 @@ import numpy as np
 import scipy
 
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
-from herijk.pipeline.blocks.run_blocks import RunBlocks
+from herijk.pipeline.blocks.run_blocks import RunBlocks, WindowSums
 from herijk.pipeline.method.definition import Window
 
 WORTH_DECIMALS: Final = 6
@@ -93,12 +93,12 @@ class Ends:
     @classmethod
     def of(cls, blocks: RunBlocks, mask: BoolArray) -> "Ends":
         """The differences of windows that are given by their blocks, shape (runs, seconds)."""
-        first, last = end_masks(mask)
+        first, last = (WindowSums(blocks, end) for end in end_masks(mask))
 
         def rise(name: str) -> FloatArray:
-            return blocks.mean(name, last) - blocks.mean(name, first)
+            return last.mean(name) - first.mean(name)
 
-        force = np.abs(blocks.mean("force", mask))
+        force = np.abs(WindowSums(blocks, mask).mean("force"))
         return cls(rise("log1_v"), rise("force") / np.where(force > 0, force, 1.0), rise("wind_v"))
 
     def in_limits(self, rule: Window) -> FloatArray:

@@ -295,7 +295,7 @@ def _differ(one: float, other: float) -> bool:
 def _rate_of_its_own(tow: Row, rate: float) -> Fault:
     """Return that a tow was sampled at another rate than the first of its season."""
     said = say(
-        "By its times it has {own:.4g} samples per second, other than the first tow of its "
+        "By its times it has {own:g} samples per second, other than the first tow of its "
         "season: write that into the tow list, in a column 'meetfrequentie [Hz]'.",
         own=rate,
     )

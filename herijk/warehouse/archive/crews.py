@@ -64,11 +64,12 @@ def _is_crew(cell: str) -> bool:
 
 
 def _filled(fields: Sequence[str], rowers: int, crew_class: int) -> list[str]:
-    """Return a row with the class of a crew among the rowers in its own, empty cell."""
+    """Return a row with the class of a crew among the rowers in its own cell, empty or the same."""
     filled = list(fields)
     there = max(rowers, crew_class) < len(fields)
     match = _CREW.fullmatch(fields[rowers]) if there and _is_crew(fields[rowers]) else None
-    if match and not fields[crew_class].strip():
+    said = fold_word(fields[crew_class]) if match else ""
+    if match and (not said or CLASSES.get(said) == CLASSES[fold_word(match[2])]):
         filled[rowers], filled[crew_class] = match.groups()
     return filled
 

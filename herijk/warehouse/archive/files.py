@@ -56,6 +56,8 @@ STANDS_FOR: Final = re.compile(
 )
 """What a file or folder can be said to be under `[files]`: `sleeplijst_2014`, `meetdata_2014`."""
 TEXT_SUFFIXES: Final = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm")
+PACKED: Final = (".zip", ".7z", ".rar")
+"""Suffixes of files that hold others, which nobody here unpacks."""
 SAMPLE_SUFFIXES: Final = (
     *(text + packed for packed in (".gz", ".zst") for text in TEXT_SUFFIXES),
     *(*TEXT_SUFFIXES, ".parquet", ".tdms"),

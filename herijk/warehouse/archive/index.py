@@ -28,10 +28,12 @@ from herijk.warehouse.archive.files import (
     BOATS_FILE,
     FORCE_CHECKS,
     LAMPS,
+    PACKED,
     PARTS,
     PROFILE_FILE,
     RACES,
     REGISTERS,
+    SAMPLES,
     TOW_LISTS,
     WINDOWS,
     ArchiveFile,
@@ -59,6 +61,7 @@ from herijk.warehouse.archive.lists import ListRow, all_of, others_of, read_list
 from herijk.warehouse.archive.misfits import misfits
 from herijk.warehouse.archive.profile import Plan, Profiles, read_profiles
 from herijk.warehouse.archive.recognise import guessed, recognised
+from herijk.warehouse.archive.sheets import SPREADSHEETS
 from herijk.warehouse.archive.text import fold, fold_word, shorten
 from herijk.words import say
 
@@ -235,7 +238,7 @@ def index_archive(
         seasons={
             part.path: entry.season
             for entry in entries
-            for name in _names_of_files(entry.row)
+            for name in _names_of_files(entry)
             for file in _candidates(name, entry.season, by_name)
             for part in file.parts
         },
@@ -316,6 +319,12 @@ def strangers(root: Path, profiles: Profiles) -> list[Fault]:
 
 def _about_stranger(root: Path, path: str, is_lacking: bool) -> str:
     """Return the sentence about what is not read; while a list is lacking it can be anything."""
+    kind = Path(path)
+    if kind.suffix.lower() in PACKED:
+        return say("'{path}' is not read: it is packed. Unpack it in its folder.", path=path)
+    if kind.suffix.lower() in SPREADSHEETS and kind.parts[0].casefold().startswith(SAMPLES):
+        message = "'{path}' is not read: samples are read from text. Save the sheet as CSV."
+        return say(message, path=path)
     can_be = dict(recognised(root, path))
     if not can_be:
         guesses = tuple(sorted(guessed(root, path)))
@@ -466,14 +475,23 @@ def _hash_files(files: Iterable[ArchiveFile], hashes: _Hashes, faults: list[Faul
             faults.append(fault_from(error, file.path))
 
 
-def _names(row: ListRow) -> list[str]:
+def _names(entry: _Entry) -> list[str]:
     """Return the names of the files in a row; of a file per run with `PARTS` between them."""
-    cells = (row.optional_text("file"), row.optional_text("second_file"))
-    return [cell for cell in cells if cell is not None]
+    cells = (entry.row.optional_text(key) for key in ("file", "second_file"))
+    return [_without_own_folder(cell, entry.season) for cell in cells if cell is not None]
 
 
-def _names_of_files(row: ListRow) -> Iterator[str]:
-    for name in _names(row):
+def _without_own_folder(name: str, season: int) -> str:
+    r"""Return `snol 8h 2014` of `E:\slepen\meetdata_2014\snol 8h 2014` in the list of 2014.
+
+    So the federation's tool shows a file (presentation 2015, "Meetfile"). Other paths stay.
+    """
+    folder, _, own = name.replace("\\", "/").rpartition("/")
+    return own if fold(folder.rpartition("/")[2]) == fold(f"{SAMPLES}_{season}") else name
+
+
+def _names_of_files(entry: _Entry) -> Iterator[str]:
+    for name in _names(entry):
         yield from name.split(PARTS)
 
 
@@ -484,7 +502,7 @@ def _by_name(sample_files: Iterable[ArchiveFile], entries: Iterable[_Entry]) -> 
     names one of them by itself.
     """
     named = {
-        (entry.season, match_key(name)) for entry in entries for name in _names_of_files(entry.row)
+        (entry.season, match_key(name)) for entry in entries for name in _names_of_files(entry)
     }
     by_name: _FilesByName = defaultdict(list)
     by_run: dict[tuple[int, str], dict[int, list[ArchiveFile]]] = defaultdict(dict)
@@ -522,7 +540,7 @@ def _not_listed(
     named = {
         part.path
         for entry in entries
-        for name in _names_of_files(entry.row)
+        for name in _names_of_files(entry)
         for season in (entry.season, 0)
         for file in by_name.get((season, match_key(name)), [])
         for part in file.parts
@@ -619,7 +637,7 @@ def _lost_cells(entry: _Entry) -> Iterator[Fault]:
 
 
 def _find_files(entry: _Entry, by_name: _FilesByName, hashes: _Hashes) -> None:
-    entry.files = [_find_files_of(entry, names, by_name) for names in _names(entry.row)]
+    entry.files = [_find_files_of(entry, names, by_name) for names in _names(entry)]
     first, second = entry.files[0], entry.files[1] if len(entry.files) > 1 else None
     entry.tow |= {
         "samples_path": first.path,

@@ -7,6 +7,7 @@ checks belongs to `pipeline`.
 """
 
 from collections.abc import Collection
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -17,7 +18,7 @@ from herijk.pipeline.channels import MOST_RUNS
 from herijk.tables.lake import ListedForceChecks, ListedLamps
 from herijk.tables.row import Row
 from herijk.warehouse.archive.faults import Fault
-from herijk.warehouse.archive.files import FORCE_CHECKS, LAMPS, list_files
+from herijk.warehouse.archive.files import FORCE_CHECKS, LAMPS
 from herijk.warehouse.archive.lists import ListRow, Wording
 from herijk.warehouse.archive.published import read_lists
 from herijk.warehouse.archive.text import Column
@@ -50,10 +51,9 @@ LAMP_COLUMNS: Final = (
 
 def read_force_checks(root: Path, wording: Wording) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
     """Read every list of readings of the load cell, and the lines that cannot be read."""
-    files = list_files(root, FORCE_CHECKS, wording.files)
     return read_lists(
         root,
-        files,
+        FORCE_CHECKS,
         FORCE_CHECK_COLUMNS,
         "bad_instrument_row",
         ListedForceChecks,
@@ -66,12 +66,8 @@ def read_lamps(
     root: Path, wording: Wording, tow_ids: Collection[str]
 ) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
     """Read every list of lamps, and the lines that cannot be read or are of no listed tow."""
-
-    def lamp(row: ListRow, season: int) -> Row:
-        return _lamp(row, season, tow_ids)
-
-    files = list_files(root, LAMPS, wording.files)
-    return read_lists(root, files, LAMP_COLUMNS, "bad_instrument_row", ListedLamps, lamp, wording)
+    lamp = partial(_lamp, tow_ids)
+    return read_lists(root, LAMPS, LAMP_COLUMNS, "bad_instrument_row", ListedLamps, lamp, wording)
 
 
 def load_cell_of(tow: Row, checks: pl.DataFrame) -> dict[str, float | None]:
@@ -112,7 +108,7 @@ def _force_check(row: ListRow, season: int) -> Row:
     }
 
 
-def _lamp(row: ListRow, season: int, tow_ids: Collection[str]) -> Row:
+def _lamp(tow_ids: Collection[str], row: ListRow, season: int) -> Row:
     tow_id = row.text("tow_id")
     if tow_id not in tow_ids:
         raise row.fault(say("sleep_id {tow} is not in the tow list of that year.", tow=tow_id))

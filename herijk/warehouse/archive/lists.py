@@ -10,7 +10,7 @@ import unicodedata
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.declare import dy
@@ -32,9 +32,11 @@ from herijk.warehouse.archive.units import UNITS, Scale, find_scale
 from herijk.warehouse.archive.words import ALL_RUNS, CLASSES, HEADERS, NO, NOTHING, YES
 from herijk.words import say
 
+T = TypeVar("T")
+
 _ISO_DATE: Final = re.compile(r"([0-9]{4})[-/.]([0-9]{1,2})[-/.]([0-9]{1,2})")
 _DAY_FIRST: Final = re.compile(r"([0-9]{1,2})([-./ ])([0-9]{1,2})\2([0-9]{4}|[0-9]{2})")
-_MONTH_NAMED: Final = re.compile(r"([0-9]{1,2})[. -]+([a-zäé]{3,9})[. -]+([0-9]{4})")
+_MONTH_NAMED: Final = re.compile(r"([0-9]{1,2})[. -]+([a-zäé]{3,9})[. -]+'?([0-9]{4}|[0-9]{2})")
 _SERIAL_DATE: Final = re.compile(r"(?:3[3-9]|4[0-9]|5[0-4])[0-9]{3}")
 """What a spreadsheet shows of a date in a cell that is not set to show dates: 1990 to 2050."""
 _EXCEL_DAY_0: Final = dt.date(1899, 12, 30)
@@ -163,6 +165,14 @@ class ListRow:
         said = say("Line {line}: {what}", line=self.line, what=message)
         return DefectiveInputError(reason_code or self.reading.reason_code, said, self.line)
 
+    def wrong(
+        self, message: str, key: str, reason_code: str | None = None, **values: Any
+    ) -> DefectiveInputError:
+        """Return the error for a cell; the message may have `{column}` and `{cell}` in it."""
+        cell = shorten(self.cells.get(key, ""))
+        said = say(message, column=self.named(key), cell=cell, **values)
+        return self.fault(said, reason_code)
+
     def check_whole(self) -> None:
         """Raise when something is wrong with the row as a whole."""
         if self.row_problem is not None:
@@ -174,7 +184,10 @@ class ListRow:
 
     def text(self, key: str) -> str:
         """Return the text of a cell that must not be empty."""
-        value = self.optional_text(key)
+        return self._there(key, self.optional_text(key))
+
+    def _there(self, key: str, value: T | None) -> T:
+        """Return the value of a cell that must not be empty."""
         if value is None:
             raise self.fault(say("column '{column}' is empty.", column=self.named(key)))
         return value
@@ -193,15 +206,8 @@ class ListRow:
                 value = value if self._is_in_ones(key, digits, value) else thousands
         if not lowest <= value <= highest:
             low, high = (scale.from_si(limit) for limit in (lowest, highest))
-            raise self.fault(
-                say(
-                    "column '{column}' is {cell}; {low:g} to {high:g} can be right.",
-                    column=self.named(key),
-                    cell=shorten(cell),
-                    low=low,
-                    high=high,
-                )
-            )
+            message = "column '{column}' is {cell}; {low:g} to {high:g} can be right."
+            raise self.wrong(message, key, low=low, high=high)
         return value
 
     def _digits_and_scale(self, key: str, cell: str) -> tuple[str, Scale]:
@@ -215,13 +221,8 @@ class ListRow:
             digits = ungrouped(own[1] if own and scale else cell)
             parse_number(digits)
         except ValueError as error:
-            raise self.fault(
-                say(
-                    "column '{column}' is '{cell}', which is not an ordinary number.",
-                    column=self.named(key),
-                    cell=shorten(cell),
-                )
-            ) from error
+            message = "column '{column}' is '{cell}', which is not an ordinary number."
+            raise self.wrong(message, key) from error
         return digits, scale or column.scale
 
     def _is_in_ones(self, key: str, cell: str, value: float) -> bool:
@@ -253,10 +254,7 @@ class ListRow:
 
     def number(self, key: str) -> float:
         """Return a number that must be there."""
-        self.text(key)
-        value = self.optional_number(key)
-        assert value is not None  # noqa: S101 - the cell is not empty
-        return value
+        return self._there(key, self.optional_number(key))
 
     def optional_integer(self, key: str) -> int | None:
         """Return a whole number, None when the cell is empty."""
@@ -264,21 +262,12 @@ class ListRow:
         if value is None:
             return None
         if value != int(value):
-            raise self.fault(
-                say(
-                    "column '{column}' is {cell}; it must be a whole number.",
-                    column=self.named(key),
-                    cell=shorten(self.cells[key]),
-                )
-            )
+            raise self.wrong("column '{column}' is {cell}; it must be a whole number.", key)
         return int(value)
 
     def integer(self, key: str) -> int:
         """Return a whole number that must be there."""
-        self.text(key)
-        value = self.optional_integer(key)
-        assert value is not None  # noqa: S101 - the cell is not empty
-        return value
+        return self._there(key, self.optional_integer(key))
 
     def optional_date(self, key: str) -> dt.date | None:
         """Return a date, None when the cell is empty."""
@@ -288,40 +277,23 @@ class ListRow:
         try:
             return parse_date(cell, self.reading.date_order)
         except AmbiguousDateError as error:
-            message = say(
-                "column '{column}' is '{cell}': is the first number the day or the month?",
-                column=self.named(key),
-                cell=shorten(cell),
-            )
-            raise self.fault(message, "ambiguous_date") from error
+            message = "column '{column}' is '{cell}': is the first number the day or the month?"
+            raise self.wrong(message, key, "ambiguous_date") from error
         except ValueError as error:
-            raise self.fault(
-                say(
-                    "column '{column}' is '{cell}', not a date such as 2014-03-01 or 01-03-2014.",
-                    column=self.named(key),
-                    cell=shorten(cell),
-                )
-            ) from error
+            message = "column '{column}' is '{cell}', not a date such as 2014-03-01 or 01-03-2014."
+            raise self.wrong(message, key) from error
 
     def date(self, key: str) -> dt.date:
         """Return a date that must be there."""
-        self.text(key)
-        value = self.optional_date(key)
-        assert value is not None  # noqa: S101 - the cell is not empty
-        return value
+        return self._there(key, self.optional_date(key))
 
     def crew_class(self, key: str) -> str:
         """Return `H` or `D`."""
         cell = self.text(key)
         value = CLASSES.get(fold_word(cell))
         if value is None:
-            message = say(
-                "column '{column}' is '{cell}'; H or D is expected.",
-                column=self.named(key),
-                cell=shorten(cell),
-                expected="HD",
-            )
-            raise self.fault(message)
+            message = "column '{column}' is '{cell}'; H or D is expected."
+            raise self.wrong(message, key, expected="HD")
         return value
 
     def yes_or_no(self, key: str) -> bool:
@@ -329,13 +301,7 @@ class ListRow:
         cell = fold_word(self.optional_text(key) or "nee")
         if cell in YES or cell in NO:
             return cell in YES
-        message = say(
-            "column '{column}' is '{cell}', not ja, nee or empty.",
-            choice="ja",
-            column=self.named(key),
-            cell=shorten(cell),
-        )
-        raise self.fault(message)
+        raise self.wrong("column '{column}' is '{cell}', not ja, nee or empty.", key, choice="ja")
 
     def boat(self, key: str) -> str:
         """Return the number of a boat: `FSN 101`, `fsn101` and `101` are FSN101."""
@@ -389,8 +355,8 @@ def parse_date(text: str, order: str = "") -> dt.date:
     """Return the date in a text, the year first or the day first; a time of day is left out.
 
     Args:
-        text: `2014-03-01`, `1-3-2014`, `01.03.14`, `1/3/2014`, `za 1 maart 2014`, or the number of
-            days that a spreadsheet holds.
+        text: `2014-03-01`, `1-3-2014`, `01.03.14`, `1/3/2014`, `za 1 maart 2014`, `1-mrt-14`,
+            or the number of days that a spreadsheet holds.
         order: `dmy` or `mdy` for dates with slashes; without, only one meaning may be possible.
 
     Raises:
@@ -405,16 +371,19 @@ def parse_date(text: str, order: str = "") -> dt.date:
     if _SERIAL_DATE.fullmatch(text):
         return _EXCEL_DAY_0 + dt.timedelta(days=int(text))
     if named and named[2][:3] in _MONTHS:
-        return dt.date(int(named[3]), _MONTHS[named[2][:3]], int(named[1]))
+        return dt.date(_year(named[3]), _MONTHS[named[2][:3]], int(named[1]))
     if not day_first:
         raise ValueError(text)
     first, second = int(day_first[1]), int(day_first[3])
-    year = int(day_first[4]) + (2000 if len(day_first[4]) == 2 else 0)
     if day_first[2] == "/" and not order and first != second and max(first, second) <= 12:
         raise AmbiguousDateError(text)
     month_first = day_first[2] == "/" and (order == "mdy" or (not order and second > 12))
     day, month = (second, first) if month_first else (first, second)
-    return dt.date(year, month, day)
+    return dt.date(_year(day_first[4]), month, day)
+
+
+def _year(digits: str) -> int:
+    return int(digits) + (2000 if len(digits) == 2 else 0)
 
 
 def date_order(cells: Iterable[str]) -> str:

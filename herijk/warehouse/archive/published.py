@@ -21,7 +21,7 @@ from herijk.warehouse.archive.faults import Fault, fault_from
 from herijk.warehouse.archive.files import (
     RACES,
     REGISTERS,
-    ArchiveFile,
+    ListKind,
     list_files,
     path_inside,
     read_bytes,
@@ -30,7 +30,7 @@ from herijk.warehouse.archive.limits import LIST_MAX_BYTES
 from herijk.warehouse.archive.lists import ListRow, Wording, read_list
 from herijk.warehouse.archive.misfits import misfits
 from herijk.warehouse.archive.profile import read_profiles
-from herijk.warehouse.archive.text import Column, shorten
+from herijk.warehouse.archive.text import Column
 from herijk.words import say
 
 NEVER_TOWED_CW: Final = (0.995, 1.005)
@@ -81,9 +81,8 @@ def read_published_registers(
         without a valid curve (published as Cw = 1) has `has_valid_curve` false and no A, B and Cw.
     """
     wording = wording or read_profiles(root).wording
-    files = list_files(root, REGISTERS, wording.files)
     return read_lists(
-        root, files, REGISTER_COLUMNS, "bad_register_row", PrintedLines, _fitting_line, wording
+        root, REGISTERS, REGISTER_COLUMNS, "bad_register_row", PrintedLines, _fitting_line, wording
     )
 
 
@@ -97,9 +96,8 @@ def read_races(
         that cannot be read.
     """
     wording = wording or read_profiles(root).wording
-    files = list_files(root, RACES, wording.files)
     found, faults = read_lists(
-        root, files, RACE_COLUMNS, "bad_race_row", ListedRaces, _possible_result, wording
+        root, RACES, RACE_COLUMNS, "bad_race_row", ListedRaces, _possible_result, wording
     )
     kept, twice = _once(found)
     return kept, (*faults, *twice)
@@ -107,7 +105,6 @@ def read_races(
 
 _RESULT: Final = ("race", "race_date", "fsn_no", "rowers", "crew_class")
 """What a crew has one result of."""
-
 
 _EQUAL: Final = "{boat} {crew} is listed twice for {race}; the rows are equal and the first counts."
 _DIFFER: Final = "{boat} {crew} is listed twice for {race}; the rows differ, so neither counts."
@@ -119,13 +116,9 @@ def _once(results: pl.DataFrame) -> tuple[pl.DataFrame, list[Fault]]:
     is_again = pl.struct(others).is_first_distinct().not_()
     one = results.filter(is_again.not_())
     differ = one.filter(pl.struct(_RESULT).is_duplicated())
-    equal_message = (
-        "{boat} {crew} is listed twice for {race}; the rows are equal and the first counts."
-    )
-    other_message = "{boat} {crew} is listed twice for {race}; the rows differ, so neither counts."
     faults = [
         _again(row, message)
-        for rows, message in ((results.filter(is_again), equal_message), (differ, other_message))
+        for rows, message in ((results.filter(is_again), _EQUAL), (differ, _DIFFER))
         for row in rows.iter_rows(named=True)
     ]
     return one.filter(pl.struct(_RESULT).is_unique()), faults
@@ -140,7 +133,7 @@ def _again(row: Row, message: str) -> Fault:
 
 def read_lists(
     root: Path,
-    files: Sequence[ArchiveFile],
+    kind: ListKind,
     columns: Sequence[Column],
     reason_code: str,
     table: type[dy.Schema],
@@ -151,7 +144,7 @@ def read_lists(
 
     Args:
         root: folder of the archive.
-        files: the lists.
+        kind: which lists.
         columns: of their rows.
         reason_code: of a row that cannot be read.
         table: declares the limits of each value; has `path` and `line` too.
@@ -160,7 +153,7 @@ def read_lists(
     """
     good: list[Row] = []
     faults: list[Fault] = []
-    for file in files:
+    for file in list_files(root, kind, wording.files):
         try:
             data = read_bytes(path_inside(root, file.path), LIST_MAX_BYTES)
             rows = read_list(data, columns, reason_code, file.path, wording, table)
@@ -282,8 +275,7 @@ def _rowing_time(row: ListRow) -> float:
     cell = row.text("rowing_time_s")
     match = _ROWING_TIME.fullmatch(cell)
     if match is None:
-        message = "'roeitijd' is '{cell}', not a time such as 2:10:25."
-        raise row.fault(say(message, cell=shorten(cell)))
+        raise row.wrong("'roeitijd' is '{cell}', not a time such as 2:10:25.", "rowing_time_s")
     seconds = int(match[1]) * 3600 + int(match[2]) * 60 + int(match[3])
     if seconds == 0:
         raise row.fault(say("'roeitijd' is 0."))

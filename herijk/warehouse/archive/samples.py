@@ -648,7 +648,7 @@ def _with_known_runs(raw: pl.DataFrame) -> pl.DataFrame:
     unread = raw["run"].is_nan()
     run = raw["run"].fill_nan(None).forward_fill().backward_fill()
     if run.null_count():
-        raise DefectiveInputError("unreadable_file", say("No row says which run it belongs to."))
+        raise DefectiveInputError("unreadable_file", say("No row has a number in column 'run'."))
     others = pl.exclude("run", "time")
     return raw.with_columns(run, pl.when(unread).then(float("nan")).otherwise(others).name.keep())
 
@@ -706,7 +706,7 @@ def _check_time(
         observed = 1.0 / float(np.nanmedian(step[start : end - 1]))
         if abs(observed / rate_hz - 1) > TIME_TOLERANCE:
             said = say(
-                "Run {run}: by its times it has {observed:.4g} samples per second, by the list or "
+                "Run {run}: by its times it has {observed:g} samples per second, by the list or "
                 "the profile {rate}; they may differ by {most:.0%}.",
                 run=run[int(start)],
                 observed=observed,

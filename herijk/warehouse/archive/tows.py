@@ -7,14 +7,13 @@ One row at a time: text to values. What rows, boats and files say about each oth
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from typing import Any, Final
 
 from herijk.pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.row import Row
 from herijk.warehouse.archive.files import PARTS
-from herijk.warehouse.archive.lists import DefectiveRowError, ListRow, all_of, others_of
+from herijk.warehouse.archive.lists import DefectiveRowError, ListRow
 from herijk.warehouse.archive.profile import Plan
 from herijk.warehouse.archive.text import Column, fold_word, shorten
 from herijk.warehouse.archive.words import ALL_RUNS
@@ -175,29 +174,23 @@ def read_tow(
     if not _TOW_ID.fullmatch(tow_id):
         message = "'{tow}' cannot be a sleep_id: it is too long, or has a slash."
         raise row.fault(say(message, tow=shorten(tow_id)))
-    readable, lost = _without_bad_cells(row)
-    readings = {key: partial(reader, readable, key) for key, reader in _READERS.items()}
-    try:
-        values = all_of(readings)
-    except DefectiveInputError as error:
-        raise DefectiveRowError([error, *others_of(error), *lost]) from error
+    values: Row = dict.fromkeys(_READERS)
+    wrong: dict[str, DefectiveInputError] = {}
+    for key, reader in _READERS.items():
+        try:
+            values[key] = reader(row, key)
+        except DefectiveInputError as error:
+            wrong[key] = error
+    costly = [error for key, error in wrong.items() if key not in _DISPENSABLE]
+    lost = [wrong[key] for key in sorted(wrong.keys() & _DISPENSABLE)]
+    if costly:
+        raise DefectiveRowError([*costly, *lost])
     return {
         "tow_id": tow_id,
         "season": season,
         **values,
         "sample_rate_hz": values["sample_rate_hz"] or default_rate_hz,
     }, lost
-
-
-def _without_bad_cells(row: ListRow) -> tuple[ListRow, list[DefectiveInputError]]:
-    """Return the row with cells empty that it can do without and that cannot be read; and why."""
-    lost = {}
-    for key in sorted(_DISPENSABLE):
-        try:
-            _READERS[key](row, key)
-        except DefectiveInputError as error:
-            lost[key] = error
-    return replace(row, cells=row.cells | dict.fromkeys(lost, "")), [*lost.values()]
 
 
 def fill_dimensions(tow: Row, boat: Row, row: ListRow, has_wind: bool) -> Row:
@@ -238,11 +231,10 @@ def read_selection(row: ListRow, plan: Plan) -> frozenset[int]:
         return frozenset(planned) | {SECOND_FILE_OFFSET + run for run in planned if both}
     parts = re.split(r"[\s,;+&]+", _spelled_out(fold_word(cell)).strip(" ,;"))
     runs = [run_number(part, row, row.named("use_runs"), planned) for part in parts]
-    values = {"column": row.named("use_runs"), "cell": shorten(cell)}
     if len(set(runs)) < len(runs):
-        raise row.fault(say("column '{column}' is '{cell}'; it names one run twice.", **values))
+        raise row.wrong("column '{column}' is '{cell}'; it names one run twice.", "use_runs")
     if max(runs) > SECOND_FILE_OFFSET and row.optional_text("second_file") is None:
-        raise row.fault(say("column '{column}' is '{cell}', but there is no meetfile2.", **values))
+        raise row.wrong("column '{column}' is '{cell}', but there is no meetfile2.", "use_runs")
     return frozenset(runs)
 
 
@@ -268,7 +260,7 @@ def run_number(part: str, row: ListRow, header: str, planned: Collection[int]) -
         raise row.fault(
             say(
                 "column '{column}' has '{part}'; runs are 1 to {last}, or b1 to b{last} for the "
-                "second file, with commas between them.",
+                "second file, with commas between them. Runs beyond these need a [[plan]].",
                 column=header,
                 part=shorten(part),
                 last=max(planned),

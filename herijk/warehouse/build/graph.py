@@ -13,7 +13,7 @@ from herijk.warehouse.build.database import (
     warehouse_database,
 )
 from herijk.warehouse.build.inputs import METHOD_TABLES, PUBLISHED
-from herijk.warehouse.build.method_tables import method_tables, tows_without_curve_row
+from herijk.warehouse.build.method_tables import RUNS, method_tables, tows_without_curve_row
 from herijk.warehouse.build.recordings import recording_tables
 from herijk.warehouse.build.registers import register_tables
 from herijk.warehouse.build.step import Check, Step
@@ -22,9 +22,6 @@ from herijk.warehouse.build.summaries import summary_tables
 
 LAKE_ONLY: Final = ("ensemble",)
 """Tables that are not in the database: 200 rows per tow would make up most of it."""
-
-RUNS: Final = ("boats", "tows", "tow_runs", "hand_windows", "blocks")
-"""What tells of the tows all that a method is applied to."""
 
 
 def _register_rules(method: Method) -> object:

@@ -22,7 +22,7 @@ from herijk.warehouse.build.published import published_made_from, published_tabl
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store import decisions
 from herijk.warehouse.store.database import open_database
-from herijk.warehouse.store.store import Store, table_digest
+from herijk.warehouse.store.store import Store, fingerprint, table_digest
 
 BLOCKS: Final = "blocks"
 DECISIONS: Final = "decisions"
@@ -80,6 +80,11 @@ class Inputs:
         if name not in self._read:
             self._read[name] = _kind(name).read(self, name)
         return self._read[name]
+
+    def made_from(self, *names: str) -> str:
+        """Fingerprint of declared inputs that do not depend on methods."""
+        known = {name: made_from(self.store, name, ()) for name in names}
+        return fingerprint(str(self.store.root), known)
 
     def take(self, name: str) -> pl.DataFrame:
         """A declared input that is asked for once, and not kept."""

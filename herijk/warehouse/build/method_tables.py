@@ -1,26 +1,48 @@
 """The tables of one method: all tows recomputed."""
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from functools import lru_cache
+from typing import TYPE_CHECKING, Final
 
 import polars as pl
 
 from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.pipeline.recompute.facts import with_boats, with_hand_windows
 from herijk.pipeline.recompute.recompute import recompute
+from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.pipeline.uncertainty.ensemble import tow_ensemble
 
 if TYPE_CHECKING:
     from herijk.warehouse.build.inputs import Inputs
+
+RUNS: Final = ("boats", "tows", "tow_runs", "hand_windows", "blocks")
+"""What tells of the tows all that a method is applied to."""
 
 
 def method_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     """Run points, curves, log factors, assessments and members of all tows under one method."""
     (method,) = inputs.methods
     tows = with_boats(inputs["tows"], inputs["boats"])
-    made = recompute(method, tows, blocks_of(inputs))
+    with found_before(inputs) as cache:
+        made = recompute(method, tows, blocks_of(inputs), cache)
     members = tow_ensemble(method.name, made.curves, made.uncertainty_budget, made.factors)
     return {**vars(made), "ensemble": members}
+
+
+@contextmanager
+def found_before(inputs: "Inputs") -> Iterator[RunCache]:
+    """What this process found of the runs, as long as they are what they were."""
+    cache = _cache_of(inputs.made_from(*RUNS))
+    try:
+        yield cache
+    finally:
+        cache.let_go()
+
+
+@lru_cache(maxsize=1)
+def _cache_of(_: str) -> RunCache:
+    return RunCache()
 
 
 def blocks_of(inputs: "Inputs") -> RunBlocks:

@@ -6,12 +6,11 @@ from typing import TYPE_CHECKING, Final
 import polars as pl
 
 from herijk.pipeline.method.definition import Method
-from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.pipeline.studies.ladder import ladder
 from herijk.pipeline.studies.options import beside_uncertainty, option_effects
 from herijk.pipeline.studies.tool_options import option_curves, tick_effects
 from herijk.tables.studies import CorrectionSteps, OptionCurves, OptionEffects
-from herijk.warehouse.build.method_tables import blocks_of
+from herijk.warehouse.build.method_tables import blocks_of, found_before
 
 if TYPE_CHECKING:
     from herijk.warehouse.build.inputs import Inputs
@@ -39,26 +38,26 @@ def study_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     """The ladder from the first method to each other, and the studies of options."""
     blocks, tows, (first, *others) = blocks_of(inputs), inputs["tows"], inputs.methods
     links = {m.name: _of(m, inputs["tow_instruments"]) for m in inputs.methods}
-    cache = RunCache()
-    ladders = [
-        ladder(old, new, tows, blocks, (links[old.name], links[new.name]), cache).with_columns(
-            pl.lit(old.name).alias("from_method"), pl.lit(new.name).alias("to_method")
-        )
-        for old, new in (_in_order(first, other) for other in others)
-    ]
-    ticked = {
-        m: option_curves(m, tows, blocks, links[m.name], cache)
-        for m in inputs.methods
-        if m.name in TICKED
-    }
-    effects = [
-        *((m, TOOL, tick_effects(curves)) for m, curves in ticked.items()),
-        *(
-            (m, JUDGEMENT, option_effects(m, tows, blocks, links[m.name], cache))
+    with found_before(inputs) as cache:
+        ladders = [
+            ladder(old, new, tows, blocks, (links[old.name], links[new.name]), cache).with_columns(
+                pl.lit(old.name).alias("from_method"), pl.lit(new.name).alias("to_method")
+            )
+            for old, new in (_in_order(first, other) for other in others)
+        ]
+        ticked = {
+            m: option_curves(m, tows, blocks, links[m.name], cache)
             for m in inputs.methods
-            if m.name in JUDGED
-        ),
-    ]
+            if m.name in TICKED
+        }
+        effects = [
+            *((m, TOOL, tick_effects(curves)) for m, curves in ticked.items()),
+            *(
+                (m, JUDGEMENT, option_effects(m, tows, blocks, links[m.name], cache))
+                for m in inputs.methods
+                if m.name in JUDGED
+            ),
+        ]
     found = [
         beside_uncertainty(frame, _of(m, inputs["curves"])).with_columns(
             pl.lit(m.name).alias("method"), pl.lit(study).alias("study")

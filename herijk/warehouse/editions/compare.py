@@ -46,7 +46,7 @@ METHOD: Final = "method"
 UNSEPARATED: Final = "unseparated"
 UNEXPLAINED: Final = "unexplained"
 
-LADDER_COLUMNS: Final = ("tow_id", "position", "step", "factor")
+NO_STEPS: Final = CorrectionSteps.create_empty().select("tow_id", "position", "step", "factor")
 
 
 @dataclass(frozen=True)
@@ -187,13 +187,13 @@ def _printed_parts(old: Edition, new: Edition) -> pl.DataFrame:
 def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     """The ladder from the old to the new method, on the new edition's tows that are still there."""
     if old.method is None or new.method is None:
-        return CorrectionSteps.create_empty().select(LADDER_COLUMNS)
+        return NO_STEPS
     if old.method.content_hash == new.method.content_hash:
-        return CorrectionSteps.create_empty().select(LADDER_COLUMNS)
+        return NO_STEPS
     there = pl.col("tow_id").is_in(list(unchanged_tows(store, new)))
     tows, runs = tows_of_today(store).filter(there), intake.runs_with_windows(store).filter(there)
     if tows.is_empty():
-        return CorrectionSteps.create_empty().select(LADDER_COLUMNS)
+        return NO_STEPS
     from herijk.pipeline.studies.ladder import ladder  # noqa: PLC0415 - much, and seldom needed
 
     blocks = stack_blocks(intake.all_blocks(store), runs)
@@ -203,11 +203,8 @@ def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
 def _links(old: Edition, new: Edition) -> tuple[pl.DataFrame, pl.DataFrame] | None:
     """The log factors with which both editions were made; None where one does not have them."""
     instruments = [edition.tables.get("tow_instruments") for edition in (old, new)]
-    return (
-        None
-        if instruments[0] is None or instruments[1] is None
-        else (instruments[0], instruments[1])
-    )
+    before, after = instruments
+    return None if before is None or after is None else (before, after)
 
 
 def _grounds(old: Edition, new: Edition, separated: set[object], code_known: bool) -> pl.DataFrame:
@@ -244,16 +241,19 @@ def _ground(
         return TOW
     own = line["tow_id"] not in same
     others = not own and any(e.tables["tows"].height > len(same) for e in (old, new))
-    if old.about.method_hash != new.about.method_hash and line["tow_id_new"] not in separated:
+    method = old.about.method_hash != new.about.method_hash
+    return ground_of(own, others, method and line["tow_id_new"] not in separated, code)
+
+
+def ground_of(own: bool, others: bool, method: bool, code: bool) -> str:
+    """The name of what differs: the tow's own input, that of others, the method, the code."""
+    if method:
         return UNSEPARATED if own or code else METHOD
-    named = {
-        (True, False, False): INPUT,
-        (True, False, True): INPUT_AND_CODE,
-        (False, True, False): OTHER_INPUT,
-        (False, True, True): CODE_OR_OTHER_INPUT,
-        (False, False, True): CODE,
-    }
-    return named.get((own, others, code), UNEXPLAINED)
+    if own:
+        return INPUT_AND_CODE if code else INPUT
+    if others:
+        return CODE_OR_OTHER_INPUT if code else OTHER_INPUT
+    return CODE if code else UNEXPLAINED
 
 
 def _ground_of_printed(line: Row, separated: set[object]) -> str:

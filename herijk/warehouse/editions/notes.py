@@ -107,8 +107,7 @@ def _method(edition: Edition, language: Language) -> str:
             "en": "as printed at the time; which one is not recorded",
         }[language.code]
     method = edition.method
-    title = {"nl": method.title, "en": method.title_en}[language.code]
-    return f"{title} ({method.name}, {method.content_hash[:12]})"
+    return f"{method.titled(language.code)} ({method.name}, {method.content_hash[:12]})"
 
 
 def _changes(found: DiffReport | None, language: Language) -> dict[str, Any]:

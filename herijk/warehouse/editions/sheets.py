@@ -11,14 +11,14 @@ import hashlib
 import io
 import json
 import re
-import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal
-from xml.etree import ElementTree
 
 import polars as pl
+import python_calamine
 import xlsxwriter  # type: ignore[import-untyped,unused-ignore]
+from xlsxwriter.utility import xl_rowcol_to_cell  # type: ignore[import-untyped,unused-ignore]
 
 from herijk.pipeline.register.register import NO_EMPTY_THWART
 from herijk.warehouse.editions.words import DUTCH
@@ -199,13 +199,7 @@ def package_bytes(about: About, contents: dict[str, bytes], notes: str, rights: 
         "created": f"{about.published_on}T00:00:00Z",
         **rights.described,
         "resources": [
-            _resource(
-                "register",
-                CSV,
-                contents[CSV],
-                SHEET_FIELDS,
-                LINE_KEY,
-            ),
+            _resource("register", CSV, contents[CSV], SHEET_FIELDS, LINE_KEY),
             _resource("inputs", INPUTS, contents[INPUTS], INPUT_FIELDS, ["bestand"]),
         ],
     }
@@ -324,29 +318,19 @@ def _write_about(book: xlsxwriter.Workbook, about: About) -> None:
         sheet.write_string(row, 1, value)
 
 
-_SHEET: Final = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
-
-
-def read_xlsx_cells(content: bytes) -> dict[str, str | float]:
+def read_xlsx_cells(content: bytes) -> dict[str, Any]:
     """The filled cells of the first sheet, by place ("B3").
 
     Raises:
         ValueError: this is no XLSX.
     """
     try:
-        with zipfile.ZipFile(io.BytesIO(content)) as book:
-            sheet, shared = (
-                ElementTree.fromstring(book.read(f"xl/{part}.xml"))  # noqa: S314 - our own file
-                for part in ("worksheets/sheet1", "sharedStrings")
-            )
-    except (zipfile.BadZipFile, KeyError, ElementTree.ParseError) as error:
+        grid = python_calamine.load_workbook(io.BytesIO(content)).get_sheet_by_index(0).to_python()
+    except python_calamine.CalamineError as error:
         raise ValueError(f"no XLSX: {error}") from error
-    texts = ["".join(t.text or "" for t in s.iter(f"{_SHEET}t")) for s in shared]
-    cells: dict[str, str | float] = {}
-    for cell in sheet.iter(f"{_SHEET}c"):
-        value = cell.find(f"{_SHEET}v")
-        if value is not None and value.text is not None:
-            place = cell.get("r", "")
-            is_text = cell.get("t") == "s"
-            cells[place] = texts[int(value.text)] if is_text else float(value.text)
-    return cells
+    return {
+        xl_rowcol_to_cell(row, place): cell
+        for row, cells in enumerate(grid)
+        for place, cell in enumerate(cells)
+        if cell != ""
+    }

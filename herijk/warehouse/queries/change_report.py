@@ -22,17 +22,7 @@ from herijk.pipeline.register.changes import NO_PARTS, register_changes, side_by
 from herijk.pipeline.register.register import LINE, with_empty_thwart
 from herijk.tables.row import Row
 from herijk.tables.schemas import TABLES
-from herijk.warehouse.editions.compare import (
-    CODE,
-    CODE_OR_OTHER_INPUT,
-    INPUT,
-    INPUT_AND_CODE,
-    METHOD,
-    OTHER_INPUT,
-    TOW,
-    UNEXPLAINED,
-    UNSEPARATED,
-)
+from herijk.warehouse.editions.compare import TOW, ground_of
 from herijk.warehouse.editions.inputs import INPUTS_HASH, same_tows, with_input_hashes
 from herijk.warehouse.store.database import open_database
 from herijk.warehouse.store.files import file_sha256, written_beside
@@ -283,14 +273,11 @@ def _grounds(
     hashes = [_method_hash(tables, method) for tables in (was, now)]
     versions = [dict(tables["about"].rows())["code_version"] for tables in (was, now)]
     others = inputs[0] != inputs[1]
+    redefined, new_code = hashes[0] != hashes[1], versions[0] != versions[1]
     grounds = [
-        _ground(
-            tow=old != new,
-            own=inputs[0].get(new) != inputs[1].get(new),
-            others=others,
-            method=hashes[0] != hashes[1],
-            code=versions[0] != versions[1],
-        )
+        ground_of(inputs[0].get(new) != inputs[1].get(new), others, redefined, new_code)
+        if old == new
+        else TOW
         for old, new in pairs.select("tow_id", "tow_id_new").rows()
     ]
     return pairs.select(LINE).with_columns(pl.Series("ground", grounds, pl.String))
@@ -304,18 +291,6 @@ def _input_hashes(tables: Tables) -> dict[str, str]:
     measured = _measured(tables)
     hashed = with_input_hashes(measured["tows"], measured["tow_runs"])
     return dict(hashed.select("tow_id", INPUTS_HASH).rows())
-
-
-def _ground(tow: bool, own: bool, others: bool, method: bool, code: bool) -> str:
-    if tow:
-        return TOW
-    if method:
-        return UNSEPARATED if own or code else METHOD
-    if own:
-        return INPUT_AND_CODE if code else INPUT
-    if others:
-        return CODE_OR_OTHER_INPUT if code else OTHER_INPUT
-    return CODE if code else UNEXPLAINED
 
 
 # The summary

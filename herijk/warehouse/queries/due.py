@@ -14,8 +14,6 @@ from herijk.warehouse.store.database import is_simulated, open_results, rows
 from herijk.warehouse.store.store import Store
 
 EXPIRED, THIS_YEAR, LATER, NEVER = "expired", "this_year", "later", "without_curve"
-URGENCIES: Final = (EXPIRED, THIS_YEAR, NEVER, LATER)
-
 
 WORTH: Final = 0.9
 """A set of tows is worth its trouble where it takes a tenth or more off the uncertainty."""

@@ -5,7 +5,6 @@ Reads the database; writes and computes nothing: every number here is in a table
 
 import datetime as dt
 from collections.abc import Sequence
-from types import TracebackType
 from typing import Self
 
 import polars as pl
@@ -31,17 +30,12 @@ class Views:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        tb: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._db.close()
 
-    def frame(self, query: str) -> pl.DataFrame:
-        """Rows of a query, as a frame."""
-        return pl.DataFrame(self._db.sql(query).pl())
+    def frame(self, query: str, *values: str) -> pl.DataFrame:
+        """Rows of a query with these values for its parameters, as a frame."""
+        return pl.DataFrame(self._db.sql(query, params=values or None).pl())
 
     def has(self, table: str) -> bool:
         """Whether the table is there and holds rows."""
@@ -119,24 +113,20 @@ class Views:
 
     def curve_points_of(self, fsn_no: str) -> pl.DataFrame:
         """The curves of all tows of a boat under every method, with season and crew."""
-        return pl.DataFrame(
-            self._db.sql(
-                "SELECT p.*, t.season, t.rowers || t.crew_class AS crew, "
-                "coalesce(b.name, t.fsn_no) AS name FROM curve_points AS p "
-                "JOIN tows AS t USING (tow_id) LEFT JOIN boats AS b USING (fsn_no) "
-                "WHERE t.fsn_no = ? ORDER BY method, tow_id, speed_m_s",
-                params=[fsn_no],
-            ).pl()
+        return self.frame(
+            "SELECT p.*, t.season, t.rowers || t.crew_class AS crew, "
+            "coalesce(b.name, t.fsn_no) AS name FROM curve_points AS p "
+            "JOIN tows AS t USING (tow_id) LEFT JOIN boats AS b USING (fsn_no) "
+            "WHERE t.fsn_no = ? ORDER BY method, tow_id, speed_m_s",
+            fsn_no,
         )
 
     def option_curves(self, tow_id: str = "") -> pl.DataFrame:
         """Curves under the tool's ticks, of one tow or of all, with boat and declared speed."""
-        return pl.DataFrame(
-            self._db.sql(
-                "SELECT o.*, t.fsn_no, t.declared_speed_m_s FROM option_curves AS o "
-                "JOIN tows AS t USING (tow_id) WHERE $1 IN ('', tow_id) ORDER BY ALL",
-                params=[tow_id],
-            ).pl()
+        return self.frame(
+            "SELECT o.*, t.fsn_no, t.declared_speed_m_s FROM option_curves AS o "
+            "JOIN tows AS t USING (tow_id) WHERE $1 IN ('', tow_id) ORDER BY ALL",
+            tow_id,
         )
 
     def shared_bends(self) -> pl.DataFrame:

@@ -580,3 +580,49 @@ def test_a_setting_for_what_no_list_has_is_told_as_a_sentence(archive: Archive) 
     profile.write_text('[[profile]]\nseasons = "1999"\nsample_rate_hz = 20\n')
     report = check_report(archive.root, check_archive(archive.root), "nl")
     assert "[[profile]]" in report.causes[0].sentence
+
+
+def test_what_people_write_in_a_cell_is_read(archive: Archive, good_scan: Scan) -> None:
+    """A month by its name with two digits of the year; a file as the federation's tool shows it."""
+    archive.replace(TOWS, "2014-03-01", "01-mrt-14")
+    archive.replace(TOWS, "02-03-2014", "2 mrt '14")
+    archive.replace(TOWS, ";derde boot", ";E:\\slepen\\meetdata_2014\\derde boot")
+    archive.replace(TOWS, ";8;H;2,40", ";8 heren;H;2,40")
+    assert_same(archive.scan(), good_scan)
+
+
+def test_water_below_0_degrees_costs_its_cell(archive: Archive) -> None:
+    archive.replace(TOWS, ";8,7;", ";-0,7;")
+    scan = archive.scan()
+    assert [(fault.reason_code, fault.lost) for fault in scan.faults] == [("bad_list_row", "cell")]
+    assert scan.index.tows["water_temperature_c"].to_list() == [None, None, 5.2]
+
+
+def test_packed_files_and_sheets_of_samples_are_told_what_to_do_with(archive: Archive) -> None:
+    for name in ("stersloep.zip", "stersloep.xlsx"):
+        (archive.root / "meetdata_2014" / name).write_bytes(b"PK")
+    unpack, save = (fault.message for fault in archive.scan().faults)
+    assert "Save the sheet as CSV" in unpack + save
+    assert "Unpack it" in unpack + save
+
+
+def test_samples_with_units_in_their_cells_are_told_as_such(archive: Archive) -> None:
+    for column, unit in ((1, " m/s"), (4, " N")):
+        archive.cells(column, lambda cell, _, unit=unit: cell + unit, 2, 6 * ROWS + 1)
+    (fault,) = archive.scan().faults
+    assert fault.reason_code == "bad_number"
+
+
+def test_a_jump_of_the_gps_costs_its_seconds_and_one_of_a_log_counts(archive: Archive) -> None:
+    """Two tons do not go a fifth faster for a second; a log may show it."""
+    first, second = ROWS + 202, ROWS // 50
+    for column in (1, 3):
+        archive.cells(column, faster, first, first + second - 1)
+    (fault,) = archive.scan().faults
+    assert (fault.reason_code, fault.run) == ("implausible_value", 2)
+    assert (fault.lost, fault.lost_s) == ("seconds", 1.0)
+    assert "column 'gps" in fault.message
+
+
+def faster(cell: str, _: int) -> str:
+    return f"{1.2 * float(cell.replace(',', '.')):.3f}".replace(".", "," if "," in cell else ".")

@@ -273,7 +273,7 @@ MANY_CASES: dict[str, tuple[Spoil, list[tuple[str, str, str | None, int | None]]
         [("samples_not_listed", "meetdata_2014/vreemd.csv", None, None)], set(),
     ),
     "path up": (
-        text("eerste boot 8h", "../meetdata_2014/eerste boot 8h"),
+        text("eerste boot 8h", "../meetdata_2013/eerste boot 8h"),
         [("path_outside_archive", TOWS, "2014-001", 2), ("samples_not_listed", FIRST, None, None)],
         {"2014-001"},
     ),

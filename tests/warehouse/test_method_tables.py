@@ -1,0 +1,23 @@
+"""What a process found of the runs is used again as long as the runs are what they were."""
+
+from herijk.warehouse.build.method_tables import RUNS, found_before
+
+
+class Runs:
+    """Inputs of a step, of which only the fingerprint is asked."""
+
+    def __init__(self, made_from):
+        self.known = made_from
+
+    def made_from(self, *names):
+        assert names == RUNS
+        return self.known
+
+
+def test_what_was_found_lasts_as_long_as_the_runs_are_the_same():
+    with found_before(Runs("these")) as first, found_before(Runs("these")) as again:
+        assert again is first
+    with found_before(Runs("others")) as other:
+        assert other is not first
+    with found_before(Runs("these")) as later:
+        assert later is not first
