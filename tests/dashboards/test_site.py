@@ -13,7 +13,7 @@ import pytest
 
 from herijk.dashboards.guides import GUIDES
 from herijk.dashboards.html import as_json
-from herijk.dashboards.site import build_site
+from herijk.dashboards.site import build_pages, build_site
 from herijk.dashboards.site.boats import boat_pages
 from herijk.dashboards.site.cells import CODES, KEPT
 from herijk.dashboards.site.columns import DRAWN, json_by, json_of
@@ -249,8 +249,11 @@ def test_every_table_has_a_meaning_in_dutch(store):
         assert set(views.table("contents")["table"]) == TABLES_IN_DUTCH.keys()
 
 
-def test_nothing_half_made_is_left(store):
-    assert [f.name for f in store.root.iterdir() if f.name.startswith(".herijk-")] == []
+def test_nothing_half_made_is_left(store, tmp_path, monkeypatch):
+    monkeypatch.setattr("herijk.dashboards.site.render.boat_pages", lambda *_: 1 / 0)
+    with pytest.raises(ZeroDivisionError):
+        build_pages(store, tmp_path / "site")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_failing_build_leaves_the_old_site(store, site, monkeypatch):
