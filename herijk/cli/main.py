@@ -56,8 +56,8 @@ BLAS_THREADS: Final = "OPENBLAS_NUM_THREADS"
 each only wait for each other (5.4 s instead of 3.2 for the consistency of 1,020 tows)."""
 
 ARROW_MEMORY: Final = "ARROW_DEFAULT_MEMORY_POOL"
-"""Read when Arrow is imported. Its own pool keeps what a table took: 0.1 GB in each process of a
-rebuild of 1,020 tows, and nothing is quicker for it."""
+"""Read when Arrow is imported. Its own pool keeps what a table took: 0.1 GB in a rebuild of 1,020
+tows, and nothing is quicker for it."""
 
 
 def main() -> None:
