@@ -29,7 +29,7 @@ help:
 	@echo "make accuracy-parts  the same for season factors, methods and the consistency analysis apart"
 	@echo "make survive  kill $(KILLS) rebuilds, and other commands, at random moments and look what is lost"
 	@echo "make plausible  put wrong units, scales and mix-ups in simulated archives: which are told"
-	@echo "make fuzz   throw $(INPUTS) damaged files at the readers, and put 300 faults in an archive"
+	@echo "make fuzz   throw $(INPUTS) damaged files at the readers, put 300 faults in an archive, rebuild parts of one"
 	@echo "make full-scale  memory and time of a rebuild of 1,000 tows; needs 20 GB and an hour"
 	@echo "make env    make the environment in .venv, and nothing more"
 	@echo "make clean  remove the environment, the demo and the caches"
@@ -130,7 +130,7 @@ accuracy: $(DEVELOP)
 accuracy-parts: $(DEVELOP)
 	@for part in $(PARTS); do echo "== $$part"; PYTHONPATH=. $(BIN)/python -m benchmarks.accuracy.$$part || exit 1; done
 
-# Both are long. Shorter: make survive KILLS=10, make fuzz INPUTS=2000
+# These are long. Shorter: make survive KILLS=10, make fuzz INPUTS=2000
 KILLS ?= 1000
 INPUTS ?= 100000
 WORLDS ?= 201 202 203
@@ -149,6 +149,7 @@ plausible: $(DEVELOP)
 fuzz: $(DEVELOP)
 	@PYTHONPATH=. $(BIN)/python benchmarks/robustness/fuzz.py $(INPUTS)
 	@OPENBLAS_NUM_THREADS=1 PYTHONPATH=. $(BIN)/python benchmarks/robustness/mutate.py 300
+	@OPENBLAS_NUM_THREADS=1 PYTHONPATH=. $(BIN)/python benchmarks/robustness/parts.py 50
 
 full-scale: $(DEVELOP)
 	@PYTHONPATH=. $(BIN)/python benchmarks/robustness/full_scale.py

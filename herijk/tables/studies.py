@@ -144,7 +144,7 @@ class PrintReproduction(dy.Schema):
     rowers = column.rowers()
     crew_class = column.crew_class()
     printed_in = dy.Int32(description="year of the first register that printed it")
-    speed_m_s = column.speed("declared speed as printed")
+    speed_m_s = column.speed("declared speed as printed; without it no Cw", nullable=True)
     printed_a_kg_m = column.number("kg/m", "A as printed", nullable=True)
     a_kg_m = column.number("kg/m", "A by the method", nullable=True)
     printed_b_m_s = column.number("m/s", "B as printed", nullable=True)

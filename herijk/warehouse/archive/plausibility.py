@@ -36,6 +36,8 @@ SPEED_RATIO: Final = (0.5, 1.6)
 KM_H_RATIO: Final = (3.0, 4.2)
 SPEED_SPIKE_RATIO: Final = 0.3
 """Of the speed around it: a boat and its crew weigh a ton, and cannot change so much in seconds."""
+GPS_JUMP_RATIO: Final = 0.1
+"""The same of a GPS, which has no noise of samples: such a jump is the receiver's (inferred)."""
 AROUND_S: Final = 11
 """The speed around a sample: the median over so many seconds of each one's median."""
 SPEEDS_AGREE_RATIO: Final = (0.6, 1.4)
@@ -644,7 +646,8 @@ def _wrong_samples(run: _Run, usual_n: float) -> dict[str, BoolArray]:
     wrong = {}
     for key, values in run.channels.items():
         if key in _SPEEDS:
-            wrong[key] = _wrong_speed(values, run.rate_hz)
+            spike = GPS_JUMP_RATIO if key == "gps" else SPEED_SPIKE_RATIO
+            wrong[key] = _wrong_speed(values, run.rate_hz, spike)
         elif key == "force":
             wrong[key] = _wrong_force(values, usual_n, run.rate_hz)
         elif key == "wind_speed":
@@ -660,14 +663,14 @@ def _outside(values: Array, lowest: float, highest: float) -> BoolArray:
     return np.asarray(~((values >= lowest) & (values <= highest)))
 
 
-def _wrong_speed(values: Array, rate_hz: int) -> BoolArray:
+def _wrong_speed(values: Array, rate_hz: int, spike_ratio: float) -> BoolArray:
     median = _median(values)
-    far = SPEED_SPIKE_RATIO * abs(median)
+    far = spike_ratio * abs(median)
     near = (values > DROPOUT_M_S) & (np.abs(values - median) <= far)
     if near.all():
         return np.zeros(len(values), dtype=bool)
     around = _around(values, rate_hz)
-    steady = np.abs(values - around) <= SPEED_SPIKE_RATIO * around
+    steady = np.abs(values - around) <= spike_ratio * around
     return np.asarray(~((values > DROPOUT_M_S) & steady))
 
 

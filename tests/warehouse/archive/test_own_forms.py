@@ -611,3 +611,18 @@ def test_samples_with_units_in_their_cells_are_told_as_such(archive: Archive) ->
         archive.cells(column, lambda cell, _, unit=unit: cell + unit, 2, 6 * ROWS + 1)
     (fault,) = archive.scan().faults
     assert fault.reason_code == "bad_number"
+
+
+def test_a_jump_of_the_gps_costs_its_seconds_and_one_of_a_log_counts(archive: Archive) -> None:
+    """Two tons do not go a fifth faster for a second; a log may show it."""
+    first, second = ROWS + 202, ROWS // 50
+    for column in (1, 3):
+        archive.cells(column, faster, first, first + second - 1)
+    (fault,) = archive.scan().faults
+    assert (fault.reason_code, fault.run) == ("implausible_value", 2)
+    assert (fault.lost, fault.lost_s) == ("seconds", 1.0)
+    assert "column 'gps" in fault.message
+
+
+def faster(cell: str, _: int) -> str:
+    return f"{1.2 * float(cell.replace(',', '.')):.3f}".replace(".", "," if "," in cell else ".")
