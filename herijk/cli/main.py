@@ -55,10 +55,15 @@ BLAS_THREADS: Final = "OPENBLAS_NUM_THREADS"
 """Read when NumPy is imported. Both processes of a rebuild work on small matrices: more threads in
 each only wait for each other (5.4 s instead of 3.2 for the consistency of 1,020 tows)."""
 
+ARROW_MEMORY: Final = "ARROW_DEFAULT_MEMORY_POOL"
+"""Read when Arrow is imported. Its own pool keeps what a table took: 0.1 GB in a rebuild of 1,020
+tows, and nothing is quicker for it."""
+
 
 def main() -> None:
     """Runs the command; an error that a user can act on becomes one sentence and status 1."""
     os.environ.setdefault(BLAS_THREADS, "1")
+    os.environ.setdefault(ARROW_MEMORY, "system")
     if sys.getfilesystemencoding() != "utf-8":
         _begin_in_utf8()
     try:

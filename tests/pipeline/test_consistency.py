@@ -101,6 +101,11 @@ def test_fit_finds_the_minimum_that_another_optimiser_finds():
     assert found.sd == pytest.approx(np.sqrt(other.x), abs=0.02 * problem.spread)
 
 
+def test_a_large_problem_carries_few_empty_rows():
+    for n, rows in ((1, 1), (1020, 1024), (1025, 2048), (10_200, 10_240)):
+        assert Design.of(np.ones(n), range(n)).size[:2] == (rows, rows)
+
+
 @pytest.mark.parametrize(
     ("boat_sd", "other_sd", "error"), [(2.0, 1.0, 1.0), (0.1, 0.1, 1e-5), (0.0, 1.0, 1.0)]
 )

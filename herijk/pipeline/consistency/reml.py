@@ -35,6 +35,8 @@ NEGLIGIBLE: Final = 1e-3
 ROUNDING: Final = 1e-11
 """Share of a deviance, or 1 if that is larger, that is lost in its sums."""
 
+LARGE: Final = 1024
+"""Rows from which on empty ones cost more than calls."""
 
 UNFELT: Final = 1e-10
 """Information, in units of the spread, below which it is rounding: boats of one type have none of
@@ -112,12 +114,17 @@ class Design:
 
     @cached_property
     def size(self) -> tuple[int, int, int, int]:
-        """Rows and boats, each rounded up to a power of two, other groups and fixed effects.
+        """Rows and boats, each rounded up, other groups and fixed effects.
 
         Problems of one size can be searched together.
         """
-        rows, boats = (1 << (n - 1).bit_length() for n in (len(self.boat), self.boats))
+        rows, boats = (_rounded_up(n) for n in (len(self.boat), self.boats))
         return rows, boats, self.others.shape[1], self.x.shape[1]
+
+
+def _rounded_up(number: int) -> int:
+    """The next power of two, and of large numbers the next multiple of `LARGE`."""
+    return 1 << (number - 1).bit_length() if number < LARGE else -(-number // LARGE) * LARGE
 
 
 @dataclass(frozen=True)
