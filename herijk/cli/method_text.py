@@ -83,7 +83,7 @@ def _speed(step: Speed) -> str:
 
 def _calibration(step: Calibration) -> str:
     without = [] if step.without_gps == "no_curve" else [tell("Without GPS: as estimated.")]
-    stream = [] if step.stream == "steady" else [tell("A drift of the stream is taken off.")]
+    stream = [] if step.stream == "none" else [tell("A drift of the stream is taken off.")]
     return " ".join([_calibration_rule(step), *stream, *without])
 
 

@@ -270,6 +270,8 @@ TEXTS: Final[Words] = {
     "choice.archive": ("één uit alle proeven", "one from all tows"),
     "choice.still_air": ("stil weer", "still air"),
     "choice.expected": ("zoals bij andere proeven", "as in other tows"),
+    "choice.unchanged": ("zoals gesleept", "as towed"),
+    "choice.drifting": ("verloop eraf", "drift taken off"),
     "choice.as_read": ("zoals afgelezen", "as it reads"),
     "choice.as_felt": ("zoals gevoeld", "as felt"),
     "choice.cw_vac_2014": ("'Cw vac' van 2014", "'Cw vac' of 2014"),

@@ -58,8 +58,8 @@ class Calibration(_Options):
     without_gps: Literal["no_curve", "estimated"] = Field(
         default="no_curve", exclude_if=lambda value: value == "no_curve"
     )
-    stream: Literal["steady", "drifting"] = Field(
-        default="steady", exclude_if=lambda value: value == "steady"
+    stream: Literal["none", "drifting"] = Field(
+        default="none", exclude_if=lambda value: value == "none"
     )
 
 

@@ -277,7 +277,7 @@ def _reasons(batch: Batch, steps: Steps, windows: Windows, means: RunMeans) -> T
 
 def _stream_drift(batch: Batch, steps: Steps, means: RunMeans, used: BoolArray) -> FloatArray:
     """Part of the GPS speed that is a drift of the stream, as far as asked for, shape (runs,)."""
-    if steps.calibration.stream == "steady":
+    if steps.calibration.stream == "none":
         return np.zeros(len(batch.tow))
     return stream_drift_m_s(
         means.gps_m_s,
