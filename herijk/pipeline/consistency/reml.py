@@ -442,7 +442,8 @@ def _newton(
     value, vector = np.linalg.eigh(scaled)
     told = np.abs(value) > UNFELT * np.abs(value).max(axis=-1, keepdims=True)
     along = (vector.mT @ slope[..., None])[..., 0] * told / np.where(told, value, 1.0)
-    return np.asarray(-(vector @ along[..., None])[..., 0] / size)
+    step = -(vector @ along[..., None])[..., 0] / size
+    return np.where(felt, step, 0.0)  # rounding lets the others move a little
 
 
 def _descend(
