@@ -3,11 +3,24 @@
 import subprocess
 import sys
 import tomllib
+from pathlib import Path
+
+import pytest
 
 from tests.architecture.repository import ROOT
 
 CHECK = [sys.executable, "-c", "from importlinter.cli import lint_imports; exit(lint_imports())"]
 KEYS = ("layers", "source_modules", "forbidden_modules")
+
+THREADS = """
+import os
+import polars as pl
+import herijk.assets.definitions, herijk.cli.main, herijk.dashboards.site, herijk.library
+imported = len(os.listdir("/proc/self/task"))
+pl.DataFrame({"x": [1]}).lazy().select("x").collect()
+print(imported, len(os.listdir("/proc/self/task")))
+"""
+"""How many threads there are when all is imported, and when Polars has computed something."""
 
 
 def contracts_kept(folder):
@@ -47,3 +60,13 @@ def test_a_file_in_the_pipeline_is_found(tmp_path):
     found = contracts_kept(small_project(tmp_path, pipeline="import pathlib"))
     assert found.returncode == 1
     assert "herijk.pipeline -> pathlib" in found.stdout
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="threads are counted on Linux")
+def test_importing_computes_nothing():
+    """A process forked after Polars has threads waits for them for ever."""
+    found = subprocess.run(
+        [sys.executable, "-c", THREADS], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    imported, computed = map(int, found.stdout.split())
+    assert imported < computed

@@ -24,6 +24,7 @@ from herijk.pipeline.register.changes import (
 )
 from herijk.pipeline.register.register import LINE, NO_EMPTY_THWART
 from herijk.pipeline.register.replay import RaceRules, race_changes, replay, winner_changes
+from herijk.tables.frames import dtypes
 from herijk.tables.row import Row
 from herijk.tables.studies import CorrectionSteps
 from herijk.warehouse.build.published import lines_in_time
@@ -46,7 +47,8 @@ METHOD: Final = "method"
 UNSEPARATED: Final = "unseparated"
 UNEXPLAINED: Final = "unexplained"
 
-NO_STEPS: Final = CorrectionSteps.create_empty().select("tow_id", "position", "step", "factor")
+STEP_COLUMNS: Final = ("tow_id", "position", "step", "factor")
+NO_STEPS: Final = pl.DataFrame(schema={n: dtypes(CorrectionSteps)[n] for n in STEP_COLUMNS})
 
 
 @dataclass(frozen=True)
