@@ -30,6 +30,7 @@ from herijk.assets.progress import Quiet
 from herijk.assets.rebuild import rebuild
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
+from herijk.warehouse.store.files import TEMPORARY_PREFIX
 from herijk.warehouse.store.store import Store, fingerprint, table_digest
 
 ROOT = Path(__file__).parents[2]
@@ -180,7 +181,13 @@ def survive(root: Path, kills: int, seed: int, tell: Callable[[str], None] = pri
 
 def newest(data: Path) -> str:
     """The newest thing in the data folder, as far as it says how far the rebuild was."""
-    files = [f for f in data.rglob("*") if f.is_file() and "dagster" not in f.parts]
+    files = [
+        file
+        for file in data.rglob("*")
+        if file.is_file()
+        and "dagster" not in file.parts
+        and not file.name.startswith(TEMPORARY_PREFIX)
+    ]
     parts = max(files, key=lambda f: f.stat().st_mtime_ns).relative_to(data).parts
     return "/".join(parts[:3]) if parts[0] == "lake" else parts[0]
 

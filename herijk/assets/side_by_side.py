@@ -5,6 +5,8 @@ not do. Which process does it changes nothing in what is made.
 """
 
 import multiprocessing
+import os
+import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
@@ -90,7 +92,7 @@ def helper() -> Iterator[Executor]:
     """
     afresh = multiprocessing.get_context("spawn")  # a copy of this one would lack its threads
     try:
-        with ProcessPoolExecutor(1, mp_context=afresh, initializer=_import_all) as process:
+        with ProcessPoolExecutor(1, mp_context=afresh, initializer=_begin) as process:
             process.submit(stages, ())  # the process begins with its first task
             yield process
     except BrokenProcessPool as error:
@@ -100,9 +102,18 @@ def helper() -> Iterator[Executor]:
         ) from error
 
 
-def _import_all() -> None:
+def _begin() -> None:
     """Imports what tables and pages are made with: three seconds that nobody has to wait for."""
+    threading.Thread(target=_end_with_parent, daemon=True).start()
     import herijk.dashboards.site  # noqa: F401, PLC0415
+
+
+def _end_with_parent() -> None:
+    """Ends this process with the one it helps: it would write on without the right to."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
 
 
 Join = Callable[[Callable[[T], M]], list[M]]

@@ -2,6 +2,8 @@
 
 import copy
 import os
+import subprocess
+import sys
 import time
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -95,6 +97,33 @@ def test_steps_stand_together_where_none_reads_what_another_makes():
 def test_a_helper_that_is_ended_is_told_with_the_way_out():
     with pytest.raises(UnavailableError, match="Run it again"), helper() as other:
         other.submit(os._exit, 1).result()
+
+
+PARENT = """
+import os
+from herijk.assets.side_by_side import helper
+if __name__ == "__main__":
+    with helper() as other:
+        print(other.submit(os.getpid).result(), flush=True)
+        other.submit(eval, "__import__('time').sleep(60)").result()
+"""
+
+
+def test_a_helper_ends_with_the_process_it_helps(tmp_path):
+    script = tmp_path / "parent.py"
+    script.write_text(PARENT, encoding="utf-8")
+    with subprocess.Popen([sys.executable, script], stdout=subprocess.PIPE, text=True) as parent:
+        other = int(parent.stdout.readline())
+        parent.kill()
+    assert any(_is_gone(other) or time.sleep(0.05) for _ in range(200))
+
+
+def _is_gone(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return True
+    return False
 
 
 def test_a_damaged_file_found_by_the_helper_is_named():
