@@ -62,7 +62,7 @@ class Cause:
     """One thing that is wrong, wherever it is.
 
     Attributes:
-        reason_code: a key of `REASONS`.
+        reason_code: short stable code.
         faults: where, in order.
         proposals: what in `archief.toml` would settle it; empty where only a person can.
     """
@@ -101,7 +101,7 @@ class CauseReport:
     """One thing that is wrong, as it is told.
 
     Attributes:
-        reason_code: a key of `REASONS`.
+        reason_code: short stable code.
         number: of places.
         sentence: of the first of them.
         cells: what the cells say that have it.
