@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import polars as pl
 
@@ -356,7 +356,7 @@ def _not_planned(
     path: str,
     found: pl.DataFrame,
     planned: Iterable[int],
-    speed: Any,
+    speed: object,
     in_two: bool = False,
     lasts: float = STANDARD.seconds,
 ) -> Fault:
