@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Final, Self
+from typing import Final, Self
 
 import polars as pl
 import pyarrow as pa  # type: ignore[import-untyped]
@@ -29,7 +29,7 @@ _FOOTER_BYTES: Final = 1 << 16
 """Enough for most footers, so that one request brings them."""
 
 
-def fingerprint(*parts: Any) -> str:
+def fingerprint(*parts: object) -> str:
     """A hash of anything that JSON can hold, equal wherever the parts are equal."""
     text = json.dumps(parts, sort_keys=True, default=str, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()
@@ -185,7 +185,7 @@ def count_rows(path: Place) -> int:
 
 
 def _footer(path: Place) -> pq.FileMetaData:
-    """What stands at the end of a Parquet file; the rest is not fetched."""
+    """What a Parquet file says of itself at its end; the rest is not fetched."""
     if isinstance(path, Path):
         return pq.read_metadata(path)
     end = path.read_end(_FOOTER_BYTES)
@@ -211,7 +211,7 @@ def write_parquet(
     frame: pl.DataFrame,
     path: Place,
     metadata: dict[str, str] | None = None,
-    form: Mapping[str, Any] | None = None,
+    form: Mapping[str, object] | None = None,
 ) -> None:
     """Writes a frame as Parquet, whole or not at all, with a checksum of every page.
 
@@ -233,7 +233,7 @@ def write_parquet(
         )
 
 
-def _table_form(schema: pa.Schema) -> dict[str, Any]:
+def _table_form(schema: pa.Schema) -> dict[str, object]:
     """How a table is packed: most measured numbers occur once, so a dictionary of them is waste."""
     numbers = [column.name for column in schema if pa.types.is_floating(column.type)]
     others = [column.name for column in schema if column.name not in numbers]
