@@ -21,7 +21,7 @@ import polars as pl
 
 from herijk.pipeline.errors import UnavailableError
 from herijk.warehouse.build.graph import STEPS
-from herijk.warehouse.build.step import Seen, Step
+from herijk.warehouse.build.step import Made, Step
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.intake.lake import Report
 from herijk.warehouse.store.methods import KnownMethods
@@ -77,11 +77,11 @@ class Task:
         """The method, where the step is made once for each."""
         return self.methods[0] if self.made_by.per_method else None
 
-    def do(self) -> Seen:
+    def do(self) -> Made:
         """Makes the tables."""
         store = Store(self.data)
         known = KnownMethods.of(store)
-        return self.made_by.make(store, [known.get(name) for name in self.methods]).seen
+        return self.made_by.make(store, [known.get(name) for name in self.methods])
 
 
 @contextmanager

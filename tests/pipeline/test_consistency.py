@@ -10,7 +10,6 @@ import pytest
 from scipy import optimize, stats
 
 from herijk.pipeline.consistency import (
-    ERAS,
     compared_tows,
     consistency_tables,
     hull_speed_statistics,
@@ -18,6 +17,7 @@ from herijk.pipeline.consistency import (
     mixed,
     observe,
     pooled_curves,
+    reml,
     repeat_pairs,
     reproducibility,
     slow_tows,
@@ -358,16 +358,16 @@ def with_run_points(tables, tow_id, factor):
 def test_a_boat_pulled_askew_lies_outside_and_is_named():
     for season, candidates in ((2012, ["askew"]), (2016, [])):
         tables = fleet(16, height_sd=0.01, seasons=(season,))
-        found = type_outliers(
-            observe(*with_run_points(tables, f"{season}-003", 1.15)), ERAS
-        ).filter("outside")
+        found = type_outliers(observe(*with_run_points(tables, f"{season}-003", 1.15))).filter(
+            "outside"
+        )
         assert found["tow_id"].to_list() == [f"{season}-003"]
         assert found["candidates"].to_list() == [candidates]
 
 
 @pytest.mark.parametrize("b_cv", [0.0, 0.05])
 def test_no_boat_is_called_outside_too_often(b_cv):
-    found = type_outliers(observe(*fleet(17, TRIALS, height_sd=0.02, b_cv=b_cv)), ERAS)
+    found = type_outliers(observe(*fleet(17, TRIALS, height_sd=0.02, b_cv=b_cv)))
     for _, rows in found.group_by("quantity"):
         alarms = rows.group_by("method").agg(pl.col("outside").any())
         assert alarms["outside"].mean() <= 0.05 + 4 * np.sqrt(0.05 * 0.95 / TRIALS)
@@ -532,7 +532,7 @@ def test_repeats_of_few_boats_do_not_narrow_a_line():
 def test_a_tow_far_too_slow_for_the_standard_speed_is_there_and_marked():
     speeds = np.full(8, 2.5)
     speeds[2] = 2.0
-    found = compared_tows(observe(*fleet(19, boats=8, speeds_m_s=speeds, noise=1e-4)), ERAS)
+    found = compared_tows(observe(*fleet(19, boats=8, speeds_m_s=speeds, noise=1e-4)))
     assert found.filter("beyond_curve")["tow_id"].to_list() == ["2016-002"]
     assert found.filter("slow")["tow_id"].to_list() == ["2016-002"]
     one = found.filter("slow").row(0, named=True)
@@ -548,14 +548,13 @@ def test_one_tow_pulled_askew_is_named_among_all_tows(three_seasons):
         observe(
             curves.with_columns(cw), tows, boats, points.with_columns(pl.col("cw_kg_m") * askew)
         ),
-        ERAS,
     )
     # The season that reads high does not put all its tows outside.
     assert found.filter("outside")["tow_id"].to_list() == ["2014-004"]
 
 
 def test_b_is_told_apart_from_hull_speed():
-    found = compared_tows(observe(*fleet(19, boats=12, noise=0.002)), ERAS)
+    found = compared_tows(observe(*fleet(19, boats=12, noise=0.002)))
     row = hull_speed_statistics(found).filter(tows="all", boat_type="all").row(0, named=True)
     hull = 1.25 * 8.2**0.5
     assert row["b_ratio_lo"] < 4.6 / hull < row["b_ratio_hi"]
@@ -704,6 +703,32 @@ def test_where_there_is_no_line_the_reason_is_said(case, quantity, explaining, r
         named=True,
     )
     assert (row["reason"], row["n"], row["slope"]) == (reason, n, None)
+
+
+SEARCHED = {
+    "type_lines": "slope",
+    "speed_trend": "slope",
+    "predicted_cw": "predicted_cw_kg_m",
+    "variance_components": "sd_ratio",
+}
+
+
+@pytest.mark.parametrize(
+    ("module", "limit", "unsettled"),
+    [(reml, "MAX_ITERATIONS", {*SEARCHED}), (mixed, "MAX_STEPS", {"variance_components"})],
+)
+def test_a_search_that_does_not_come_to_rest_says_so(module, limit, unsettled, monkeypatch):
+    """No number that rests on it is given, and every table fits its schema."""
+    tables = fleet(41, boats=24, seasons=(2014, 2016, 2018), height_sd=0.03, season_sd=0.02)
+    settled = everything(*tables)
+    monkeypatch.setattr(module, limit, 1)
+    forced = {name: conform(name, frame) for name, frame in everything(*tables).items()}
+    for name, number in SEARCHED.items():
+        assert settled[name].filter(reason="not_settled").is_empty()
+        assert settled[name][number].count() > 0
+        mute = forced[name].filter(reason="not_settled")
+        assert (mute.height > 0) == (name in unsettled), name
+        assert mute[number].count() == 0
 
 
 def test_the_order_of_rows_does_not_matter():

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Final, Self
+from typing import Final, Self
 
 import polars as pl
 import pyarrow as pa  # type: ignore[import-untyped]
@@ -31,7 +31,7 @@ _FOOTER_BYTES: Final = 1 << 16
 TABLE_FORM: Final = {"compression": "zstd"}
 
 
-def fingerprint(*parts: Any) -> str:
+def fingerprint(*parts: object) -> str:
     """A hash of anything that JSON can hold, equal wherever the parts are equal."""
     text = json.dumps(parts, sort_keys=True, default=str, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()
@@ -203,7 +203,7 @@ def count_rows(path: Place) -> int:
 
 
 def _footer(path: Place) -> pq.FileMetaData:
-    """What stands at the end of a Parquet file; the rest is not fetched."""
+    """What a Parquet file says of itself at its end; the rest is not fetched."""
     if isinstance(path, Path):
         return pq.read_metadata(path)
     end = path.read_end(_FOOTER_BYTES)
@@ -229,7 +229,7 @@ def write_parquet(
     frame: pl.DataFrame,
     path: Place,
     metadata: dict[str, str] | None = None,
-    form: Mapping[str, Any] = TABLE_FORM,
+    form: Mapping[str, object] = TABLE_FORM,
 ) -> None:
     """Writes a frame as Parquet, whole or not at all, with a checksum of every page.
 
