@@ -20,7 +20,7 @@ import polars as pl
 import pyarrow as pa  # type: ignore[import-untyped]
 import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
-from herijk.pipeline.errors import BrokenPromiseError
+from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.warehouse.store.machine_faults import is_machine_fault
 from herijk.warehouse.store.storage import Locations, Place, place, read_locations, written_whole
 
@@ -131,6 +131,22 @@ class Store:
     def remove(self, table: str, partition: str) -> None:
         """Removes a partition whose season or method is no more."""
         self.table_path(table, partition).unlink(missing_ok=True)
+
+
+def archive_root(store: Store) -> Path | None:
+    """Where the archive was when the warehouse was last rebuilt; None if it is not there now.
+
+    Raises:
+        MissingKnowledgeError: nothing was ever rebuilt in this data folder.
+    """
+    if store.made_from("about_archive") is None:
+        raise MissingKnowledgeError(
+            "{} holds no warehouse; make it with: herijk rebuild --archive DIR --data {}",
+            store.root,
+            store.root,
+        )
+    root = Path(store.read("about_archive")["root"][0])
+    return root if root.is_dir() else None
 
 
 class DamagedFileError(BrokenPromiseError):
