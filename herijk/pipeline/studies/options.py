@@ -16,7 +16,7 @@ import polars as pl
 from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.pipeline.method.definition import Method, Steps
-from herijk.pipeline.recompute.recompute import batches, evaluate_each, instruments_of
+from herijk.pipeline.recompute.recompute import batches, evaluate_each
 from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.pipeline.recompute.season_factors import Instruments
 
@@ -58,8 +58,8 @@ def option_effects(
     method: Method,
     tows: pl.DataFrame,
     blocks: RunBlocks,
-    links: pl.DataFrame | None = None,
-    cache: RunCache | None = None,
+    links: pl.DataFrame,
+    cache: RunCache,
 ) -> pl.DataFrame:
     """Spread of Cw and B over all combinations of `CHOICES`, and the effect of each choice.
 
@@ -67,8 +67,7 @@ def option_effects(
         method: the method whose other options hold.
         tows: rows of the warehouse's `tows`.
         blocks: their runs.
-        links: log factors of the method, where they were estimated before: its rows of the table
-            `tow_instruments`.
+        links: the method's rows of the table `tow_instruments`; none where it estimates no log.
         cache: what was found before of the same tows; added to.
 
     Returns:
@@ -79,17 +78,11 @@ def option_effects(
     """
     pairs = batches([method], tows, blocks)
     choices = [c for c in CHOICES if any(c.applies(steps) for _, (steps,) in pairs)]
-    cache = RunCache() if cache is None else cache
-    instruments = (
-        instruments_of([(batch, steps) for batch, (steps,) in pairs], cache)
-        if links is None
-        else Instruments(links)
-    )
     corners = list(itertools.product((0, 1), repeat=len(choices)))
     sides = [{c: c.values[s] for c, s in zip(choices, corner, strict=True)} for corner in corners]
     variants = ([(b, chosen(steps, side)) for b, (steps,) in pairs] for side in sides)
     cw, slope = [], []
-    for outcomes in evaluate_each(variants, cache, instruments):
+    for outcomes in evaluate_each(variants, cache, Instruments(links)):
         cw.append(np.concatenate([np.log(o.cw_at_declared) for o in outcomes]))
         slope.append(np.concatenate([_ln_b(o.curves.b_m_s) for o in outcomes]))
     tow_ids = pl.concat([batch.tows["tow_id"] for batch, _ in pairs])
