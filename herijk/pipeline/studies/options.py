@@ -21,6 +21,7 @@ from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.pipeline.recompute.season_factors import Instruments
 
 ALL_OPTIONS: Final = "all"
+NUMBERS: Final = ("cw_effect_ratio", "b_effect_ratio", "cw_sd_ratio", "b_sd_ratio")
 
 
 @dataclass(frozen=True)
@@ -87,12 +88,17 @@ def option_effects(
         slope.append(np.concatenate([_ln_b(o.curves.b_m_s) for o in outcomes]))
     tow_ids = pl.concat([batch.tows["tow_id"] for batch, _ in pairs])
     ln_cw, ln_b, signs = np.stack(cw), np.stack(slope), 2 * np.array(corners) - 1
-    frames = [_frame(tow_ids, ALL_OPTIONS, None, None, _spread(ln_cw), _spread(ln_b))]
+    spread = {"cw_sd_ratio": ln_cw.std(axis=0), "b_sd_ratio": ln_b.std(axis=0)}
+    frames = [_frame(tow_ids, ALL_OPTIONS, spread)]
     for i, choice in enumerate(choices):
         can = np.concatenate([np.full(b.size, choice.applies(steps)) for b, (steps,) in pairs])
-        effects = _effect(ln_cw, signs[:, i]), _effect(ln_b, signs[:, i])
-        frames.append(_frame(tow_ids, choice.name, *effects).filter(can))
-    return pl.concat(frames).sort("tow_id", "option")
+        effect = {
+            "cw_effect_ratio": np.exp(_effect(ln_cw, signs[:, i])),
+            "b_effect_ratio": np.exp(_effect(ln_b, signs[:, i])),
+        }
+        frames.append(_frame(tow_ids, choice.name, effect).filter(can))
+    found = pl.concat(frames, how="diagonal").sort("tow_id", "option")
+    return found.select("tow_id", "option", *NUMBERS)
 
 
 def beside_uncertainty(effects: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
@@ -134,25 +140,7 @@ def _effect(ln_values: FloatArray, sign: FloatArray) -> FloatArray:
     return np.asarray((ln_values * sign[:, None]).mean(axis=0) * 2.0)
 
 
-def _spread(ln_values: FloatArray) -> FloatArray:
-    return np.asarray(ln_values.std(axis=0))
-
-
-def _frame(
-    tow_ids: pl.Series,
-    option: str,
-    cw_effect: FloatArray | None,
-    b_effect: FloatArray | None,
-    cw_sd: FloatArray | None = None,
-    b_sd: FloatArray | None = None,
-) -> pl.DataFrame:
-    nothing = np.full(len(tow_ids), np.nan)
-    columns = {
-        "cw_effect_ratio": nothing if cw_effect is None else np.exp(cw_effect),
-        "b_effect_ratio": nothing if b_effect is None else np.exp(b_effect),
-        "cw_sd_ratio": nothing if cw_sd is None else cw_sd,
-        "b_sd_ratio": nothing if b_sd is None else b_sd,
-    }
-    return pl.DataFrame({"tow_id": tow_ids, **columns}).select(
-        "tow_id", pl.lit(option).alias("option"), pl.col(list(columns)).fill_nan(None)
+def _frame(tow_ids: pl.Series, option: str, numbers: Mapping[str, FloatArray]) -> pl.DataFrame:
+    return pl.DataFrame({"tow_id": tow_ids, **numbers}).select(
+        "tow_id", pl.lit(option).alias("option"), pl.col(list(numbers)).fill_nan(None)
     )
