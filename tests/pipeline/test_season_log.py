@@ -386,11 +386,12 @@ def test_a_log_replaced_is_not_taken_for_many_tows_pulled_askew(seed):
     assert tow["day"].to_list() == [8.0]
 
 
-def test_a_tow_pulled_askew_is_told_from_an_altered_boat():
+@pytest.mark.parametrize("seasons", [range(2009, ANCHORED_FROM), range(ANCHORED_FROM, 2019)])
+def test_a_tow_pulled_askew_is_told_from_an_altered_boat(seasons):
     world, whole = estimated(CLEAN, 1001)
     straight = world.tows
-    early = straight.filter(pl.col("season") < ANCHORED_FROM)["tow_id"]
-    hit = pl.col("tow_id").is_in(early.gather_every(6).to_list())
+    of_these = straight.filter(pl.col("season").is_in(list(seasons)))["tow_id"]
+    hit = pl.col("tow_id").is_in(of_these.gather_every(6).to_list())
     found = estimate_season_factors(
         straight.with_columns(pl.col("ln_cw") + pl.when(hit).then(0.08).otherwise(0.0))
     )
