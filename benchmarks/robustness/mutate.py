@@ -92,8 +92,9 @@ class Ground:
         ARCHIVE.make(store, (), SEEN)
         found = {name: store.read(name) for name in ("tows", "tow_runs")}
         for name in METHODS:
-            applied = METHOD.make(store, [shipped_method(name)]).tables
-            found |= {f"{table} {name}": applied[table] for table in ("run_points", "curves")}
+            METHOD.make(store, [shipped_method(name)])
+            applied = {table: store.read(table, name) for table in ("run_points", "curves")}
+            found |= {f"{table} {name}": frame for table, frame in applied.items()}
         aside = set(store.read("quarantine")["tow_id"].drop_nulls())
         return {name: _by_tow(frame) for name, frame in found.items()}, aside
 

@@ -4,6 +4,7 @@ Samples are read and tables made by code that holds Python's lock most of the ti
 not do. Which process does it changes nothing in what is made.
 """
 
+import atexit
 import multiprocessing
 import os
 import threading
@@ -20,7 +21,7 @@ import polars as pl
 
 from herijk.pipeline.errors import UnavailableError
 from herijk.warehouse.build.graph import STEPS
-from herijk.warehouse.build.step import Seen, Step
+from herijk.warehouse.build.step import Made, Step
 from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.intake.lake import Report
 from herijk.warehouse.store.methods import KnownMethods
@@ -76,11 +77,11 @@ class Task:
         """The method, where the step is made once for each."""
         return self.methods[0] if self.made_by.per_method else None
 
-    def do(self) -> Seen:
+    def do(self) -> Made:
         """Makes the tables."""
         store = Store(self.data)
         known = KnownMethods.of(store)
-        return self.made_by.make(store, [known.get(name) for name in self.methods]).seen
+        return self.made_by.make(store, [known.get(name) for name in self.methods])
 
 
 @contextmanager
@@ -105,6 +106,8 @@ def helper() -> Iterator[Executor]:
 def _begin() -> None:
     """Imports what tables and pages are made with: three seconds that nobody has to wait for."""
     threading.Thread(target=_end_with_parent, daemon=True).start()
+    # At once: taken apart around that thread, DuckDB's binding writes that it leaks.
+    atexit.register(os._exit, 0)
     import herijk.dashboards.site  # noqa: F401, PLC0415
 
 

@@ -14,7 +14,7 @@ from herijk.tables.lake import SEASON_TABLES
 from herijk.tables.schemas import TABLES
 from herijk.warehouse.build.graph import STEPS
 from herijk.warehouse.build.inputs import BLOCKS, DECISIONS, PUBLISHED
-from herijk.warehouse.build.step import Glance, Seen, Step
+from herijk.warehouse.build.step import Made, Step, Summary
 from herijk.warehouse.intake.seasons import INDEXED
 
 KINDS = {"warehouse_database": "duckdb"}
@@ -49,7 +49,7 @@ def step_asset(step: Step) -> dg.AssetsDefinition:
         asked = {key.to_user_string() for key in context.selected_asset_keys}
         made = step.make(setup.store, chosen, wanted=asked)
         checks = {key.name for key in context.selected_asset_check_keys}
-        for result in results_of(made.seen):
+        for result in results_of(made):
             if isinstance(result, dg.MaterializeResult) or result.check_name in checks:
                 yield result
 
@@ -97,18 +97,18 @@ def _columns(schema: type[dy.Schema]) -> dg.TableSchema:
     )
 
 
-def _metadata(table: str, seen: Glance) -> dict[str, Any]:
-    metadata: dict[str, Any] = {"dagster/row_count": seen.rows}
-    if seen.statuses:
-        metadata["statuses"] = dg.MetadataValue.json(seen.statuses)
-    return metadata | preview(table, seen.first)
+def _metadata(table: str, summary: Summary) -> dict[str, Any]:
+    metadata: dict[str, Any] = {"dagster/row_count": summary.rows}
+    if summary.statuses:
+        metadata["statuses"] = dg.MetadataValue.json(summary.statuses)
+    return metadata | preview(table, summary.first)
 
 
-def results_of(seen: Seen) -> Iterator[Result]:
+def results_of(made: Made) -> Iterator[Result]:
     """What a step made, and what does not hold of it."""
-    for table, glance in seen.tables.items():
-        yield dg.MaterializeResult(asset_key=table, metadata=_metadata(table, glance))
-    for check, faults in seen.faults.items():
+    for table, summary in made.tables.items():
+        yield dg.MaterializeResult(asset_key=table, metadata=_metadata(table, summary))
+    for check, faults in made.faults.items():
         yield dg.AssetCheckResult(
             check_name=check.name,
             asset_key=check.table,

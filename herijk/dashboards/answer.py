@@ -204,14 +204,19 @@ def _instruments(answer: Answer, speech: Speech) -> Iterator[str]:
             low=speech.per_cent(1 / high),
             high=speech.per_cent(1 / low),
         )
-    for fault in answer.faults:
-        chance = fault["p_fault"]
-        yield speech.say(f"answer_{fault['verdict'].replace(' ', '_')}").format(
-            instrument=speech.say(f"instrument.{fault['instrument']}"),
-            season=fault["season"],
-            chance="" if chance is None else speech.number(100 * chance, 0),
-            size=_size(fault["estimate"], fault["unit"], speech),
-        )
+    # A search that did not settle is said once, and not of every instrument.
+    yield from dict.fromkeys(_fault(fault, speech) for fault in answer.faults)
+
+
+def _fault(fault: Row, speech: Speech) -> str:
+    """What may be wrong with one instrument."""
+    chance = fault["p_fault"]
+    return speech.say(f"answer_{fault['verdict'].replace(' ', '_')}").format(
+        instrument=speech.say(f"instrument.{fault['instrument']}"),
+        season=fault["season"],
+        chance="" if chance is None else speech.number(100 * chance, 0),
+        size=_size(fault["estimate"], fault["unit"], speech),
+    )
 
 
 def _size(value: float, unit: str, speech: Speech) -> str:

@@ -107,8 +107,9 @@ class Curves:
         rss_kg2_m2: residual sum of squares of the used points.
         n_points: number of used points.
         converged: False where the points determine no curve (fewer than two speeds, force that
-            falls with speed, B prescribed below a measured speed). A and s are then those of the
-            flat curve through the mean, A = 0 without any point.
+            falls with speed, B prescribed below a measured speed), or the search for it did not
+            come to rest. A and s are then those of the flat curve through the mean, A = 0 without
+            any point.
         b_capped: True where B was lowered to its cap.
     """
 

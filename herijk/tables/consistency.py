@@ -34,7 +34,9 @@ class TypeConsistency(dy.Schema):
     )
     between_sd_ratio = column.number("1", "true spread about the line / mean", nullable=True, min=0)
     noise_sd_ratio = column.number("1", "spread by run noise alone / mean", nullable=True, min=0)
-    reason = column.text("why there is no line: no_type, few_boats, equal_values; else empty")
+    reason = column.text(
+        "why there is no line: no_type, few_boats, equal_values, not_settled; else empty"
+    )
 
 
 class TypeLines(TypeConsistency):
@@ -177,7 +179,9 @@ class TypeHomogeneity(dy.Schema):
     power_at_5pct = column.number("1", "chance to see a true spread of B of 5 %", nullable=True)
     power_at_10pct = column.number("1", "the same for 10 %", nullable=True)
     noise_share = column.number("1", "share of the bends' spread that noise gives", nullable=True)
-    between_b_sd_ratio = column.number("1", "estimated true spread of B", nullable=True, min=0)
+    between_b_sd_ratio = column.number(
+        "1", "estimated true spread of B; empty too if not settled", nullable=True, min=0
+    )
     b_sd_ratio = column.number("1", "seen spread of B where determined", nullable=True, min=0)
     b_noise_sd_ratio = column.number("1", "spread of B by noise alone", nullable=True, min=0)
     cw_noise_sd_ratio = column.number("1", "spread of Cw by noise alone", nullable=True, min=0)
@@ -223,7 +227,7 @@ class SpeedTrend(dy.Schema):
     )
     slope_lo = column.number("1", "lower end of its 95 % interval", nullable=True)
     slope_hi = column.number("1", "upper end", nullable=True)
-    reason = column.text("why there is no trend: few_boats, equal_values; else empty")
+    reason = column.text("why there is no trend: few_boats, equal_values, not_settled; else empty")
 
 
 class SlowTows(dy.Schema):
@@ -339,7 +343,7 @@ class VarianceComponents(dy.Schema):
     hi = column.number("1", "upper end; empty: no bound", nullable=True, min=0)
     share = column.number("1", "share of the variance of a tow's Cw", nullable=True, min=0, max=1)
     distinct_categories = column.number("1", "boats told apart: 1.41 s_boat / s_R", nullable=True)
-    reason = column.text("why there are no numbers: too_few_repeats; else empty")
+    reason = column.text("why there are no numbers: too_few_repeats, not_settled; else empty")
 
 
 class PredictedCw(dy.Schema):
@@ -362,7 +366,7 @@ class PredictedCw(dy.Schema):
     predicted_sd_ratio = column.number("1", "its standard uncertainty", nullable=True, min=0)
     ln_ratio = column.number("1", "ln of the tow's Cw / the predicted", nullable=True)
     disagrees = dy.Bool(description="differs by more than both uncertainties", nullable=True)
-    reason = column.text("why there is no prediction: few_boats; else empty")
+    reason = column.text("why there is no prediction: few_boats, not_settled; else empty")
 
 
 class PredictionError(dy.Schema):

@@ -39,7 +39,9 @@ class SeasonLinks(dy.Schema):
     influence = column.number("1", "largest change when one boat is left out", nullable=True)
     influence_boat = column.text("that boat", nullable=True)
     weakest_mode = column.number("1", "share in what is known worst", nullable=True)
-    factor_no_boats = column.number("1", "the same without boat identity, a check", nullable=True)
+    factor_no_boats = column.number(
+        "1", "the same without boat identity, a check; empty too if not settled", nullable=True
+    )
     lo_no_boats = column.number("1", "lower end of its 95 % interval", nullable=True)
     hi_no_boats = column.number("1", "upper end", nullable=True)
     agreement = column.number("1", "difference of the two in standard deviations", nullable=True)
@@ -90,10 +92,14 @@ class SeasonDiagnosis(dy.Schema):
     verdict = column.text(
         "sound, would not show (one of the usual size would not be found), fault (likelier than "
         "not), cannot be told (10 to 50 %), alarm (4 standard deviations apart); of a log's factor "
-        "estimated or not determined",
-        regex="^(sound|would not show|fault|cannot be told|alarm|estimated|not determined)$",
+        "estimated or not determined; not settled (the search did not come to rest: no estimate of "
+        "the method can be relied on)",
+        regex="^(sound|would not show|fault|cannot be told|alarm|estimated|not determined"
+        "|not settled)$",
     )
-    alarm = dy.Bool(description="a person should look: fault, cannot be told, or alarm")
+    alarm = dy.Bool(
+        description="a person should look: fault, cannot be told, alarm, or not settled"
+    )
     first_tow = column.text("likeliest first tow after a log changed", nullable=True)
     rests_on = column.text("what tells")
     confused_with = column.text("what else would explain it, likeliest first", nullable=True)

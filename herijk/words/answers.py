@@ -90,11 +90,18 @@ ANSWERS: Final[dict[str, tuple[str, str]]] = {
         "Whether something was wrong with {instrument} in {season} cannot be told (chance "
         "{chance} %).",
     ),
+    "answer_not_settled": (
+        "De schatting van de fouten van de instrumenten kwam niet tot een eind. Wat over {season} "
+        "is geschat, is niet betrouwbaar.",
+        "The search for the errors of the instruments did not settle. What is estimated of "
+        "{season} cannot be relied on.",
+    ),
     "answer_alarm": (
         "In {season} wijkt {instrument} sterk af van wat is aangenomen: {size}. Iemand moet "
         "ernaar kijken.",
         "In {season} {instrument} lies far from what is assumed: {size}. A person should look.",
     ),
+    "instrument.log_scale": ("de log", "the log"),
     "instrument.log_trend": (
         "het verloop van de log door het seizoen",
         "the drift of the log through the season",
@@ -110,6 +117,8 @@ ANSWERS: Final[dict[str, tuple[str, str]]] = {
         "het verloop van het nulpunt van de krachtmeter",
         "the drift of the load cell's zero",
     ),
+    "instrument.anemometer_scale": ("de windmeter", "the anemometer"),
+    "instrument.water_temperature": ("de watertemperatuur", "the water temperature"),
     "instrument.fleet_step": ("alle sloepen tegelijk", "all boats at once"),
     "instrument.season_bend": ("de bocht van alle krommen", "the bend of all curves"),
     "answer_exceeds": (

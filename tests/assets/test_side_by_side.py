@@ -118,6 +118,21 @@ def test_a_helper_ends_with_the_process_it_helps(tmp_path):
     assert any(_is_gone(other) or time.sleep(0.05) for _ in range(200))
 
 
+QUIET = """
+from herijk.assets.side_by_side import helper, stages
+if __name__ == "__main__":
+    with helper() as other:
+        other.submit(stages, ()).result()
+"""
+
+
+def test_a_helper_ends_without_a_word(tmp_path):
+    script = tmp_path / "quiet.py"
+    script.write_text(QUIET, encoding="utf-8")
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, check=True)
+    assert done.stderr == ""
+
+
 def _is_gone(process: int) -> bool:
     try:
         os.kill(process, 0)

@@ -18,6 +18,7 @@ from herijk.pipeline.consistency import (
     mixed,
     observe,
     pooled_curves,
+    reml,
     repeat_pairs,
     reproducibility,
     slow_tows,
@@ -704,6 +705,32 @@ def test_where_there_is_no_line_the_reason_is_said(case, quantity, explaining, r
         named=True,
     )
     assert (row["reason"], row["n"], row["slope"]) == (reason, n, None)
+
+
+SEARCHED = {
+    "type_lines": "slope",
+    "speed_trend": "slope",
+    "predicted_cw": "predicted_cw_kg_m",
+    "variance_components": "sd_ratio",
+}
+
+
+@pytest.mark.parametrize(
+    ("module", "limit", "unsettled"),
+    [(reml, "MAX_ITERATIONS", {*SEARCHED}), (mixed, "MAX_STEPS", {"variance_components"})],
+)
+def test_a_search_that_does_not_come_to_rest_says_so(module, limit, unsettled, monkeypatch):
+    """No number that rests on it is given, and every table fits its schema."""
+    tables = fleet(41, boats=24, seasons=(2014, 2016, 2018), height_sd=0.03, season_sd=0.02)
+    settled = everything(*tables)
+    monkeypatch.setattr(module, limit, 1)
+    forced = {name: conform(name, frame) for name, frame in everything(*tables).items()}
+    for name, number in SEARCHED.items():
+        assert settled[name].filter(reason="not_settled").is_empty()
+        assert settled[name][number].count() > 0
+        mute = forced[name].filter(reason="not_settled")
+        assert (mute.height > 0) == (name in unsettled), name
+        assert mute[number].count() == 0
 
 
 def test_the_order_of_rows_does_not_matter():

@@ -96,6 +96,14 @@ def test_points_that_determine_no_curve_are_flagged_and_flat(speed, cw):
     assert curve.cw_interval(fitted, errors, scatter.dof, 2.5) == (0.0, np.inf)
 
 
+def test_a_search_that_does_not_come_to_rest_gives_no_curve(monkeypatch):
+    points, *_ = noisy_points(seed=4, n_fits=5)
+    monkeypatch.setattr(curve, "MAX_ITERATIONS", 2)
+    unsettled = curve.fit(points)
+    assert not unsettled.converged.any()
+    assert unsettled.a_kg_m == pytest.approx(points.cw_kg_m.mean(axis=1))
+
+
 def test_a_tow_without_points_is_flagged_beside_a_sound_one():
     used = [[False] * 3, [True] * 3]
     fitted = curve.fit(curve.Points.of(np.full((2, 3), [2, 2.5, 3]), np.full((2, 3), 30.0), used))

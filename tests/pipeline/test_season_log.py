@@ -18,6 +18,7 @@ from herijk.pipeline.season_log import (
     posterior,
     retow_choice,
     scale_effect,
+    without_boats,
 )
 from herijk.pipeline.season_log.days import day_variance
 from herijk.pipeline.season_log.network import Network
@@ -402,6 +403,26 @@ def test_a_tow_pulled_askew_is_told_from_an_altered_boat(seasons):
     assert tows.filter(hit)["moved"].median() < 0.01
     assert tows.filter(hit)["askew_ratio"].median() == pytest.approx(0.08, abs=0.02)
     assert (tows.filter(~hit)["askew_ratio"] == 0.0).mean() > 0.8
+
+
+@pytest.mark.parametrize("limit", ["MAX_ITERATIONS", "MOST_FAULTS"])
+def test_a_search_that_does_not_come_to_rest_says_so_of_every_season(limit, monkeypatch):
+    tows = simulate(replace(CLEAN, force_step=(2016, 0.04)), 3).tows
+    monkeypatch.setattr(posterior, limit, 0 if limit == "MOST_FAULTS" else 8)
+    found = estimate_season_factors(tows)
+    assert set(found.diagnosis["verdict"]) == {"not settled"}
+    assert found.diagnosis["alarm"].all()
+    assert set(found.steps["cause"]) == {"not told"}
+    assert set(found.diagnosis["season"]) == set(tows["season"])
+
+
+def test_a_second_estimate_that_does_not_come_to_rest_is_not_given(monkeypatch):
+    world, whole = estimated(CLEAN, 1000)
+    monkeypatch.setattr(without_boats, "REGRESSIONS", 1)
+    second = estimate_season_factors(world.tows).factors
+    assert whole.factors["factor_no_boats"].null_count() == 0
+    assert second["factor_no_boats"].null_count() == second.height
+    assert second["factor"].to_list() == whole.factors["factor"].to_list()
 
 
 def test_where_logs_alone_tell_a_load_cell_a_little_off_would_not_show():

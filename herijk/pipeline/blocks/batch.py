@@ -4,14 +4,14 @@ Here the bookkeeping between tows and runs: which run is whose, columns as array
 tow spread over its runs. No formula of the method.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
 import numpy as np
 import polars as pl
 
-from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
+from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray, OnDemand
 from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.pipeline.channels import BACK, OUT, SECOND_FILE_OFFSET
 
@@ -34,7 +34,6 @@ class Batch:
     blocks: RunBlocks
     tow: IntArray
     cut_from: "tuple[Batch, IntArray] | None" = None
-    _columns: dict[str, FloatArray] = field(default_factory=dict, repr=False)
 
     @classmethod
     def of(cls, tows: pl.DataFrame, blocks: RunBlocks) -> "Batch":
@@ -82,9 +81,12 @@ class Batch:
 
     def of_tow(self, column: str) -> FloatArray:
         """A number of each tow, shape (tows,); NaN where it is not known."""
-        if column not in self._columns:
-            self._columns[column] = self.tows[column].cast(pl.Float64).to_numpy()
         return self._columns[column]
+
+    @cached_property
+    def _columns(self) -> OnDemand:
+        tows = self.tows
+        return OnDemand(tows.columns, lambda name: tows[name].cast(pl.Float64).to_numpy())
 
     def of_run(self, column: str) -> FloatArray:
         """A number of each run's tow, shape (runs,); NaN where it is not known."""

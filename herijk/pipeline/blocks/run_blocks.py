@@ -19,15 +19,15 @@ The sums of one block, over its `n` samples, with F the tow force, v a speed sou
 - `gps`, `gps_n`: ground speed, and how many samples have one
 """
 
-from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
 
 import numpy as np
 import polars as pl
 
-from herijk.pipeline.arrays import BoolArray, FloatArray
+from herijk.pipeline.arrays import BoolArray, FloatArray, OnDemand
 from herijk.pipeline.errors import BrokenPromiseError
 
 SPEED_SOURCES: Final = ("log1", "log2", "mean")
@@ -42,25 +42,6 @@ SUM_NAMES: Final = (
 
 PLACE: Final = ("tow_id", "run", "second", "n")
 """Columns of blocks beside their sums."""
-
-
-class _WhenAsked(Mapping[str, FloatArray]):
-    """Sums that are made when they are first asked for: no method uses half of them."""
-
-    def __init__(self, names: Collection[str], make: Callable[[str], FloatArray]) -> None:
-        self._names, self._make = names, make
-        self._made: dict[str, FloatArray] = {}
-
-    def __getitem__(self, name: str) -> FloatArray:
-        if name not in self._made:
-            self._made[name] = self._make(name)
-        return self._made[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._names)
-
-    def __len__(self) -> int:
-        return len(self._names)
 
 
 @dataclass(frozen=True)
@@ -99,12 +80,12 @@ class RunBlocks:
         return RunBlocks(
             self.runs.filter(pl.Series(rows)),
             self.n[chosen],
-            _WhenAsked(self.sums.keys(), lambda name: self.sums[name][chosen]),
+            OnDemand(self.sums.keys(), lambda name: self.sums[name][chosen]),
         )
 
     def with_sums(self, make: Callable[[str], FloatArray]) -> "RunBlocks":
         """The same runs with other sums, each made when it is asked for."""
-        return replace(self, sums=_WhenAsked(self.sums.keys(), make))
+        return replace(self, sums=OnDemand(self.sums.keys(), make))
 
     def block_means(self, name: str) -> FloatArray:
         """Mean of each block, shape (runs, seconds); 0 after the run.
@@ -134,25 +115,28 @@ class WindowSums:
 
     blocks: RunBlocks
     window: BoolArray
-    _totals: dict[str, FloatArray] = field(default_factory=dict, repr=False)
 
     @cached_property
     def count(self) -> FloatArray:
         """Samples, shape (runs,)."""
-        return self._sum(self.blocks.n)
+        return _sum(self.window, self.blocks.n)
+
+    @cached_property
+    def _totals(self) -> OnDemand:
+        blocks, window = self.blocks, self.window
+        return OnDemand(SUM_NAMES, lambda name: _sum(window, blocks[name]))
 
     def total(self, name: str) -> FloatArray:
         """Sum over the samples, shape (runs,)."""
-        if name not in self._totals:
-            self._totals[name] = self._sum(self.blocks[name])
         return self._totals[name]
 
     def mean(self, name: str) -> FloatArray:
         """Mean over the samples, shape (runs,); 0 where the window is empty."""
         return self.total(name) / np.maximum(self.count, 1.0)
 
-    def _sum(self, values: FloatArray) -> FloatArray:
-        return np.asarray(np.where(self.window, values, 0.0).sum(axis=1), dtype=np.float64)
+
+def _sum(window: BoolArray, values: FloatArray) -> FloatArray:
+    return np.asarray(np.where(window, values, 0.0).sum(axis=1), dtype=np.float64)
 
 
 def stack_blocks(
@@ -196,5 +180,5 @@ def stack_blocks(
         cells[cell] = values.to_numpy()[known]
         return cells.reshape(runs.height, seconds)
 
-    sums = _WhenAsked(SUM_NAMES, lambda name: placed(column(name)))
+    sums = OnDemand(SUM_NAMES, lambda name: placed(column(name)))
     return RunBlocks(runs.drop("row"), placed(blocks["n"]), sums)

@@ -65,7 +65,7 @@ def _components(tows: Observed, scope: str) -> list[Row]:
     tows, y, variance = tows.take(rows), y[rows], variance[rows]
     boat, season = tows.table["boat"].to_numpy(), tows.table["season"].to_numpy()
     repeated = len(y) - len(np.unique(boat))
-    counts = {
+    counts: Row = {
         "n": len(y),
         "n_boats": len(np.unique(boat)),
         "n_seasons": len(np.unique(season)),
@@ -73,11 +73,17 @@ def _components(tows: Observed, scope: str) -> list[Row]:
     }
     x = _fixed(tows, scope)
     if repeated < FEWEST_REPEATS or counts["n_seasons"] < 2 or counts["n_boats"] < x.shape[1] + 2:
-        names = (*NAMES, "run")
-        return [counts | {"component": c, "reason": "too_few_repeats"} for c in names]
+        return _nothing(counts, "too_few_repeats")
     problem = Problem.of(Design.of(x, boat, season), y, variance)
-    fit = mixed.fit(problem, mixed.COMPONENTS)
-    return [counts | row for row in _shares(fit, float(np.sqrt(variance.mean())))]
+    try:
+        shares = _shares(mixed.fit(problem, mixed.COMPONENTS), float(np.sqrt(variance.mean())))
+    except mixed.NotSettledError:
+        return _nothing(counts, "not_settled")
+    return [counts | row for row in shares]
+
+
+def _nothing(counts: Row, reason: str) -> list[Row]:
+    return [counts | {"component": name, "reason": reason} for name in (*NAMES, "run")]
 
 
 def _shares(fit: mixed.Fit, run: float) -> list[Row]:

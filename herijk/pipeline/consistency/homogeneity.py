@@ -108,8 +108,9 @@ def type_homogeneity(observed: Observed) -> dy.DataFrame[TypeHomogeneity]:
     ]
     bent = [(row, boats) for row, (_, boats) in zip(rows, groups, strict=True) if "shared_q" in row]
     priors = _bend_priors([(boats, row["run_sd_ratio"]) for row, boats in bent])
-    for (row, _), (_, between) in zip(bent, priors, strict=True):
-        row["between_b_sd_ratio"] = between / (2.0 * row["shared_q"] * (1.0 + row["shared_q"]))
+    for (row, _), prior in zip(bent, priors, strict=True):
+        if prior is not None:
+            row["between_b_sd_ratio"] = prior[1] / (2.0 * row["shared_q"] * (1.0 + row["shared_q"]))
     return frame_of(TypeHomogeneity, rows)
 
 
@@ -255,8 +256,10 @@ def _middle_speed(boats: Observed) -> float:
     return float(np.median(boats.column("declared_speed_m_s")))
 
 
-def _bend_priors(types: Sequence[tuple[Observed, float]]) -> list[tuple[float, float]]:
+def _bend_priors(types: Sequence[tuple[Observed, float]]) -> list[tuple[float, float] | None]:
     """Mean of q at the middle speed of each type, and its true sd between boats (REML).
+
+    None where the search for that did not come to rest.
 
     Args:
         types: boats of a type, and the scatter of a run.
@@ -267,7 +270,8 @@ def _bend_priors(types: Sequence[tuple[Observed, float]]) -> list[tuple[float, f
         known = np.isfinite(q)
         design = Design.of(np.ones(known.sum()), boats.table["fsn_no"].to_numpy()[known])
         problems.append(Problem.of(design, q[known], unit[known] * sigma**2))
-    return [(float(fit.beta[0]), fit.sd[0]) for fit in mixed.fit_all(problems, (mixed.BOAT,))]
+    fits = mixed.fit_all(problems, (mixed.BOAT,))
+    return [(float(fit.beta[0]), fit.sd[0]) if fit else None for fit in fits]
 
 
 def pooled_curves(observed: Observed) -> pl.DataFrame:
@@ -278,7 +282,8 @@ def pooled_curves(observed: Observed) -> pl.DataFrame:
 
     Returns:
         Rows of the table `pooled_curves`, three per method and tow; of types of fewer than three
-        boats, and boats of no type, only the own curve.
+        boats, and boats of no type, only the own curve. Where the search for the spread of a type's
+        bends did not come to rest, none is shared in part.
     """
     boats = newest(observed)
     groups = boats.groups("method", "boat_type")
@@ -292,7 +297,9 @@ def pooled_curves(observed: Observed) -> pl.DataFrame:
     for (key, own), (_, rows) in zip(groups, boats.rows_by("method", "boat_type"), strict=True):
         speed[rows] = _middle_speed(own)
         if key in priors:
-            partial[rows], shared[rows] = _drawn(own, *priors[key]), shared_bend(own)
+            shared[rows] = shared_bend(own)
+            if (prior := priors[key]) is not None:
+                partial[rows] = _drawn(own, *prior)
     parts = [
         _pooled(boats.take(rows), pooling, s[rows], speed[rows])
         for pooling, s in ((OWN, boats.column("s_s2_m2")), (PARTIAL, partial), (SHARED, shared))

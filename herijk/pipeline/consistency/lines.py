@@ -61,6 +61,7 @@ PLACES: Final = 7
 NO_TYPE = "no_type"
 FEW_BOATS = "few_boats"
 EQUAL_VALUES = "equal_values"
+NOT_SETTLED = "not_settled"
 
 OUTSIDE_LEVEL: Final = 0.05
 """Chance that any boat of a type of like boats is called outside (Bonferroni)."""
@@ -198,6 +199,9 @@ def _lines(
     for components, lines in to_fit.items():
         fits = mixed.fit_all([line.problem for *_, line in lines], components)
         for (row, names, line), fit in zip(lines, fits, strict=True):
+            if fit is None:
+                row["reason"] = NOT_SETTLED
+                continue
             ends = fit.line_at(line.across.at)
             row.update(line.row(fit, ends))
             if (names["quantity"], names["explaining"]) in SLIDE_PAIRS:
@@ -363,7 +367,8 @@ def type_outliers(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
     standard deviations of a prediction (externally Studentised).
 
     Returns:
-        Rows of the table `type_outliers`: one per method, tow and quantity, `outside` or not.
+        Rows of the table `type_outliers`: one per method, tow and quantity, `outside` or not;
+        none of a type where the search for its variances did not come to rest.
     """
     return _outliers(newest(observed), NEWEST, (LN_CW, BEND), eras)
 
@@ -391,7 +396,7 @@ def _outliers(
         if one is not None
     ]
     fits = mixed.fit_all([one.problem for one in compared], choice.components)
-    parts = [one.frame(fit, eras) for one, fit in zip(compared, fits, strict=True)]
+    parts = [one.frame(fit, eras) for one, fit in zip(compared, fits, strict=True) if fit]
     return _with_season(pl.concat([TypeOutliers.create_empty(), *parts]))
 
 

@@ -50,6 +50,10 @@ NO_GAIN: Final = 1e-4
 """A component that lowers the deviance by no more than this is 0."""
 
 
+class NotSettledError(ArithmeticError):
+    """A search reached its limit of steps before it came to rest: there is no answer."""
+
+
 class Coefficients(NamedTuple):
     """Fixed effects, each of shape (p,)."""
 
@@ -179,7 +183,11 @@ class Fit:
         return LeftOut(error, variance, scale)
 
     def intervals(self) -> dict[str, tuple[float, float | None]]:
-        """95 % profile-likelihood intervals of the components' sds; None without an upper bound."""
+        """95 % profile-likelihood intervals of the components' sds; None without an upper bound.
+
+        Raises:
+            NotSettledError: an end was not found.
+        """
         profile = _Profile.of(self)
         sd, places = np.asarray(self.sd), np.arange(len(COMPONENTS))
         lo, nothing = np.zeros(len(sd)), np.zeros(len(sd))
@@ -234,9 +242,11 @@ class _Profile:
         each = np.arange(len(place))
         start = self.nearest[place]
         start[each, place] = sd**2
-        self.nearest[place], there = search(
+        self.nearest[place], there, settled = search(
             self.stack.take(place), self.free[place], start, tolerance
         )
+        if not settled.all():
+            raise NotSettledError
         root = np.sqrt(np.maximum(there.deviance - self.least, 0.0))
         # Along the profile the other variances are at their best, so they add nothing.
         slope = 2.0 * sd * there.gradient[each, place]
@@ -262,7 +272,7 @@ class _Profile:
         busy = np.arange(len(at))
         for _ in range(MAX_STEPS):
             if not len(busy):
-                break
+                return at
             excess, slope = self.excess(at[busy], place[busy])
             too_far = excess > 0.0
             outside[busy[too_far]], inside[busy[~too_far]] = at[busy[too_far]], at[busy[~too_far]]
@@ -273,39 +283,50 @@ class _Profile:
             to = np.where(between, to, ends.mean(axis=0))
             moved, at[busy] = np.abs(to - at[busy]), to
             busy = busy[moved > PROFILE_PRECISION * self.stack.spread[0]]
-        return at
+        raise NotSettledError
 
 
 def fit(problem: Problem, free: tuple[str, ...]) -> Fit:
-    """Restricted maximum likelihood of the components named in `free`."""
-    return fit_all([problem], free)[0]
+    """Restricted maximum likelihood of the components named in `free`.
+
+    Raises:
+        NotSettledError: the search did not come to rest.
+    """
+    fitted = fit_all([problem], free)[0]
+    if fitted is None:
+        raise NotSettledError
+    return fitted
 
 
-def fit_all(problems: Sequence[Problem], free: tuple[str, ...]) -> list[Fit]:
-    """The same of each of many problems; those of one size are searched side by side."""
+def fit_all(problems: Sequence[Problem], free: tuple[str, ...]) -> list[Fit | None]:
+    """The same of each of many problems, None where the search did not come to rest.
+
+    Those of one size are searched side by side.
+    """
     sizes: dict[tuple[int, ...], list[int]] = {}
     for i, problem in enumerate(problems):
         sizes.setdefault(problem.design.size, []).append(i)
-    fits: dict[int, Fit] = {}
+    fits: dict[int, Fit | None] = {}
     for (rows, _, others, effects), numbers in sizes.items():
         at_once = max(1, NUMBERS_AT_ONCE // (rows * (others + effects + 1)))
         for some in (numbers[i : i + at_once] for i in range(0, len(numbers), at_once)):
             stack = Stack.of([problems[i] for i in some])
-            variances = _most_likely(stack, free)
+            variances, settled = _most_likely(stack, free)
             white = Whitened.of(stack, variances)
             for place, (i, sd) in enumerate(zip(some, np.sqrt(variances).tolist(), strict=True)):
-                fits[i] = Fit(problems[i], free, tuple(sd), white, place)
+                at_rest = settled[place]
+                fits[i] = Fit(problems[i], free, tuple(sd), white, place) if at_rest else None
     return [fits[i] for i in range(len(problems))]
 
 
-def _most_likely(stack: Stack, free: tuple[str, ...]) -> FloatArray:
-    """Variances of boat, other and cell of each problem, (problems, 3)."""
+def _most_likely(stack: Stack, free: tuple[str, ...]) -> tuple[FloatArray, BoolArray]:
+    """Variances of boat, other and cell of each problem, (problems, 3); whether they settled."""
     loose = np.tile(np.isin(COMPONENTS, free), (len(stack.unit), 1))
     # What the errors leave of the spread, in equal parts.
     known = stack.variance.mean(axis=1, where=np.isfinite(stack.variance))
     left = stack.spread**2 - known
     start = loose * (np.maximum(left, 0.1 * stack.unit) / max(len(free), 1))[:, None]
-    variances, there = search(stack, loose, start)
+    variances, there, settled = search(stack, loose, start)
     least = there.deviance
     for place in np.flatnonzero(loose[0]):
         without = variances.copy()
@@ -314,6 +335,8 @@ def _most_likely(stack: Stack, free: tuple[str, ...]) -> FloatArray:
         idle &= variances[:, place] > 0.0
         loose[idle, place] = False
         if idle.any():
-            variances[idle], there = search(stack.take(idle), loose[idle], without[idle])
+            variances[idle], there, settled[idle] = search(
+                stack.take(idle), loose[idle], without[idle]
+            )
             least[idle] = there.deviance
-    return variances
+    return variances, settled

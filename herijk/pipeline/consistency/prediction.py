@@ -41,7 +41,7 @@ def predicted_cw(observed: Observed) -> pl.DataFrame:
 
     Returns:
         Rows of the table `predicted_cw`; tows without weight, or whose curve does not count at the
-        standard speed, are left out; the prediction is empty where there are too few boats.
+        standard speed, are left out; where the prediction is empty, `reason` says why.
     """
     boats = newest(observed)
     speed = pl.col("declared_speed_m_s").median().over("method", "boat_type", "crew_class")
@@ -69,10 +69,15 @@ def _predicted(fleet: Observed) -> pl.DataFrame:
     x = _columns(fleet)
     n_boats = fleet.table["fsn_no"].n_unique()
     enough = n_boats >= FEWEST_BOATS_PER_COLUMN * (x.shape[1] + 1)
-    numbers = _second_opinion(fleet, x, cw, variance) if enough else _nothing(len(cw))
+    numbers, reason = _nothing(len(cw)), "" if enough else "few_boats"
+    if enough:
+        try:
+            numbers = _second_opinion(fleet, x, cw, variance)
+        except mixed.NotSettledError:
+            reason = "not_settled"
     return rows.with_columns(
         *(pl.Series(name, values, pl.Float64).fill_nan(None) for name, values in numbers.items())
-    ).with_columns(_disagrees(), pl.lit("" if enough else "few_boats").alias("reason"))
+    ).with_columns(_disagrees(), pl.lit(reason).alias("reason"))
 
 
 def _second_opinion(

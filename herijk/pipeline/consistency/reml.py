@@ -398,7 +398,7 @@ class Whitened:
 
 def search(
     stack: Stack, free: BoolArray, start: FloatArray, tolerance: float = TOLERANCE
-) -> tuple[FloatArray, Likelihood]:
+) -> tuple[FloatArray, Likelihood, BoolArray]:
     """Least deviance of each problem over some of the variances, the others held.
 
     Newton's method with the average information, on variances that are not negative: one that is 0
@@ -412,7 +412,7 @@ def search(
         tolerance: share of its size by which a step at the end may change a variance.
 
     Returns:
-        The variances, (m, 3), and the likelihood there.
+        The variances, (m, 3), the likelihood there, and whether each search came to rest, (m,).
     """
     at, now = start.copy(), stack.likelihood(start)
     busy = np.arange(len(at))
@@ -426,7 +426,7 @@ def search(
         _descend(stack, busy, step, at, now)
         size = np.maximum(at[busy], NEGLIGIBLE * stack.unit[busy, None])
         busy = busy[(np.abs(at[busy] - last) > tolerance * size).any(axis=1)]
-    return at, now
+    return at, now, ~np.isin(np.arange(len(at)), busy)
 
 
 def _newton(

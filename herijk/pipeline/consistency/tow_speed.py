@@ -93,6 +93,9 @@ def speed_trend(observed: Observed) -> dy.DataFrame[SpeedTrend]:
                 to_fit.append((rows[-1], problem))
     fits = mixed.fit_all([problem for _, problem in to_fit], (mixed.BOAT,))
     for (row, _), fit in zip(to_fit, fits, strict=True):
+        if fit is None:
+            row["reason"] = "not_settled"
+            continue
         slope, lo, hi = (float(e[-1]) for e in fit.coefficients())
         row |= {"slope": slope, "slope_lo": lo, "slope_hi": hi}
     return frame_of(SpeedTrend, rows)

@@ -40,6 +40,7 @@ SOUND: Final = "sound"
 CANNOT_BE_TOLD: Final = "cannot be told"
 WOULD_NOT_SHOW: Final = "would not show"
 NOT_DETERMINED: Final = "not determined"
+NOT_SETTLED: Final = "not settled"
 USUAL_CALIBRATION: Final = 0.02
 """Size of ln(dGPS / log) that logs normally keep within (Sleepproef 2017, "IJking snelheid")."""
 FORCES: Final = (FORCE, ZERO, ZERO_DRIFT)
@@ -58,8 +59,8 @@ def season_diagnosis(problem: Problem, posterior: Posterior, network: Network) -
         always is. `distance_sd` is how far what is seen lies from what is assumed, in standard
         deviations. `verdict` is `sound`, `cannot be told`, `fault`, or `would not show`: a fault of
         the usual size would most likely be taken for something else. For the factor of a log it
-        is `estimated` or `not determined`; a distance of 4 is an `alarm`. `alarm`: a person should
-        look.
+        is `estimated` or `not determined`; a distance of 4 is an `alarm`. Where the search did not
+        come to rest, all are `not settled`. `alarm`: a person should look.
     """
     keys: dict[tuple[int, int, str], list[int]] = {}
     for column, place in enumerate(posterior.places):
@@ -84,8 +85,9 @@ def season_steps(
 
         - `force` where a fault of the load cell is likelier than not;
         - `not told` where one cannot be told, where it looks like a stream that runs with the boat
-          both ways, where the season is not determined, or where a fault of the load cell would not
-          show and one no larger than usual could be the whole step;
+          both ways, where the season is not determined or the search did not settle, or where a
+          fault of the load cell would not show and one no larger than usual could be the whole
+          step;
         - `log` where the level differs by more than twice its standard deviation;
         - else `none`.
     """
@@ -102,7 +104,8 @@ def season_steps(
         force, force_sd = _mean_effect(posterior, forces[mine])
         season = int(str(key[0]))
         of_force = {verdicts.get((season, 0, name)) for name in FORCES}
-        lost = verdicts.get((season, int(str(key[1])), LOG)) == NOT_DETERMINED
+        of_log = verdicts.get((season, int(str(key[1])), LOG))
+        lost = of_log == NOT_DETERMINED or not posterior.fit.settled
         hidden = verdicts.get((season, 0, FORCE)) == WOULD_NOT_SHOW
         streams = _may_be_a_stream(network, season, force)
         lost |= hidden and 2.0 * step_sd < abs(step) < USUAL_SIZES * problem.settings.force_fault_sd
@@ -157,14 +160,15 @@ def _row(
 ) -> dict[str, object]:
     """One season and instrument: what all its unknowns add up to."""
     season, part, name = key
-    k = len(posterior.fit.active)
+    fit, k = posterior.fit, len(posterior.fit.active)
     faults = [c - k for c in columns if c >= k]
     mean = float(posterior.mean[columns].sum())
     variance = float(posterior.covariance[np.ix_(columns, columns)].sum())
     half = float(scipy.special.ndtri(0.5 * (1.0 + LEVEL))) * np.sqrt(max(variance, 0.0))
     chance = min(float(posterior.chance[faults].sum()), 1.0) if faults else None
     distance = _distance(problem, posterior, columns)
-    verdict = _verdict(network, key, chance, distance, bool(posterior.shows[faults].any()))
+    shows = bool(posterior.shows[faults].any())
+    verdict = _verdict(network, key, chance, distance, shows) if fit.settled else NOT_SETTLED
     confused = _confused_with(problem, posterior, columns)
     if name == FORCE and verdict == FAULT and _may_be_a_stream(network, season, mean):
         confused = ", ".join(filter(None, (f"{GPS_SCALE} {season}", confused)))
@@ -179,7 +183,7 @@ def _row(
         "p_fault": chance,
         "distance_sd": distance,
         "verdict": verdict,
-        "alarm": verdict in (FAULT, ALARM, CANNOT_BE_TOLD),
+        "alarm": verdict in (FAULT, ALARM, CANNOT_BE_TOLD, NOT_SETTLED),
         "first_tow": _first_tow(problem, posterior, network, faults, chance),
         "rests_on": _rests_on(network, season),
         "confused_with": confused,

@@ -210,6 +210,7 @@ class Fit:
         slopes: of the numbers of each tow.
         own: (n, 3, 3) covariance of what is a tow's own.
         parts: (variances but that of drift, n, 3, 3) slope of `own` by each ln variance.
+        settled: whether the search, and those that led to it, came to rest within their limits.
     """
 
     active: IntArray
@@ -220,6 +221,7 @@ class Fit:
     slopes: Slopes
     own: FloatArray
     parts: FloatArray
+    settled: bool = True
 
     @property
     def value(self) -> FloatArray:
@@ -288,12 +290,12 @@ def fit(
         fitted, step = _step(problem, active, now, changes and not begins)
         steps.append(step)
         if np.abs(step).max() < tolerance and not begins:
-            break
+            return fitted
         following = _accelerated(places[-1 - REMEMBERED :], steps[-1 - REMEMBERED :])
         settled = iteration >= ACCELERATED and np.abs(step).max() < MODEST
         places.append(following if settled else places[-1] + step)
         now = now.of(places[-1])
-    return fitted
+    return replace(fitted, settled=False)
 
 
 def _step(problem: Problem, active: IntArray, now: _State, changes: bool) -> tuple[Fit, FloatArray]:
@@ -451,9 +453,11 @@ def solve(problem: Problem) -> Posterior:
     unchanged = _with_needed_faults(problem, None, changes=False)
     ends = [_with_needed_faults(problem, start) for start in (None, unchanged)]
     best = ends[int(first_largest(np.array([_ln_evidence(problem, end) for end in ends])))]
-    settled = fit(problem, best.active, best)
-    wider = _with_days(problem, settled)
-    return _averaged(wider, fit(wider, settled.active, settled))
+    sharp = fit(problem, best.active, best)
+    wider = _with_days(problem, sharp)
+    last = fit(wider, sharp.active, sharp)
+    settled = all(search.settled for search in (*ends, sharp, last))
+    return _averaged(wider, replace(last, settled=settled))
 
 
 def _with_days(problem: Problem, fitted: Fit) -> Problem:
@@ -485,9 +489,11 @@ def _with_needed_faults(problem: Problem, start: Fit | None, changes: bool = Tru
     for _ in range(2 * MOST_FAULTS):
         chosen = _better(problem, fitted)
         if chosen is None:
+            return fitted
+        if np.isin(chosen, problem.faults).sum() > MOST_FAULTS:
             break
         fitted = fit(problem, chosen, fitted, ROUGH, changes)
-    return fitted
+    return replace(fitted, settled=False)
 
 
 def _ln_evidence(problem: Problem, fitted: Fit) -> float:
@@ -591,8 +597,6 @@ def _better(problem: Problem, fitted: Fit) -> IntArray | None:
     places, ln_odds = _in_fit(problem, fitted)
     if len(places) and ln_odds.min() < 0.0:
         return np.delete(fitted.active, places[int(ln_odds.argmin())])
-    if len(places) == MOST_FAULTS:
-        return None
     nothing = np.zeros(len(fitted.active))
     more = _more(problem, _candidates(problem, fitted), fitted.covariance, nothing).ln_odds
     more[np.isin(problem.faults, fitted.active)] = -np.inf

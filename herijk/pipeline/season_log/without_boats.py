@@ -24,7 +24,10 @@ VARIANCE_FLOOR: Final = 1e-12
 
 @dataclass(frozen=True)
 class Second:
-    """Ln factors by regression on what a boat is, not on which; (all groups,) each."""
+    """Ln factors by regression on what a boat is, not on which; (all groups,) each.
+
+    `known`: which are determined; none where the regression did not come to rest.
+    """
 
     ln_factor: FloatArray
     sd: FloatArray
@@ -44,9 +47,10 @@ def without_boats(network: Network, ageing: tuple[float, float], settings: Setti
     tows, groups = network.tows, network.groups.height
     sizes = [network.numbers("weight_kg"), network.numbers("waterline_length_m")]
     sound = np.logical_and.reduce([size > 0 for size in sizes])
+    nothing = np.zeros(groups)
+    unknown = Second(nothing, nothing, nothing, nothing > 0)
     if groups == 0 or not (sound & (network.group < 0)).any():
-        nothing = np.zeros(groups)
-        return Second(nothing, nothing, nothing, nothing > 0)
+        return unknown
     kinds = tows.select(
         pl.col("boat_type").fill_null(""), "crew_class", pl.col("rowers").cast(pl.String)
     ).to_dummies(drop_first=True)
@@ -74,6 +78,8 @@ def without_boats(network: Network, ageing: tuple[float, float], settings: Setti
         variance = float(np.mean((value - design @ solution) ** 2)) + VARIANCE_FLOOR
         if moved < TOLERANCE:
             break
+    else:  # it never came to rest
+        return unknown
     noise, residual = np.sqrt(variance), value - design @ solution
     left = leave_out(design / noise, residual / noise, network.cluster[sound], precision)
     by_ageing = np.linalg.solve(normal, design.T @ year / variance)[:groups] * ageing[1]

@@ -140,33 +140,14 @@ class Step:
             for check in self.checks
             if check.table in tables
         }
-        return Made(tables, faults)
+        return Made({name: Summary.of(frame) for name, frame in tables.items()}, faults)
 
     def _partition(self, methods: Sequence[Method]) -> str | None:
         return methods[0].name if self.per_method else None
 
 
 @dataclass(frozen=True)
-class Made:
-    """What a step made.
-
-    Attributes:
-        tables: the outputs, by name.
-        faults: what does not hold of them, by check.
-    """
-
-    tables: Mapping[str, pl.DataFrame]
-    faults: Mapping[Check, Sequence[str]]
-
-    @property
-    def seen(self) -> "Seen":
-        """What is told of it."""
-        glances = {name: Glance.of(frame) for name, frame in self.tables.items()}
-        return Seen(glances, self.faults)
-
-
-@dataclass(frozen=True)
-class Glance:
+class Summary:
     """What is told of a table; whole, those of all methods would fill the memory.
 
     Attributes:
@@ -180,8 +161,8 @@ class Glance:
     first: pl.DataFrame
 
     @classmethod
-    def of(cls, frame: pl.DataFrame) -> "Glance":
-        """A glance at a table."""
+    def of(cls, frame: pl.DataFrame) -> "Summary":
+        """The summary of a table."""
         known = "status" in frame.columns
         statuses = frame["status"].value_counts().sort("status").rows() if known else ()
         first = pl.all().gather(range(min(FIRST_ROWS, frame.height)))  # a slice would keep all
@@ -189,13 +170,13 @@ class Glance:
 
 
 @dataclass(frozen=True)
-class Seen:
-    """What is told of what a step made: a helping process hands this over.
+class Made:
+    """What a step made.
 
     Attributes:
-        tables: the outputs, by name.
+        tables: summaries of the outputs, by name.
         faults: what does not hold of them, by check.
     """
 
-    tables: Mapping[str, Glance]
+    tables: Mapping[str, Summary]
     faults: Mapping[Check, Sequence[str]]

@@ -135,8 +135,8 @@ def test_a_window_beyond_its_run_is_set_aside_when_the_run_is_read(
 
 
 def run_2(store: Store, method: Method) -> dict[str, object]:
-    found = METHOD.make(store, [method]).tables["run_points"]
-    return found.row(
+    METHOD.make(store, [method])
+    return store.read("run_points", method.name).row(
         by_predicate=(pl.col("tow_id") == "2014-001") & (pl.col("run") == 2), named=True
     )
 
@@ -172,15 +172,17 @@ def test_a_tow_that_a_flag_rejects_keeps_its_numbers_and_leaves_the_register(
     store = Store(tmp_path / "data")
     give(archive, "2014-001;2;5;34;te kort, dus telt de run niet\n")
     bring_in(archive, store)
-    found = METHOD.make(store, [method]).tables
-    curve = found["curves"].row(by_predicate=pl.col("tow_id") == "2014-001", named=True)
+    METHOD.make(store, [method])
+    curves = store.read("curves", method.name)
+    curve = curves.row(by_predicate=pl.col("tow_id") == "2014-001", named=True)
     assert curve["status"] == "rejected"
     assert "few_runs" in curve["flags"]
     assert curve["cw_kg_m"] == pytest.approx(40.0, rel=0.05)
-    few = found["assessments"].filter(tow_id="2014-001", check="few_runs").to_dicts()[0]
+    assessed = store.read("assessments", method.name)
+    few = assessed.filter(tow_id="2014-001", check="few_runs").to_dicts()[0]
     assert (few["observed"], few["limit"], few["flagged"]) == (5.0, 6.0, True)
     REGISTERS.make(store, [method])
     status = dict(store.read("register").select("fsn_no", "status").rows())
     assert status == {"FSN1": "rejected", "FSN2": "valid", "FSN3": "valid"}
     # The wind of these samples is the same out and back, which no boat feels.
-    assert all("wind_unusual" in flags for flags in found["curves"]["flags"])
+    assert all("wind_unusual" in flags for flags in curves["flags"])
