@@ -387,6 +387,19 @@ def test_a_log_replaced_is_not_taken_for_many_tows_pulled_askew(seed):
     assert tow["day"].to_list() == [8.0]
 
 
+def test_a_load_cell_that_is_another_for_good_is_found_from_its_day_on():
+    world, first = simulate(CLEAN, 3), 8.0
+    place = pl.col("tow_id").rank().over("season") - 1.0
+    world = replace(world, tows=world.tows.with_columns(day=place))
+    after = (pl.col("season") > 2016) | ((pl.col("season") == 2016) & (pl.col("day") >= first))
+    moved = world.tows.with_columns(pl.col("ln_cw") + pl.when(after).then(0.03).otherwise(0.0))
+    step = estimate_season_factors(moved).diagnosis.filter(instrument="fleet_step", season=2016)
+    found = step.row(0, named=True)
+    assert found["verdict"] == "fault"
+    assert found["estimate"] == pytest.approx(0.03, abs=0.006)
+    assert moved.filter(tow_id=found["first_tow"])["day"].to_list() == [first]
+
+
 @pytest.mark.parametrize("seasons", [range(2009, ANCHORED_FROM), range(ANCHORED_FROM, 2019)])
 def test_a_tow_pulled_askew_is_told_from_an_altered_boat(seasons):
     world, whole = estimated(CLEAN, 1001)
