@@ -23,9 +23,9 @@ from herijk.simulate import (
     Tow,
     World,
     WorldSettings,
-    nearest_hyperbola,
     simulate_tow,
     simulate_world,
+    true_cw_kg_m,
 )
 
 FREEBOARDS = ("freeboard_lowest_m", "freeboard_bow_m", "freeboard_stern_m")
@@ -63,12 +63,19 @@ def measure(settings: WorldSettings) -> Measured:
         tow_id = pl.lit(tow.tow_id).alias("tow_id")
         blocks.append(block_sums(samples, settings.rate_hz).select(tow_id, pl.all()))
     stacked = stack_blocks(pl.concat(blocks), runs)
-    air = settings.air
     nearest = {
-        tow.tow_id: nearest_hyperbola(tow.hull, tow.declared_speed_m_s, 15.0, air)[1]
+        tow.tow_id: nearest_hyperbola(tow.hull, tow.declared_speed_m_s, 15.0, settings.air)[1]
         for tow in world.tows
     }
     return Measured(tows, runs, stacked, truth_rows(world), run_truth, nearest)
+
+
+def nearest_hyperbola(hull, declared_speed_m_s, temperature_c, air):
+    """A and B of the hyperbola through the true Cw at 90, 100 and 110 %: linear in 1/Cw, v^2."""
+    speeds = declared_speed_m_s * np.array(TARGET_SPEED_RATIOS)
+    inverse_cw = 1.0 / true_cw_kg_m(hull, speeds, temperature_c, air)
+    slope, intercept = np.polyfit(speeds**2, inverse_cw, 1)
+    return 1.0 / intercept, np.sqrt(-intercept / slope)
 
 
 def with_force_error(world: Measured, season: int, ratio: float) -> Measured:

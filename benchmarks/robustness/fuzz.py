@@ -37,13 +37,13 @@ from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.tables.lake import ListedTows
 from herijk.warehouse.archive import FileHashes, index_archive, tows
-from herijk.warehouse.archive.faults import REASONS
 from herijk.warehouse.archive.lists import Wording, read_list
 from herijk.warehouse.archive.profile import Profiles, read_profiles
 from herijk.warehouse.archive.samples import read_samples
 from herijk.warehouse.store.decisions import FILE_NAME as DECISIONS
 from herijk.warehouse.store.decisions import read_decisions
 from herijk.warehouse.store.editions import ABOUT, read_about
+from tests.reason_codes import REASON_CODES
 
 SLOW_S: Final = 2.0
 HANG_S: Final = 20.0
@@ -343,7 +343,7 @@ def _hangs(*_: object) -> None:
 def assert_told(error: HerijkError, found: Findings, number: int, path: Path) -> None:
     """A refusal must reach a person: a sentence, and of a file of the archive a known code."""
     is_sentence = len(str(error)) > 10 and str(error).isprintable()
-    is_known = not isinstance(error, DefectiveInputError) or error.reason_code in REASONS
+    is_known = not isinstance(error, DefectiveInputError) or error.reason_code in REASON_CODES
     if not (is_sentence and is_known):
         found.failures.append(
             f"input {number}, {path.name}: refused, but not told: {error!r}"[:300]

@@ -1,7 +1,7 @@
 """The due list as text for a person."""
 
 from collections import Counter
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from herijk.cli.text import SIMULATED, decimals, table
 from herijk.warehouse.queries.due import WORTH
@@ -63,7 +63,7 @@ def _lines(lines: list["Row"]) -> str:
     return table(head, [_line(line) for line in lines])
 
 
-def _line(line: "Row") -> tuple[Any, ...]:
+def _line(line: "Row") -> tuple[object, ...]:
     tow_at = decimals(line["tow_speed_m_s"], 2) + ("*" if line["beyond_curve"] else "")
     return (
         _day(line["valid_until"]),
@@ -116,5 +116,5 @@ def _choice(choice: list["Row"]) -> str:
     )
 
 
-def _day(value: Any) -> str:
+def _day(value: object) -> str:
     return "-" if value is None else str(value)

@@ -1,7 +1,7 @@
 """Results of the commands about editions as text for a person."""
 
 from collections import Counter
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from herijk.cli.text import SIMULATED, decimals, table
 from herijk.tables.row import Row
@@ -67,7 +67,7 @@ def register(report: "RegisterReport") -> str:
     return "\n\n".join(parts)
 
 
-def _register_line(line: Row) -> tuple[Any, ...]:
+def _register_line(line: Row) -> tuple[object, ...]:
     return (
         line["fsn_no"],
         line["name"] or "-",
@@ -189,7 +189,7 @@ def _lines(rows: list[Row]) -> str:
     return table(head, [_line(row) for row in rows])
 
 
-def _line(row: Row) -> tuple[Any, ...]:
+def _line(row: Row) -> tuple[object, ...]:
     pairs = [
         decimals(row[f"{side}_{name}"], 2)
         for name in ("a_kg_m", "b_m_s", "cw_kg_m", "power_w")

@@ -5,7 +5,7 @@ The pages of `herijk audit` are in `cli.audit_text`.
 
 import re
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from herijk.tables.row import Row
 from herijk.words import LANGUAGE, in_per_cent, number, spoken, tell
@@ -23,7 +23,7 @@ _NUMBER: Final = re.compile(r"[-+]?[0-9]+([.,][0-9]+)?( %| N)?\*?|-?")
 """A cell that stands to the right."""
 
 
-def table(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
+def table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
     """Columns lined up, their heads and what they say in words; numbers to the right."""
     head = [tell(title) for title in head]
     held = [list(row) for row in rows]
@@ -39,7 +39,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
     return "\n".join(f"  {line.rstrip()}" for line in lines)
 
 
-def _cell(value: Any) -> str:
+def _cell(value: object) -> str:
     if value is None:
         return "-"
     if isinstance(value, float):

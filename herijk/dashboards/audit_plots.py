@@ -141,7 +141,7 @@ def _write(plot: Plot, report: BoatAudit | TypesAudit, folder: Path, language: s
     return path
 
 
-def _widen(spec: dict[str, Any], rows: pl.DataFrame) -> None:
+def _widen(spec: dict[str, object], rows: pl.DataFrame) -> None:
     """Gives both axes room for all these rows, so that plots of several methods compare."""
     for axis in ("x", "y"):
         shown = [e for e in _encodings(spec) if e.get(axis, {}).get("type") == "quantitative"]

@@ -45,7 +45,7 @@ with _only_our_fonts():
 CONFIG: Final = {"font": fonts.FAMILY, "legend": {"titleLimit": 400}}
 
 
-def svg(spec: dict[str, Any], language: str) -> str:
+def svg(spec: dict[str, object], language: str) -> str:
     """A chart as SVG, its numbers as people of a language write them."""
     return str(
         vl_convert.vegalite_to_svg(
@@ -57,7 +57,7 @@ def svg(spec: dict[str, Any], language: str) -> str:
     )
 
 
-def compiled(spec: dict[str, Any]) -> dict[str, Any]:
+def compiled(spec: dict[str, object]) -> dict[str, object]:
     """A chart's Vega: what follows from the chart alone, without its data.
 
     No text of an axis is shortened: to see whether one is too long costs a tenth of a drawing.

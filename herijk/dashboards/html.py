@@ -5,13 +5,12 @@ Everything that comes from the archive is escaped: by Jinja in HTML, by `as_json
 
 import json
 from pathlib import Path
-from typing import Any
 
 import jinja2
 from markupsafe import Markup
 
 
-def environment(templates: Path, **names: Any) -> jinja2.Environment:
+def environment(templates: Path, **names: object) -> jinja2.Environment:
     """Templates of a folder, which know these names; a name that they do not know is an error."""
     made = jinja2.Environment(
         loader=jinja2.FileSystemLoader(templates),
@@ -32,7 +31,7 @@ def in_both(pair: tuple[str, str]) -> Markup:
     return Markup("<span lang=nl>{}</span><span lang=en>{}</span>").format(nl, en)
 
 
-def as_json(value: Any) -> str:
+def as_json(value: object) -> str:
     """JSON that may be put inside a script element: no text in it can close the element."""
     text = json.dumps(value, separators=(",", ":"), ensure_ascii=False, default=str)
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")

@@ -54,9 +54,9 @@ def to_blocks(text: str) -> list[dict[str, Any]]:
     return list(_blocks(_READER.parse(text)))
 
 
-def _blocks(tokens: Iterable[Token]) -> Iterator[dict[str, Any]]:
+def _blocks(tokens: Iterable[Token]) -> Iterator[dict[str, object]]:
     level = 0
-    rows: list[list[Any]] = []
+    rows: list[list[object]] = []
     for token in tokens:
         if token.type == "heading_open":
             level = int(token.tag[1:])
@@ -75,7 +75,7 @@ def _blocks(tokens: Iterable[Token]) -> Iterator[dict[str, Any]]:
             level = 0
 
 
-def _runs(inline: Token) -> list[dict[str, Any]]:
+def _runs(inline: Token) -> list[dict[str, object]]:
     spans, strong = [], False
     for token in inline.children or ():
         if token.type in ("strong_open", "strong_close"):

@@ -6,8 +6,6 @@ says what, where, what was observed, what the limit is and the way out. Exit sta
 command, not here.
 """
 
-from typing import Any
-
 from herijk.words import Sentence, say
 
 
@@ -19,7 +17,7 @@ class HerijkError(Exception):
         values: what is filled in.
     """
 
-    def __init__(self, message: str, *values: Any) -> None:
+    def __init__(self, message: str, *values: object) -> None:
         super().__init__(message if isinstance(message, Sentence) else say(message, *values))
 
 

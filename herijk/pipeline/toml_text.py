@@ -2,7 +2,7 @@
 
 import re
 import tomllib
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from herijk.words import Sentence, say
 
@@ -29,7 +29,7 @@ def decoded(content: bytes) -> str:
         ) from error
 
 
-def parse_toml(text: str) -> dict[str, Any]:
+def parse_toml(text: str) -> dict[str, object]:
     """The tables of a text.
 
     Raises:

@@ -6,7 +6,7 @@ and where it comes from, is on the page `docs/simulator.md`.
 """
 
 from herijk.simulate.defects import Defects, gps_on_board
-from herijk.simulate.hull import AirCoefficients, nearest_hyperbola, true_cw_kg_m
+from herijk.simulate.hull import AirCoefficients, true_cw_kg_m
 from herijk.simulate.motion import Disturbance, RunTruth
 from herijk.simulate.tow import simulate_tow
 from herijk.simulate.world import Tow, TowTruth, World, WorldSettings, simulate_world
@@ -24,7 +24,6 @@ __all__ = [
     "World",
     "WorldSettings",
     "gps_on_board",
-    "nearest_hyperbola",
     "simulate_tow",
     "simulate_world",
     "true_cw_kg_m",

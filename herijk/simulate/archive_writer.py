@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
 import polars as pl
@@ -216,11 +216,11 @@ def _write_all_samples(
     world: World,
     on_tow: Callable[[int, int], None] | None,
     workers: int,
-) -> tuple[dict[str, Any], Curves]:
+) -> tuple[dict[str, object], Curves]:
     """The truth of every tow, and what was printed of it."""
     for season in world.settings.seasons:
         _samples_folder(directory, season).mkdir(parents=True)
-    truth: dict[str, Any] = {tow.tow_id: None for tow in world.tows}
+    truth: dict[str, object] = {tow.tow_id: None for tow in world.tows}
     curves = {}
     with ThreadPoolExecutor(max_workers=workers) as pool:
         futures = {pool.submit(_write_tow, directory, world, tow): tow for tow in world.tows}
@@ -475,7 +475,7 @@ def _race_rows(world: World, season: int) -> list[list[str]]:
     ]
 
 
-def _truth_record(world: World, tow: Tow, runs: tuple[RunTruth, ...]) -> dict[str, Any]:
+def _truth_record(world: World, tow: Tow, runs: tuple[RunTruth, ...]) -> dict[str, object]:
     """What the archive does not tell about a tow, ready for JSON."""
     truth = tow.truth
     defects = world.settings.defects(tow.season)

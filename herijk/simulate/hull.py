@@ -14,7 +14,6 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from herijk.pipeline.channels import TARGET_SPEED_RATIOS
 from herijk.simulate.delft import FROUDE
 
 GRAVITY_M_S2: Final = 9.81
@@ -162,16 +161,3 @@ def air_force_n(
         + hull.side_m2 * air.abeam * np.abs(wind_abeam_m_s)
     ) / speed
     return np.asarray(AIR_DENSITY_KG_M3 / 2 * drag_area * wind_ahead_m_s * np.abs(wind_ahead_m_s))
-
-
-def nearest_hyperbola(
-    hull: Hull, declared_speed_m_s: float, temperature_c: float, air: AirCoefficients
-) -> tuple[float, float]:
-    """A [kg/m] and B [m/s] of `Cw = A / (1 - (v/B)^2)` through 90, 100 and 110 % of the truth.
-
-    Least squares in 1/Cw, which is a straight line in v^2 (method note 5.1).
-    """
-    speeds = declared_speed_m_s * np.array(TARGET_SPEED_RATIOS)
-    inverse_cw = 1.0 / true_cw_kg_m(hull, speeds, temperature_c, air)
-    slope, intercept = np.polyfit(speeds**2, inverse_cw, 1)
-    return float(1.0 / intercept), float(np.sqrt(-intercept / slope))

@@ -45,7 +45,7 @@ class NamedWorld:
         return of_season
 
 
-def _warming(first: float, last: float) -> tuple[tuple[range, Mapping[str, Any]], ...]:
+def _warming(first: float, last: float) -> tuple[tuple[range, Mapping[str, object]], ...]:
     """Water that warms by the season until dGPS came, its temperature not written down."""
     step = (last - first) / (len(BEFORE_DGPS) - 1)
     return tuple(

@@ -36,12 +36,14 @@ class _InWords(Formatter):
     def __init__(self, language: str) -> None:
         self._decimal = DECIMALS[language]
 
-    def format_field(self, value: Any, format_spec: str) -> str:
+    def format_field(self, value: object, format_spec: str) -> str:
         text = str(super().format_field(value, format_spec))
         return text.replace(".", self._decimal) if isinstance(value, Real) else text
 
 
-def _filled(template: str, language: str, values: tuple[Any, ...], named: Mapping[str, Any]) -> str:
+def _filled(
+    template: str, language: str, values: tuple[object, ...], named: Mapping[str, object]
+) -> str:
     text = dutch().get(template, template) if language == "nl" else template
     return _InWords(language).vformat(text, values, named) if values or named else text
 
@@ -58,7 +60,7 @@ class Sentence(str):
     __slots__ = ("in_order", "template", "values")
 
     template: str
-    in_order: tuple[Any, ...]
+    in_order: tuple[object, ...]
     values: Mapping[str, Any]
 
     def spoken(self, language: str) -> str:
@@ -68,7 +70,7 @@ class Sentence(str):
         return _filled(self.template, language, in_order, named)
 
 
-def say(template: str, *in_order: Any, **named: Any) -> Sentence:
+def say(template: str, *in_order: object, **named: object) -> Sentence:
     """Return the sentence that a template gives with the values filled in.
 
     What comes from files and libraries is made printable: it goes to terminals and tables.
@@ -80,7 +82,7 @@ def say(template: str, *in_order: Any, **named: Any) -> Sentence:
     return sentence
 
 
-def tell(template: str, *in_order: Any, **named: Any) -> str:
+def tell(template: str, *in_order: object, **named: object) -> str:
     """Return a text in the language of this command, with the values filled in, in words too."""
     language = LANGUAGE.get()
     by_name = {name: spoken(value, language) for name, value in named.items()}
@@ -99,7 +101,7 @@ def in_per_cent(probability: float) -> str:
     return ">\u00a099\u00a0%" if probability > 0.99 else f"{100 * probability:.0f}\u00a0%"
 
 
-def _printable(value: Any) -> Any:
+def _printable(value: object) -> object:
     """Return text or an error as one line without control characters; other values as they are."""
     if isinstance(value, Exception) and value.args and isinstance(value.args[0], Sentence):
         return value.args[0]

@@ -1,5 +1,6 @@
 """The documents say what the code does: options, reason codes, commands, links."""
 
+import ast
 import re
 from collections import Counter
 from typing import Literal, get_args, get_origin
@@ -12,8 +13,8 @@ from herijk.dashboards.guides import GUIDES
 from herijk.pipeline.method.definition import Steps, shipped_methods
 from herijk.tables.schemas import TABLES
 from herijk.tables.views import VIEWS
-from herijk.warehouse.archive.faults import REASONS
 from tests.architecture.repository import ROOT, read, tracked_files
+from tests.reason_codes import REASON_CODES
 
 OPTIONS = [
     (step, option)
@@ -93,9 +94,26 @@ def test_the_dutch_text_of_a_guide_has_what_the_english_has(name):
         assert numbers(nl, ".") == numbers(en, ""), nl.splitlines()[0]
 
 
-def test_every_reason_code_is_documented():
-    found = set(re.findall(r"^\| `(\w+)` \|", read("docs/archive.md"), re.MULTILINE))
-    assert set(REASONS) - found == set()
+def reason_codes_given():
+    """Every text in the code that is given as a reason code, and every text at all."""
+    given, texts = set(), set()
+    for file in (ROOT / "herijk").rglob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text("utf-8"))):
+            if isinstance(node, ast.Constant):
+                texts.add(node.value)
+            if isinstance(node, ast.Call):
+                named = [k.value for k in node.keywords if k.arg == "reason_code"]
+                is_error = ast.unparse(node.func).startswith("Defective")
+                codes = [*named, *node.args[:is_error]]
+                given |= {code.value for code in codes if isinstance(code, ast.Constant)}
+    return given, texts
+
+
+def test_reason_codes_are_documented_and_no_others():
+    given, texts = reason_codes_given()
+    assert len(given) > 10
+    assert given - REASON_CODES == set()
+    assert REASON_CODES - texts == set()
 
 
 def test_every_table_is_documented():

@@ -1,7 +1,7 @@
 """The page of one type: are equal boats equal?"""
 
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any, Final, TypeVar
+from typing import Final, TypeVar
 
 from herijk.cli.audit_text.words import (
     AGAINST,
@@ -178,7 +178,7 @@ def _slope(line: Row) -> str:
     return interval(*(step * line[end] for end in ("slope", "slope_lo", "slope_hi")), digits=2)
 
 
-def _line_figures(line: Row) -> tuple[Any, ...]:
+def _line_figures(line: Row) -> tuple[object, ...]:
     digits = 0 if line["quantity"] == "q" else 1  # q spreads by many per cent
     return (
         share(line["r2"]),

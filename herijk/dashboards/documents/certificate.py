@@ -1,6 +1,6 @@
 """The certificate of a boat and crew: one page A4, and all of an edition in one file."""
 
-from typing import Any, Final
+from typing import Final
 
 import segno
 
@@ -44,7 +44,7 @@ def certificates(
     return page("certificate.html.j2", content) if as_page else pdf("certificate.typ", content)
 
 
-def _one(line: Row, speech: Speech) -> dict[str, Any]:
+def _one(line: Row, speech: Speech) -> dict[str, object]:
     say, number = speech.say, speech.number
     code = line["verification_code"] or ""
     crew = crew_name(line, speech)

@@ -17,7 +17,7 @@ from herijk.warehouse.queries.views import Views
 from herijk.warehouse.store.methods import KnownMethods
 from herijk.words import in_per_cent
 
-Part = dict[str, Any]
+Part = dict[str, object]
 
 LARGEST: Final = 10
 """Boats named on each side."""

@@ -7,7 +7,7 @@ Does not belong here: reading tables, pages, and texts (`dashboards.words`).
 """
 
 from collections.abc import Callable
-from typing import Any, Final
+from typing import Final
 
 import altair as alt
 import polars as pl
@@ -79,7 +79,7 @@ def png(name: str, frame: pl.DataFrame, language: str) -> bytes:
     return bytes(vl_convert.svg_to_png(svg, scale=2.0))
 
 
-def drop(part: Any, *keys: str) -> None:
+def drop(part: object, *keys: str) -> None:
     """Takes out of a specification what a picture cannot keep: links, tooltips."""
     if isinstance(part, dict):
         for key in keys:

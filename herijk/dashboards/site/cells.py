@@ -47,7 +47,7 @@ METHODS: Final = {"method", "from_method", "to_method"}
 EDITIONS: Final = {"edition", "from_edition", "to_edition", "previous"}
 
 Show = Callable[[Any], Markup]
-Key = tuple[Any, ...]
+Key = tuple[object, ...]
 
 _EMPTY = Markup("<td class=t>")
 _SHORT = Markup("<td class=t>{}")
@@ -83,7 +83,7 @@ class Cells:
         self._text = cache(self._made)
         self._of_many: dict[str, tuple[pl.DataFrame, list[str]]] = {}
 
-    def _made(self, name: str, root: str, value: Any) -> Markup:
+    def _made(self, name: str, root: str, value: object) -> Markup:
         """The cell of a text in a column of this name; the same value comes often."""
         return (_LONG if name in LONG else _SHORT).format(self._shower(name, root)(value))
 
@@ -173,7 +173,7 @@ class Cells:
             return self.text(f"code.{value}")
         return Markup('<a href="{}{}">{}</a>').format(root, type_path(value), value)
 
-    def _plain(self, value: Any) -> Markup:
+    def _plain(self, value: object) -> Markup:
         if isinstance(value, bool):
             return self.text("yes" if value else "no")
         if isinstance(value, dt.datetime):

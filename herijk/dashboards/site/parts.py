@@ -6,7 +6,6 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
 
 import polars as pl
 from markupsafe import Markup
@@ -169,7 +168,7 @@ class Page:
         return self.site or "../" * self.path.count("/")
 
 
-def is_chosen(value: Any, *wanted: str) -> bool:
+def is_chosen(value: object, *wanted: str) -> bool:
     """Whether selectors that say `wanted` show a value, or one of a list; "all" says nothing."""
     values = value if isinstance(value, (list, tuple)) else (value,)
     said = [text for text in wanted if text]

@@ -27,12 +27,12 @@ def chart_specifications(language: str) -> dict[str, Any]:
         say = speaker(language)
         return as_json({name: specification(figure, say) for name, figure in FIGURES.items()})
 
-    found: dict[str, Any] = json.loads(kept(f"charts-{language}", _made_from(), make))
+    found: dict[str, object] = json.loads(kept(f"charts-{language}", _made_from(), make))
     return found
 
 
 @cache
-def picture_specification(figure: str, language: str) -> dict[str, Any]:
+def picture_specification(figure: str, language: str) -> dict[str, object]:
     """A figure's Vega for a picture: without data, and without what a picture cannot keep."""
 
     def make() -> str:
@@ -41,7 +41,7 @@ def picture_specification(figure: str, language: str) -> dict[str, Any]:
         spec["config"]["aria"] = False  # described as a whole
         return json.dumps(drawn.compiled(spec))
 
-    found: dict[str, Any] = json.loads(kept(f"picture-{figure}-{language}", _made_from(), make))
+    found: dict[str, object] = json.loads(kept(f"picture-{figure}-{language}", _made_from(), make))
     return found
 
 

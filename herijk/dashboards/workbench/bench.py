@@ -6,7 +6,7 @@ for last are kept, so that going back to one costs nothing.
 
 from functools import lru_cache
 from pathlib import Path
-from typing import Annotated, Any, Final
+from typing import Annotated, Final
 
 import polars as pl
 import polars.selectors as cs
@@ -32,7 +32,7 @@ from herijk.warehouse.store.files import write_new
 from herijk.warehouse.store.methods import KnownMethods
 from herijk.warehouse.store.store import Store
 
-Answer = dict[str, Any]
+Answer = dict[str, object]
 
 DEFAULT_BASE: Final = "rebased"
 DEFAULT_AGAINST: Final = "as-published"

@@ -9,7 +9,7 @@ import socket
 from collections.abc import Callable
 from pathlib import Path
 from threading import Lock
-from typing import Any, Final, TypeVar
+from typing import Final, TypeVar
 
 import uvicorn
 from markupsafe import Markup
@@ -74,7 +74,7 @@ def application(bench: Bench) -> Starlette:
         kind = "text/css" if name.endswith(".css") else "text/javascript"
         return Response(files[name], media_type=kind, headers=HEADERS)
 
-    def saved(wish: Named) -> dict[str, Any]:
+    def saved(wish: Named) -> dict[str, object]:
         path = bench.save(wish)
         return {"path": str(path), "command": f"herijk rebase {path} --data {path.parents[1]}"}
 
@@ -93,7 +93,7 @@ def application(bench: Bench) -> Starlette:
     )
 
 
-def _asked(path: str, model: type[Wanted], answer: Callable[[Wanted], dict[str, Any]]) -> Route:
+def _asked(path: str, model: type[Wanted], answer: Callable[[Wanted], dict[str, object]]) -> Route:
     """A route that takes a model as JSON.
 
     What cannot be is answered with a sentence in `refused`, and with status 200: it is an answer,
@@ -127,7 +127,7 @@ def _from_own_page(request: Request) -> None:
         raise HTTPException(415, "JSON is needed")
 
 
-def _refusal(error: ValidationError) -> dict[str, Any]:
+def _refusal(error: ValidationError) -> dict[str, object]:
     """The first thing that is wrong, with the option it is about.
 
     `kind` and `limit` are for the page, which says it in its language; `refused` is for others.

@@ -282,7 +282,7 @@ _SAMPLES: Final = types.Array(float32, 1, "C", readonly=True)
 _FOUND: Final = (int8[::1], int16[::1], int32[::1], float64[:, ::1])
 
 
-def _compiled_once(signature: Any) -> Callable[[Callable[P, R]], Callable[P, R]]:
+def _compiled_once(signature: object) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """Compiled now, or as it was kept beside this file or in the user's folder of caches."""
 
     def decorator(function: Callable[P, R]) -> Callable[P, R]:

@@ -102,11 +102,6 @@ def chosen_tows(observed: Observed) -> Iterator[tuple[Choice, Observed]]:
         yield Choice(name, ALL_TOWS.components), observed.take(rows)
 
 
-def standard_speed_m_s(tows: Observed) -> float:
-    """The common speed at which boats of a type are compared."""
-    return float(tows.table["standard_speed_m_s"][0])
-
-
 Measured = tuple[FloatArray, FloatArray]
 """Values and their variances for a run scatter of 1, shape (rows,); NaN where there is none."""
 

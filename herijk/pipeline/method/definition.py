@@ -340,7 +340,7 @@ class _Layer(_Options):
     """One set of overrides: all seasons of `held` get `options`."""
 
     held: _Range
-    options: dict[str, dict[str, Any]]
+    options: dict[str, dict[str, object]]
 
 
 _KEYS: Final = re.compile(r"(?<![\w-])([\w-]++)\s*+=")
@@ -452,7 +452,7 @@ def _register_rule(reader: _Reader, head: _Head, text_of: Callable[[str], str]) 
 
 def _step_tables(
     reader: _Reader, options: Mapping[str, Any], where: str
-) -> dict[str, dict[str, Any]]:
+) -> dict[str, dict[str, object]]:
     for step, table in options.items():
         if step not in Steps.model_fields:
             allowed = ", ".join(Steps.model_fields)
@@ -500,7 +500,7 @@ def joined(ranges: Iterable[SeasonSteps]) -> tuple[SeasonSteps, ...]:
 
 
 def _steps_of_season(reader: _Reader, layers: list[_Layer], season: int) -> Steps:
-    merged: dict[str, dict[str, Any]] = {step: {} for step in Steps.model_fields}
+    merged: dict[str, dict[str, object]] = {step: {} for step in Steps.model_fields}
     for layer in layers:
         if layer.held.first <= season <= layer.held.last:
             for step, options in layer.options.items():

@@ -6,7 +6,6 @@ and a file is written that names only those. Reading a file is in `pipeline.meth
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 from herijk.pipeline.method.definition import (
     Method,
@@ -42,8 +41,8 @@ class Difference:
     option: str
     first: int
     last: int
-    before: tuple[Any, ...]
-    after: Any
+    before: tuple[object, ...]
+    after: object
 
 
 def cut_at(method: Method, seasons: Iterable[int]) -> tuple[SeasonSteps, ...]:
@@ -126,7 +125,7 @@ def variant_text(method: Method) -> str:
         f"seasons = {toml_value(range_text(first, last))}",
     ]
     parent = parse_method("\n".join(head), f"{method.name}.toml")
-    changed: dict[tuple[int, int], dict[str, dict[str, Any]]] = {}
+    changed: dict[tuple[int, int], dict[str, dict[str, object]]] = {}
     for one in differences(method, parent):
         steps = changed.setdefault((one.first, one.last), {})
         steps.setdefault(one.step, {})[one.option] = one.after

@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Mapping
-from typing import Any
 
 from herijk.pipeline.method.definition import LAST_SEASON, Method
 
@@ -73,12 +72,12 @@ def beginning_text(name: str, base: Method) -> str:
     )
 
 
-def override_lines(range_of: str, steps: Mapping[str, Mapping[str, Any]]) -> list[str]:
+def override_lines(range_of: str, steps: Mapping[str, Mapping[str, object]]) -> list[str]:
     """The lines of an `[[overrides]]` block."""
     return ["[[overrides]]", f"range = {toml_value(range_of)}", *step_lines(steps)]
 
 
-def step_lines(steps: Mapping[str, Mapping[str, Any]]) -> list[str]:
+def step_lines(steps: Mapping[str, Mapping[str, object]]) -> list[str]:
     """One line per step, with its options."""
     lines = []
     for step, options in steps.items():
@@ -87,7 +86,7 @@ def step_lines(steps: Mapping[str, Mapping[str, Any]]) -> list[str]:
     return lines
 
 
-def toml_value(value: Any) -> str:
+def toml_value(value: object) -> str:
     """A text, number, truth value or list as TOML, which differs from JSON in one character."""
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
 

@@ -16,7 +16,7 @@ from herijk.pipeline.steps.resistance import OverWindow, RunMeans, run_means
 from herijk.pipeline.steps.window import Windows, choose_windows
 
 Tows: TypeAlias = tuple[str, ...]
-Options: TypeAlias = tuple[Any, ...]
+Options: TypeAlias = tuple[object, ...]
 T = TypeVar("T")
 
 

@@ -123,7 +123,7 @@ def beside_uncertainty(effects: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFr
     return effects.join(curves.select("tow_id", **half), on="tow_id", how="left")
 
 
-def chosen(steps: Steps, sides: Mapping[Choice, Any]) -> Steps:
+def chosen(steps: Steps, sides: Mapping[Choice, object]) -> Steps:
     """The steps of a season with a value for each choice."""
     for choice, value in sides.items():
         step = getattr(steps, choice.step).model_copy(update={choice.option: value})

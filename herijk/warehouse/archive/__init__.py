@@ -5,7 +5,7 @@ Everything that cannot be used becomes a `Fault` with a reason code; the format 
 described in `docs/archive.md`.
 """
 
-from herijk.warehouse.archive.faults import REASONS, DefectiveFileError, Fault, Reason, fault_from
+from herijk.warehouse.archive.faults import DefectiveFileError, Fault, fault_from
 from herijk.warehouse.archive.hashes import FileHashes
 from herijk.warehouse.archive.index import ArchiveIndex, index_archive
 from herijk.warehouse.archive.plausibility import judge_in_files
@@ -15,13 +15,11 @@ from herijk.warehouse.archive.samples import read_samples, read_tow_samples
 from herijk.warehouse.archive.windows import outside_run
 
 __all__ = [
-    "REASONS",
     "ArchiveIndex",
     "DefectiveFileError",
     "Fault",
     "FileHashes",
     "Profiles",
-    "Reason",
     "SeasonProfile",
     "SetAside",
     "fault_from",

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Final
+from typing import Final
 
 import polars as pl
 
@@ -120,7 +120,7 @@ def _optional_class(row: ListRow, key: str) -> str | None:
     return row.crew_class(key) if row.optional_text(key) else None
 
 
-_READERS: Final[Mapping[str, Callable[[ListRow, str], Any]]] = {
+_READERS: Final[Mapping[str, Callable[[ListRow, str], object]]] = {
     "fsn_no": ListRow.boat,
     "ht_no": ListRow.optional_text,
     "name": ListRow.text,

@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import polars as pl
 
@@ -62,7 +62,7 @@ class Cause:
     """One thing that is wrong, wherever it is.
 
     Attributes:
-        reason_code: a key of `REASONS`.
+        reason_code: short stable code.
         faults: where, in order.
         proposals: what in `archief.toml` would settle it; empty where only a person can.
     """
@@ -101,7 +101,7 @@ class CauseReport:
     """One thing that is wrong, as it is told.
 
     Attributes:
-        reason_code: a key of `REASONS`.
+        reason_code: short stable code.
         number: of places.
         sentence: of the first of them.
         cells: what the cells say that have it.
@@ -356,7 +356,7 @@ def _not_planned(
     path: str,
     found: pl.DataFrame,
     planned: Iterable[int],
-    speed: Any,
+    speed: object,
     in_two: bool = False,
     lasts: float = STANDARD.seconds,
 ) -> Fault:

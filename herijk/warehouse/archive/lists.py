@@ -166,7 +166,7 @@ class ListRow:
         return DefectiveInputError(reason_code or self.reading.reason_code, said, self.line)
 
     def wrong(
-        self, message: str, key: str, reason_code: str | None = None, **values: Any
+        self, message: str, key: str, reason_code: str | None = None, **values: object
     ) -> DefectiveInputError:
         """Return the error for a cell; the message may have `{column}` and `{cell}` in it."""
         cell = shorten(self.cells.get(key, ""))

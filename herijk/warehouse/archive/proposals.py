@@ -131,7 +131,7 @@ def _of_value(_: str, values: Any, __: int) -> Iterator[Proposal]:
         yield Proposal("words", word, "")
 
 
-def _of_date(path: str, _: Any, __: int) -> Iterator[Proposal]:
+def _of_date(path: str, _: object, __: int) -> Iterator[Proposal]:
     yield Proposal("dates", path, "dmy", is_active=False)
 
 

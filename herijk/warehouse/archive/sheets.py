@@ -285,7 +285,7 @@ def _sheet(
     return Sheet(header, above + place + 1, _only_rows(below, header))
 
 
-def _as_text(cell: Any) -> str:
+def _as_text(cell: object) -> str:
     """Return a cell as it would be in a table of text."""
     if isinstance(cell, bool):
         return "ja" if cell else "nee"

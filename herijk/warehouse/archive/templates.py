@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.tables.declare import dy
@@ -95,7 +95,7 @@ def write_templates(root: Path) -> None:
 
 
 def _write_list(
-    path: Path, columns: Sequence[Column], table: type[dy.Schema], example: dict[str, Any]
+    path: Path, columns: Sequence[Column], table: type[dy.Schema], example: dict[str, object]
 ) -> None:
     """Write a spreadsheet with a header, an example, and a check on each column with limits."""
     import xlsxwriter  # type: ignore[import-untyped]  # noqa: PLC0415 - only here
@@ -113,7 +113,7 @@ def _write_list(
                 sheet.data_validation(1, place, MOST_ROWS, place, rule)
 
 
-def _rule(column: Column, table: type[dy.Schema]) -> dict[str, Any] | None:
+def _rule(column: Column, table: type[dy.Schema]) -> dict[str, object] | None:
     """Return what a spreadsheet holds a column against: the limits that its table declares."""
     if column.key in _CHOICES:
         return {"validate": "list", "source": _CHOICES[column.key]}

@@ -7,7 +7,7 @@ One row at a time: text to values. What rows, boats and files say about each oth
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, Final
+from typing import Final
 
 from herijk.pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError
@@ -53,7 +53,7 @@ _DIMENSIONS: Final = {
     if column.key in {"waterline_length_m", "beam_m", "bow_height_m"}
 }
 """What a tow or else its boat must have; the height of the bow only where wind was measured."""
-_READERS: Final[Mapping[str, Callable[[ListRow, str], Any]]] = {
+_READERS: Final[Mapping[str, Callable[[ListRow, str], object]]] = {
     "tow_date": ListRow.date,
     "fsn_no": ListRow.boat,
     "rowers": ListRow.integer,

@@ -8,7 +8,7 @@ import datetime as dt
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Final
+from typing import Final
 
 import duckdb
 import polars as pl
@@ -118,7 +118,7 @@ class Inputs:
         return published_tables(self.store)
 
 
-def made_from(store: Store, name: str, methods: Sequence[Method]) -> Any:
+def made_from(store: Store, name: str, methods: Sequence[Method]) -> object:
     """What of an input is in a fingerprint."""
     return _kind(name).made_from(store, name, methods)
 
@@ -126,7 +126,7 @@ def made_from(store: Store, name: str, methods: Sequence[Method]) -> Any:
 @dataclass(frozen=True)
 class _Kind:
     read: Callable[[Inputs, str], pl.DataFrame]
-    made_from: Callable[[Store, str, Sequence[Method]], Any]
+    made_from: Callable[[Store, str, Sequence[Method]], object]
 
 
 def _listed(store: Store, name: str) -> pl.DataFrame:

@@ -5,7 +5,7 @@ the texts say is in the templates beside this module, the words in `warehouse.ed
 """
 
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import jinja2
 import polars as pl
@@ -73,7 +73,7 @@ def summary(edition: Edition) -> str:
     )
 
 
-def _facts(edition: Edition, language: Language) -> dict[str, Any]:
+def _facts(edition: Edition, language: Language) -> dict[str, object]:
     about = edition.about
     counts = edition.register["status"].value_counts().sort("count", "status", descending=True)
     carried = edition.register.filter(basis=REBASED).height
@@ -110,7 +110,7 @@ def _method(edition: Edition, language: Language) -> str:
     return f"{method.titled(language.code)} ({method.name}, {method.content_hash[:12]})"
 
 
-def _changes(found: DiffReport | None, language: Language) -> dict[str, Any]:
+def _changes(found: DiffReport | None, language: Language) -> dict[str, object]:
     if found is None:
         return {"changes": False}
     cause_head, largest_head, causes = HEADS[language.code]

@@ -208,7 +208,7 @@ def package_bytes(about: About, contents: dict[str, bytes], notes: str, rights: 
 
 def _resource(
     name: str, path: str, content: bytes, fields: Sequence[Field], key: list[str]
-) -> dict[str, Any]:
+) -> dict[str, object]:
     return {
         "profile": "tabular-data-resource",
         "name": name,
@@ -318,7 +318,7 @@ def _write_about(book: xlsxwriter.Workbook, about: About) -> None:
         sheet.write_string(row, 1, value)
 
 
-def read_xlsx_cells(content: bytes) -> dict[str, Any]:
+def read_xlsx_cells(content: bytes) -> dict[str, object]:
     """The filled cells of the first sheet, by place ("B3").
 
     Raises:

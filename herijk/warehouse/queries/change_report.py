@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import duckdb
 import polars as pl
@@ -283,7 +283,7 @@ def _grounds(
     return pairs.select(LINE).with_columns(pl.Series("ground", grounds, pl.String))
 
 
-def _method_hash(tables: Tables, method: str) -> Any:
+def _method_hash(tables: Tables, method: str) -> list[str]:
     return tables["methods"].filter(method=method)["content_hash"].to_list()
 
 

@@ -6,7 +6,7 @@ here rows are joined with names, put in order and counted. Nothing is stored.
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import polars as pl
@@ -61,7 +61,7 @@ class Scenario:
             )
         )
 
-    def summary(self) -> dict[str, Any]:
+    def summary(self) -> dict[str, object]:
         """How many lines change, who gains and loses, and by how much."""
         lines = self.register_lines
         changed = lines.filter(pl.col("change") == "changed")

@@ -13,7 +13,7 @@ import socket
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from filelock import FileLock, Timeout
 
@@ -106,7 +106,7 @@ def _locked(file: Path, wait: bool, taken: str, way_out: str) -> Iterator[None]:
 def _owner(signature: Path) -> str:
     """Who holds the lock, in words; it may have just begun and not have signed yet."""
     try:
-        owner: dict[str, Any] = json.loads(signature.read_text(encoding="utf-8"))
+        owner: dict[str, object] = json.loads(signature.read_text(encoding="utf-8"))
         return say("process {} on {} since {}", owner["pid"], owner["host"], owner["since"])
     except (OSError, ValueError, KeyError, TypeError):
         return "a process that has just begun"

@@ -50,9 +50,9 @@ class Rights:
         return cls(about.get("publisher"), about.get("licence"))
 
     @property
-    def described(self) -> dict[str, Any]:
+    def described(self) -> dict[str, object]:
         """The same as the fields of a data package."""
-        found: dict[str, Any] = {}
+        found: dict[str, object] = {}
         if self.publisher:
             found["contributors"] = [{"title": self.publisher, "roles": ["publisher"]}]
         if self.licence:
@@ -125,7 +125,7 @@ def package_is_whole(root: Path) -> bool:
 
 def _resource(
     beside: Path, older: Path, name: str, frame: pl.DataFrame, schema: "type[dy.Schema]"
-) -> dict[str, Any]:
+) -> dict[str, object]:
     """Writes one table, and describes it."""
     content = io.BytesIO()
     frame.write_parquet(content, compression="zstd")
@@ -161,7 +161,7 @@ def _put(path: Path, older: Path, data: bytes, sha256: str) -> None:
     path.write_bytes(data)
 
 
-def _field(name: str, column: "dy.Column") -> dict[str, Any]:
+def _field(name: str, column: "dy.Column") -> dict[str, object]:
     unit = (column.metadata or {}).get("unit")
     limits = {
         key: getattr(column, limit, None)
@@ -209,7 +209,7 @@ def _package(resources: list[dict[str, Any]], origin: Origin) -> dict[str, Any]:
 
 def _catalogue(package: Mapping[str, Any], origin: Origin, folder: Path) -> dict[str, Any]:
     """The same for catalogues of open data."""
-    described: dict[str, Any] = {
+    described: dict[str, object] = {
         "@context": {
             "dcat": "http://www.w3.org/ns/dcat#",
             "dct": "http://purl.org/dc/terms/",

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Final, Self
+from typing import Final, Self
 
 import polars as pl
 import pyarrow as pa  # type: ignore[import-untyped]
@@ -31,7 +31,7 @@ _FOOTER_BYTES: Final = 1 << 16
 TABLE_FORM: Final = {"compression": "zstd"}
 
 
-def fingerprint(*parts: Any) -> str:
+def fingerprint(*parts: object) -> str:
     """A hash of anything that JSON can hold, equal wherever the parts are equal."""
     text = json.dumps(parts, sort_keys=True, default=str, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()
@@ -213,7 +213,7 @@ def write_parquet(
     frame: pl.DataFrame,
     path: Place,
     metadata: dict[str, str] | None = None,
-    form: Mapping[str, Any] = TABLE_FORM,
+    form: Mapping[str, object] = TABLE_FORM,
 ) -> None:
     """Writes a frame as Parquet, whole or not at all, with a checksum of every page.
 

@@ -10,11 +10,11 @@ from herijk.simulate.hull import (
     air_force_n,
     friction_coefficient,
     kinematic_viscosity_m2_s,
-    nearest_hyperbola,
     still_air_cw_kg_m,
     true_cw_kg_m,
     water_density_kg_m3,
 )
+from tests.worlds import nearest_hyperbola
 
 AIR = AirCoefficients()
 

@@ -11,7 +11,6 @@ import pytest
 from herijk.pipeline.errors import HerijkError
 from herijk.simulate import (
     WORLDS,
-    nearest_hyperbola,
     simulate_tow,
     simulate_world,
     true_cw_kg_m,
@@ -19,6 +18,7 @@ from herijk.simulate import (
 )
 from herijk.simulate.archive_writer import write_simulated_archive
 from herijk.simulate.delft import FROUDE, RESIDUARY
+from tests.worlds import nearest_hyperbola
 
 DELFT_FILE = Path(__file__).parents[2] / "data" / "uci_yacht_hydrodynamics.csv"
 SEASONS = tuple(range(2009, 2019))

@@ -5,12 +5,11 @@
 import gzip
 import shutil
 from collections.abc import Callable
-from pathlib import Path
 
 import polars as pl
 import pytest
 
-from herijk.warehouse.archive import REASONS, read_races
+from herijk.warehouse.archive import read_races
 from tests.warehouse.archive.conftest import (
     BOATS,
     FIRST,
@@ -415,9 +414,3 @@ def test_a_result_that_is_listed_twice_counts_once_or_not_at_all(
     assert results.height == kept
     assert {fault.reason_code for fault in faults} == {"bad_race_row"}
     assert 4 in {fault.line for fault in faults}
-
-
-def test_every_reason_code_is_explained_in_the_documentation() -> None:
-    page = Path(__file__).parents[3].joinpath("docs/archive.md").read_text("utf-8")
-    for code, reason in REASONS.items():
-        assert f"| `{code}` | {reason.description} | {reason.way_out} |" in page

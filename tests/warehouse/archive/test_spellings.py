@@ -14,8 +14,9 @@ from hypothesis import strategies as st
 
 from herijk.pipeline.channels import SAMPLE_SCHEMA
 from herijk.pipeline.errors import DefectiveInputError
-from herijk.warehouse.archive import REASONS, SeasonProfile, read_samples, samples
+from herijk.warehouse.archive import SeasonProfile, read_samples, samples
 from herijk.warehouse.archive.text import parse_number
+from tests.reason_codes import REASON_CODES
 from tests.warehouse.archive.conftest import FIRST, HEADER, TOWS, Archive, Scan
 
 PROFILE = SeasonProfile(season=2014)
@@ -246,7 +247,7 @@ def test_spoiled_bytes_are_read_or_set_aside_and_nothing_else(
         assert frame.schema == pl.Schema(SAMPLE_SCHEMA)
         infinite = frame.select(pl.all().cast(pl.Float64()).is_infinite().any())
         assert not any(infinite.row(0))
-    assert code is None or code in REASONS
+    assert code is None or code in REASON_CODES
 
 
 def packed(suffix: str) -> bytes:
@@ -272,7 +273,7 @@ def test_damaged_packed_files_are_set_aside(
     path.write_bytes(content[:position])
     with pytest.raises(DefectiveInputError) as raised:
         read_samples(path, PROFILE)
-    assert raised.value.reason_code in REASONS
+    assert raised.value.reason_code in REASON_CODES
     content[position] = byte
     path.write_bytes(content)
     try:
@@ -281,4 +282,4 @@ def test_damaged_packed_files_are_set_aside(
         code = error.reason_code
     else:
         code = None  # a byte that does not matter
-    assert code is None or code in REASONS
+    assert code is None or code in REASON_CODES
