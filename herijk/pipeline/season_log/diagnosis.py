@@ -235,8 +235,9 @@ def _first_tow(
     changes = [f for f in faults if problem.unknowns[problem.faults[f]].name in (CHANGE, FLEET)]
     if not changes or chance is None or chance < POSSIBLE:
         return None
-    likeliest = problem.faults[max(changes, key=lambda f: float(posterior.chance[f]))]
-    after = network.tows.filter(pl.Series(problem.unknowns[likeliest].share > 0))
+    likeliest = max(changes, key=lambda f: float(posterior.chance[f]))
+    change = problem.unknowns[problem.faults[likeliest]]
+    after = network.tows.filter(pl.Series(change.share > 0), season=change.season)
     return str(after.sort("day", "tow_id")["tow_id"][0])
 
 
