@@ -40,7 +40,7 @@ def read_season(context: dg.OpExecutionContext, config: Season) -> None:
 
 
 def seasons_job(name: str, seasons: Sequence[int]) -> dg.JobDefinition:
-    """A job of one step a season, none of which waits for another."""
+    """A job of one step per season, none of which waits for another."""
 
     @dg.job(name=name, executor_def=dask_executor)
     def job() -> None:

@@ -94,7 +94,9 @@ def _calibration_rule(step: Calibration) -> str:
         "gps_per_tow": tell(
             "one factor per file from GPS speed / log speed, as many runs out as back."
         ),
-        "gps_per_season": tell("one factor a season, the mean of its tows' GPS speed / log speed."),
+        "gps_per_season": tell(
+            "one factor per season, the mean of its tows' GPS speed / log speed."
+        ),
     }[step.rule]
 
 
@@ -127,7 +129,7 @@ def _wind(step: Wind) -> str:
     coefficients = {
         "fixed": tell("fixed coefficients ({})", values),
         "per_run": tell("coefficients searched run by run between 0 and 1"),
-        "per_tow": tell("one coefficient a tow, searched between 0.3 and 0.7"),
+        "per_tow": tell("one coefficient per tow, searched between 0.3 and 0.7"),
         "archive": tell("one coefficient found for the whole archive"),
     }[step.coefficients]
     taken = (

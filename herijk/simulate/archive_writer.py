@@ -1,8 +1,8 @@
 """Writes a simulated world as a tow archive, spelled the way real ones are, truth beside it.
 
-Every season has another of the allowed spellings, so that reading one archive exercises them
-all. What is measured is decided in `herijk.simulate`; reading archives is the rest of this
-package.
+Each season has another of the allowed spellings, so that reading one archive exercises them all.
+What is measured is decided elsewhere in `herijk.simulate`; archives are read by
+`herijk.warehouse.archive`.
 """
 
 import csv
@@ -326,7 +326,7 @@ def _write_papers(directory: Path, world: World) -> None:
 
 
 def _write_registers(directory: Path, world: World, curves: Curves) -> None:
-    """The registers of half way and of the end."""
+    """The registers of the middle season and of the last."""
     seasons = world.settings.seasons
     for year in sorted({seasons[len(seasons) // 2], seasons[-1]}):
         path = directory / "sloepregister" / f"sloepregister_{year}.csv"

@@ -71,7 +71,7 @@ HUMP_AMPLITUDE: Final = 0.03
 HUMP_PHASE_RAD: Final = 0.0
 
 Shape: TypeAlias = Literal["bow wave", "hump", "delft"]
-"""Whence the shape of the resistance: see `hull`; `delft` takes a hull of the Delft series."""
+"""Where the shape of the resistance comes from: see `hull`; `delft` is a hull of its series."""
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """What can go wrong in a simulated tow, each by name and size, and what went wrong when.
 
-`Defects` has one field a defect; zero (or one, for a factor) switches it off. `SEASONS` says as
+`Defects` has one field per defect; zero (or one, for a factor) switches it off. `SEASONS` says as
 data which instruments and defects each season had; sources are in `docs/simulator.md`.
 How a defect works on a channel is in `motion` and `instruments`.
 """

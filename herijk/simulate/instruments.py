@@ -17,7 +17,7 @@ from herijk.simulate.random_streams import Component, TowStreams, coloured_noise
 from herijk.simulate.world import Tow
 
 ADDED_MASS: Final = 0.08
-"""Water that moves along, relative to the boat's mass (method note 8.4; stated assumption)."""
+"""Water that moves along, relative to the boat's mass (stated assumption: 5 to 10 % is usual)."""
 SURGE_HZ: Final = 1.0
 SPIKE_RATIO: Final = 30.0
 

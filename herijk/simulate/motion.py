@@ -52,7 +52,7 @@ class Disturbance:
 
 @dataclass(frozen=True)
 class RunTruth:
-    """What really happened in a run; `undisturbed_*` is what a perfect trim would keep."""
+    """What really happened in a run; `undisturbed_*` bound what a perfect window would keep."""
 
     run: int
     direction: int

@@ -30,7 +30,7 @@ def simulate_tow(world: World, tow: Tow) -> tuple[pl.DataFrame, tuple[RunTruth, 
     Returns:
         A samples frame with exactly the columns of `SAMPLE_SCHEMA`, six runs of 50 s at the
         world's rate, and the truth of the six runs. Of a tow with a second file, six runs more,
-        numbered 11 to 16.
+        numbered from `SECOND_FILE_OFFSET` on.
     """
     if tow.truth.second_log_factor is None:
         return _simulate_file(world, tow, Subject.TOW)

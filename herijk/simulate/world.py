@@ -80,7 +80,7 @@ class WorldSettings:
         if not self.seasons or list(self.seasons) != sorted(set(self.seasons)):
             raise HerijkError("seasons must ascend and be at least one; got {}", self.seasons)
         if self.tows_per_season < 1:
-            raise HerijkError("at least one tow a season is needed; got {}", self.tows_per_season)
+            raise HerijkError("at least one tow per season is needed; got {}", self.tows_per_season)
         if not 4 <= self.rate_hz <= 10_000:
             raise HerijkError("the rate must be 4 to 10000 Hz; got {}", self.rate_hz)
 

@@ -778,7 +778,7 @@ COMMAND: Final[dict[str, str]] = {
     "What the GPS is late is taken off.": "Wat de gps achterloopt gaat eraf.",
     "A drift of the stream is taken off.": "Een verloop van de stroom gaat eraf.",
     "Without GPS: as estimated.": "Zonder GPS: zoals geschat.",
-    "one factor a season, the mean of its tows' GPS speed / log speed.": (
+    "one factor per season, the mean of its tows' GPS speed / log speed.": (
         "een factor per seizoen, het gemiddelde van GPS-snelheid / logsnelheid van de proeven."
     ),
     "all samples of a run.": "alle metingen van een run.",
@@ -798,7 +798,7 @@ COMMAND: Final[dict[str, str]] = {
     "coefficients searched run by run between 0 and 1": (
         "coëfficiënten per run gezocht tussen 0 en 1"
     ),
-    "one coefficient a tow, searched between 0.3 and 0.7": (
+    "one coefficient per tow, searched between 0.3 and 0.7": (
         "een coëfficiënt per proef, gezocht tussen 0,3 en 0,7"
     ),
     "one coefficient found for the whole archive": "een coëfficiënt voor het hele archief",

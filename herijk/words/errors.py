@@ -442,7 +442,7 @@ ERRORS: Final[dict[str, str]] = {
     "seasons must ascend and be at least one; got {}": (
         "seizoenen moeten oplopen en er moet er een zijn; gegeven: {}"
     ),
-    "at least one tow a season is needed; got {}": (
+    "at least one tow per season is needed; got {}": (
         "per seizoen is minstens een sleepproef nodig; gegeven: {}"
     ),
     "the rate must be 4 to 10000 Hz; got {}": "de frequentie moet 4 tot 10000 Hz zijn; gegeven: {}",

@@ -1,9 +1,8 @@
 """Controls for the options of a method, made from the model of a method itself.
 
 What an option may be is read from the JSON schema of `pipeline.method.definition.Steps`, so that a
-new option
-appears by itself: as a choice, a number between bounds, or a list of codes. An option of another
-kind is shown and cannot be changed here. Texts are in `dashboards.workbench.texts`.
+new option appears by itself: as a choice, a number between bounds, or a list of codes. An option of
+another kind is shown and cannot be changed here. Texts are in `dashboards.workbench.texts`.
 """
 
 from math import floor, log10

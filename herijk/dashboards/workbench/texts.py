@@ -1,4 +1,4 @@
-"""Every text of the workbench in Dutch and English: `dashboards.words`, and its own.
+"""Every text of the workbench in Dutch and English: those of `herijk.words`, and its own.
 
 An option or value without a text here is shown by its name in the method file.
 """
@@ -66,8 +66,8 @@ TEXTS: Final[Words] = {
         "Crews that have to be faster for the same power.",
     ),
     "means.count_added": (
-        "Regels die er nu wel een geldige kromme bij krijgen.",
-        "Lines that get a valid curve by the change.",
+        "Regels die nu wel een geldige kromme krijgen.",
+        "Lines that gain a valid curve.",
     ),
     "means.count_removed": (
         "Regels die hun geldige kromme verliezen.",
@@ -78,15 +78,15 @@ TEXTS: Final[Words] = {
         "The middle ratio of new to old Cw over all lines.",
     ),
     "means.within_1": (
-        "Van de keren dat een niet verbouwde sloep opnieuw werd gesleept: hoe vaak beide Cw's "
-        "hoogstens 1 % verschillen. Hoger is beter.",
-        "Of the times that an unaltered boat was towed again: how often both Cw's differ by 1 % "
-        "at most. Higher is better.",
+        "Hoe vaak de Cw van een niet verbouwde sloep die opnieuw werd gesleept, hoogstens 1 % "
+        "anders is. Hoger is beter.",
+        "How often an unaltered boat that was towed again has a Cw within 1 % of the earlier one. "
+        "Higher is better.",
     ),
     "means.within_2": ("Hetzelfde voor 2 %.", "The same for 2 %."),
     "means.sd_tow": (
         "Hoeveel één proef toevallig afwijkt, als standaardafwijking van Cw. Lager is beter.",
-        "By how much one tow is off by chance, as standard deviation of Cw. Lower is better.",
+        "How far one tow is off by chance, as a standard deviation of Cw. Lower is better.",
     ),
     "failed": (
         "De werkbank gaf een fout; in het venster waar hij gestart is, staat meer.",
@@ -97,12 +97,12 @@ TEXTS: Final[Words] = {
         "The workbench no longer answers. Start it again with herijk workbench.",
     ),
     "left_out": (
-        "Niet bij elke wijziging berekend: de band om een kromme over het hele bereik (het "
+        "Niet bij elke wijziging herrekend: de band om een kromme over het hele bereik (het "
         "interval bij de opgegeven snelheid wel), de rechte lijnen en uitschieters per type en de "
         "oorzaken van spreiding. Die staan op de site na een herrekening.",
-        "Not computed at every change: the band around a curve over its whole range (its interval "
-        "at the declared speed is), the lines and outliers per type and the causes of spread. "
-        "They are on the site after a rebuild.",
+        "Not recomputed at every change: the band around a curve over its whole range (its "
+        "interval at the declared speed is), the lines and outliers per type and the causes of "
+        "spread. They are on the site after a rebuild.",
     ),
     # Results
     "count_changed": ("regels gewijzigd", "lines changed"),
@@ -158,12 +158,12 @@ TEXTS: Final[Words] = {
     ),
     "in_boat": ("Een sloep", "A boat"),
     "in_boat_note": (
-        "De kromme en de runs voor en na. Open tekens tellen niet mee; de streep bij de "
-        "opgegeven snelheid is het interval: van 95 %, of met streepjes de spreiding van de runs "
-        "alleen: de fout van de log zit er niet in.",
-        "The curve and the runs before and after. Open marks do not count; the bar at the "
-        "declared speed is the interval: of 95 %, or dashed the spread of the runs alone: the "
-        "log's error is not in it.",
+        "De kromme en de runs voor en na. Open tekens tellen niet mee. De streep bij de "
+        "opgegeven snelheid is het 95 %-interval; met streepjes is hij alleen de spreiding van de "
+        "runs, zonder de fout van de log.",
+        "The curve and the runs before and after. Open marks do not count. The bar at the "
+        "declared speed is the 95 % interval; a dashed bar is the spread of the runs alone, "
+        "without the error of the log.",
     ),
     "choose_boat": ("Kies sloep", "Choose boat"),
     "figure_curve": ("Weerstandskrommen van deze proef", "Resistance curves of this tow"),
@@ -172,16 +172,19 @@ TEXTS: Final[Words] = {
     "save": ("Bewaren als methodebestand", "Save as a method file"),
     "save_note": (
         "In het bestand staat alleen wat anders is dan de methode waarvan het uitgaat. Het "
-        "komt in de map methods van de datamap; herijk rebase neemt het aan.",
+        "komt in de map methods van de datamap; herijk rebase kan ermee rekenen.",
         "The file holds only what differs from the method it starts from. It goes into the folder "
-        "methods of the data folder; herijk rebase takes it.",
+        "methods of the data folder; herijk rebase can compute with it.",
     ),
-    "name": ("Naam (kleine letters, cijfers, streepjes)", "Name (small letters, digits, hyphens)"),
+    "name": (
+        "Naam (kleine letters, cijfers, streepjes)",
+        "Name (lower-case letters, digits, hyphens)",
+    ),
     "title": ("Titel", "Title"),
     "reason": ("Waarom", "Reason"),
     "save_button": ("Bewaar in de datamap", "Save in the data folder"),
     "download_button": ("Download", "Download"),
-    "saved_as": ("Bewaard. Alle gevolgen op een rij:", "Saved. To see all that follows:"),
+    "saved_as": ("Bewaard. Alle gevolgen op een rij:", "Saved. To see all its effects:"),
     # Columns
     "column.old_cw_kg_m": ("Cw voor [kg/m]", "Cw before [kg/m]"),
     "column.new_cw_kg_m": ("Cw na [kg/m]", "Cw after [kg/m]"),
@@ -215,27 +218,30 @@ TEXTS: Final[Words] = {
     "window.minimum_s": ("Kortste venster", "Shortest window"),
     "window.speed_drift_m_s": (
         "Verschil van snelheid, begin en eind",
-        "Difference of speed at the ends",
+        "Difference in speed between the ends",
     ),
     "window.force_ends_ratio": (
         "Verschil van kracht, begin en eind",
-        "Difference of force at the ends",
+        "Difference in force between the ends",
     ),
-    "window.wind_ends_m_s": ("Verschil van wind, begin en eind", "Difference of wind at the ends"),
+    "window.wind_ends_m_s": (
+        "Verschil van wind, begin en eind",
+        "Difference in wind between the ends",
+    ),
     "window.ramp_m_s": ("Kleinste aanloop die eraf gaat", "Smallest ramp that is cut"),
-    "window.peak_sd": ("Grens voor een krachtpiek", "Limit of a force peak"),
-    "window.gust_sd": ("Grens voor een windvlaag", "Limit of a gust"),
+    "window.peak_sd": ("Grens voor een krachtpiek", "Limit for a force peak"),
+    "window.gust_sd": ("Grens voor een windvlaag", "Limit for a gust"),
     "wind.model": ("Windmodel", "Wind model"),
     "wind.coefficients": ("Omstroomcoëfficiënten", "Drag coefficients"),
-    "wind.ahead": ("Coëfficiënt van voren", "Coefficient ahead"),
+    "wind.ahead": ("Coëfficiënt van voren", "Coefficient from ahead"),
     "wind.behind": ("Coëfficiënt van achteren", "Coefficient behind"),
-    "wind.side": ("Coëfficiënt van opzij", "Coefficient of the side"),
+    "wind.side": ("Coëfficiënt van opzij", "Coefficient from the side"),
     "wind.averaging_s": ("Wind gemiddeld over", "Wind averaged over"),
     "wind.anemometer": ("Windmeter", "Anemometer"),
     "wind.unmeasured": ("Wind die niet gemeten is", "Wind that was not measured"),
     "wind.reading": ("Hoe de wind gelezen is", "How the wind was read"),
     "run_point.estimator": ("Gemiddelde van een run", "Mean of a run"),
-    "run_point.inertia": ("Versnellen van de sloep eraf", "Take acceleration off"),
+    "run_point.inertia": ("Versnelling van de sloep verrekenen", "Correct for acceleration"),
     "run_point.added_mass_ratio": ("Meegesleept water", "Added mass"),
     "temperature.rule": ("Watertemperatuur verrekenen", "Correct for water temperature"),
     "temperature.reference_c": ("Naar water van", "To water of"),
@@ -244,7 +250,7 @@ TEXTS: Final[Words] = {
         "Snelste run / opgegeven snelheid",
         "Fastest run / declared speed",
     ),
-    "runs.minimum": ("Minste aantal runs", "Fewest runs"),
+    "runs.minimum": ("Minimumaantal runs", "Minimum number of runs"),
     "curve.b": ("B van de kromme", "B of the curve"),
     "curve.cap_hull_speeds": ("B hoogstens, in rompsnelheden", "B at most, in hull speeds"),
     "assessment.reject": ("Keurt een proef af", "Rejects a tow"),

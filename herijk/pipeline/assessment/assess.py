@@ -140,7 +140,7 @@ def with_status(
 
 
 def _long(frame: pl.DataFrame) -> pl.DataFrame:
-    """One row a tow and check, from a column a check; what is not known is left out."""
+    """One row per tow and check, from a column per check; what is not known is left out."""
     return (
         frame.with_columns(pl.exclude("tow_id").cast(pl.Float64))
         .unpivot(index="tow_id", variable_name="check", value_name="observed")
@@ -485,8 +485,8 @@ def _of_like_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
 
     Cw at the type's common speed, over its size, against the type's median; less the season's
     median, which holds the error of its log. Medians, so that a tow pulled askew does not move
-    what it is compared with. As far as the boat is over them in all of its later tows, in which it
-    was steered straight, it is a boat like that.
+    what it is compared with. An excess that the boat also shows in all of its later tows, when it
+    was steered straight, is its own and does not count.
     """
     boats = _with_boats(curves, tows)
     if "boat_type" not in boats.columns:

@@ -67,7 +67,7 @@ class Candidates:
     """What may have shifted.
 
     Attributes:
-        directions: one a column, sparse, shape (n, candidates).
+        directions: one per column, sparse, shape (n, candidates).
         single: whether a column is of one tow, whose scatter the archive itself shows.
         least: smallest size that matters, shape (candidates,).
         gross: size that no scatter explains, however wide, shape (candidates,).

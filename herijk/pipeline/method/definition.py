@@ -337,9 +337,9 @@ class _Range(_Options):
 
 
 class _Layer(_Options):
-    """One set of overrides: all seasons of `held` get `options`."""
+    """One set of overrides: all of `seasons` get `options`."""
 
-    held: _Range
+    seasons: _Range
     options: dict[str, dict[str, object]]
 
 
@@ -428,12 +428,12 @@ def _layers(
         parent = _Reader(parent_text, f"{head.extends}.toml")
         layers += _layers(parent, parent.head(), text_of, (*seen, head.extends))
     everywhere = _Range(first=0, last=LAST_SEASON)
-    layers.append(_Layer(held=everywhere, options=_step_tables(reader, head.steps, "steps")))
+    layers.append(_Layer(seasons=everywhere, options=_step_tables(reader, head.steps, "steps")))
     own = []
     for block in head.overrides:
         options = {key: value for key, value in block.items() if key not in ("range", "why")}
         seasons = _Range.parse(block.get("range"), reader, "overrides.range")
-        own.append(_Layer(held=seasons, options=_step_tables(reader, options, "overrides")))
+        own.append(_Layer(seasons=seasons, options=_step_tables(reader, options, "overrides")))
     _refuse_overlap(reader, own)
     return layers + own
 
@@ -467,8 +467,8 @@ def _step_tables(
 def _refuse_overlap(reader: _Reader, layers: list[_Layer]) -> None:
     for i, one in enumerate(layers):
         for other in layers[i + 1 :]:
-            first = max(one.held.first, other.held.first)
-            if first > min(one.held.last, other.held.last):
+            first = max(one.seasons.first, other.seasons.first)
+            if first > min(one.seasons.last, other.seasons.last):
                 continue
             for step in one.options.keys() & other.options.keys():
                 for key in one.options[step].keys() & other.options[step].keys():
@@ -480,7 +480,7 @@ def _ranges(reader: _Reader, layers: list[_Layer], seasons: _Range) -> tuple[Sea
     """The complete steps of every season, neighbouring seasons with equal steps together."""
     edges = {seasons.first, seasons.last + 1}
     for layer in layers:
-        edges |= {layer.held.first, layer.held.last + 1}
+        edges |= {layer.seasons.first, layer.seasons.last + 1}
     inside = sorted(e for e in edges if seasons.first <= e <= seasons.last + 1)
     return joined(
         SeasonSteps(first=first, last=end - 1, steps=_steps_of_season(reader, layers, first))
@@ -502,7 +502,7 @@ def joined(ranges: Iterable[SeasonSteps]) -> tuple[SeasonSteps, ...]:
 def _steps_of_season(reader: _Reader, layers: list[_Layer], season: int) -> Steps:
     merged: dict[str, dict[str, object]] = {step: {} for step in Steps.model_fields}
     for layer in layers:
-        if layer.held.first <= season <= layer.held.last:
+        if layer.seasons.first <= season <= layer.seasons.last:
             for step, options in layer.options.items():
                 merged[step] |= options
     try:

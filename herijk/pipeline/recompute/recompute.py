@@ -1,7 +1,7 @@
 """Recompute: every tow under one method, from blocks to curves.
 
 Here the steps are put in their order; each step's formulas are in its own module and the tables
-are filled in `pipeline.recompute.outcome`. The order is: steady window, means, speed correction,
+are filled in `pipeline.recompute.results`. The order is: steady window, means, speed correction,
 runs that count, calibration, corrections of the coefficient, wind coefficients, curve. What is
 searched over the whole archive is found first and applied after. Nothing here knows a season: the
 method says what holds when.

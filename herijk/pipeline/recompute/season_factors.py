@@ -87,7 +87,7 @@ def find_season_factors(outcomes: Sequence[Outcome]) -> SeasonFactors:
 
 
 def _tow_rows(outcomes: Sequence[Outcome]) -> pl.DataFrame:
-    """One row a tow with a sound curve, at one speed per line: its median declared speed."""
+    """One row per tow with a sound curve, at one speed per line: its median declared speed."""
     declared = pl.concat([o.batch.tows.select(*LINE, "declared_speed_m_s") for o in outcomes])
     reference = declared.group_by(LINE).agg(pl.col("declared_speed_m_s").median().alias("speed"))
     return pl.concat([_rows(o, reference) for o in outcomes]).drop_nulls("ln_cw")

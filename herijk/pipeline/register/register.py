@@ -126,9 +126,10 @@ def lines_of_all_days(
     rule: RegisterRule = FIVE_YEARS,
     decisions: pl.DataFrame = NO_DECISIONS,
 ) -> pl.DataFrame:
-    """Every line that a register of one method had at some time, the one that goes before last.
+    """Every line that a register of one method had at some time.
 
-    On a day counts the last whose `tow_date` is not after it, as in `draft_register`.
+    In such an order that on any day the last one counts whose `tow_date` is not after it, as in
+    `draft_register`.
 
     Args:
         curves, tows, rule, decisions: as for `draft_register`.

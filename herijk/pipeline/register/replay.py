@@ -217,8 +217,8 @@ def winner_changes(old: pl.DataFrame, new: pl.DataFrame, members: pl.DataFrame) 
             known.
 
     Returns:
-        One row a race and class: `old_winner`, `new_winner` (boat; null where nobody has a power),
-        `winner_changed` and `change_probability` (null where it is not known).
+        One row per race and class: `old_winner`, `new_winner` (boat; null where nobody has a
+        power), `winner_changed` and `change_probability` (null where it is not known).
     """
     rows = []
     old, new = _placed_under_both(old, new), _placed_under_both(new, old)

@@ -6,7 +6,7 @@ from typing import Final
 
 @dataclass(frozen=True)
 class Prior:
-    """What is held of a number before the data: its mean and standard deviation."""
+    """What is assumed of a number before the data: mean and standard deviation of its prior."""
 
     mean: float
     sd: float

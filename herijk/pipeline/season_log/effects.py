@@ -134,7 +134,7 @@ def _log_prior(network: Network, group: int, settings: Settings) -> tuple[float,
 
 
 def _force_sd(network: Network, year: int, settings: Settings) -> float:
-    """What is held of a season's load cell: by its records where there are any."""
+    """Prior standard deviation of a season's load cell: by its records where there are any."""
     if "force_sd" not in network.tows.columns:
         return settings.force_sd
     recorded = network.tows.filter(season=year)["force_sd"].drop_nulls()

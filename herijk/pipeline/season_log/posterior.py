@@ -204,7 +204,7 @@ class Fit:
         state: their values, the ln variances (between tows, of bend, of GPS, of the log per era
             and where calibrated, then the factor of each season, last the drift of boats per year)
             and the shares of what changes.
-        covariance: (k, k) of those.
+        covariance: (k, k) of the values.
         ln_variance_covariance: of the ln variances.
         told: what the boats say there.
         slopes: of the numbers of each tow.

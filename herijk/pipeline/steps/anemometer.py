@@ -4,7 +4,8 @@ The wind that a boat feels is the true wind less its own velocity. Out and back 
 about the boat and cancels; the boat's own speed is left. So mean apparent wind over boat speed is
 what the anemometer reads of the wind, and needs no resistance and no other boat. A vane that points
 askew turns the mean vector and leaves its length. Here: that ratio per tow, and the scale of each
-season with what the other seasons say of it. Does not: what wind does to resistance (`wind`).
+season with what the other seasons say of it. Not here: what
+wind does to resistance (`wind`).
 """
 
 from dataclasses import dataclass

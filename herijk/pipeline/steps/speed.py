@@ -29,7 +29,7 @@ def log_factor(
         tow_list_ratio: correction of the tow list as a ratio (0.06 for 6 %), NaN where the list
             gives none, shape (tows,).
         estimated_factor: factor estimated for the tow's season and log, NaN where there is none,
-            shape (tows,). The tow list takes no part in it, and none where it is used.
+            shape (tows,). Where it is used, the correction of the tow list does not count.
 
     Returns:
         Factor of shape (tows,): `1 + ratio` when multiplying, `1 / (1 - ratio)` when dividing.

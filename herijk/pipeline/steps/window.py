@@ -65,7 +65,7 @@ class Windows:
         mask: blocks inside the window, shape (runs, seconds); empty where none was found.
         start_s, end_s: the same in seconds, shape (runs,).
         found: a window of at least the prescribed length exists, shape (runs,).
-        reasons: why the rest was cut, one text a run; empty when nothing was.
+        reasons: why the rest was cut, one text per run; empty when nothing was.
         ends: how much the two ends differ.
     """
 

@@ -3,7 +3,7 @@
 Is boat X really heavier than Y, does the winner change: whoever asks counts the members in which
 it holds. What tows share is drawn once per member and used for all of them, which intervals of
 single lines cannot show. Belongs here: the draws, and the counting. Does not: the components
-(`uncertainty`) and where members are kept (`warehouse.store.ensemble`).
+(`propagation`) and where members are kept (`warehouse.store.ensemble`).
 """
 
 from collections.abc import Sequence
@@ -42,7 +42,7 @@ def register_ensemble(
 
     Args:
         lines: one row per line with `tow_id` (may occur more than once) and `cw_kg_m`.
-        budget: rows of `uncertainty.budget`, at least of those tows.
+        budget: rows of `propagation.budget`, at least of those tows.
         estimated: the season factors, whose errors are drawn with their correlation; None where the
             method estimates none.
         members: number of realisations.

@@ -63,7 +63,7 @@ def run_point_uncertainty(
 
     Args:
         blocks: the runs.
-        window: blocks that count, shape (runs, seconds); one stretch a run.
+        window: blocks that count, shape (runs, seconds); one stretch per run.
         season: season of each run, shape (runs,).
         source: speed source, as in `pipeline.blocks.run_blocks`.
 
@@ -336,7 +336,7 @@ def combine(held: pl.DataFrame, level: float = 0.95) -> pl.DataFrame:
         level: coverage of the interval.
 
     Returns:
-        One row a tow and speed, in the order of `held`: `tow_id, speed_ratio, u_ratio`,
+        One row per tow and speed, in the order of `held`: `tow_id, speed_ratio, u_ratio`,
         `u_shared_ratio` (what other tows share), `u_single_ratio`, `dof` (Welch-Satterthwaite), and
         `lo_ratio, hi_ratio`: the bounds of Cw relative to its value, a t interval on the logarithm.
     """

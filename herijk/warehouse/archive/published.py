@@ -77,7 +77,7 @@ def read_published_registers(
     """Read every `sloepregister/sloepregister_<jaar>.csv`.
 
     Returns:
-        One row a line of a register (`PrintedLines`), and the lines that cannot be read. A boat
+        One row per line of a register (`PrintedLines`), and the lines that cannot be read. A boat
         without a valid curve (published as Cw = 1) has `has_valid_curve` false and no A, B and Cw.
     """
     wording = wording or read_profiles(root).wording

@@ -186,7 +186,7 @@ def no_such_edition(edition: str, known: Iterable[str]) -> MissingKnowledgeError
 
 
 def rows(connection: duckdb.DuckDBPyConnection, query: str, *values: object) -> list[Row]:
-    """What a query gives, a dictionary a row; `values` fill its question marks."""
+    """What a query gives, a dictionary per row; `values` fill its question marks."""
     cursor = connection.execute(query, list(values))
     names = [column[0] for column in cursor.description or []]
     return [dict(zip(names, row, strict=True)) for row in cursor.fetchall()]

@@ -2,7 +2,7 @@
 
 On a disk everything is written beside, synced and renamed; in a bucket `edition.json` comes last,
 and without it there is no edition. A second edition of the same name is refused. What goes into the
-files, and whether they are still what they were, is `warehouse.editions`'s.
+files, and whether they are still what they were, belongs to `warehouse.editions`.
 """
 
 import datetime as dt

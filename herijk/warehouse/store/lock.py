@@ -1,8 +1,8 @@
 """One writer at a time in a data folder, and clearing up after writers that were killed.
 
-The lock is the operating system's and dies with its owner, however that ends. Who holds it stands
-in a file beside it, as Windows lets nobody read a locked file. Readers need no lock: what they read
-is replaced whole. Publishing an edition has a lock of its own, in `editions`.
+The lock is the operating system's and dies with its owner, however that ends. Who holds it is
+written in a file beside it, as Windows lets nobody read a locked file. Readers need no lock: what
+they read is replaced whole. Publishing an edition has a lock of its own, in `editions`.
 """
 
 import datetime as dt

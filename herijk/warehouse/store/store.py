@@ -187,7 +187,7 @@ def count_rows(path: Place) -> int:
 
 
 def _footer(path: Place) -> pq.FileMetaData:
-    """What stands at the end of a Parquet file; the rest is not fetched."""
+    """What a Parquet file says of itself at its end; the rest is not fetched."""
     if isinstance(path, Path):
         return pq.read_metadata(path)
     end = path.read_end(_FOOTER_BYTES)
