@@ -310,6 +310,13 @@ ARCHIVE: Final[dict[str, str]] = {
         "De snelheid volgens log1 is {:.2f} keer de bedoelde; tussen {:g} en {:g} keer "
         "lijkt het km/u onder een andere kop."
     ),
+    "{}: no row can be used, as fields are missing or the times jump back; the run is left out.": (
+        "{}: geen rij is te gebruiken, want er ontbreken velden of de tijd springt terug; de run "
+        "valt af."
+    ),
+    "column '{column}' {} in all runs, which is no wind; the tow goes on without wind.": (
+        "kolom '{column}' {} in alle runs, en dat is geen wind; de sleep gaat verder zonder wind."
+    ),
     "{}: rows do not have their fields, {:.3g} s in all; {}.": (
         "{}: rijen hebben niet al hun velden, samen {:.3g} s; {}."
     ),
