@@ -41,6 +41,11 @@ ARCHIVE: Final[dict[str, str]] = {
         "[[{table}]] is voor {what}, en dat staat in geen sleeplijst: is het een tikfout?"
     ),
     "column '{column}' is empty.": "kolom '{column}' is leeg.",
+    "column '{column}' is {cell} and the boat list says {listed:g}; one of the two cannot be "
+    "right.": (
+        "kolom '{column}' is {cell} en de lijst van sloepen zegt {listed:g}; een van de twee kan "
+        "niet kloppen."
+    ),
     "{names} must be there, here or in the boat list.": (
         "{names} moet er zijn, hier of in de lijst van sloepen."
     ),

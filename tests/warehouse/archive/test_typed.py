@@ -99,3 +99,25 @@ def test_a_clock_that_jumps_back_costs_its_run(archive: Archive, good_scan: Scan
     assert "jump back" in fault.message
     kept = good_scan.good[TOW].filter(good_scan.good[TOW]["run"] != 2)
     assert scan.good[TOW].equals(kept)
+
+
+@pytest.mark.parametrize(("typed", "column"), [("24,9", "lengte"), ("5,5", "breedte")])
+def test_a_length_that_the_boat_list_rules_out_costs_the_tow_and_is_named(
+    archive: Archive, typed: str, column: str
+) -> None:
+    """In feet, or another boat's: it was taken for a force that is off."""
+    archive.replace(TOWS, {"lengte": "8,00", "breedte": "2,20"}[column], typed)
+    scan = archive.scan()
+    (fault,) = scan.faults
+    assert (fault.tow_id, fault.reason_code) == (TOW, "bad_list_row")
+    assert f"'{column} [m]' is {typed} and the boat list says" in fault.message
+    assert TOW not in scan.good
+
+
+def test_a_weight_that_the_boat_list_rules_out_costs_its_cell(archive: Archive) -> None:
+    archive.replace(TOWS, ";1400;", ";14000;")
+    scan = archive.scan()
+    (fault,) = scan.faults
+    assert (fault.tow_id, fault.lost) == (TOW, "cell")
+    assert "14000 and the boat list says 1417" in fault.message
+    assert scan.index.tows.filter(tow_id=TOW)["weight_kg"].to_list() == [None]
