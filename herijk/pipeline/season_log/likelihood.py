@@ -66,7 +66,7 @@ class Patterns:
     def possible(self) -> IntArray:
         """How many of each a boat may have, (3,)."""
         gaps, tows = self.altered.shape[1], self.askew.shape[1]
-        return np.array([gaps, self.early, tows - self.early])
+        return np.array([gaps, self.early, len(_between(self.early, tows))])
 
     def prior(self, shares: FloatArray) -> FloatArray:
         """Ln prior of each pattern, given the shares of gaps with an alteration and tows askew."""
@@ -95,11 +95,22 @@ def patterns_of(
     ]
 
 
+def _between(early: int, tows: int) -> range:
+    """Later tows with another tow of the boat before and after.
+
+    Of a last or first one that is high nothing tells whether it was pulled askew or the boat was
+    altered; before steering was aided, that it was pulled askew is as likely.
+    """
+    return range(max(early, 1), tows - 1)
+
+
 def _patterns(tow: IntArray, season: FloatArray, early: int, settings: Settings) -> Patterns:
     tows = tow.shape[1]
     since_first = season[tow] - season[tow[:, :1]]
     gaps = tows - 1
-    chosen = [c for n in range(MOST_CHANGES + 1) for c in combinations(range(gaps + tows), n)]
+    askew_ones = (gaps + place for place in (*range(early), *_between(early, tows)))
+    places = (*range(gaps), *askew_ones)
+    chosen = [c for n in range(MOST_CHANGES + 1) for c in combinations(places, n)]
     there = np.array([np.isin(np.arange(gaps + tows), places) for places in chosen])
     altered, askew = there[:, :gaps], there[:, gaps:]
     after = np.tri(tows, gaps, -1)
