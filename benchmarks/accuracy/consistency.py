@@ -23,7 +23,6 @@ from herijk.pipeline.consistency import (
     type_outliers,
     variance_components,
 )
-from herijk.pipeline.consistency.repeats import ERAS
 from tests.pipeline.consistency_fleet import NO_RACES, POWER, fleet
 
 
@@ -73,7 +72,7 @@ def coverage(n):
 
 def outliers(n):
     print("types of 12 like boats in which any boat is called outside (5 % wanted), by quantity")
-    found = type_outliers(observe(*fleet(4, n, height_sd=0.02, b_cv=0.05)), ERAS)
+    found = type_outliers(observe(*fleet(4, n, height_sd=0.02, b_cv=0.05)))
     for quantity, group in found.group_by("quantity", maintain_order=True):
         any_outside = group.group_by("method").agg(pl.col("outside").any())["outside"]
         print(f"  {quantity[0]:16s} {share(any_outside.to_numpy())}")

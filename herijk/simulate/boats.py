@@ -106,9 +106,7 @@ class Boat:
         return low + self.power_share * (high - low)
 
 
-def draw_boat(
-    index: int, rng: np.random.Generator, shape: Shape = "bow wave", spread: float = 1.0
-) -> Boat:
+def draw_boat(index: int, rng: np.random.Generator, shape: Shape, spread: float) -> Boat:
     """Draw boat number `index` from the table of types.
 
     Args:

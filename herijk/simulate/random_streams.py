@@ -66,7 +66,7 @@ def stream(seed: int, subject: Subject, *address: int) -> np.random.Generator:
 class TowStreams:
     """The streams of one file of a tow, by component; each goes on from run to run."""
 
-    def __init__(self, seed: int, season: int, number: int, subject: Subject = Subject.TOW) -> None:
+    def __init__(self, seed: int, season: int, number: int, subject: Subject) -> None:
         self._address = (subject, season, number)
         self._seed = seed
         self._streams: dict[Component, np.random.Generator] = {}

@@ -5,13 +5,18 @@ import sys
 
 import pytest
 
+READING = "herijk.warehouse.intake"
 HEAVY = {"altair", "dagster", "dataframely", "duckdb", "numpy", "polars", "scipy", "sqlalchemy"}
+HEAVY |= {READING}
 NEEDED = {
     "herijk.cli.main": set(),
     "herijk.pipeline.method.definition": set(),
     "herijk.warehouse.queries.reports": {"duckdb", "numpy", "polars"},
+    "herijk.warehouse.queries.due": {"duckdb", "numpy", "polars"},
     # It computes the statistics of types over the tows that are asked for.
-    "herijk.warehouse.queries.audit": HEAVY - {"altair", "dagster", "sqlalchemy"},
+    "herijk.warehouse.queries.audit": HEAVY - {"altair", "dagster", "sqlalchemy", READING},
+    # It replays races.
+    "herijk.warehouse.editions.compare": {"dataframely", "numpy", "polars", "scipy"},
     # Columns of later, which an old edition lacks, are read from their declaration.
     "herijk.warehouse.editions.lineage": {"dataframely", "numpy", "polars"},
     # A rebuild that finds nothing new.

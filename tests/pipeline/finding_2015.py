@@ -16,7 +16,6 @@ from herijk.pipeline.consistency import (
     repeat_pairs,
     type_lines,
 )
-from herijk.pipeline.consistency.eras import ERAS
 from herijk.pipeline.method.definition import shipped_method
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.simulate import World, WorldSettings, simulate_world
@@ -84,4 +83,4 @@ def find(seed):
     observed = observe(curves, measured.tows, boats, run_points)
     lines, _ = type_lines(observed)
     shifts = era_shifts(repeat_pairs(curves, measured.tows), boats)
-    return Found(world, log_factors, lines, shifts, compared_tows(observed, ERAS))
+    return Found(world, log_factors, lines, shifts, compared_tows(observed))

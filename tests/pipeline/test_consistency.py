@@ -10,7 +10,6 @@ import pytest
 from scipy import optimize, stats
 
 from herijk.pipeline.consistency import (
-    ERAS,
     compared_tows,
     consistency_tables,
     hull_speed_statistics,
@@ -359,16 +358,16 @@ def with_run_points(tables, tow_id, factor):
 def test_a_boat_pulled_askew_lies_outside_and_is_named():
     for season, candidates in ((2012, ["askew"]), (2016, [])):
         tables = fleet(16, height_sd=0.01, seasons=(season,))
-        found = type_outliers(
-            observe(*with_run_points(tables, f"{season}-003", 1.15)), ERAS
-        ).filter("outside")
+        found = type_outliers(observe(*with_run_points(tables, f"{season}-003", 1.15))).filter(
+            "outside"
+        )
         assert found["tow_id"].to_list() == [f"{season}-003"]
         assert found["candidates"].to_list() == [candidates]
 
 
 @pytest.mark.parametrize("b_cv", [0.0, 0.05])
 def test_no_boat_is_called_outside_too_often(b_cv):
-    found = type_outliers(observe(*fleet(17, TRIALS, height_sd=0.02, b_cv=b_cv)), ERAS)
+    found = type_outliers(observe(*fleet(17, TRIALS, height_sd=0.02, b_cv=b_cv)))
     for _, rows in found.group_by("quantity"):
         alarms = rows.group_by("method").agg(pl.col("outside").any())
         assert alarms["outside"].mean() <= 0.05 + 4 * np.sqrt(0.05 * 0.95 / TRIALS)
@@ -533,7 +532,7 @@ def test_repeats_of_few_boats_do_not_narrow_a_line():
 def test_a_tow_far_too_slow_for_the_standard_speed_is_there_and_marked():
     speeds = np.full(8, 2.5)
     speeds[2] = 2.0
-    found = compared_tows(observe(*fleet(19, boats=8, speeds_m_s=speeds, noise=1e-4)), ERAS)
+    found = compared_tows(observe(*fleet(19, boats=8, speeds_m_s=speeds, noise=1e-4)))
     assert found.filter("beyond_curve")["tow_id"].to_list() == ["2016-002"]
     assert found.filter("slow")["tow_id"].to_list() == ["2016-002"]
     one = found.filter("slow").row(0, named=True)
@@ -549,14 +548,13 @@ def test_one_tow_pulled_askew_is_named_among_all_tows(three_seasons):
         observe(
             curves.with_columns(cw), tows, boats, points.with_columns(pl.col("cw_kg_m") * askew)
         ),
-        ERAS,
     )
     # The season that reads high does not put all its tows outside.
     assert found.filter("outside")["tow_id"].to_list() == ["2014-004"]
 
 
 def test_b_is_told_apart_from_hull_speed():
-    found = compared_tows(observe(*fleet(19, boats=12, noise=0.002)), ERAS)
+    found = compared_tows(observe(*fleet(19, boats=12, noise=0.002)))
     row = hull_speed_statistics(found).filter(tows="all", boat_type="all").row(0, named=True)
     hull = 1.25 * 8.2**0.5
     assert row["b_ratio_lo"] < 4.6 / hull < row["b_ratio_hi"]

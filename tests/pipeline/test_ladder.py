@@ -6,6 +6,7 @@ import pytest
 
 from herijk.pipeline.method.definition import parse_method, shipped_method
 from herijk.pipeline.recompute.recompute import recompute
+from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.pipeline.studies.ladder import START, STEP_ORDER, ladder
 from herijk.pipeline.studies.options import ALL_OPTIONS, CHOICES, beside_uncertainty, option_effects
 from herijk.simulate import WorldSettings
@@ -60,7 +61,8 @@ def test_one_changed_option_is_the_whole_change(world):
 
 @pytest.fixture(scope="module")
 def effects(world):
-    return option_effects(NEW, world.tows, world.blocks)
+    links = recompute(NEW, world.tows, world.blocks).tow_instruments
+    return option_effects(NEW, world.tows, world.blocks, links, RunCache())
 
 
 def test_the_effect_of_a_choice_is_that_of_choosing_it(world, effects):

@@ -6,6 +6,7 @@ import polars as pl
 import pytest
 from polars.testing import assert_frame_equal
 
+from herijk.pipeline.method.definition import RegisterRule
 from herijk.pipeline.register.register import draft_register, lines_of_all_days
 
 ON = dt.date(2016, 6, 1)
@@ -44,7 +45,7 @@ BOATS = pl.DataFrame(
 
 
 def register(rows=ROWS, on=ON):
-    return draft_register(*frames(rows), BOATS, on)
+    return draft_register(*frames(rows), BOATS, on, RegisterRule())
 
 
 def test_one_line_per_boat_and_crew_with_its_newest_sound_tow():
@@ -84,7 +85,7 @@ def test_a_tow_with_a_thwart_left_free_is_a_line_of_its_own():
 
 
 def test_on_each_day_the_same_line_counts_in_the_history_as_in_the_register():
-    history = lines_of_all_days(*frames(ROWS))
+    history = lines_of_all_days(*frames(ROWS), RegisterRule())
     for day in (dt.date(2009, 1, 1), dt.date(2012, 6, 1), dt.date(2014, 6, 1), ON):
         begun = history.filter(pl.col("tow_date") <= day)
         newest = begun.group_by("fsn_no", "rowers", "crew_class", maintain_order=True).last()

@@ -9,6 +9,7 @@ import pytest
 from herijk.pipeline.hull import hull_speed_m_s
 from herijk.pipeline.method.definition import parse_method, shipped_method
 from herijk.pipeline.recompute.recompute import recompute
+from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.pipeline.studies.tool_options import TICKS, option_curves, tick_effects
 from herijk.simulate import WorldSettings
 from tests.worlds import measure
@@ -23,7 +24,9 @@ def world():
 
 @pytest.fixture(scope="module")
 def curves(world):
-    return option_curves(shipped_method("rebased-2015"), world.tows, world.blocks)
+    method = shipped_method("rebased-2015")
+    links = recompute(method, world.tows, world.blocks).tow_instruments
+    return option_curves(method, world.tows, world.blocks, links, RunCache())
 
 
 def test_sixteen_combinations_at_each_speed_that_the_season_knows(world, curves):

@@ -6,7 +6,6 @@ waterplane times d more; one that trims has its centre of gravity moved. Sides a
 upright near the waterline, which holds for centimetres.
 """
 
-from collections.abc import Sequence
 from typing import Final
 
 import polars as pl
@@ -22,12 +21,11 @@ for pointed ends (inferred)."""
 ENDS: Final = ("freeboard_bow_m", "freeboard_stern_m")
 
 
-def by_freeboard(tows: pl.DataFrame, of_boat: Sequence[str] = ("fsn_no",)) -> pl.DataFrame:
+def by_freeboard(tows: pl.DataFrame) -> pl.DataFrame:
     """Change of weight and balance that freeboards tell of, since the boat's previous tow.
 
     Args:
-        tows: `tow_id`, `tow_date`, `altered`, sizes, `weight_kg` and freeboards.
-        of_boat: what names a boat.
+        tows: `tow_id`, `fsn_no`, `tow_date`, `altered`, sizes, `weight_kg` and freeboards.
 
     Returns:
         Per tow `weight_by_freeboard`: the change of weight by freeboards less that on the scale, as
@@ -37,22 +35,22 @@ def by_freeboard(tows: pl.DataFrame, of_boat: Sequence[str] = ("fsn_no",)) -> pl
     """
     length, weight = pl.col("waterline_length_m"), pl.col("weight_kg")
     waterplane = WATERPLANE * length * pl.col("beam_m")
-    sunk = -_change(pl.mean_horizontal(pl.col(ENDS[0]), pl.col(ENDS[1])), of_boat)
+    sunk = -_change(pl.mean_horizontal(pl.col(ENDS[0]), pl.col(ENDS[1])))
     both = pl.col(ENDS[0]).is_not_null() & pl.col(ENDS[1]).is_not_null()
-    bow_down = -_change(pl.col(ENDS[0]) - pl.col(ENDS[1]), of_boat) / length
+    bow_down = -_change(pl.col(ENDS[0]) - pl.col(ENDS[1])) / length
     moment = WATER_KG_M3 * waterplane * BALANCE * length**2 * bow_down
-    told = both & _before(both, of_boat) & ~pl.col("altered")
+    told = both & _before(both) & ~pl.col("altered")
     by_water = WATER_KG_M3 * waterplane * sunk
     return tows.sort("tow_date", "tow_id").select(
         "tow_id",
-        weight_by_freeboard=pl.when(told).then((by_water - _change(weight, of_boat)) / weight),
+        weight_by_freeboard=pl.when(told).then((by_water - _change(weight)) / weight),
         balance_changed=pl.when(told).then(moment / (weight * length)),
     )
 
 
-def _before(value: pl.Expr, of_boat: Sequence[str]) -> pl.Expr:
-    return value.shift(1).over(of_boat)
+def _before(value: pl.Expr) -> pl.Expr:
+    return value.shift(1).over("fsn_no")
 
 
-def _change(value: pl.Expr, of_boat: Sequence[str]) -> pl.Expr:
-    return value - _before(value, of_boat)
+def _change(value: pl.Expr) -> pl.Expr:
+    return value - _before(value)

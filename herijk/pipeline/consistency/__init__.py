@@ -78,14 +78,12 @@ def consistency_tables(
     boats: pl.DataFrame,
     run_points: pl.DataFrame,
     results: pl.DataFrame,
-    eras: tuple[Era, ...] = ERAS,
 ) -> dict[str, pl.DataFrame]:
     """The other tables of the consistency analysis, for all methods in `curves`.
 
     Args:
         curves, tows, boats, run_points: the warehouse's tables.
         results: races, as `tow_speed.raced` takes them.
-        eras: seasons with like instruments.
 
     Returns:
         The frames by the name of their table.
@@ -94,18 +92,18 @@ def consistency_tables(
     pairs = repeat_pairs(curves, tows)
     components = variance_components(observed)
     predicted = predicted_cw(observed)
-    compared = compared_tows(observed, eras)
+    compared = compared_tows(observed)
     return {
         "compared_tows": compared,
         "hull_speed": hull_speed_statistics(compared),
-        "type_outliers": type_outliers(observed, eras),
+        "type_outliers": type_outliers(observed),
         "type_homogeneity": type_homogeneity(observed),
         "pooled_curves": pooled_curves(observed),
         "speed_trend": speed_trend(observed),
         "slow_tows": slow_tows(observed, results),
         "repeat_pairs": pairs,
-        "era_shifts": era_shifts(pairs, boats, eras),
-        "reproducibility": told_apart(reproducibility(pairs, observed, eras), components),
+        "era_shifts": era_shifts(pairs, boats),
+        "reproducibility": told_apart(reproducibility(pairs, observed), components),
         "variance_components": components,
         "predicted_cw": predicted,
         "prediction_error": prediction_error(predicted),

@@ -11,13 +11,14 @@ import numpy as np
 import polars as pl
 
 from herijk.pipeline.arrays import FloatArray
-from herijk.pipeline.consistency.eras import Era, median_interval, season_ranges
+from herijk.pipeline.consistency.eras import median_interval, season_ranges
 from herijk.pipeline.consistency.lines import (
     ALL_TOWS,
     NEWEST,
     tow_outliers,
 )
 from herijk.pipeline.consistency.observed import (
+    ALL_TYPES,
     NORMAL_95,
     TOW,
     UNKNOWN_TYPE,
@@ -36,11 +37,10 @@ from herijk.tables.frames import frame_of
 ROWED_RATIO: Final = (0.60, 0.70)
 """Presentation 2015: "We roeien op ca. 60-70% van de rompsnelheid"."""
 
-ALL_TYPES: Final = "all"
 FEWEST_LENGTHS: Final = 6
 
 
-def compared_tows(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
+def compared_tows(observed: Observed) -> pl.DataFrame:
     """All tows with what is compared: A, B and Cw at the standard speed, and hull speed.
 
     Returns:
@@ -48,7 +48,7 @@ def compared_tows(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
         not below B, and what outliers say where the type has too few boats.
     """
     last = newest(observed).table.select("method", "tow_id", newest=pl.lit(value=True))
-    outliers = tow_outliers(observed, eras).select(
+    outliers = tow_outliers(observed).select(
         "method",
         "tow_id",
         pl.col("expected").exp().alias("expected_cw_kg_m"),

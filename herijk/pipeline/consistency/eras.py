@@ -14,13 +14,11 @@ import polars as pl
 import scipy
 
 from herijk.pipeline.arrays import FloatArray
-from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
+from herijk.pipeline.consistency.observed import ALL_TYPES, UNKNOWN_TYPE
 from herijk.tables.consistency import EraShifts
 from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of
 from herijk.tables.row import Row
-
-ALL_TYPES: Final = "all"
 
 
 @dataclass(frozen=True)
@@ -47,20 +45,18 @@ ERAS: Final = (
 """Worn logs, Doppler logs, dGPS (Sleepproef, R. Pot 2017); straight steering from 2014 on."""
 
 
-def season_ranges(seasons: Iterable[int], eras: Sequence[Era] = ERAS) -> dict[str, tuple[int, int]]:
+def season_ranges(seasons: Iterable[int]) -> dict[str, tuple[int, int]]:
     """First and last season of each era that has several of these seasons, but not all.
 
     They are named as people ask for them: 2012:2013.
     """
     known = sorted(set(seasons))
-    parts = [[s for s in known if era.first <= s <= era.last] for era in eras]
+    parts = [[s for s in known if era.first <= s <= era.last] for era in ERAS]
     ends = [(part[0], part[-1]) for part in parts if 1 < len(part) < len(known)]
     return {f"{first}:{last}": (first, last) for first, last in ends}
 
 
-def era_shifts(
-    pairs: pl.DataFrame, boats: pl.DataFrame, eras: tuple[Era, ...] = ERAS
-) -> dy.DataFrame[EraShifts]:
+def era_shifts(pairs: pl.DataFrame, boats: pl.DataFrame) -> dy.DataFrame[EraShifts]:
     """Shift of Cw from the tows of an era to the next tow of the same boat and crew, later.
 
     Per method, era but the last, and boat type; also over all types. The shift is a median with
@@ -70,7 +66,6 @@ def era_shifts(
     Args:
         pairs: rows of `repeat_pairs`.
         boats: `fsn_no` and `boat_type`, null without a type.
-        eras: seasons with like instruments, ascending.
 
     Returns:
         Rows of the table `era_shifts`; where nothing is claimed, `reason` says why.
@@ -84,12 +79,12 @@ def era_shifts(
     rows = []
     for method in pairs["method"].unique().sort():
         own = typed.filter(pl.col("method") == method)
-        ageing = _ageing(own, eras[-1])
+        ageing = _ageing(own, ERAS[-1])
         groups = {ALL_TYPES: own} | {t: own.filter(pl.col("boat_type") == t) for t in types}
         rows += [
             {"method": method, "boat_type": boat_type, "era": era.name} | _shift(group, era, ageing)
             for boat_type, group in groups.items()
-            for era in eras[:-1]
+            for era in ERAS[:-1]
         ]
     return frame_of(EraShifts, rows)
 

@@ -18,7 +18,7 @@ import scipy
 
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.consistency import mixed
-from herijk.pipeline.consistency.eras import Era, season_ranges
+from herijk.pipeline.consistency.eras import ERAS, season_ranges
 from herijk.pipeline.consistency.observed import (
     UNKNOWN_TYPE,
     Observed,
@@ -354,7 +354,7 @@ def _explaining(boats: Observed, name: str) -> FloatArray:
     return np.asarray(boats.table[name].to_numpy(), dtype=np.float64)
 
 
-def type_outliers(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
+def type_outliers(observed: Observed) -> pl.DataFrame:
     """The newest tow of every boat against its type, with what could explain a difference.
 
     Compared are ln Cw at the standard speed, after the line on ln displacement where that is known,
@@ -365,10 +365,10 @@ def type_outliers(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
         Rows of the table `type_outliers`: one per method, tow and quantity, `outside` or not;
         none of a type where the search for its variances did not come to rest.
     """
-    return _outliers(newest(observed), NEWEST, (LN_CW, BEND), eras)
+    return _outliers(newest(observed), NEWEST, (LN_CW, BEND))
 
 
-def tow_outliers(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
+def tow_outliers(observed: Observed) -> pl.DataFrame:
     """Every tow against the tows of the other boats of its type, by Cw at the standard speed.
 
     A season's own deviation is taken out, so that a tow stands out by itself and not because its
@@ -377,12 +377,10 @@ def tow_outliers(observed: Observed, eras: tuple[Era, ...]) -> pl.DataFrame:
     Returns:
         As `type_outliers`, for all tows.
     """
-    return _outliers(observed, TOW_BY_TOW, (LN_CW,), eras)
+    return _outliers(observed, TOW_BY_TOW, (LN_CW,))
 
 
-def _outliers(
-    tows: Observed, choice: Choice, names: tuple[str, ...], eras: tuple[Era, ...]
-) -> pl.DataFrame:
+def _outliers(tows: Observed, choice: Choice, names: tuple[str, ...]) -> pl.DataFrame:
     compared = [
         one
         for (_, boat_type), group in tows.groups("method", "boat_type")
@@ -391,7 +389,7 @@ def _outliers(
         if one is not None
     ]
     fits = mixed.fit_all([one.problem for one in compared], choice.components)
-    parts = [one.frame(fit, eras) for one, fit in zip(compared, fits, strict=True) if fit]
+    parts = [one.frame(fit) for one, fit in zip(compared, fits, strict=True) if fit]
     return _with_season(pl.concat([TypeOutliers.create_empty(), *parts]))
 
 
@@ -432,7 +430,7 @@ class _Compared:
         problem = Problem.of(design, y, variance)
         return cls(boats, quantity, problem)
 
-    def frame(self, fit: mixed.Fit, eras: tuple[Era, ...]) -> pl.DataFrame:
+    def frame(self, fit: mixed.Fit) -> pl.DataFrame:
         """Rows of the table `type_outliers`, without the candidate `season`."""
         y, left_out = self.problem.y, fit.leave_boats_out()
         deviation = left_out.error / np.sqrt(left_out.variance * left_out.scale)
@@ -450,16 +448,14 @@ class _Compared:
             pl.Series("expected", y - left_out.error),
             pl.Series("deviation_sd", deviation),
             pl.Series("outside", np.abs(deviation) > limit),
-            pl.Series("candidates", _candidates(self.boats, self.quantity, left_out.error, eras)),
+            pl.Series("candidates", _candidates(self.boats, self.quantity, left_out.error)),
         )
 
 
-def _candidates(
-    boats: Observed, quantity: str, error: FloatArray, eras: tuple[Era, ...]
-) -> list[list[str]]:
+def _candidates(boats: Observed, quantity: str, error: FloatArray) -> list[list[str]]:
     """What could explain a boat's place, as codes; the season is judged afterwards."""
     table = boats.table
-    unchecked = np.array([not _steering_checked(season, eras) for season in table["season"]])
+    unchecked = np.array([not _steering_checked(season) for season in table["season"]])
     high = (error > ASKEW_EXCESS) & (quantity == LN_CW)
     differ = table["flags"].list.contains("out_and_back_differ").to_numpy()
     checks = {
@@ -475,8 +471,8 @@ def _candidates(
     return [[code for code, applies in checks.items() if applies[i]] for i in range(table.height)]
 
 
-def _steering_checked(season: int, eras: tuple[Era, ...]) -> bool:
-    return any(era.steering_checked and era.first <= season <= era.last for era in eras)
+def _steering_checked(season: int) -> bool:
+    return any(era.steering_checked and era.first <= season <= era.last for era in ERAS)
 
 
 def _unusual(values: FloatArray) -> BoolArray:

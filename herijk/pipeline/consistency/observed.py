@@ -16,9 +16,7 @@ from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.curve import VALID_RATIO
 from herijk.tables.keys import LINE
 
-UNKNOWN_TYPE: Final = "unknown"
-
-
+UNKNOWN_TYPE, ALL_TYPES = "unknown", "all"
 FEWEST_POINTS: Final = 3
 NORMAL_95: Final = 1.959963984540054
 

@@ -12,7 +12,7 @@ import scipy
 
 from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.consistency.components import DISTINCT, WITHIN_TYPE
-from herijk.pipeline.consistency.eras import ERAS, Era
+from herijk.pipeline.consistency.eras import ERAS
 from herijk.pipeline.consistency.observed import Observed, bend_of_curve
 from herijk.tables.consistency import Reproducibility
 from herijk.tables.frames import frame_of
@@ -84,9 +84,7 @@ def _e_n() -> pl.Expr:
     return pl.when(known).then(pl.col("ln_ratio") / width).alias("e_n")
 
 
-def reproducibility(
-    pairs: pl.DataFrame, observed: Observed, eras: tuple[Era, ...] = ERAS
-) -> pl.DataFrame:
+def reproducibility(pairs: pl.DataFrame, observed: Observed) -> pl.DataFrame:
     """Standard deviation of one tow from repeat pairs, per method and era of the older tow.
 
     A pair differs by sqrt(2) times the deviation of one tow, so s^2 = sum(d^2) / (2 n), with a
@@ -96,12 +94,11 @@ def reproducibility(
     Args:
         pairs: rows of `repeat_pairs`.
         observed: all tows, for the scatter within a tow.
-        eras: seasons with like instruments.
 
     Returns:
         Rows of the table `reproducibility`, one per method and scope, also where it has no pairs.
     """
-    scopes = [(ALL_PAIRS, -9999, 9999), *((era.name, era.first, era.last) for era in eras)]
+    scopes = [(ALL_PAIRS, -9999, 9999), *((era.name, era.first, era.last) for era in ERAS)]
     rows = []
     for method in observed.table["method"].unique().sort():
         own = pairs.filter(pl.col("method") == method)

@@ -14,6 +14,7 @@ from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.consistency import mixed
 from herijk.pipeline.consistency.homogeneity import height_given_bend, shared_bend
 from herijk.pipeline.consistency.observed import (
+    ALL_TYPES,
     UNKNOWN_TYPE,
     Observed,
     counts_at,
@@ -55,7 +56,6 @@ TEXT_SAYS: Final = {
 """Who is wronged by a race faster or slower than the curve counts (Cw-kromme, R. Pot 2015, "Effect
 van verkeerde snelheid kiezen"); of a low tow raced slower the text says nothing."""
 
-ALL_TYPES: Final = "all"
 FEWEST_BOATS: Final = 4
 FEWEST_OTHERS: Final = 2
 ENDS: Final = ("", "_lo", "_hi")

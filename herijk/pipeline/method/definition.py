@@ -166,7 +166,10 @@ class Steps(_Options):
 
 
 class RegisterRule(_Options):
-    """How long a tow counts, and which of its estimates. It changes no curve."""
+    """How long a tow counts, and which of its estimates. It changes no curve.
+
+    A tow counts until the end of its last calendar year; five years: FSN notice, January 2013.
+    """
 
     estimate: Literal["as_measured", "best_estimate"] = "as_measured"
     valid_years: int = Field(default=5, ge=1, le=20)

@@ -111,7 +111,8 @@ def season_factors(plans: Sequence[tuple[Batch, Steps]], cache: RunCache) -> Sea
 
     None if not a single tow has a curve from which to estimate.
     """
-    before = evaluate([(batch, without_factor(steps)) for batch, steps in plans], cache)
+    as_read = [(batch, without_factor(steps)) for batch, steps in plans]
+    before = evaluate(as_read, cache, Instruments())
     if not any((np.isfinite(o.cw_at_declared) & o.batch.trusted).any() for o in before):
         return None
     return find_season_factors(before)
@@ -162,7 +163,7 @@ def _by_gps(batch: Batch, steps: tuple[Steps, ...]) -> Iterator[tuple[Batch, tup
 def evaluate(
     plans: Sequence[tuple[Batch, Steps]],
     cache: RunCache,
-    instruments: Instruments | None = None,
+    instruments: Instruments,
 ) -> list[Outcome]:
     """What the given steps make of each batch.
 
@@ -171,7 +172,6 @@ def evaluate(
         cache: what was found before of the same tows; added to.
         instruments: what was estimated, for steps that ask for it.
     """
-    instruments = instruments or Instruments()
     prepared = with_anemometer(
         [_prepare(batch, steps, cache, instruments.of_tows(batch, steps)) for batch, steps in plans]
     )
@@ -203,7 +203,7 @@ def _with_expected_wind(
 def evaluate_each(
     variants: Iterable[Sequence[tuple[Batch, Steps]]],
     cache: RunCache,
-    instruments: Instruments | None = None,
+    instruments: Instruments,
 ) -> Iterator[list[Outcome]]:
     """The same for variants of the steps of the same batches.
 

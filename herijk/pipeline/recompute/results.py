@@ -69,7 +69,7 @@ def as_tables(
     tows: pl.DataFrame,
     outcomes: Sequence[Outcome],
     estimated: SeasonFactors | None,
-    with_bands: bool = True,
+    with_bands: bool,
 ) -> Recomputed:
     """The tables of a method from its batches; tows are assessed when all curves are there."""
     name = pl.lit(method.name).alias("method")

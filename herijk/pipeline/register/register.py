@@ -32,9 +32,6 @@ CURVE_COLUMNS: Final = (
     "unseen_error_ratio",
 )
 CW_COLUMNS: Final = ("cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
-FIVE_YEARS: Final = RegisterRule()
-"""A tow counts until the end of the fifth calendar year after it (FSN notice, January 2013)."""
-
 DOUBTED: Final = "doubted"
 """Status of a line whose tows the rest of the archive rules out."""
 
@@ -69,7 +66,7 @@ def draft_register(
     tows: pl.DataFrame,
     boats: pl.DataFrame,
     on_date: dt.date,
-    rule: RegisterRule = FIVE_YEARS,
+    rule: RegisterRule,
     decisions: pl.DataFrame = NO_DECISIONS,
 ) -> pl.DataFrame:
     """One line per boat and crew under one method: the newest sound tow, valid or not.
@@ -123,7 +120,7 @@ def draft_register(
 def lines_of_all_days(
     curves: pl.DataFrame,
     tows: pl.DataFrame,
-    rule: RegisterRule = FIVE_YEARS,
+    rule: RegisterRule,
     decisions: pl.DataFrame = NO_DECISIONS,
 ) -> pl.DataFrame:
     """Every line that a register of one method had at some time.

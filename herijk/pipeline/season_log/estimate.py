@@ -10,7 +10,7 @@ from herijk.pipeline.arrays import FloatArray, IntArray
 from herijk.pipeline.choice import first_largest
 from herijk.pipeline.errors import BrokenPromiseError
 from herijk.pipeline.quantiles import t_quantile
-from herijk.pipeline.season_log.assumed import USUAL, Settings
+from herijk.pipeline.season_log.assumed import USUAL
 from herijk.pipeline.season_log.diagnosis import season_diagnosis, season_steps
 from herijk.pipeline.season_log.effects import AGEING, WAYS
 from herijk.pipeline.season_log.network import GROUP, Network
@@ -80,7 +80,7 @@ class SeasonFactors:
         return factor, lo, hi, ESTIMATED if (parts["source"] == ESTIMATED).any() else GPS
 
 
-def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> SeasonFactors:
+def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
     """Log factors of all seasons at once, from repeat tows and plain GPS.
 
     Args:
@@ -98,7 +98,6 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
             `others_calibration_ln`, ln factor of the log by other tows that are, null without, with
             `others_calibration_sd` (both may be absent);
             `temperature_known`, of the water.
-        settings: what is assumed beforehand.
 
     Returns:
         The factors. `source` is `estimated` with boats that link the season to others, `gps` with
@@ -114,27 +113,27 @@ def estimate_season_factors(tows: pl.DataFrame, settings: Settings = USUAL) -> S
     """
     _refuse_unknown(tows)
     network = Network.of(tows)
-    posterior = solve(Problem.of(network, settings))
+    posterior = solve(Problem.of(network, USUAL))
     problem = posterior.problem
     fit = posterior.fit
     ageing = int(np.flatnonzero([problem.unknowns[i].name == AGEING for i in fit.active])[0])
     ageing_per_year = float(posterior.mean[ageing])
     ageing_sd = float(np.sqrt(posterior.covariance[ageing, ageing]))
-    second = without_boats(network, (ageing_per_year, ageing_sd), settings)
+    second = without_boats(network, (ageing_per_year, ageing_sd), USUAL)
     along = _group_means(problem, posterior, network)
     covariance = along @ posterior.covariance @ along.T
     mode = _weakest_mode(covariance)
     change = _without_each_boat(network, posterior)
     instruments = instrument_errors(problem, posterior, network, change)
     best, weights = best_estimates(problem, posterior, network, instruments)
-    eras = len(settings.era_starts)
+    eras = len(USUAL.era_starts)
     *tow_log_sd, calibration_sd = np.exp(0.5 * fit.state.ln_variance[3 : 4 + eras]).tolist()
     diagnosis = season_diagnosis(problem, posterior, network)
     numbers = _numbers(network, posterior, along, mode, change)
     return SeasonFactors(
         factors=_described(numbers, network, second),
         covariance=covariance,
-        tow_log_sd=dict(zip(settings.era_starts, tow_log_sd, strict=True)),
+        tow_log_sd=dict(zip(USUAL.era_starts, tow_log_sd, strict=True)),
         calibration_sd=calibration_sd,
         tow_sd=float(np.exp(0.5 * fit.state.ln_variance[0])),
         ageing_per_year=ageing_per_year,

@@ -16,11 +16,12 @@ import polars as pl
 from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.pipeline.method.definition import Method, Steps
-from herijk.pipeline.recompute.recompute import batches, evaluate_each, instruments_of
+from herijk.pipeline.recompute.recompute import batches, evaluate_each
 from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.pipeline.recompute.season_factors import Instruments
 
 ALL_OPTIONS: Final = "all"
+NUMBERS: Final = ("cw_effect_ratio", "b_effect_ratio", "cw_sd_ratio", "b_sd_ratio")
 
 
 @dataclass(frozen=True)
@@ -58,8 +59,8 @@ def option_effects(
     method: Method,
     tows: pl.DataFrame,
     blocks: RunBlocks,
-    links: pl.DataFrame | None = None,
-    cache: RunCache | None = None,
+    links: pl.DataFrame,
+    cache: RunCache,
 ) -> pl.DataFrame:
     """Spread of Cw and B over all combinations of `CHOICES`, and the effect of each choice.
 
@@ -67,8 +68,7 @@ def option_effects(
         method: the method whose other options hold.
         tows: rows of the warehouse's `tows`.
         blocks: their runs.
-        links: log factors of the method, where they were estimated before: its rows of the table
-            `tow_instruments`.
+        links: the method's rows of the table `tow_instruments`; none where it estimates no log.
         cache: what was found before of the same tows; added to.
 
     Returns:
@@ -79,27 +79,26 @@ def option_effects(
     """
     pairs = batches([method], tows, blocks)
     choices = [c for c in CHOICES if any(c.applies(steps) for _, (steps,) in pairs)]
-    cache = RunCache() if cache is None else cache
-    instruments = (
-        instruments_of([(batch, steps) for batch, (steps,) in pairs], cache)
-        if links is None
-        else Instruments(links)
-    )
     corners = list(itertools.product((0, 1), repeat=len(choices)))
     sides = [{c: c.values[s] for c, s in zip(choices, corner, strict=True)} for corner in corners]
     variants = ([(b, chosen(steps, side)) for b, (steps,) in pairs] for side in sides)
     cw, slope = [], []
-    for outcomes in evaluate_each(variants, cache, instruments):
+    for outcomes in evaluate_each(variants, cache, Instruments(links)):
         cw.append(np.concatenate([np.log(o.cw_at_declared) for o in outcomes]))
         slope.append(np.concatenate([_ln_b(o.curves.b_m_s) for o in outcomes]))
     tow_ids = pl.concat([batch.tows["tow_id"] for batch, _ in pairs])
     ln_cw, ln_b, signs = np.stack(cw), np.stack(slope), 2 * np.array(corners) - 1
-    frames = [_frame(tow_ids, ALL_OPTIONS, None, None, _spread(ln_cw), _spread(ln_b))]
+    spread = {"cw_sd_ratio": ln_cw.std(axis=0), "b_sd_ratio": ln_b.std(axis=0)}
+    frames = [_frame(tow_ids, ALL_OPTIONS, spread)]
     for i, choice in enumerate(choices):
         can = np.concatenate([np.full(b.size, choice.applies(steps)) for b, (steps,) in pairs])
-        effects = _effect(ln_cw, signs[:, i]), _effect(ln_b, signs[:, i])
-        frames.append(_frame(tow_ids, choice.name, *effects).filter(can))
-    return pl.concat(frames).sort("tow_id", "option")
+        effect = {
+            "cw_effect_ratio": np.exp(_effect(ln_cw, signs[:, i])),
+            "b_effect_ratio": np.exp(_effect(ln_b, signs[:, i])),
+        }
+        frames.append(_frame(tow_ids, choice.name, effect).filter(can))
+    found = pl.concat(frames, how="diagonal").sort("tow_id", "option")
+    return found.select("tow_id", "option", *NUMBERS)
 
 
 def beside_uncertainty(effects: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
@@ -141,25 +140,7 @@ def _effect(ln_values: FloatArray, sign: FloatArray) -> FloatArray:
     return np.asarray((ln_values * sign[:, None]).mean(axis=0) * 2.0)
 
 
-def _spread(ln_values: FloatArray) -> FloatArray:
-    return np.asarray(ln_values.std(axis=0))
-
-
-def _frame(
-    tow_ids: pl.Series,
-    option: str,
-    cw_effect: FloatArray | None,
-    b_effect: FloatArray | None,
-    cw_sd: FloatArray | None = None,
-    b_sd: FloatArray | None = None,
-) -> pl.DataFrame:
-    nothing = np.full(len(tow_ids), np.nan)
-    columns = {
-        "cw_effect_ratio": nothing if cw_effect is None else np.exp(cw_effect),
-        "b_effect_ratio": nothing if b_effect is None else np.exp(b_effect),
-        "cw_sd_ratio": nothing if cw_sd is None else cw_sd,
-        "b_sd_ratio": nothing if b_sd is None else b_sd,
-    }
-    return pl.DataFrame({"tow_id": tow_ids, **columns}).select(
-        "tow_id", pl.lit(option).alias("option"), pl.col(list(columns)).fill_nan(None)
+def _frame(tow_ids: pl.Series, option: str, numbers: Mapping[str, FloatArray]) -> pl.DataFrame:
+    return pl.DataFrame({"tow_id": tow_ids, **numbers}).select(
+        "tow_id", pl.lit(option).alias("option"), pl.col(list(numbers)).fill_nan(None)
     )

@@ -15,7 +15,7 @@ import polars as pl
 from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.pipeline.method.definition import Method, Steps
 from herijk.pipeline.recompute.outcome import Outcome
-from herijk.pipeline.recompute.recompute import batches, evaluate_each, instruments_of
+from herijk.pipeline.recompute.recompute import batches, evaluate_each
 from herijk.pipeline.recompute.run_cache import RunCache
 from herijk.pipeline.recompute.season_factors import Instruments
 from herijk.pipeline.studies.options import ALL_OPTIONS, Choice, chosen
@@ -44,8 +44,8 @@ def option_curves(
     method: Method,
     tows: pl.DataFrame,
     blocks: RunBlocks,
-    links: pl.DataFrame | None = None,
-    cache: RunCache | None = None,
+    links: pl.DataFrame,
+    cache: RunCache,
 ) -> pl.DataFrame:
     """Curves of every tow under all combinations of `TICKS` and the speeds of its season.
 
@@ -59,12 +59,6 @@ def option_curves(
         combinations that give no curve are left out.
     """
     pairs = batches([method], tows, blocks)
-    cache = RunCache() if cache is None else cache
-    instruments = (
-        instruments_of([(batch, steps) for batch, (steps,) in pairs], cache)
-        if links is None
-        else Instruments(links)
-    )
     corners = itertools.product((False, True), repeat=len(TICKS))
     ticks = [dict(zip(TICKS, corner, strict=True)) for corner in corners]
     read = [(speed, batch, way) for batch, (steps,) in pairs for speed, way in speeds(steps)]
@@ -74,7 +68,9 @@ def option_curves(
             pl.lit(speed).alias("speed"),
             *(pl.lit(value).alias(name) for name, value in ticked.items()),
         )
-        for ticked, outcomes in zip(ticks, evaluate_each(variants, cache, instruments), strict=True)
+        for ticked, outcomes in zip(
+            ticks, evaluate_each(variants, cache, Instruments(links)), strict=True
+        )
         for (speed, *_), one in zip(read, outcomes, strict=True)
     ]
     key = ["tow_id", "speed", *TICKS]

@@ -31,7 +31,10 @@ from herijk.words import say
 
 DELIMITERS: Final = (";", "\t", ",", "|")
 HEADER_WITHIN: Final = 60
-"""Lines among which the header is looked for: above it may stand titles."""
+"""Lines among which the header is looked for: there may be titles above it."""
+
+LONGEST_QUOTE: Final = 40
+"""Letters of a cell that a sentence quotes."""
 
 NUMBER_PATTERN: Final = r"^[+-]?([0-9]+([.,][0-9]*)?|[.,][0-9]+)([eE][+-]?[0-9]+)?$"
 """An ordinary number with a decimal comma or point. No digit groups, no other scripts' digits."""
@@ -363,7 +366,7 @@ def parse_number(text: str) -> float:
     return number
 
 
-def shorten(text: str, longest: int = 40) -> str:
+def shorten(text: str) -> str:
     """Return the text, printable and cut to a length that fits in a sentence."""
-    printable = "".join(letter if letter.isprintable() else "?" for letter in text[:longest])
-    return printable + ("..." if len(text) > longest else "")
+    printable = "".join(letter if letter.isprintable() else "?" for letter in text[:LONGEST_QUOTE])
+    return printable + ("..." if len(text) > LONGEST_QUOTE else "")

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import polars as pl
+import pyarrow as pa  # type: ignore[import-untyped]
 
 from herijk.pipeline.method.definition import Method
 from herijk.tables.frames import dtypes
@@ -119,8 +120,20 @@ class Step:
             today: the day that is noted where something is seen for the first time.
             wanted: the outputs to write; None for all. Others stay as they are, and stale.
         """
+        try:
+            return self._make(store, methods, today or dt.date.today(), wanted)
+        finally:
+            pa.system_memory_pool().release_unused()  # the C library keeps what arrays took
+
+    def _make(
+        self,
+        store: Store,
+        methods: Sequence[Method],
+        today: dt.date,
+        wanted: Collection[str] | None,
+    ) -> "Made":
         made_from = self.made_from(store, methods)
-        inputs = Inputs(store, self.inputs, methods, today or dt.date.today())
+        inputs = Inputs(store, self.inputs, methods, today)
         try:
             made = dict(self.compute(inputs))
         except NothingSoundError as error:

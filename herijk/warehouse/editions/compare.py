@@ -30,9 +30,8 @@ from herijk.tables.studies import CorrectionSteps
 from herijk.warehouse.build.published import lines_in_time
 from herijk.warehouse.build.version import code_version
 from herijk.warehouse.editions.inputs import INPUTS_HASH, same_tows, tows_of_today, unchanged_tows
-from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.editions import CHANGES, MEASURED, Edition, read_edition
-from herijk.warehouse.store.store import Store
+from herijk.warehouse.store.store import Store, archive_root
 
 PRINTED: Final = "printed"
 PRINTED_AND_TOW: Final = "printed_and_tow"
@@ -125,7 +124,7 @@ def race_effects(store: Store, old: Edition, new: Edition, rules: RaceRules) -> 
     Raises:
         MissingKnowledgeError: the rules ask for what is not known.
     """
-    if intake.archive_root(store) is None:
+    if archive_root(store) is None:
         return None
     results = store.read("listed_races")
     if results.is_empty():
@@ -192,6 +191,8 @@ def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
         return NO_STEPS
     if old.method.content_hash == new.method.content_hash:
         return NO_STEPS
+    from herijk.warehouse.intake import seasons as intake  # noqa: PLC0415 - as below
+
     there = pl.col("tow_id").is_in(list(unchanged_tows(store, new)))
     tows, runs = tows_of_today(store).filter(there), intake.runs_with_windows(store).filter(there)
     if tows.is_empty():

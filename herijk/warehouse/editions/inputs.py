@@ -11,7 +11,6 @@ from typing import Final
 import polars as pl
 
 from herijk.pipeline.recompute.facts import samples_files
-from herijk.warehouse.intake.seasons import runs_with_windows, typed_tows
 from herijk.warehouse.store.editions import Edition
 from herijk.warehouse.store.store import Store, fingerprint, table_digest
 
@@ -46,7 +45,14 @@ def with_input_hashes(tows: pl.DataFrame, runs: pl.DataFrame) -> pl.DataFrame:
 
 def tows_of_today(store: Store) -> pl.DataFrame:
     """The tows of the warehouse as it is now, with their hashes."""
-    return with_input_hashes(typed_tows(store), runs_with_windows(store))
+    return with_input_hashes(*_tables_of_today(store).values())
+
+
+def _tables_of_today(store: Store) -> dict[str, pl.DataFrame]:
+    """Tables `tows` and `tow_runs` of the warehouse as it is now."""
+    from herijk.warehouse.intake import seasons as intake  # noqa: PLC0415 - all that reads archives
+
+    return {"tows": intake.typed_tows(store), "tow_runs": intake.runs_with_windows(store)}
 
 
 def inputs_digest(tows: pl.DataFrame) -> str:
@@ -72,8 +78,7 @@ def same_tows(was: Mapping[str, pl.DataFrame], now: Mapping[str, pl.DataFrame]) 
 
 def unchanged_tows(store: Store, edition: Edition) -> frozenset[str]:
     """Tows of an edition that the warehouse has with the same inputs."""
-    today = {"tows": typed_tows(store), "tow_runs": runs_with_windows(store)}
-    return same_tows(edition.tables, today)
+    return same_tows(edition.tables, _tables_of_today(store))
 
 
 def input_files(store: Store, tows: pl.DataFrame) -> pl.DataFrame:

@@ -17,9 +17,8 @@ from herijk.pipeline.register.register import LINE, valid_until
 from herijk.pipeline.steps.speed import log_factor
 from herijk.warehouse.archive import Fault, read_published_registers
 from herijk.warehouse.editions.inputs import INPUTS_HASH
-from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.editions import Edition
-from herijk.warehouse.store.store import Store, fingerprint
+from herijk.warehouse.store.store import Store, archive_root, fingerprint
 
 AS_PRINTED, REBASED = "printed", "printed_rebased"
 NO_VALID_CURVE: Final = "no_valid_curve"
@@ -92,7 +91,7 @@ def with_carried(
 
 
 def _registers(store: Store) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
-    root = intake.archive_root(store)
+    root = archive_root(store)
     if root is None:
         raise MissingKnowledgeError(
             "the archive is not where it was at the last rebuild; rebuild with --archive DIR"

@@ -27,7 +27,6 @@ from herijk.warehouse.editions.finding import Finding, line_name
 from herijk.warehouse.editions.inputs import LIST, NOT_INPUT, SAMPLES
 from herijk.warehouse.editions.notes import texts
 from herijk.warehouse.editions.remade import remade
-from herijk.warehouse.intake import seasons as intake
 from herijk.warehouse.store.editions import (
     ABOUT,
     CHANGES,
@@ -41,7 +40,7 @@ from herijk.warehouse.store.editions import (
     read_table,
 )
 from herijk.warehouse.store.storage import Place
-from herijk.warehouse.store.store import Store, table_digest
+from herijk.warehouse.store.store import Store, archive_root, table_digest
 from herijk.words import say
 
 MOST_CELLS: Final = 20
@@ -304,7 +303,7 @@ class _Archive:
     def of(cls, store: Store, hashes: FileHashes) -> "_Archive | None":
         """The archive where the last rebuild found it; None if it is no longer there."""
         known = store.made_from("about_archive") is not None
-        root = intake.archive_root(store) if known else None
+        root = archive_root(store) if known else None
         return None if root is None else cls(root, hashes)
 
     @cached_property

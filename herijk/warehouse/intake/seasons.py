@@ -221,19 +221,3 @@ def _fingerprint(store: Store, profiles: Profiles, season: int) -> str:
 def count_listed(store: Store, seasons: Collection[int]) -> int:
     """Tows listed in the given seasons."""
     return store.read("listed_tows").filter(pl.col("season").is_in(list(seasons))).height
-
-
-def archive_root(store: Store) -> Path | None:
-    """Where the archive was when the warehouse was last rebuilt; None if it is not there now.
-
-    Raises:
-        MissingKnowledgeError: nothing was ever rebuilt in this data folder.
-    """
-    if store.made_from("about_archive") is None:
-        raise MissingKnowledgeError(
-            "{} holds no warehouse; make it with: herijk rebuild --archive DIR --data {}",
-            store.root,
-            store.root,
-        )
-    root = Path(store.read("about_archive")["root"][0])
-    return root if root.is_dir() else None

@@ -5,6 +5,7 @@ collected, in `warehouse.queries.audit_types` also judged. How it is said in wor
 `cli.audit_text`.
 """
 
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -152,7 +153,7 @@ def _boat_audit(
         statistics_over=tows,
         methods=methods,
         boat=boat,
-        tows=[_tow(db, tow, methods) for tow in rows(db, _TOWS, fsn_no)],
+        tows=_tows(db, fsn_no, methods),
         in_type=_of_boat(db, "type_outliers", fsn_no, methods),
         type_size=type_facts(db, boat["boat_type"] or UNKNOWN_TYPE),
         pooled=_of_boat(db, "pooled_curves", fsn_no, methods),
@@ -172,40 +173,61 @@ def _of_boat(
     return rows(db, query, fsn_no, methods)
 
 
-def _tow(db: duckdb.DuckDBPyConnection, tow: Row, methods: list[str]) -> Row:
-    """A tow with its curves, the runs and uncertainty of each, and what each step did."""
-    tow_id = tow["tow_id"]
-    curves = rows(db, _CURVES, tow_id, methods)
+def _tows(db: duckdb.DuckDBPyConnection, fsn_no: str, methods: list[str]) -> list[Row]:
+    """A boat's tows with their curves, the runs and uncertainty of each, and what each step did."""
+    curves = rows(db, _CURVES, fsn_no, methods)
+    run_points = _by(rows(db, _RUN_POINTS, fsn_no, methods), "tow_id", "method")
+    budgets = _by(rows(db, _BUDGET, fsn_no, methods), "tow_id", "method")
     for curve in curves:
-        curve["run_points"] = rows(db, _RUN_POINTS, tow_id, curve["method"])
-        curve["budget"] = rows(db, _BUDGET, tow_id, curve["method"])
-    return tow | {"curves": curves, "steps": rows(db, _STEPS, tow_id, methods, methods)}
+        own = curve["tow_id"], curve["method"]
+        curve["run_points"] = run_points[own]
+        curve["budget"] = [{name: row[name] for name in _BUDGET_COLUMNS} for row in budgets[own]]
+    curves_of = _by(curves, "tow_id")
+    steps_of = _by(rows(db, _STEPS, fsn_no, methods, methods), "tow_id")
+    return [
+        tow | {"curves": curves_of[tow["tow_id"],], "steps": steps_of[tow["tow_id"],]}
+        for tow in rows(db, _TOWS, fsn_no)
+    ]
+
+
+def _by(found: list[Row], *names: str) -> defaultdict[tuple[object, ...], list[Row]]:
+    """Rows by the values of some columns, in their order."""
+    grouped = defaultdict(list)
+    for row in found:
+        grouped[tuple(row[name] for name in names)].append(row)
+    return grouped
 
 
 _TOWS = "SELECT * FROM tows WHERE fsn_no = ? ORDER BY tow_date, tow_id"
 
-_CURVES = """
+_OF_BOAT = "tow_id IN (SELECT tow_id FROM tows WHERE fsn_no = ?)"
+
+_CURVES = f"""
 SELECT c.*, m.interval FROM curves AS c JOIN methods AS m USING (method)
-WHERE tow_id = ? AND list_contains(?, method) ORDER BY method
-"""
+WHERE {_OF_BOAT} AND list_contains(?, method) ORDER BY method
+"""  # noqa: S608
 
-_RUN_POINTS = "SELECT * FROM run_points WHERE tow_id = ? AND method = ? ORDER BY run"
+_RUN_POINTS = f"""
+SELECT * FROM run_points WHERE {_OF_BOAT} AND list_contains(?, method) ORDER BY run
+"""  # noqa: S608
 
-_BUDGET = """
-SELECT component, shared, u_ratio, dof FROM uncertainty_budget
-WHERE tow_id = ? AND method = ? ORDER BY u_ratio DESC, component
-"""
+_BUDGET = f"""
+SELECT * FROM uncertainty_budget WHERE {_OF_BOAT} AND list_contains(?, method)
+ORDER BY u_ratio DESC, component
+"""  # noqa: S608
+
+_BUDGET_COLUMNS: Final = ("component", "shared", "u_ratio", "dof")
+
+_STEPS = f"""
+SELECT * FROM correction_steps
+WHERE {_OF_BOAT} AND list_contains(?, from_method) AND list_contains(?, to_method)
+ORDER BY from_method, to_method, position
+"""  # noqa: S608
 
 _OPTIONS = """
 SELECT o.* FROM option_effects AS o JOIN tows AS t USING (tow_id)
 WHERE t.fsn_no = ? AND list_contains(?, method) AND cw_effect_ratio IS NOT NULL
 ORDER BY tow_id, method, study, abs(ln(cw_effect_ratio)) DESC, option
-"""
-
-_STEPS = """
-SELECT * FROM correction_steps
-WHERE tow_id = ? AND list_contains(?, from_method) AND list_contains(?, to_method)
-ORDER BY from_method, to_method, position
 """
 
 _SET_ASIDE = r"""

@@ -15,7 +15,7 @@ import numpy as np
 import polars as pl
 
 from herijk.pipeline import consistency
-from herijk.pipeline.consistency import ERAS, Observed
+from herijk.pipeline.consistency import Observed
 from herijk.pipeline.consistency.eras import season_ranges
 from herijk.pipeline.consistency.observed import newest, of_trusted
 from herijk.pipeline.errors import MissingKnowledgeError
@@ -124,12 +124,12 @@ def _observed(db: duckdb.DuckDBPyConnection, methods: Sequence[str]) -> Observed
 
 def _over_all(db: duckdb.DuckDBPyConnection, observed: Observed) -> dict[str, pl.DataFrame]:
     lines = db.sql("SELECT * EXCLUDE tows FROM type_lines WHERE tows = 'all'").pl()
-    return {"type_consistency": lines, "type_outliers": consistency.tow_outliers(observed, ERAS)}
+    return {"type_consistency": lines, "type_outliers": consistency.tow_outliers(observed)}
 
 
 def _over(observed: Observed) -> dict[str, pl.DataFrame]:
     """Every statistic of a type, of these tows alone."""
-    compared = consistency.compared_tows(observed, ERAS)
+    compared = consistency.compared_tows(observed)
     predicted = consistency.predicted_cw(observed)
     lines, line_points = consistency.type_lines(observed)
     return {
@@ -138,7 +138,7 @@ def _over(observed: Observed) -> dict[str, pl.DataFrame]:
         "compared_tows": compared,
         "hull_speed": consistency.hull_speed_statistics(compared),
         "type_consistency": consistency.type_consistency(observed),
-        "type_outliers": consistency.type_outliers(observed, ERAS),
+        "type_outliers": consistency.type_outliers(observed),
         "type_homogeneity": consistency.type_homogeneity(observed),
         "pooled_curves": consistency.pooled_curves(observed),
         "speed_trend": consistency.speed_trend(observed),

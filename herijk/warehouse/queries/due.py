@@ -9,7 +9,6 @@ from typing import Final
 
 from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.tables.row import Row
-from herijk.warehouse.queries.as_of import lay_over
 from herijk.warehouse.store.database import is_simulated, open_results, rows
 from herijk.warehouse.store.store import Store
 
@@ -53,6 +52,8 @@ def due_report(store: Store, method: str, as_of: dt.date | None = None) -> DueRe
     """
     with open_results(store.database) as db:
         if as_of is not None:
+            from herijk.warehouse.queries.as_of import lay_over  # noqa: PLC0415 - much, and seldom needed
+
             lay_over(db, store, as_of)
         lines = rows(db, _LINES, method)
         choice = [row for row in rows(db, RETOW_CHOICE) if row["method"] == method]

@@ -53,12 +53,15 @@ def build_database(path: Path, tables: Mapping[str, pl.DataFrame]) -> None:
             connection.execute("SET threads = 1")
             connection.execute(f"ATTACH {_quoted(str(beside))} AS w (STORAGE_VERSION '{STORAGE}')")
             connection.execute("USE w")
-            connection.execute("BEGIN")  # one commit: a hundred comments would each sync the disk
             for name, frame in sorted(tables.items()):
+                # Each comment by itself would sync the disk; all tables at once would fill memory.
+                connection.execute("BEGIN")
                 connection.register("frame", frame.to_arrow())
                 connection.execute(f'CREATE TABLE "{name}" AS SELECT * FROM frame')  # noqa: S608
                 connection.unregister("frame")
                 _describe(connection, name)
+                connection.execute("COMMIT")
+            connection.execute("BEGIN")
             _add_views(connection, tables)
             bare = _bare_lists(tables)
             for name, column in bare:

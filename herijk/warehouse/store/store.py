@@ -20,15 +20,13 @@ import polars as pl
 import pyarrow as pa  # type: ignore[import-untyped]
 import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
-from herijk.pipeline.errors import BrokenPromiseError
+from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.warehouse.store.machine_faults import is_machine_fault
 from herijk.warehouse.store.storage import Locations, Place, place, read_locations, written_whole
 
 FINGERPRINT_KEY: Final = "herijk.fingerprint"
 _FOOTER_BYTES: Final = 1 << 16
 """Enough for most footers, so that one request brings them."""
-
-TABLE_FORM: Final = {"compression": "zstd"}
 
 
 def fingerprint(*parts: object) -> str:
@@ -135,6 +133,22 @@ class Store:
         self.table_path(table, partition).unlink(missing_ok=True)
 
 
+def archive_root(store: Store) -> Path | None:
+    """Where the archive was when the warehouse was last rebuilt; None if it is not there now.
+
+    Raises:
+        MissingKnowledgeError: nothing was ever rebuilt in this data folder.
+    """
+    if store.made_from("about_archive") is None:
+        raise MissingKnowledgeError(
+            "{} holds no warehouse; make it with: herijk rebuild --archive DIR --data {}",
+            store.root,
+            store.root,
+        )
+    root = Path(store.read("about_archive")["root"][0])
+    return root if root.is_dir() else None
+
+
 class DamagedFileError(BrokenPromiseError):
     """A file that Herijk wrote cannot be read any more; it can be made again."""
 
@@ -213,11 +227,17 @@ def write_parquet(
     frame: pl.DataFrame,
     path: Place,
     metadata: dict[str, str] | None = None,
-    form: Mapping[str, object] = TABLE_FORM,
+    form: Mapping[str, object] | None = None,
 ) -> None:
     """Writes a frame as Parquet, whole or not at all, with a checksum of every page.
 
     Without checksums a changed byte can be read as another number.
+
+    Args:
+        frame: what to write.
+        path: where.
+        metadata: what else the file says.
+        form: how it is packed, in the words of Arrow; None for the form of tables.
     """
     table = frame.to_arrow()
     with written_whole(path) as target:
@@ -225,8 +245,19 @@ def write_parquet(
             pa.Table.from_arrays(table.columns, schema=_tight_schema(table, metadata)),
             target,
             write_page_checksum=True,
-            **form,
+            **(_table_form(table.schema) if form is None else form),
         )
+
+
+def _table_form(schema: pa.Schema) -> dict[str, object]:
+    """How a table is packed: most measured numbers occur once, so a dictionary of them is waste."""
+    numbers = [column.name for column in schema if pa.types.is_floating(column.type)]
+    others = [column.name for column in schema if column.name not in numbers]
+    return {
+        "compression": "zstd",
+        "use_byte_stream_split": numbers,
+        "use_dictionary": others,
+    }
 
 
 def _tight_schema(table: pa.Table, metadata: dict[str, str] | None) -> pa.Schema:
