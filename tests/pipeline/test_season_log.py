@@ -427,6 +427,8 @@ def test_a_search_that_does_not_come_to_rest_says_so_of_every_season(limit, monk
     assert set(found.diagnosis["verdict"]) == {"not settled"}
     assert found.diagnosis["alarm"].all()
     assert set(found.steps["cause"]) == {"not told"}
+    assert set(found.factors["source"]) == {"not settled"}
+    assert found.of_season(2010, found.factors["log"][0])[3] == "not settled"
     assert set(found.diagnosis["season"]) == set(tows["season"])
 
 
