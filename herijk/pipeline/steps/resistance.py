@@ -92,18 +92,22 @@ class OverWindow:
     Attributes:
         whole: over all of it.
         first, last: over its two ends.
+        averaged: the blocks by the seconds that their wind is averaged over, as far as asked for.
     """
 
     whole: WindowSums
     first: WindowSums
     last: WindowSums
+    averaged: dict[int, RunBlocks] = field(repr=False)
     _with_averaged_wind: dict[int, WindowSums] = field(default_factory=dict, repr=False)
 
     @classmethod
-    def of(cls, blocks: RunBlocks, window: BoolArray) -> "OverWindow":
-        """Of blocks that count, shape (runs, seconds)."""
+    def of(
+        cls, blocks: RunBlocks, window: BoolArray, averaged: dict[int, RunBlocks] | None = None
+    ) -> "OverWindow":
+        """Of blocks that count, shape (runs, seconds); `averaged` may serve other windows too."""
         first, last = (WindowSums(blocks, end) for end in end_masks(window))
-        return cls(WindowSums(blocks, window), first, last)
+        return cls(WindowSums(blocks, window), first, last, {} if averaged is None else averaged)
 
     def with_wind(self, averaging_s: int) -> WindowSums:
         """Over all of it, with the air terms of a wind that is averaged over some seconds."""
@@ -111,8 +115,9 @@ class OverWindow:
         if not averaging_s:
             return self.whole
         if averaging_s not in known:
-            blocks = with_averaged_wind(self.whole.blocks, averaging_s)
-            known[averaging_s] = WindowSums(blocks, self.whole.window)
+            if averaging_s not in self.averaged:
+                self.averaged[averaging_s] = with_averaged_wind(self.whole.blocks, averaging_s)
+            known[averaging_s] = WindowSums(self.averaged[averaging_s], self.whole.window)
         return known[averaging_s]
 
 
