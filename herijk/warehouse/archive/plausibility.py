@@ -183,6 +183,8 @@ def judge_samples(samples: pl.DataFrame, tow: Row, runs: pl.DataFrame) -> Judged
     whole, copies = _without_copies(whole, tow)
     faults += copies
     _check_left(whole, selected, faults)
+    samples, whole, found, no_wind = _without_no_wind(samples, whole, found, tow)
+    faults += no_wind
     _check_mix_ups(whole, tow)
     _check_log2_and_gps(whole, tow)
     _check_speed_unit(whole, tow)
@@ -216,6 +218,44 @@ def _without_copies(runs: list[_Run], tow: Row) -> tuple[list[_Run], list[Fault]
             )
             faults.append(_cost("samples_listed_twice", message, run, tow, 0, "run", run.seconds))
     return sorted(kept.values(), key=lambda run: run.number), faults
+
+
+def _without_no_wind(
+    samples: pl.DataFrame, runs: list[_Run], found: list[_Run], tow: Row
+) -> tuple[pl.DataFrame, list[_Run], list[_Run], list[Fault]]:
+    """Samples and runs without the wind, where in every run it is empty or one impossible value.
+
+    So people write that there was no anemometer: 999 throughout. The tow goes on as one without.
+    """
+    if "wind_speed" not in runs[0].channels or not all(map(_is_no_wind, runs)):
+        return samples, runs, found, []
+    message = say(
+        "column '{column}' {} in all runs, which is no wind; the tow goes on without wind.",
+        _seen(runs[0].channels["wind_speed"][0]),
+        column=_WORDS["wind_speed"],
+    )
+    seconds = sum(run.seconds for run in runs)
+    fault = replace(
+        _cost("implausible_value", message, runs[0], tow, 0, "seconds", seconds), run=None
+    )
+    calm = {run.number: _without_wind(run) for run in found}
+    columns = [_CHANNELS[key] for key in _WIND]
+    nothing = samples.with_columns(pl.lit(None, pl.Float32).alias(name) for name in columns)
+    return nothing, [calm[run.number] for run in runs], list(calm.values()), [fault]
+
+
+_WIND: Final = ("wind_speed", "wind_angle")
+
+
+def _is_no_wind(run: _Run) -> bool:
+    values = run.channels["wind_speed"]
+    if np.isnan(values).all():
+        return True
+    return bool((values == values[0]).all() and not _within(values[0], WIND_SPEED_M_S))
+
+
+def _without_wind(run: _Run) -> _Run:
+    return replace(run, channels={k: v for k, v in run.channels.items() if k not in _WIND})
 
 
 def _off_target(run: _Run) -> tuple[float, int]:
@@ -598,6 +638,12 @@ def _of_rows(run: _Run, tow: Row, mask: BoolArray, lost: Lost) -> Fault:
         seconds,
         _what_then(lost),
     )
+    if mask.all():
+        message = say(
+            "{}: no row can be used, as fields are missing or the times jump back; the run is left "
+            "out.",
+            run.name,
+        )
     return _cost("broken_row", message, run, tow, int(mask.argmax()), lost, seconds)
 
 
