@@ -295,6 +295,11 @@ ARCHIVE: Final[dict[str, str]] = {
     "{} lasts {:.2f} s at {} samples per second, {:.2f} s too short; {}.": (
         "{} duurt {:.2f} s bij {} metingen per seconde, {:.2f} s te kort; {}."
     ),
+    "All runs last {:.0f} s or longer at {} samples per second, and {:.0f} s is planned: is the "
+    "rate {:.0f}? Nothing is left out.": (
+        "Alle runs duren {:.0f} s of langer bij {} metingen per seconde, en {:.0f} s is de "
+        "bedoeling: is de meetfrequentie {:.0f}? Er valt niets af."
+    ),
     "up to {:g} s may be missing, so the run is left out": (
         "er mag hoogstens {:g} s ontbreken, dus de run valt af"
     ),

@@ -28,6 +28,8 @@ from herijk.words import say
 
 SHORTEST_RUN_RATIO: Final = 0.99
 """Of what is planned."""
+LONGEST_RUN_RATIO: Final = 1.8
+"""Of what is planned: a rate that is wrong is usually half of the right one (inferred)."""
 LEFT_OUT_S: Final = 2.0
 """Longest time in all of a run in which what the run point needs may be left out; as long again for
 log 2 and the GPS each."""
@@ -180,6 +182,7 @@ def judge_samples(samples: pl.DataFrame, tow: Row, runs: pl.DataFrame) -> Judged
         faults += short
         if not any(fault.lost == "run" for fault in short):
             whole.append(run)
+    faults += _long(whole, tow)
     whole, copies = _without_copies(whole, tow)
     faults += copies
     _check_left(whole, selected, faults)
@@ -388,6 +391,25 @@ def _short(run: _Run, tow: Row) -> list[Fault]:
         _what_then(lost),
     )
     return [_cost("short_run", message, run, tow, 0, lost, missing_s)]
+
+
+def _long(runs: list[_Run], tow: Row) -> list[Fault]:
+    """A fault that costs nothing where all runs last far longer than planned, as by a wrong rate.
+
+    Windows, averages and what accelerated the boat are then taken over another time than is meant.
+    """
+    if not runs or any(run.seconds < LONGEST_RUN_RATIO * run.planned_s for run in runs):
+        return []
+    first = runs[0]
+    message = say(
+        "All runs last {:.0f} s or longer at {} samples per second, and {:.0f} s is planned: is "
+        "the rate {:.0f}? Nothing is left out.",
+        min(run.seconds for run in runs),
+        first.rate_hz,
+        first.planned_s,
+        first.rate_hz * first.seconds / first.planned_s,
+    )
+    return [replace(_cost("long_run", message, first, tow, 0, "seconds", 0.0), run=None)]
 
 
 def _what_then(lost: Lost) -> str:

@@ -121,3 +121,14 @@ def test_a_weight_that_the_boat_list_rules_out_costs_its_cell(archive: Archive) 
     assert (fault.tow_id, fault.lost) == (TOW, "cell")
     assert "14000 and the boat list says 1417" in fault.message
     assert scan.index.tows.filter(tow_id=TOW)["weight_kg"].to_list() == [None]
+
+
+def test_a_rate_at_which_all_runs_last_twice_as_long_is_asked_about(
+    archive: Archive, good_scan: Scan
+) -> None:
+    archive.replace(TOWS, ";nee;20;", ";nee;10;")
+    scan = archive.scan()
+    (fault,) = scan.faults
+    assert (fault.tow_id, fault.reason_code, fault.lost_s) == (TOW, "long_run", 0.0)
+    assert "is the rate 20?" in fault.message
+    assert scan.good[TOW].equals(good_scan.good[TOW])
