@@ -84,7 +84,8 @@ def _speed(step: Speed) -> str:
 def _calibration(step: Calibration) -> str:
     without = [] if step.without_gps == "no_curve" else [tell("Without GPS: as estimated.")]
     stream = [] if step.stream == "none" else [tell("A drift of the stream is taken off.")]
-    return " ".join([_calibration_rule(step), *stream, *without])
+    late = [] if step.delay == "none" else [tell("What the GPS is late is taken off.")]
+    return " ".join([_calibration_rule(step), *late, *stream, *without])
 
 
 def _calibration_rule(step: Calibration) -> str:

@@ -109,6 +109,8 @@ def _wrong(checks: Sequence[Check], say: Say) -> Iterable[str]:
 def _moved(changes: ChangeSummary, say: Say) -> Iterable[str]:
     if changes.first:
         yield say("report_first")
+    if changes.seasons_gone:
+        yield f"{say('report_seasons_gone')}: {', '.join(map(str, changes.seasons_gone))}"
     counted = (("report_tows", changes.tows), ("report_set_aside", changes.set_aside))
     for title, rows in counted:
         by_what: dict[str, int] = {}

@@ -93,6 +93,15 @@ class Tows(TowFacts):
     """Tows accepted into the warehouse, one row each."""
 
     runs_set_aside = dy.Int32(description="runs to be used that are in quarantine", min=0)
+    gps_step_m_s = column.number(
+        "m/s", "step in which its GPS is written; empty without GPS", nullable=True, min=0
+    )
+    force_step_n = column.number(
+        "N",
+        "step in which its force is written",
+        nullable=True,
+        min=0,
+    )
     doubts = dy.List(
         dy.String(),
         description="checks by which all other tows rule this one out: it needs a look, and takes "

@@ -13,7 +13,8 @@ class LogFactors(dy.Schema):
     lo = column.number("1", "lower end of the 95 % interval; empty where unknown", nullable=True)
     hi = column.number("1", "upper end", nullable=True)
     source = column.text(
-        "none, prescribed, estimated or gps", regex="^(none|prescribed|estimated|gps)$"
+        "none, prescribed, estimated, gps, or not settled (the search did not come to rest)",
+        regex="^(none|prescribed|estimated|gps|not settled)$",
     )
 
 
@@ -24,7 +25,9 @@ class SeasonLinks(dy.Schema):
     season = column.season(primary_key=True)
     part = dy.Int32(primary_key=True, description="part of the season, until a log was replaced")
     log = column.text("speed source", primary_key=True)
-    source = column.text("estimated, gps, other log (by the ratio of both), or not determined")
+    source = column.text(
+        "estimated, gps, other log (by the ratio of both), not determined, or not settled"
+    )
     n_tows = dy.Int32(description="tows of the season", min=0)
     n_links = dy.Int32(description="boats also towed in other seasons", min=0)
     component = dy.Int32(description="connected part of the network; 0 has the dGPS anchor", min=0)
@@ -100,7 +103,7 @@ class SeasonDiagnosis(dy.Schema):
     alarm = dy.Bool(
         description="a person should look: fault, cannot be told, alarm, or not settled"
     )
-    first_tow = column.text("likeliest first tow after a log changed", nullable=True)
+    first_tow = column.text("likeliest first tow after a log or all boats changed", nullable=True)
     rests_on = column.text("what tells")
     confused_with = column.text("what else would explain it, likeliest first", nullable=True)
 

@@ -41,6 +41,11 @@ ARCHIVE: Final[dict[str, str]] = {
         "[[{table}]] is voor {what}, en dat staat in geen sleeplijst: is het een tikfout?"
     ),
     "column '{column}' is empty.": "kolom '{column}' is leeg.",
+    "column '{column}' is {cell} and the boat list says {listed:g}; one of the two cannot be "
+    "right.": (
+        "kolom '{column}' is {cell} en de lijst van sloepen zegt {listed:g}; een van de twee kan "
+        "niet kloppen."
+    ),
     "{names} must be there, here or in the boat list.": (
         "{names} moet er zijn, hier of in de lijst van sloepen."
     ),
@@ -290,6 +295,11 @@ ARCHIVE: Final[dict[str, str]] = {
     "{} lasts {:.2f} s at {} samples per second, {:.2f} s too short; {}.": (
         "{} duurt {:.2f} s bij {} metingen per seconde, {:.2f} s te kort; {}."
     ),
+    "All runs last {:.0f} s or longer at {} samples per second, and {:.0f} s is planned: is the "
+    "rate {:.0f}? Nothing is left out.": (
+        "Alle runs duren {:.0f} s of langer bij {} metingen per seconde, en {:.0f} s is de "
+        "bedoeling: is de meetfrequentie {:.0f}? Er valt niets af."
+    ),
     "up to {:g} s may be missing, so the run is left out": (
         "er mag hoogstens {:g} s ontbreken, dus de run valt af"
     ),
@@ -309,6 +319,13 @@ ARCHIVE: Final[dict[str, str]] = {
     "looks like km/h under another header.": (
         "De snelheid volgens log1 is {:.2f} keer de bedoelde; tussen {:g} en {:g} keer "
         "lijkt het km/u onder een andere kop."
+    ),
+    "{}: no row can be used, as fields are missing or the times jump back; the run is left out.": (
+        "{}: geen rij is te gebruiken, want er ontbreken velden of de tijd springt terug; de run "
+        "valt af."
+    ),
+    "column '{column}' {} in all runs, which is no wind; the tow goes on without wind.": (
+        "kolom '{column}' {} in alle runs, en dat is geen wind; de sleep gaat verder zonder wind."
     ),
     "{}: rows do not have their fields, {:.3g} s in all; {}.": (
         "{}: rijen hebben niet al hun velden, samen {:.3g} s; {}."

@@ -83,6 +83,10 @@ CODES: Final[dict[str, tuple[str, str]]] = {
     "code.force_unusual": ("kracht valt op", "force stands out"),
     "code.wind_unusual": ("wind valt op", "wind stands out"),
     "code.speed_unusual": ("snelheid valt op", "speed stands out"),
+    "code.gps_late": ("gps loopt achter", "GPS late"),
+    "code.coarse_readings": ("grove stappen in de aflezing", "coarse readings"),
+    "code.ways_differ": ("heen en terug verschillen heel het seizoen", "ways differ all season"),
+    "code.rises_with_wind": ("Cw stijgt met de wind", "Cw rises with the wind"),
     "code.days_differ": ("dagen verschillen", "days differ"),
     "code.season_in_doubt": ("instrument van het seizoen onzeker", "season's instrument in doubt"),
     "code.correction_not_used": (

@@ -775,6 +775,7 @@ COMMAND: Final[dict[str, str]] = {
     "one factor per file from GPS speed / log speed, as many runs out as back.": (
         "een factor per bestand uit GPS-snelheid / logsnelheid, evenveel runs heen als terug."
     ),
+    "What the GPS is late is taken off.": "Wat de gps achterloopt gaat eraf.",
     "A drift of the stream is taken off.": "Een verloop van de stroom gaat eraf.",
     "Without GPS: as estimated.": "Zonder GPS: zoals geschat.",
     "one factor per season, the mean of its tows' GPS speed / log speed.": (

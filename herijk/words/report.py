@@ -15,6 +15,10 @@ REPORT: Final[dict[str, tuple[str, str]]] = {
     ),
     "report_lines": ("Veranderde regels van de concepten", "Changed lines of the drafts"),
     "report_tows": ("Sleepproeven", "Tows"),
+    "report_seasons_gone": (
+        "Seizoenen waarvan geen sleepproef meer in het archief staat",
+        "Seasons of which the archive has no tow any more",
+    ),
     "report_set_aside": ("Terzijde gelegd", "Set aside"),
     "report_factors": ("Logfactoren die verschoven", "Log factors that moved"),
     "report_checks": ("Controles", "Checks"),

@@ -22,10 +22,14 @@ from herijk.assets.notify import Message, Notifier, notifier_of
 from herijk.assets.report import Done, failed_checks, tell
 from herijk.assets.resources import Setup
 from herijk.assets.settings import read_settings
-from herijk.dashboards.report import Check
+from herijk.dashboards.report import Check, headlines
 from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.warehouse.queries.change_report import change_report, reported_database
-from herijk.words.catalogue import both
+from herijk.warehouse.queries.change_report import (
+    change_report,
+    reported_database,
+    summary_of,
+)
+from herijk.words.catalogue import both, speaker
 from tests.assets.test_rebuild import samples_files, spoil, tow_of
 from tests.conftest import METHODS
 from tests.warehouse.test_faults import Archive, cells, line_of, times
@@ -88,6 +92,18 @@ def test_a_log_factor_that_shows_the_same_did_not_move(bench):
         db.execute("UPDATE log_factors SET factor = factor * 1.00004 WHERE season = 2009")
         db.execute("UPDATE log_factors SET factor = factor * 1.00006 WHERE season = 2014")
     assert change_report(bench.store).factors["season"].unique().to_list() == [2014]
+
+
+def test_a_season_that_disappeared_from_the_archive_is_named_first(bench):
+    shutil.copyfile(bench.store.database, bench.data / "other.duckdb")
+    reported_database(bench.store).unlink()
+    (bench.data / "other.duckdb").rename(reported_database(bench.store))
+    with duckdb.connect(reported_database(bench.store)) as db:
+        db.execute("UPDATE tows SET season = 2002 WHERE tow_id = (SELECT min(tow_id) FROM tows)")
+    summary = summary_of(change_report(bench.store))
+    assert summary.seasons_gone == [2002]
+    first = headlines(summary, [], speaker("en"))[0]
+    assert first == "Seasons of which the archive has no tow any more: 2002"
 
 
 def test_a_second_rebuild_reports_that_nothing_changed(bench):

@@ -73,6 +73,8 @@ def _tow(boat: int, season: int) -> dict[str, Any]:
         "crew_weight_kg": 760.0,
         "altered": False,
         "runs_set_aside": 0,
+        "gps_step_m_s": 0.01,
+        "force_step_n": 1.0,
         "freeboard_lowest_m": 0.40,
         "freeboard_bow_m": 0.80,
         "freeboard_stern_m": 0.60,
@@ -119,6 +121,8 @@ def _run_points(tow_id: str) -> list[dict[str, Any]]:
             "fitted_cw_kg_m": 40.2,
             "log2_ratio": 0.997,
             "gps_ratio": 1.005,
+            "gps_delay_s": 1,
+            "wind_m_s": 3.0 + 0.1 * int(tow_id[-4:] == "2014"),
             "ends_ratio": 0.8,
             "used": True,
         }
@@ -165,6 +169,8 @@ CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
     **{code: ("tows", SUBJECT, {"unusual": [code]}, 1, 0, set()) for code in UNUSUAL},
     "season_in_doubt": ("diagnosis", SUBJECT, {"alarm": True}, 1, 0, set()),
     "correction_not_used": ("run_points", SUBJECT, {"speed_factor": 1.0}, 0.02, 0, set()),
+    "gps_late": ("run_points", SUBJECT, {"gps_delay_s": 3}, 3, 1, set()),
+    "coarse_readings": ("tows", SUBJECT, {"gps_step_m_s": 0.1}, 0.1 / V0, 0.01, set()),
     "lamps_burned": ("tows", SUBJECT, {"lamp_ratio": 0.3}, 0.3, 0.2, set()),
     "load_cell_off": ("tows", SUBJECT, {"load_cell_ratio": 0.985}, -0.015, -0.01, set()),
     "weight_by_freeboard": (
@@ -240,7 +246,10 @@ CASES: dict[str, tuple[str, str, dict[str, Any], float, float, set[str]]] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("check", [c for c in CODES if c not in ("log_not_linear", "days_differ")])
+OF_MANY_TOWS = ("log_not_linear", "days_differ", "ways_differ", "rises_with_wind")
+
+
+@pytest.mark.parametrize("check", [c for c in CODES if c not in OF_MANY_TOWS])
 def test_a_check_fires_with_what_was_observed_and_its_limit(sound: World, check: str) -> None:
     table, tow_id, changes, observed, limit, others = CASES[check]
     spoiled = sound.changed(table, tow_id, **changes)
@@ -383,12 +392,41 @@ def test_an_estimated_season_is_in_doubt_where_all_seasons_with_dgps_are(sound: 
     assert "season_in_doubt" in doubted.flagged(SUBJECT) & doubted.flagged(LATER)
 
 
-def test_seasons_from_a_change_of_all_boats_on_are_in_doubt(sound: World) -> None:
-    """Another load cell looks the same."""
-    for tow, doubted in ((SUBJECT, {SUBJECT, LATER}), (LATER, {LATER})):
-        world = sound.changed("diagnosis", tow, instrument="fleet_step", verdict="fault")
-        found = world.assessed().filter("flagged", check="season_in_doubt")["tow_id"]
-        assert doubted == {*found} & {SUBJECT, LATER}
+@pytest.mark.parametrize("tow", [SUBJECT, LATER])
+def test_all_seasons_are_in_doubt_where_all_boats_changed(sound: World, tow: str) -> None:
+    """Another load cell looks the same, and nobody can say which of the two was right."""
+    world = sound.changed("diagnosis", tow, instrument="fleet_step", verdict="fault")
+    found = world.assessed().filter("flagged", check="season_in_doubt")["tow_id"]
+    assert {SUBJECT, LATER} <= {*found}
+
+
+@pytest.mark.parametrize(("apart", "flagged"), [(0.03, 5), (0.0, 0), (0.004, 0)])
+def test_a_season_whose_ways_differ_is_found(sound: World, apart: float, flagged: int) -> None:
+    """As with a load cell that warms up during each tow; ways differ by half a per cent here."""
+    scatter = 0.005 * (pl.col("tow_id").str.slice(4, 1).cast(pl.Float64) * 2.4).sin()
+    off = scatter + pl.when(pl.col("tow_id").str.ends_with("2014")).then(apart).otherwise(0.0)
+    cw = pl.col("fitted_cw_kg_m") * pl.when(back).then(1.0).otherwise(off.exp())
+    world = replace(sound, run_points=sound.run_points.with_columns(cw_kg_m=cw))
+    found = world.assessed().filter("flagged", check="ways_differ")["tow_id"]
+    assert len(found) == flagged
+    assert found.str.ends_with("2014").all()
+
+
+@pytest.mark.parametrize(("per_square", "flagged"), [(0.002, 5), (0.0, 0), (0.0003, 0)])
+def test_tows_in_more_wind_that_come_out_higher_are_found(
+    sound: World, per_square: float, flagged: int
+) -> None:
+    """Waves; the tows of 2014 had a wind of 4 m/s, those of 2012 none."""
+    of_2014, boat = pl.col("tow_id").str.ends_with("2014"), pl.col("tow_id").str.slice(4, 1)
+    felt = (pl.col("speed_m_s") ** 2 + pl.when(of_2014).then(16.0).otherwise(0.0)).sqrt()
+    points = sound.run_points.with_columns(wind_m_s=felt)
+    scatter = 0.002 * (boat.cast(pl.Float64) * 2.4).sin()
+    ln = pl.when(of_2014).then(scatter + 16.0 * per_square).otherwise(0.0)
+    curves = sound.curves.with_columns(cw_kg_m=CW * ln.exp())
+    world = replace(sound, run_points=points, curves=curves)
+    found = world.assessed().filter("flagged", check="rises_with_wind")["tow_id"]
+    assert len(found) == flagged
+    assert found.str.ends_with("2014").all()
 
 
 @pytest.mark.parametrize(("power", "tows", "flagged"), [(0.1, 5, 5), (0.01, 5, 0), (0.1, 1, 0)])

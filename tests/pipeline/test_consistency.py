@@ -715,13 +715,17 @@ SEARCHED = {
 
 @pytest.mark.parametrize(
     ("module", "limit", "unsettled"),
-    [(reml, "MAX_ITERATIONS", {*SEARCHED}), (mixed, "MAX_STEPS", {"variance_components"})],
+    [
+        (reml, "MAX_ITERATIONS", {*SEARCHED}),
+        (reml, "MAX_HALVINGS", {*SEARCHED}),
+        (mixed, "MAX_STEPS", {"variance_components"}),
+    ],
 )
 def test_a_search_that_does_not_come_to_rest_says_so(module, limit, unsettled, monkeypatch):
     """No number that rests on it is given, and every table fits its schema."""
     tables = fleet(41, boats=24, seasons=(2014, 2016, 2018), height_sd=0.03, season_sd=0.02)
     settled = everything(*tables)
-    monkeypatch.setattr(module, limit, 1)
+    monkeypatch.setattr(module, limit, 0)
     forced = {name: conform(name, frame) for name, frame in everything(*tables).items()}
     for name, number in SEARCHED.items():
         assert settled[name].filter(reason="not_settled").is_empty()

@@ -387,11 +387,26 @@ def test_a_log_replaced_is_not_taken_for_many_tows_pulled_askew(seed):
     assert tow["day"].to_list() == [8.0]
 
 
-def test_a_tow_pulled_askew_is_told_from_an_altered_boat():
+def test_a_load_cell_that_is_another_for_good_is_found_from_its_day_on():
+    world, first = simulate(CLEAN, 3), 8.0
+    place = pl.col("tow_id").rank().over("season") - 1.0
+    world = replace(world, tows=world.tows.with_columns(day=place))
+    after = (pl.col("season") > 2016) | ((pl.col("season") == 2016) & (pl.col("day") >= first))
+    moved = world.tows.with_columns(pl.col("ln_cw") + pl.when(after).then(0.06).otherwise(0.0))
+    step = estimate_season_factors(moved).diagnosis.filter(instrument="fleet_step", season=2016)
+    found = step.row(0, named=True)
+    assert found["verdict"] == "fault"
+    assert found["estimate"] == pytest.approx(0.06, abs=0.006)
+    assert moved.filter(tow_id=found["first_tow"])["day"].item() == pytest.approx(first, abs=2.0)
+
+
+@pytest.mark.parametrize("seasons", [range(2009, ANCHORED_FROM), range(ANCHORED_FROM, 2019)])
+def test_a_tow_pulled_askew_is_told_from_an_altered_boat(seasons):
     world, whole = estimated(CLEAN, 1001)
     straight = world.tows
-    early = straight.filter(pl.col("season") < ANCHORED_FROM)["tow_id"]
-    hit = pl.col("tow_id").is_in(early.gather_every(6).to_list())
+    last = pl.col("season") == pl.col("season").max().over("fsn_no")
+    of_these = straight.filter(pl.col("season").is_in(list(seasons)), ~last)["tow_id"]
+    hit = pl.col("tow_id").is_in(of_these.gather_every(6).to_list())
     found = estimate_season_factors(
         straight.with_columns(pl.col("ln_cw") + pl.when(hit).then(0.08).otherwise(0.0))
     )
@@ -412,6 +427,8 @@ def test_a_search_that_does_not_come_to_rest_says_so_of_every_season(limit, monk
     assert set(found.diagnosis["verdict"]) == {"not settled"}
     assert found.diagnosis["alarm"].all()
     assert set(found.steps["cause"]) == {"not told"}
+    assert set(found.factors["source"]) == {"not settled"}
+    assert found.of_season(2010, found.factors["log"][0])[3] == "not settled"
     assert set(found.diagnosis["season"]) == set(tows["season"])
 
 

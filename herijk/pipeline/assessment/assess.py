@@ -12,13 +12,13 @@ from typing import Final
 
 import numpy as np
 import polars as pl
-import scipy
 
 from herijk.pipeline.assessment.checks import CHECKS, CODES, DOUBTS, UNUSUAL
-from herijk.pipeline.assessment.days import CHANCE, days_apart
+from herijk.pipeline.assessment.days import days_apart
 from herijk.pipeline.assessment.freeboard import by_freeboard
 from herijk.pipeline.assessment.mean_shift import MOSTLY, NORMAL_MAD
 from herijk.pipeline.assessment.season_levels import season_levels
+from herijk.pipeline.assessment.shared import rising_with_wind, unless_chance, ways_apart
 from herijk.pipeline.channels import SECOND_FILE_OFFSET
 from herijk.pipeline.choice import SAME_SHARE
 from herijk.pipeline.season_log.diagnosis import FAULT
@@ -78,6 +78,9 @@ def assess(
         _of_doubts(tows),
         _of_correction(run_points, tows),
         _of_sizes(tows),
+        _of_steps(curves, tows),
+        ways_apart(curves, run_points),
+        rising_with_wind(curves, run_points),
         _of_freeboards(tows),
         _of_season(curves, tows, diagnosis),
         days_apart(curves, tows),
@@ -225,6 +228,7 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
             large_scatter_in_run=(pl.col("cw_sd") / cw.abs()).max(),
             off_target_speed=(on_target / on_target.median() - 1).abs().max(),
             ends_differ=pl.col("ends_ratio").max(),
+            gps_late=pl.col("gps_delay_s").max(),
             range_not_covered=shortfall,
             declared_speed_not_covered=beyond,
         )
@@ -251,15 +255,9 @@ def _of_logs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
         .group_by("season")
         .agg(slope.mean(), sd=slope.std() / pl.len().sqrt(), n=pl.len())
         .filter(pl.col("n") >= FEWEST_SLOPES)
-        .with_columns(pl.col("n").map_batches(_chance, return_dtype=pl.Float64()).alias("chance"))
+        .with_columns(log_not_linear=unless_chance(slope, pl.col("sd"), pl.col("n") - 1.0))
     )
-    sure = pl.when(slope.abs() > pl.col("chance") * pl.col("sd")).then(slope).otherwise(0.0)
-    return curves.join(seasons, on="season").select("tow_id", log_not_linear=sure)
-
-
-def _chance(tows: pl.Series) -> pl.Series:
-    """Standard errors that the mean of so many tows exceeds in a share `CHANCE` (Student)."""
-    return pl.Series(scipy.special.stdtrit(tows.to_numpy() - 1.0, 1.0 - CHANCE / 2.0))
+    return curves.join(seasons, on="season").select("tow_id", "log_not_linear")
 
 
 def _of_doubts(tows: pl.DataFrame) -> pl.DataFrame:
@@ -319,6 +317,24 @@ def _of_sizes(tows: pl.DataFrame) -> pl.DataFrame:
     )
 
 
+def _of_steps(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
+    """What it does to Cw if readings were cut off at their step and not rounded: half a step.
+
+    Of a GPS only where it calibrates the tow.
+    """
+    steps = [c for c in ("gps_step_m_s", "force_step_n") if c in tows.columns]
+    if not steps:
+        return pl.DataFrame(schema={"tow_id": pl.String()})
+    speed = pl.col("declared_speed_m_s")
+    by_gps = pl.when(pl.col("calibration_factor").is_not_null()).then(
+        2 * pl.col("gps_step_m_s") / 2 / speed
+    )
+    by_force = pl.col("force_step_n") / 2 / (pl.col("cw_kg_m") * speed**2)
+    return curves.join(tows.select("tow_id", *steps), on="tow_id").select(
+        "tow_id", coarse_readings=pl.max_horizontal(by_gps, by_force)
+    )
+
+
 def _off_boat_list() -> pl.Expr:
     """How far length or breadth is from the boat list; of a boat ever altered that says nothing."""
     off = [
@@ -372,7 +388,8 @@ def _of_season(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame
 
     An estimated log factor rests on the seasons with dGPS: where all of these are in doubt, so is
     its season. All boats do not change at once: where they seem to, another load cell may have come
-    on board, and that season and all later ones are in doubt. Log factors do not rest on that.
+    on board, and nobody can say which of the two was right: all seasons are in doubt. Log factors
+    do not rest on that.
     """
     seasons = diagnosis.group_by("season").agg(season_in_doubt=pl.col("alarm").any())
     doubted = seasons.filter("season_in_doubt")["season"]
@@ -381,9 +398,8 @@ def _of_season(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame
         estimated = diagnosis.filter(verdict="estimated")["season"]
         rests = pl.col("season").is_in(estimated.implode())
         seasons = seasons.with_columns(pl.col("season_in_doubt") | rests)
-    first_step = diagnosis.filter(instrument=FLEET, verdict=FAULT)["season"].min()
-    after_step = (pl.col("season") >= pl.lit(first_step, pl.Int32)).fill_null(False)
-    seasons = seasons.with_columns(pl.col("season_in_doubt") | after_step)
+    steps = diagnosis.filter(instrument=FLEET, verdict=FAULT)
+    seasons = seasons.with_columns(pl.col("season_in_doubt") | pl.lit(not steps.is_empty()))
     return tows.join(seasons, on="season").select("tow_id", "season_in_doubt")
 
 

@@ -189,10 +189,47 @@ CHECKS: Final = (
         "season_in_doubt",
         "whether an instrument of the season, or of every season with dGPS that its log factor "
         "rests on, has a fault or may have one (1) or not (0): the table `season_diagnosis` says "
-        "which; so it is from a season on in which all boats seem to have changed at once",
+        "which; so it is of all seasons where all boats seem to have changed at once",
         "1",
         "inferred: a fault that the season log finds, or cannot rule out, concerns all its tows",
         highest=0.0,
+    ),
+    Check(
+        "gps_late",
+        "by how much the GPS of that season follows its log, which the method takes off",
+        "s",
+        "inferred: a receiver of one fix a second is up to 1 s late; presentation 24-01-2015, "
+        "'Meten van de sleepsnelheid': strongly delayed",
+        highest=1.0,
+        severity="note",
+    ),
+    Check(
+        "coarse_readings",
+        "what it does to Cw if GPS or force were cut off at the steps in which they are written, "
+        "and not rounded: half a step",
+        "1",
+        "inferred: half of the 2 % by which tows of a boat agree (presentation 24-01-2015)",
+        highest=0.01,
+    ),
+    Check(
+        "ways_differ",
+        "Cw out / Cw back, each over the curve, less 1, as the tows of that season share it, or 0 "
+        "where chance makes as much of it in one of 1000 seasons: a load cell that drifts during a "
+        "tow, or a wind that is taken off wrongly; made with 4 tows or more",
+        "1",
+        "inferred: half of the 2 % by which tows of a boat agree (presentation 24-01-2015)",
+        lowest=-0.01,
+        highest=0.01,
+    ),
+    Check(
+        "rises_with_wind",
+        "what the wind of that day adds to Cw after the wind correction, by the square of the wind "
+        "among the tows of each boat, or 0 where chance makes as much of it in one of 1000 "
+        "archives: waves, or a wrong drag coefficient",
+        "1",
+        "inferred: half of the 2 % by which tows of a boat agree (presentation 24-01-2015)",
+        lowest=-0.01,
+        highest=0.01,
     ),
     Check(
         "days_differ",

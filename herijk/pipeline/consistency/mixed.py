@@ -335,8 +335,7 @@ def _most_likely(stack: Stack, free: tuple[str, ...]) -> tuple[FloatArray, BoolA
         idle &= variances[:, place] > 0.0
         loose[idle, place] = False
         if idle.any():
-            variances[idle], there, settled[idle] = search(
-                stack.take(idle), loose[idle], without[idle]
-            )
+            variances[idle], there, still = search(stack.take(idle), loose[idle], without[idle])
+            settled[idle] &= still
             least[idle] = there.deviance
     return variances, settled

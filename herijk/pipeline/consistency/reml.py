@@ -415,7 +415,7 @@ def search(
         The variances, (m, 3), the likelihood there, and whether each search came to rest, (m,).
     """
     at, now = start.copy(), stack.likelihood(start)
-    busy = np.arange(len(at))
+    busy, settled = np.arange(len(at)), np.ones(len(at), bool)
     for _ in range(MAX_ITERATIONS):
         loose = free & ((at > 0.0) | (now.gradient < 0.0))
         busy = busy[loose[busy].any(axis=1)]
@@ -423,10 +423,11 @@ def search(
             break
         last = at[busy]
         step = _newton(now.gradient[busy], now.information[busy], loose[busy], stack.unit[busy])
-        _descend(stack, busy, step, at, now)
+        settled[_descend(stack, busy, step, at, now)] = False
         size = np.maximum(at[busy], NEGLIGIBLE * stack.unit[busy, None])
         busy = busy[(np.abs(at[busy] - last) > tolerance * size).any(axis=1)]
-    return at, now, ~np.isin(np.arange(len(at)), busy)
+    settled[busy] = False
+    return at, now, settled
 
 
 def _newton(
@@ -448,10 +449,13 @@ def _newton(
 
 def _descend(
     stack: Stack, rows: IntArray, step: FloatArray, at: FloatArray, now: Likelihood
-) -> None:
+) -> IntArray:
     """Steps some rows of `at`, cut off at 0; each is halved until the deviance does not rise.
 
     A rise by no more than rounding counts as none.
+
+    Returns:
+        The rows that stay where they were, as it rises however short the step is.
     """
     limit = now.deviance[rows] + ROUNDING * np.maximum(1.0, np.abs(now.deviance[rows]))
     for _ in range(MAX_HALVINGS):
@@ -463,3 +467,4 @@ def _descend(
         rows, step, limit = rows[~lower], 0.5 * step[~lower], limit[~lower]
         if not len(rows):
             break
+    return rows

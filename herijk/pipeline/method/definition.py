@@ -61,6 +61,9 @@ class Calibration(_Options):
     stream: Literal["none", "drifting"] = Field(
         default="none", exclude_if=lambda value: value == "none"
     )
+    delay: Literal["none", "estimated"] = Field(
+        default="none", exclude_if=lambda value: value == "none"
+    )
 
 
 class Window(_Options):

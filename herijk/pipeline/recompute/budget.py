@@ -213,13 +213,13 @@ def curve_points(outcomes: Sequence[Outcome], bounds: pl.DataFrame) -> pl.DataFr
     )
 
 
-def cw_bounds(held: pl.DataFrame) -> pl.DataFrame:
+def cw_bounds(components: pl.DataFrame) -> pl.DataFrame:
     """Bounds of the 95 % interval of Cw relative to Cw, per tow and speed of a budget.
 
     Returns:
         `tow_id, speed_ratio, lo_ratio, hi_ratio`.
     """
-    return combine(held).select("tow_id", "speed_ratio", "lo_ratio", "hi_ratio")
+    return combine(components).select("tow_id", "speed_ratio", "lo_ratio", "hi_ratio")
 
 
 def _budget_of_batch(

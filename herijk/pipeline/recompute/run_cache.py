@@ -5,12 +5,14 @@ belong here that do not depend on a log factor or on other tows. They are found 
 together, however a method parts them.
 """
 
+from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any, TypeAlias, TypeVar
 
 from herijk.pipeline.arrays import IntArray
 from herijk.pipeline.blocks.batch import Batch
+from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.pipeline.method.definition import Steps, Window
 from herijk.pipeline.steps.resistance import OverWindow, RunMeans, run_means
 from herijk.pipeline.steps.window import Windows, choose_windows
@@ -29,6 +31,7 @@ class RunCache:
 
     _found: dict[tuple[Tows, Options], Any] = field(default_factory=dict)
     _sums: dict[tuple[Tows, Options], OverWindow] = field(default_factory=dict)
+    _averaged: dict[Tows, dict[int, RunBlocks]] = field(default_factory=lambda: defaultdict(dict))
 
     def windows(self, batch: Batch, steps: Steps) -> Windows:
         """The window of every run of a batch."""
@@ -38,13 +41,15 @@ class RunCache:
     def means(self, batch: Batch, steps: Steps) -> RunMeans:
         """The means of every run of a batch over its window: coefficients are not in them yet."""
         of_wind = (steps.wind.model, steps.wind.averaging_s)
-        options = (_rule(steps), steps.speed.source, steps.run_point, *of_wind)
+        late = steps.calibration.delay
+        options = (_rule(steps), steps.speed.source, steps.run_point, late, *of_wind)
         return self._of_part(batch, options, lambda of: run_means(of, self._over(of, steps), steps))
 
     def _over(self, batch: Batch, steps: Steps) -> OverWindow:
         key = batch.key, (_rule(steps),)
         if key not in self._sums:
-            self._sums[key] = OverWindow.of(batch.blocks, self.windows(batch, steps).mask)
+            window = self.windows(batch, steps).mask
+            self._sums[key] = OverWindow.of(batch.blocks, window, self._averaged[batch.key])
         return self._sums[key]
 
     def _of_part(self, batch: Batch, options: Options, find: Callable[[Batch], T]) -> T:
@@ -64,11 +69,12 @@ class RunCache:
     def let_go(self) -> None:
         """Lets go of the blocks, which take most of the memory; what was found of them stays."""
         self._sums.clear()
+        self._averaged.clear()
 
     def clear(self) -> None:
         """Forgets everything."""
         self._found.clear()
-        self._sums.clear()
+        self.let_go()
 
 
 def _rule(steps: Steps) -> Window:

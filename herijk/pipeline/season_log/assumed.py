@@ -38,9 +38,11 @@ class Settings:
             report.
         changed_share: of gaps between two tows with such an alteration, as `changed_gaps` gaps
             would show it.
+        askew_excess: of ln Cw of a tow that was pulled askew: 5 to 10 % (presentation 2015).
+        askew_share: of tows before `straight_from`, as `askew_tows` tows would show it.
         straight_from: first season in which steering straight was aided (presentation 2015).
-        askew_excess: of ln Cw of a tow that was pulled askew before: 5 to 10 % (presentation 2015).
-        askew_share: of these tows, as `askew_tows` tows would show it.
+        aided_share: of tows since then, as many tows would show it. A boat that is loaded too
+            heavily looks the same.
         gps_season_sd: a season's mean ln(GPS / log) that does not average out.
         gps_noise_m_s: sideways noise of a fix; the length of a noisy velocity is too long by up to
             noise^2 / (2 v^2). How much of that a receiver smooths away is unknown: half is taken.
@@ -76,10 +78,11 @@ class Settings:
     changed_bend_sd: float = 0.02
     changed_share: float = 0.08
     changed_gaps: float = 20.0
-    straight_from: int = 2014
     askew_excess: Prior = Prior(0.075, 0.03)
     askew_share: float = 0.05
     askew_tows: float = 20.0
+    straight_from: int = 2014
+    aided_share: float = 0.02
     gps_season_sd: float = 0.003
     gps_noise_m_s: float = 0.1
     force_sd: float = 0.002
@@ -92,6 +95,16 @@ class Settings:
     trend_fault_sd: float = 0.02
     change_fault_sd: float = 0.04
     reference_year: int = 2014
+
+    @property
+    def change_shares(self) -> tuple[float, ...]:
+        """Shares of gaps with an alteration, and of tows pulled askew, before and since."""
+        return self.changed_share, self.askew_share, self.aided_share
+
+    @property
+    def change_counts(self) -> tuple[float, ...]:
+        """What each of them counts for: gaps and tows."""
+        return self.changed_gaps, self.askew_tows, self.askew_tows
 
 
 USUAL: Final = Settings()

@@ -13,6 +13,7 @@ import scipy
 from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.season_log.effects import (
     CHANGE,
+    FLEET,
     FORCE,
     GPS_SCALE,
     LOG,
@@ -230,12 +231,13 @@ def _first_tow(
     faults: list[int],
     chance: float | None,
 ) -> str | None:
-    """First tow after the likeliest change of a log, where there seems to be one."""
-    changes = [f for f in faults if problem.unknowns[problem.faults[f]].name == CHANGE]
+    """First tow after the likeliest change of a log or of all boats, if there seems to be one."""
+    changes = [f for f in faults if problem.unknowns[problem.faults[f]].name in (CHANGE, FLEET)]
     if not changes or chance is None or chance < POSSIBLE:
         return None
-    likeliest = problem.faults[max(changes, key=lambda f: float(posterior.chance[f]))]
-    after = network.tows.filter(pl.Series(problem.unknowns[likeliest].share > 0))
+    likeliest = max(changes, key=lambda f: float(posterior.chance[f]))
+    change = problem.unknowns[problem.faults[likeliest]]
+    after = network.tows.filter(pl.Series(change.share > 0), season=change.season)
     return str(after.sort("day", "tow_id")["tow_id"][0])
 
 

@@ -155,6 +155,13 @@ def _faults(network: Network, settings: Settings) -> Iterator[Unknown]:
     for year in years[1:]:
         later = (season >= year) * 1.0
         yield Unknown(FLEET, year, None, None, later, settings.fleet_fault_sd, chance)
+    for year in years:
+        mine = season == year
+        starts = _starts(day[mine])
+        for place, first in enumerate(starts):
+            later = ((season > year) | (mine & (day >= first))) * 1.0
+            sd, each = settings.fleet_fault_sd, chance / len(starts)
+            yield Unknown(FLEET, year, None, place, later, sd, each)
     for number, year in enumerate(network.groups["season"]):
         mine = network.group == number
         if network.has_gps[number]:

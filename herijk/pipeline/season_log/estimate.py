@@ -11,7 +11,12 @@ from herijk.pipeline.choice import first_largest
 from herijk.pipeline.errors import BrokenPromiseError
 from herijk.pipeline.quantiles import t_quantile
 from herijk.pipeline.season_log.assumed import USUAL
-from herijk.pipeline.season_log.diagnosis import season_diagnosis, season_steps
+from herijk.pipeline.season_log.diagnosis import (
+    NOT_DETERMINED,
+    NOT_SETTLED,
+    season_diagnosis,
+    season_steps,
+)
 from herijk.pipeline.season_log.effects import AGEING, WAYS
 from herijk.pipeline.season_log.network import GROUP, Network
 from herijk.pipeline.season_log.posterior import Posterior, Problem, solve
@@ -20,7 +25,6 @@ from herijk.pipeline.season_log.without_boats import Second, without_boats
 
 ESTIMATED: Final = "estimated"
 GPS: Final = "gps"
-NOT_DETERMINED: Final = "not determined"
 
 
 @dataclass(frozen=True)
@@ -77,7 +81,8 @@ class SeasonFactors:
         sd = np.sqrt(share @ self.covariance @ share)
         half = sd * t_quantile(parts["dof"].to_numpy().min())
         factor, lo, hi = np.exp(ln_factor + np.array([0.0, -half, half])).tolist()
-        return factor, lo, hi, ESTIMATED if (parts["source"] == ESTIMATED).any() else GPS
+        sources = [source for source in parts["source"] if source != GPS]
+        return factor, lo, hi, sources[0] if sources else GPS
 
 
 def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
@@ -101,7 +106,8 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
 
     Returns:
         The factors. `source` is `estimated` with boats that link the season to others, `gps` with
-        GPS alone, `not determined` (numbers null) where neither ties it to an anchored season.
+        GPS alone, `not determined` (numbers null) where neither ties it to an anchored season, and
+        `not settled` where the search did not come to rest.
         `n_links` counts boats also towed elsewhere; `component` is the connected part of the
         network (0 has the anchor). `influence` is the largest change of the factor when one boat
         (`influence_boat`) is left out, and `critical_boats` how many boats would leave the season
@@ -131,7 +137,7 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
     diagnosis = season_diagnosis(problem, posterior, network)
     numbers = _numbers(network, posterior, along, mode, change)
     return SeasonFactors(
-        factors=_described(numbers, network, second),
+        factors=_described(numbers, network, second, fit.settled),
         covariance=covariance,
         tow_log_sd=dict(zip(USUAL.era_starts, tow_log_sd, strict=True)),
         calibration_sd=calibration_sd,
@@ -236,13 +242,17 @@ def _placed(name: str, values: FloatArray, known: IntArray, network: Network) ->
     return pl.Series(name, column, pl.Float64).fill_nan(None)
 
 
-def _described(table: pl.DataFrame, network: Network, second: Second) -> pl.DataFrame:
+def _described(
+    table: pl.DataFrame, network: Network, second: Second, settled: bool
+) -> pl.DataFrame:
     """Factors and intervals from the ln factors, with where they come from."""
     names = pl.Series(network.boat_names, dtype=pl.String)
     boat = table["boat"].cast(pl.Int64)
     source = (
         pl.when(pl.col("ln_factor").is_null())
         .then(pl.lit(NOT_DETERMINED))
+        .when(not settled)
+        .then(pl.lit(NOT_SETTLED))
         .when((pl.col("n_links") == 0) & pl.col("by_gps"))
         .then(pl.lit(GPS))
         .otherwise(pl.lit(ESTIMATED))

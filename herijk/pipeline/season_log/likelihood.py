@@ -39,7 +39,7 @@ class Patterns:
         tow: (boats, tows) index of each tow.
         altered: (patterns, gaps) whether the boat was altered between two tows.
         askew: (patterns, tows) whether a tow was pulled askew.
-        early: number of tows, the first ones, that may have been.
+        early: number of tows, the first ones, before steering straight was aided.
         level, bend: (patterns, tows, tows) prior covariance of the boat's level and bend.
         drift: (boats, tows, tows) years that the drift of two tows has in common.
         excess: (patterns, tows) mean of what being pulled askew adds to ln Cw.
@@ -58,13 +58,15 @@ class Patterns:
 
     @property
     def found(self) -> IntArray:
-        """Number of alterations and of tows pulled askew, (patterns, 2)."""
-        return np.stack([self.altered.sum(axis=1), self.askew.sum(axis=1)], axis=1)
+        """Number of alterations, and of tows pulled askew, early and later, (patterns, 3)."""
+        early, later = self.askew[:, : self.early], self.askew[:, self.early :]
+        return np.stack([x.sum(axis=1) for x in (self.altered, early, later)], axis=1)
 
     @property
     def possible(self) -> IntArray:
-        """How many of each a boat may have, (2,)."""
-        return np.array([self.altered.shape[1], self.early])
+        """How many of each a boat may have, (3,)."""
+        gaps, tows = self.altered.shape[1], self.askew.shape[1]
+        return np.array([gaps, self.early, len(_between(self.early, tows))])
 
     def prior(self, shares: FloatArray) -> FloatArray:
         """Ln prior of each pattern, given the shares of gaps with an alteration and tows askew."""
@@ -81,7 +83,7 @@ def patterns_of(
     Args:
         boat: index of the boat as it was until a reported alteration, (tows,), sorted by time.
         season: year of each tow, (tows,).
-        early: whether a tow may have been pulled askew, (tows,).
+        early: whether a tow is from before steering straight was aided, (tows,).
     """
     order = np.argsort(boat, kind="stable")
     first, count = np.unique(boat[order], return_index=True, return_counts=True)[1:]
@@ -93,11 +95,22 @@ def patterns_of(
     ]
 
 
+def _between(early: int, tows: int) -> range:
+    """Later tows with another tow of the boat before and after.
+
+    Of a last or first one that is high nothing tells whether it was pulled askew or the boat was
+    altered; before steering was aided, that it was pulled askew is as likely.
+    """
+    return range(max(early, 1), tows - 1)
+
+
 def _patterns(tow: IntArray, season: FloatArray, early: int, settings: Settings) -> Patterns:
     tows = tow.shape[1]
     since_first = season[tow] - season[tow[:, :1]]
     gaps = tows - 1
-    chosen = [c for n in range(MOST_CHANGES + 1) for c in combinations(range(gaps + early), n)]
+    askew_ones = (gaps + place for place in (*range(early), *_between(early, tows)))
+    places = (*range(gaps), *askew_ones)
+    chosen = [c for n in range(MOST_CHANGES + 1) for c in combinations(places, n)]
     there = np.array([np.isin(np.arange(gaps + tows), places) for places in chosen])
     altered, askew = there[:, :gaps], there[:, gaps:]
     after = np.tri(tows, gaps, -1)
@@ -183,8 +196,8 @@ def tell(
         state: (tows, 3, 2) slope of the numbers by the boat's level and bend.
         slope: (tows, 3, unknowns).
         drift_variance: of the drift of a boat's level, per year.
-        shares: of gaps between tows in which a boat was altered without a report, and of early tows
-            that were pulled askew.
+        shares: of gaps between tows in which a boat was altered without a report, and of early and
+            later tows that were pulled askew.
     """
     for group in groups:
         boats, tows = group.tow.shape

@@ -48,7 +48,7 @@ and a step by it can leap to where the search finds no way back.
 """
 LEAST_SD: Final = 0.001
 """No number of a tow is ever better known: keeps the search finite where all tows agree."""
-NO_CHANGE: Final = np.full(2, 1e-300)
+NO_CHANGE: Final = np.full(3, 1e-300)
 """Shares of alterations and of tows pulled askew, where there are none."""
 ACCELERATED: Final = 8
 MODEST: Final = 0.1
@@ -172,8 +172,8 @@ class Problem:
 class _State:
     """What is searched: the active unknowns, ln variances, and the shares of what changes.
 
-    `shares` are those of gaps between tows with an alteration that was not reported, and of tows of
-    the early years that were pulled askew.
+    `shares` are those of gaps between tows with an alteration that was not reported, and of tows
+    that were pulled askew, before steering straight was aided and since.
     """
 
     value: FloatArray
@@ -190,8 +190,9 @@ class _State:
         return np.concatenate([self.value, self.ln_variance, scipy.special.logit(self.shares)])
 
     def of(self, array: FloatArray) -> "_State":
-        k = len(self.value)
-        return _State(array[:k], array[k:-2], scipy.special.expit(array[-2:]))
+        k, variances = len(self.value), len(self.ln_variance)
+        shares = scipy.special.expit(array[k + variances :])
+        return _State(array[:k], array[k : k + variances], shares)
 
 
 @dataclass(frozen=True)
@@ -278,8 +279,7 @@ def fit(
     mean = _prior(problem, active)[0]
     if start is None:
         prior = _variance_prior(problem)[0]
-        s = problem.settings
-        now = _State(mean, prior, np.array([s.changed_share, s.askew_share]))
+        now = _State(mean, prior, np.array(problem.settings.change_shares))
     else:
         before = dict(zip(start.active.tolist(), start.state.value.tolist(), strict=True))
         kept = [before.get(i, m) for i, m in zip(active.tolist(), mean.tolist(), strict=True)]
@@ -413,9 +413,8 @@ def _variance_slopes(
 
 def _shares(told: list[Told], settings: Settings) -> FloatArray:
     """Shares of gaps with an alteration and of tows askew: their priors and what was found."""
-    s = settings
-    possible = np.array([s.changed_gaps, s.askew_tows])
-    found = possible * [s.changed_share, s.askew_share]
+    possible = np.array(settings.change_counts)
+    found = possible * settings.change_shares
     for t in told:
         found += (t.weight @ t.patterns.found).sum(axis=0)
         possible += len(t.patterns.tow) * t.patterns.possible
@@ -505,8 +504,8 @@ def _ln_evidence(problem: Problem, fitted: Fit) -> float:
     mean, precision = _prior(problem, fitted.active)
     prior, prior_precision = _variance_prior(problem)
     s, shares = problem.settings, fitted.state.shares
-    found = np.array([s.changed_gaps * s.changed_share, s.askew_tows * s.askew_share])
-    not_found = np.array([s.changed_gaps, s.askew_tows]) - found
+    found = np.array(s.change_counts) * s.change_shares
+    not_found = np.array(s.change_counts) - found
     faults = np.intersect1d(fitted.active, problem.faults)
     chance = np.array([problem.unknowns[i].chance for i in faults])
     return float(

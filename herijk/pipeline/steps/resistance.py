@@ -11,11 +11,12 @@ from typing import Final
 
 import numpy as np
 
-from herijk.pipeline.arrays import BoolArray, FloatArray
+from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.blocks.run_blocks import RunBlocks, WindowSums
 from herijk.pipeline.hull import front_area_m2, side_area_m2
 from herijk.pipeline.method.definition import RunPoint, Steps, Temperature
+from herijk.pipeline.steps.fix_delay import fix_delay_s, fixes_in_time
 from herijk.pipeline.steps.friction import friction_cw_kg_m, water_density_kg_m3
 from herijk.pipeline.steps.wind import (
     AirParts,
@@ -46,6 +47,7 @@ class RunMeans:
         inertia_kg_m: part of it that accelerated the boat.
         air: air resistance / v^2 for drag coefficients of 1.
         gps_m_s: mean ground speed, NaN without a fix.
+        gps_delay_s: by how much the GPS was late, which is taken off.
         log1_m_s, log2_m_s, wind_m_s: mean reading of each log and of the anemometer.
         wind_angle_deg: circular mean of the vane.
     """
@@ -56,6 +58,7 @@ class RunMeans:
     inertia_kg_m: FloatArray
     air: AirParts
     gps_m_s: FloatArray
+    gps_delay_s: IntArray
     log1_m_s: FloatArray
     log2_m_s: FloatArray
     wind_m_s: FloatArray
@@ -89,18 +92,22 @@ class OverWindow:
     Attributes:
         whole: over all of it.
         first, last: over its two ends.
+        averaged: the blocks by the seconds that their wind is averaged over, as far as asked for.
     """
 
     whole: WindowSums
     first: WindowSums
     last: WindowSums
+    averaged: dict[int, RunBlocks] = field(repr=False)
     _with_averaged_wind: dict[int, WindowSums] = field(default_factory=dict, repr=False)
 
     @classmethod
-    def of(cls, blocks: RunBlocks, window: BoolArray) -> "OverWindow":
-        """Of blocks that count, shape (runs, seconds)."""
+    def of(
+        cls, blocks: RunBlocks, window: BoolArray, averaged: dict[int, RunBlocks] | None = None
+    ) -> "OverWindow":
+        """Of blocks that count, shape (runs, seconds); `averaged` may serve other windows too."""
         first, last = (WindowSums(blocks, end) for end in end_masks(window))
-        return cls(WindowSums(blocks, window), first, last)
+        return cls(WindowSums(blocks, window), first, last, {} if averaged is None else averaged)
 
     def with_wind(self, averaging_s: int) -> WindowSums:
         """Over all of it, with the air terms of a wind that is averaged over some seconds."""
@@ -108,8 +115,9 @@ class OverWindow:
         if not averaging_s:
             return self.whole
         if averaging_s not in known:
-            blocks = with_averaged_wind(self.whole.blocks, averaging_s)
-            known[averaging_s] = WindowSums(blocks, self.whole.window)
+            if averaging_s not in self.averaged:
+                self.averaged[averaging_s] = with_averaged_wind(self.whole.blocks, averaging_s)
+            known[averaging_s] = WindowSums(self.averaged[averaging_s], self.whole.window)
         return known[averaging_s]
 
 
@@ -149,20 +157,49 @@ def _means_of_source(batch: Batch, sums: OverWindow, steps: Steps, source: str) 
     side = side_area_m2(batch.of_run("waterline_length_m"), batch.of_run("bow_height_m"))
     air = air_parts(batch.blocks, terms, steps.wind, front, side)
     inertia = _inertia(batch, steps.run_point, _end_speed_change(sums, source), speed)
-    fixes = whole.total("gps_n")
-    gps = np.where(fixes > 0, whole.total("gps") / np.maximum(fixes, 1.0), np.nan)
+    delay = _gps_delay_s(batch, steps)
     return RunMeans(
         speed,
         gross,
         np.sqrt(variance),
         inertia,
         air,
-        gps,
+        _gps_m_s(whole, delay, source),
+        delay,
         log1_m_s=whole.mean("log1_v"),
         log2_m_s=whole.mean("log2_v"),
         wind_m_s=whole.mean("wind_v"),
         wind_angle_deg=mean_wind_angle_deg(whole),
     )
+
+
+def _gps_delay_s(batch: Batch, steps: Steps) -> IntArray:
+    """By how much the GPS of each run is late, where the method takes that off, shape (runs,)."""
+    if steps.calibration.delay == "none":
+        return np.zeros(len(batch.tow), dtype=np.int64)
+    return fix_delay_s(batch.blocks, batch.of_run("season").astype(np.int64))
+
+
+def _gps_m_s(whole: WindowSums, delay_s: IntArray, source: str) -> FloatArray:
+    """Mean ground speed of each run over its window, NaN without a fix, shape (runs,).
+
+    Of a late GPS the fixes of the last seconds are missing: the log says how much faster or slower
+    the boat was there.
+    """
+    fixes = whole.total("gps_n")
+    gps = np.where(fixes > 0, whole.total("gps") / np.maximum(fixes, 1.0), np.nan)
+    late = np.flatnonzero(delay_s)
+    if not len(late):
+        return gps
+    blocks, window = whole.blocks.take(delay_s != 0), whole.window[late]
+    sums = fixes_in_time(blocks, delay_s[late])
+    count = np.where(window, sums["gps_n"], 0.0)
+    log = (count * blocks.block_means(f"{source}_v")).sum(axis=1)
+    ground = np.where(window, sums["gps"], 0.0).sum(axis=1)
+    there = count.sum(axis=1)
+    with_fixes = (ground - log) / np.where(there > 0, there, np.nan)
+    gps[late] = with_fixes + whole.mean(f"{source}_v")[late]
+    return gps
 
 
 def _air_terms(

@@ -83,18 +83,19 @@ def tow_ensemble(
 
 
 def as_frame(lines: pl.DataFrame, cw_kg_m: FloatArray) -> pl.DataFrame:
-    """Members as rows: `member` (1 is the first), the columns of `lines`, its Cw replaced.
+    """Members as rows, those of a line together: `member` (1 is the first), the columns of `lines`.
 
     Args:
         lines: as given to `register_ensemble`, with the columns that name a line.
-        cw_kg_m: shape (members, lines).
+        cw_kg_m: shape (members, lines); it replaces that of `lines`.
     """
     members = len(cw_kg_m)
-    names = pl.concat([lines.drop("cw_kg_m")] * members)
-    member = np.repeat(np.arange(1, members + 1, dtype=np.int16), lines.height)
-    return names.with_columns(
-        pl.Series("member", member), pl.Series("cw_kg_m", cw_kg_m.ravel())
-    ).select("member", pl.exclude("member"))
+    line = np.repeat(np.arange(lines.height), members)
+    return lines[line].select(
+        pl.Series("member", np.tile(np.arange(1, members + 1, dtype=np.int16), lines.height)),
+        pl.exclude("cw_kg_m"),
+        pl.Series("cw_kg_m", cw_kg_m.T.ravel()),
+    )
 
 
 def share_heavier(members: pl.DataFrame, tow_id: str, other: str) -> float:

@@ -328,22 +328,22 @@ def log_key(season: pl.Expr, part: pl.Expr, log: pl.Expr) -> pl.Expr:
     )
 
 
-def combine(held: pl.DataFrame, level: float = 0.95) -> pl.DataFrame:
+def combine(components: pl.DataFrame, level: float = 0.95) -> pl.DataFrame:
     """Adds a budget up per tow and speed.
 
     Args:
-        held: rows of `budget`.
+        components: rows of `budget`.
         level: coverage of the interval.
 
     Returns:
-        One row per tow and speed, in the order of `held`: `tow_id, speed_ratio, u_ratio`,
+        One row per tow and speed, in the order of `components`: `tow_id, speed_ratio, u_ratio`,
         `u_shared_ratio` (what other tows share), `u_single_ratio`, `dof` (Welch-Satterthwaite), and
         `lo_ratio, hi_ratio`: the bounds of Cw relative to its value, a t interval on the logarithm.
     """
     square = pl.col("u_ratio") ** 2
     single = pl.col("shared") == SINGLE
     rows = (
-        held.group_by("tow_id", "speed_ratio", maintain_order=True)
+        components.group_by("tow_id", "speed_ratio", maintain_order=True)
         .agg(
             square.sum().sqrt().alias("u_ratio"),
             square.filter(~single).sum().sqrt().alias("u_shared_ratio"),

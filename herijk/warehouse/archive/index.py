@@ -57,7 +57,13 @@ from herijk.warehouse.archive.instruments import (
     read_lamps,
 )
 from herijk.warehouse.archive.limits import LIST_MAX_BYTES
-from herijk.warehouse.archive.lists import ListRow, all_of, others_of, read_list
+from herijk.warehouse.archive.lists import (
+    DefectiveRowError,
+    ListRow,
+    all_of,
+    others_of,
+    read_list,
+)
 from herijk.warehouse.archive.misfits import misfits
 from herijk.warehouse.archive.profile import Plan, Profiles, read_profiles
 from herijk.warehouse.archive.recognise import guessed, recognised
@@ -761,6 +767,12 @@ def _join_boat(entry: _Entry, boats: Boats) -> None:
     if boat is None:
         message = say("boat {boat} is not in the boat list.", boat=shorten(fsn_no))
         raise entry.fault("unknown_boat", message)
+    apart = tow_list.unlike_boat(entry.tow, boat, entry.row)
+    weight = [apart.pop(key) for key in ("weight_kg",) if key in apart]
+    if apart:
+        raise DefectiveRowError([*apart.values(), *weight])
+    entry.lost_cells = [*entry.lost_cells, *weight]
+    entry.tow |= {"weight_kg": None} if weight else {}
     has_wind = "wind" not in entry.profiles.for_season(entry.season).absent
     filled = tow_list.fill_dimensions(entry.tow, boat, entry.row, has_wind)
     entry.tow = filled | {"fsn_no": boat["fsn_no"]}

@@ -62,7 +62,9 @@ _GROUPED: Final = re.compile(
     r"(?P<decimals>(?!(?P=mark))[.,][0-9]+)?"
 )
 _DECIMAL: Final = re.compile(r"[+-]?[0-9]*([.,])([0-9]{1,2}|[0-9]{4,})")
-_BOAT: Final = re.compile(r"(?:fsn)?[\s._-]*([0-9]{1,6}[a-z]?)", re.IGNORECASE)
+_BOAT: Final = re.compile(
+    r"(?:fsn)?[\s._-]*(?:(?:nr|no|nummer|number|n°|nº)[\s.:_-]*)?([0-9]{1,6}[a-z]?)", re.IGNORECASE
+)
 
 
 def ungrouped(cell: str) -> str:
@@ -304,7 +306,7 @@ class ListRow:
         raise self.wrong("column '{column}' is '{cell}', not ja, nee or empty.", key, choice="ja")
 
     def boat(self, key: str) -> str:
-        """Return the number of a boat: `FSN 101`, `fsn101` and `101` are FSN101."""
+        """Return the number of a boat: `FSN 101`, `fsn nr 101` and `101` are FSN101."""
         cell = self.text(key)
         number = _BOAT.fullmatch(cell.strip())
         return f"FSN{number[1].upper()}" if number else cell

@@ -28,6 +28,8 @@ from herijk.words import say
 
 SHORTEST_RUN_RATIO: Final = 0.99
 """Of what is planned."""
+LONGEST_RUN_RATIO: Final = 1.8
+"""Of what is planned: a rate that is wrong is usually half of the right one (inferred)."""
 LEFT_OUT_S: Final = 2.0
 """Longest time in all of a run in which what the run point needs may be left out; as long again for
 log 2 and the GPS each."""
@@ -180,9 +182,12 @@ def judge_samples(samples: pl.DataFrame, tow: Row, runs: pl.DataFrame) -> Judged
         faults += short
         if not any(fault.lost == "run" for fault in short):
             whole.append(run)
+    faults += _long(whole, tow)
     whole, copies = _without_copies(whole, tow)
     faults += copies
     _check_left(whole, selected, faults)
+    samples, whole, found, no_wind = _without_no_wind(samples, whole, found, tow)
+    faults += no_wind
     _check_mix_ups(whole, tow)
     _check_log2_and_gps(whole, tow)
     _check_speed_unit(whole, tow)
@@ -216,6 +221,44 @@ def _without_copies(runs: list[_Run], tow: Row) -> tuple[list[_Run], list[Fault]
             )
             faults.append(_cost("samples_listed_twice", message, run, tow, 0, "run", run.seconds))
     return sorted(kept.values(), key=lambda run: run.number), faults
+
+
+def _without_no_wind(
+    samples: pl.DataFrame, runs: list[_Run], found: list[_Run], tow: Row
+) -> tuple[pl.DataFrame, list[_Run], list[_Run], list[Fault]]:
+    """Samples and runs without the wind, where in every run it is empty or one impossible value.
+
+    So people write that there was no anemometer: 999 throughout. The tow goes on as one without.
+    """
+    if "wind_speed" not in runs[0].channels or not all(map(_is_no_wind, runs)):
+        return samples, runs, found, []
+    message = say(
+        "column '{column}' {} in all runs, which is no wind; the tow goes on without wind.",
+        _seen(runs[0].channels["wind_speed"][0]),
+        column=_WORDS["wind_speed"],
+    )
+    seconds = sum(run.seconds for run in runs)
+    fault = replace(
+        _cost("implausible_value", message, runs[0], tow, 0, "seconds", seconds), run=None
+    )
+    calm = {run.number: _without_wind(run) for run in found}
+    columns = [_CHANNELS[key] for key in _WIND]
+    nothing = samples.with_columns(pl.lit(None, pl.Float32).alias(name) for name in columns)
+    return nothing, [calm[run.number] for run in runs], list(calm.values()), [fault]
+
+
+_WIND: Final = ("wind_speed", "wind_angle")
+
+
+def _is_no_wind(run: _Run) -> bool:
+    values = run.channels["wind_speed"]
+    if np.isnan(values).all():
+        return True
+    return bool((values == values[0]).all() and not _within(values[0], WIND_SPEED_M_S))
+
+
+def _without_wind(run: _Run) -> _Run:
+    return replace(run, channels={k: v for k, v in run.channels.items() if k not in _WIND})
 
 
 def _off_target(run: _Run) -> tuple[float, int]:
@@ -348,6 +391,25 @@ def _short(run: _Run, tow: Row) -> list[Fault]:
         _what_then(lost),
     )
     return [_cost("short_run", message, run, tow, 0, lost, missing_s)]
+
+
+def _long(runs: list[_Run], tow: Row) -> list[Fault]:
+    """A fault that costs nothing where all runs last far longer than planned, as by a wrong rate.
+
+    Windows, averages and what accelerated the boat are then taken over another time than is meant.
+    """
+    if not runs or any(run.seconds < LONGEST_RUN_RATIO * run.planned_s for run in runs):
+        return []
+    first = runs[0]
+    message = say(
+        "All runs last {:.0f} s or longer at {} samples per second, and {:.0f} s is planned: is "
+        "the rate {:.0f}? Nothing is left out.",
+        min(run.seconds for run in runs),
+        first.rate_hz,
+        first.planned_s,
+        first.rate_hz * first.seconds / first.planned_s,
+    )
+    return [replace(_cost("long_run", message, first, tow, 0, "seconds", 0.0), run=None)]
 
 
 def _what_then(lost: Lost) -> str:
@@ -598,6 +660,12 @@ def _of_rows(run: _Run, tow: Row, mask: BoolArray, lost: Lost) -> Fault:
         seconds,
         _what_then(lost),
     )
+    if mask.all():
+        message = say(
+            "{}: no row can be used, as fields are missing or the times jump back; the run is left "
+            "out.",
+            run.name,
+        )
     return _cost("broken_row", message, run, tow, int(mask.argmax()), lost, seconds)
 
 

@@ -75,6 +75,8 @@ _CLOCK: Final = (
     r"^(?:.*[ T])?(?<h>[0-9]{1,2}):(?<m>[0-9]{2})(?::(?<s>[0-9]{2}(?:[.,][0-9]+)?))"
     r"(?:Z|[+-][0-9:]{2,6})?$"
 )
+_RUN_NAMED: Final = r"(?i)^(?:run|vaart|lauf|passage)[ \t._:-]*([0-9]{1,2})$"
+"""A run with its number behind the word: `run 1`."""
 _HEAD_BYTES: Final = 65_536
 """The header is looked for in so much of a file."""
 _QUOTED_DECIMAL_COMMA: Final = r'"([ \t]*[+-]?[0-9]*),([0-9][0-9eE+ \t-]*)"'
@@ -151,7 +153,10 @@ def read_samples(
     samples = _to_schema(_with_runs(raw, run), line_of, profile.wind_zero_deg)
     _check_runs(samples["run"], line_of)
     if "time" in raw.columns:
-        _check_time(samples["run"], raw["time"].to_numpy(), sample_rate_hz, line_of)
+        time_s = raw["time"].to_numpy()
+        turned = _turned_back(samples["run"], time_s)
+        _check_time(samples["run"], time_s, sample_rate_hz, line_of, turned)
+        samples = _without(samples, turned)
     return samples
 
 
@@ -361,6 +366,13 @@ def _split_header(data: bytes, profile: SeasonProfile) -> _Body:
     if delimiter == " ":
         data, delimiter = _tabs_for_blanks(data[start:]), "\t"
         above = start = 0
+    first_line, rows = below + 1, places[1:]
+    says_runs = rows or {"run", "time"} & columns.keys()
+    if not says_runs and (parted := _parted_by_blank_lines(data[start:], delimiter)):
+        data, rows = parted[0], [first_line + row for row in parted[1]]
+        header = [*header, "run"]
+        columns = {**columns, "run": FoundColumn(len(header) - 1, "run", Scale())}
+        above = start = 0
     return _Body(
         data,
         start,
@@ -369,10 +381,31 @@ def _split_header(data: bytes, profile: SeasonProfile) -> _Body:
         columns,
         above,
         places[0] if places else place + 1,
-        below + 1,
-        places[1:],
+        first_line,
+        rows,
         _is_clock(data, start, delimiter, columns.get("time")),
     )
+
+
+def _parted_by_blank_lines(data: bytes, delimiter: str) -> tuple[bytes, list[int]] | None:
+    """Return the rows with the number of their run behind them, and the place of each.
+
+    A run is what stands between blank lines; None where there are none between rows. In a file
+    without a column of runs or times nothing else can be meant by them.
+    """
+    nothing = delimiter.encode() + b" \t\r"
+    lines = data.split(b"\n")
+    full = np.array([bool(line.strip(nothing)) for line in lines])
+    places = np.flatnonzero(full)
+    begins = np.diff(places, prepend=places[:1]) > 1
+    if not begins.any():
+        return None
+    runs = 1 + np.cumsum(begins)
+    rows = (
+        lines[place].rstrip(b"\r") + delimiter.encode() + str(run).encode()
+        for place, run in zip(places.tolist(), runs.tolist(), strict=True)
+    )
+    return b"\n".join(rows) + b"\n", places.tolist()
 
 
 def _tabs_for_blanks(data: bytes) -> bytes:
@@ -499,6 +532,8 @@ def _read_carefully(body: _Body) -> pl.DataFrame:
         cells = cells.str.strip_chars(_BLANKS)
         if key == "gps" and (cells == "").all():
             continue
+        if key == "run":
+            cells = cells.str.replace(_RUN_NAMED, "$1")
         if key == "time" and body.clock:
             cells = _seconds_of_clock(cells).cast(pl.String()).fill_null(cells)
         columns[key] = _to_numbers(cells, whole)
@@ -684,13 +719,39 @@ def run_starts(run: NDArray[np.int8]) -> NDArray[np.intp]:
     return np.flatnonzero(np.concatenate(([True], run[1:] != run[:-1])))
 
 
+def _turned_back(run: pl.Series, time_s: NDArray[np.float64]) -> NDArray[np.int8]:
+    """Runs within which the clock jumps back, where it does not in most."""
+    number = run.to_numpy()
+    back = (np.diff(time_s) <= 0) & (number[1:] == number[:-1])
+    turned = np.unique(number[1:][back])
+    return turned if 2 * len(turned) < run.n_unique() else turned[:0]
+
+
+def _without(samples: pl.DataFrame, runs: NDArray[np.int8]) -> pl.DataFrame:
+    """The samples without the numbers of some runs.
+
+    Nothing says whether the clock was wrong there, or rows are there twice.
+    """
+    if not len(runs):
+        return samples
+    lost, channel = pl.col("run").is_in(runs.tolist()), pl.selectors.float()
+    nothing = pl.when(channel.is_not_null()).then(float("nan"))
+    return samples.with_columns(pl.when(lost).then(nothing).otherwise(channel).name.keep())
+
+
 def _check_time(
-    run: pl.Series, time_s: NDArray[np.float64], rate_hz: int | None, line_of: LineOf
+    run: pl.Series,
+    time_s: NDArray[np.float64],
+    rate_hz: int | None,
+    line_of: LineOf,
+    turned: NDArray[np.int8],
 ) -> None:
+    """Every run's time must rise at the rate, but of those that turn back (`turned`)."""
     starts = run_starts(run.to_numpy())
     ends = np.append(starts[1:], len(run))
     step = np.diff(time_s)
     step[starts[1:] - 1] = np.inf
+    step[np.isin(run.to_numpy()[1:], turned)] = np.inf
     if (step <= 0).any():
         line = line_of(int(np.argmax(step <= 0)) + 1)
         what = say("the time does not increase within the run.")
@@ -700,7 +761,7 @@ def _check_time(
         return
     for start, end in zip(starts, ends, strict=True):
         samples = int(end - start)
-        if samples < 2:
+        if samples < 2 or run[int(start)] in turned:
             continue
         # The usual step: a gap costs its seconds, which `plausibility` counts.
         observed = 1.0 / float(np.nanmedian(step[start : end - 1]))

@@ -47,6 +47,8 @@ COLUMNS: Final = (
     Column("freeboard_stern_m", "vrijboord achter", "length", "m", required=False),
     Column("remark", "opmerking", required=False),
 )
+TWICE: Final = 2.0
+"""So many times what the boat list says cannot be right (inferred)."""
 _DIMENSIONS: Final = {
     column.key: column
     for column in COLUMNS
@@ -191,6 +193,25 @@ def read_tow(
         **values,
         "sample_rate_hz": values["sample_rate_hz"] or default_rate_hz,
     }, lost
+
+
+def unlike_boat(tow: Row, boat: Row, row: ListRow) -> dict[str, DefectiveInputError]:
+    """Return what is wrong in cells that the boat list contradicts: in feet, or a digit too many.
+
+    No rebuilding makes a boat twice as long or heavy. Which of the two is right nobody can know.
+    """
+    apart = {}
+    for key in (*_DIMENSIONS, "weight_kg"):
+        here, listed = tow[key], boat[key]
+        if here is None or listed is None or 1 / TWICE < here / listed < TWICE:
+            continue
+        apart[key] = row.wrong(
+            "column '{column}' is {cell} and the boat list says {listed:g}; one of the two cannot "
+            "be right.",
+            key,
+            listed=listed,
+        )
+    return apart
 
 
 def fill_dimensions(tow: Row, boat: Row, row: ListRow, has_wind: bool) -> Row:

@@ -46,7 +46,7 @@ def archive_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     sound = index.filter(pl.col("reason_code").is_null()).select("tow_id")
     contents = inputs.blocks("tow_id", "run", "second", *CONTENT)
     present = _present_runs(contents)
-    listed = inputs["season_tows"].join(sound, on="tow_id", how="semi")
+    listed = _with_what_was_read(inputs["season_tows"].join(sound, on="tow_id", how="semi"), index)
     runs_read = inputs["season_runs"].join(present, on=["tow_id", "run"], how="semi")
     tows, contradicted = judged_tows(
         with_boat_types(listed, inputs["listed_boats"]), inputs.run_blocks(runs_read), contents
@@ -73,6 +73,17 @@ def archive_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     if tables["tows"].is_empty():
         raise NothingSoundError(_why_nothing(tables["quarantine"]), tables)
     return tables
+
+
+def _with_what_was_read(tows: pl.DataFrame, index: pl.DataFrame) -> pl.DataFrame:
+    """Adds in which steps the readings are written, and whether there is a wind among them."""
+    read = index.select("tow_id", "wind_read", "gps_step_m_s", "force_step_n")
+    has_wind = pl.col("wind_measured") & pl.col("wind_read").fill_null(True)
+    return (
+        tows.join(read, on="tow_id", how="left", maintain_order="left")
+        .with_columns(wind_measured=has_wind)
+        .drop("wind_read")
+    )
 
 
 def _present_runs(blocks: pl.DataFrame) -> pl.DataFrame:

@@ -58,6 +58,7 @@ def study_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
                 if m.name in JUDGED
             ),
         ]
+        cache.clear()  # no later step applies a method
     found = [
         beside_uncertainty(frame, _of(m, inputs["curves"])).with_columns(
             pl.lit(m.name).alias("method"), pl.lit(study).alias("study")

@@ -26,6 +26,7 @@ from herijk.warehouse.archive import (
     judge_in_files,
     read_tow_samples,
 )
+from herijk.warehouse.archive.resolution import steps_of
 from herijk.warehouse.store.code import ADDERS, READERS, code_hash
 from herijk.warehouse.store.store import Store, count_rows, fingerprint, read_parquet, write_parquet
 
@@ -36,6 +37,9 @@ LAKE_FORM: Final = {
     "write_statistics": False,
 }
 """How samples and blocks are packed: measured in docs/decisions/0004."""
+
+FOUND: Final = ("losses", "wind_read", "gps_step_m_s", "force_step_n")
+"""What is found in the samples of a tow that can be used."""
 
 Tow = Row
 Report = Callable[[str, bool], None]
@@ -81,8 +85,7 @@ def read_season(
         if known is not None and known["reason_code"] is not None:
             row = known
         else:
-            losses = None if known is None else known["losses"]
-            row = _bring_in(store, root, tow, listed_runs, profile, key, hashes, losses)
+            row = _bring_in(store, root, tow, listed_runs, profile, key, hashes, known)
         report(tow["tow_id"], row["reason_code"] is not None)
         return row | {"tow_id": tow["tow_id"]}
 
@@ -117,22 +120,28 @@ def _bring_in(
     profile: SeasonProfile,
     key: str,
     hashes: FileHashes,
-    losses: list[Row] | None,
+    known: Row | None,
 ) -> Row:
     """Index row of a tow after its samples and blocks are in the lake, or with its fault.
 
-    Its samples are read again also where only what was lost of them (`losses`) is not known.
+    Its samples are read again also where only what was found in them (`known`) is lost.
     """
+    found = None if known is None else {name: known[name] for name in FOUND}
     row = dict.fromkeys(SeasonIndex.column_names()) | {"samples_key": key}
     path = store.samples_path(profile.season, key)
     blocks_key = fingerprint(key, tow["sample_rate_hz"], code_hash(*ADDERS))
     blocks_path = store.blocks_path(profile.season, blocks_key)
     try:
         samples = None
-        if losses is None or not path.exists():
+        if found is None or not path.exists():
             whole = read_tow_samples(root, tow, profile)
             judged = judge_in_files(whole, tow, runs, root, profile)
-            samples, losses = judged.samples, [dataclasses.asdict(f) for f in judged.faults]
+            samples = judged.samples
+            found = {
+                "losses": [dataclasses.asdict(fault) for fault in judged.faults],
+                "wind_read": samples["wind_speed_m_s"].null_count() == 0,
+                **steps_of(samples),
+            }
             _check_unchanged(root, tow, hashes)
             write_parquet(samples, path, form=LAKE_FORM)
         if not blocks_path.exists():
@@ -145,7 +154,7 @@ def _bring_in(
         _check_unchanged(root, tow, hashes)
         fault = dataclasses.asdict(fault_from(error, tow["samples_path"], tow["tow_id"]))
         return row | {name: fault[name] for name in row.keys() & fault.keys()}
-    return row | {"blocks_key": blocks_key, "samples": count_rows(path), "losses": losses}
+    return row | found | {"blocks_key": blocks_key, "samples": count_rows(path)}
 
 
 class ArchiveChangedError(UnavailableError):

@@ -8,7 +8,7 @@ import json
 import os
 import shutil
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from functools import lru_cache
 from pathlib import Path
 from typing import Final
@@ -51,6 +51,7 @@ class ChangeReport:
         first: there was no report before; then all tows are new and no line is compared.
         tows: `tow_id`, `fsn_no`, `season`, `what`: new, samples (its files changed), list (its row
             in a list changed) or gone.
+        seasons_gone: seasons that had tows, and have none now.
         set_aside: the faults that came (`what` is new) and went (mended).
         factors: log factors that moved: `method`, `season`, `old_factor`, `new_factor`, `ratio`.
         lines: lines of draft registers that changed, with the columns of `register_changes` and of
@@ -59,6 +60,7 @@ class ChangeReport:
 
     first: bool
     tows: pl.DataFrame
+    seasons_gone: list[int]
     set_aside: pl.DataFrame
     factors: pl.DataFrame
     lines: pl.DataFrame
@@ -79,6 +81,7 @@ class ChangeSummary:
         nothing_changed: whether that is so.
         tows, set_aside, register: how many (`number`) of each kind.
         tow_rows, set_aside_rows, factors, lines: rows of the change report.
+        seasons_gone: seasons that had tows, and have none now.
         beyond_interval: lines that move by more than both intervals.
     """
 
@@ -92,6 +95,7 @@ class ChangeSummary:
     register: list[Row]
     beyond_interval: int
     lines: list[Row]
+    seasons_gone: list[int] = field(default_factory=list)
 
 
 def reported_database(store: Store) -> Path:
@@ -116,6 +120,7 @@ def _between(reported: Path, database: Path, _: tuple[str, str]) -> ChangeReport
     return ChangeReport(
         first=was is None,
         tows=_tows(before, now),
+        seasons_gone=sorted({*before["tows"]["season"]} - {*now["tows"]["season"]}),
         set_aside=_faults(before["quarantine"], now["quarantine"]),
         factors=_factors(before["log_factors"], now["log_factors"]),
         lines=_lines(before, now),
@@ -128,7 +133,7 @@ def _nothing() -> ChangeReport:
     what = pl.lit(None, pl.String).alias("what")
     tows, faults = (keys[name].with_columns(what) for name in ("tows", "quarantine"))
     factors = _factors(keys["log_factors"], keys["log_factors"])
-    return ChangeReport(False, tows, faults, factors, _no_lines())
+    return ChangeReport(False, tows, [], faults, factors, _no_lines())
 
 
 def is_reported(store: Store) -> bool:
@@ -305,7 +310,8 @@ def last_changes(store: Store) -> ChangeSummary | None:
     if not told:
         return None
     last = json.loads(told[-1].read_text(encoding="utf-8"))
-    return ChangeSummary(**{field.name: last[field.name] for field in fields(ChangeSummary)})
+    known = {f.name for f in fields(ChangeSummary)}
+    return ChangeSummary(**{name: value for name, value in last.items() if name in known})
 
 
 def summary_of(report: ChangeReport) -> ChangeSummary:
@@ -321,6 +327,7 @@ def summary_of(report: ChangeReport) -> ChangeSummary:
         register=_counted(report.lines, ["to_edition", "change"]),
         beyond_interval=int(report.lines["exceeds_interval"].fill_null(False).sum()),
         lines=report.lines.to_dicts(),
+        seasons_gone=report.seasons_gone,
     )
 
 

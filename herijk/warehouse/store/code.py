@@ -23,7 +23,11 @@ PACKAGE: Final = "herijk"
 LEFT_OUT: Final = (f"{PACKAGE}.tables",)
 HASH_LENGTH: Final = 12
 
-READERS: Final = ("herijk.warehouse.archive.samples", "herijk.warehouse.archive.plausibility")
+READERS: Final = (
+    "herijk.warehouse.archive.samples",
+    "herijk.warehouse.archive.plausibility",
+    "herijk.warehouse.archive.resolution",
+)
 """Modules that turn a file into samples: when they compute otherwise, files are read again."""
 
 ADDERS: Final = ("herijk.pipeline.blocks.sums",)

@@ -160,7 +160,7 @@ TOW_CASES: dict[str, tuple[Spoil, str, str, int | None]] = {
     "run 21": (constant(0, "21", 500, 500), "unknown_run", FIRST, 500),
     "run 1,5": (constant(0, "1,5", 500, 500), "unknown_run", FIRST, 500),
     "run in two pieces": (constant(0, "2", 500, 500), "split_run", FIRST, 501),
-    "time goes back": (with_time(0.05, spoiled_line=500), "bad_time", FIRST, 500),
+    "time goes back": (with_time(0.05, spoiled_line=500), "broken_row", FIRST, 2),
     "time at another rate": (with_time(0.051), "bad_time", FIRST, 2),
     "column missing": (header("kracht [N]", "krach [N]"), "missing_column", FIRST, 1),
     "column twice": (header("log2", "log1"), "duplicate_column", FIRST, 1),
@@ -219,7 +219,7 @@ COSTS = {
         [
             *("run missing", "cut in mid-row", "log1 drops out", "sign of force in a run"),
             *("log1 stuck", "force stuck", "cups stuck", "vane stuck"),
-            *("force at the end of its range", "a run twice"),
+            *("force at the end of its range", "a run twice", "time goes back"),
         ],
         RUN,
     ),
