@@ -23,8 +23,8 @@ from playwright.sync_api import sync_playwright
 
 from herijk.assets.progress import Quiet
 from herijk.assets.rebuild import rebuild
-from herijk.dashboards.site import build_site
 from herijk.dashboards.site.pages import MENU
+from herijk.dashboards.site.render import build_site
 from herijk.pipeline.method.definition import shipped_methods
 from herijk.simulate import WorldSettings, simulate_world
 from herijk.simulate.archive_writer import write_simulated_archive

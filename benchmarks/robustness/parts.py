@@ -19,7 +19,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Final
 
-from herijk.dashboards.site import build_site
+from herijk.dashboards.site.render import build_site
 from herijk.pipeline.errors import HerijkError
 from herijk.pipeline.method.definition import shipped_method, shipped_methods
 from herijk.simulate import WorldSettings, simulate_world

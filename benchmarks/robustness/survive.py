@@ -25,7 +25,7 @@ from pathlib import Path
 
 import duckdb
 
-import herijk.dashboards.site  # noqa: F401 - takes a second, and victims are killed by the clock
+import herijk.dashboards.site.render  # noqa: F401 - takes a second, and victims are killed by the clock
 from herijk.assets.progress import Quiet
 from herijk.assets.rebuild import rebuild
 from herijk.simulate import WorldSettings, simulate_world

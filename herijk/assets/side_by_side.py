@@ -108,7 +108,7 @@ def _begin() -> None:
     threading.Thread(target=_end_with_parent, daemon=True).start()
     # At once: taken apart around that thread, DuckDB's binding writes that it leaks.
     atexit.register(os._exit, 0)
-    import herijk.dashboards.site  # noqa: F401, PLC0415
+    import herijk.dashboards.site.render  # noqa: F401, PLC0415
 
 
 def _end_with_parent() -> None:

@@ -36,7 +36,7 @@ def site(setup: Setup) -> dg.MaterializeResult:
 def make_site(store: Store, other: Executor) -> dg.MaterializeResult:
     """Makes the pages with the help of a second process, and remembers from what."""
     from herijk.dashboards.figures import png  # noqa: PLC0415 - Altair takes a second to import
-    from herijk.dashboards.site import build_site  # noqa: PLC0415
+    from herijk.dashboards.site.render import build_site  # noqa: PLC0415
 
     with Views(store) as views:
         spread = views.table(SPREAD)

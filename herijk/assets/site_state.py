@@ -10,7 +10,7 @@ from herijk.warehouse.store.files import file_sha256
 from herijk.warehouse.store.store import Store, fingerprint
 from herijk.words import LANGUAGES
 
-SITE_CODE: Final = "herijk.dashboards.site"
+SITE_CODE: Final = "herijk.dashboards.site.render"
 SITE_TABLE: Final = "site"
 """An empty table that remembers what the site was made from."""
 

@@ -57,8 +57,7 @@ def pages(
     as_of: AsOf = None,
 ) -> None:
     """All pages of the site in a folder of their own, for instance as of an earlier day."""
-    from herijk.dashboards.site import build_pages
-    from herijk.dashboards.site.render import OWN_FILES
+    from herijk.dashboards.site.render import OWN_FILES, build_pages
     from herijk.pipeline.errors import MissingKnowledgeError
     from herijk.warehouse.store.store import Store
 

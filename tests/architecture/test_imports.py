@@ -15,7 +15,7 @@ KEYS = ("layers", "source_modules", "forbidden_modules")
 THREADS = """
 import os
 import polars as pl
-import herijk.assets.definitions, herijk.cli.main, herijk.dashboards.site, herijk.library
+import herijk.assets.definitions, herijk.cli.main, herijk.dashboards.site.render, herijk.library
 imported = len(os.listdir("/proc/self/task"))
 pl.DataFrame({"x": [1]}).lazy().select("x").collect()
 print(imported, len(os.listdir("/proc/self/task")))

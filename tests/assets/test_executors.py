@@ -11,7 +11,7 @@ from tests.assets.test_rebuild import assert_same_tables
 from tests.conftest import METHODS, SMALL, Workbench
 
 PRELOADED = [
-    *(__name__, "herijk.dashboards.site", "scipy.optimize"),
+    *(__name__, "herijk.dashboards.site.render", "scipy.optimize"),
     *("dagster._core.storage.sqlite_storage", "dagster._utils.test", "upath.implementations.local"),
 ]
 FORKED = {

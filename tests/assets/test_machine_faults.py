@@ -85,7 +85,7 @@ from pathlib import Path
 from herijk.assets.rebuild import rebuild
 from herijk.assets.progress import Quiet
 from herijk.pipeline.errors import UnavailableError
-import herijk.dashboards.report_page, herijk.dashboards.site
+import herijk.dashboards.report_page, herijk.dashboards.site.render
 _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
 for limit in (14, 200):
     resource.setrlimit(resource.RLIMIT_NOFILE, (limit, hard))

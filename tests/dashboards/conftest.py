@@ -9,7 +9,7 @@ import duckdb
 import pytest
 
 from herijk.dashboards.guard import listen
-from herijk.dashboards.site import build_site
+from herijk.dashboards.site.render import build_site
 from herijk.dashboards.workbench.server import LOOPBACK, address, serving
 from herijk.pipeline.method.definition import shipped_method
 from herijk.warehouse.editions.publish import Terms, publish

@@ -13,7 +13,6 @@ import pytest
 
 from herijk.dashboards.guides import GUIDES
 from herijk.dashboards.html import as_json
-from herijk.dashboards.site import build_pages, build_site
 from herijk.dashboards.site.boats import boat_pages
 from herijk.dashboards.site.cells import CODES, KEPT
 from herijk.dashboards.site.columns import DRAWN, json_by, json_of
@@ -27,6 +26,7 @@ from herijk.dashboards.site.parts import (
     type_path,
 )
 from herijk.dashboards.site.races import _winner
+from herijk.dashboards.site.render import build_pages, build_site
 from herijk.dashboards.site.slides import slides_page
 from herijk.dashboards.speech import Speech
 from herijk.warehouse.queries.answers import answers, line_changes, newest_edition

@@ -3,7 +3,3 @@
 `pages` says what is on which page, `render` turns that into files; texts are in
 `dashboards.words`, charts in `dashboards.figures`, numbers in the warehouse.
 """
-
-from herijk.dashboards.site.render import build_pages, build_site
-
-__all__ = ["build_pages", "build_site"]

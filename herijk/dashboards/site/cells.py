@@ -10,7 +10,7 @@ from itertools import repeat
 from typing import Any, Final
 
 import polars as pl
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from herijk.dashboards.site.parts import Page, Table, boat_path, is_chosen, type_path
 from herijk.dashboards.speech import Speech, duration
@@ -49,14 +49,11 @@ EDITIONS: Final = {"edition", "from_edition", "to_edition", "previous"}
 Show = Callable[[Any], Markup]
 Key = tuple[object, ...]
 
-_EMPTY = Markup("<td class=t>")
-_SHORT = Markup("<td class=t>{}")
+_SHORT = Markup("<td class=t>")
 """A cell of text. End tags are left out: HTML closes a cell and a row by itself, and a boat's page
 has thousands. For the same reason a number is what has no class, and text that may be wide is `w`
 alone; a number that shows fewer digits than it holds has it in `data-v`."""
-_LONG = Markup("<td class=w>{}")
-_BOAT = Markup(' data-boat="{}"')
-_KEYED = Markup(" data-k={}")
+_LONG = Markup("<td class=w>")
 
 
 @dataclass(frozen=True)
@@ -85,13 +82,15 @@ class Cells:
 
     def _made(self, name: str, root: str, value: object) -> Markup:
         """The cell of a text in a column of this name; the same value comes often."""
-        return (_LONG if name in LONG else _SHORT).format(self._shower(name, root)(value))
+        return (_LONG if name in LONG else _SHORT) + self._shower(name, root)(value)
 
     def rows(self, page: Page, table: Table) -> Rows:
         """The rows of a table on a page."""
         frame, follows = table.frame, list(table.follows)
         cells = self._cells_by_row(page, table)
-        boats = [_BOAT.format(n) for n in frame["fsn_no"]] if table.linked else repeat("")
+        boats = (
+            [f' data-boat="{escape(n)}"' for n in frame["fsn_no"]] if table.linked else repeat("")
+        )
         keys = zip(*(hashable(frame[name]) for name in follows), strict=True)
         places: dict[Key, int] = {}
 
@@ -101,7 +100,7 @@ class Cells:
             own = zip(follows, key, strict=True)
             is_first = all(is_chosen(value, page.chosen[name]) for name, value in own)
             place = places.setdefault(key, len(places))
-            return first if is_first else others, _KEYED.format(place) if follows else ""
+            return first if is_first else others, f" data-k={place}" if follows else ""
 
         first: list[str] = []
         others: list[str] = []
@@ -125,12 +124,12 @@ class Cells:
     def _cells(self, column: pl.Series, root: str, exact: bool) -> Sequence[str]:
         name = column.name
         if name == "rowing_time_s":
-            return [_EMPTY if v is None else _SHORT.format(duration(v)) for v in column]
+            return [_SHORT if v is None else _SHORT + duration(v) for v in column]
         if column.dtype.is_float():
             return self._numbers(column, exact)
         if column.dtype.is_integer() and name != "direction":
             return ["<td>" if v is None else f"<td>{v}" for v in column.to_list()]
-        return [_EMPTY if v is None else self._text(name, root, v) for v in hashable(column)]
+        return [_SHORT if v is None else self._text(name, root, v) for v in hashable(column)]
 
     def _numbers(self, column: pl.Series, exact: bool) -> list[str]:
         digits = next((d for ending, d in DIGITS if column.name.endswith(ending)), 4)
@@ -153,9 +152,7 @@ class Cells:
             "direction": lambda value: self.text("out" if value == 1 else "back"),
             "causes": self._causes,
             "tows": lambda value: (
-                self.text(f"code.{value}")
-                if value in STATED
-                else Markup("{}").format(spoken_range(value))
+                self.text(f"code.{value}") if value in STATED else escape(spoken_range(value))
             ),
             "unit": lambda value: self._plain("" if value == "1" else value),
             **dict.fromkeys(("sha256", "content_hash", "method_hash", "seal"), _hash),
@@ -166,7 +163,7 @@ class Cells:
         return named.get(name, self._plain)
 
     def _edition(self, value: str) -> Markup:
-        return Markup("{}").format(self.speech.edition(value))
+        return escape(self.speech.edition(value))
 
     def _type(self, value: str, root: str) -> Markup:
         if value in ("unknown", "all"):
@@ -177,8 +174,8 @@ class Cells:
         if isinstance(value, bool):
             return self.text("yes" if value else "no")
         if isinstance(value, dt.datetime):
-            return Markup("{}").format(value.isoformat(" "))
-        return Markup("{}").format(value)
+            return escape(value.isoformat(" "))
+        return escape(value)
 
     def _code(self, value: Any) -> Markup:
         """A code, or several with commas or as a list, in words."""
@@ -188,17 +185,15 @@ class Cells:
     def _causes(self, value: str) -> Markup:
         """What a change is attributed to (a method's step by its name), each in per cent."""
         parts = [
-            Markup("{} {}").format(
-                self.speech.say(f"code.{cause.get('step', cause['cause'])}"),
-                self.speech.per_cent(cause["factor"]),
-            )
+            self.text(f"code.{cause.get('step', cause['cause'])}")
+            + f" {self.speech.per_cent(cause['factor'])}"
             for cause in json.loads(value)
         ]
         return Markup("; ").join(parts)
 
     def _titles(self, value: Any) -> Markup:
         """The title in this language, of one in Dutch and one in English."""
-        return Markup("{}").format(value[LANGUAGES.index(self.speech.language)])
+        return escape(value[LANGUAGES.index(self.speech.language)])
 
 
 def hashable(column: pl.Series) -> list[Any]:

@@ -17,8 +17,9 @@ from herijk.pipeline.blocks.run_blocks import WindowSums
 from herijk.pipeline.channels import BACK, OUT
 from herijk.pipeline.hull import AIR_DENSITY_KG_M3, front_area_m2
 
-POWER_W: Final = {"H": 80.0, "D": 47.0}
-"""Middle of what a rower gives at the declared speed (Sleepproef 2017, "Sleepsnelheid")."""
+POWER_W: Final = {"H": 80.0, "D": 47.5}
+"""What a rower gives at the declared speed: the middle of 70-90 and of 40-55 W (Sleepproef 2017,
+"Sleepsnelheid")."""
 
 DRAG: Final = 0.6
 """Middle of the drag coefficients in use: good enough to take off most of the air."""

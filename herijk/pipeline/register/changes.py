@@ -13,6 +13,7 @@ import numpy as np
 import polars as pl
 
 from herijk.pipeline.arrays import FloatArray
+from herijk.pipeline.assessment.seen import POWER_W
 from herijk.pipeline.choice import SAME_SHARE
 from herijk.pipeline.curve import cw
 from herijk.pipeline.races.power import curve_of_lines, speed_at_power
@@ -31,9 +32,6 @@ NO_FACTOR: Final = SAME_SHARE
 
 RACE_S: Final = 7200.0
 """The race in which a change is expressed in seconds."""
-
-RANKING_POWER_W: Final = {"H": 80.0, "D": 47.5}
-"""Power per rower at which boats are ranked: the middle of 70-90 and 40-55 W (Sleepproef 2017)."""
 
 PART_SCHEMA: Final = {
     **{name: dtypes(Register)[name] for name in LINE},
@@ -186,7 +184,7 @@ def _ratios(pairs: pl.DataFrame) -> tuple[FloatArray, FloatArray]:
 
 def _ranked(register: pl.DataFrame) -> pl.DataFrame:
     lines = register.filter(pl.col("cw_kg_m").is_not_null())
-    power = lines["crew_class"].replace_strict(RANKING_POWER_W, return_dtype=pl.Float64)
+    power = lines["crew_class"].replace_strict(POWER_W, return_dtype=pl.Float64)
     speed = speed_at_power(*curve_of_lines(lines), (power * lines["rowers"]).to_numpy())
     rank = pl.col("speed").rank("min", descending=True).over("crew_class").cast(pl.Int32)
     return lines.with_columns(pl.Series("speed", speed)).with_columns(rank.alias("rank"))
