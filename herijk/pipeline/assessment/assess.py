@@ -327,7 +327,7 @@ def _of_steps(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
         return pl.DataFrame(schema={"tow_id": pl.String()})
     speed = pl.col("declared_speed_m_s")
     by_gps = pl.when(pl.col("calibration_factor").is_not_null()).then(
-        2 * pl.col("gps_step_m_s") / 2 / speed
+        pl.col("gps_step_m_s") / speed  # half a step; speed counts twice
     )
     by_force = pl.col("force_step_n") / 2 / (pl.col("cw_kg_m") * speed**2)
     return curves.join(tows.select("tow_id", *steps), on="tow_id").select(

@@ -11,12 +11,11 @@ from typing import Final
 import polars as pl
 import scipy
 
+from herijk.pipeline.assessment.shared import CHANCE
 from herijk.tables.keys import LINE
 
 PRIOR_DOF: Final = 10
 """Degrees of freedom that other seasons count for (inferred)."""
-CHANCE: Final = 0.001
-"""Share of sound seasons in which chance alone shows as much."""
 
 
 def days_apart(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
