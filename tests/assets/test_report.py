@@ -84,21 +84,23 @@ def test_a_report_names_what_was_set_aside_what_changed_and_why(bench, built):
     assert [row["what"] for row in report.tow_rows] == ["new"]
 
 
+def reported(bench) -> duckdb.DuckDBPyConnection:
+    """What was last reported on, as a copy of today's tables that may be changed."""
+    there = reported_database(bench.store)
+    there.unlink()  # it may be the same file as today's
+    shutil.copyfile(bench.store.database, there)
+    return duckdb.connect(there)
+
+
 def test_a_log_factor_that_shows_the_same_did_not_move(bench):
-    shutil.copyfile(bench.store.database, bench.data / "other.duckdb")
-    reported_database(bench.store).unlink()
-    (bench.data / "other.duckdb").rename(reported_database(bench.store))
-    with duckdb.connect(reported_database(bench.store)) as db:
+    with reported(bench) as db:
         db.execute("UPDATE log_factors SET factor = factor * 1.00004 WHERE season = 2009")
         db.execute("UPDATE log_factors SET factor = factor * 1.00006 WHERE season = 2014")
     assert change_report(bench.store).factors["season"].unique().to_list() == [2014]
 
 
 def test_a_season_that_disappeared_from_the_archive_is_named_first(bench):
-    shutil.copyfile(bench.store.database, bench.data / "other.duckdb")
-    reported_database(bench.store).unlink()
-    (bench.data / "other.duckdb").rename(reported_database(bench.store))
-    with duckdb.connect(reported_database(bench.store)) as db:
+    with reported(bench) as db:
         db.execute("UPDATE tows SET season = 2002 WHERE tow_id = (SELECT min(tow_id) FROM tows)")
     summary = summary_of(change_report(bench.store))
     assert summary.seasons_gone == [2002]
