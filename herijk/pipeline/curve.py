@@ -15,14 +15,11 @@ from dataclasses import dataclass
 from typing import Final, NamedTuple, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.errors import BrokenPromiseError
 from herijk.pipeline.quantiles import t_quantile
-
-FloatArray = NDArray[np.float64]
-BoolArray = NDArray[np.bool_]
-IntArray = NDArray[np.int64]
 
 VALID_RATIO: Final = (0.85, 1.15)
 """Speeds at which a curve counts, as ratios of its declared speed (Cw-kromme, R. Pot 2015)."""

@@ -9,9 +9,9 @@ Source of all formulas: presentation R. Pot, 24 January 2015. Arguments broadcas
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-FloatArray = NDArray[np.float64]
+from herijk.pipeline.arrays import FloatArray
 
 AIR_DENSITY_KG_M3: Final = 1.225
 CREW_FRONT_AREA_M2: Final = 0.5

@@ -61,10 +61,7 @@ class Batch:
     @cached_property
     def has_gps(self) -> BoolArray:
         """Tows with fixes in runs that are to be used, out and back, shape (tows,)."""
-        fixed = self.selected & (self.blocks["gps_n"].sum(axis=1) > 0)
-        return self.any(fixed & (self.direction == OUT)) & self.any(
-            fixed & (self.direction == BACK)
-        )
+        return self.both_ways(self.selected & (self.blocks["gps_n"].sum(axis=1) > 0))
 
     def part(self, tows: BoolArray) -> "Batch":
         """Some of its tows, marked in shape (tows,)."""
@@ -121,6 +118,11 @@ class Batch:
         return self.blocks.runs["run"].to_numpy() > SECOND_FILE_OFFSET
 
     @property
+    def file(self) -> IntArray:
+        """Index of each run's file, two per tow, shape (runs,)."""
+        return 2 * self.tow + self.in_second_file
+
+    @property
     def target_speed_ratio(self) -> FloatArray:
         """Intended speed / declared speed, shape (runs,)."""
         return self.blocks.runs["target_speed_ratio"].to_numpy()
@@ -143,6 +145,10 @@ class Batch:
     def any(self, runs: BoolArray) -> BoolArray:
         """Whether any run of a tow is marked, shape (tows,)."""
         return self.count(runs) > 0
+
+    def both_ways(self, runs: BoolArray) -> BoolArray:
+        """Whether runs out and runs back of a tow are marked, shape (tows,)."""
+        return self.any(runs & (self.direction == OUT)) & self.any(runs & (self.direction == BACK))
 
     def mean(self, values: FloatArray, runs: BoolArray) -> FloatArray:
         """Mean of a run quantity over the marked runs of each tow; 0 where there are none."""

@@ -12,7 +12,6 @@ import numpy as np
 from herijk.pipeline import curve
 from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.blocks.batch import Batch
-from herijk.pipeline.channels import BACK, OUT
 from herijk.pipeline.method.definition import Steps
 from herijk.pipeline.steps.resistance import RunMeans
 from herijk.pipeline.steps.window import Windows
@@ -107,9 +106,9 @@ class Prepared:
 
     @cached_property
     def in_fit(self) -> BoolArray:
-        """Runs that count, of tows that have enough of them, shape (runs,)."""
-        enough = enough_runs(self.batch, self.used, self.steps.runs.minimum)
-        return self.used & enough[self.batch.tow]
+        """Runs that count, of tows that have enough of them, and both ways, shape (runs,)."""
+        enough = self.batch.count(self.used) >= self.steps.runs.minimum
+        return self.used & (enough & self.batch.both_ways(self.used))[self.batch.tow]
 
     @cached_property
     def speed_m_s(self) -> FloatArray:
@@ -173,13 +172,6 @@ class Prepared:
             batch.by_tow(cw_kg_m),
             batch.by_tow(self.in_fit & (cw_kg_m > 0) & (self.speed_m_s > 0)) > 0,
         )
-
-
-def enough_runs(batch: Batch, used: BoolArray, minimum: int) -> BoolArray:
-    """Tows with enough runs, and runs both ways so that wind and stream can be judged."""
-    out = batch.count(used & (batch.direction == OUT))
-    back = batch.count(used & (batch.direction == BACK))
-    return (out + back >= minimum) & (out > 0) & (back > 0)
 
 
 @dataclass(frozen=True)

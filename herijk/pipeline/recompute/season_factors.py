@@ -104,6 +104,11 @@ class Instruments:
     rows: pl.DataFrame | None = None
     _known: dict[tuple[tuple[str, ...], str, bool], TowFactor] = field(default_factory=dict)
 
+    @classmethod
+    def of(cls, estimated: SeasonFactors | None) -> "Instruments":
+        """What season factors say of them; nothing without an estimate."""
+        return cls(None if estimated is None else tow_instruments(estimated))
+
     def of_tows(self, batch: Batch, steps: Steps) -> TowFactor:
         """What was estimated of each tow of a batch, as far as its steps ask for it."""
         key = (batch.key, steps.speed.source, is_estimated(steps))

@@ -7,11 +7,10 @@ here: what a method does with them (the temperature correction, `resistance`). A
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.errors import BrokenPromiseError
-
-FloatArray = NDArray[np.float64]
 
 LIQUID_RANGE_C: Final = (0.0, 40.0)
 """Temperatures both formulas below hold for."""
