@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 FloatArray: TypeAlias = NDArray[np.float64]
 BoolArray: TypeAlias = NDArray[np.bool_]
 IntArray: TypeAlias = NDArray[np.int64]
+StrArray: TypeAlias = NDArray[np.str_]
 
 
 class OnDemand(Mapping[str, FloatArray]):

@@ -5,19 +5,17 @@ Filled by `pipeline.recompute.recompute`, made into tables by `pipeline.recomput
 
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import Any, Final, NamedTuple, TypeAlias
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
 from herijk.pipeline import curve
-from herijk.pipeline.arrays import BoolArray, FloatArray
+from herijk.pipeline.arrays import BoolArray, FloatArray, StrArray
 from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.method.definition import Steps
 from herijk.pipeline.steps.resistance import RunMeans
 from herijk.pipeline.steps.window import Windows
 from herijk.pipeline.uncertainty.propagation import Assumed
-
-Texts: TypeAlias = np.ndarray[tuple[int, ...], np.dtype[np.str_]]
 
 
 @dataclass(frozen=True)
@@ -81,7 +79,7 @@ class Prepared:
     calibrated: BoolArray
     stream_m_s: FloatArray
     estimated: TowFactor
-    reasons: Texts
+    reasons: StrArray
     still_unit_kg_m: FloatArray
     temperature_kg_m: FloatArray
     temperature_known: BoolArray

@@ -16,7 +16,7 @@ import numpy as np
 import polars as pl
 
 from herijk.pipeline import curve
-from herijk.pipeline.arrays import BoolArray, FloatArray
+from herijk.pipeline.arrays import BoolArray, FloatArray, StrArray
 from herijk.pipeline.blocks.batch import Batch
 from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.pipeline.choice import first_largest
@@ -29,7 +29,6 @@ from herijk.pipeline.recompute.outcome import (
     ExpectedWind,
     Outcome,
     Prepared,
-    Texts,
     TowFactor,
 )
 from herijk.pipeline.recompute.results import Recomputed, as_tables
@@ -256,7 +255,7 @@ def _prepare(batch: Batch, steps: Steps, cache: RunCache, estimated: TowFactor) 
     )
 
 
-def _reasons(batch: Batch, steps: Steps, windows: Windows, means: RunMeans) -> Texts:
+def _reasons(batch: Batch, steps: Steps, windows: Windows, means: RunMeans) -> StrArray:
     """Why a run does not count, before calibration; empty where it does."""
     chosen = batch.selected & windows.found
     too_fast = above_target(batch, means.speed_m_s, chosen, steps.runs.highest_target_ratio)

@@ -20,7 +20,6 @@ import numpy as np
 
 from herijk.pipeline.arrays import BoolArray, FloatArray
 from herijk.pipeline.season_log.assumed import Settings
-from herijk.pipeline.season_log.likelihood import BEND, GPS, LEVEL
 from herijk.pipeline.season_log.network import Network
 from herijk.pipeline.season_log.scale import LEAST_MARGIN
 
@@ -237,8 +236,7 @@ def slopes(q: FloatArray, force_n: FloatArray, ln_factor: FloatArray) -> Slopes:
     one, nothing = np.ones(len(q)), np.zeros(len(q))
 
     def numbers(ln_cw: FloatArray, q_log: FloatArray, gps: FloatArray) -> FloatArray:
-        columns = {LEVEL: ln_cw, BEND: q_log, GPS: gps}
-        return np.stack([columns[place] for place in range(3)], axis=1)
+        return np.stack([ln_cw, q_log, gps], axis=1)
 
     by_bend = numbers((y2 - 1.0) / margin, y2 / margin**2, nothing)
     return Slopes(

@@ -17,7 +17,7 @@ from herijk.pipeline.season_log.diagnosis import (
     season_diagnosis,
     season_steps,
 )
-from herijk.pipeline.season_log.effects import AGEING, WAYS
+from herijk.pipeline.season_log.effects import AGEING
 from herijk.pipeline.season_log.network import GROUP, Network
 from herijk.pipeline.season_log.posterior import Posterior, Problem, solve
 from herijk.pipeline.season_log.tows import best_estimates, instrument_errors
@@ -120,22 +120,21 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
     _refuse_unknown(tows)
     network = Network.of(tows)
     posterior = solve(Problem.of(network, USUAL))
-    problem = posterior.problem
     fit = posterior.fit
-    ageing = int(np.flatnonzero([problem.unknowns[i].name == AGEING for i in fit.active])[0])
+    ageing = int(np.flatnonzero(posterior.names == AGEING)[0])
     ageing_per_year = float(posterior.mean[ageing])
     ageing_sd = float(np.sqrt(posterior.covariance[ageing, ageing]))
     second = without_boats(network, (ageing_per_year, ageing_sd), USUAL)
-    along = _group_means(problem, posterior, network)
+    along = _group_means(posterior)
     covariance = along @ posterior.covariance @ along.T
     mode = _weakest_mode(covariance)
-    change = _without_each_boat(network, posterior)
-    instruments = instrument_errors(problem, posterior, network, change)
-    best, weights = best_estimates(problem, posterior, network, instruments)
+    change = _without_each_boat(posterior)
+    instruments = instrument_errors(posterior, change)
+    best, weights = best_estimates(posterior, instruments)
     eras = len(USUAL.era_starts)
     *tow_log_sd, calibration_sd = np.exp(0.5 * fit.state.ln_variance[3 : 4 + eras]).tolist()
-    diagnosis = season_diagnosis(problem, posterior, network)
-    numbers = _numbers(network, posterior, along, mode, change)
+    diagnosis = season_diagnosis(posterior)
+    numbers = _numbers(posterior, along, mode, change)
     return SeasonFactors(
         factors=_described(numbers, network, second, fit.settled),
         covariance=covariance,
@@ -150,7 +149,7 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
         best=best,
         weights=weights,
         diagnosis=diagnosis,
-        steps=season_steps(problem, posterior, network, diagnosis),
+        steps=season_steps(posterior, diagnosis),
     )
 
 
@@ -170,10 +169,10 @@ def _refuse_unknown(tows: pl.DataFrame) -> None:
             )
 
 
-def _group_means(problem: Problem, posterior: Posterior, network: Network) -> FloatArray:
+def _group_means(posterior: Posterior) -> FloatArray:
     """Mean ln factor over the tows of each determined group as a sum of unknowns."""
-    speed = [WAYS[problem.unknowns[i].name] == "speed" for i in posterior.places]
-    share = problem.share[:, posterior.places] * np.array(speed)
+    network = posterior.problem.network
+    share = posterior.problem.share[:, posterior.places] * posterior.of_log
     groups = np.flatnonzero(network.determined)
     means = [share[network.group == number].mean(axis=0) for number in groups]
     return np.array(means).reshape(len(groups), len(posterior.places))
@@ -188,14 +187,14 @@ def _weakest_mode(covariance: FloatArray) -> FloatArray:
     return np.asarray(mode * sign)
 
 
-def _without_each_boat(network: Network, posterior: Posterior) -> FloatArray:
+def _without_each_boat(posterior: Posterior) -> FloatArray:
     """Change of every unknown of the fit when a boat is left out, (boats, unknowns)."""
-    fit = posterior.fit
-    clusters = int(network.cluster.max()) + 1
+    fit, cluster = posterior.fit, posterior.problem.network.cluster
+    clusters = int(cluster.max()) + 1
     information = np.zeros((clusters, len(fit.active), len(fit.active)))
     score = np.zeros((clusters, len(fit.active)))
     for told in fit.told:
-        whose = network.cluster[told.patterns.tow[:, 0]]
+        whose = cluster[told.patterns.tow[:, 0]]
         np.add.at(information, whose, told.information)
         np.add.at(score, whose, np.einsum("bi,bip->bp", told.mean_pull, told.slope))
     left = np.linalg.inv(fit.covariance) - information
@@ -203,13 +202,10 @@ def _without_each_boat(network: Network, posterior: Posterior) -> FloatArray:
 
 
 def _numbers(
-    network: Network,
-    posterior: Posterior,
-    along: FloatArray,
-    weakest_mode: FloatArray,
-    change: FloatArray,
+    posterior: Posterior, along: FloatArray, weakest_mode: FloatArray, change: FloatArray
 ) -> pl.DataFrame:
     """What the joint estimate says about each group; null where it is not determined."""
+    network = posterior.problem.network
     known = np.flatnonzero(network.determined)
     k = len(posterior.fit.active)
     ln_factor = along @ posterior.mean

@@ -160,12 +160,15 @@ class Told:
             yield Told(of_some, *(array[some] for array in arrays))
 
     @property
-    def information(self) -> FloatArray:
-        """Observed information on the unknowns, per boat (Louis 1982)."""
+    def observed_precision(self) -> FloatArray:
+        """Precision of the numbers, less what the pattern being unknown takes off (Louis 1982)."""
         off = self.pull - self.mean_pull[:, None]
-        unsure = np.einsum("bp,bpi,bpj->bij", self.weight, off, off)
-        seen = self.mean_precision - unsure
-        return np.asarray(np.swapaxes(self.slope, 1, 2) @ seen @ self.slope)
+        return np.asarray(self.mean_precision - np.einsum("bp,bpi,bpj->bij", self.weight, off, off))
+
+    @property
+    def information(self) -> FloatArray:
+        """Observed information on the unknowns, per boat."""
+        return np.asarray(np.swapaxes(self.slope, 1, 2) @ self.observed_precision @ self.slope)
 
     @property
     def complete_information(self) -> FloatArray:

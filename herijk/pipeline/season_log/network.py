@@ -93,6 +93,11 @@ class Network:
         """Groups that are tied to the anchor, shape (groups,)."""
         return np.asarray(self.component == 0)
 
+    @property
+    def log_known(self) -> BoolArray:
+        """Tows whose group is determined, and anchored ones, shape (tows,)."""
+        return np.append(self.determined, [True])[self.group]  # -1, anchored, reads the last
+
     @cached_property
     def critical(self) -> BoolArray:
         """Whether a group is tied to the anchor no more without a boat, (boats, groups)."""

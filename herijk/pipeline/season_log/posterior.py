@@ -15,12 +15,13 @@ from typing import Final
 import numpy as np
 import scipy
 
-from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
+from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray, StrArray
 from herijk.pipeline.choice import first_largest
 from herijk.pipeline.season_log.assumed import Settings
 from herijk.pipeline.season_log.days import day_variance, share_of_season
 from herijk.pipeline.season_log.effects import (
     FORCE,
+    OF_BOATS,
     WAYS,
     Slopes,
     Unknown,
@@ -69,6 +70,7 @@ class Problem:
     """The tows of an archive as arrays; n tows.
 
     Attributes:
+        network: the tows.
         observed: (n, 3) level (less its boat's mean), bend and ln(GPS / log).
         given: (n, 3, 3) their random covariance.
         absent: (n, 3, 3) huge variance of numbers that a tow does not have.
@@ -80,6 +82,7 @@ class Problem:
         groups: boats by their number of tows, with what may have changed between these.
     """
 
+    network: Network
     observed: FloatArray
     given: FloatArray
     absent: FloatArray
@@ -112,6 +115,7 @@ class Problem:
         season = network.numbers("season")
         era = np.searchsorted(settings.era_starts, season, side="right") - 1
         return cls(
+            network,
             np.stack(
                 [
                     level - mean,
@@ -426,7 +430,7 @@ class Posterior:
     """What is known of all unknowns, averaged over the faults that there may be.
 
     Attributes:
-        problem: with load cells as uncertain as the days of their seasons show.
+        problem: the archive, with load cells as uncertain as the days of their seasons show.
         fit: with the faults that are likelier than not.
         places: (k + faults,) index of each unknown below: those of the fit, then every fault.
         mean, covariance: of their values; a fault that is not there is 0.
@@ -446,6 +450,26 @@ class Posterior:
     instead: FloatArray
     shows: BoolArray
     taken_for: IntArray
+
+    @cached_property
+    def names(self) -> StrArray:
+        """What each unknown is, (k + faults,)."""
+        return np.array([self.problem.unknowns[i].name for i in self.places])
+
+    @cached_property
+    def design(self) -> FloatArray:
+        """Slopes of each tow's numbers by all unknowns, (n, 3, k + faults)."""
+        return self.problem.design(self.fit.slopes, self.places)
+
+    @cached_property
+    def of_boats(self) -> BoolArray:
+        """Unknowns of boats, (k + faults,); the others are of instruments."""
+        return np.isin(self.names, tuple(OF_BOATS))
+
+    @cached_property
+    def of_log(self) -> BoolArray:
+        """Unknowns that act as the scale of a log does, (k + faults,)."""
+        return np.array([WAYS[name] == "speed" for name in self.names.tolist()])
 
 
 def solve(problem: Problem) -> Posterior:
@@ -553,9 +577,7 @@ def _candidates(problem: Problem, fitted: Fit) -> tuple[FloatArray, FloatArray, 
     for t in fitted.told:
         boats, n = t.mean_pull.shape
         by = design[t.patterns.tow].reshape(boats, n, -1)
-        off = t.pull - t.mean_pull[:, None]
-        seen = t.mean_precision - np.einsum("bp,bpi,bpj->bij", t.weight, off, off)
-        weighted = seen @ by
+        weighted = t.observed_precision @ by
         across += np.einsum("bik,bif->kf", t.slope, weighted, optimize=True)
         itself += (by * weighted).sum(axis=(0, 1))
         score += np.einsum("bi,bif->f", t.mean_pull, by, optimize=True)
