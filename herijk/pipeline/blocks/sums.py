@@ -1,13 +1,11 @@
 """Adding up a tow's samples: one compiled loop makes the sums of every second.
 
-What the sums are is in `pipeline.blocks.run_blocks`. The loop is compiled by Numba, and written
-so that
-its result follows from the samples alone, to the last bit and on every processor. It uses only
-additions, multiplications and divisions, in a fixed order, and no function of a mathematical
-library (docs/decisions/0015). It is written without branches, so that the compiler can work on
-several samples at a time; sample i of a block is added to lane i modulo `LANES`, and the lanes to
-each other at the end. Importing this module compiles the loop, or finds it compiled: import it
-late.
+What the sums are is in `pipeline.blocks.run_blocks`. The loop is compiled by Numba. Its result
+follows from the samples alone, to the last bit and on every processor: it uses only additions,
+multiplications and divisions, in a fixed order, and no mathematical library (docs/decisions/0015).
+It has no branches, so that the compiler can work on several samples at a time; sample i of a block
+is added to lane i modulo `LANES`, and the lanes to each other at the end. Importing this module
+compiles the loop, or finds it compiled: import it late.
 """
 
 import math

@@ -113,31 +113,15 @@ class Prepared:
         """Mean true speed, shape (runs,)."""
         return self.means.speed_m_s * self.speed_factor
 
-    @cached_property
-    def gross_kg_m(self) -> FloatArray:
-        """Force / true speed squared, shape (runs,)."""
-        return self.means.gross_kg_m / self.speed_factor**2
-
-    @cached_property
-    def sd_kg_m(self) -> FloatArray:
-        """Standard deviation of the samples' coefficients, shape (runs,)."""
-        return self.means.sd_kg_m / self.speed_factor**2
-
-    @cached_property
-    def inertia_kg_m(self) -> FloatArray:
-        """Part of the gross coefficient that accelerated the boat, shape (runs,)."""
-        return self.means.inertia_kg_m / self.speed_factor**2
-
-    @cached_property
-    def air_unit_kg_m(self) -> FloatArray:
-        """Air part as felt for drag coefficients of 1, shape (runs,)."""
-        return (self.means.air.ahead + self.means.air.behind) / self.speed_factor**2
+    def by_true_speed(self, kg_m: FloatArray) -> FloatArray:
+        """A coefficient of each run by log speed, now by true speed, shape (runs,)."""
+        return kg_m / self.speed_factor**2
 
     def air_of(self, ahead: FloatArray, behind: FloatArray) -> FloatArray:
         """The air part that is taken off for given drag coefficients, shape (runs,)."""
         if self.steps.wind.reading == "cw_vac_2014":
             return 2.0 * self.still_air_of(ahead)
-        felt = self.means.air.total(ahead, behind, self.steps.wind.side) / self.speed_factor**2
+        felt = self.by_true_speed(self.means.air.total(ahead, behind, self.steps.wind.side))
         if self.steps.wind.unmeasured == "still_air":
             return felt
         expected = (1.0 + self.expected_wind.mean) * self.still_air_of(ahead)
@@ -158,9 +142,9 @@ class Prepared:
 
     def cw_of(self, ahead: FloatArray, behind: FloatArray, still: FloatArray) -> FloatArray:
         """Corrected coefficient of each run for given drag coefficients, shape (runs,)."""
-        water = self.gross_kg_m - self.inertia_kg_m
+        gross, inertia = map(self.by_true_speed, (self.means.gross_kg_m, self.means.inertia_kg_m))
         air = self.air_of(ahead, behind) - self.still_air_of(still)
-        return water - air + self.temperature_kg_m
+        return gross - inertia - air + self.temperature_kg_m
 
     def points_of(self, cw_kg_m: FloatArray) -> curve.Points:
         """Points of all tows that have enough runs, for a batch fit."""

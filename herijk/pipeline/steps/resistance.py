@@ -2,8 +2,8 @@
 
 Per sample the gross coefficient is `Cw = F / (v y)^2` (Sleepproef, R. Pot 2017, "IJking
 snelheid"). Everything here is in the speed that the log reads; a factor k that turns it into true
-speed divides every coefficient by k^2, and is applied last (`true_cw_kg_m`). Which runs count and
-which factor holds is decided elsewhere.
+speed divides every coefficient by k^2, and is applied last (`pipeline.recompute.outcome`). Which
+runs count and which factor holds is decided elsewhere.
 """
 
 from dataclasses import dataclass, replace
