@@ -455,7 +455,6 @@ def covariance(
 
     Args:
         points: run points the curves were fitted to.
-        curves: the fitted curves.
         scatter: own or pooled scatter of a point.
         reference_speed_m_s: v0, (n_fits,) or one for all; usually the declared speed.
     """
@@ -482,7 +481,6 @@ def cw_interval(
     runs from 0 to infinity where the covariance is not known or the speed is not below B.
 
     Args:
-        curves: the fitted curves.
         errors: covariance of (C0, q): scatter alone, or with systematic components added.
         dof: (n_fits,) degrees of freedom of the t-quantile; infinite for a normal quantile.
         speed_m_s: (n_fits,) or one for all; any speed, not only the reference speed.

@@ -162,7 +162,7 @@ class Outcome(Prepared):
 
     Attributes:
         ahead, behind, still_air_coefficient: drag coefficients of each run, shape (runs,).
-        coefficient_sd: standard deviation of the archive's coefficient; NaN where none was found.
+        coefficient_sd: standard deviation of the archive's coefficient; NaN where there is none.
         cw_kg_m: corrected coefficient, shape (runs,).
         points, free, curves: the fit's input, the free hyperbola and the one that the method
             chose, shape (tows,).
@@ -178,9 +178,9 @@ class Outcome(Prepared):
     curves: curve.Curves
 
     @classmethod
-    def of(cls, prepared: Prepared, **found: Any) -> "Outcome":
-        """The outcome of what was prepared, with the fields that were found since."""
-        return cls(**{f.name: getattr(prepared, f.name) for f in fields(prepared)}, **found)
+    def of(cls, prepared: Prepared, **own: Any) -> "Outcome":
+        """The outcome of what was prepared, with the fields of its own."""
+        return cls(**{f.name: getattr(prepared, f.name) for f in fields(prepared)}, **own)
 
     @cached_property
     def air_kg_m(self) -> FloatArray:

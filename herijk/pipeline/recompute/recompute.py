@@ -82,7 +82,6 @@ def recompute(
     """Run points, curves, log factors and assessments of all tows under a method.
 
     Args:
-        method: the method.
         tows: rows of the warehouse's `tows`, with `boat_type` where it is known, so that a tow can
             be compared with like boats.
         blocks: their runs; `blocks.runs` has the columns of `tow_runs`.
@@ -257,10 +256,10 @@ def _prepare(batch: Batch, steps: Steps, cache: RunCache, estimated: TowFactor) 
 
 def _reasons(batch: Batch, steps: Steps, windows: Windows, means: RunMeans) -> StrArray:
     """Why a run does not count, before calibration; empty where it does."""
-    chosen = batch.selected & windows.found
+    chosen = batch.selected & windows.exists
     too_fast = above_target(batch, means.speed_m_s, chosen, steps.runs.highest_target_ratio)
     return np.select(
-        [~batch.selected, ~windows.found, too_fast],
+        [~batch.selected, ~windows.exists, too_fast],
         [NOT_SELECTED, NO_STEADY_WINDOW, ABOVE_TARGET],
         "",
     )
@@ -287,7 +286,7 @@ def _calibrate(
         return np.ones(len(batch.tow)), np.ones(len(batch.tow), dtype=bool)
     log = means.speed_m_s * known_factor[batch.tow]
     y, determined = gps_factor_of_files(
-        batch, means.gps_m_s - stream_m_s, log, used, windows.found & (log > 0)
+        batch, means.gps_m_s - stream_m_s, log, used, windows.exists & (log > 0)
     )
     if steps.calibration.rule == "gps_per_season":
         y, determined = _mean_of_season(batch, y, determined)

@@ -127,7 +127,7 @@ def as_tables(
 
 
 def _run_points(o: Outcome, pooled: bool) -> pl.DataFrame:
-    means, has_window, tow = o.means, o.windows.found, o.batch.tow
+    means, has_window, tow = o.means, o.windows.exists, o.batch.tow
     on_curve = curve.cw(o.curves.a_kg_m[tow], o.curves.s_s2_m2[tow], o.speed_m_s)
     log1 = np.where(has_window, means.log1_m_s, 1.0)
     has_limits = o.steps.window.rule != "all"

@@ -57,8 +57,8 @@ class RunCache:
         key = batch.key, options
         if key not in self._found:
             whole, rows = batch.whole
-            found = find(batch) if whole is batch else self._of_part(whole, options, find)
-            self._found[key] = found if whole is batch else _rows(found, rows)
+            of_whole = find(batch) if whole is batch else self._of_part(whole, options, find)
+            self._found[key] = of_whole if whole is batch else _rows(of_whole, rows)
         known: T = self._found[key]
         return known
 
@@ -82,9 +82,11 @@ def _rule(steps: Steps) -> Window:
     return Window(rule="all") if steps.window.rule == "all" else steps.window
 
 
-def _rows(found: Any, rows: IntArray) -> Any:
-    """The rows of some runs of all arrays of what was found."""
-    if is_dataclass(found) and not isinstance(found, type):
-        parts = {f.name: _rows(getattr(found, f.name), rows) for f in fields(found)}
-        return replace(found, **parts)
-    return tuple(found[row] for row in rows) if isinstance(found, tuple) else found[rows]
+def _rows(of_whole: Any, rows: IntArray) -> Any:
+    """The rows of some runs of all arrays of windows or means."""
+    if is_dataclass(of_whole) and not isinstance(of_whole, type):
+        parts = {f.name: _rows(getattr(of_whole, f.name), rows) for f in fields(of_whole)}
+        return replace(of_whole, **parts)
+    if isinstance(of_whole, tuple):
+        return tuple(of_whole[row] for row in rows)
+    return of_whole[rows]

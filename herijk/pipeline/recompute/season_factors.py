@@ -25,14 +25,14 @@ from herijk.pipeline.recompute.budget import (
 )
 from herijk.pipeline.recompute.outcome import Outcome, TowFactor
 from herijk.pipeline.season_log import (
-    GROUP,
-    LINE,
     SeasonFactors,
     estimate_season_factors,
     other_log_factors,
 )
+from herijk.pipeline.season_log.network import GROUP
 from herijk.pipeline.steps.calibration import gps_factor
 from herijk.pipeline.steps.speed import log_part
+from herijk.tables.keys import LINE
 
 FEWEST_OF_TYPE: Final = 5
 """A type's own bend is taken from so many anchored tows on."""

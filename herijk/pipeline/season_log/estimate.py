@@ -127,16 +127,14 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
     second = without_boats(network, (ageing_per_year, ageing_sd), USUAL)
     along = _group_means(posterior)
     covariance = along @ posterior.covariance @ along.T
-    mode = _weakest_mode(covariance)
     change = _without_each_boat(posterior)
     instruments = instrument_errors(posterior, change)
     best, weights = best_estimates(posterior, instruments)
     eras = len(USUAL.era_starts)
     *tow_log_sd, calibration_sd = np.exp(0.5 * fit.state.ln_variance[3 : 4 + eras]).tolist()
     diagnosis = season_diagnosis(posterior)
-    numbers = _numbers(posterior, along, mode, change)
     return SeasonFactors(
-        factors=_described(numbers, network, second, fit.settled),
+        factors=_described(posterior, along, covariance, change, second),
         covariance=covariance,
         tow_log_sd=dict(zip(USUAL.era_starts, tow_log_sd, strict=True)),
         calibration_sd=calibration_sd,
@@ -201,83 +199,61 @@ def _without_each_boat(posterior: Posterior) -> FloatArray:
     return np.asarray(-np.linalg.solve(left, score[:, :, None])[:, :, 0])
 
 
-def _numbers(
-    posterior: Posterior, along: FloatArray, weakest_mode: FloatArray, change: FloatArray
-) -> pl.DataFrame:
-    """What the joint estimate says about each group; null where it is not determined."""
-    network = posterior.problem.network
-    known = np.flatnonzero(network.determined)
-    k = len(posterior.fit.active)
-    ln_factor = along @ posterior.mean
-    lost = network.critical[:, known]
-    moved = np.expm1(change @ along[:, :k].T)
-    move = np.where(lost, np.inf, np.abs(moved) * np.exp(ln_factor))
-    influence = move.max(axis=0, initial=0.0) if len(known) else np.zeros(0)
-    placed = {
-        "ln_factor": ln_factor,
-        "ln_sd": np.sqrt(np.einsum("gf,fh,gh->g", along, posterior.covariance, along)),
-        "dof": posterior.fit.dof(along[:, :k]),
-        "influence": np.where(np.isfinite(influence), influence, np.nan),
-        "boat": first_largest(move) if move.size else np.zeros(len(known)),
-        "critical_boats": lost.sum(axis=0),
-        "weakest_mode": weakest_mode,
-    }
-    return network.groups.with_columns(
-        *(_placed(name, values, known, network) for name, values in placed.items()),
-        pl.Series("n_tows", np.bincount(network.group[network.group >= 0]), pl.Int64),
-        pl.Series("n_links", network.links, pl.Int64),
-        pl.Series("component", network.component, pl.Int64),
-        pl.Series("by_gps", network.has_gps | network.calibrated),
-    )
-
-
-def _placed(name: str, values: FloatArray, known: IntArray, network: Network) -> pl.Series:
-    """Values of the determined groups as a column of all groups, null for the others."""
-    column = np.full(network.groups.height, np.nan)
-    column[known] = values
-    return pl.Series(name, column, pl.Float64).fill_nan(None)
-
-
 def _described(
-    table: pl.DataFrame, network: Network, second: Second, settled: bool
+    posterior: Posterior,
+    along: FloatArray,
+    covariance: FloatArray,
+    change: FloatArray,
+    second: Second,
 ) -> pl.DataFrame:
-    """Factors and intervals from the ln factors, with where they come from."""
-    names = pl.Series(network.boat_names, dtype=pl.String)
-    boat = table["boat"].cast(pl.Int64)
-    source = (
-        pl.when(pl.col("ln_factor").is_null())
-        .then(pl.lit(NOT_DETERMINED))
-        .when(not settled)
-        .then(pl.lit(NOT_SETTLED))
-        .when((pl.col("n_links") == 0) & pl.col("by_gps"))
-        .then(pl.lit(GPS))
-        .otherwise(pl.lit(ESTIMATED))
-    )
-    half = _half_width(table["ln_sd"], table["dof"])
+    """The factor of each group with its interval and what it rests on; see `SeasonFactors`.
+
+    Args:
+        along: as `_group_means` gives it; `covariance`: of those means.
+        change: of every unknown of the fit without each boat, (boats, unknowns).
+        second: the estimate without boats.
+    """
+    network, fit = posterior.problem.network, posterior.fit
+    known = np.flatnonzero(network.determined)
+
+    def placed(values: FloatArray | IntArray) -> pl.Series:
+        """Numbers of the determined groups, null for the others."""
+        column = np.full(network.groups.height, np.nan)
+        column[known] = values
+        return pl.Series(column, dtype=pl.Float64).fill_nan(None)
+
+    of_fit, mean = along[:, : len(fit.active)], along @ posterior.mean
+    critical = network.critical[:, known]
+    move = np.where(critical, np.inf, np.abs(np.expm1(change @ of_fit.T)) * np.exp(mean))
+    influence = move.max(axis=0, initial=0.0)
+    boat = first_largest(move) if move.size else np.zeros(len(known))
+    ln_factor, dof = placed(mean), placed(fit.dof(of_fit))
+    sd = placed(np.sqrt(np.einsum("gf,fh,gh->g", along, posterior.covariance, along)))
+    half = _half_width(sd, dof)
     other = pl.Series(np.where(second.known, second.ln_factor, np.nan)).fill_nan(None)
     other_sd = pl.Series(second.sd)
     other_half = _half_width(other_sd, pl.Series(second.dof))
-    ln_factor = table["ln_factor"]
-    apart = (ln_factor - other) / (table["ln_sd"] ** 2 + other_sd**2).sqrt()
-    return table.select(
+    by_gps_alone = (network.links == 0) & (network.has_gps | network.calibrated)
+    source = np.where(by_gps_alone, GPS, ESTIMATED) if fit.settled else NOT_SETTLED
+    return network.groups.select(
         *GROUP,
-        ln_factor.exp().alias("factor"),
-        (ln_factor - half).exp().alias("lo"),
-        (ln_factor + half).exp().alias("hi"),
-        source.alias("source"),
-        "ln_sd",
-        "dof",
-        "n_tows",
-        "n_links",
-        "component",
-        "influence",
-        names.gather(boat).alias("influence_boat"),
-        pl.col("critical_boats").cast(pl.Int64),
-        "weakest_mode",
-        other.exp().alias("factor_no_boats"),
-        (other - other_half).exp().alias("lo_no_boats"),
-        (other + other_half).exp().alias("hi_no_boats"),
-        apart.alias("agreement"),
+        factor=ln_factor.exp(),
+        lo=(ln_factor - half).exp(),
+        hi=(ln_factor + half).exp(),
+        source=pl.Series(np.where(network.determined, source, NOT_DETERMINED), dtype=pl.String),
+        ln_sd=sd,
+        dof=dof,
+        n_tows=pl.Series(np.bincount(network.group[network.group >= 0]), dtype=pl.Int64),
+        n_links=pl.Series(network.links, dtype=pl.Int64),
+        component=pl.Series(network.component, dtype=pl.Int64),
+        influence=placed(np.where(np.isfinite(influence), influence, np.nan)),
+        influence_boat=pl.Series(network.boat_names).gather(placed(boat).cast(pl.Int64)),
+        critical_boats=placed(critical.sum(axis=0)).cast(pl.Int64),
+        weakest_mode=placed(_weakest_mode(covariance)),
+        factor_no_boats=other.exp(),
+        lo_no_boats=(other - other_half).exp(),
+        hi_no_boats=(other + other_half).exp(),
+        agreement=(ln_factor - other) / (sd**2 + other_sd**2).sqrt(),
     )
 
 

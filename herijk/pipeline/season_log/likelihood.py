@@ -57,7 +57,7 @@ class Patterns:
     excess_variance: float
 
     @property
-    def found(self) -> IntArray:
+    def changes(self) -> IntArray:
         """Number of alterations, and of tows pulled askew, early and later, (patterns, 3)."""
         early, later = self.askew[:, : self.early], self.askew[:, self.early :]
         return np.stack([x.sum(axis=1) for x in (self.altered, early, later)], axis=1)
@@ -70,8 +70,8 @@ class Patterns:
 
     def prior(self, shares: FloatArray) -> FloatArray:
         """Ln prior of each pattern, given the shares of gaps with an alteration and tows askew."""
-        not_found = self.possible - self.found
-        ln_prior = self.found @ np.log(shares) + not_found @ np.log1p(-shares)
+        unchanged = self.possible - self.changes
+        ln_prior = self.changes @ np.log(shares) + unchanged @ np.log1p(-shares)
         return ln_prior - _normalised(ln_prior)[0]
 
 
@@ -232,7 +232,6 @@ def covariance_of(
     """Covariance of the numbers of each boat.
 
     Args:
-        group: the boats.
         covariance, state, drift_variance: as `tell` takes them.
 
     Returns:

@@ -274,7 +274,6 @@ def fit(
     """Unknowns and variances with given faults in the model.
 
     Args:
-        problem: the archive.
         active: unknowns in the model.
         start: an earlier fit to begin at.
         tolerance: movement below which nothing moves any more.
@@ -418,11 +417,11 @@ def _variance_slopes(
 def _shares(told: list[Told], settings: Settings) -> FloatArray:
     """Shares of gaps with an alteration and of tows askew: their priors and what was found."""
     possible = np.array(settings.change_counts)
-    found = possible * settings.change_shares
+    changes = possible * settings.change_shares
     for t in told:
-        found += (t.weight @ t.patterns.found).sum(axis=0)
+        changes += (t.weight @ t.patterns.changes).sum(axis=0)
         possible += len(t.patterns.tow) * t.patterns.possible
-    return np.asarray(found / possible)
+    return np.asarray(changes / possible)
 
 
 @dataclass(frozen=True)
@@ -504,7 +503,6 @@ def _with_needed_faults(problem: Problem, start: Fit | None, changes: bool = Tru
     a start where no boat had changed it is found; what changed boats do without is left again.
 
     Args:
-        problem: the archive.
         start: where to begin.
         changes: boats may have been altered, and tows pulled askew.
     """
@@ -528,14 +526,14 @@ def _ln_evidence(problem: Problem, fitted: Fit) -> float:
     mean, precision = _prior(problem, fitted.active)
     prior, prior_precision = _variance_prior(problem)
     s, shares = problem.settings, fitted.state.shares
-    found = np.array(s.change_counts) * s.change_shares
-    not_found = np.array(s.change_counts) - found
+    changes = np.array(s.change_counts) * s.change_shares
+    unchanged = np.array(s.change_counts) - changes
     faults = np.intersect1d(fitted.active, problem.faults)
     chance = np.array([problem.unknowns[i].chance for i in faults])
     return float(
         sum(told.ln_density.sum() for told in fitted.told)
-        + found @ np.log(shares)
-        + not_found @ np.log1p(-shares)
+        + changes @ np.log(shares)
+        + unchanged @ np.log1p(-shares)
         - 0.5 * precision @ (fitted.value - mean) ** 2
         - 0.5 * prior_precision @ (fitted.state.ln_variance - prior) ** 2
         + 0.5 * (np.log(precision).sum() + np.linalg.slogdet(fitted.covariance)[1])

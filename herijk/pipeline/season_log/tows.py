@@ -30,7 +30,6 @@ def instrument_errors(posterior: Posterior, change: FloatArray) -> pl.DataFrame:
     the uncertainty alone.
 
     Args:
-        posterior: what is known of the archive.
         change: of every unknown of the fit without each boat, (boats, unknowns).
 
     Returns:
@@ -97,7 +96,6 @@ def best_estimates(
     """What all tows of a boat, and all boats, say of ln Cw at each tow.
 
     Args:
-        posterior: what is known of the archive.
         instruments: as `instrument_errors` gives them.
 
     Returns:

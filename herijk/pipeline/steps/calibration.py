@@ -62,7 +62,6 @@ def stream_drift_m_s(
     `USUAL_RUN_SCATTER` where that is more.
 
     Args:
-        batch: tows and runs.
         gps_m_s, log_m_s, used: as in `gps_factor`.
 
     Returns:
@@ -129,7 +128,6 @@ def gps_factor_of_files(
     factor of the tow.
 
     Args:
-        batch: tows and runs.
         gps_m_s, log_m_s, used: as in `gps_factor`.
         steady: runs with a steady window, chosen or not, shape (runs,).
 

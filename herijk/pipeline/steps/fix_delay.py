@@ -102,7 +102,6 @@ def fixes_in_time(blocks: RunBlocks, delay_s: IntArray) -> dict[str, FloatArray]
     The last seconds of a run have none: their fixes came after it.
 
     Args:
-        blocks: the runs.
         delay_s: of each run, shape (runs,).
     """
     at = np.arange(blocks.seconds) + delay_s[:, None]

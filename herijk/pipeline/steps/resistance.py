@@ -109,7 +109,6 @@ def run_means(batch: Batch, sums: OverWindow, steps: Steps) -> RunMeans:
     """Means of every run over its window.
 
     Args:
-        batch: tows and runs.
         sums: of its blocks.
         steps: speed source, estimator, wind model and inertia of the method.
     """
@@ -219,8 +218,6 @@ def temperature_change_kg_m(
     `wetted_surface_m2` (inferred: the federation's own formula of 2018 is not public).
 
     Args:
-        batch: tows and runs.
-        rule: the method's option.
         speed_m_s: true speed of each run, shape (runs,).
 
     Returns:

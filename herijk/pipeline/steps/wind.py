@@ -62,7 +62,6 @@ def air_parts(
       ("Dwarse tegenwind")
 
     Args:
-        wind: the model.
         term: gives the mean over the window of a term of `AIR_SUMS` / v^2, shape (runs,).
         front_area_m2, side_area_m2: shape (runs,).
     """
@@ -85,7 +84,6 @@ def averaged_terms(blocks: RunBlocks, averaging_s: int) -> dict[str, FloatArray]
     jitter.
 
     Args:
-        blocks: the runs.
         averaging_s: length of the centred average; shorter at the ends of a run.
 
     Returns:
