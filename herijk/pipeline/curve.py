@@ -5,7 +5,7 @@ says about Cw and B, and the closed-form re-base of a curve. Does not belong her
 is made, which runs count, hull speed, and whether a curve is acceptable.
 
 A and B are what the register prints, but they are nearly collinear (correlation 0.98). Inside, a
-curve is held as A and s = 1/B^2. s <= 0 is an ordinary flat or falling curve: it has no B. For
+curve is stored as A and s = 1/B^2. s <= 0 is an ordinary flat or falling curve: it has no B. For
 errors a curve is described by C0 = Cw(v0) and q = r / (1 - r) with r = s v0^2, which are nearly
 independent: Cw(v) = C0 / (1 - q ((v/v0)^2 - 1)).
 """
@@ -35,7 +35,7 @@ MIN_SPREAD: Final = 1e-6
 """Relative spread of v^2 below which the speeds count as one speed and determine no bend."""
 
 WIDEST_LOG_INTERVAL: Final = 100.0
-"""A half width of a factor e^100 says nothing any more; its cut keeps the bounds finite."""
+"""Half widths are cut at a factor e^100, which says nothing any more, to keep bounds finite."""
 
 BISECTIONS: Final = 55
 """Halvings of the search interval for a bound of B: to the last bit of a float64."""
@@ -78,7 +78,7 @@ class Points:
 
     @classmethod
     def of(cls, speed_m_s: ArrayLike, cw_kg_m: ArrayLike, used: ArrayLike | None = None) -> Self:
-        """Points from anything array-like; one curve may be one row; all are used if unsaid."""
+        """Points from anything array-like; one curve may be one row; by default all are used."""
         speed = np.atleast_2d(np.asarray(speed_m_s, dtype=np.float64))
         cw = np.atleast_2d(np.asarray(cw_kg_m, dtype=np.float64))
         mask = np.ones(speed.shape, bool) if used is None else np.atleast_2d(np.asarray(used, bool))
@@ -86,7 +86,7 @@ class Points:
 
     @classmethod
     def stack(cls, parts: Sequence[Self]) -> Self:
-        """The points of several batches one under another, all with as many points a curve."""
+        """The points of several batches, all with the same number of points per curve."""
         return cls(
             np.concatenate([part.speed_m_s for part in parts]),
             np.concatenate([part.cw_kg_m for part in parts]),
@@ -119,7 +119,7 @@ class Curves:
 
     @property
     def b_determined(self) -> BoolArray:
-        """Whether the curve has a finite B at all; how well, says `b_interval`."""
+        """Whether the curve has a finite B; `b_interval` says how well it is known."""
         return self.converged & (self.s_s2_m2 > 0)
 
     @property

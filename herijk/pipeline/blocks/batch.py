@@ -1,6 +1,6 @@
 """A batch: tows that share every option of a method, with their runs as arrays.
 
-Here the bookkeeping between tows and runs: which run is whose, columns as arrays, one number a
+The bookkeeping between tows and runs: which run is of which tow, columns as arrays, one number per
 tow spread over its runs. No formula of the method.
 """
 
@@ -16,7 +16,7 @@ from herijk.pipeline.blocks.run_blocks import RunBlocks
 from herijk.pipeline.channels import BACK, OUT, SECOND_FILE_OFFSET
 
 DOUBTED_SPEED: Final = "speed_not_plausible"
-"""Doubt that costs a tow nothing but a look."""
+"""A doubt for which a person must look, but that leaves the tow out of nothing."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Batch:
 
     @classmethod
     def of(cls, tows: pl.DataFrame, blocks: RunBlocks) -> "Batch":
-        """The given tows with those of the given runs that are theirs."""
+        """The given tows, with their runs among the given ones."""
         tows = tows.sort("tow_id")
         mine = blocks.take(blocks.runs["tow_id"].is_in(tows["tow_id"].implode()).to_numpy())
         index = tows["tow_id"].search_sorted(mine.runs["tow_id"])
@@ -55,16 +55,16 @@ class Batch:
 
     @cached_property
     def key(self) -> tuple[str, ...]:
-        """What tells this batch from others of the same tables: its tows."""
+        """The tows, which tell this batch from others of the same tables."""
         return tuple(self.tows["tow_id"])
 
     @cached_property
     def has_gps(self) -> BoolArray:
-        """Tows with fixes in runs that are to be used, out and back, shape (tows,)."""
+        """Tows with GPS fixes in selected runs, both out and back, shape (tows,)."""
         return self.both_ways(self.selected & (self.blocks["gps_n"].sum(axis=1) > 0))
 
     def part(self, tows: BoolArray) -> "Batch":
-        """Some of its tows, marked in shape (tows,)."""
+        """The tows that are marked, shape (tows,)."""
         runs = tows[self.tow]
         tow = (np.cumsum(tows) - 1)[self.tow[runs]]
         whole, rows = self.whole
@@ -90,7 +90,7 @@ class Batch:
         return self.of_tow(column)[self.tow]
 
     def measured(self, channel: str) -> BoolArray:
-        """Tows that have a channel, `wind` or `log2`, shape (tows,); all where nothing is said."""
+        """Tows that have a channel, `wind` or `log2`, shape (tows,); all if no column says so."""
         name = f"{channel}_measured"
         if name not in self.tows.columns:
             return np.ones(self.size, dtype=bool)
@@ -100,7 +100,7 @@ class Batch:
     def trusted(self) -> BoolArray:
         """Tows that the rest of the archive does not rule out, shape (tows,).
 
-        A speed that is off counts: it may be the log's, which only the tows it is off in can tell.
+        Tows with a doubted speed are kept: the log may be off, and only those tows can show it.
         """
         if "doubts" not in self.tows.columns:
             return np.ones(self.size, dtype=bool)

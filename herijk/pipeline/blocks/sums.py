@@ -117,8 +117,9 @@ def _leave_out(
         run = np.searchsorted(some, block[rows]).astype(np.int8)
         number, second = np.empty(len(some), np.int8), np.empty(len(some), np.int16)
         again = np.empty((_ROWS, len(some)))
-        held = (values[rows] for values in channels)
-        _add_up(run, rate_hz, number, second, np.empty(len(some), np.int32), again, *held)
+        kept_samples = (values[rows] for values in channels)
+        n_again = np.empty(len(some), np.int32)
+        _add_up(run, rate_hz, number, second, n_again, again, *kept_samples)
         sums[:, some] = again
     n[left] = count
 
@@ -277,7 +278,7 @@ def _add(sums: FloatArray, lane: Lane, one: Terms, two: Terms) -> None:
 
 _RUN: Final = types.Array(int8, 1, "C", readonly=True)
 _SAMPLES: Final = types.Array(float32, 1, "C", readonly=True)
-_FOUND: Final = (int8[::1], int16[::1], int32[::1], float64[:, ::1])
+_BLOCKS: Final = (int8[::1], int16[::1], int32[::1], float64[:, ::1])
 
 
 def _compiled_once(signature: object) -> Callable[[Callable[P, R]], Callable[P, R]]:
@@ -311,14 +312,14 @@ def _count(run: Runs, rate_hz: int) -> int:
     return blocks
 
 
-@_compiled_once(types.void(_RUN, int64, *_FOUND, *[_SAMPLES] * len(_CHANNELS)))
+@_compiled_once(types.void(_RUN, int64, *_BLOCKS, *[_SAMPLES] * len(_CHANNELS)))
 def _add_up(
     run: Runs,
     rate_hz: int,
     number: Runs,
     second: NDArray[np.int16],
     n: NDArray[np.int32],
-    found: FloatArray,
+    totals: FloatArray,
     log1: Channel,
     log2: Channel,
     gps: Channel,
@@ -326,7 +327,7 @@ def _add_up(
     wind: Channel,
     angle_deg: Channel,
 ) -> None:
-    """Fills `number`, `second` and `n`, shape (blocks,), and `found`, shape (sums, blocks)."""
+    """Fills `number`, `second` and `n`, shape (blocks,), and `totals`, shape (sums, blocks)."""
     sums = np.empty(np.uintp(_ROWS) * LANES)
     end = 0
     for block in range(len(n)):
@@ -353,4 +354,4 @@ def _add_up(
             total = 0.0
             for lane in range(LANES):
                 total += sums[_at(row, lane)]
-            found[row, block] = total
+            totals[row, block] = total

@@ -1,8 +1,7 @@
-"""Windows and means of runs that were found before: half of the time of a recompute goes into them.
+"""Windows and means of runs, kept between recomputes, of which they take half of the time.
 
-Most changes of a method leave them as they are: they depend on few of its options. Only those
-belong here that do not depend on a log factor or on other tows. They are found of all tows
-together, however a method parts them.
+Most changes of a method leave them as they are: they depend on few of its options, and not on log
+factors or other tows. They are made of all tows together, however a method parts them.
 """
 
 from collections import defaultdict
@@ -53,7 +52,7 @@ class RunCache:
         return self._sums[key]
 
     def _of_part(self, batch: Batch, options: Options, find: Callable[[Batch], T]) -> T:
-        """What is found of a batch: the rows that it has of what is found of the whole."""
+        """Windows or means of a batch: its rows of those of the whole that it is part of."""
         key = batch.key, options
         if key not in self._found:
             whole, rows = batch.whole
@@ -63,11 +62,11 @@ class RunCache:
         return known
 
     def __len__(self) -> int:
-        """Entries held."""
+        """Number of entries."""
         return len(self._found) + len(self._sums)
 
     def let_go(self) -> None:
-        """Lets go of the blocks, which take most of the memory; what was found of them stays."""
+        """Lets go of the blocks, which take most of the memory; windows and means stay."""
         self._sums.clear()
         self._averaged.clear()
 

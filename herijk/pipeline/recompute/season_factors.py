@@ -95,7 +95,7 @@ def _tow_rows(outcomes: Sequence[Outcome]) -> pl.DataFrame:
 
 @dataclass(frozen=True)
 class Instruments:
-    """What was estimated of the instruments of some tows, put beside each batch once per log.
+    """What was estimated of the instruments of some tows, matched to each batch once per log.
 
     Attributes:
         rows: of the table `tow_instruments`; None where nothing was estimated.
@@ -138,7 +138,7 @@ def _factor_of_tows(batch: Batch, steps: Steps, rows: pl.DataFrame | None) -> To
 
 
 def tow_instruments(estimated: SeasonFactors) -> pl.DataFrame:
-    """What was found of the instruments of each tow; of the other log, by the ratio of both.
+    """What was estimated of the instruments of each tow; of the other log, by the ratio of both.
 
     Returns:
         `tow_id, log`, and the fields of `TowFactor`.
@@ -229,7 +229,7 @@ def _water_points(o: Outcome) -> curve.Points:
 
 
 def _other_ln_ratio(o: Outcome) -> FloatArray:
-    """Gives ln(log in use / other log), mean over each tow's runs; NaN where there is none."""
+    """Mean of ln(log in use / other log) over each tow's runs; NaN where there is none."""
     source = o.steps.speed.source
     if source not in OTHER_LOG:
         return np.full(o.batch.size, np.nan)

@@ -136,8 +136,6 @@ def _may_be_a_stream(network: Network, season: int, force: float) -> bool:
     A stream that runs with the boat both ways, or against it, does that: it makes dGPS over log
     unusual, and Cw err the other way.
     """
-    if "own_calibration_ln" not in network.tows.columns:
-        return False
     own = network.tows.filter(season=season)["own_calibration_ln"].drop_nulls()
     ln_y = 0.0 if own.is_empty() else float(own.to_numpy().mean())
     return abs(ln_y) > USUAL_CALIBRATION and force * ln_y < 0.0

@@ -134,8 +134,6 @@ def _log_prior(network: Network, group: int, settings: Settings) -> tuple[float,
 
 def _force_sd(network: Network, year: int, settings: Settings) -> float:
     """Prior standard deviation of a season's load cell: by its records where there are any."""
-    if "force_sd" not in network.tows.columns:
-        return settings.force_sd
     recorded = network.tows.filter(season=year)["force_sd"].drop_nulls()
     return settings.force_sd if recorded.is_empty() else float(np.median(recorded.to_numpy()))
 

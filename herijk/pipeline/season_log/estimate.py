@@ -100,8 +100,9 @@ def estimate_season_factors(tows: pl.DataFrame) -> SeasonFactors:
             `boat_type` (may be null); `altered`, reported, since the line's previous tow;
             `declared_speed_m_s`; `gps_ln_ratio`, ln(mean GPS / log), null without, with `gps_sd`,
             its random part; `anchored`, calibrated on dGPS: no log error is left;
-            `others_calibration_ln`, ln factor of the log by other tows that are, null without, with
-            `others_calibration_sd` (both may be absent);
+            `own_calibration_ln`, ln factor of the log by dGPS, null where it is not calibrated;
+            `others_calibration_ln`, the same by other tows, null without, with its `_sd`;
+            `force_sd`, of the load cell by its record, null without one;
             `temperature_known`, of the water.
 
     Returns:

@@ -64,7 +64,7 @@ class Patterns:
 
     @property
     def possible(self) -> IntArray:
-        """How many of each a boat may have, (3,)."""
+        """How many of each a boat can have, (3,)."""
         gaps, tows = self.altered.shape[1], self.askew.shape[1]
         return np.array([gaps, self.early, len(_between(self.early, tows))])
 
@@ -151,7 +151,7 @@ class Told:
     slope: FloatArray
 
     def few(self) -> Iterator["Told"]:
-        """The same of a few boats at a time, for what would be too large of all."""
+        """The same for a few boats at a time, where all at once would be too large."""
         arrays = [getattr(self, one.name) for one in fields(self)[1:]]
         for first in range(0, len(self.weight), FEW_BOATS):
             some = slice(first, first + FEW_BOATS)

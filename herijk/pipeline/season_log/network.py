@@ -68,9 +68,9 @@ class Network:
         has_gps = np.zeros(groups.height, dtype=bool)
         has_gps[group_index[loose & tows["gps_ln_ratio"].is_not_null().to_numpy()]] = True
         calibrated = np.zeros(groups.height, dtype=bool)
-        if "others_calibration_ln" in tows.columns:
-            beside = loose & tows["others_calibration_ln"].is_not_null().to_numpy()
-            calibrated[group_index[beside]] = True
+        calibrated[group_index[loose & tows["others_calibration_ln"].is_not_null().to_numpy()]] = (
+            True
+        )
         names = tows["fsn_no"].unique().sort().to_list()
         links, component = _connect(group_index, boat, has_gps | calibrated)
         cluster = index_of(tows, ("fsn_no",))
