@@ -5,40 +5,31 @@ whichever side is larger. Sums over such rows differ in their last digits, and p
 """
 
 import ast
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
-import herijk
+from tests.architecture.repository import ROOT, tracked_files
 
-ROOT = Path(herijk.__file__).parent
 NO_ORDER_OF_THEIR_OWN = ("semi", "anti", "cross")
 """Joins that keep the order of the left side, or of both."""
 
 
-def _calls(source: str) -> Iterator[tuple[ast.Call, str, dict[str, ast.expr]]]:
-    for node in ast.walk(ast.parse(source)):
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
-            yield node, node.func.attr, {k.arg: k.value for k in node.keywords if k.arg}
-
-
-def _without_order(source: str) -> list[int]:
+def _without_order(source):
     """Lines of joins and groups of frames whose order of rows is left open."""
-    return [
-        call.lineno
-        for call, name, named in _calls(source)
-        if "maintain_order" not in named
-        and (
-            name == "group_by"
-            or (
-                name == "join"
-                and named.keys() & {"on", "left_on", "right_on"}
-                and ast.literal_eval(named.get("how", ast.Constant("inner")))
-                not in NO_ORDER_OF_THEIR_OWN
-            )
-        )
-    ]
+    calls = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Call)]
+    return [call.lineno for call in calls if _is_open(call)]
+
+
+def _is_open(call):
+    options = {keyword.arg: keyword.value for keyword in call.keywords}
+    name = getattr(call.func, "attr", None)
+    if "maintain_order" in options or name not in ("join", "group_by"):
+        return False
+    if name == "group_by":
+        return True
+    how = options.get("how", ast.Constant("inner"))
+    of_frames = bool(options.keys() & {"on", "left_on", "right_on"})
+    return of_frames and ast.literal_eval(how) not in NO_ORDER_OF_THEIR_OWN
 
 
 @pytest.mark.parametrize(
@@ -53,14 +44,15 @@ def _without_order(source: str) -> list[int]:
         ("a.group_by('k', maintain_order=True)", []),
     ],
 )
-def test_a_join_or_group_without_order_is_told(source: str, open_lines: list[int]) -> None:
+def test_a_join_or_group_without_order_is_told(source, open_lines):
     assert _without_order(source) == open_lines
 
 
-def test_every_join_and_group_states_its_order() -> None:
+def test_every_join_and_group_states_its_order():
     left_open = [
         f"{file.relative_to(ROOT)}:{line}"
-        for file in sorted(ROOT.rglob("*.py"))
+        for file in tracked_files()
+        if file.suffix == ".py" and file.is_relative_to(ROOT / "herijk")
         for line in _without_order(file.read_text("utf-8"))
     ]
     assert left_open == []
