@@ -82,10 +82,9 @@ def season_steps(posterior: Posterior, diagnosis: pl.DataFrame) -> pl.DataFrame:
         `force_step`, the part of the load cell, with standard deviations. `cause` is
 
         - `force` where a fault of the load cell is likelier than not;
-        - `not told` where one cannot be told, where it looks like a stream that runs with the boat
-          both ways, where the season is not determined or the search did not settle, or where a
-          fault of the load cell would not show and one no larger than usual could be the whole
-          step;
+        - `not told` where one cannot be told, or looks like a stream that runs with the boat both
+          ways; where the season is not determined, or the search did not settle; and where a fault
+          of the load cell would not show, and one no larger than usual could be the whole step;
         - `log` where the level differs by more than twice its standard deviation;
         - else `none`.
     """

@@ -205,9 +205,9 @@ class Fit:
 
     Attributes:
         active: (k,) unknowns in the model.
-        state: their values, the ln variances (between tows, of bend, of GPS, of the log per era
-            and where calibrated, then the factor of each season, last the drift of boats per year)
-            and the shares of what changes.
+        state: their values, the ln variances and the shares of what changes. The variances are
+            between tows, of bend, of GPS, of the log per era and where calibrated; then the factor
+            of each season; last the drift of boats per year.
         covariance: (k, k) of the values.
         ln_variance_covariance: of the ln variances.
         told: what the boats say there.
@@ -588,7 +588,7 @@ def _more(
     covariance: FloatArray,
     away: FloatArray,
 ) -> _More:
-    """Every fault added to a normal posterior whose mean is `away` from the fit's."""
+    """Each fault added by itself to a normal posterior whose mean is `away` from the fit's."""
     across, itself, score = candidates
     prior, chance = _faults_prior(problem)
     shift = covariance @ across
