@@ -25,7 +25,13 @@ LEAST_FREE: Final = 2 * 2**30
 
 @dataclass(frozen=True)
 class Finding:
-    """What was looked at, whether it is in order, and what was found or what to do."""
+    """How one thing is.
+
+    Attributes:
+        what: what was looked at.
+        sound: whether it is in order.
+        found: what was found, or what to do.
+    """
 
     what: str
     sound: bool
