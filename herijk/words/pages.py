@@ -192,7 +192,6 @@ PAGES: Final[dict[str, tuple[str, str]]] = {
         " The uncertainty of {editions} leaves out the error of the log: in truth it is larger.",
     ),
     "and": (" en ", " and "),
-    "none_of_them": ("geen", "none"),
     "head_mostly": ("; meestal vooral door: {cause}", "; most often mainly: {cause}"),
     "head_due": (
         "Ploegen die binnen een jaar na {day} moeten slepen: {soon}; proeven die op die dag al "

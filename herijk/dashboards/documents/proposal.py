@@ -78,7 +78,14 @@ def _ballot(lines: dict[str, pl.DataFrame], speech: Speech) -> Part:
                 *(speech.per_cent(ratio) for ratio in _middle_and_ends(known)),
             ]
         )
-    heads = ("method", "code.changed", "column.exceeds_interval", "middle", "lowest", "highest")
+    heads = (
+        "method",
+        "code.changed",
+        "column.exceeds_interval",
+        "column.median",
+        "lowest",
+        "highest",
+    )
     return {
         "title": speech.say("proposal_side_by_side"),
         "sentences": [],
@@ -105,7 +112,7 @@ def _parts(views: Views, method: str, lines: pl.DataFrame, speech: Speech) -> It
     yield {
         "title": say("proposal_what").format(method=say(f"method.{method}")),
         "sentences": [headlines.changes(lines)(speech)],
-        "head": [say("step"), say("proposal_mean"), say("number")],
+        "head": [say("column.step"), say("proposal_mean"), say("column.number")],
         "rows": _steps(lines, speech),
     }
     yield _types(lines, speech)
@@ -215,7 +222,12 @@ def _races(views: Views, lines: pl.DataFrame, speech: Speech) -> Part:
     return {
         "title": say("proposal_races").format(year=last["race_date"][0].year),
         "sentences": [say("proposal_moved").format(moved=moved[0], results=moved[1])],
-        "head": [say("race"), say("proposal_old"), say("proposal_new"), say("proposal_chance")],
+        "head": [
+            say("column.race"),
+            say("proposal_old"),
+            say("proposal_new"),
+            say("proposal_chance"),
+        ],
         "rows": [
             [
                 f"{race['race']} {race['race_date']}, {say('crew.' + race['crew_class'])}",

@@ -30,10 +30,12 @@ DIRECTION = "datum.value == 1 ? '{out}' : '{back}'"
 
 def _directions(say: Say) -> tuple[alt.Color, alt.Shape]:
     """Out and back apart by colour and shape, in one legend."""
-    legend = alt.Legend(labelExpr=DIRECTION.format(out=say("out"), back=say("back")))
+    legend = alt.Legend(
+        labelExpr=DIRECTION.format(out=say("code.direction.1"), back=say("code.direction.-1"))
+    )
     inks = alt.Scale(domain=[1, -1], range=[OUT, BACK])
     shapes = alt.Scale(domain=[1, -1], range=["circle", "triangle-up"])
-    title = say("direction")
+    title = say("column.direction")
     return (
         alt.Color("direction:N", title=title, scale=inks, legend=legend),
         alt.Shape("direction:N", title=title, scale=shapes, legend=legend),
@@ -56,7 +58,7 @@ def resistance_curve(frame: pl.DataFrame, say: Say) -> Drawing:
     declared = whole.transform_filter("datum.kind == 'declared'")
     low, high = alt.Y("cw_lo_kg_m:Q", title=say("cw")), alt.Y2("cw_hi_kg_m:Q")
     point_tips = tips(
-        ("run:O", say("run")), ("speed_m_s:Q", say("speed")), ("cw_kg_m:Q", say("cw"))
+        ("run:O", say("column.run")), ("speed_m_s:Q", say("speed")), ("cw_kg_m:Q", say("cw"))
     )
     declared_tips = tips(("speed_m_s:Q", say("tow_speed")), ("cw_kg_m:Q", say("cw_declared")))
     ink, form = _directions(say)
@@ -92,7 +94,11 @@ def history(frame: pl.DataFrame, say: Say) -> Drawing:
     """
     base = alt.Chart(frame).encode(alt.X("tow:O", title=say("tow"), axis=alt.Axis(labelAngle=-30)))
     value, ends = ("cw_kg_m", say("cw_declared")), ("cw_lo_kg_m", "cw_hi_kg_m")
-    more = (("tow:N", say("tow")), ("a_kg_m:Q", say("a")), ("b_m_s:Q", say("b")))
+    more = (
+        ("tow:N", say("tow")),
+        ("a_kg_m:Q", say("column.a_kg_m")),
+        ("b_m_s:Q", say("column.b_m_s")),
+    )
     bars = by_method(base, say, value, ends, more, dash=interval_dash(say))
     return alt.layer(*bars).properties(width=WIDTH, height=HEIGHT)
 
@@ -110,7 +116,7 @@ def traces(frame: pl.DataFrame, say: Say) -> alt.VConcatChart:
         (("force_n", OKABE_ITO[2], [1, 0]),),
         (("wind_m_s", OKABE_ITO[6], [1, 0]),),
     ]
-    titles = (say("speed_short"), say("force"), say("wind"))
+    titles = (say("speed_short"), say("column.force_n"), say("wind"))
     first, *others = zip(rows, titles, strict=True)
     return alt.vconcat(
         _trace_row(frame, say, *first, _cut_reasons(say)),
@@ -176,7 +182,7 @@ def _trace_row(
     return (
         alt.layer(*_cut_parts(), *lines, *above, data=frame)
         .properties(width=150, height=height)
-        .facet(alt.Facet("run:O", title=say("run")), columns=6)
+        .facet(alt.Facet("run:O", title=say("column.run")), columns=6)
     )
 
 
@@ -187,7 +193,7 @@ def out_and_back(frame: pl.DataFrame, say: Say) -> Drawing:
         frame: rows with `stage` (gross or net), `speed_m_s, cw_kg_m, direction, run`.
         say: gives texts.
     """
-    label = f"datum.value == 'gross' ? '{say('gross')}' : '{say('net')}'"
+    label = f"datum.value == 'gross' ? '{say('code.gross')}' : '{say('code.net')}'"
     return (
         alt.Chart(frame)
         .mark_point(size=80, filled=True, opacity=0.9)
@@ -195,7 +201,7 @@ def out_and_back(frame: pl.DataFrame, say: Say) -> Drawing:
             number(alt.X, "speed_m_s", say("speed")),
             number(alt.Y, "cw_kg_m", say("cw")),
             *_directions(say),
-            tooltip=tips(("run:O", say("run")), ("cw_kg_m:Q", say("cw"))),
+            tooltip=tips(("run:O", say("column.run")), ("cw_kg_m:Q", say("cw"))),
         )
         .properties(width=280, height=240)
         .facet(alt.Facet("stage:N", title=None, header=alt.Header(labelExpr=label)), columns=2)
@@ -222,7 +228,7 @@ def wind(frame: pl.DataFrame, say: Say) -> alt.Chart:
             ),
             number(alt.Y, "wind_m_s", say("wind"), zero=True),
             *_directions(say),
-            tooltip=tips(("run:O", say("run")), ("wind_m_s:Q", say("wind"))),
+            tooltip=tips(("run:O", say("column.run")), ("wind_m_s:Q", say("wind"))),
         )
         .properties(width=WIDTH, height=200)
     )
@@ -238,11 +244,11 @@ def budget(frame: pl.DataFrame, say: Say) -> alt.Chart:
             alt.X("u_ratio:Q", title=say("u_ratio")),
             alt.Y(
                 "component:N",
-                title=say("component"),
+                title=say("column.component"),
                 sort="-x",
                 axis=alt.Axis(labelExpr=label, labelLimit=220),
             ),
-            tooltip=tips(("component:N", say("component")), ("u_ratio:Q", say("u_ratio"))),
+            tooltip=tips(("component:N", say("column.component")), ("u_ratio:Q", say("u_ratio"))),
         )
         .properties(width=480, height=alt.Step(20))
     )

@@ -59,7 +59,7 @@ def curves_compared(frame: pl.DataFrame, say: Say) -> Drawing:
             fillOpacity=alt.condition("datum.used", alt.value(0.85), alt.value(0)),
             tooltip=tips(
                 ("method:N", say("method")),
-                ("run:O", say("run")),
+                ("run:O", say("column.run")),
                 ("speed_m_s:Q", say("speed")),
                 ("cw_kg_m:Q", say("cw")),
             ),

@@ -26,15 +26,19 @@ def _at_one(frame: pl.DataFrame, channel: str) -> alt.Chart:
 
 def log_factors(frame: pl.DataFrame, say: Say) -> Drawing:
     """True speed / log speed per season and method, with 95 % intervals; `frame` is the table."""
-    more = (("season:O", say("season")), ("source:N", say("source")))
-    return _per_season(frame, say, ("factor", say("factor")), ("lo", "hi"), more)
+    more = (("season:O", say("column.season")), ("source:N", say("column.source")))
+    return _per_season(frame, say, ("factor", say("column.factor")), ("lo", "hi"), more)
 
 
 def season_change(frame: pl.DataFrame, say: Say) -> Drawing:
     """Cw re-based / as published: median and range per season; `frame` is `season_changes`."""
     value, ends = ("median_ratio", say("ratio_cw")), ("lowest_ratio", "highest_ratio")
     return _per_season(
-        frame, say, value, ends, (("season:O", say("season")), ("tows:Q", say("number")))
+        frame,
+        say,
+        value,
+        ends,
+        (("season:O", say("column.season")), ("tows:Q", say("column.number"))),
     )
 
 
@@ -45,7 +49,7 @@ def _per_season(
     ends: tuple[str, str],
     more: tuple[tuple[str, str], ...],
 ) -> Drawing:
-    base = alt.Chart(frame).encode(alt.X("season:O", title=say("season")))
+    base = alt.Chart(frame).encode(alt.X("season:O", title=say("column.season")))
     layers = by_method(base, say, value, ends, more)
     return alt.layer(_at_one(frame, "y"), *layers).properties(width=WIDTH, height=HEIGHT)
 
@@ -62,11 +66,11 @@ def season_ladder(frame: pl.DataFrame, say: Say) -> Drawing:
     base = alt.Chart(frame).encode(
         alt.X(
             "step:N",
-            title=say("step"),
+            title=say("column.step"),
             sort=order,
             axis=alt.Axis(labelExpr=label, labelAngle=-45, orient="top"),
         ),
-        alt.Y("season:O", title=say("season")),
+        alt.Y("season:O", title=say("column.season")),
     )
     shades = alt.Scale(
         domain=[0.8, 1.0, 1.2],
@@ -76,9 +80,11 @@ def season_ladder(frame: pl.DataFrame, say: Say) -> Drawing:
     )
     return alt.layer(
         base.mark_rect(stroke="#dddddd").encode(
-            alt.Color("factor:Q", title=say("factor"), scale=shades),
+            alt.Color("factor:Q", title=say("column.factor"), scale=shades),
             tooltip=tips(
-                ("season:O", say("season")), ("step:N", say("step")), ("factor:Q", say("factor"))
+                ("season:O", say("column.season")),
+                ("step:N", say("column.step")),
+                ("factor:Q", say("column.factor")),
             ),
         ),
         base.mark_text(color="black").encode(alt.Text("factor:Q", format=".3f")),
@@ -89,7 +95,9 @@ def sensitivity_study(frame: pl.DataFrame, say: Say) -> Drawing:
     """What other choices of judgement do to Cw; `frame` is `option_summary`."""
     label = named([c.name for c in CHOICES], say)
     base = alt.Chart(frame).encode(
-        alt.Y("option:N", title=say("option"), axis=alt.Axis(labelExpr=label, labelLimit=260))
+        alt.Y(
+            "option:N", title=say("column.option"), axis=alt.Axis(labelExpr=label, labelLimit=260)
+        )
     )
     return alt.layer(
         _at_one(frame, "x"),
@@ -98,6 +106,6 @@ def sensitivity_study(frame: pl.DataFrame, say: Say) -> Drawing:
         ),
         base.mark_point(filled=True, size=80, color="black", opacity=1).encode(
             number(alt.X, "median_ratio", say("ratio_cw")),
-            tooltip=tips(("option:N", say("option")), ("median_ratio:Q", say("ratio_cw"))),
+            tooltip=tips(("option:N", say("column.option")), ("median_ratio:Q", say("ratio_cw"))),
         ),
     ).properties(width=480, height=220)

@@ -16,18 +16,18 @@ def statuses(frame: pl.DataFrame, say: Say) -> alt.Chart:
         alt.Chart(frame)
         .mark_bar(stroke="black", strokeWidth=0.5)
         .encode(
-            alt.X("season:O", title=say("season")),
-            alt.Y("number:Q", title=say("number")),
+            alt.X("season:O", title=say("column.season")),
+            alt.Y("number:Q", title=say("column.number")),
             alt.Color(
                 "status:N",
-                title=say("status"),
+                title=say("column.status"),
                 scale=shades,
                 legend=alt.Legend(labelExpr=named(STATUSES, say)),
             ),
             tooltip=tips(
-                ("season:O", say("season")),
-                ("status:N", say("status")),
-                ("number:Q", say("number")),
+                ("season:O", say("column.season")),
+                ("status:N", say("column.status")),
+                ("number:Q", say("column.number")),
             ),
         )
         .properties(width=WIDTH, height=240)

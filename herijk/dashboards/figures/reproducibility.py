@@ -30,13 +30,13 @@ def spread(frame: pl.DataFrame, say: Say) -> Drawing:
     base = alt.Chart(frame).encode(
         alt.X(
             "scope:N",
-            title=say("scope"),
+            title=say("column.era"),
             axis=alt.Axis(labelAngle=0, labelExpr=named(["all"], say)),
         )
     )
     value, more = (
         ("sd_ratio", say("sd_ratio")),
-        (("scope:N", say("scope")), ("n_pairs:Q", say("number"))),
+        (("scope:N", say("column.era")), ("n_pairs:Q", say("column.number"))),
     )
     layers = by_method(base, say, value, ("lo", "hi"), more, zero=True)
     return alt.layer(*layers).properties(width=WIDTH, height=HEIGHT)
@@ -44,9 +44,11 @@ def spread(frame: pl.DataFrame, say: Say) -> Drawing:
 
 def era_shifts(frame: pl.DataFrame, say: Say) -> Drawing:
     """Next tow of the same boats against the tows of an era; `frame` is `era_shifts`."""
-    base = alt.Chart(frame).encode(alt.X("era:N", title=say("scope"), axis=alt.Axis(labelAngle=0)))
+    base = alt.Chart(frame).encode(
+        alt.X("era:N", title=say("column.era"), axis=alt.Axis(labelAngle=0))
+    )
     same = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3]).encode(y=alt.datum(1.0))
-    value, more = ("shift_ratio", say("shift_ratio")), (("n:Q", say("number")),)
+    value, more = ("shift_ratio", say("shift_ratio")), (("n:Q", say("column.number")),)
     layers = by_method(base, say, value, ("lo", "hi"), more)
     return alt.layer(same, *layers).properties(width=WIDTH, height=HEIGHT)
 
@@ -58,18 +60,18 @@ def repeat_pairs(frame: pl.DataFrame, say: Say) -> Drawing:
         alt.Chart(frame)
         .mark_point(size=45, filled=True, opacity=0.8, cursor="pointer")
         .encode(
-            alt.X("season:O", title=say("season")),
-            number(alt.Y, "cw_ratio", say("cw_ratio")),
+            alt.X("season:O", title=say("column.season")),
+            number(alt.Y, "cw_ratio", say("column.cw_ratio")),
             method_colour(say),
             method_shape(say),
             xOffset="method:N",
             href="page:N",
             tooltip=tips(
-                ("name:N", say("name")),
+                ("name:N", say("column.name")),
                 ("fsn_no:N", "FSN"),
                 ("method:N", say("method")),
-                ("season_before:O", say("season")),
-                ("cw_ratio:Q", say("cw_ratio")),
+                ("season_before:O", say("column.season")),
+                ("cw_ratio:Q", say("column.cw_ratio")),
             ),
         )
     )
@@ -81,7 +83,7 @@ def components(frame: pl.DataFrame, say: Say) -> Drawing:
     base = alt.Chart().encode(
         alt.X(
             "component:N",
-            title=say("component"),
+            title=say("column.component"),
             axis=alt.Axis(
                 labelExpr=named(["boat", "season", "boat_season", "run"], say), labelAngle=0
             ),
@@ -112,7 +114,7 @@ def predicted(frame: pl.DataFrame, say: Say) -> Drawing:
 def register_changes(frame: pl.DataFrame, say: Say) -> Drawing:
     """Time and Cw of every changed register line, new / old; `frame` has `page`."""
     one = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3])
-    places = {"cw_ratio": say("column.cw_ratio"), "time_ratio": say("time_ratio")}
+    places = {"cw_ratio": say("column.cw_ratio"), "time_ratio": say("column.time_ratio")}
     points = _boats(frame, say, places, ("to_edition", say("edition"), editions_legend(say)))
     return alt.layer(one.encode(x=alt.datum(1.0)), one.encode(y=alt.datum(1.0)), points).properties(
         width=WIDTH, height=HEIGHT
@@ -135,7 +137,7 @@ def _boats(
             shape(column, title, legend=legend),
             href="page:N",
             tooltip=tips(
-                ("name:N", say("name")),
+                ("name:N", say("column.name")),
                 ("fsn_no:N", "FSN"),
                 (f"{x}:Q", x_title),
                 (f"{y}:Q", y_title),
@@ -149,22 +151,26 @@ def race_ranks(frame: pl.DataFrame, say: Say) -> Drawing:
     same = (
         alt.Chart(frame)
         .mark_line(color=GREY, strokeDash=[4, 3])
-        .encode(alt.X("old_rank:Q", title=say("old_rank")), alt.Y("old_rank:Q", title=""))
+        .encode(alt.X("old_rank:Q", title=say("column.old_rank")), alt.Y("old_rank:Q", title=""))
     )
     points = (
         alt.Chart(frame)
         .mark_point(size=60, filled=True, opacity=0.85, cursor="pointer")
         .encode(
-            alt.X("old_rank:Q", title=say("old_rank"), axis=alt.Axis(tickMinStep=1, format="d")),
-            alt.Y("new_rank:Q", title=say("new_rank"), axis=alt.Axis(tickMinStep=1, format="d")),
+            alt.X(
+                "old_rank:Q", title=say("column.old_rank"), axis=alt.Axis(tickMinStep=1, format="d")
+            ),
+            alt.Y(
+                "new_rank:Q", title=say("column.new_rank"), axis=alt.Axis(tickMinStep=1, format="d")
+            ),
             *crews(say),
             href="page:N",
             tooltip=tips(
-                ("race:N", say("race")),
-                ("name:N", say("name")),
+                ("race:N", say("column.race")),
+                ("name:N", say("column.name")),
                 ("fsn_no:N", "FSN"),
-                ("old_rank:Q", say("old_rank")),
-                ("new_rank:Q", say("new_rank")),
+                ("old_rank:Q", say("column.old_rank")),
+                ("new_rank:Q", say("column.new_rank")),
                 ("old_power_w:Q", say("old_power")),
                 ("new_power_w:Q", say("new_power")),
             ),

@@ -59,10 +59,10 @@ EXPLAINING: Final = {
     "length": "waterline_length_m",
 }
 TITLES: Final = {
-    "b_m_s": "b",
-    "a_kg_m": "a",
+    "b_m_s": "column.b_m_s",
+    "a_kg_m": "column.a_kg_m",
     "cw_standard_kg_m": "cw_standard",
-    "weight_kg": "weight",
+    "weight_kg": "column.weight_kg",
     "declared_speed_m_s": "tow_speed",
     "waterline_length_m": "waterline_length",
 }
@@ -232,16 +232,18 @@ def b_and_hull_speed(frame: pl.DataFrame, say: Say) -> Drawing:
         .mark_point(size=30)
         .encode(
             x,
-            number(alt.Y, "b_m_s", say("b")),
+            number(alt.Y, "b_m_s", say("column.b_m_s")),
             ink,
             alt.Shape("boat_type:N", title=say("type")),
             tooltip=tips(
-                ("label:N", say("tow")), ("b_m_s:Q", say("b")), ("b_hull_ratio:Q", "B / v")
+                ("label:N", say("tow")),
+                ("b_m_s:Q", say("column.b_m_s")),
+                ("b_hull_ratio:Q", "B / v"),
             ),
         )
     )
     hull = tow.mark_line(color="black", strokeDash=[5, 3]).encode(
-        x, number(alt.Y, "hull_speed_m_s", say("b")), order="waterline_length_m:Q"
+        x, number(alt.Y, "hull_speed_m_s", say("column.b_m_s")), order="waterline_length_m:Q"
     )
     return panels(alt.layer(points, hull, data=frame), say)
 
@@ -290,7 +292,7 @@ def raced_beyond(frame: pl.DataFrame, say: Say) -> Drawing:
         tooltip=tips(
             ("label:N", say("tow")),
             ("power_w:Q", say("power")),
-            ("raced_power_w:Q", say("raced_power")),
+            ("raced_power_w:Q", say("column.raced_power_w")),
             ("power_ratio_raced:Q", ratio),
         ),
     )
@@ -307,7 +309,7 @@ def boat_years(frame: pl.DataFrame, say: Say) -> Drawing:
     """
     base = alt.Chart()
     ink = alt.Color(
-        "season:O", title=say("season"), scale=alt.Scale(scheme="viridis"),
+        "season:O", title=say("column.season"), scale=alt.Scale(scheme="viridis"),
         legend=alt.Legend(orient="bottom"),
     )  # fmt: skip
     curve = base.mark_line(strokeWidth=2).encode(
@@ -316,7 +318,7 @@ def boat_years(frame: pl.DataFrame, say: Say) -> Drawing:
         ink,
         alt.StrokeDash("crew:N", title=say("crew"), legend=alt.Legend(orient="bottom")),
         alt.Detail("tow_id:N"),
-        tooltip=tips(("tow_id:N", say("tow")), ("season:O", say("season"))),
+        tooltip=tips(("tow_id:N", say("tow")), ("season:O", say("column.season"))),
     )
     common = base.mark_rule(color=GREY, strokeDash=[3, 3]).encode(
         alt.X("mean(standard_speed_m_s):Q", title=say("speed_short"))

@@ -34,7 +34,7 @@ def colour(field: str, title: str, **more: Any) -> alt.Color:
 
 def crews(say: Say) -> tuple[alt.Color, alt.Shape]:
     """Men and women apart by colour and shape, in one legend."""
-    people = f"{{'H': '{say('men')}', 'D': '{say('women')}'}}[datum.value]"
+    people = f"{{'H': '{say('crew.H')}', 'D': '{say('crew.D')}'}}[datum.value]"
     title, legend = say("crew_class"), alt.Legend(labelExpr=people, orient="bottom")
     shapes = alt.Scale(domain=["H", "D"], range=["circle", "triangle-up"])
     inks = alt.Scale(domain=["H", "D"], range=[OKABE_ITO[0], OKABE_ITO[1]])
@@ -159,7 +159,7 @@ def interval_dash(say: Say) -> alt.StrokeDash:
     """Full for a 95 % interval, dashed for the spread of the runs alone; `interval` says which."""
     return alt.StrokeDash(
         "interval:N",
-        title=say("interval"),
+        title=say("column.interval"),
         scale=alt.Scale(domain=[COMPLETE, RUNS_ALONE], range=[[1, 0], [4, 3]]),
         legend=alt.Legend(
             labelExpr=named([COMPLETE, RUNS_ALONE], say), labelLimit=400, orient="bottom"

@@ -22,12 +22,12 @@ from herijk.dashboards.figures.style import (
 from herijk.words.catalogue import Say
 
 QUANTITIES: Final = {
-    "b": ("b_m_s", "b"),
-    "a": ("a_kg_m", "a"),
+    "b": ("b_m_s", "column.b_m_s"),
+    "a": ("a_kg_m", "column.a_kg_m"),
     "cw_standard": ("cw_standard_kg_m", "cw_standard"),
 }
 EXPLAINING: Final = {
-    "weight": ("weight_kg", "weight"),
+    "weight": ("weight_kg", "column.weight_kg"),
     "speed": ("declared_speed_m_s", "tow_speed"),
 }
 """Columns of the axes, with the keys of their titles."""
@@ -57,10 +57,10 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Dra
                 opacity=alt.condition(brush, alt.value(0.9), alt.value(0.2)),
                 href="page:N",
                 tooltip=tips(
-                    ("name:N", say("name")),
+                    ("name:N", say("column.name")),
                     ("fsn_no:N", "FSN"),
                     ("boat_type:N", say("type")),
-                    ("season:O", say("season")),
+                    ("season:O", say("column.season")),
                     (f"{x}:Q", say(x_title)),
                     (f"{y}:Q", say(y_title)),
                 ),
@@ -83,11 +83,11 @@ def shared_bend(frame: pl.DataFrame, say: Say) -> alt.Chart:
         alt.Chart(frame)
         .mark_point(filled=True, size=60, opacity=0.85)
         .encode(
-            number(alt.X, "b_m_s", say("b")),
+            number(alt.X, "b_m_s", say("column.b_m_s")),
             alt.Y("crew:N", title=say("boat")),
             colour("pooling", say("pooling"), legend=legend),
             shape("pooling", say("pooling"), legend=legend),
-            tooltip=tips(("crew:N", say("boat")), ("b_m_s:Q", say("b"))),
+            tooltip=tips(("crew:N", say("boat")), ("b_m_s:Q", say("column.b_m_s"))),
         )
         .properties(width=360)
     )

@@ -149,7 +149,7 @@ class Cells:
             return lambda value: self._type(value, root)
         named = {
             **dict.fromkeys(("titles", "meanings", "messages"), self._titles),
-            "direction": lambda value: self.text("out" if value == 1 else "back"),
+            "direction": lambda value: self.text(f"code.direction.{value}"),
             "causes": self._causes,
             "tows": lambda value: (
                 self.text(f"code.{value}") if value in STATED else escape(spoken_range(value))
