@@ -30,8 +30,6 @@ COLUMNS: Final[dict[str, tuple[str, str]]] = {
     "sd_ratio": ("Standaardafwijking / Cw", "Standard deviation / Cw"),
     "predicted_cw": ("Voorspelde Cw [kg/m]", "Predicted Cw [kg/m]"),
     "tow_cw": ("Cw van de proef [kg/m]", "Cw of the tow [kg/m]"),
-    "lowest": ("laagste", "lowest"),
-    "highest": ("hoogste", "highest"),
     "u_ratio": ("Standaardonzekerheid / Cw", "Standard uncertainty / Cw"),
     "old_power": ("Vermogen oud [W/roeier]", "Power before [W/rower]"),
     "new_power": ("Vermogen nieuw [W/roeier]", "Power after [W/rower]"),

@@ -57,10 +57,8 @@ def resistance_curve(frame: pl.DataFrame, say: Say) -> Drawing:
     point = whole.transform_filter("datum.kind == 'point'")
     declared = whole.transform_filter("datum.kind == 'declared'")
     low, high = alt.Y("cw_lo_kg_m:Q", title=say("cw")), alt.Y2("cw_hi_kg_m:Q")
-    point_tips = tips(
-        ("run:O", say("column.run")), ("speed_m_s:Q", say("speed")), ("cw_kg_m:Q", say("cw"))
-    )
-    declared_tips = tips(("speed_m_s:Q", say("tow_speed")), ("cw_kg_m:Q", say("cw_declared")))
+    point_tips = tips(say, "run:O", "speed_m_s:Q", ("cw_kg_m:Q", say("cw")))
+    declared_tips = tips(say, ("speed_m_s:Q", say("tow_speed")), "cw_kg_m:Q")
     ink, form = _directions(say)
     dash, complete = interval_dash(say), f"datum.interval == '{COMPLETE}'"
     full, light = alt.value(0.35), alt.value(0.12)
@@ -94,11 +92,7 @@ def history(frame: pl.DataFrame, say: Say) -> Drawing:
     """
     base = alt.Chart(frame).encode(alt.X("tow:O", title=say("tow"), axis=alt.Axis(labelAngle=-30)))
     value, ends = ("cw_kg_m", say("cw_declared")), ("cw_lo_kg_m", "cw_hi_kg_m")
-    more = (
-        ("tow:N", say("tow")),
-        ("a_kg_m:Q", say("column.a_kg_m")),
-        ("b_m_s:Q", say("column.b_m_s")),
-    )
+    more = ("tow:N", "a_kg_m:Q", "b_m_s:Q")
     bars = by_method(base, say, value, ends, more, dash=interval_dash(say))
     return alt.layer(*bars).properties(width=WIDTH, height=HEIGHT)
 
@@ -174,9 +168,7 @@ def _trace_row(
         alt.Chart()
         .transform_filter("datum.kind == 'trace'")
         .mark_line(color=ink, strokeDash=dash, strokeWidth=1.3)
-        .encode(
-            x, alt.Y(f"{field}:Q", title=title, scale=scale), tooltip=tips((f"{field}:Q", title))
-        )
+        .encode(x, alt.Y(f"{field}:Q", title=title, scale=scale), tooltip=tips(say, f"{field}:Q"))
         for field, ink, dash in fields
     ]
     return (
@@ -201,7 +193,7 @@ def out_and_back(frame: pl.DataFrame, say: Say) -> Drawing:
             number(alt.X, "speed_m_s", say("speed")),
             number(alt.Y, "cw_kg_m", say("cw")),
             *_directions(say),
-            tooltip=tips(("run:O", say("column.run")), ("cw_kg_m:Q", say("cw"))),
+            tooltip=tips(say, "run:O", ("cw_kg_m:Q", say("cw"))),
         )
         .properties(width=280, height=240)
         .facet(alt.Facet("stage:N", title=None, header=alt.Header(labelExpr=label)), columns=2)
@@ -228,7 +220,7 @@ def wind(frame: pl.DataFrame, say: Say) -> alt.Chart:
             ),
             number(alt.Y, "wind_m_s", say("wind"), zero=True),
             *_directions(say),
-            tooltip=tips(("run:O", say("column.run")), ("wind_m_s:Q", say("wind"))),
+            tooltip=tips(say, "run:O", "wind_m_s:Q"),
         )
         .properties(width=WIDTH, height=200)
     )
@@ -248,7 +240,7 @@ def budget(frame: pl.DataFrame, say: Say) -> alt.Chart:
                 sort="-x",
                 axis=alt.Axis(labelExpr=label, labelLimit=220),
             ),
-            tooltip=tips(("component:N", say("column.component")), ("u_ratio:Q", say("u_ratio"))),
+            tooltip=tips(say, "component:N", "u_ratio:Q"),
         )
         .properties(width=480, height=alt.Step(20))
     )

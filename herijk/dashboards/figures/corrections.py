@@ -4,11 +4,11 @@ import altair as alt
 import polars as pl
 
 from herijk.dashboards.figures.style import (
-    GREY,
     HEIGHT,
     OKABE_ITO,
     WIDTH,
     Drawing,
+    at_one,
     by_method,
     named,
     number,
@@ -19,27 +19,16 @@ from herijk.pipeline.studies.options import CHOICES
 from herijk.words.catalogue import Say
 
 
-def _at_one(frame: pl.DataFrame, channel: str) -> alt.Chart:
-    line = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3])
-    return line.encode(**{channel: alt.datum(1.0)})
-
-
 def log_factors(frame: pl.DataFrame, say: Say) -> Drawing:
     """True speed / log speed per season and method, with 95 % intervals; `frame` is the table."""
-    more = (("season:O", say("column.season")), ("source:N", say("column.source")))
-    return _per_season(frame, say, ("factor", say("column.factor")), ("lo", "hi"), more)
+    value = ("factor", say("column.factor"))
+    return _per_season(frame, say, value, ("lo", "hi"), ("season:O", "source:N"))
 
 
 def season_change(frame: pl.DataFrame, say: Say) -> Drawing:
     """Cw re-based / as published: median and range per season; `frame` is `season_changes`."""
     value, ends = ("median_ratio", say("ratio_cw")), ("lowest_ratio", "highest_ratio")
-    return _per_season(
-        frame,
-        say,
-        value,
-        ends,
-        (("season:O", say("column.season")), ("tows:Q", say("column.number"))),
-    )
+    return _per_season(frame, say, value, ends, ("season:O", "tows:Q"))
 
 
 def _per_season(
@@ -47,11 +36,11 @@ def _per_season(
     say: Say,
     value: tuple[str, str],
     ends: tuple[str, str],
-    more: tuple[tuple[str, str], ...],
+    more: tuple[str, ...],
 ) -> Drawing:
     base = alt.Chart(frame).encode(alt.X("season:O", title=say("column.season")))
     layers = by_method(base, say, value, ends, more)
-    return alt.layer(_at_one(frame, "y"), *layers).properties(width=WIDTH, height=HEIGHT)
+    return alt.layer(at_one(frame, "y"), *layers).properties(width=WIDTH, height=HEIGHT)
 
 
 def season_ladder(frame: pl.DataFrame, say: Say) -> Drawing:
@@ -81,11 +70,7 @@ def season_ladder(frame: pl.DataFrame, say: Say) -> Drawing:
     return alt.layer(
         base.mark_rect(stroke="#dddddd").encode(
             alt.Color("factor:Q", title=say("column.factor"), scale=shades),
-            tooltip=tips(
-                ("season:O", say("column.season")),
-                ("step:N", say("column.step")),
-                ("factor:Q", say("column.factor")),
-            ),
+            tooltip=tips(say, "season:O", "step:N", "factor:Q"),
         ),
         base.mark_text(color="black").encode(alt.Text("factor:Q", format=".3f")),
     ).properties(width=WIDTH, height=HEIGHT)
@@ -100,12 +85,12 @@ def sensitivity_study(frame: pl.DataFrame, say: Say) -> Drawing:
         )
     )
     return alt.layer(
-        _at_one(frame, "x"),
+        at_one(frame, "x"),
         base.mark_rule(strokeWidth=3, color=OKABE_ITO[0]).encode(
             number(alt.X, "lo_ratio", say("ratio_cw")), alt.X2("hi_ratio:Q")
         ),
         base.mark_point(filled=True, size=80, color="black", opacity=1).encode(
             number(alt.X, "median_ratio", say("ratio_cw")),
-            tooltip=tips(("option:N", say("column.option")), ("median_ratio:Q", say("ratio_cw"))),
+            tooltip=tips(say, "option:N", "median_ratio:Q"),
         ),
     ).properties(width=480, height=220)

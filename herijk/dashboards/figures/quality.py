@@ -24,11 +24,7 @@ def statuses(frame: pl.DataFrame, say: Say) -> alt.Chart:
                 scale=shades,
                 legend=alt.Legend(labelExpr=named(STATUSES, say)),
             ),
-            tooltip=tips(
-                ("season:O", say("column.season")),
-                ("status:N", say("column.status")),
-                ("number:Q", say("column.number")),
-            ),
+            tooltip=tips(say, "season:O", "status:N", "number:Q"),
         )
         .properties(width=WIDTH, height=240)
     )

@@ -10,6 +10,7 @@ from herijk.dashboards.figures.style import (
     HEIGHT,
     WIDTH,
     Drawing,
+    at_one,
     by_method,
     colour,
     crews,
@@ -34,10 +35,7 @@ def spread(frame: pl.DataFrame, say: Say) -> Drawing:
             axis=alt.Axis(labelAngle=0, labelExpr=named(["all"], say)),
         )
     )
-    value, more = (
-        ("sd_ratio", say("sd_ratio")),
-        (("scope:N", say("column.era")), ("n_pairs:Q", say("column.number"))),
-    )
+    value, more = ("sd_ratio", say("sd_ratio")), ("scope:N", "n_pairs:Q")
     layers = by_method(base, say, value, ("lo", "hi"), more, zero=True)
     return alt.layer(*layers).properties(width=WIDTH, height=HEIGHT)
 
@@ -47,15 +45,12 @@ def era_shifts(frame: pl.DataFrame, say: Say) -> Drawing:
     base = alt.Chart(frame).encode(
         alt.X("era:N", title=say("column.era"), axis=alt.Axis(labelAngle=0))
     )
-    same = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3]).encode(y=alt.datum(1.0))
-    value, more = ("shift_ratio", say("shift_ratio")), (("n:Q", say("column.number")),)
-    layers = by_method(base, say, value, ("lo", "hi"), more)
-    return alt.layer(same, *layers).properties(width=WIDTH, height=HEIGHT)
+    layers = by_method(base, say, ("shift_ratio", say("shift_ratio")), ("lo", "hi"), ("n:Q",))
+    return alt.layer(at_one(frame, "y"), *layers).properties(width=WIDTH, height=HEIGHT)
 
 
 def repeat_pairs(frame: pl.DataFrame, say: Say) -> Drawing:
     """Every pair of repeat tows, by the season of the newer; `frame` has `page`."""
-    same = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3]).encode(y=alt.datum(1.0))
     points = (
         alt.Chart(frame)
         .mark_point(size=45, filled=True, opacity=0.8, cursor="pointer")
@@ -66,16 +61,10 @@ def repeat_pairs(frame: pl.DataFrame, say: Say) -> Drawing:
             method_shape(say),
             xOffset="method:N",
             href="page:N",
-            tooltip=tips(
-                ("name:N", say("column.name")),
-                ("fsn_no:N", "FSN"),
-                ("method:N", say("method")),
-                ("season_before:O", say("column.season")),
-                ("cw_ratio:Q", say("column.cw_ratio")),
-            ),
+            tooltip=tips(say, "name:N", "fsn_no:N", "method:N", "season_before:O", "cw_ratio:Q"),
         )
     )
-    return alt.layer(same, points).properties(width=WIDTH, height=HEIGHT)
+    return alt.layer(at_one(frame, "y"), points).properties(width=WIDTH, height=HEIGHT)
 
 
 def components(frame: pl.DataFrame, say: Say) -> Drawing:
@@ -113,10 +102,9 @@ def predicted(frame: pl.DataFrame, say: Say) -> Drawing:
 
 def register_changes(frame: pl.DataFrame, say: Say) -> Drawing:
     """Time and Cw of every changed register line, new / old; `frame` has `page`."""
-    one = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3])
     places = {"cw_ratio": say("column.cw_ratio"), "time_ratio": say("column.time_ratio")}
     points = _boats(frame, say, places, ("to_edition", say("edition"), editions_legend(say)))
-    return alt.layer(one.encode(x=alt.datum(1.0)), one.encode(y=alt.datum(1.0)), points).properties(
+    return alt.layer(at_one(frame, "x"), at_one(frame, "y"), points).properties(
         width=WIDTH, height=HEIGHT
     )
 
@@ -136,12 +124,7 @@ def _boats(
             colour(column, title, legend=legend),
             shape(column, title, legend=legend),
             href="page:N",
-            tooltip=tips(
-                ("name:N", say("column.name")),
-                ("fsn_no:N", "FSN"),
-                (f"{x}:Q", x_title),
-                (f"{y}:Q", y_title),
-            ),
+            tooltip=tips(say, "name:N", "fsn_no:N", (f"{x}:Q", x_title), (f"{y}:Q", y_title)),
         )
     )
 
@@ -166,13 +149,9 @@ def race_ranks(frame: pl.DataFrame, say: Say) -> Drawing:
             *crews(say),
             href="page:N",
             tooltip=tips(
-                ("race:N", say("column.race")),
-                ("name:N", say("column.name")),
-                ("fsn_no:N", "FSN"),
-                ("old_rank:Q", say("column.old_rank")),
-                ("new_rank:Q", say("column.new_rank")),
-                ("old_power_w:Q", say("old_power")),
-                ("new_power_w:Q", say("new_power")),
+                say,
+                *("race:N", "name:N", "fsn_no:N", "old_rank:Q", "new_rank:Q"),
+                *(("old_power_w:Q", say("old_power")), ("new_power_w:Q", say("new_power"))),
             ),
         )
     )

@@ -5,10 +5,11 @@ from collections.abc import Iterable, Sequence
 from typing import Any, Final
 
 import altair as alt
+import polars as pl
 
 from herijk.pipeline.method.definition import COMPLETE, RUNS_ALONE, shipped_method, shipped_methods
 from herijk.pipeline.register.register import draft_name
-from herijk.words.catalogue import Say
+from herijk.words.catalogue import Say, unbroken
 
 OKABE_ITO: Final = (
     "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#999999",
@@ -102,12 +103,26 @@ def type_legend(say: Say, **more: Any) -> alt.Legend:
     return alt.Legend(labelExpr=named(["unknown"], say), **more)
 
 
-def tips(*pairs: tuple[str, str]) -> list[alt.Tooltip]:
-    """Tooltips of `field:type` with their titles; numbers with five digits."""
+def tips(say: Say, *shown: str | tuple[str, str]) -> list[alt.Tooltip]:
+    """Tooltips of `field:type`, numbers with five digits.
+
+    Each is called as its column is in tables, unless a title is given with it.
+    """
+    titled = [one if isinstance(one, tuple) else (one, _column(one, say)) for one in shown]
     return [
         alt.Tooltip(field, title=title, format=".5~g" if field.endswith(":Q") else alt.Undefined)
-        for field, title in pairs
+        for field, title in titled
     ]
+
+
+def _column(field: str, say: Say) -> str:
+    return unbroken(say(f"column.{field.partition(':')[0]}"))
+
+
+def at_one(frame: pl.DataFrame, channel: str) -> alt.Chart:
+    """A line at 1 along an axis of ratios."""
+    line = alt.Chart(frame).mark_rule(color=GREY, strokeDash=[4, 3])
+    return line.encode(**{channel: alt.datum(1.0)})
 
 
 def by_method(
@@ -115,7 +130,7 @@ def by_method(
     say: Say,
     value: tuple[str, str],
     ends: tuple[str, str],
-    more: Sequence[tuple[str, str]] = (),
+    more: Sequence[str] = (),
     zero: bool = False,
     dash: alt.StrokeDash | None = None,
 ) -> list[alt.Chart]:
@@ -126,7 +141,7 @@ def by_method(
         say: gives texts.
         value: column of the point, and the title of the y axis.
         ends: columns of the lower and upper end of the bar.
-        more: what the tooltip shows besides method and value.
+        more: columns that the tooltip shows besides, as `field:type`.
         zero: whether the y axis begins at zero.
         dash: how the bar is drawn; `interval_dash` where intervals differ in kind.
     """
@@ -138,12 +153,11 @@ def by_method(
     )
     if dash is not None:
         bar = bar.encode(dash)
-    limits = [(f"{low}:Q", say("lowest")), (f"{high}:Q", say("highest"))]
     point = beside.mark_point(filled=True, size=65, opacity=1).encode(
         number(alt.Y, field, title, zero),
         method_colour(say),
         method_shape(say),
-        tooltip=tips(("method:N", say("method")), *more, (f"{field}:Q", title), *limits),
+        tooltip=tips(say, "method:N", *more, (f"{field}:Q", title), f"{low}:Q", f"{high}:Q"),
     )
     return [bar, point]
 

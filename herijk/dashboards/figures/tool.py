@@ -92,9 +92,7 @@ def tick_effects(frame: pl.DataFrame, say: Say) -> Drawing:
     )
     point = base.mark_point(filled=True, size=70, color="black", opacity=1).encode(
         small("median_ratio", ratio),
-        tooltip=tips(
-            ("option:N", say("column.option")), ("median_ratio:Q", ratio), ("tows:Q", "n")
-        ),
+        tooltip=tips(say, "option:N", "median_ratio:Q", "tows:Q"),
     )
     one = alt.Chart().mark_rule(color=GREY, strokeDash=[3, 3]).encode(x=alt.datum(1.0))
     drawing = alt.layer(one, bar, point, data=frame)
@@ -110,12 +108,9 @@ def run_statistics(frame: pl.DataFrame, say: Say) -> Drawing:
             alt.X("run:O", title=say("column.run")),
             number(alt.Y, "sd_ratio", say("sd_mean_ratio"), zero=True),
             tooltip=tips(
-                ("run:O", say("column.run")),
-                ("mean:Q", say("column.mean")),
-                ("sd:Q", say("column.sd")),
-                ("median:Q", say("column.median")),
-                ("median_ratio:Q", say("median_ratio")),
-                ("log1_ratio:Q", say("column.log1_ratio")),
+                say,
+                *("run:O", "mean:Q", "sd:Q", "median:Q"),
+                *(("median_ratio:Q", say("median_ratio")), "log1_ratio:Q"),
             ),
         )
     )

@@ -57,12 +57,7 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Dra
                 opacity=alt.condition(brush, alt.value(0.9), alt.value(0.2)),
                 href="page:N",
                 tooltip=tips(
-                    ("name:N", say("column.name")),
-                    ("fsn_no:N", "FSN"),
-                    ("boat_type:N", say("type")),
-                    ("season:O", say("column.season")),
-                    (f"{x}:Q", say(x_title)),
-                    (f"{y}:Q", say(y_title)),
+                    say, "name:N", "fsn_no:N", "boat_type:N", "season:O", f"{x}:Q", f"{y}:Q"
                 ),
             )
             .add_params(brush, chosen)
@@ -87,7 +82,7 @@ def shared_bend(frame: pl.DataFrame, say: Say) -> alt.Chart:
             alt.Y("crew:N", title=say("boat")),
             colour("pooling", say("pooling"), legend=legend),
             shape("pooling", say("pooling"), legend=legend),
-            tooltip=tips(("crew:N", say("boat")), ("b_m_s:Q", say("column.b_m_s"))),
+            tooltip=tips(say, ("crew:N", say("boat")), "b_m_s:Q"),
         )
         .properties(width=360)
     )
