@@ -37,6 +37,8 @@ COMMAND: Final[dict[str, str]] = {
     "Got unexpected extra argument(s) ({})": "Te veel argumenten ({})",
     "Option {} requires an argument.": "Optie {} vraagt een waarde.",
     "Invalid value for {}: {}": "Ongeldige waarde voor {}: {}",
+    "Invalid value: {}": "Ongeldige waarde: {}",
+    "{} is not one of {}.": "{} is niet een van {}.",
     "write a season, 2014, or a range, 2009:2018": (
         "schrijf een seizoen, 2014, of een reeks, 2009:2018"
     ),
@@ -50,7 +52,6 @@ COMMAND: Final[dict[str, str]] = {
         "geef --method NAAM of --printed JAAR, en niet allebei"
     ),
     "--carry goes with --method": "--carry hoort bij --method",
-    "{} is one of {}, not {!r}": "{} is een van {}, niet {!r}",
     "{!r} has no --json; these have: {}": "{!r} heeft geen --json; wel: {}",
     # Help: commands
     "Recomputes the history of the Dutch rowing-sloop register from its tow tests.": (
@@ -449,11 +450,9 @@ COMMAND: Final[dict[str, str]] = {
     "edition": "editie",
     "empty thwart": "lege doft",
     "equal": "gelijk",
-    "factor": "factor",
     "from": "van",
     "to": "tot",
     "gross kg/m": "bruto kg/m",
-    "hash": "hash",
     "highest": "hoogste",
     "lowest": "laagste",
     "median": "mediaan",
@@ -466,7 +465,6 @@ COMMAND: Final[dict[str, str]] = {
     "last tow": "laatste proef",
     "lines": "regels",
     "links": "koppelingen",
-    "log": "log",
     "lost": "verloren",
     "made again": "opnieuw gemaakt",
     "method": "methode",
@@ -481,8 +479,6 @@ COMMAND: Final[dict[str, str]] = {
     "race": "wedstrijd",
     "raced": "geroeid",
     "reason": "reden",
-    "register": "register",
-    "run": "run",
     "sd apart": "sd verschil",
     "season": "seizoen",
     "seasons": "seizoenen",
@@ -490,7 +486,6 @@ COMMAND: Final[dict[str, str]] = {
     "shared B": "gedeelde B",
     "size": "grootte",
     "source": "bron",
-    "status": "status",
     "step is of": "stap komt van",
     "title": "titel",
     "total": "totaal",
@@ -506,12 +501,10 @@ COMMAND: Final[dict[str, str]] = {
     "why": "waarom",
     "window s": "venster s",
     "without boats": "zonder sloepen",
-    "wind": "wind",
     "speed": "snelheid",
     "-inertia": "-traagheid",
     "-air": "-lucht",
     "+still": "+stil",
-    "+temp": "+temp",
     "spread": "spreiding",
     "explained": "verklaard",
     "slope": "helling",
@@ -520,19 +513,9 @@ COMMAND: Final[dict[str, str]] = {
     "yes": "ja",
     "no": "nee",
     "notice": "let op",
-    "podium": "podium",
     "changes": "wisselt",
     "the same": "dezelfde",
-    "v m/s": "v m/s",
-    "A kg/m": "A kg/m",
-    "Cw kg/m": "Cw kg/m",
-    "expired": "verlopen",
-    "removed": "vervallen",
     "gone": "weg",
-    "added": "nieuw",
-    "changed": "gewijzigd",
-    "same": "gelijk",
-    "recomputed": "herberekend",
     "as printed": "zoals gedrukt",
     "removed: {}": "vervallen: {}",
     "no: {}": "nee: {}",
@@ -735,11 +718,9 @@ COMMAND: Final[dict[str, str]] = {
     ),
     "{} and {} say the same of every season.": "{} en {} zeggen van elk seizoen hetzelfde.",
     "{}: {} points": "{}: {} punten",
-    "A = {:.3f} kg/m; {}": "A = {:.3f} kg/m; {}",
     "Cw [kg/m] with its 95 % interval, from the scatter of the points alone:": (
         "Cw [kg/m] met 95 %-interval, uit de spreiding van de punten alleen:"
     ),
-    "  v [m/s]       Cw  interval": "  v [m/s]       Cw  interval",
     "  {:8.3f}  {:8.3f}  {} to {}": "  {:8.3f}  {:8.3f}  {} tot {}",
     "B above {:.2f} m/s is possible": "elke B boven {:.2f} m/s kan",
     "any B is possible": "elke B kan",
@@ -759,8 +740,6 @@ COMMAND: Final[dict[str, str]] = {
     "Season {}": "Seizoen {}",
     "Seasons {} to {}": "Seizoenen {} tot {}",
     "the present": "heden",
-    "log 1": "log 1",
-    "log 2": "log 2",
     "mean of both logs where they agree": "gemiddelde van beide logs waar die overeenkomen",
     "{}, as it reads.": "{}, zoals afgelezen.",
     "{}, with the season's factor as estimated from repeat tows and GPS.": (
@@ -841,7 +820,6 @@ COMMAND: Final[dict[str, str]] = {
     "noise": "ruis",
     # Audit
     "{} plots in {}": "{} figuren in {}",
-    "{} {}, type {}": "{} {}, type {}",
     "{}; towed for {} crews ({}): each has a register line and repeats of its own; in the "
     "statistics of a type they are one boat": (
         "{}; gesleept voor {} ploegen ({}): elk heeft een eigen registerregel en eigen "
@@ -889,7 +867,6 @@ COMMAND: Final[dict[str, str]] = {
     "Tow {} of {}: {}{}, declared {:.2f} m/s, {} m, {}, from {}": (
         "Proef {} van {}: {}{}, opgegeven {:.2f} m/s, {} m, {}, uit {}"
     ),
-    "{:.2f}": "{:.2f}",
     "  {} to {}: Cw {} %{}{}": "  {} naar {}: Cw {} %{}{}",
     "standard uncertainty of Cw: {}": "standaardonzekerheid van Cw: {}",
     "no curve, {}{}": "geen kromme, {}{}",
@@ -944,7 +921,6 @@ COMMAND: Final[dict[str, str]] = {
     "8. Second opinion without towing: Cw from weight, length, beam and type": (
         "8. Tweede mening zonder slepen: Cw uit gewicht, lengte, breedte en type"
     ),
-    "{} per {}": "{} per {}",
     "{} against {}": "{} tegen {}",
     "Cw lies closer together than both": "Cw ligt dichter bijeen dan beide",
     "Cw lies further apart": "Cw ligt verder uiteen",
