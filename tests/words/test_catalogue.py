@@ -28,7 +28,7 @@ OF_LIBRARY = {
 
 SAME = {
     *("A", "B", "Cw", "W", "kg", "m", "n", "p", "run", "s", "v"),
-    *("factor", "hash", "interval", "log", "podium", "register", "status", "type", "wind"),
+    *("factor", "hash", "interval", "log", "per", "podium", "register", "status", "type", "wind"),
 }
 """Words that are no others in Dutch."""
 
