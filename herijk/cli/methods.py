@@ -37,7 +37,7 @@ class MethodReport:
         method, title: what it is called.
         content_hash: SHA-256 of what it says.
         extends: the method it extends.
-        words: what it says, a sentence per step.
+        words: what it says, step by step.
     """
 
     method: str
