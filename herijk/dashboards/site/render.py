@@ -56,6 +56,15 @@ HEADING: Final = Markup(
 TITLE: Final = Markup(' title="{}"')
 NUMERIC: Final = Markup(' class="n"')
 
+IN_GLOSSARY: Final = {
+    "crew_class": "crew_class",
+    "a_kg_m": "a",
+    "b_m_s": "b",
+    "cw_kg_m": "cw",
+    "e_n": "e_n",
+}
+"""The term of the glossary that a column holds."""
+
 POLICY: Final = "; ".join(
     (
         "default-src 'none'",
@@ -182,9 +191,9 @@ class Edition:
 
     def _heading(self, table: str, column: str, is_number: bool) -> Markup:
         """The heading of a column, which says what it means when pointed at."""
-        tip = self.speech.say(f"tip.{column}")
-        known = self._comments.get(f"{table}.{column}") or self._comments.get(column)
-        meaning = known or (tip if tip != column else None)
+        meaning = self._comments.get(f"{table}.{column}") or self._comments.get(column)
+        if not meaning and column in IN_GLOSSARY:
+            meaning = self.speech.say(f"meaning_{IN_GLOSSARY[column]}")
         return HEADING.format(
             column=column,
             title=TITLE.format(meaning) if meaning else "",
@@ -284,9 +293,7 @@ def vega_bundle() -> str:
 def charts_script(language: str) -> str:
     """A script with the figures and their words in one language."""
     say = speaker(language)
-    named = {
-        key: say(key) for key in WORDS if key.startswith(("column.", "code.", "method.", "tip."))
-    }
+    named = {key: say(key) for key in WORDS if key.startswith(("column.", "code.", "method."))}
     words = named | {key: say(key) for key in ("yes", "no", "no_values", "from", "to")}
     figures = as_json(chart_specifications(language))
     return f"window.HERIJK_FIGURES = {figures};\nwindow.HERIJK_WORDS = {as_json(words)};\n"
