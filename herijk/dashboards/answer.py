@@ -1,6 +1,6 @@
 """The owner's answer in sentences: what changes for a boat, why, how certainly, what follows.
 
-The numbers come from `warehouse.queries.answers`, the texts from `dashboards.words.answers`.
+The numbers come from `warehouse.queries.answers`, the texts from `words.answers`.
 """
 
 import json

@@ -142,10 +142,10 @@ def _draw(
     page: Page, editions: Sequence["Edition"], other: Executor | None
 ) -> Callable[[], Stills]:
     """Has the picture of a page drawn, if it has one; gives what waits for it."""
-    found = first_chart(page)
-    if found is None:
+    first = first_chart(page)
+    if first is None:
         return dict
-    chart, rows = found
+    chart, rows = first
     captions = {e.speech.language: e.speech.say(chart.caption) for e in editions}
     task = chart.figure, rows, captions
     return other.submit(stills, *task).result if other else partial(stills, *task)
@@ -260,10 +260,10 @@ def _data_script(page: Page, others: Mapping[str, Mapping[str, str]]) -> str:
 
 def _search_script(views: Views) -> str:
     """What the search on every page looks through: boats, types and races, with their pages."""
-    return f"window.HERIJK_FIND = {as_json(list(_found(views)))};\n"
+    return f"window.HERIJK_FIND = {as_json(list(_findable(views)))};\n"
 
 
-def _found(views: Views) -> Iterator[list[str]]:
+def _findable(views: Views) -> Iterator[list[str]]:
     boats = views.table("boats").sort("fsn_no")
     for fsn_no, ht_no, name, boat_type in boats.select(
         "fsn_no", "ht_no", "name", "boat_type"
