@@ -928,14 +928,6 @@ COMMAND: Final[dict[str, str]] = {
         "Wat verschilt: hellingen en verschuivingen met meer dan beide intervallen samen, "
         "en oordelen"
     ),
-    "unusual weight": "opvallend gewicht",
-    "unusual length": "opvallende lengte",
-    "its season lies to the same side": "haar seizoen ligt aan dezelfde kant",
-    "unusual calibration of its log": "opvallende ijking van de log",
-    "altered before this tow": "verbouwd voor deze proef",
-    "slow tow": "langzame proef",
-    "perhaps pulled askew": "misschien scheef getrokken",
-    "B at its cap": "B op zijn bovengrens",
     "weight": "gewicht",
     "tow speed": "sleepsnelheid",
     "two crews of one boat are not taken for two boats. Intervals are 95 %; a trend or "

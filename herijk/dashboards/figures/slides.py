@@ -2,7 +2,7 @@
 
 Methods stand side by side on equal axes, below each other where there is no room. Men and women
 differ in shape. A tow made too slowly for the common speed is open, and a tow outside its type is
-named with its season and crew. Frames come from `dashboards.slides`.
+named with its season and crew. Frames come from `dashboards.slide_rows`.
 """
 
 import json
