@@ -12,14 +12,12 @@ from herijk.dashboards.figures.style import (
     Drawing,
     at_one,
     by_method,
-    colour,
     crews,
     editions_legend,
-    method_colour,
-    method_shape,
+    kinds,
+    methods,
     named,
     number,
-    shape,
     tips,
     type_legend,
 )
@@ -57,8 +55,7 @@ def repeat_pairs(frame: pl.DataFrame, say: Say) -> Drawing:
         .encode(
             alt.X("season:O", title=say("column.season")),
             number(alt.Y, "cw_ratio", say("column.cw_ratio")),
-            method_colour(say),
-            method_shape(say),
+            *methods(say),
             xOffset="method:N",
             href="page:N",
             tooltip=tips(say, "name:N", "fsn_no:N", "method:N", "season_before:O", "cw_ratio:Q"),
@@ -121,8 +118,7 @@ def _boats(
         .encode(
             number(alt.X, x, x_title),
             number(alt.Y, y, y_title),
-            colour(column, title, legend=legend),
-            shape(column, title, legend=legend),
+            *kinds(column, title, legend=legend),
             href="page:N",
             tooltip=tips(say, "name:N", "fsn_no:N", (f"{x}:Q", x_title), (f"{y}:Q", y_title)),
         )

@@ -45,32 +45,23 @@ def crews(say: Say) -> tuple[alt.Color, alt.Shape]:
     )
 
 
-def method_colour(say: Say) -> alt.Color:
-    """A method by colour: every method that ships has the same in every figure."""
-    scale = _of_methods(OKABE_ITO)
-    return alt.Color("method:N", title=say("method"), scale=scale, sort=None, legend=_drawn(say))
+def methods(say: Say) -> tuple[alt.Color, alt.Shape]:
+    """A method by colour and shape: every method that ships has the same in every figure.
 
-
-def method_shape(say: Say) -> alt.Shape:
-    """The same method by shape."""
-    scale = _of_methods(SHAPES)
-    return alt.Shape("method:N", title=say("method"), scale=scale, sort=None, legend=_drawn(say))
-
-
-def _drawn(say: Say) -> alt.Legend:
-    """Only methods that are drawn: those that stand side by side, of all that have a look."""
-    return alt.Legend(values=alt.ExprRef("domain('xOffset')"), labelExpr=methods_named(say))
-
-
-def _of_methods(looks: Sequence[str]) -> alt.Scale:
-    """Looks of the methods that ship, then of others that the data hold, as on the workbench."""
+    Others that the data hold have what follows, as on the workbench. Of all that have a look, the
+    legend names those that are drawn, which stand side by side.
+    """
     known = alt.DomainUnionWith(unionWith=list(shipped_methods()))
-    return alt.Scale(domain=known, range=list(looks))
+    legend = alt.Legend(values=alt.ExprRef("domain('xOffset')"), labelExpr=methods_named(say))
+    inks, shapes = (alt.Scale(domain=known, range=list(looks)) for looks in (OKABE_ITO, SHAPES))
+    look: dict[str, Any] = {"title": say("method"), "sort": None, "legend": legend}
+    return alt.Color("method:N", scale=inks, **look), alt.Shape("method:N", scale=shapes, **look)
 
 
-def shape(field: str, title: str, **more: Any) -> alt.Shape:
-    """The same category by shape, for print without colour; both share one legend."""
-    return alt.Shape(f"{field}:N", title=title, scale=alt.Scale(range=list(SHAPES)), **more)
+def kinds(field: str, title: str, **more: Any) -> tuple[alt.Color, alt.Shape]:
+    """A category by colour and, for print without colour, by shape; both share one legend."""
+    shapes = alt.Scale(range=list(SHAPES))
+    return colour(field, title, **more), alt.Shape(f"{field}:N", title=title, scale=shapes, **more)
 
 
 def number(channel: Any, field: str, title: str, zero: bool = False, **more: Any) -> Any:
@@ -155,8 +146,7 @@ def by_method(
         bar = bar.encode(dash)
     point = beside.mark_point(filled=True, size=65, opacity=1).encode(
         number(alt.Y, field, title, zero),
-        method_colour(say),
-        method_shape(say),
+        *methods(say),
         tooltip=tips(say, "method:N", *more, (f"{field}:Q", title), f"{low}:Q", f"{high}:Q"),
     )
     return [bar, point]

@@ -12,10 +12,9 @@ import polars as pl
 
 from herijk.dashboards.figures.style import (
     Drawing,
-    colour,
+    kinds,
     methods_named,
     number,
-    shape,
     tips,
     type_legend,
 )
@@ -51,8 +50,7 @@ def against(quantity: str, explaining: str) -> Callable[[pl.DataFrame, Say], Dra
             .encode(
                 number(alt.X, x, say(x_title)),
                 number(alt.Y, y, say(y_title)),
-                colour("boat_type", say("type"), legend=legend),
-                shape("boat_type", say("type"), legend=legend),
+                *kinds("boat_type", say("type"), legend=legend),
                 size=alt.condition("datum.fsn_no == chosen", alt.value(320), alt.value(70)),
                 opacity=alt.condition(brush, alt.value(0.9), alt.value(0.2)),
                 href="page:N",
@@ -80,8 +78,7 @@ def shared_bend(frame: pl.DataFrame, say: Say) -> alt.Chart:
         .encode(
             number(alt.X, "b_m_s", say("column.b_m_s")),
             alt.Y("crew:N", title=say("boat")),
-            colour("pooling", say("pooling"), legend=legend),
-            shape("pooling", say("pooling"), legend=legend),
+            *kinds("pooling", say("pooling"), legend=legend),
             tooltip=tips(say, ("crew:N", say("boat")), "b_m_s:Q"),
         )
         .properties(width=360)
