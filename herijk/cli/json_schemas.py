@@ -257,9 +257,31 @@ def _publish() -> Schema:
     return report
 
 
+def _changed_line() -> Fields:
+    """A line of two editions: how it changed and why, and what it is in either."""
+    in_either = {
+        **columns("register", "a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s"),
+        **columns("register", "tow_id", "status"),
+        **columns("curves", "power_w"),
+        "rank": whole("rank by speed at equal power, in its class", maybe=True),
+    }
+    cause = {
+        "cause": text("why the line changed"),
+        "step": text("step of the method, where a method is the cause", maybe=True),
+        "factor": FACTOR,
+    }
+    return {
+        **columns("register_changes"),
+        **NAME,
+        **{f"{side}_{name}": own for side in ("old", "new") for name, own in in_either.items()},
+        "gain_in_two_hours_s": number("what it gains in a race of two hours [s]", maybe=True),
+        "exceeds_interval": flag("it moved by more than both intervals", maybe=True),
+        "causes": rows("what moved it", cause),
+    }
+
+
 def _diff() -> Schema:
-    causes = rows("what moved it", {"cause": text("why the line changed"), "factor": FACTOR})
-    line = columns("register_changes") | {"causes": causes}
+    line = _changed_line()
     return of(
         DiffReport,
         gain={"most": line},
