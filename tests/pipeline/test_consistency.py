@@ -146,17 +146,17 @@ def assert_same_line(fit, other):
 
 
 def test_equal_errors_give_the_line_and_interval_of_ordinary_least_squares():
-    import statsmodels.api as sm  # noqa: PLC0415 - takes seconds to import
+    from statsmodels.regression.linear_model import OLS  # noqa: PLC0415 - takes seconds to import
 
     problem = one_row_a_boat(np.full(12, 1e-6), true_sd=1.0)
-    assert_same_line(mixed.fit(problem, (mixed.BOAT,)), sm.OLS(problem.y, problem.design.x).fit())
+    assert_same_line(mixed.fit(problem, (mixed.BOAT,)), OLS(problem.y, problem.design.x).fit())
 
 
 def test_known_variances_give_the_line_and_interval_of_weighted_least_squares():
-    import statsmodels.api as sm  # noqa: PLC0415 - takes seconds to import
+    from statsmodels.regression.linear_model import WLS  # noqa: PLC0415 - takes seconds to import
 
     problem = one_row_a_boat(np.linspace(0.5, 3.0, 12) ** 2)
-    other = sm.WLS(problem.y, problem.design.x, weights=1 / problem.variance).fit()
+    other = WLS(problem.y, problem.design.x, weights=1 / problem.variance).fit()
     assert_same_line(mixed.fit(problem, ()), other)
 
 

@@ -49,7 +49,7 @@ def scipy_fit(speed, cw):
 
 def test_equals_scipy():
     # Wider than the field, with falling curves; the benchmark compares 10,000 cases.
-    points, *_ = noisy_points(seed=1, n_fits=2000, r=(-0.3, 0.6), noise=(0.0, 0.05))
+    points, *_ = noisy_points(seed=1, n_fits=500, r=(-0.3, 0.6), noise=(0.0, 0.05))
     fitted = curve.fit(points)
     cases = zip(points.speed_m_s, points.cw_kg_m, strict=True)
     a, s = np.transpose([scipy_fit(speed, cw) for speed, cw in cases])
