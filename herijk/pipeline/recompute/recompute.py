@@ -9,7 +9,6 @@ method says what holds when.
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from itertools import compress
 from typing import NamedTuple
 
 import numpy as np
@@ -177,17 +176,17 @@ def _with_expected_wind(
     Wind along the course adds more on one way than it takes off on the other, so that a tow whose
     wind nobody measured comes out too high.
     """
-    asks = [p.steps.wind.unmeasured == "expected" for p in prepared]
-    asking = compress(prepared, asks)
+    asking = [p for p in prepared if _expects_wind(p)]
     ratios = np.concatenate([[], *(p.wind_ratio(*_coefficients(p, shared)) for p in asking)])
     known = ratios[np.isfinite(ratios)]
     if len(known) < FEWEST_WINDS:
         return prepared
     expected = ExpectedWind(float(known.mean()), float(known.std(ddof=1)))
-    return [
-        replace(p, expected_wind=expected) if asked else p
-        for p, asked in zip(prepared, asks, strict=True)
-    ]
+    return [replace(p, expected_wind=expected) if _expects_wind(p) else p for p in prepared]
+
+
+def _expects_wind(prepared: Prepared) -> bool:
+    return prepared.steps.wind.unmeasured == "expected"
 
 
 def evaluate_each(

@@ -75,9 +75,7 @@ class Network:
         links, component = _connect(group_index, boat, has_gps | calibrated)
         cluster = index_of(tows, ("fsn_no",))
         return cls(
-            *(tows, group_index, boat, cluster, groups, names, links, component),
-            has_gps,
-            calibrated,
+            tows, group_index, boat, cluster, groups, names, links, component, has_gps, calibrated
         )
 
     @property
