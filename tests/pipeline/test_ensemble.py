@@ -43,8 +43,9 @@ def test_tows_of_one_season_err_together_as_far_as_they_share(world):
     lines = of_tows(world, world.tows.filter(pl.col("season") == 2010)["tow_id"][:2].to_list())
     members = ensemble.register_ensemble(lines, held, found, MANY)
     total = lines.join(uncertainty.combine(held), on="tow_id", maintain_order="left")
-    shared, u = total["u_shared_ratio"].to_numpy(), total["u_ratio"].to_numpy()
-    expected = shared.prod() / u.prod()
+    of_both = uncertainty.combine(held.filter(pl.col("shared") != "single"))
+    shared = lines.join(of_both, on="tow_id", maintain_order="left")["u_ratio"]
+    expected = shared.product() / total["u_ratio"].product()
     correlation = np.corrcoef(np.log(members).T)[0, 1]
     assert expected > 0.05
     assert correlation == pytest.approx(expected, abs=4 / np.sqrt(MANY))

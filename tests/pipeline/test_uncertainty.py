@@ -28,6 +28,7 @@ def tows(**changed):
         "air_ratio": 0.025, "air_per_coefficient": 0.05,
         "wind_measured": True, "still_air_ratio": 0.025, "temperature_known": False,
         "askew_ratio": None,
+        "force_sd": None,
     }  # fmt: skip
     return pl.DataFrame([usual | changed])
 
@@ -180,10 +181,10 @@ def test_a_tow_without_dgps_has_the_log_and_the_season_in_place_of_calibration()
     assert u_of(held, "stream_drift") == 0
     assert u_of(held, "calibration") == pytest.approx(2.86 * 0.012)
     assert u_of(held, "season_log") == pytest.approx(2.86 * 0.0035)
-    total = combine(held).row(0, named=True)
-    assert total["u_single_ratio"] > 2 * total["u_shared_ratio"]
-    both = np.hypot(total["u_single_ratio"], total["u_shared_ratio"])
-    assert total["u_ratio"] == pytest.approx(both)
+    alone = pl.col("shared") == "single"
+    single, shared = (combine(held.filter(part))["u_ratio"][0] for part in (alone, ~alone))
+    assert single > 2 * shared
+    assert combine(held)["u_ratio"][0] == pytest.approx(np.hypot(single, shared))
 
 
 def test_keys_say_what_tows_have_in_common():

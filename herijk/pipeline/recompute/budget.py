@@ -23,7 +23,6 @@ from herijk.pipeline.uncertainty.misfit import Departure, departure_of_boats
 from herijk.pipeline.uncertainty.propagation import (
     Assumed,
     budget,
-    combine,
     level_scatter,
     residual_scatter,
     run_point_uncertainty,
@@ -71,10 +70,10 @@ def scatter_of_level(o: Outcome) -> curve.Scatter:
     steady = alone & (_unsteady_stream(o)[0] == 0.0)
     by_gps = ratio - (2.0 + 2.0 * _median_bend(o)) * batch.by_tow(np.log(of_runs))
     way = batch.by_tow(batch.direction.astype(np.float64))
-    found = level_scatter(
+    of_level = level_scatter(
         ratio, by_gps, o.points.speed_m_s, way, used & steady[:, None], _season(o)
     )
-    by_calibration = _of_height(*found, used, on_curve)
+    by_calibration = _of_height(*of_level, used, on_curve)
     known = alone & (by_calibration.dof > 0)
     return curve.Scatter(
         np.where(known, by_calibration.variance_kg2_m2, by_log.variance_kg2_m2),
@@ -211,8 +210,8 @@ def _run_calibrations(o: Outcome) -> tuple[FloatArray, BoolArray]:
 
 def run_point_ratio(o: Outcome) -> FloatArray:
     """Relative uncertainty of each run point from within the runs of its season, shape (runs,)."""
-    season = o.batch.of_tow("season").astype(np.int64)[o.batch.tow]
-    return run_point_uncertainty(o.batch.blocks, o.windows.mask, season, o.steps.speed.source)
+    season, source = _season(o)[o.batch.tow], o.steps.speed.source
+    return run_point_uncertainty(o.batch.blocks, o.windows.mask, season, source)
 
 
 def budget_of(
@@ -270,7 +269,7 @@ def curve_points(outcomes: Sequence[Outcome], bounds: pl.DataFrame) -> pl.DataFr
 
     Args:
         outcomes: all batches of a method.
-        bounds: those of `cw_bounds` at `CURVE_SPEED_RATIOS`.
+        bounds: of their budget, as `propagation.combine` gives them.
 
     Returns:
         `tow_id, speed_m_s, cw_kg_m, cw_lo_kg_m, cw_hi_kg_m`: a row per tow and speed of
@@ -285,15 +284,6 @@ def curve_points(outcomes: Sequence[Outcome], bounds: pl.DataFrame) -> pl.DataFr
         (pl.col("cw_kg_m") * pl.col("lo_ratio")).alias("cw_lo_kg_m"),
         (pl.col("cw_kg_m") * pl.col("hi_ratio")).alias("cw_hi_kg_m"),
     )
-
-
-def cw_bounds(components: pl.DataFrame) -> pl.DataFrame:
-    """Bounds of the 95 % interval of Cw relative to Cw, per tow and speed of a budget.
-
-    Returns:
-        `tow_id, speed_ratio, lo_ratio, hi_ratio`.
-    """
-    return combine(components).select("tow_id", "speed_ratio", "lo_ratio", "hi_ratio")
 
 
 def _budget_of_batch(
@@ -352,11 +342,13 @@ def _random_ratio(
     return np.where(known, np.sqrt(variance) / np.where(known, cw, 1.0), 1.0)
 
 
-def _terms_of_tows(o: Outcome, found: SeasonFactors | None, scatter: curve.Scatter) -> pl.DataFrame:
+def _terms_of_tows(
+    o: Outcome, factors: SeasonFactors | None, scatter: curve.Scatter
+) -> pl.DataFrame:
     """What `propagation.budget` asks of tows, as far as it is the same at any speed."""
     batch = o.batch
     estimated = np.isfinite(o.estimated.ln_sd)
-    usual = USUAL_BEND if found is None else _median_bend(o)
+    usual = USUAL_BEND if factors is None else _median_bend(o)
     bend = np.where(np.isfinite(o.estimated.bend), o.estimated.bend, usual)
     # One coefficient for the archive is found by the same anemometer: its scale cancels in the air
     # taken off, and only what is put back for still air has it.
@@ -378,7 +370,7 @@ def _terms_of_tows(o: Outcome, found: SeasonFactors | None, scatter: curve.Scatt
         pl.Series("askew_ratio", o.estimated.askew_ratio).fill_nan(None),
         pl.Series("log_sd", np.where(estimated, o.estimated.ln_sd, 0.0)),
         pl.Series("log_dof", np.where(estimated, o.estimated.dof, np.inf)),
-        pl.Series("tow_log_sd", _tow_log_sd(o, found)),
+        pl.Series("tow_log_sd", _tow_log_sd(o, factors)),
         pl.Series("stream_sd", stream_sd),
         pl.Series("stream_dof", stream_dof),
         pl.Series("net_air_kg_m", net_air),
@@ -414,10 +406,7 @@ def _tow_log_sd(o: Outcome, estimated: SeasonFactors | None) -> FloatArray:
     """Standard deviation of ln of the log factor from tow to tow, by era; 0 where calibrated."""
     if estimated is None:
         return np.zeros(o.batch.size)
-    season = o.batch.of_tow("season")
-    log_sd = np.zeros(o.batch.size)
-    for first, sd in sorted(estimated.tow_log_sd.items()):
-        log_sd = np.where(season >= first, sd, log_sd)
+    log_sd = estimated.tow_log_sd_of(o.batch.of_tow("season"))
     return np.where(o.calibrated, 0.0, np.hypot(log_sd, files_log_sd(o)))
 
 

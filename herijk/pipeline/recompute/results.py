@@ -27,7 +27,6 @@ from herijk.pipeline.recompute.budget import (
     DECLARED,
     budget_of,
     curve_points,
-    cw_bounds,
     misfit_of,
     run_point_ratio,
     scatter_of,
@@ -37,6 +36,7 @@ from herijk.pipeline.recompute.season_factors import tow_instruments
 from herijk.pipeline.season_log import SeasonFactors, other_log_factors, retow_choice
 from herijk.pipeline.season_log.diagnosis import DIAGNOSIS_SCHEMA
 from herijk.pipeline.steps.speed import log_factor
+from herijk.pipeline.uncertainty.propagation import combine
 from herijk.tables.frames import dtypes
 from herijk.tables.season_log import (
     BestEstimateWeights,
@@ -96,7 +96,7 @@ def as_tables(
     pooled, at_declared = estimated is not None, pl.col("speed_ratio") == DECLARED
     run_points = with_run_choice(together([_run_points(o, pooled) for o in outcomes]))
     budget = budget_of(outcomes, estimated, CURVE_SPEED_RATIOS if with_bands else (DECLARED,))
-    bounds = cw_bounds(budget)
+    bounds = combine(budget)
     curves = together([_curves(o, bounds.filter(at_declared), pooled) for o in outcomes])
     misfit = misfit_of(outcomes, estimated, (DECLARED,))
     curves = with_best(curves, estimated, budget.filter(at_declared), misfit)

@@ -65,6 +65,13 @@ class SeasonFactors:
     diagnosis: pl.DataFrame
     steps: pl.DataFrame
 
+    def tow_log_sd_of(self, season: FloatArray) -> FloatArray:
+        """Standard deviation of ln factor from tow to tow, by the era of each season."""
+        sd = np.zeros(len(season))
+        for first, of_era in sorted(self.tow_log_sd.items()):
+            sd = np.where(season >= first, of_era, sd)
+        return sd
+
     def of_season(self, season: int, log: str) -> tuple[float, float, float, str] | None:
         """Factor, bounds and source of a season; None where not determined.
 

@@ -91,9 +91,7 @@ def _candidates(
     """
     kappa, random_sd, season = (network.numbers(n) for n in ("kappa", "ln_cw_sd", "season"))
     loose = network.group >= 0
-    log_sd = np.zeros(len(season))
-    for first, sd in sorted(estimated.tow_log_sd.items()):
-        log_sd = np.where(season >= first, sd, log_sd)
+    log_sd = estimated.tow_log_sd_of(season)
     own = random_sd**2 + estimated.tow_sd**2 + np.where(loose, kappa * log_sd, 0.0) ** 2
     boats = int(network.boat.max()) + 1
     weight = np.bincount(network.boat, 1.0 / own, boats)

@@ -164,7 +164,7 @@ def _errors(
         own[:] = _independent(seed, key, members)
     if estimated is None:
         return keys, errors
-    determined = estimated.factors.filter(pl.col("factor").is_not_null()).select(
+    determined = estimated.factors.drop_nulls("factor").select(
         log_key(pl.col("season"), pl.col("part"), pl.col("log")).alias("key")
     )
     sd = np.sqrt(np.diag(estimated.covariance))

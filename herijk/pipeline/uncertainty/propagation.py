@@ -282,7 +282,7 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
             taken as it reads; `wind_measured`, and where it was not `still_air_ratio`, still-air
             part / Cw;
             `temperature_known`; `askew_ratio`, by being pulled askew, null where repeat tows do not
-            tell; `force_sd`, of the load cell by its record, null or absent without one.
+            tell; `force_sd`, of the load cell by its record, null without one.
         assumed: what the archive cannot show; give `wind_coefficient` what the archive-wide search
             came to where that was used.
 
@@ -312,7 +312,7 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
         "calibration": kappa * speed_ratio,
         "stream_drift": kappa * drift_ratio,
         "between_tows": pl.lit(assumed.between_tows_ratio),
-        "force": _by_record(tows, assumed),
+        "force": pl.col("force_sd").fill_null(assumed.force_ratio),
         "wind": pl.when("wind_measured").then(coefficient).otherwise(no_wind),
         "anemometer": 2.0 * wind_speed * pl.col("air_ratio"),
         "mass": pl.lit(assumed.mass_ratio),
@@ -351,13 +351,6 @@ def budget(tows: pl.DataFrame, assumed: Assumed = Assumed()) -> pl.DataFrame:
     return pl.concat(parts)
 
 
-def _by_record(tows: pl.DataFrame, assumed: Assumed) -> pl.Expr:
-    """The load cell's uncertainty: by its record where there is one."""
-    if "force_sd" not in tows.columns:
-        return pl.lit(assumed.force_ratio)
-    return pl.coalesce("force_sd", pl.lit(assumed.force_ratio))
-
-
 def _key(component: str, shared: pl.Expr) -> pl.Expr:
     """What has this error in common: the tow alone, its season (and log), or all."""
     season = pl.col("season").cast(pl.String)
@@ -388,17 +381,14 @@ def combine(components: pl.DataFrame) -> pl.DataFrame:
 
     Returns:
         One row per tow and speed, in the order of `components`: `tow_id, speed_ratio, u_ratio`,
-        `u_shared_ratio` (what other tows share), `u_single_ratio`, `dof` (Welch-Satterthwaite), and
-        `lo_ratio, hi_ratio`: the 95 % bounds of Cw / its value, a t interval on the logarithm.
+        `dof` (Welch-Satterthwaite), and `lo_ratio, hi_ratio`: the 95 % bounds of Cw / its value, a
+        t interval on the logarithm.
     """
     square = pl.col("u_ratio") ** 2
-    single = pl.col("shared") == SINGLE
     rows = (
         components.group_by("tow_id", "speed_ratio", maintain_order=True)
         .agg(
             square.sum().sqrt().alias("u_ratio"),
-            square.filter(~single).sum().sqrt().alias("u_shared_ratio"),
-            square.filter(single).sum().sqrt().alias("u_single_ratio"),
             (square**2 / pl.col("dof").clip(lower_bound=1.0)).sum().alias("spread"),
         )
         .with_columns((pl.col("u_ratio") ** 4 / pl.col("spread")).alias("dof"))
