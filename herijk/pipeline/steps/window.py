@@ -124,11 +124,11 @@ def choose_windows(blocks: RunBlocks, rule: Window) -> Windows:
     present = blocks.inside
     if rule.rule == "all":
         return _windows(blocks, present, ("",) * present.shape[0])
-    faults = _Faults.of(blocks, rule)
-    start, length = _search(present, faults, rule)
+    judged = _Runs.of(blocks, rule)
+    start, length = _search(present, judged, rule)
     second = np.arange(blocks.seconds)
     mask = (second >= start[:, None]) & (second < (start + length)[:, None])
-    searched = _windows(blocks, mask, tuple(_reasons(present, mask, faults)))
+    searched = _windows(blocks, mask, tuple(_reasons(present, mask, judged)))
     return _given_by_hand(blocks, rule, searched) if rule.rule == "by_hand" else searched
 
 
@@ -157,41 +157,73 @@ def _windows(blocks: RunBlocks, mask: BoolArray, reasons: tuple[str, ...]) -> Wi
 
 
 @dataclass(frozen=True)
-class _Faults:
-    """What disturbs a run, per block, shape (runs, seconds).
+class _Runs:
+    """What windows are judged by, per block, shape (runs, seconds).
 
-    `force_peak` and `gust` are relative to their limits: over 1 is a fault.
+    Attributes:
+        ramp: at the start or the end, where the speed still rises or falls.
+        force_peak, gust: relative to their limits; over 1 is a fault.
+        speed, speed_time: running sums of the speed less its mean, and of that times the second.
+        speed_ends, force_ends, wind_ends: mean of `END_SECONDS` from every second on.
+        force_median: of each run, shape (runs, 1).
     """
 
-    speed: FloatArray
-    force: FloatArray
-    force_median: FloatArray
-    wind: FloatArray
     ramp: BoolArray
     force_peak: FloatArray
     gust: FloatArray
+    speed: FloatArray
+    speed_time: FloatArray
+    speed_ends: FloatArray
+    force_ends: FloatArray
+    wind_ends: FloatArray
+    force_median: FloatArray
 
     @classmethod
-    def of(cls, blocks: RunBlocks, rule: Window) -> "_Faults":
+    def of(cls, blocks: RunBlocks, rule: Window) -> "_Runs":
         present = blocks.inside
-        speed, force = blocks.block_means("log1_v"), blocks.block_means("force")
+        speed, force, wind = (blocks.block_means(name) for name in ("log1_v", "force", "wind_v"))
         force_median, force_sd = _robust(force, present)
         force_floor = np.maximum(FORCE_SD_FLOOR * np.abs(force_median), 1e-9)
         force_sd = np.maximum(force_sd, force_floor)
+        centred = speed - speed.mean(axis=1, keepdims=True)
+        speed_ends, force_ends, wind_ends = (
+            _span(_running_sum(v), END_SECONDS) / END_SECONDS for v in (speed, force, wind)
+        )
         return cls(
-            speed,
-            force,
-            force_median[:, 0],
-            blocks.block_means("wind_v"),
-            ramp=_ramps(speed, present, rule.ramp_m_s),
-            force_peak=_widened(np.abs(force - force_median) / (rule.peak_sd * force_sd)),
-            gust=_widened(_wind_change(blocks, present) / rule.gust_sd),
+            _ramps(speed, present, rule.ramp_m_s),
+            _widened(np.abs(force - force_median) / (rule.peak_sd * force_sd)),
+            _widened(_wind_change(blocks, present) / rule.gust_sd),
+            _running_sum(centred),
+            _running_sum(centred * np.arange(blocks.seconds, dtype=np.float64)),
+            speed_ends,
+            force_ends,
+            wind_ends,
+            force_median,
         )
 
     def price_s(self) -> FloatArray:
         """What each block costs a window that holds it, shape (runs, seconds)."""
         excess = np.maximum(self.force_peak - 1.0, 0.0) + np.maximum(self.gust - 1.0, 0.0)
         return BLOCK_PRICE_S * np.asarray(excess, dtype=np.float64)
+
+    def unsteadiness(self, size: int, rule: Window) -> tuple[FloatArray, FloatArray]:
+        """How far speed, and the worse of force and wind, are from their limits (1).
+
+        For every window of a size. Of the speed both the rise of a straight line and the difference
+        of its ends count.
+        """
+        drift = np.abs(self._slope(size)) * size / rule.speed_drift_m_s
+        speed = np.abs(_ends_difference(self.speed_ends, size)) / rule.speed_drift_m_s
+        force_limit = rule.force_ends_ratio * np.abs(self.force_median)
+        force = np.abs(_ends_difference(self.force_ends, size)) / np.maximum(force_limit, 1e-9)
+        wind = np.abs(_ends_difference(self.wind_ends, size)) / rule.wind_ends_m_s
+        return np.maximum(drift, speed), np.maximum(force, wind)
+
+    def _slope(self, size: int) -> FloatArray:
+        """Slope of the least-squares line through the speed of every span, per block."""
+        sum_v, sum_tv = _span(self.speed, size), _span(self.speed_time, size)
+        mean_time = np.arange(sum_v.shape[1]) + (size - 1) / 2
+        return np.asarray((sum_tv - mean_time * sum_v) / (size * (size**2 - 1) / 12))
 
 
 def _wind_change(blocks: RunBlocks, present: BoolArray) -> FloatArray:
@@ -252,7 +284,7 @@ def _ramp_length(speed: FloatArray, present: BoolArray, least_m_s: float) -> Int
     return np.where(best_span >= least_m_s, best_length + RAMP_MARGIN_S, 0).astype(np.int64)
 
 
-def _search(present: BoolArray, faults: _Faults, rule: Window) -> tuple[IntArray, IntArray]:
+def _search(present: BoolArray, judged: _Runs, rule: Window) -> tuple[IntArray, IntArray]:
     """Start and length of the best window of every run; length 0 where none is good enough.
 
     Best is the longest, less what the faults inside it cost; of equals, the first and longest.
@@ -260,11 +292,10 @@ def _search(present: BoolArray, faults: _Faults, rule: Window) -> tuple[IntArray
     runs, seconds = present.shape
     start, length = np.zeros(runs, np.int64), np.zeros(runs, np.int64)
     value = np.full(runs, -np.inf)
-    good = _running_sum((present & ~faults.ramp).astype(np.float64))
-    price = _running_sum(faults.price_s())
-    sums = _Sums.of(faults)
+    good = _running_sum((present & ~judged.ramp).astype(np.float64))
+    price = _running_sum(judged.price_s())
     for size in range(seconds, int(np.ceil(rule.minimum_s)) - 1, -1):
-        speed, ends = _unsteadiness(sums, size, rule)
+        speed, ends = judged.unsteadiness(size, rule)
         worth = size - _span(price, size) - np.where(ends > 1.0, NOT_WITHIN_S * ends, 0.0)
         accepted = (_span(good, size) == size) & (speed <= 1.0)
         worth = np.where(accepted, np.round(worth, WORTH_DECIMALS), -np.inf)
@@ -274,55 +305,6 @@ def _search(present: BoolArray, faults: _Faults, rule: Window) -> tuple[IntArray
         start, length = np.where(better, best, start), np.where(better, size, length)
         value = np.maximum(highest, value)
     return start, length
-
-
-@dataclass(frozen=True)
-class _Sums:
-    """Running sums of what steadiness is judged by, for windows of every size.
-
-    Attributes:
-        speed, speed_time: of the speed less its mean over the run, and of that times the second.
-        speed_ends, force_ends, wind_ends: mean of `END_SECONDS` from every second on.
-        force_median: of each run, shape (runs, 1).
-    """
-
-    speed: FloatArray
-    speed_time: FloatArray
-    speed_ends: FloatArray
-    force_ends: FloatArray
-    wind_ends: FloatArray
-    force_median: FloatArray
-
-    @classmethod
-    def of(cls, faults: _Faults) -> "_Sums":
-        centred = faults.speed - faults.speed.mean(axis=1, keepdims=True)
-        time = np.arange(centred.shape[1], dtype=np.float64)
-        speed_ends, force_ends, wind_ends = (
-            _span(_running_sum(v), END_SECONDS) / END_SECONDS
-            for v in (faults.speed, faults.force, faults.wind)
-        )
-        return cls(
-            _running_sum(centred),
-            _running_sum(centred * time),
-            speed_ends,
-            force_ends,
-            wind_ends,
-            faults.force_median[:, None],
-        )
-
-
-def _unsteadiness(sums: _Sums, size: int, rule: Window) -> tuple[FloatArray, FloatArray]:
-    """How far speed, and the worse of force and wind, are from their limits (1).
-
-    For every window of a size. Of the speed both the rise of a straight line and the difference of
-    its ends count.
-    """
-    drift = np.abs(_slope(sums, size)) * size / rule.speed_drift_m_s
-    speed = np.abs(_ends_difference(sums.speed_ends, size)) / rule.speed_drift_m_s
-    force_limit = rule.force_ends_ratio * np.abs(sums.force_median)
-    force = np.abs(_ends_difference(sums.force_ends, size)) / np.maximum(force_limit, 1e-9)
-    wind = np.abs(_ends_difference(sums.wind_ends, size)) / rule.wind_ends_m_s
-    return np.maximum(drift, speed), np.maximum(force, wind)
 
 
 def _running_sum(values: FloatArray) -> FloatArray:
@@ -335,23 +317,16 @@ def _span(running: FloatArray, size: int) -> FloatArray:
     return np.asarray(running[:, size:] - running[:, :-size])
 
 
-def _slope(sums: _Sums, size: int) -> FloatArray:
-    """Slope of the least-squares line through the speed of every span, per block."""
-    sum_v, sum_tv = _span(sums.speed, size), _span(sums.speed_time, size)
-    mean_time = np.arange(sum_v.shape[1]) + (size - 1) / 2
-    return np.asarray((sum_tv - mean_time * sum_v) / (size * (size**2 - 1) / 12))
-
-
 def _ends_difference(ends: FloatArray, size: int) -> FloatArray:
     """Mean of the last minus mean of the first `END_SECONDS` of every span of `size` blocks."""
     starts = ends.shape[1] - size + END_SECONDS
     return np.asarray(ends[:, size - END_SECONDS :][:, :starts] - ends[:, :starts])
 
 
-def _reasons(present: BoolArray, mask: BoolArray, faults: _Faults) -> list[str]:
+def _reasons(present: BoolArray, mask: BoolArray, judged: _Runs) -> list[str]:
     """What was wrong in the part that was cut, as codes joined by commas."""
     cut = present & ~mask
-    seen = (faults.ramp, faults.force_peak > 1.0, faults.gust > 1.0)
+    seen = (judged.ramp, judged.force_peak > 1.0, judged.gust > 1.0)
     explained = [(cut & fault).any(axis=1) for fault in seen]
     rest = cut.any(axis=1) & ~np.any(explained, axis=0)
     rows = np.stack([*explained, rest], axis=1).tolist()
