@@ -3,6 +3,7 @@
 from typing import Final
 
 from herijk.tables import column
+from herijk.tables.bases import PerMethod
 from herijk.tables.declare import dy
 
 PLACE: Final = (
@@ -76,10 +77,9 @@ class RegisterHistory(_Line):
     unseen_error_ratio = column.unseen_error()
 
 
-class DueList(dy.Schema):
+class DueList(PerMethod):
     """Until when each boat and crew's tow counts, and the speed of its next tow."""
 
-    method = column.method(primary_key=True)
     fsn_no = column.fsn_no(primary_key=True)
     rowers = column.rowers(primary_key=True)
     crew_class = column.crew_class(primary_key=True)
