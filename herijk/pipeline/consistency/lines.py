@@ -8,7 +8,7 @@ Women's and men's crews differ in weight and speed, so lines against weight or l
 within a crew; displacement contains the crew.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final, NamedTuple, Self
 
@@ -138,43 +138,31 @@ def quantities(observed: Observed) -> dict[str, Measured]:
     }
 
 
-def type_consistency(observed: Observed) -> pl.DataFrame:
-    """Straight line of each quantity on each explaining variable, per method and boat type.
-
-    Of the newest tow of each boat and crew. The physics model is among them: the slope of ln Cw on
-    ln displacement is the power with which resistance grows.
-
-    Returns:
-        Rows of the table `type_consistency`; where no line is drawn, `reason` says why.
-    """
-    return newest_lines(_lines([(NEWEST, newest(observed))])[0])
-
-
 def newest_lines(lines: pl.DataFrame) -> pl.DataFrame:
-    """The rows of `type_consistency` among those of `type_lines`."""
+    """Rows of the table `type_consistency`: those of `type_lines` by the newest tows.
+
+    The physics model is among them: the slope of ln Cw on ln displacement is the power with which
+    resistance grows.
+    """
     return lines.filter(tows=NEWEST.tows).drop("tows")
 
 
 def type_lines(
     observed: Observed,
 ) -> tuple[dy.DataFrame[TypeLines], dy.DataFrame[TypeLinePoints]]:
-    """The lines of every choice of tows, per method and boat type.
+    """Straight lines of each quantity on each explaining variable, per method and boat type.
 
-    Of the newest tows all, of other choices those that the presentation of 2015 plots.
+    Of the newest tow of each boat and crew all, of other choices of tows those that the
+    presentation of 2015 plots.
 
     Returns:
-        Rows of the tables `type_lines` and `type_line_points`. Where a line compares boats within
-        a crew, its points are given per class; `crew_class` is `all` elsewhere.
+        Rows of the tables `type_lines` and `type_line_points`. Where no line is drawn, `reason`
+        says why. Where a line compares boats within a crew, its points are given per class;
+        `crew_class` is `all` elsewhere.
     """
-    return _lines(chosen_tows(observed))
-
-
-def _lines(
-    chosen: Iterable[tuple[Choice, Observed]],
-) -> tuple[dy.DataFrame[TypeLines], dy.DataFrame[TypeLinePoints]]:
     rows: list[Row] = []
     to_fit: dict[tuple[str, ...], list[tuple[Row, Row, _Line]]] = {}
-    for choice, tows in chosen:
+    for choice, tows in chosen_tows(observed):
         measured, shared = quantities(tows), _Shared(tows, choice)
         run_variance = tows.column("run_sd_ratio") ** 2
         speeds = tows.column("standard_speed_m_s")

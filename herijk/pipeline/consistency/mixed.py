@@ -91,12 +91,7 @@ class Fit:
     free: tuple[str, ...]
     sd: tuple[float, float, float]
     white: Whitened
-    place: int = 0
-
-    @classmethod
-    def at(cls, problem: Problem, free: tuple[str, ...], sd: tuple[float, float, float]) -> Self:
-        """The model with these standard deviations."""
-        return cls(problem, free, sd, Whitened.of(Stack.of([problem]), np.square([sd])))
+    place: int
 
     @property
     def dof(self) -> int:
@@ -312,7 +307,7 @@ def fit_all(problems: Sequence[Problem], free: tuple[str, ...]) -> list[Fit | No
         for some in (numbers[i : i + at_once] for i in range(0, len(numbers), at_once)):
             stack = Stack.of([problems[i] for i in some])
             variances, settled = _most_likely(stack, free)
-            white = Whitened.of(stack, variances)
+            white = Whitened(stack, variances)
             for place, (i, sd) in enumerate(zip(some, np.sqrt(variances).tolist(), strict=True)):
                 at_rest = settled[place]
                 fits[i] = Fit(problems[i], free, tuple(sd), white, place) if at_rest else None
