@@ -116,11 +116,8 @@ def _identified(tows: Observed) -> Observed:
 
 def _compared(tows: Observed) -> tuple[FloatArray, FloatArray]:
     speed = tows.column("median_speed_m_s")
-    cw = curve_at(tows, speed)
-    unit = ln_cw_unit_variance(tows, speed)
-    known = np.isfinite(cw)
-    y = np.where(known, np.log(np.where(known, cw, 1.0)), np.nan)
-    return y, unit * tows.column("run_sd_ratio") ** 2
+    variance = ln_cw_unit_variance(tows, speed) * tows.column("run_sd_ratio") ** 2
+    return np.log(curve_at(tows, speed)), variance
 
 
 def _fixed(tows: Observed, scope: str) -> FloatArray:

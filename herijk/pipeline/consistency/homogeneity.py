@@ -51,19 +51,20 @@ def shared_bend(boats: Observed) -> float:
     fastest = float(np.where(boats.points.used, boats.points.speed_m_s, 0.0).max()) ** 2
     lowest, highest = BEND_BOUNDS
     optimum = scipy.optimize.minimize_scalar(
-        lambda r: _misfit(boats, r / fastest), bounds=BEND_BOUNDS, method="bounded"
+        lambda r: _misfit(boats, r / fastest)[0], bounds=BEND_BOUNDS, method="bounded"
     )
     below = max(float(optimum.x) - BEND_MARGIN, lowest)
     above = min(float(optimum.x) + BEND_MARGIN, highest)
-    if _misfit_slope(boats, below / fastest) >= 0.0:
+
+    def slope(r: float) -> float:
+        return _misfit(boats, r / fastest)[1]
+
+    if slope(below) >= 0.0:
         return below / fastest
-    if _misfit_slope(boats, above / fastest) <= 0.0:
+    if slope(above) <= 0.0:
         return above / fastest
     # The least of a smooth function is flat over the root of its rounding; its slope is not.
-    least = scipy.optimize.brentq(
-        lambda r: _misfit_slope(boats, r / fastest), below, above, xtol=1e-15
-    )
-    return float(least) / fastest
+    return float(scipy.optimize.brentq(slope, below, above, xtol=1e-15)) / fastest
 
 
 def height_given_bend(points: curve.Points, s_s2_m2: FloatArray) -> FloatArray:
@@ -75,24 +76,18 @@ def height_given_bend(points: curve.Points, s_s2_m2: FloatArray) -> FloatArray:
     return np.asarray((g * points.cw_kg_m).sum(axis=1) / (g * g).sum(axis=1))
 
 
-def _misfit(boats: Observed, s_s2_m2: float) -> float:
-    """Residual sum of squares relative to each boat's own Cw, with one s for all."""
-    points = boats.points
-    v2 = np.where(points.used, points.speed_m_s, 0.0) ** 2
-    a = height_given_bend(points, np.full(boats.table.height, s_s2_m2))[:, None]
-    residual = np.where(points.used, points.cw_kg_m - a / (1.0 - s_s2_m2 * v2), 0.0)
-    return float(((residual / boats.column("c0_kg_m")[:, None]) ** 2).sum())
+def _misfit(boats: Observed, s_s2_m2: float) -> tuple[float, float]:
+    """Residual sum of squares relative to each boat's own Cw, with one s for all, and its slope.
 
-
-def _misfit_slope(boats: Observed, s_s2_m2: float) -> float:
-    """Derivative of `_misfit` along s: a height at its best does not count (envelope theorem)."""
-    points = boats.points
+    A height at its best does not count in the slope along s (envelope theorem).
+    """
+    points, c0 = boats.points, boats.column("c0_kg_m")[:, None]
     v2 = np.where(points.used, points.speed_m_s, 0.0) ** 2
     a = height_given_bend(points, np.full(boats.table.height, s_s2_m2))[:, None]
     fitted = a * points.used / (1.0 - s_s2_m2 * v2)
     residual = np.where(points.used, points.cw_kg_m - fitted, 0.0)
     slope = fitted * v2 / (1.0 - s_s2_m2 * v2)
-    return float((-2.0 * residual * slope / boats.column("c0_kg_m")[:, None] ** 2).sum())
+    return float(((residual / c0) ** 2).sum()), float((-2.0 * residual * slope / c0**2).sum())
 
 
 def type_homogeneity(observed: Observed) -> dy.DataFrame[TypeHomogeneity]:

@@ -58,11 +58,6 @@ FEWEST_BOATS: Final = 3
 PLACES: Final = 7
 """Points at which a line is given for drawing."""
 
-NO_TYPE = "no_type"
-FEW_BOATS = "few_boats"
-EQUAL_VALUES = "equal_values"
-NOT_SETTLED = "not_settled"
-
 OUTSIDE_LEVEL: Final = 0.05
 """Chance that any boat of a type of like boats is called outside (Bonferroni)."""
 
@@ -94,12 +89,12 @@ def chosen_tows(observed: Observed) -> Iterator[tuple[Choice, Observed]]:
     """Every choice of tows, with them."""
     yield NEWEST, newest(observed)
     yield ALL_TOWS, observed
-    for season in observed.table["season"].unique().sort():
-        rows = np.flatnonzero((observed.table["season"] == season).to_numpy())
-        yield Choice(str(season)), observed.take(rows)
-    for name, ends in season_ranges(observed.table["season"]).items():
-        rows = np.flatnonzero(observed.table["season"].is_between(*ends).to_numpy())
-        yield Choice(name, ALL_TOWS.components), observed.take(rows)
+    season = observed.table["season"]
+    by_ends = {Choice(str(one)): (one, one) for one in season.unique().sort()}
+    for name, ends in season_ranges(season).items():
+        by_ends[Choice(name, ALL_TOWS.components)] = ends
+    for choice, ends in by_ends.items():
+        yield choice, observed.take(np.flatnonzero(season.is_between(*ends).to_numpy()))
 
 
 Measured = tuple[FloatArray, FloatArray]
@@ -183,7 +178,7 @@ def type_lines(
         fits = mixed.fit_all([line.problem for *_, line in lines], components)
         for (row, names, line), fit in zip(lines, fits, strict=True):
             if fit is None:
-                row["reason"] = NOT_SETTLED
+                row["reason"] = "not_settled"
                 continue
             ends = fit.line_at(line.across.at)
             row.update(line.row(fit, ends))
@@ -254,15 +249,15 @@ class _Shared:
         n_boats = len(np.unique(self._boat[rows]))
         counts: Row = {"n": len(rows), "n_boats": n_boats}
         if boat_type == UNKNOWN_TYPE:
-            return counts | {"reason": NO_TYPE}, None
+            return counts | {"reason": "no_type"}, None
         if n_boats < max(FEWEST_BOATS, crews.shape[1] + 2):
-            return counts | {"reason": FEW_BOATS}, None
+            return counts | {"reason": "few_boats"}, None
         x = self.explaining[explaining][rows]
         centre = np.linalg.lstsq(crews, x)[0]
         centred = x - crews @ centre
         width = float(np.abs(centred).max())
         if width <= 1e-9 * np.abs(x).max():
-            return counts | {"reason": EQUAL_VALUES}, None
+            return counts | {"reason": "equal_values"}, None
         season = None if self._season is None else self._season[rows]
         design = Design.of(np.column_stack([crews, centred / width]), self._boat[rows], season)
         names, places, at = [], [], []

@@ -14,17 +14,12 @@ from herijk.pipeline.arrays import FloatArray
 from herijk.pipeline.consistency.components import DISTINCT, WITHIN_TYPE
 from herijk.pipeline.consistency.eras import ERAS
 from herijk.pipeline.consistency.observed import Observed, bend_of_curve
-from herijk.tables.consistency import Reproducibility
+from herijk.tables.consistency import RepeatPairs, Reproducibility
 from herijk.tables.frames import frame_of
 from herijk.tables.keys import LINE
 
 LEVEL: Final = 0.95
 ALL_PAIRS: Final = "all"
-
-
-PAIR_COLUMNS: Final = (
-    *("tow_id", "tow_id_before", "season", "season_before", "cw_ratio", "ln_ratio", "e_n"),
-)
 
 
 def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
@@ -64,7 +59,7 @@ def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
             - pl.col("by_others_before")
         )
         .with_columns(_e_n(), cw_ratio=pl.col("ln_ratio").exp())
-        .select(*line, *PAIR_COLUMNS)
+        .select(RepeatPairs.column_names())
     )
 
 
@@ -138,10 +133,7 @@ def _spread(pairs: pl.DataFrame) -> dict[str, float | int | None]:
     if n == 0:
         return {"n_pairs": 0}
     total = float((difference**2).sum())
-    low, high = (
-        float(scipy.special.chdtri(n, 0.5 - LEVEL / 2)),
-        float(scipy.special.chdtri(n, 0.5 + LEVEL / 2)),
-    )
+    low, high = (float(scipy.special.chdtri(n, 0.5 + end * LEVEL / 2)) for end in (-1, 1))
     e_n = pairs["e_n"].drop_nulls().to_numpy()
     return {
         "n_pairs": n,
