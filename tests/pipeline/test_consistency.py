@@ -669,7 +669,7 @@ CASES = {
 
 
 def everything(*tables):
-    return line_tables(*tables) | consistency_tables(*tables, NO_RACES)
+    return line_tables(observe(*tables)) | consistency_tables(*tables, NO_RACES)
 
 
 @pytest.mark.parametrize("case", CASES)

@@ -167,6 +167,7 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
     points = views.run_points().with_columns(run_cw_kg_m="cw_kg_m")
     seconds = views.table("trace_seconds")
     ends = seconds.group_by("tow_id", "run").agg(run_end_s=pl.col("second").max() + 1)
+    windows = points.join(ends, on=["tow_id", "run"], maintain_order="left")
     register = views.register()
     curves = views.curves().with_columns(
         tow=pl.format("{} · {}{}", "tow_date", "rowers", "crew_class")
@@ -191,9 +192,7 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
         "declared": _kind(declared, "declared", "method", *NUMBERS, "interval"),
         "stages": _stages(points),
         "trace": _seconds(seconds.join(boat_of, on="tow_id")),
-        "window": _kind(
-            points.join(ends, on=["tow_id", "run"]), "window", "method", "run", *WINDOW
-        ),
+        "window": _kind(windows, "window", "method", "run", *WINDOW),
         "lineage": lineage,
         "budget": views.table("uncertainty_budget")
         .select(*FOLLOWS, "component", "shared", "u_ratio", "dof")

@@ -479,4 +479,5 @@ DOUBTS: Final = ("force_not_plausible", "wind_not_plausible", "speed_not_plausib
 UNUSUAL: Final = ("force_unusual", "wind_unusual", "speed_unusual")
 """Checks by which a tow stands out among the others, though chance may do that."""
 
-CODES: Final = tuple(check.code for check in CHECKS)
+CHECK: Final = {check.code: check for check in CHECKS}
+CODES: Final = tuple(CHECK)

@@ -34,7 +34,7 @@ def days_apart(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
         .select("tow_id", "season", "calibration_factor", ln=(_cw("cw") / _cw("cw_best")).log())
         .filter(ln.is_finite())
         .join(tows.select("tow_id", "tow_date"), on="tow_id")
-        .group_by("season", "tow_date")
+        .group_by("season", "tow_date", maintain_order=True)
         .agg(
             pl.len().cast(pl.Float64).alias("n"),
             mean=ln.mean(),

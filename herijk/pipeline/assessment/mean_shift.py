@@ -120,15 +120,13 @@ def find_shifts(seen: Observations, may: Candidates, limit: float, look: float) 
         look: from which a single tow is unusual, judged when all clear shifts are taken out.
     """
     left = _Left(seen, may)
-    gross = left.take_out(np.full(len(may.least), limit), np.maximum(may.least, may.gross))
+    shifts = left.take_out(limit, np.maximum(may.least, may.gross), clear=True)
     scales = left.scales()
-    clear = left.take_out(limit * scales, may.least)
+    shifts += left.take_out(limit * scales, may.least, clear=True)
     limits = np.where(may.single, look * scales, np.inf)
-    unusual = left.take_out(limits, may.least)
+    shifts += left.take_out(limits, may.least, clear=False)
     _, sd = left.sizes()
     seen_from = np.maximum(sd * (limits + MOSTLY * scales), may.least)
-    shifts = [Found(*one, clear=True) for one in gross + clear]
-    shifts += [Found(*one, clear=False) for one in unusual]
     return Shifted(shifts, np.where(left.told, seen_from, np.nan))
 
 
@@ -161,9 +159,11 @@ class _Left:
         scatter = float(np.median(np.abs(z))) / NORMAL_MAD
         return np.where(self._may.single, max(scatter, NARROWEST), max(scatter, 1.0))
 
-    def take_out(self, limits: FloatArray, least: FloatArray) -> list[tuple[int, float, float]]:
-        """Takes out what is beyond its limit in standard deviations: place, size and sd of each."""
-        taken: list[tuple[int, float, float]] = []
+    def take_out(
+        self, limits: FloatArray | float, least: FloatArray, *, clear: bool
+    ) -> list[Found]:
+        """Takes out what is beyond its limit in standard deviations, the clearest first."""
+        taken: list[Found] = []
         while True:
             size, sd = self.sizes()
             beyond = np.abs(size) / (sd * limits)
@@ -171,7 +171,7 @@ class _Left:
             best = int(first_largest(beyond))
             if beyond[best] < 1.0:
                 return taken
-            taken.append((best, float(size[best]), float(sd[best])))
+            taken.append(Found(best, float(size[best]), float(sd[best]), clear))
             moved = self._precision.take_out(self._may.directions[:, [best]].toarray()[:, 0])
             share = np.asarray(self._may.directions.T @ moved)
             self._score = self._score - share * size[best]

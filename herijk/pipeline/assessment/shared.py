@@ -9,6 +9,7 @@ from typing import Final
 import polars as pl
 import scipy
 
+from herijk.pipeline.channels import SECOND_FILE_OFFSET
 from herijk.tables.keys import LINE
 
 CHANCE: Final = 0.001
@@ -16,6 +17,9 @@ CHANCE: Final = 0.001
 
 FEWEST: Final = 4
 """Tows that are needed before they tell (inferred)."""
+
+LEAST_SPREAD: Final = 0.01
+"""Sum of squares of ln speed within which a tow tells a slope; runs at 90 to 110 % have 0.04."""
 
 
 def unless_chance(value: pl.Expr, sd: pl.Expr, dof: pl.Expr) -> pl.Expr:
@@ -27,6 +31,45 @@ def unless_chance(value: pl.Expr, sd: pl.Expr, dof: pl.Expr) -> pl.Expr:
     return pl.when(value.abs() > quantiles * sd).then(value).otherwise(0.0)
 
 
+def _of_season(name: str, of_tows: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
+    """A `value` of tows as those of a season share it, for each of its tows.
+
+    Returns:
+        `tow_id` and the name; no row in a season of few tows.
+    """
+    value, dof = pl.col("value"), pl.col("dof")
+    seasons = (
+        of_tows.join(curves.select("tow_id", "season"), on="tow_id")
+        .group_by("season")
+        .agg(value.mean(), sd=value.std() / pl.len().sqrt(), dof=pl.len() - 1.0)
+        .filter(dof + 1 >= FEWEST)
+        .select("season", unless_chance(value, pl.col("sd"), dof).alias(name))
+    )
+    return curves.join(seasons, on="season").select("tow_id", name)
+
+
+def rising_with_speed(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
+    """How the log's factor changes with speed, by the GPS of all its season.
+
+    Per tow it is the slope of ln(GPS / log) by ln speed, among runs one way, in which the stream is
+    the same.
+
+    Returns:
+        `tow_id, log_not_linear`; no row in a season of few tows.
+    """
+    ways = ["tow_id", pl.col("run") > SECOND_FILE_OFFSET, "direction"]
+    x, y = (pl.col(name).log() for name in ("speed_m_s", "gps_ratio"))
+    x2 = pl.col("x") ** 2
+    slopes = (
+        run_points.filter("used", pl.col("gps_ratio") > 0)
+        .select("tow_id", x=x - x.mean().over(ways), y=y - y.mean().over(ways))
+        .group_by("tow_id", maintain_order=True)
+        .agg(value=(pl.col("x") * pl.col("y")).sum() / x2.sum(), spread=x2.sum())
+        .filter(pl.col("spread") > LEAST_SPREAD)
+    )
+    return _of_season("log_not_linear", slopes, curves)
+
+
 def ways_apart(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
     """Cw out over Cw back, less 1, as the tows of a season share it.
 
@@ -36,19 +79,15 @@ def ways_apart(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
         `tow_id, ways_differ`; no row in a season of few tows.
     """
     way, on_curve = pl.col("direction"), pl.col("cw_kg_m") / pl.col("fitted_cw_kg_m")
-    ln = pl.col("ln")
-    seasons = (
+    ln_ratios = (
         run_points.filter("used")
-        .group_by("tow_id")
-        .agg(ln=(on_curve.filter(way > 0).mean() / on_curve.filter(way < 0).mean()).log())
-        .filter(ln.is_finite())
-        .join(curves.select("tow_id", "season"), on="tow_id")
-        .group_by("season")
-        .agg(ln.mean(), sd=ln.std() / pl.len().sqrt(), dof=pl.len() - 1.0)
-        .filter(pl.col("dof") + 1 >= FEWEST)
-        .with_columns(ways_differ=unless_chance(ln, pl.col("sd"), pl.col("dof")).exp() - 1)
+        .group_by("tow_id", maintain_order=True)
+        .agg(value=(on_curve.filter(way > 0).mean() / on_curve.filter(way < 0).mean()).log())
+        .filter(pl.col("value").is_finite())
     )
-    return curves.join(seasons, on="season").select("tow_id", "ways_differ")
+    return _of_season("ways_differ", ln_ratios, curves).with_columns(
+        pl.col("ways_differ").exp() - 1
+    )
 
 
 def rising_with_wind(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
@@ -67,7 +106,7 @@ def rising_with_wind(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataF
     ln, wind2 = pl.col("ln"), pl.col("wind2")
     tows = (
         run_points.filter("used")
-        .group_by("tow_id")
+        .group_by("tow_id", maintain_order=True)
         .agg(wind2=both_ways.clip(0.0))
         .join(curves, on="tow_id")
         .with_columns(ln=(pl.col("cw_kg_m") / pl.col("cw_best_kg_m")).log())
