@@ -50,13 +50,11 @@ class Tows(TowFacts):
         nullable=True,
         min=0,
     )
-    doubts = dy.List(
-        dy.String(),
+    doubts = column.texts(
         description="checks by which all other tows rule this one out: it needs a look, and takes "
         "no part in what tows share",
     )
-    unusual = dy.List(
-        dy.String(),
+    unusual = column.texts(
         description="checks by which it stands out among all other tows, though chance can do "
         "that: it needs a look, and its numbers stand",
     )

@@ -22,6 +22,7 @@ def number(unit: str, description: str, **rules: Any) -> dy.Float64:
     return dy.Float64(description=description, metadata={"unit": unit}, **rules)
 
 
+texts: Final = partial(dy.List, dy.String())
 tow_id: Final = partial(text, "tow, as named in the tow list")
 fsn_no: Final = partial(text, "boat: its number with the federation")
 method: Final = partial(text, "name of the method that made the row")

@@ -105,9 +105,7 @@ class ComparedTows(PerCrewTow):
         "1", "difference of ln Cw in standard deviations of a prediction", nullable=True
     )
     outside = dy.Bool(description="differs at 5 % over all tows of the type", nullable=True)
-    candidates = dy.List(
-        dy.String(), description="codes of what could explain a difference", nullable=True
-    )
+    candidates = column.texts(description="codes of what could explain a difference", nullable=True)
 
 
 class HullSpeed(PerMethod):
@@ -146,7 +144,7 @@ class TypeOutliers(PerCrewTow):
     expected = column.number("1", "the same as the type's other boats predict it")
     deviation_sd = column.number("1", "difference in standard deviations of a prediction")
     outside = dy.Bool(description="differs at 5 % over all boats of the type together")
-    candidates = dy.List(dy.String(), description="codes of what could explain a difference")
+    candidates = column.texts(description="codes of what could explain a difference")
 
 
 class TypeHomogeneity(PerMethod):

@@ -41,7 +41,7 @@ class Curves(PerTow):
     calibration_factor = column.number("1", "GPS speed / log speed", nullable=True)
     runs_used = dy.Int8(description="points the curve is fitted through", min=0)
     status = column.text("accepted, flagged or rejected", regex=f"^({'|'.join(STATUSES)})$")
-    flags = dy.List(dy.String(), description="codes of what a person should look at")
+    flags = column.texts(description="codes of what a person should look at")
     unseen_error_ratio = column.unseen_error()
 
 

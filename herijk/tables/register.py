@@ -1,5 +1,6 @@
 """The register: its lines, when they expire, and what differs between two registers."""
 
+from functools import partial
 from typing import Final
 
 from herijk.tables import column
@@ -18,10 +19,9 @@ REMARK: Final = (
 )
 
 
-def _flags() -> dy.List:
-    return dy.List(
-        dy.String(), description="codes of what a person should look at in its tow", nullable=True
-    )
+_FLAGS: Final = partial(
+    column.texts, description="codes of what a person should look at in its tow", nullable=True
+)
 
 
 class _Line(dy.Schema):
@@ -57,7 +57,7 @@ class Register(_Line):
     beam_m = column.beam("breadth that day", nullable=True)
     bow_height_m = column.bow_height("height of the bow that day", nullable=True)
     weight_kg = column.boat_weight("empty boat with oars that day", nullable=True)
-    flags = _flags()
+    flags = _FLAGS()
     unseen_error_ratio = column.unseen_error()
     verification_code = column.text(
         "ten letters and digits that follow from all that made the line; drafts have none",
@@ -73,7 +73,7 @@ class RegisterHistory(_Line):
     """
 
     position = dy.Int32(primary_key=True, description="the highest goes before", min=1)
-    flags = _flags()
+    flags = _FLAGS()
     unseen_error_ratio = column.unseen_error()
 
 

@@ -124,7 +124,7 @@ class Promise(PerMethod):
         "1", "share of those off by less than 1 % (difference / root 2)", nullable=True
     )
     share_seen_2pct = column.number("1", "the same for 2 %", nullable=True)
-    outside_2pct = dy.List(dy.String(), description="tows beyond 2 %, stated or seen")
+    outside_2pct = column.texts(description="tows beyond 2 %, stated or seen")
 
 
 class PrintReproduction(PerTow):
