@@ -7,7 +7,7 @@ method caps it.
 """
 
 from collections.abc import Sequence
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 import polars as pl
@@ -109,22 +109,16 @@ def type_homogeneity(observed: Observed) -> dy.DataFrame[TypeHomogeneity]:
     return frame_of(TypeHomogeneity, rows)
 
 
-class _Squares(NamedTuple):
-    """Sums of squares of ln Cw: what own slopes explain, and what they leave."""
-
-    between: float
-    within: float
-    dof_between: int
-    dof_within: int
-
-
-def _same_or_own_slopes(boats: Observed) -> _Squares:
+def _same_or_own_slopes(boats: Observed) -> tuple[float, float, tuple[int, int]]:
     """Whether boats need slopes of their own beside one shape (analysis of covariance).
 
     If boats are alike, ln Cw has one shape in ln speed, a polynomial, with a height for
     each boat and, as women are lighter, a slope for each class. Against it every boat may have a
     slope of its own. The shape is free in both, so that a hull that is no hyperbola counts for
     neither.
+
+    Returns:
+        Sums of squares of ln Cw that own slopes explain and that they leave; degrees of freedom.
     """
     used = boats.points.used
     ln_speed, ln_cw = (
@@ -139,12 +133,8 @@ def _same_or_own_slopes(boats: Observed) -> _Squares:
     same = _rest(used, [height], [x, women * x, *shape], ln_cw)
     own = _rest(used, [height, x], shape, ln_cw)
     boats_in_both, points = len(used), int(used.sum())
-    return _Squares(
-        max(same[0] - own[0], 0.0),
-        own[0],
-        boats_in_both + own[1] - same[1],
-        points - 2 * boats_in_both - own[1],
-    )
+    dof = boats_in_both + own[1] - same[1], points - 2 * boats_in_both - own[1]
+    return max(same[0] - own[0], 0.0), own[0], dof
 
 
 def _rest(
@@ -166,12 +156,11 @@ def _tested(boats: Observed, boat_type: str) -> Row:
         return counts | {"reason": "no_type"}
     if n_boats < FEWEST_BOATS:
         return counts | {"reason": "few_boats"}
-    slopes = _same_or_own_slopes(boats)
-    if slopes.within <= 1e-20 * boats.table.height:
+    between, within, dof = _same_or_own_slopes(boats)
+    if within <= 1e-20 * boats.table.height:
         return counts | {"reason": "no_scatter"}
-    dof = slopes.dof_between, slopes.dof_within
-    f = slopes.between / dof[0] / (slopes.within / dof[1])
-    sigma = float(np.sqrt(slopes.within / dof[1]))
+    f = between / dof[0] / (within / dof[1])
+    sigma = float(np.sqrt(within / dof[1]))
     return (
         counts
         | {"dof_between": dof[0], "dof_within": dof[1], "f_value": f, "run_sd_ratio": sigma}
