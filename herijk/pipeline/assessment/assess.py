@@ -1,6 +1,6 @@
 """Assessment: what a person should look at in a tow. A flag never changes a number.
 
-Here each check's number is observed, from the finished curves and run points of all tows of a
+Here the number of each check is computed from the finished curves and run points of all tows of a
 method at once, since a tow is also compared with earlier ones and with like boats. The checks are
 those of the federation's first assessment (Sleepproef, R. Pot 2017, "Eerste beoordeling" and
 "Opmetingen en keuring"); their limits are data, in `pipeline.assessment.checks`. Which of
@@ -32,7 +32,7 @@ from herijk.tables.keys import LINE
 
 LIKE: Final = ("boat_type", "rowers", "crew_class")
 FEWEST_LIKE_BOATS: Final = 4
-"""A type needs so many boats before one of them can stick out (inferred)."""
+"""Fewest boats of a type among which one can stand out (inferred)."""
 
 NORMAL_WIDTH: Final = 3.92
 """Standard deviations in a 95 % interval."""
@@ -45,7 +45,7 @@ NOT_ALWAYS_KNOWN: Final = pl.DataFrame(
         **dict.fromkeys(("listed_length_m", "listed_beam_m"), pl.Float64),
     }
 )
-"""Columns of tows that editions of before or a tow by itself may lack."""
+"""Columns that the tows of an old edition, or a single tow, may lack."""
 
 SIZES: Final = {
     "weight_changed": "weight_kg",
@@ -169,7 +169,7 @@ def _limits() -> pl.DataFrame:
 def _held_against_limits(observed: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
     """Adds the limit that is exceeded or nearest, and whether it is exceeded."""
     x, lowest, highest = pl.col("observed"), pl.col("lowest"), pl.col("highest")
-    # Of two that are as near, but for rounding, the highest: as where nothing differs at all.
+    # Of two limits equally near, but for rounding, the highest.
     nearer = (highest - x) - (x - lowest) > SAME_SHARE * (highest - lowest)
     nearer_lowest = highest.is_null() | nearer
     return (
@@ -189,7 +189,7 @@ def _held_against_limits(observed: pl.DataFrame, curves: pl.DataFrame) -> pl.Dat
     )
 
 
-# A tow by itself
+# A single tow
 
 
 def _of_curves(curves: pl.DataFrame) -> pl.DataFrame:
@@ -289,9 +289,9 @@ def _of_sizes(tows: pl.DataFrame) -> pl.DataFrame:
 
 
 def _of_steps(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
-    """What it does to Cw if readings were cut off at their step and not rounded: half a step.
+    """Change of Cw if readings were truncated to their step and not rounded: half a step.
 
-    Of a GPS only where it calibrates the tow.
+    That of a GPS counts only where it calibrates the tow.
     """
     speed = pl.col("declared_speed_m_s")
     by_gps = pl.when(pl.col("calibration_factor").is_not_null()).then(
@@ -305,7 +305,7 @@ def _of_steps(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
 
 
 def _off_boat_list() -> pl.Expr:
-    """How far length or breadth is from the boat list; of a boat ever altered that says nothing."""
+    """How far length or breadth is from the boat list; null for a boat that was ever altered."""
     off = [
         (pl.col(column) / pl.col(listed) - 1).abs()
         for column, listed in (
@@ -317,7 +317,7 @@ def _off_boat_list() -> pl.Expr:
 
 
 def _with_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
-    """Curves that were found, with the boat of the day, sorted by date.
+    """Tows with a curve, with the boat of the day, sorted by date.
 
     `size` is sqrt(displacement x waterline length): wetted surface follows it (docs of
     `pipeline.steps.resistance`), and friction, most of Cw, follows wetted surface. `s_s2_m2` is
@@ -402,9 +402,9 @@ def _of_previous_curve(pairs: pl.DataFrame) -> pl.DataFrame:
 
 
 def _of_unseen_errors(pairs: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
-    """From which size on an error of a tow's Cw is looked at, in 19 of 20 cases.
+    """Smallest error of a tow's Cw that would be noticed in 19 of 20 cases.
 
-    By the tow before or after it, or by what all others let its force be.
+    By the tow before or after it, or by the force that all others predict.
     """
     limit, sds = (
         CHECK[code].limits("H")[1]

@@ -1,8 +1,7 @@
 """What a tow shows of itself, before any method: resistance, bend, wind and speed.
 
-Means over whole runs, plain enough to hold a tow against others; the numbers of the register come
-from the steps of a method. Which numbers are compared is
-decided in `pipeline.assessment.plausibility`.
+Means over whole runs, simple enough to compare tows; the numbers of the register come from the
+steps of a method. Which numbers are compared is decided in `pipeline.assessment.plausibility`.
 """
 
 from dataclasses import dataclass
@@ -31,7 +30,7 @@ USUAL_BEND: Final = 0.75
 """Usual dlnCw/dlnv; B lies at 1.06 to 1.5 times the hull speed."""
 
 LEAST_WATER: Final = 0.2
-"""Part of the resistance that is the water's at least."""
+"""Smallest part of the resistance that is the water's."""
 
 RADIANS: Final = 2.0 * np.pi
 """Angles in radians lie between -3.14 and 6.28: degrees of a vane that hardly moves."""
@@ -52,7 +51,7 @@ class Seen:
 
     Attributes:
         has_gps: whether any tow of its season has GPS.
-        level: ln Cw at the declared speed less what power, class, weight and length let expect;
+        level: ln Cw at the declared speed less what power, class, weight and length predict;
             the log as the season's GPS corrects it, where there is one.
         bend: dlnCw/dlnv less the usual; `bend_sd`, its random part.
         force_n: mean tow force.
@@ -151,7 +150,7 @@ def _line(
 
 
 def _expected_level(batch: Batch) -> FloatArray:
-    """What ln Cw may be from size alone, less an archive's mean that power leaves to expect."""
+    """The ln Cw that size alone predicts, at the level that the archive's median power gives."""
     size = _ln_size(batch)
     power = np.array([POWER_W[c] for c in batch.tows["crew_class"]])
     by_power = np.log(power * batch.of_tow("rowers") / batch.of_tow("declared_speed_m_s") ** 3)

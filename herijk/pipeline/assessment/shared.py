@@ -1,4 +1,4 @@
-"""What the tows of a season or an archive share, and none of them shows by itself.
+"""What the tows of a season or an archive share, though no single tow shows it.
 
 Each is a mean or a slope over tows, 0 where chance alone makes as much of it in a share `CHANCE` of
 sound archives (t test over the tows).
@@ -16,14 +16,14 @@ CHANCE: Final = 0.001
 """Share of sound seasons or archives in which chance alone shows as much."""
 
 FEWEST: Final = 4
-"""Tows that are needed before they tell (inferred)."""
+"""Fewest tows from which anything is concluded (inferred)."""
 
 LEAST_SPREAD: Final = 0.01
 """Sum of squares of ln speed within which a tow tells a slope; runs at 90 to 110 % have 0.04."""
 
 
 def unless_chance(value: pl.Expr, sd: pl.Expr, dof: pl.Expr) -> pl.Expr:
-    """A number, or 0 where chance makes as much of it; `sd` is its standard error."""
+    """A number, or 0 where chance explains one as large; `sd` is its standard error."""
     quantiles = dof.map_batches(
         lambda n: pl.Series(scipy.special.stdtrit(n.to_numpy(), 1.0 - CHANCE / 2.0)),
         return_dtype=pl.Float64(),
@@ -32,7 +32,7 @@ def unless_chance(value: pl.Expr, sd: pl.Expr, dof: pl.Expr) -> pl.Expr:
 
 
 def _of_season(name: str, of_tows: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
-    """A `value` of tows as those of a season share it, for each of its tows.
+    """The mean `value` of the tows of each season, for each of its tows.
 
     Returns:
         `tow_id` and the name; no row in a season of few tows.
@@ -71,9 +71,9 @@ def rising_with_speed(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.Data
 
 
 def ways_apart(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
-    """Cw out over Cw back, less 1, as the tows of a season share it.
+    """Cw out / Cw back, less 1: the mean over the tows of a season.
 
-    A load cell that warms up during a tow does that, or a wind that is taken off wrongly.
+    A load cell that warms up during a tow causes it, or a wrong wind correction.
 
     Returns:
         `tow_id, ways_differ`; no row in a season of few tows.
@@ -91,7 +91,7 @@ def ways_apart(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
 
 
 def rising_with_wind(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
-    """What the wind of a tow adds to ln Cw after the wind correction, as all tows show it.
+    """What the wind of a tow adds to Cw after the wind correction, by a slope over all tows.
 
     Waves grow with the square of the wind. The slope is that among the tows of one boat, against
     the boat's best estimate. The square of the true wind is that of the wind as felt, out and back,

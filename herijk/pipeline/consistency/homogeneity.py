@@ -41,7 +41,7 @@ SAME_COLUMN: Final = 1e-9
 """Columns that differ by less, relatively, are one: a single class, or speeds all alike."""
 
 BEND_MARGIN: Final = 1e-3
-"""Within this of the least that a plain search finds lies the least itself."""
+"""The minimum lies within this of the one that a plain search gives."""
 
 OWN, PARTIAL, SHARED = "own", "partial", "shared"
 

@@ -1,6 +1,6 @@
-"""Does a quantity follow weight, length or tow speed within a type, and which tows lie outside?
+"""Does a quantity follow weight, length or tow speed within a type, and which tows are outliers?
 
-Which tows is a choice: the newest of each boat and crew, all, or those of one season. Lines are
+The tows are a choice: the newest of each boat and crew, all, or those of one season. Lines are
 weighted: each tow has its own measuring error, and boats differ truly by a standard deviation that
 is estimated (REML); tows of one boat, also of two crews, share that difference. Over all tows a
 season and a single tow have a deviation of their own as well, so that repeats count as repeats.
@@ -37,7 +37,7 @@ from herijk.tables.keys import LINE
 from herijk.tables.row import Row
 
 LN_CW, BEND = "ln_cw_standard", "bend"
-"""What tells an outlier: height and bend (v/B)^2 of the curve, both at the standard speed. Of the
+"""What makes an outlier: height and bend (v/B)^2 of the curve, both at the standard speed. Of the
 forms of the bend this one has the most even spread: where B truly spreads 10 %, 27 % of types of 24
 boats had an outlier by q, 11 % have one by this."""
 

@@ -27,24 +27,24 @@ PROFILE_DROP: Final = 3.841458820694124
 """Deviance above its minimum at the ends of a 95 % profile interval (chi-squared, 1 dof)."""
 
 PROFILE_PRECISION: Final = 1e-7
-"""An end of a profile interval is found when it moves by less, as a share of the spread: Newton's
-method then leaves the square of that."""
+"""The search for an end of a profile interval stops when a step is less, as a share of the spread:
+Newton's method then leaves the square of that."""
 
 PROFILE_TOLERANCE: Final = 1e-5
 """When the search for the other variances is done: their error counts squared in the deviance."""
 
 ROUGHLY: Final = 1e-2
-"""The same where only the side of an end is asked for."""
+"""The same where only the sign is needed."""
 
 MAX_STEPS: Final = 60
 MAX_DOUBLINGS: Final = 7
-"""The upper end of an interval is looked for up to this power of 2 times where it is expected."""
+"""The upper end of an interval is sought up to 2 to this power times its expected place."""
 
 NUMBERS_AT_ONCE: Final = 1 << 16
 """Numbers of a stack: enough to make calls cheap, few enough for the nearer cache."""
 
 LEAST_MISFIT: Final = 0.05
-"""Misfit that the other boats' rows are taken to have, also where they agree by chance."""
+"""Least misfit of the other boats' rows, also where they agree by chance."""
 
 NO_GAIN: Final = 1e-4
 """A component that lowers the deviance by no more than this is 0."""
@@ -181,7 +181,7 @@ class Fit:
         """95 % profile-likelihood intervals of the components' sds; None without an upper bound.
 
         Raises:
-            NotSettledError: an end was not found.
+            NotSettledError: the search for an end did not come to rest.
         """
         profile = _Profile.of(self)
         sd, places = np.asarray(self.sd), np.arange(len(COMPONENTS))
@@ -210,7 +210,7 @@ class _Profile:
     Attributes:
         stack: the problem once per component.
         free: (3, 3) what is estimated, besides the component itself.
-        nearest: (3, 3) variances found last, to begin with.
+        nearest: (3, 3) the last variances, from which the next search starts.
         least: the deviance of the fit.
     """
 

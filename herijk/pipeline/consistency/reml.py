@@ -132,7 +132,7 @@ class Problem:
     """Data of a mixed model.
 
     Attributes:
-        design: what is known of the rows beforehand.
+        design: what is known of the rows before anything is measured.
         y: (n,) observations.
         variance: (n,) known variance of each observation.
     """
@@ -374,7 +374,7 @@ class Whitened:
 def search(
     stack: Stack, free: BoolArray, start: FloatArray, tolerance: float = TOLERANCE
 ) -> tuple[FloatArray, Likelihood, BoolArray]:
-    """Least deviance of each problem over some of the variances, the others held.
+    """Least deviance of each problem over some of the variances, the others fixed.
 
     Newton's method with the average information, on variances that are not negative: one that is 0
     and would fall is left at exactly 0. The slope, not the deviance, says when it is done: the

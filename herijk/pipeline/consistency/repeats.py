@@ -26,8 +26,8 @@ def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     """Consecutive tows of one boat and crew without an alteration between them.
 
     The two are compared at the older tow's declared speed, where the older curve was measured, each
-    with its log and load cell as the other boats show them. A boat that has part in its own
-    correction would agree with itself too well. E_n is their difference in units of both 95 %
+    with its log and load cell as the other boats show them. A boat that took part in its
+    own correction would agree with itself too well. E_n is their difference in units of both 95 %
     intervals (ISO 13528): above 1 they disagree.
 
     Returns:

@@ -1,4 +1,4 @@
-"""The due list: until when each boat's tow counts, and at what speed to tow it next.
+"""The due list: until when each boat's tow counts, and at what speed to tow the boat next.
 
 The rule for the speed is the federation's (Sleepproef, R. Pot 2017, "Sleepsnelheid"): on the known
 curve it takes 70-90 W per rower (men) or 40-55 W (women). Belongs here: that rule with its
