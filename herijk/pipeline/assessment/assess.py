@@ -117,12 +117,12 @@ def with_status(
     ).with_columns(pl.lit(True).alias("rejects"))
     flagged = (
         assessments.filter("flagged")
-        .join(curves.select("tow_id", "season"), on="tow_id")
-        .join(pairs, on=["season", "check"], how="left")
+        .join(curves.select("tow_id", "season"), on="tow_id", maintain_order="left")
+        .join(pairs, on=["season", "check"], how="left", maintain_order="left")
         .with_columns(pl.col("rejects").fill_null(False) | (pl.col("severity") == "refuse"))
         .filter((pl.col("severity") == "look") | pl.col("rejects"))
         .sort(pl.col("check").replace_strict(CODES, range(len(CODES))))
-        .group_by("tow_id")
+        .group_by("tow_id", maintain_order=True)
         .agg(pl.col("check").alias("flags"), pl.col("rejects").any())
     )
     status = (
@@ -172,9 +172,10 @@ def _held_against_limits(observed: pl.DataFrame, curves: pl.DataFrame) -> pl.Dat
     # Of two limits equally near, but for rounding, the highest.
     nearer = (highest - x) - (x - lowest) > SAME_SHARE * (highest - lowest)
     nearer_lowest = highest.is_null() | nearer
+    of_tow = curves.select("method", "tow_id", "season", "crew_class")
     return (
-        observed.join(curves.select("method", "tow_id", "season", "crew_class"), on="tow_id")
-        .join(_limits(), on=["check", "crew_class"])
+        observed.join(of_tow, on="tow_id", maintain_order="left")
+        .join(_limits(), on=["check", "crew_class"], maintain_order="left")
         .filter(pl.col("season") <= pl.col("last_season").fill_null(pl.col("season")))
         .select(
             "method",
@@ -224,8 +225,8 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
             lowest_target=target.min().over("tow_id"), highest_target=target.max().over("tow_id")
         )
         .filter("used")
-        .join(curves.select("tow_id", "declared_speed_m_s"), on="tow_id")
-        .group_by("tow_id")
+        .join(curves.select("tow_id", "declared_speed_m_s"), on="tow_id", maintain_order="left")
+        .group_by("tow_id", maintain_order=True)
         .agg(
             unbalanced_runs=way.cast(pl.Int32).sum().abs(),
             out_and_back_differ=on_curve.filter(way > 0).mean() / on_curve.filter(way < 0).mean()
@@ -253,9 +254,13 @@ def _of_doubts(tows: pl.DataFrame) -> pl.DataFrame:
 def _of_correction(run_points: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     """The tow list's speed correction, where the speeds are as the log read them; else 0."""
     as_read = (pl.col("speed_factor") - 1.0).abs().max() < SAME_SHARE
-    speeds = run_points.filter("used").group_by("tow_id").agg(as_read.alias("as_read"))
+    speeds = (
+        run_points.filter("used")
+        .group_by("tow_id", maintain_order=True)
+        .agg(as_read.alias("as_read"))
+    )
     listed = pl.col("speed_correction_ratio")
-    return tows.join(speeds, on="tow_id").select(
+    return tows.join(speeds, on="tow_id", maintain_order="left").select(
         "tow_id", correction_not_used=pl.when("as_read").then(listed).otherwise(listed * 0.0)
     )
 
@@ -299,7 +304,7 @@ def _of_steps(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     )
     by_force = pl.col("force_step_n") / 2 / (pl.col("cw_kg_m") * speed**2)
     steps = tows.select("tow_id", "gps_step_m_s", "force_step_n")
-    return curves.join(steps, on="tow_id").select(
+    return curves.join(steps, on="tow_id", maintain_order="left").select(
         "tow_id", coarse_readings=pl.max_horizontal(by_gps, by_force)
     )
 
@@ -329,7 +334,7 @@ def _with_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     ln_width = (pl.col("cw_hi_kg_m") / pl.col("cw_lo_kg_m")).log()
     return (
         curves.filter(pl.col("a_kg_m").is_not_null())
-        .join(tows.select("tow_id", "boat_type", *of_tow), on="tow_id")
+        .join(tows.select("tow_id", "boat_type", *of_tow), on="tow_id", maintain_order="left")
         .with_columns(
             size=(displacement * pl.col("waterline_length_m")).sqrt(),
             s_s2_m2=(1 - pl.col("a_kg_m") / pl.col("cw_kg_m")) / pl.col("declared_speed_m_s") ** 2,
@@ -353,7 +358,9 @@ def _of_season(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame
     on board, and nobody can say which of the two was right: all seasons are in doubt. Log factors
     do not rest on that.
     """
-    seasons = diagnosis.group_by("season").agg(season_in_doubt=pl.col("alarm").any())
+    seasons = diagnosis.group_by("season", maintain_order=True).agg(
+        season_in_doubt=pl.col("alarm").any()
+    )
     doubted = seasons.filter("season_in_doubt")["season"]
     anchors = {*_by_gps(curves)} & {*seasons["season"]}
     if anchors and anchors <= {*doubted}:
@@ -362,7 +369,9 @@ def _of_season(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame
         seasons = seasons.with_columns(pl.col("season_in_doubt") | rests)
     steps = diagnosis.filter(instrument=FLEET, verdict=FAULT)
     seasons = seasons.with_columns(pl.col("season_in_doubt") | pl.lit(not steps.is_empty()))
-    return tows.join(seasons, on="season").select("tow_id", "season_in_doubt")
+    return tows.join(seasons, on="season", maintain_order="left").select(
+        "tow_id", "season_in_doubt"
+    )
 
 
 def _pairs(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame) -> pl.DataFrame:

@@ -39,13 +39,13 @@ def _of_season(name: str, of_tows: pl.DataFrame, curves: pl.DataFrame) -> pl.Dat
     """
     value, dof = pl.col("value"), pl.col("dof")
     seasons = (
-        of_tows.join(curves.select("tow_id", "season"), on="tow_id")
-        .group_by("season")
+        of_tows.join(curves.select("tow_id", "season"), on="tow_id", maintain_order="left")
+        .group_by("season", maintain_order=True)
         .agg(value.mean(), sd=value.std() / pl.len().sqrt(), dof=pl.len() - 1.0)
         .filter(dof + 1 >= FEWEST)
         .select("season", unless_chance(value, pl.col("sd"), dof).alias(name))
     )
-    return curves.join(seasons, on="season").select("tow_id", name)
+    return curves.join(seasons, on="season", maintain_order="left").select("tow_id", name)
 
 
 def rising_with_speed(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
@@ -108,7 +108,7 @@ def rising_with_wind(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataF
         run_points.filter("used")
         .group_by("tow_id", maintain_order=True)
         .agg(wind2=both_ways.clip(0.0))
-        .join(curves, on="tow_id")
+        .join(curves, on="tow_id", maintain_order="left")
         .with_columns(ln=(pl.col("cw_kg_m") / pl.col("cw_best_kg_m")).log())
         .filter(ln.is_finite(), wind2.is_finite())
     )
