@@ -29,7 +29,11 @@ from herijk.simulate.practice import Practice, practices, printed_curve
 
 SPEED_UNITS: Final = {"m/s": 1.0, "km/h": 3.6, "kn": 3600.0 / 1852.0}
 FORCE_UNITS: Final = {"N": 1.0, "kgf": 1.0 / 9.80665}
-COMPRESSIONS: Final[Mapping[str, Literal["gzip", "zstd"]]] = {".csv.gz": "gzip", ".csv.zst": "zstd"}
+COMPRESSIONS: Final[Mapping[str, Literal["uncompressed", "gzip", "zstd"]]] = {
+    ".csv": "uncompressed",
+    ".csv.gz": "gzip",
+    ".csv.zst": "zstd",
+}
 SAMPLE_DECIMALS: Final = 3
 CURVE_SPEED_RATIOS: Final = np.linspace(0.8, 1.2, 17)
 """Speeds of the true curve in the truth file, relative to the declared speed."""
@@ -207,7 +211,7 @@ def _write_samples(path: Path, samples: pl.DataFrame, spelling: Spelling, rate_h
     if spelling.extension == ".parquet":
         table.write_parquet(path)
         return
-    compression = COMPRESSIONS.get(spelling.extension, "uncompressed")
+    compression = COMPRESSIONS[spelling.extension]
     table.write_csv(
         path,
         include_bom=spelling.encoding == "utf-8-sig",

@@ -313,9 +313,9 @@ class Whitened:
         self.stack, self.variances = stack, variances
         self.boat, self.other, cell = variances.T
         self.weight: FloatArray = 1.0 / (stack.variance + cell[:, None])
-        self.root = np.sqrt(self.weight)[..., None]
+        self.root: FloatArray = np.sqrt(self.weight)[..., None]
         self.precision = stack.by_boat(self.weight[..., None])[..., 0]
-        self.inflation = 1.0 + self.boat[:, None] * self.precision
+        self.inflation: FloatArray = 1.0 + self.boat[:, None] * self.precision
         n, _, k, p = stack.size
         white = self.without_boats(self.root * stack.columns)
         self.others, y = white[..., :k], white[..., -1:]
