@@ -28,10 +28,10 @@ def days_apart(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     Returns:
         `tow_id, days_differ`: 0 where chance explains it; no row in a season of one day.
     """
-    ln, n = pl.col("ln"), pl.col("n")
+    ratio, ln, n = pl.col("cw_kg_m") / pl.col("cw_best_kg_m"), pl.col("ln"), pl.col("n")
     days = (
         curves.filter(pl.len().over(LINE) > 1)
-        .select("tow_id", "season", "calibration_factor", ln=(_cw("cw") / _cw("cw_best")).log())
+        .select("tow_id", "season", "calibration_factor", ln=ratio.log())
         .filter(ln.is_finite())
         .join(tows.select("tow_id", "tow_date"), on="tow_id", maintain_order="left")
         .group_by("season", "tow_date", maintain_order=True)
@@ -71,7 +71,3 @@ def days_apart(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     return curves.join(
         seasons.select("season", days_differ=sure), on="season", maintain_order="left"
     ).select("tow_id", "days_differ")
-
-
-def _cw(name: str) -> pl.Expr:
-    return pl.col(f"{name}_kg_m")

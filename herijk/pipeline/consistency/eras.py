@@ -28,21 +28,22 @@ class Era:
     Attributes:
         name: as it is in tables.
         first, last: seasons, both included.
-        steering_checked: whether a tow pulled askew would have been seen.
     """
 
     name: str
     first: int
     last: int
-    steering_checked: bool
 
 
 ERAS: Final = (
-    Era("2009-2011", 2009, 2011, steering_checked=False),
-    Era("2012-2013", 2012, 2013, steering_checked=False),
-    Era("2014-", 2014, 9999, steering_checked=True),
+    Era("2009-2011", 2009, 2011),
+    Era("2012-2013", 2012, 2013),
+    Era("2014-", 2014, 9999),
 )
-"""Worn logs, Doppler logs, dGPS (Sleepproef, R. Pot 2017); straight steering from 2014 on."""
+"""Worn logs, Doppler logs, dGPS (Sleepproef, R. Pot 2017)."""
+
+STEERED_STRAIGHT_FROM: Final = 2014
+"""First season in which a tow pulled askew would have been seen."""
 
 
 def season_ranges(seasons: Iterable[int]) -> dict[str, tuple[int, int]]:

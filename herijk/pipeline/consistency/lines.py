@@ -18,7 +18,7 @@ import scipy
 
 from herijk.pipeline.arrays import BoolArray, FloatArray, IntArray
 from herijk.pipeline.consistency import mixed
-from herijk.pipeline.consistency.eras import ERAS, season_ranges
+from herijk.pipeline.consistency.eras import STEERED_STRAIGHT_FROM, season_ranges
 from herijk.pipeline.consistency.observed import (
     UNKNOWN_TYPE,
     Observed,
@@ -438,7 +438,7 @@ class _Compared:
 def _candidates(boats: Observed, quantity: str, error: FloatArray) -> list[list[str]]:
     """What could explain a boat's place, as codes; the season is judged afterwards."""
     table = boats.table
-    unchecked = np.array([not _steering_checked(season) for season in table["season"]])
+    unchecked = (table["season"] < STEERED_STRAIGHT_FROM).to_numpy()
     high = (error > ASKEW_EXCESS) & (quantity == LN_CW)
     differ = table["flags"].list.contains("out_and_back_differ").to_numpy()
     checks = {
@@ -452,10 +452,6 @@ def _candidates(boats: Observed, quantity: str, error: FloatArray) -> list[list[
         "b_not_determined": table["b_m_s"].is_null().to_numpy(),
     }
     return [[code for code, applies in checks.items() if applies[i]] for i in range(table.height)]
-
-
-def _steering_checked(season: int) -> bool:
-    return any(era.steering_checked and era.first <= season <= era.last for era in ERAS)
 
 
 def _unusual(values: FloatArray) -> BoolArray:

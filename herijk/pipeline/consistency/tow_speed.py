@@ -172,7 +172,9 @@ def slow_tows(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
     rowed, bend = _of_others(chosen, newest(tows.take(np.flatnonzero(~slow))))
     declared = chosen.column("declared_speed_m_s")
     raced_speed = chosen.column("raced_speed_m_s")
-    columns = {"rowed_speed_m_s": rowed, "raced_power_w": _raced_power(chosen, raced_speed)}
+    raced_cw = curve_anywhere(chosen, raced_speed)
+    raced_power = power_per_rower_w(raced_cw, raced_speed, chosen.column("rowers"))
+    columns = {"rowed_speed_m_s": rowed, "raced_power_w": raced_power}
     speeds = (1.1 * declared, 1.2 * declared, rowed, raced_speed)
     for at, speed in zip(COMPARED_AT, speeds, strict=True):
         ends = _power_ratio(chosen, bend, speed)
@@ -220,12 +222,6 @@ def _text_says(case: list[str], raced_ratio: FloatArray) -> list[str | None]:
         pace = "faster" if ratio > fastest else "slower" if ratio < slowest else ""
         expected.append(TEXT_SAYS.get((one, pace)))
     return expected
-
-
-def _raced_power(tows: Observed, speed_m_s: FloatArray) -> FloatArray:
-    """Power per rower by the register's curve at a speed, shape (rows,)."""
-    cw = curve_anywhere(tows, speed_m_s)
-    return np.asarray(power_per_rower_w(cw, speed_m_s, tows.column("rowers")), dtype=np.float64)
 
 
 def _rowed_speed(crew_class: pl.Series, others: Observed) -> FloatArray:
