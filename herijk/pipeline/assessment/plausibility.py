@@ -140,7 +140,7 @@ def plausibility(batch: Batch) -> Plausibility:
     Args:
         batch: all tows of the archive with their runs, in one batch.
     """
-    seen = Seen.of(batch)
+    seen = Seen(batch)
     of_force, force_seen_from = _of_force(seen)
     shifts = (
         *_in_radians(seen),

@@ -171,7 +171,7 @@ def type_lines(
                 row = names | {"standard_speed_m_s": float(speeds[own[0]])} | facts
                 rows.append(row)
                 if across is not None:
-                    line = _Line.of(across, quantity, y[mine], unit[mine] * run_variance[mine])
+                    line = _Line(across, quantity, y[mine], unit[mine] * run_variance[mine])
                     to_fit.setdefault(choice.components, []).append((row, names, line))
     points: dict[str, list[object]] = {name: [] for name in TypeLinePoints.column_names()}
     for components, lines in to_fit.items():
@@ -276,7 +276,6 @@ class _Shared:
         return counts | {"reason": ""}, across
 
 
-@dataclass(frozen=True)
 class _Line:
     """A line of a quantity on an explaining variable, to be fitted.
 
@@ -287,17 +286,11 @@ class _Line:
         level: what the spread is a share of.
     """
 
-    across: _Across
-    problem: Problem
-    noise: float
-    level: float
-
-    @classmethod
-    def of(cls, across: _Across, quantity: str, y: FloatArray, variance: FloatArray) -> Self:
-        """A line of values with these variances."""
-        level = 1.0 if quantity == LN_CW else float(abs(y.mean()))
-        problem = Problem.of(across.design, y, variance)
-        return cls(across, problem, float(np.sqrt(variance.mean())), level)
+    def __init__(self, across: _Across, quantity: str, y: FloatArray, variance: FloatArray) -> None:
+        self.across = across
+        self.problem = Problem.of(across.design, y, variance)
+        self.noise = float(np.sqrt(variance.mean()))
+        self.level = 1.0 if quantity == LN_CW else float(abs(y.mean()))
 
     def row(self, fit: mixed.Fit, ends: mixed.Coefficients) -> Row:
         """The line itself and its spread, as in `type_lines`; `ends` are at `across.at`."""

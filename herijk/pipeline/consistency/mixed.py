@@ -12,7 +12,7 @@ elsewhere.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final, NamedTuple, Self
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -183,7 +183,7 @@ class Fit:
         Raises:
             NotSettledError: the search for an end did not come to rest.
         """
-        profile = _Profile.of(self)
+        profile = _Profile(self)
         sd, places = np.asarray(self.sd), np.arange(len(COMPONENTS))
         lo, nothing = np.zeros(len(sd)), np.zeros(len(sd))
         at_nothing, _ = profile.excess(nothing, places, ROUGHLY)
@@ -203,7 +203,6 @@ class Fit:
         return {name: (float(lo[i]), upper.get(i)) for i, name in enumerate(COMPONENTS)}
 
 
-@dataclass(frozen=True)
 class _Profile:
     """How much worse a fit is where one of its sds is something else, the others at their best.
 
@@ -214,18 +213,11 @@ class _Profile:
         least: the deviance of the fit.
     """
 
-    stack: Stack
-    free: BoolArray
-    nearest: FloatArray
-    least: float
-
-    @classmethod
-    def of(cls, fit: Fit) -> Self:
-        """Of a fit, begun at its variances."""
-        stack = Stack.of([fit.problem] * len(COMPONENTS))
-        free = np.isin(COMPONENTS, fit.free) & ~np.eye(len(COMPONENTS), dtype=bool)
-        at = np.square([fit.sd] * len(COMPONENTS))
-        return cls(stack, free, at, float(stack.likelihood(at).deviance[0]))
+    def __init__(self, fit: Fit) -> None:
+        self.stack = Stack.of([fit.problem] * len(COMPONENTS))
+        self.free = np.isin(COMPONENTS, fit.free) & ~np.eye(len(COMPONENTS), dtype=bool)
+        self.nearest = np.square([fit.sd] * len(COMPONENTS))
+        self.least = float(self.stack.likelihood(self.nearest).deviance[0])
 
     def excess(
         self, sd: FloatArray, place: IntArray, tolerance: float = PROFILE_TOLERANCE
