@@ -96,7 +96,7 @@ def assess(
         _of_like_boats(curves, tows),
     ]
     long = pl.concat([_long(frame) for frame in observed])
-    return _held_against_limits(long, curves)
+    return _beside_limits(long, curves)
 
 
 def with_status(
@@ -166,7 +166,7 @@ def _limits() -> pl.DataFrame:
     return pl.DataFrame(rows, schema=schema | {"last_season": pl.Int32()}, orient="row")
 
 
-def _held_against_limits(observed: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
+def _beside_limits(observed: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFrame:
     """Adds the limit that is exceeded or nearest, and whether it is exceeded."""
     x, lowest, highest = pl.col("observed"), pl.col("lowest"), pl.col("highest")
     # Of two limits equally near, but for rounding, the highest.
