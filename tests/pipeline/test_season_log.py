@@ -12,16 +12,16 @@ from scipy.stats import binom
 from herijk.pipeline import curve
 from herijk.pipeline.errors import BrokenPromiseError
 from herijk.pipeline.season_log import (
-    Settings,
     estimate_season_factors,
     other_log_factors,
     posterior,
     retow_choice,
-    scale_effect,
     without_boats,
 )
+from herijk.pipeline.season_log.assumed import Settings
 from herijk.pipeline.season_log.days import day_variance
 from herijk.pipeline.season_log.network import Network
+from herijk.pipeline.season_log.scale import scale_effect
 from tests.numbers import SAME, jittered, unequal
 from tests.pipeline.season_worlds import ANCHORED_FROM, CLEAN, HARD, simulate
 
