@@ -20,7 +20,7 @@ from herijk.pipeline.errors import (
     UnavailableError,
     unexpected,
 )
-from herijk.warehouse.intake.seasons import Listing, listing
+from herijk.warehouse.intake.seasons import listing
 from herijk.warehouse.store.store import fingerprint
 
 ONE_AT_A_TIME = {"herijk/rebuild": "data folder"}
@@ -128,8 +128,8 @@ def archive_sensor(archive: Path) -> dg.SensorDefinition:
     """The sensor that asks for a rebuild when files of the archive came, changed or went."""
 
     def look(context: dg.SensorEvaluationContext) -> dg.SensorResult | dg.SkipReason:
-        try:
-            return _look(_digest(listing(archive)), context.cursor or "")
+        try:  # a digest of the listing, since a cursor is kept for every tick
+            return _look(fingerprint(listing(archive)), context.cursor or "")
         except MissingKnowledgeError as error:
             return dg.SkipReason(str(error))
 
@@ -156,8 +156,3 @@ def _look(now: str, cursor: str) -> dg.SensorResult:
         skip = "files changed; waiting until the archive is left alone"
         return dg.SensorResult(skip_reason=skip, cursor=f"{asked} {now}")
     return dg.SensorResult(run_requests=[dg.RunRequest()], cursor=f"{now} {now}")
-
-
-def _digest(files: Listing) -> str:
-    """A listing in a few letters: a cursor is kept for every tick."""
-    return fingerprint(files)

@@ -160,7 +160,9 @@ def forget_unlisted_seasons(store: Store) -> list[int]:
     return gone
 
 
-def read_season(store: Store, root: Path, season: int, report: lake.Report) -> pl.DataFrame:
+def read_season(
+    store: Store, root: Path, season: int, report: lake.Report = lambda *_: None
+) -> pl.DataFrame:
     """Brings one season's samples into the lake; keeps its index and the list it was read by.
 
     Returns:
