@@ -38,7 +38,7 @@ class Settings(BaseModel):
             they are read in the process of the rebuild.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", hide_input_in_errors=True)
 
     methods: tuple[str, ...] = ()
     nightly: str = "0 3 * * *"

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Final
 
 from herijk.cli.text import SIMULATED, decimals, table
 from herijk.tables.row import Row
-from herijk.warehouse.editions.words import LANGUAGES, Language
+from herijk.warehouse.editions.words import CHANGES, CREWS, STATUSES, Language
 from herijk.words import LANGUAGE, in_per_cent, tell
 from herijk.words.catalogue import code
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 def _words() -> Language:
     """Words for codes in the language of this command."""
-    return LANGUAGES[LANGUAGE.get()]
+    return Language(LANGUAGE.get())
 
 
 def _to_look_at(lines: list[Row]) -> list[str]:
@@ -54,7 +54,7 @@ def register(report: "RegisterReport") -> str:
     )
     parts = [tell(SIMULATED)] if report.simulated else []
     counts = Counter(line["status"] for line in report.lines)
-    statuses = ", ".join(f"{n} {_words().statuses.get(s, s)}" for s, n in counts.items())
+    statuses = ", ".join(f"{n} {_words().word(STATUSES, s)}" for s, n in counts.items())
     parts += [
         tell("Register {}, validity judged on {}: {}.", report.edition, report.as_of, statuses),
         table(head, [_register_line(line) for line in report.lines]),
@@ -73,7 +73,7 @@ def _register_line(line: Row) -> tuple[object, ...]:
         line["name"] or "-",
         f"{line['rowers']}{line['crew_class']}",
         line["empty_thwart"] or "-",
-        _words().statuses.get(line["status"], line["status"]),
+        _words().word(STATUSES, line["status"]),
         line["valid_until"],
         line["tow_id"],
         *(decimals(line[name], 2) for name in ("declared_speed_m_s", "a_kg_m", "b_m_s", "cw_kg_m")),
@@ -88,7 +88,7 @@ def published(report: "Published") -> str:
     about = report.about
     lines = about.tables["register"].rows
     source = about.method or tell("as printed")
-    statuses = ", ".join(f"{n} {_words().statuses[s]}" for s, n in report.statuses.items())
+    statuses = ", ".join(f"{n} {_words().word(STATUSES, s)}" for s, n in report.statuses.items())
     compared = (
         tell(
             "Compared with {}: herijk diff {} {}",
@@ -128,7 +128,7 @@ def published(report: "Published") -> str:
 def diff(report: "DiffReport") -> str:
     """Two editions side by side."""
     parts = [tell(SIMULATED)] if report.simulated else []
-    counts = ", ".join(f"{n} {_words().changes.get(c, c)}" for c, n in report.changes.items())
+    counts = ", ".join(f"{n} {_words().word(CHANGES, c)}" for c, n in report.changes.items())
     parts.append(f"{report.from_edition} -> {report.to_edition}: {counts or tell('no lines')}.")
     parts.append(
         tell(
@@ -200,11 +200,9 @@ def _line(row: Row) -> tuple[object, ...]:
         row["fsn_no"],
         row["name"] or "-",
         f"{row['rowers']}{row['crew_class']}",
-        _words().changes[row["change"]]
+        _words().word(CHANGES, row["change"])
         if row["change"] != "removed"
-        else tell(
-            "removed: {}", _words().statuses.get(row["new_status"], row["new_status"] or "gone")
-        ),
+        else tell("removed: {}", _words().word(STATUSES, row["new_status"] or "gone")),
         *pairs,
         _per_cent(row["cw_ratio"]),
         _seconds(row["gain_in_two_hours_s"]),
@@ -251,7 +249,7 @@ def _winners(winners: list[Row]) -> str:
         (
             w["race"],
             str(w["race_date"]),
-            _words().crews[w["crew_class"]],
+            _words().word(CREWS, w["crew_class"]),
             w["old_winner"],
             w["new_winner"],
             _same_winner(w),

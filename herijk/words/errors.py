@@ -168,9 +168,11 @@ ERRORS: Final[dict[str, str]] = {
     "{}: not valid TOML: {}": "{}: geen geldige TOML: {}",
     "{} is not valid TOML: {}": "{} is geen geldige TOML: {}",
     "{}: {}: {}; it may hold {}": "{}: {}: {}; er mag in staan: {}",
-    "{}: {}: {}; a decision has sleep_id, oordeel (uitsluiten or voorkeur), reden, wie and datum": (
-        "{}: {}: {}; een besluit heeft sleep_id, oordeel (uitsluiten of voorkeur), reden, "
-        "wie en datum"
+    "[[besluit]], each with sleep_id, oordeel (uitsluiten or voorkeur), reden, wie and datum": (
+        "[[besluit]], elk met sleep_id, oordeel (uitsluiten of voorkeur), reden, wie en datum"
+    ),
+    "lake and editions, each as 's3://bucket/prefix' without a name or password": (
+        "lake en editions, elk als 's3://bucket/prefix' zonder naam of wachtwoord"
     ),
     "{}: more than one decision about {}": "{}: meer dan een besluit over {}",
     # TOML that people write

@@ -102,40 +102,6 @@ def compare(store: Store, old: Edition, new: Edition) -> Comparison:
     return Comparison(old, new, lines)
 
 
-@dataclass(frozen=True)
-class RaceEffects:
-    """What two editions make of the races in the archive.
-
-    Attributes:
-        results: rows of `pipeline.register.replay.race_changes`.
-        winners: rows of `pipeline.register.replay.winner_changes`.
-    """
-
-    results: pl.DataFrame
-    winners: pl.DataFrame
-
-
-def race_effects(store: Store, old: Edition, new: Edition, rules: RaceRules) -> RaceEffects | None:
-    """Power, rank, podium and winner of every race in the archive under both editions.
-
-    Returns:
-        The effects; None where the archive is not there or has no races.
-
-    Raises:
-        MissingKnowledgeError: the rules ask for what is not known.
-    """
-    if archive_root(store) is None:
-        return None
-    results = store.read("listed_races")
-    if results.is_empty():
-        return None
-    before, after = (
-        replay(lines_in_time(store, edition), results, rules) for edition in (old, new)
-    )
-    members = new.tables.get("ensemble", pl.DataFrame())
-    return RaceEffects(race_changes(before, after), winner_changes(before, after, members))
-
-
 def _code_parts(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     """What the code alone changed: the old edition made again by the code of the new one.
 
@@ -150,11 +116,17 @@ def _code_parts(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     from herijk.warehouse.editions.lines import made_again  # noqa: PLC0415 - much, and seldom needed
 
     again = made_again(store, old).lines.with_columns(pl.lit("again").alias("edition"))
-    return register_changes(old.register, again).select(
+    changes = register_changes(old.register, again)
+    return _parts(CODE, changes.with_columns(pl.col("cw_ratio").fill_null(1.0)))
+
+
+def _parts(cause: str, changes: pl.DataFrame) -> pl.DataFrame:
+    """All of what changed as the work of one cause."""
+    return changes.select(
         *LINE,
-        pl.lit(CODE).alias("cause"),
+        pl.lit(cause).alias("cause"),
         pl.lit(None, pl.String).alias("step"),
-        pl.col("cw_ratio").fill_null(1.0).alias("factor"),
+        pl.col("cw_ratio").alias("factor"),
     )
 
 
@@ -173,16 +145,7 @@ def _printed_parts(old: Edition, new: Edition) -> pl.DataFrame:
     moved = same_tow.join(new.register, on="tow_id", how="anti")
     if moved.is_empty():
         return NO_PARTS
-    return (
-        register_changes(old.register, moved)
-        .drop_nulls("cw_ratio")
-        .select(
-            *LINE,
-            pl.lit(PRINTED).alias("cause"),
-            pl.lit(None, pl.String).alias("step"),
-            pl.col("cw_ratio").alias("factor"),
-        )
-    )
+    return _parts(PRINTED, register_changes(old.register, moved).drop_nulls("cw_ratio"))
 
 
 def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
@@ -200,14 +163,9 @@ def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
     from herijk.pipeline.studies.ladder import ladder  # noqa: PLC0415 - much, and seldom needed
 
     blocks = stack_blocks(intake.all_blocks(store), runs)
-    return ladder(old.method, new.method, tows, blocks, _links(old, new))
-
-
-def _links(old: Edition, new: Edition) -> tuple[pl.DataFrame, pl.DataFrame] | None:
-    """The log factors with which both editions were made; None where one does not have them."""
-    instruments = [edition.tables.get("tow_instruments") for edition in (old, new)]
-    before, after = instruments
-    return None if before is None or after is None else (before, after)
+    before, after = (edition.tables.get("tow_instruments") for edition in (old, new))
+    links = None if before is None or after is None else (before, after)
+    return ladder(old.method, new.method, tows, blocks, links)
 
 
 def _grounds(old: Edition, new: Edition, separated: set[object], code_known: bool) -> pl.DataFrame:
@@ -328,7 +286,8 @@ class DiffReport:
         largest: the lines that changed most.
         rows: all lines: rows of `register_changes` with the causes that moved each.
         race_rules: how races are worked out, where that was asked.
-        races, winners: as in `RaceEffects`; None where not asked, or without results.
+        races, winners: rows of `pipeline.register.replay.race_changes` and `winner_changes`; None
+            where not asked, or where the archive is not there or has no races.
     """
 
     from_edition: str
@@ -379,13 +338,22 @@ def report(comparison: Comparison) -> DiffReport:
 
 
 def report_with_races(store: Store, comparison: Comparison, rules: RaceRules) -> DiffReport:
-    """The same with what it does to the races in the archive; errors as `race_effects`."""
-    effects = race_effects(store, comparison.old, comparison.new, rules)
+    """The same with power, rank, podium and winner of every race in the archive under both.
+
+    Raises:
+        MissingKnowledgeError: the rules ask for what is not known.
+    """
+    without_races = replace(report(comparison), race_rules=rules)
+    results = pl.DataFrame() if archive_root(store) is None else store.read("listed_races")
+    if results.is_empty():
+        return without_races
+    editions = (comparison.old, comparison.new)
+    before, after = (replay(lines_in_time(store, one), results, rules) for one in editions)
+    members = comparison.new.tables.get("ensemble", pl.DataFrame())
     return replace(
-        report(comparison),
-        race_rules=rules,
-        races=None if effects is None else effects.results.to_dicts(),
-        winners=None if effects is None else effects.winners.to_dicts(),
+        without_races,
+        races=race_changes(before, after).to_dicts(),
+        winners=winner_changes(before, after, members).to_dicts(),
     )
 
 
