@@ -97,11 +97,11 @@ def results(setup: Setup) -> Iterator[dg.AssetCheckResult]:
     """What all checks say."""
     for table, checks in CHECKS.items():
         for check in checks:
-            found = check(setup)
+            result = check(setup)
             yield dg.AssetCheckResult(
                 asset_key=table,
                 check_name=check.__name__,
-                passed=found.passed,
-                severity=found.severity,
-                metadata=found.metadata,
+                passed=result.passed,
+                severity=result.severity,
+                metadata=result.metadata,
             )

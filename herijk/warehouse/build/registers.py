@@ -1,7 +1,7 @@
 """Registers: a draft per method, what changes between them, and the published editions."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import polars as pl
 
@@ -16,13 +16,11 @@ from herijk.pipeline.register.register import (
     lines_of_all_days,
 )
 from herijk.tables.editions import Editions
+from herijk.tables.keys import SIZES
 from herijk.tables.register import RegisterChanges
 from herijk.tables.schemas import conform
 from herijk.warehouse.build.published import history_rows
 from herijk.warehouse.build.version import code_version
-
-SIZES: Final = ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg")
-"""What the register says of a boat on the day of its tow (Sleepproef 2017, "Opmetingen")."""
 
 if TYPE_CHECKING:
     from herijk.warehouse.build.inputs import Inputs

@@ -1,9 +1,9 @@
 """Two editions side by side: every line with its causes, and what it does to races.
 
 The numbers come from `pipeline.register.changes`, `pipeline.studies.ladder` and
-`pipeline.register.replay`; here it is found out what two editions do not share: tow, files, method,
-code. The steps of the method are computed with the code and blocks of the day; what they leave is
-one factor, named after what else differs. An edition holds its comparison with the one before it.
+`pipeline.register.replay`. Here is decided what two editions do not share: tow, files, method, code.
+The steps of the method are computed with the code and blocks of today; what they leave unexplained
+is one factor, named after what else differs. An edition holds its comparison with the one before.
 """
 
 import json
@@ -32,19 +32,6 @@ from herijk.warehouse.build.version import code_version
 from herijk.warehouse.editions.inputs import INPUTS_HASH, same_tows, tows_of_today, unchanged_tows
 from herijk.warehouse.store.editions import CHANGES, MEASURED, Edition, read_edition
 from herijk.warehouse.store.store import Store, archive_root
-
-PRINTED: Final = "printed"
-PRINTED_AND_TOW: Final = "printed_and_tow"
-CLOSED_FORM: Final = "closed_form"
-TOW: Final = "tow"
-INPUT: Final = "input"
-OTHER_INPUT: Final = "other_input"
-CODE: Final = "code"
-INPUT_AND_CODE: Final = "input_and_code"
-CODE_OR_OTHER_INPUT: Final = "code_or_other_input"
-METHOD: Final = "method"
-UNSEPARATED: Final = "unseparated"
-UNEXPLAINED: Final = "unexplained"
 
 STEP_COLUMNS: Final = ("tow_id", "position", "step", "factor")
 NO_STEPS: Final = pl.DataFrame(schema={n: dtypes(CorrectionSteps)[n] for n in STEP_COLUMNS})
@@ -117,7 +104,7 @@ def _code_parts(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
 
     again = made_again(store, old).lines.with_columns(pl.lit("again").alias("edition"))
     changes = register_changes(old.register, again)
-    return _parts(CODE, changes.with_columns(pl.col("cw_ratio").fill_null(1.0)))
+    return _parts("code", changes.with_columns(pl.col("cw_ratio").fill_null(1.0)))
 
 
 def _parts(cause: str, changes: pl.DataFrame) -> pl.DataFrame:
@@ -145,7 +132,7 @@ def _printed_parts(old: Edition, new: Edition) -> pl.DataFrame:
     moved = same_tow.join(new.register, on="tow_id", how="anti")
     if moved.is_empty():
         return NO_PARTS
-    return _parts(PRINTED, register_changes(old.register, moved).drop_nulls("cw_ratio"))
+    return _parts("printed", register_changes(old.register, moved).drop_nulls("cw_ratio"))
 
 
 def _steps(store: Store, old: Edition, new: Edition) -> pl.DataFrame:
@@ -199,7 +186,7 @@ def _ground(
     if same is None or {line["basis"], line["basis_new"]} != {MEASURED}:
         return _ground_of_printed(line, separated)
     if line["tow_id"] != line["tow_id_new"]:
-        return TOW
+        return "tow"
     own = line["tow_id"] not in same
     others = not own and any(e.tables["tows"].height > len(same) for e in (old, new))
     method = old.about.method_hash != new.about.method_hash
@@ -209,21 +196,21 @@ def _ground(
 def ground_of(own: bool, others: bool, method: bool, code: bool) -> str:
     """The name of what differs: the tow's own input, that of others, the method, the code."""
     if method:
-        return UNSEPARATED if own or code else METHOD
+        return "unseparated" if own or code else "method"
     if own:
-        return INPUT_AND_CODE if code else INPUT
+        return "input_and_code" if code else "input"
     if others:
-        return CODE_OR_OTHER_INPUT if code else OTHER_INPUT
-    return CODE if code else UNEXPLAINED
+        return "code_or_other_input" if code else "other_input"
+    return "code" if code else "unexplained"
 
 
 def _ground_of_printed(line: Row, separated: set[object]) -> str:
     if line[INPUTS_HASH] == line[f"{INPUTS_HASH}_new"]:
-        return CLOSED_FORM
+        return "closed_form"
     if tuple(line[name] for name in LINE) in separated:
-        return TOW
+        return "tow"
     days = {line["tow_date"], line["tow_date_new"]}
-    return PRINTED if len(days) == 1 or None in days else PRINTED_AND_TOW
+    return "printed" if len(days) == 1 or None in days else "printed_and_tow"
 
 
 # Summary

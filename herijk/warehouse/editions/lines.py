@@ -17,6 +17,7 @@ from herijk.pipeline.method.definition import RegisterRule
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.pipeline.register.register import LINE, draft_register
 from herijk.pipeline.uncertainty.ensemble import tow_ensemble
+from herijk.tables.keys import SIZES
 from herijk.warehouse.build.published import decisions_of
 from herijk.warehouse.editions import sheets
 from herijk.warehouse.editions.inputs import INPUTS_HASH, JUDGED, tows_of_today
@@ -38,7 +39,6 @@ Other processors leave other last bits, which come to no more in any table (docs
 
 BOAT_FACTS: Final = ("ht_no", "name", "boat_type")
 NUMBERS: Final = ("a_kg_m", "b_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
-TOW_FACTS: Final = ("waterline_length_m", "beam_m", "bow_height_m", "weight_kg", INPUTS_HASH)
 
 MADE: Final = ("curves", "run_points", "log_factors", "season_links", "tow_instruments")
 """What a method makes of the tows, and an edition keeps."""
@@ -57,7 +57,7 @@ def method_lines(
     )
     valid = pl.col("status") == "valid"
     return draft.join(
-        of_method["tows"].select("tow_id", *TOW_FACTS), on="tow_id", how="left"
+        of_method["tows"].select("tow_id", *SIZES, INPUTS_HASH), on="tow_id", how="left"
     ).with_columns(
         *(pl.when(valid).then(pl.col(name)).alias(name) for name in (*NUMBERS, "flags")),
         pl.when(valid).then(pl.lit(MEASURED)).alias("basis"),

@@ -1,8 +1,8 @@
 """Publishing: from the tables of a method, or from a printed register, to a frozen edition.
 
 Which tow counts is decided in `pipeline.register.register`, how sheets look in `sheets`, how a
-folder appears whole or not at all in `folder`. Only a person publishes: the name, the day from
-which it counts and the decision are handed in, and so is the day of publication.
+folder appears whole or not at all in `warehouse.store.editions`. Only a person publishes, who gives
+the name, the day from which it counts, the decision and the day of publication.
 """
 
 import datetime as dt

@@ -11,7 +11,7 @@ import time
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
-from stat import S_ISLNK
+from stat import S_ISDIR, S_ISLNK
 from typing import Final
 
 import polars as pl
@@ -106,7 +106,7 @@ def _stats(root: Path) -> Iterator[tuple[str, os.stat_result]]:
 
 
 Listing = dict[str, list[int]]
-"""Size in bytes and time of change in ns of every file, by path within the archive."""
+"""Size in bytes and time of the last change in ns of every file, by path within the archive."""
 
 
 def listing(root: Path) -> Listing:
@@ -115,17 +115,14 @@ def listing(root: Path) -> Listing:
     Raises:
         MissingKnowledgeError: there is no such folder, or nothing in it: a disk not mounted.
     """
-    found: Listing = {}
-    for folder, inner, files in os.walk(root):
-        inner[:] = [name for name in inner if not name.startswith(".")]
-        for name in (name for name in files if not name.startswith(".")):
-            path = Path(folder) / name
-            with suppress(FileNotFoundError):
-                stat = path.lstat()
-                found[path.relative_to(root).as_posix()] = [stat.st_size, stat.st_mtime_ns]
-    if not found:
+    files = {
+        path: [stat.st_size, stat.st_mtime_ns]
+        for path, stat in _stats(root)
+        if not S_ISDIR(stat.st_mode) and not path.startswith(".") and "/." not in path
+    }
+    if not files:
         raise MissingKnowledgeError("there is no file at {}: is its disk there?", root)
-    return dict(sorted(found.items()))
+    return files
 
 
 def listed_seasons(store: Store) -> list[int]:

@@ -190,10 +190,10 @@ def _tows(db: duckdb.DuckDBPyConnection, fsn_no: str, methods: list[str]) -> lis
     ]
 
 
-def _by(found: list[Row], *names: str) -> defaultdict[tuple[object, ...], list[Row]]:
+def _by(listed: list[Row], *names: str) -> defaultdict[tuple[object, ...], list[Row]]:
     """Rows by the values of some columns, in their order."""
     grouped = defaultdict(list)
-    for row in found:
+    for row in listed:
         grouped[tuple(row[name] for name in names)].append(row)
     return grouped
 

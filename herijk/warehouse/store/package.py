@@ -50,13 +50,13 @@ class Rights:
     @property
     def described(self) -> dict[str, object]:
         """The same as the fields of a data package."""
-        found: dict[str, object] = {}
+        fields: dict[str, object] = {}
         if self.publisher:
-            found["contributors"] = [{"title": self.publisher, "roles": ["publisher"]}]
+            fields["contributors"] = [{"title": self.publisher, "roles": ["publisher"]}]
         if self.licence:
             key = "path" if "://" in self.licence else "name"
-            found["licenses"] = [{key: self.licence}]
-        return found
+            fields["licenses"] = [{key: self.licence}]
+        return fields
 
 
 @dataclass(frozen=True)
