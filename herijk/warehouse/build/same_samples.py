@@ -2,10 +2,10 @@
 
 A file that was packed again, or saved with other line ends or in another format, has another hash
 and the same content: runs whose sums are equal to the last bit are one measurement. A file written
-with fewer decimals or in another unit has nearly the same sums. One such run may be chance; two runs
-of a tow that are both like runs of one other tow are not. Nobody can know whose samples they are, so
-tows of different boats or crews all lose them; of one boat and crew the first tow keeps them. Files
-equal byte by byte are told earlier, in `warehouse.archive.index`.
+with fewer decimals or in another unit has nearly the same sums. One such run may be chance; two
+runs of a tow that are both like runs of one other tow are not. Nobody can know whose samples they
+are, so tows of different boats or crews all lose them; of one boat and crew the first tow keeps
+them. Files equal byte by byte are told earlier, in `warehouse.archive.index`.
 """
 
 import dataclasses

@@ -1,9 +1,10 @@
 """Two editions side by side: every line with its causes, and what it does to races.
 
 The numbers come from `pipeline.register.changes`, `pipeline.studies.ladder` and
-`pipeline.register.replay`. Here is decided what two editions do not share: tow, files, method, code.
-The steps of the method are computed with the code and blocks of today; what they leave unexplained
-is one factor, named after what else differs. An edition holds its comparison with the one before.
+`pipeline.register.replay`. Here is decided what two editions do not share: tow, files, method,
+code. The steps of the method are computed with the code and blocks of today; what they leave
+unexplained is one factor, named after what else differs. An edition holds its comparison with the
+one before.
 """
 
 import json
