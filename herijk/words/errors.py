@@ -377,9 +377,6 @@ ERRORS: Final[dict[str, str]] = {
     "boat {} is not in edition {}; its register.csv lists the boats": (
         "sloep {} staat niet in editie {}; register.csv noemt de sloepen"
     ),
-    "a register as printed has no lineage": (
-        "van een register zoals gedrukt is geen herkomst bekend"
-    ),
     "edition {} was recomputed; only lines of an edition as printed can be carried over": (
         "editie {} is herberekend; alleen regels van een editie zoals gedrukt kunnen "
         "overgenomen worden"

@@ -14,8 +14,7 @@ import herijk.pipeline.recompute.recompute
 import herijk.warehouse.editions.verify
 from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import parse_method, shipped_method
-from herijk.tables.schemas import conform
-from herijk.warehouse.build.published import lineage_rows
+from herijk.warehouse.build.published import published_tables
 from herijk.warehouse.editions import sheets
 from herijk.warehouse.editions.inputs import same_tows, unchanged_tows
 from herijk.warehouse.editions.lineage import lineage
@@ -305,7 +304,7 @@ def test_lineage_leads_to_files_runs_and_seconds(published):
 
 def test_lineage_rows_are_those_of_the_warehouse(published):
     edition = read_edition(published.store, "2014-1")
-    rows = conform("lineage", lineage_rows(edition))
+    rows = published_tables(published.store)["lineage"].filter(edition="2014-1")
     assert rows.height == edition.register.drop_nulls("tow_id").height
     assert set(rows["method_hash"]) == {read_about(folder(published)).method_hash}
 

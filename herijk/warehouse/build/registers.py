@@ -6,11 +6,9 @@ from typing import TYPE_CHECKING
 import polars as pl
 
 from herijk.pipeline.method.definition import Method
-from herijk.pipeline.recompute.facts import samples_files
 from herijk.pipeline.register.changes import register_changes
 from herijk.pipeline.register.due import due_list
 from herijk.pipeline.register.register import (
-    LINE,
     draft_name,
     draft_register,
     lines_of_all_days,
@@ -19,7 +17,7 @@ from herijk.tables.editions import Editions
 from herijk.tables.keys import SIZES
 from herijk.tables.register import RegisterChanges
 from herijk.tables.schemas import conform
-from herijk.warehouse.build.published import history_rows
+from herijk.warehouse.build.published import history_rows, lineage_rows
 from herijk.warehouse.build.version import code_version
 
 if TYPE_CHECKING:
@@ -38,11 +36,12 @@ def register_tables(inputs: "Inputs") -> dict[str, pl.DataFrame]:
     histories = [_history(method, inputs) for method in methods]
     register = pl.concat(drafts)
     changes = [register_changes(drafts[0], draft) for draft in drafts[1:]]
+    hashes = {method.name: method.content_hash for method in methods}
     made = {
         "register": register,
         "register_history": pl.concat(histories),
         "register_changes": pl.concat(changes) if changes else RegisterChanges.create_empty(),
-        "lineage": _lineage(register, inputs["tows"], methods),
+        "lineage": lineage_rows(register, inputs["tows"], hashes, code_version()),
         "editions": Editions.create_empty(),
     }
     with_editions = {
@@ -67,19 +66,6 @@ def _history(method: Method, inputs: "Inputs") -> pl.DataFrame:
     curves = inputs["curves"].filter(pl.col("method") == method.name)
     lines = lines_of_all_days(curves, inputs["tows"], method.validity)
     return history_rows(lines, draft_name(method.name), method.name)
-
-
-def _lineage(register: pl.DataFrame, tows: pl.DataFrame, methods: Sequence[Method]) -> pl.DataFrame:
-    """The files behind every line that has a tow."""
-    hashes = pl.DataFrame(
-        {"method": [m.name for m in methods], "method_hash": [m.content_hash for m in methods]}
-    )
-    lines = register.drop_nulls("tow_id").select("edition", *LINE, "tow_id", "method")
-    return (
-        lines.join(samples_files(tows), on="tow_id")
-        .join(hashes, on="method")
-        .with_columns(pl.lit(code_version()).alias("code_version"))
-    )
 
 
 def _due_list(inputs: "Inputs") -> pl.DataFrame:

@@ -303,6 +303,8 @@ def report(comparison: Comparison) -> DiffReport:
     moved = compared.filter(pl.col("change") == "changed")
     gain = moved.filter(pl.col("power_ratio") > 1).sort("power_ratio", "fsn_no", descending=True)
     loss = moved.filter(pl.col("power_ratio") <= 1).sort("power_ratio", "fsn_no")
+    size = pl.col("cw_ratio").log().abs()
+    by_size = moved.sort(size, "fsn_no", descending=[True, False])
     editions = (comparison.old, comparison.new)
     return DiffReport(
         from_edition=comparison.old.about.edition,
@@ -320,7 +322,7 @@ def report(comparison: Comparison) -> DiffReport:
             if edition.method is not None and edition.method.interval == RUNS_ALONE
         ],
         causes=_causes(compared),
-        largest=_rows(_by_size(moved).head(LARGEST)),
+        largest=_rows(by_size.head(LARGEST)),
         rows=_rows(lines),
     )
 
@@ -358,10 +360,6 @@ def _group(lines: pl.DataFrame) -> Group:
 def _median(values: pl.Series) -> float | None:
     median = values.median()
     return median if isinstance(median, float) else None
-
-
-def _by_size(lines: pl.DataFrame) -> pl.DataFrame:
-    return lines.sort(pl.col("cw_ratio").log().abs(), "fsn_no", descending=[True, False])
 
 
 def _causes(lines: pl.DataFrame) -> list[CauseSummary]:

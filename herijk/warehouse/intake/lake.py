@@ -93,7 +93,7 @@ def read_season(
     with ThreadPoolExecutor(workers) as pool:
         rows = list(pool.map(read, tows.sort("tow_id").iter_rows(named=True)))
     index = frame_of(SeasonIndex, rows)
-    _remove_unlisted(store, profile.season, index)
+    keep_only(store, profile.season, index)
     return index
 
 
@@ -184,11 +184,6 @@ def _sha256(root: Path, path: str, hashes: FileHashes) -> str | None:
         return None
 
 
-def forget_season(store: Store, season: int) -> None:
-    """Removes the samples and blocks of a season that the archive no longer lists."""
-    _remove_unlisted(store, season, SeasonIndex.create_empty())
-
-
 def _known_tows(store: Store, season: int) -> dict[str, Row]:
     """What was found of the season's tows at its last reading, by samples key."""
     if str(season) not in store.partitions("season_index"):
@@ -205,8 +200,8 @@ def _samples_key(tow: Tow, runs: pl.DataFrame, profile: SeasonProfile) -> str:
     return fingerprint(*facts, dataclasses.asdict(profile), code_hash(*READERS))
 
 
-def _remove_unlisted(store: Store, season: int, index: pl.DataFrame) -> None:
-    """Removes samples and blocks of tows that are no longer listed or were mended."""
+def keep_only(store: Store, season: int, index: pl.DataFrame) -> None:
+    """Removes samples and blocks of a season that its index does not name (any more)."""
     kept = {
         *(store.samples_path(season, k) for k in index["samples_key"].drop_nulls()),
         *(store.blocks_path(season, k) for k in index["blocks_key"].drop_nulls()),

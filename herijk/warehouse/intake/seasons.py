@@ -21,7 +21,7 @@ from herijk.pipeline.errors import MissingKnowledgeError
 from herijk.pipeline.recompute.facts import with_boat_types, with_hand_windows
 from herijk.tables.archive import TraceSeconds
 from herijk.tables.frames import frame_of
-from herijk.tables.lake import AboutArchive, Faults
+from herijk.tables.lake import AboutArchive, Faults, SeasonIndex
 from herijk.warehouse.archive import (
     FileHashes,
     Profiles,
@@ -137,13 +137,13 @@ def stale_seasons(store: Store, root: Path, wanted: Collection[int] | None = Non
     return [
         season
         for season in listed_seasons(store)
-        if (wanted is None or season in wanted)
-        and not _is_up_to_date(store, season, _fingerprint(store, profiles, season))
+        if (wanted is None or season in wanted) and _is_stale(store, profiles, season)
     ]
 
 
-def _is_up_to_date(store: Store, season: int, made_from: str) -> bool:
-    return all(store.made_from(t, str(season)) == made_from for t in SEASON_TABLES)
+def _is_stale(store: Store, profiles: Profiles, season: int) -> bool:
+    made_from = lake.season_fingerprint(*_listed(store, season), profiles.for_season(season))
+    return any(store.made_from(table, str(season)) != made_from for table in SEASON_TABLES)
 
 
 def forget_unlisted_seasons(store: Store) -> list[int]:
@@ -151,7 +151,7 @@ def forget_unlisted_seasons(store: Store) -> list[int]:
     listed = set(listed_seasons(store))
     gone = [int(s) for s in store.partitions("blocks") if int(s) not in listed]
     for season in gone:
-        lake.forget_season(store, season)
+        lake.keep_only(store, season, SeasonIndex.create_empty())
         for table in SEASON_TABLES:
             store.remove(table, str(season))
     return gone
@@ -210,11 +210,6 @@ def _listed(store: Store, season: int) -> tuple[pl.DataFrame, pl.DataFrame]:
     tows = store.read("listed_tows").filter(pl.col("season") == season).sort("tow_id")
     runs = store.read("listed_runs").join(tows.select("tow_id"), on="tow_id", how="semi")
     return tows, runs.sort("tow_id", "run")
-
-
-def _fingerprint(store: Store, profiles: Profiles, season: int) -> str:
-    tows, runs = _listed(store, season)
-    return lake.season_fingerprint(tows, runs, profiles.for_season(season))
 
 
 def count_listed(store: Store, seasons: Collection[int]) -> int:
