@@ -40,11 +40,11 @@ class LogProgress:
         self._log = context.log
 
     def expect(self, tows: int) -> None:
-        """So many tows are going to be read."""
+        """How many tows will be read."""
         self._log.info(f"{tows} tows to read")
 
     def tow_read(self, tow_id: str, set_aside: bool) -> None:
-        """Only what is set aside is worth a line."""
+        """A tow was read; only one set aside is worth a line."""
         if set_aside:
             self._log.warning(f"{tow_id} is set aside")
 
@@ -125,7 +125,7 @@ def schedules(settings: Settings) -> list[dg.ScheduleDefinition]:
 
 
 def archive_sensor(archive: Path) -> dg.SensorDefinition:
-    """The sensor that asks for a rebuild when files of the archive came, changed or went."""
+    """The sensor that asks for a rebuild when the files of the archive change."""
 
     def look(context: dg.SensorEvaluationContext) -> dg.SensorResult | dg.SkipReason:
         try:  # a digest of the listing, since a cursor is kept for every tick
@@ -135,7 +135,7 @@ def archive_sensor(archive: Path) -> dg.SensorDefinition:
 
     return dg.SensorDefinition(
         name="archive_changed",
-        description="Asks for a rebuild when files came, changed or went, and copying has ended.",
+        description="Asks for a rebuild when files changed and copying has ended.",
         evaluation_fn=look,
         job=rebuild_job,
         minimum_interval_seconds=60,

@@ -1,4 +1,4 @@
-"""What assets are given: the folders, and someone to tell how far they are.
+"""What assets are given: the folders, and the methods to apply.
 
 Resources load nothing and compute nothing; they hand plain objects to `warehouse` and `pipeline`.
 """

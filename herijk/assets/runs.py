@@ -82,7 +82,7 @@ class Work:
     def read_on_dask(
         self, address: str, folders: tuple[Path, Path], seasons: Sequence[int]
     ) -> Mapping[int, str]:
-        """Has a cluster read seasons from archive to data; gives why, for those it could not."""
+        """Has a cluster read seasons from archive to data; why, for each that it could not."""
         try:
             from herijk.assets.cluster import read_seasons  # noqa: PLC0415 - needs the extra dask
         except ImportError as error:
@@ -107,7 +107,7 @@ class Work:
                 self.checks.append(event)
 
     def wait_for_records(self) -> None:
-        """Waits until everything is written; an error in writing comes out."""
+        """Waits until everything is written; raises what went wrong in writing."""
         for record in self.records:
             record.result()
 
@@ -115,7 +115,7 @@ class Work:
 def in_one_run(
     setup: Setup, other: Executor, work: Callable[[Work], None]
 ) -> list[dg.AssetCheckEvaluation]:
-    """Has work done in a run of Dagster, by whoever holds the lock; an error comes out as raised.
+    """Does work in a run of Dagster; the caller holds the lock, and an error is raised as it is.
 
     A run costs a second and more, so a rebuild is one and not one for each of its thirty pieces.
 
@@ -146,7 +146,7 @@ def taking_over(store: Store) -> Iterator[str]:
     """Ends the runs of a server that was stopped or killed: later ones would wait for them.
 
     Returns:
-        A sentence for anyone who starts the new server, about each kind of run that was found.
+        A sentence for anyone who starts the new server, about each kind of run.
     """
     if not nobody_writes(store.root):
         yield "A rebuild is at work; scheduled ones wait for it."

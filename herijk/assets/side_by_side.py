@@ -1,4 +1,4 @@
-"""Seasons and steps that do not wait for each other in two processes: this one and a helper.
+"""Seasons and steps that do not depend on each other, in two processes: this one and a helper.
 
 Samples are read and tables made by code that holds Python's lock most of the time, so threads would
 not do. Which process does it changes nothing in what is made.

@@ -1,4 +1,4 @@
-"""What the steps of a method change, one after the other, and how much choices of it matter."""
+"""What the steps of a method change, one after the other, and how much its options matter."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final

@@ -116,8 +116,7 @@ def publish(store: Store, method: Method, terms: Terms, carry: str | None = None
         BrokenPromiseError: the name is taken, or the folder could not be written.
         MissingKnowledgeError: the tables are not up to date, a name or decision cannot be used.
     """
-    check_new_name(store, terms.edition)
-    _check_decision(terms)
+    _check_terms(store, terms)
     edition = recomputed_edition(store, method, terms, carry)
     decisions = _decisions(store, terms)
     texts = {
@@ -135,8 +134,7 @@ def publish_printed(store: Store, season: int, terms: Terms) -> Place:
         MissingKnowledgeError: the archive holds no such register, it names a line twice, or a line
             of it cannot be read.
     """
-    check_new_name(store, terms.edition)
-    _check_decision(terms)
+    _check_terms(store, terms)
     path = printed_path(store, season)
     files = store.read("listed_files").filter(pl.col("path") == path)
     files = files.select("path", "sha256", pl.lit(REGISTER).alias("kind"))
@@ -244,7 +242,8 @@ def lines_to_look_at(edition: Edition) -> list[Row]:
     return lines.select(*LINE, "status", "tow_id", "flags").to_dicts()
 
 
-def _check_decision(terms: Terms) -> None:
+def _check_terms(store: Store, terms: Terms) -> None:
+    check_new_name(store, terms.edition)
     if not terms.decision.strip():
         raise MissingKnowledgeError(
             "an edition needs a decision: say who decided it and where, with --decision"

@@ -114,7 +114,7 @@ def change_report(store: Store) -> ChangeReport:
 
 @lru_cache(maxsize=1)
 def _between(reported: Path, database: Path, _: tuple[str, str]) -> ChangeReport:
-    """What changed from one database to another; kept by their hashes, as many ask."""
+    """What changed from one database to another; kept by their hashes, as several ask."""
     now, was = _tables(database), _reported(reported)
     before = was or {name: frame.clear() for name, frame in now.items()}
     return ChangeReport(

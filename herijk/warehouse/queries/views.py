@@ -171,7 +171,7 @@ class Views:
         return self.frame('SELECT * FROM check_counts ORDER BY method, beyond DESC, "check"')
 
     def due_list(self) -> pl.DataFrame:
-        """Every boat and crew under every method, whose tow expires first on top."""
+        """Every boat and crew under every method, the tow that expires first on top."""
         return self.frame(_DUE)
 
     def retow_choice(self) -> pl.DataFrame:
