@@ -75,7 +75,9 @@ def outside_run(windows: pl.DataFrame, seconds: pl.DataFrame) -> list[Fault]:
         windows: rows of `ListedWindows`.
         seconds: `tow_id`, `run` and the run's length in whole `seconds`.
     """
-    beyond = windows.join(seconds, on=["tow_id", "run"]).filter(pl.col("end_s") > pl.col("seconds"))
+    beyond = windows.join(seconds, on=["tow_id", "run"], maintain_order="left").filter(
+        pl.col("end_s") > pl.col("seconds")
+    )
     return [
         _fault(
             window,

@@ -110,7 +110,7 @@ def lineage_rows(
         code_version: of the code that made the lines.
     """
     lines = register.drop_nulls("tow_id").select("edition", *LINE, "tow_id", "method")
-    return lines.join(samples_files(tows), on="tow_id").with_columns(
+    return lines.join(samples_files(tows), on="tow_id", maintain_order="left").with_columns(
         method_hash=pl.col("method").replace_strict(hashes, return_dtype=pl.String),
         code_version=pl.lit(code_version),
     )

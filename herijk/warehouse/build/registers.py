@@ -58,7 +58,9 @@ def _draft(method: Method, inputs: "Inputs") -> pl.DataFrame:
     lines = draft_register(curves, tows, inputs["listed_boats"], on_date, method.validity)
     edition, name = pl.lit(draft_name(method.name)), pl.lit(method.name)
     code = pl.lit(None, pl.String).alias("verification_code")
-    measured = lines.join(tows.select("tow_id", *SIZES), on="tow_id", how="left")
+    measured = lines.join(
+        tows.select("tow_id", *SIZES), on="tow_id", how="left", maintain_order="left"
+    )
     return measured.select(edition.alias("edition"), name.alias("method"), pl.all(), code)
 
 
