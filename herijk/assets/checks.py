@@ -17,20 +17,13 @@ from herijk.warehouse.queries.change_report import change_report
 def _result(
     wrong: Sequence[object], severity: dg.AssetCheckSeverity = dg.AssetCheckSeverity.ERROR
 ) -> dg.AssetCheckResult:
-    """Passed where nothing is wrong; else with the first twenty of it."""
+    """Passed where nothing is wrong; else with the first twenty rows or sentences of it."""
+    lines = [" ".join(map(str, w)) if isinstance(w, tuple) else str(w) for w in wrong[:20]]
     return dg.AssetCheckResult(
         passed=not wrong,
         severity=severity,
-        metadata={
-            "number": len(wrong),
-            "first": dg.MetadataValue.json([_on_a_line(w) for w in wrong[:20]]),
-        },
+        metadata={"number": len(wrong), "first": dg.MetadataValue.json(lines)},
     )
-
-
-def _on_a_line(wrong: object) -> str:
-    """A row of a table, or a sentence."""
-    return " ".join(map(str, wrong)) if isinstance(wrong, tuple) else str(wrong)
 
 
 def tables_fit_their_schemas(setup: Setup) -> dg.AssetCheckResult:

@@ -418,6 +418,7 @@ ERRORS: Final[dict[str, str]] = {
     "edition {}: {} is missing or damaged ({}); put the folder back from a copy": (
         "editie {}: {} ontbreekt of is beschadigd ({}); zet de map terug uit een kopie"
     ),
+    "{}/{} names no file": "{}/{} noemt geen bestand",
     "edition {}: {}.parquet is missing or damaged; put the folder back from a copy": (
         "editie {}: {}.parquet ontbreekt of is beschadigd; zet de map terug uit een kopie"
     ),

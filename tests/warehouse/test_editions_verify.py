@@ -375,6 +375,15 @@ def test_a_changed_printed_register_is_named_and_so_is_its_line(carrying):
     assert any("the printed register in the archive says so now" in f.message for f in findings)
 
 
+def test_a_printed_edition_that_names_no_file_any_more_cannot_be_made_again(carrying):
+    (folder(carrying, "printed") / "inputs.csv").write_text("bestand;soort;sha256\n")
+    findings, wrong = found(carrying, edition="printed")
+    assert wrong
+    assert [f.message for f in findings if f.kind == "unchecked"] == [
+        "it cannot be made again: printed/inputs.csv names no file"
+    ]
+
+
 def test_an_edition_whose_printed_source_is_gone_cannot_be_made_again(carrying):
     shutil.rmtree(folder(carrying, "printed"))
     findings, wrong = found(carrying, kind="unchecked")

@@ -12,7 +12,7 @@ from typing import Final
 import polars as pl
 
 from herijk.pipeline.blocks.run_blocks import stack_blocks
-from herijk.pipeline.errors import MissingKnowledgeError
+from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import RegisterRule
 from herijk.pipeline.recompute.recompute import recompute
 from herijk.pipeline.register.register import LINE, draft_register
@@ -89,12 +89,17 @@ def made_again(store: Store, edition: Edition) -> Again:
 
     Raises:
         MissingKnowledgeError: there is no warehouse, or the archive is not there.
-        BrokenPromiseError: the printed edition that lines were carried over from is damaged.
+        BrokenPromiseError: the printed edition that lines were carried over from is damaged, or
+            the list of what a printed one was made from.
     """
     if store.made_from("tows") is None:
         raise MissingKnowledgeError("there is no warehouse to make it from; run herijk rebuild")
     if edition.method is None:
-        return Again(printed_lines(store, _printed_file(store, edition)), {})
+        path = edition_path(store, edition.about.edition)
+        files = sheets.read_inputs(path)
+        if not files:
+            raise BrokenPromiseError("{}/{} names no file", path.name, INPUTS)
+        return Again(printed_lines(store, files[0][0]), {})
     known = [name for name in JUDGED if name in edition.tables["tows"].columns]
     judged = edition.tables["tows"].select("tow_id", *known)
     today = tows_of_today(store)
@@ -124,9 +129,3 @@ def made_again(store: Store, edition: Edition) -> Again:
     }
     tables["ensemble"] = members.join(edition.tables["ensemble"], on="tow_id", how="semi")
     return Again(lines, tables)
-
-
-def _printed_file(store: Store, edition: Edition) -> str:
-    """The file that a register as printed was read from."""
-    listed = (edition_path(store, edition.about.edition) / INPUTS).read_bytes()
-    return str(sheets.read_csv_cells(listed)[1][0])

@@ -14,7 +14,6 @@ from typing import Final
 
 import polars as pl
 
-from herijk.pipeline.blocks.run_blocks import stack_blocks
 from herijk.pipeline.errors import BrokenPromiseError, MissingKnowledgeError
 from herijk.pipeline.method.definition import Method
 from herijk.pipeline.method.writing import method_text
@@ -46,7 +45,7 @@ from herijk.warehouse.editions.lines import (
 )
 from herijk.warehouse.editions.printed import printed_lines, printed_path, with_carried
 from herijk.warehouse.editions.sheets import CODE_FIELD
-from herijk.warehouse.intake.seasons import all_blocks, runs_with_windows, typed_tows
+from herijk.warehouse.intake.seasons import run_blocks, runs_with_windows, typed_tows
 from herijk.warehouse.store import decisions as decided
 from herijk.warehouse.store.editions import (
     ABOUT,
@@ -180,8 +179,7 @@ def recomputed_edition(
 
 def _check_made(store: Store, method: Method, curves: pl.DataFrame) -> None:
     """Refuses curves that are not those that the method makes of the blocks."""
-    blocks = stack_blocks(all_blocks(store), runs_with_windows(store))
-    made = recompute(method, typed_tows(store), blocks, with_bands=False).curves
+    made = recompute(method, typed_tows(store), run_blocks(store), with_bands=False).curves
     pairs = curves.join(made, on="tow_id", how="full", suffix="_made", maintain_order="left_right")
     same = [
         (pl.col(name) / pl.col(f"{name}_made") - 1.0).abs().fill_null(0.0) < SAME_NUMBER
