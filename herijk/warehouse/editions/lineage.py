@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 import polars as pl
 
 from herijk.pipeline.errors import MissingKnowledgeError
-from herijk.pipeline.recompute.facts import samples_files
 from herijk.pipeline.register.register import LINE
 from herijk.tables.row import Row
 from herijk.warehouse.editions.sheets import CODE_FIELD, REGISTER_FIELDS, printed_cells
@@ -87,10 +86,12 @@ def _line(edition: Edition, row: Row) -> LineLineage:
         edition.tables[name].filter(tow_id=row["tow_id"])
         for name in ("tows", "curves", "run_points")
     )
+    tow = tows.row(0, named=True)
+    files = [(tow[f"{which}_path"], tow[f"{which}_sha256"]) for which in ("samples", "second")]
     return replace(
         line,
-        tow=tows.row(0, named=True),
-        files=samples_files(tows).select("path", "sha256").to_dicts(),
+        tow=tow,
+        files=[{"path": path, "sha256": sha256} for path, sha256 in files if path],
         runs=run_points.to_dicts(),
         curve=curves.row(0, named=True),
     )
