@@ -288,8 +288,8 @@ class DiffReport:
         largest: the lines that changed most.
         rows: all lines: rows of `register_changes` with the causes that moved each.
         race_rules: how races are worked out, where that was asked.
-        races, winners: rows of `pipeline.register.replay.race_changes` and `winner_changes`; None
-            where not asked, or where the archive is not there or has no races.
+        races, winners: results of the archive's races under both, and who wins; None where not
+            asked, or where the archive is not there or has no races.
     """
 
     from_edition: str
