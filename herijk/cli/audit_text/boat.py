@@ -17,11 +17,11 @@ from herijk.cli.audit_text.words import (
     slow_tow,
     wrapped,
 )
-from herijk.cli.text import table
+from herijk.cli.text import place, table, why_set_aside
 from herijk.pipeline.method.definition import COMPLETE
 from herijk.tables.row import Row
 from herijk.warehouse.queries.audit import BoatAudit
-from herijk.words import LANGUAGE, tell
+from herijk.words import tell
 from herijk.words.catalogue import code
 
 RUNS_ALONE_MEANS: Final = "runs alone: spread of the runs alone: the log's error is not in it"
@@ -72,7 +72,8 @@ def boat_page(report: BoatAudit) -> list[str]:
         ),
         (
             tell("Set aside, by its number or the name of its file:"),
-            [_set_aside(row) for row in report.set_aside] or [tell("  nothing")],
+            [f"  {place(row)}: {why_set_aside(row)}" for row in report.set_aside]
+            or [tell("  nothing")],
         ),
     ]
     laid = [(title, [wrapped(line.strip()) for line in lines]) for title, lines in sections]
@@ -205,13 +206,6 @@ def _register(row: Row) -> str:
         row["tow_id"],
         row["valid_until"],
     )
-
-
-def _set_aside(row: Row) -> str:
-    tow = "" if row["tow_id"] is None else tell(" (tow {})", row["tow_id"])
-    line = "" if row["line"] is None else tell(", line {}", row["line"])
-    said = row["message_nl" if LANGUAGE.get() == "nl" else "message"]
-    return f"  {row['path']}{line}{tow}: {said}"
 
 
 def _tow(tow: Row) -> str:
