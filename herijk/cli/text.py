@@ -61,6 +61,13 @@ def boat(row: Row) -> tuple[str, str, str]:
     return row["fsn_no"], row["name"] or "-", f"{row['rowers']}{row['crew_class']}"
 
 
+def window(run: Row) -> str:
+    """The seconds of a run that count."""
+    if run["window_start_s"] is None:
+        return "-"
+    return f"{run['window_start_s']:.0f}-{run['window_end_s']:.0f}"
+
+
 def _in_two_hours(row: Row) -> str:
     """What a line of the register gives in a race of two hours."""
     return f"{7200 * (row['time_ratio'] - 1):+.0f} s"

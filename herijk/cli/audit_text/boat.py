@@ -17,7 +17,7 @@ from herijk.cli.audit_text.words import (
     slow_tow,
     wrapped,
 )
-from herijk.cli.text import place, table, why_set_aside
+from herijk.cli.text import decimals, place, table, why_set_aside, window
 from herijk.pipeline.method.definition import COMPLETE
 from herijk.tables.row import Row
 from herijk.warehouse.queries.audit import BoatAudit
@@ -218,7 +218,7 @@ def _tow(tow: Row) -> str:
         tow["rowers"],
         tow["crew_class"],
         tow["declared_speed_m_s"],
-        " x ".join("-" if size is None else tell("{:.2f}", size) for size in sizes),
+        " x ".join(decimals(size, 2) for size in sizes),
         weight,
         tow["samples_path"],
     )
@@ -268,9 +268,7 @@ def _curve(curve: Row) -> str:
     rows = [
         (
             p["run"],
-            "-"
-            if p["window_start_s"] is None
-            else f"{p['window_start_s']:.0f}-{p['window_end_s']:.0f}",
+            window(p),
             codes(p["cut_reason"].split(",")),
             p["speed_factor"],
             p["speed_m_s"],
