@@ -364,7 +364,8 @@ def _terms_of_tows(o: Outcome, found: SeasonFactors | None, scatter: curve.Scatt
     net_air = batch.mean(taken_off - o.still_air_kg_m, o.used)
     # A larger coefficient takes more off as felt and puts more back for still air.
     still_unit = o.still_air_kg_m / np.maximum(o.still_air_coefficient, 1e-9)
-    per_coefficient = batch.mean(still_unit - o.air_unit_kg_m, o.used)
+    felt_unit = o.by_true_speed(o.means.air.ahead + o.means.air.behind)
+    per_coefficient = batch.mean(still_unit - felt_unit, o.used)
     stream_sd, stream_dof = stream_scatter(o)
     return batch.tows.select(
         "tow_id",

@@ -27,14 +27,14 @@ from herijk.pipeline.recompute.budget import (
 )
 from herijk.pipeline.recompute.outcome import Outcome, TowFactor
 from herijk.pipeline.season_log import (
-    GROUP,
-    LINE,
     SeasonFactors,
     estimate_season_factors,
     other_log_factors,
 )
+from herijk.pipeline.season_log.network import GROUP
 from herijk.pipeline.steps.calibration import gps_factor
 from herijk.pipeline.steps.speed import log_part
+from herijk.tables.keys import LINE
 
 FEWEST_OF_TYPE: Final = 5
 """A type's own bend is taken from so many anchored tows on."""
@@ -99,7 +99,7 @@ def _tow_rows(outcomes: Sequence[Outcome]) -> pl.DataFrame:
 
 @dataclass(frozen=True)
 class Instruments:
-    """What was estimated of the instruments of some tows, put beside each batch once per log.
+    """What was estimated of the instruments of some tows, matched to each batch once per log.
 
     Attributes:
         rows: of the table `tow_instruments`; None where nothing was estimated.
@@ -107,6 +107,11 @@ class Instruments:
 
     rows: pl.DataFrame | None = None
     _known: dict[tuple[tuple[str, ...], str, bool], TowFactor] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, estimated: SeasonFactors | None) -> "Instruments":
+        """What season factors say of them; nothing without an estimate."""
+        return cls(None if estimated is None else tow_instruments(estimated))
 
     def of_tows(self, batch: Batch, steps: Steps) -> TowFactor:
         """What was estimated of each tow of a batch, as far as its steps ask for it."""
@@ -137,7 +142,7 @@ def _factor_of_tows(batch: Batch, steps: Steps, rows: pl.DataFrame | None) -> To
 
 
 def tow_instruments(estimated: SeasonFactors) -> pl.DataFrame:
-    """What was found of the instruments of each tow; of the other log, by the ratio of both.
+    """What was estimated of the instruments of each tow; of the other log, by the ratio of both.
 
     Returns:
         `tow_id, log`, and the fields of `TowFactor`.
@@ -232,7 +237,7 @@ def _water_points(o: Outcome) -> curve.Points:
 
 
 def _other_ln_ratio(o: Outcome) -> FloatArray:
-    """Gives ln(log in use / other log), mean over each tow's runs; NaN where there is none."""
+    """Mean of ln(log in use / other log) over each tow's runs; NaN where there is none."""
     source = o.steps.speed.source
     if source not in OTHER_LOG:
         return np.full(o.batch.size, np.nan)

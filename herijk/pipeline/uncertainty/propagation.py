@@ -380,17 +380,16 @@ def log_key(season: pl.Expr, part: pl.Expr, log: pl.Expr) -> pl.Expr:
     )
 
 
-def combine(components: pl.DataFrame, level: float = 0.95) -> pl.DataFrame:
+def combine(components: pl.DataFrame) -> pl.DataFrame:
     """Adds a budget up per tow and speed.
 
     Args:
         components: rows of `budget`.
-        level: coverage of the interval.
 
     Returns:
         One row per tow and speed, in the order of `components`: `tow_id, speed_ratio, u_ratio`,
         `u_shared_ratio` (what other tows share), `u_single_ratio`, `dof` (Welch-Satterthwaite), and
-        `lo_ratio, hi_ratio`: the bounds of Cw relative to its value, a t interval on the logarithm.
+        `lo_ratio, hi_ratio`: the 95 % bounds of Cw / its value, a t interval on the logarithm.
     """
     square = pl.col("u_ratio") ** 2
     single = pl.col("shared") == SINGLE
@@ -405,7 +404,7 @@ def combine(components: pl.DataFrame, level: float = 0.95) -> pl.DataFrame:
         .with_columns((pl.col("u_ratio") ** 4 / pl.col("spread")).alias("dof"))
         .with_columns(pl.col("dof").fill_nan(np.inf))
     )
-    quantile = t_quantile(rows["dof"].clip(1.0).to_numpy(), level)
+    quantile = t_quantile(rows["dof"].clip(1.0).to_numpy())
     half = rows["u_ratio"] * pl.Series(quantile, dtype=pl.Float64)
     return rows.drop("spread").with_columns(
         (-half).exp().alias("lo_ratio"), half.exp().alias("hi_ratio")
