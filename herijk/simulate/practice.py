@@ -80,7 +80,7 @@ class _Run:
 def printed_curve(
     samples: pl.DataFrame, runs: Sequence[RunTruth], tow: Tow, practice: Practice
 ) -> tuple[float, float]:
-    """A [kg/m] and B [m/s] as a practice found them."""
+    """A [kg/m] and B [m/s] by a practice."""
     used = [_run(samples, run, practice) for run in runs if _is_used(run, tow)]
     y = _calibration(used) if practice.calibrated else 1.0
     speed = np.array([y * run.log_m_s.mean() for run in used])

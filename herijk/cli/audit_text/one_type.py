@@ -27,7 +27,7 @@ from herijk.cli.audit_text.words import (
     yes,
 )
 from herijk.cli.text import table
-from herijk.pipeline.consistency import ERAS
+from herijk.pipeline.consistency.eras import ERAS
 from herijk.pipeline.consistency.tow_speed import SLOW_POWER_W
 from herijk.tables.row import Row
 from herijk.warehouse.queries.audit_types import Fleet, TypesAudit, TypeStatistics

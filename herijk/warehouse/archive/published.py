@@ -12,7 +12,7 @@ import polars as pl
 
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.pipeline.register.register import NO_EMPTY_THWART
-from herijk.tables.archive import TowFacts
+from herijk.tables.bases import TowFacts
 from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of, limits
 from herijk.tables.lake import ListedRaces, PrintedLines

@@ -11,7 +11,7 @@ from typing import Final
 import duckdb
 import scipy
 
-from herijk.pipeline.consistency import ERAS
+from herijk.pipeline.consistency.eras import ERAS
 from herijk.pipeline.consistency.homogeneity import LEVEL
 from herijk.pipeline.consistency.observed import UNKNOWN_TYPE
 from herijk.tables.row import Row
