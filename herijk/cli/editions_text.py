@@ -3,7 +3,7 @@
 from collections import Counter
 from typing import TYPE_CHECKING, Final
 
-from herijk.cli.text import SIMULATED, boat, decimals, page, table
+from herijk.cli.text import SIMULATED, boat, decimals, page, table, window
 from herijk.tables.row import Row
 from herijk.warehouse.editions.words import LANGUAGES, Language
 from herijk.words import LANGUAGE, in_per_cent, tell
@@ -359,7 +359,7 @@ def _line_history(line: "LineLineage") -> str:
     rows = [
         (
             run["run"],
-            _seconds_of(run),
+            window(run),
             run["speed_m_s"],
             run["cw_kg_m"],
             "yes" if run["used"] else tell("no: {}", run["reason"]),
@@ -368,12 +368,6 @@ def _line_history(line: "LineLineage") -> str:
     ]
     parts.append(table(("run", "seconds", "v m/s", "Cw kg/m", "counts"), rows))
     return "\n".join(parts)
-
-
-def _seconds_of(run: Row) -> str:
-    if run["window_start_s"] is None:
-        return "-"
-    return f"{run['window_start_s']:.0f}-{run['window_end_s']:.0f}"
 
 
 def _cause(cause: Row) -> str:

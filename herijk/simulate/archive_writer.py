@@ -1,4 +1,4 @@
-"""Writes a simulated world as a tow archive, spelled the way real ones are, truth beside it.
+"""Writes a simulated world as a tow archive, spelled as real ones are, with the truth beside it.
 
 Each season has another of the allowed spellings, so that reading one archive exercises them all.
 What is measured is decided elsewhere in `herijk.simulate`; archives are read by

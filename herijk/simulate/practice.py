@@ -1,4 +1,4 @@
-"""What was printed of a tow: its curve by the practice of its year, from its own samples.
+"""The printed curve of a tow: by the practice of its year, from its own samples.
 
 Written from the texts (R. Pot 2015 and 2017), apart from the method's own code, so that a method
 that says it repeats the practice of a year can be compared with what that year printed. Where a

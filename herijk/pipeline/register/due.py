@@ -44,8 +44,8 @@ def due_list(
     realistic, and brought down to the upper end where it takes more power. Where it takes less it
     is brought up to what the crew really rowed in the past year, if that was faster, but not beyond
     the upper end. A low speed that was really rowed stands, if the crew expects no more. Without a
-    race nobody can tell: the lower end is proposed. A boat without a curve gets the middle of like
-    boats. That a boat was altered since is a reason to depart from this, which no list knows.
+    race the lower end is proposed. A boat without a curve gets the median of like boats. An
+    alteration since then is a reason to depart from this, but no list records it.
 
     Args:
         register: lines of `pipeline.register.register.draft_register`; an expired curve is a known
