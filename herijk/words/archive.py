@@ -106,9 +106,6 @@ ARCHIVE: Final[dict[str, str]] = {
     "the date {day} is not in {season}, the year of the list.": (
         "de datum {day} valt niet in {season}, het jaar van de lijst."
     ),
-    "the date {day} is not in {season}, the year of the file.": (
-        "de datum {day} valt niet in {season}, het jaar van het bestand."
-    ),
     "{day} is set aside in archief.toml: {reason}.": (
         "{day} is terzijde gelegd in archief.toml: {reason}."
     ),
@@ -136,6 +133,9 @@ ARCHIVE: Final[dict[str, str]] = {
     ),
     "only '{text}' stands in this row. A heading or a remark may begin with #.": (
         "alleen '{text}' staat in deze rij. Een kopje of opmerking mag met # beginnen."
+    ),
+    "a speed and a force must be above zero.": (
+        "een snelheid en een kracht moeten boven nul liggen."
     ),
     # Rows compared with each other
     "the rows of the runs of one tow differ in column '{column}': '{one}' and '{other}'.": (

@@ -15,6 +15,7 @@ import pyarrow as pa  # type: ignore[import-untyped]
 
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.warehouse.archive.faults import DefectiveFileError
+from herijk.warehouse.archive.kinds import BOATS, LIST_KINDS, ListKind
 from herijk.warehouse.archive.limits import check_rows
 from herijk.warehouse.archive.sheets import split_sheet
 from herijk.warehouse.archive.text import fold_word
@@ -24,35 +25,9 @@ BOATS_FILE: Final = "sloepregister/sloependata.csv"
 LIST_SUFFIXES: Final = (".csv", ".txt", ".tsv", ".xlsx", ".xlsm", ".xls", ".ods")
 
 
-@dataclass(frozen=True)
-class ListKind:
-    """A kind of list: where it lies, and what its name is without suffix.
-
-    Attributes:
-        folder: its folder.
-        pattern: its name there; group 1 is the season, where the name tells it.
-        stands_for: its name under `[files]` of `archief.toml`, without the year.
-    """
-
-    folder: str
-    pattern: str
-    stands_for: str
-
-
-BOAT_LIST: Final = ListKind("sloepregister", r"sloependata()", "sloependata")
-TOW_LISTS: Final = ListKind("sleeplijsten", r"sleeplijst(?:[ _-]*([0-9]{4}))?", "sleeplijst")
-WINDOWS: Final = ListKind("sleeplijsten", r"vensters[ _-]*([0-9]{4})", "vensters")
-FORCE_CHECKS: Final = ListKind("sleeplijsten", r"krachtijkingen[ _-]*([0-9]{4})", "krachtijkingen")
-LAMPS: Final = ListKind("sleeplijsten", r"lampjes[ _-]*([0-9]{4})", "lampjes")
-REGISTERS: Final = ListKind("sloepregister", r"sloepregister[ _-]*([0-9]{4})", "sloepregister")
-RACES: Final = ListKind("wedstrijden", r".+?(?:[ _-]*([0-9]{4}))?", "wedstrijden")
-LIST_KINDS: Final = (
-    *(BOAT_LIST, TOW_LISTS, WINDOWS, FORCE_CHECKS, LAMPS),
-    *(REGISTERS, RACES),
-)
 SAMPLES: Final = "meetdata"
 STANDS_FOR: Final = re.compile(
-    rf"({'|'.join(kind.stands_for for kind in LIST_KINDS)}|{SAMPLES})(?:_([0-9]{{4}}))?"
+    rf"({'|'.join(kind.name for kind in LIST_KINDS)}|{SAMPLES})(?:_([0-9]{{4}}))?"
 )
 """What a file or folder can be said to be under `[files]`: `sleeplijst_2014`, `meetdata_2014`."""
 TEXT_SUFFIXES: Final = (".csv", ".txt", ".tsv", ".dat", ".asc", ".lvm")
@@ -112,7 +87,7 @@ def list_files(root: Path, kind: ListKind, named: Mapping[str, str]) -> list[Arc
     ]
     for path, name, season in _named(named):
         file = root / split_sheet(path)[0]
-        if name == kind.stands_for and file.is_file():
+        if name == kind.name and file.is_file():
             files.append(replace(_archive_file(root, file, season), path=path))
     return sorted(files, key=lambda file: file.path)
 
@@ -181,7 +156,7 @@ def _path_in(root: Path, entry: Path) -> str:
 
 def find_boats_file(root: Path, named: Mapping[str, str]) -> str | None:
     """Return the path of the boat list, whatever kind of file it is; None when there is none."""
-    lists = list_files(root, BOAT_LIST, named)
+    lists = list_files(root, BOATS, named)
     return lists[0].path if lists else None
 
 

@@ -17,25 +17,17 @@ from herijk.pipeline.channels import SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError, MissingKnowledgeError
 from herijk.tables.declare import dy
 from herijk.tables.frames import frame_of
-from herijk.tables.lake import ListedFiles, ListedRuns, ListedTows, ListedWindows
+from herijk.tables.lake import ListedFiles, ListedRuns, ListedTows
 from herijk.tables.row import Row
-from herijk.warehouse.archive import boats as boat_list
 from herijk.warehouse.archive import tows as tow_list
-from herijk.warehouse.archive import windows as window_list
-from herijk.warehouse.archive.boats import Boats
+from herijk.warehouse.archive.boats import Boats, read_boats
 from herijk.warehouse.archive.faults import DefectiveFileError, Fault, fault_from
 from herijk.warehouse.archive.files import (
     BOATS_FILE,
-    FORCE_CHECKS,
-    LAMPS,
     PACKED,
     PARTS,
     PROFILE_FILE,
-    RACES,
-    REGISTERS,
     SAMPLES,
-    TOW_LISTS,
-    WINDOWS,
     ArchiveFile,
     as_one_run,
     can_hold_data,
@@ -47,8 +39,6 @@ from herijk.warehouse.archive.files import (
     list_strangers,
     match_key,
     outside_archive,
-    path_inside,
-    read_bytes,
 )
 from herijk.warehouse.archive.instruments import (
     lamp_seconds,
@@ -56,10 +46,11 @@ from herijk.warehouse.archive.instruments import (
     read_force_checks,
     read_lamps,
 )
-from herijk.warehouse.archive.limits import LIST_MAX_BYTES
+from herijk.warehouse.archive.kinds import LIST_KINDS, TOWS
 from herijk.warehouse.archive.lists import (
     DefectiveRowError,
     ListRow,
+    Wording,
     all_of,
     others_of,
     read_list,
@@ -69,6 +60,7 @@ from herijk.warehouse.archive.profile import Plan, Profiles, read_profiles
 from herijk.warehouse.archive.recognise import guessed, recognised
 from herijk.warehouse.archive.sheets import SPREADSHEETS
 from herijk.warehouse.archive.text import fold, fold_word, shorten
+from herijk.warehouse.archive.windows import read_windows
 from herijk.words import say
 
 _FilesByName = dict[tuple[int, str], list["SamplesFile"]]
@@ -83,8 +75,8 @@ class ArchiveIndex:
         boats: one row per boat (`ListedBoats`).
         tows: one row per tow that can be read.
         runs: one row per run of those tows; runs of a second file are 21 and on.
-        windows: windows given by hand for those runs, of which nobody knows yet whether they lie in
-            their run.
+        windows: windows given by hand for those runs (`ListedWindows`), of which nobody knows yet
+            whether they lie in their run.
         faults: what is set aside, and why.
         files: every file that was looked at.
         profiles: `archief.toml`.
@@ -95,7 +87,7 @@ class ArchiveIndex:
     boats: pl.DataFrame
     tows: dy.DataFrame[ListedTows]
     runs: dy.DataFrame[ListedRuns]
-    windows: dy.DataFrame[ListedWindows]
+    windows: pl.DataFrame
     faults: tuple[Fault, ...]
     files: dy.DataFrame[ListedFiles]
     profiles: Profiles
@@ -209,12 +201,13 @@ def index_archive(
     named = profiles.wording.files
     hashes = _Hashes(hash_file)
     faults: list[Fault] = []
-    _hash_others(root, named, hashes, faults)
+    _hash_lists(root, named, hashes)
     faults += strangers(root, profiles)
-    boats = _read_boats(root, profiles, hashes, faults)
-    entries, unread_seasons = _read_tow_lists(root, profiles, hashes, faults)
+    boats = _read_boats(root, profiles.wording)
+    faults += boats.faults
+    entries, unread_seasons = _read_tow_lists(root, profiles, faults)
     sample_files = list_sample_files(root, named)
-    _hash_files(sample_files, hashes, faults)
+    faults += _hash_files(sample_files, hashes)
     by_name = _by_name(sample_files, entries)
     faults += _not_listed(entries, sample_files, unread_seasons, by_name)
     faults += [] if unread_seasons else _idle(profiles, entries)
@@ -232,12 +225,16 @@ def index_archive(
     faults += [fault for entry in good for fault in _lost_cells(entry)]
     _add_instruments(root, profiles, entries, good, faults)
     runs = [run for entry in good for run in _runs(entry)]
-    windows = _read_windows(root, profiles, hashes, entries, runs, faults)
+    runs_of = {(entry.season, entry.tow_id): set[int]() for entry in entries}
+    for entry in good:
+        runs_of[entry.season, entry.tow_id] = {run["run"] for run in _runs(entry)}
+    windows, faulty = read_windows(root, profiles.wording, runs_of)
+    faults += faulty
     return ArchiveIndex(
         boats=boats.frame(),
         tows=frame_of(ListedTows, [entry.tow for entry in good]),
         runs=frame_of(ListedRuns, runs),
-        windows=frame_of(ListedWindows, windows),
+        windows=windows,
         faults=tuple(sorted(faults, key=_fault_order)),
         files=hashes.frame(),
         profiles=profiles,
@@ -283,7 +280,7 @@ def missing_lists(root: Path, profiles: Profiles) -> list[Fault]:
         lacking.append(
             (BOATS_FILE, say("there is no list of boats: {path} is expected.", path=BOATS_FILE))
         )
-    if not list_files(root, TOW_LISTS, named):
+    if not list_files(root, TOWS, named):
         path = "sleeplijsten/sleeplijst_<jaar>.csv"
         lacking.append((path, say("there is no list of tows: {path} is expected.", path=path)))
     return [Fault(path, None, None, "missing_list", said) for path, said in lacking]
@@ -292,20 +289,12 @@ def missing_lists(root: Path, profiles: Profiles) -> list[Fault]:
 # Lists
 
 
-def _read_list(root: Path, path: str, hashes: _Hashes) -> bytes:
-    full_path = path_inside(root, path)
-    hashes.add(path, full_path)
-    return read_bytes(full_path, LIST_MAX_BYTES)
-
-
-def _read_boats(root: Path, profiles: Profiles, hashes: _Hashes, faults: list[Fault]) -> Boats:
-    path = find_boats_file(root, profiles.wording.files) or BOATS_FILE
+def _read_boats(root: Path, wording: Wording) -> Boats:
+    path = find_boats_file(root, wording.files) or BOATS_FILE
     try:
-        boats = boat_list.read_boats(_read_list(root, path, hashes), path, profiles.wording)
+        return read_boats(root, path, wording)
     except DefectiveInputError as error:
-        boats = Boats({}, (), {}, (fault_from(error, path),))
-    faults += boats.faults
-    return boats
+        return Boats({}, (), {}, (fault_from(error, path),))
 
 
 def strangers(root: Path, profiles: Profiles) -> list[Fault]:
@@ -351,17 +340,14 @@ def _about_stranger(root: Path, path: str, is_lacking: bool) -> str:
 
 
 def _read_tow_lists(
-    root: Path, profiles: Profiles, hashes: _Hashes, faults: list[Fault]
+    root: Path, profiles: Profiles, faults: list[Fault]
 ) -> tuple[list[_Entry], set[int]]:
     """Return the rows of all tow lists, and the seasons of lists that cannot be read."""
     entries: list[_Entry] = []
     unread_seasons: set[int] = set()
-    for file in list_files(root, TOW_LISTS, profiles.wording.files):
+    for file in list_files(root, TOWS, profiles.wording.files):
         try:
-            data = _read_list(root, file.path, hashes)
-            rows = read_list(
-                data, tow_list.COLUMNS, "bad_list_row", file.path, profiles.wording, ListedTows
-            )
+            rows = read_list(root, TOWS, file.path, profiles.wording)
         except DefectiveInputError as error:
             faults.append(fault_from(error, file.path))
             unread_seasons.add(file.season)
@@ -412,33 +398,6 @@ def _idle(profiles: Profiles, entries: list[_Entry]) -> list[Fault]:
     ]
 
 
-def _read_windows(
-    root: Path,
-    profiles: Profiles,
-    hashes: _Hashes,
-    entries: list[_Entry],
-    runs: list[Row],
-    faults: list[Fault],
-) -> list[window_list.Window]:
-    """Return the windows given by hand, of all years."""
-    windows: list[window_list.Window] = []
-    runs_of: dict[str, set[int]] = defaultdict(set)
-    for run in runs:
-        runs_of[run["tow_id"]].add(run["run"])
-    for file in list_files(root, WINDOWS, profiles.wording.files):
-        tow_ids = {e.tow_id for e in entries if e.season == file.season and e.tow_id is not None}
-        listed = window_list.Listed(tow_ids, runs_of)
-        try:
-            data = _read_list(root, file.path, hashes)
-            found, faulty = window_list.read_windows(data, file.path, listed, profiles.wording)
-        except DefectiveInputError as error:
-            faults.append(fault_from(error, file.path))
-            continue
-        windows += found
-        faults += faulty
-    return windows
-
-
 def _add_instruments(
     root: Path,
     profiles: Profiles,
@@ -461,24 +420,22 @@ def _add_instruments(
 # Files
 
 
-def _hash_others(
-    root: Path, named: Mapping[str, str], hashes: _Hashes, faults: list[Fault]
-) -> None:
-    """Hash what is read from elsewhere: profile, published registers, races, instruments."""
+def _hash_lists(root: Path, named: Mapping[str, str], hashes: _Hashes) -> None:
+    """Hash the profile and every list; of one that cannot be read its reader tells."""
     if (root / PROFILE_FILE).is_file():
         hashes.add(PROFILE_FILE, root / PROFILE_FILE)
-    others = (REGISTERS, RACES, FORCE_CHECKS, LAMPS)
-    _hash_files((f for kind in others for f in list_files(root, kind, named)), hashes, faults)
+    lists = (file for kind in LIST_KINDS for file in list_files(root, kind, named))
+    list(_hash_files(lists, hashes))
 
 
-def _hash_files(files: Iterable[ArchiveFile], hashes: _Hashes, faults: list[Fault]) -> None:
-    """Hash the files that lie inside the archive."""
+def _hash_files(files: Iterable[ArchiveFile], hashes: _Hashes) -> Iterator[Fault]:
+    """Hash the files that lie inside the archive; give a fault for each that cannot be read."""
     for file in files:
         try:
             if file.inside:
                 hashes.add(file.path, file.full_path)
         except DefectiveInputError as error:
-            faults.append(fault_from(error, file.path))
+            yield fault_from(error, file.path)
 
 
 def _names(entry: _Entry) -> list[str]:
@@ -629,9 +586,7 @@ def _read_values(entry: _Entry, profiles: Profiles) -> None:
     )
     (entry.tow, entry.lost_cells), entry.selection = read["tow"], read["selection"]
     day = entry.tow["tow_date"]
-    if day.year != entry.season:
-        message = "the date {day} is not in {season}, the year of the list."
-        raise entry.fault("date_outside_season", say(message, day=day, season=entry.season))
+    entry.row.check_year(day, entry.season, "date_outside_season")
 
 
 def _lost_cells(entry: _Entry) -> Iterator[Fault]:

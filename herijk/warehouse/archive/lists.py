@@ -10,13 +10,23 @@ import unicodedata
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from pathlib import Path
 from typing import Any, Final, TypeVar
 
+import polars as pl
+
+from herijk.pipeline.channels import MOST_RUNS, SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.declare import dy
-from herijk.tables.frames import limits
+from herijk.tables.frames import frame_of, limits
+from herijk.tables.row import Row
 from herijk.warehouse.archive.crews import CREW, with_crews_apart
+from herijk.warehouse.archive.faults import Fault, at_line, fault_from
+from herijk.warehouse.archive.files import list_files, path_inside, read_bytes
+from herijk.warehouse.archive.kinds import ListKind
+from herijk.warehouse.archive.limits import LIST_MAX_BYTES
 from herijk.warehouse.archive.meaning import Meaning, meanings
+from herijk.warehouse.archive.misfits import misfits
 from herijk.warehouse.archive.sheets import Sheet, read_sheets, split_sheet
 from herijk.warehouse.archive.text import (
     Column,
@@ -65,6 +75,7 @@ _DECIMAL: Final = re.compile(r"[+-]?[0-9]*([.,])([0-9]{1,2}|[0-9]{4,})")
 _BOAT: Final = re.compile(
     r"(?:fsn)?[\s._-]*(?:(?:nr|no|nummer|number|n°|nº)[\s.:_-]*)?([0-9]{1,6}[a-z]?)", re.IGNORECASE
 )
+_RUN: Final = re.compile(r"(b?)([1-9][0-9]?)", re.IGNORECASE)
 
 
 def ungrouped(cell: str) -> str:
@@ -108,9 +119,6 @@ class Wording:
         return (*HEADERS.get(column.key, ()), *own)
 
 
-Limits = Callable[[str], tuple[float, float]]
-
-
 @dataclass(frozen=True)
 class Reading:
     """What the rows of one list share.
@@ -122,7 +130,7 @@ class Reading:
         date_order: `dmy` or `mdy` where dates with slashes are settled, else empty.
         decimal: the decimal marks that this list surely uses, comma, point, or both.
         is_told: `archief.toml` says which mark that is.
-        limits: the lowest and highest value of a column that can be right.
+        table: declares the type and the limits of each value.
         sheet: the sheet, where a workbook has several.
     """
 
@@ -131,7 +139,7 @@ class Reading:
     words: Mapping[str, str]
     date_order: str
     decimal: str
-    limits: Limits
+    table: type[dy.Schema]
     sheet: str = ""
     is_told: bool = False
 
@@ -164,7 +172,7 @@ class ListRow:
         """Return the error for this row."""
         if self.reading.sheet:
             message = say("sheet '{sheet}': {what}", sheet=self.reading.sheet, what=message)
-        said = say("Line {line}: {what}", line=self.line, what=message)
+        said = at_line(self.line, message)
         return DefectiveInputError(reason_code or self.reading.reason_code, said, self.line)
 
     def wrong(
@@ -201,7 +209,7 @@ class ListRow:
             return None
         digits, scale = self._digits_and_scale(key, cell)
         value = scale.to_si(parse_number(digits))
-        lowest, highest = self.reading.limits(key)
+        lowest, highest = limits(self.reading.table, key)
         if _THOUSAND.fullmatch(digits):
             thousands = scale.to_si(1000 * parse_number(digits))
             if lowest <= thousands <= highest:
@@ -232,7 +240,7 @@ class ListRow:
 
         Raises where both can be right and this list writes its decimals with the other mark.
         """
-        lowest, highest = self.reading.limits(key)
+        lowest, highest = limits(self.reading.table, key)
         if not lowest <= value <= highest:
             return False
         mark = _THOUSAND.fullmatch(cell)
@@ -289,14 +297,28 @@ class ListRow:
         """Return a date that must be there."""
         return self._there(key, self.optional_date(key))
 
-    def crew_class(self, key: str) -> str:
-        """Return `H` or `D`."""
-        cell = self.text(key)
-        value = CLASSES.get(fold_word(cell))
-        if value is None:
+    def check_year(self, day: dt.date, year: int, reason_code: str | None = None) -> None:
+        """Raise where a day is not in the year of the list."""
+        if day.year != year:
+            message = "the date {day} is not in {season}, the year of the list."
+            raise self.fault(say(message, day=day, season=year), reason_code)
+
+    def run(self, key: str) -> int:
+        """Return the number of a run: 1 to 20, or 21 to 40 for b1 to b20."""
+        return run_number(self.text(key), self, key, range(1, MOST_RUNS + 1))
+
+    def optional_crew_class(self, key: str) -> str | None:
+        """Return `H` or `D`, None when the cell is empty."""
+        cell = self.optional_text(key)
+        value = CLASSES.get(fold_word(cell or ""))
+        if cell is not None and value is None:
             message = "column '{column}' is '{cell}'; H or D is expected."
             raise self.wrong(message, key, expected="HD")
         return value
+
+    def crew_class(self, key: str) -> str:
+        """Return `H` or `D`, which must be there."""
+        return self._there(key, self.optional_crew_class(key))
 
     def yes_or_no(self, key: str) -> bool:
         """Return whether a cell says yes; an empty one says no."""
@@ -311,10 +333,38 @@ class ListRow:
         number = _BOAT.fullmatch(cell.strip())
         return f"FSN{number[1].upper()}" if number else cell
 
+    def value(self, column: Column) -> Any:
+        """Return the value of a cell, of the type that the table of the list declares.
+
+        It is None where it may be empty, and is.
+        """
+        declared = self.reading.table.columns()[column.key].dtype
+        read = _READERS_BY_KEY.get(column.key) or _READERS[declared.base_type()]
+        value = read(self, column.key)
+        return self._there(column.key, value) if column.required else value
+
+    def values(self, columns: Iterable[Column]) -> dict[str, Any]:
+        """Return the values of cells; one that cannot be read does not hide the others."""
+        return all_of({column.key: partial(self.value, column) for column in columns})
+
     def named(self, key: str) -> str:
         """Return what the file calls a column."""
         place = self.columns.get(key)
         return place.header if place else key
+
+
+_READERS_BY_KEY: Final[Mapping[str, Callable[[ListRow, str], object]]] = {
+    "fsn_no": ListRow.boat,
+    "crew_class": ListRow.optional_crew_class,
+    "run": ListRow.run,
+}
+_READERS: Final[Mapping[type[pl.DataType], Callable[[ListRow, str], object]]] = {
+    pl.String: ListRow.optional_text,
+    pl.Float64: ListRow.optional_number,
+    **dict.fromkeys((pl.Int8, pl.Int16, pl.Int32), ListRow.optional_integer),
+    pl.Date: ListRow.optional_date,
+    pl.Boolean: ListRow.yes_or_no,
+}
 
 
 class DefectiveRowError(DefectiveInputError):
@@ -342,6 +392,26 @@ def all_of(readings: Mapping[str, Callable[[], Any]]) -> dict[str, Any]:
     if faults:
         raise DefectiveRowError(faults)
     return values
+
+
+def run_number(part: str, row: ListRow, header: str, planned: Collection[int]) -> int:
+    """Return the number of a run as written in a list: 1 and on, or 21 and on for b1 and on.
+
+    Raises:
+        DefectiveInputError: it is none, with the row's reason code and line.
+    """
+    match = _RUN.fullmatch(part)
+    if match is None or int(match[2]) not in planned:
+        raise row.fault(
+            say(
+                "column '{column}' has '{part}'; runs are 1 to {last}, or b1 to b{last} for the "
+                "second file, with commas between them. Runs beyond these need a [[plan]].",
+                column=header,
+                part=shorten(part),
+                last=max(planned),
+            )
+        )
+    return int(match[2]) + (SECOND_FILE_OFFSET if match[1] else 0)
 
 
 def others_of(error: DefectiveInputError) -> tuple[DefectiveInputError, ...]:
@@ -401,49 +471,39 @@ def read_rows(
     data: bytes,
     columns: Sequence[Column],
     reason_code: str,
-    limits: Limits,
-    suffix: str = ".csv",
+    table: type[dy.Schema],
 ) -> list[ListRow]:
-    """Return the rows of a table that anybody made; columns nobody asked for are ignored.
+    """Return the rows of a table of text that anybody made; other columns are ignored.
 
     Args:
         data: content of the file.
         columns: the columns to look for.
         reason_code: what a bad value in this table is called.
-        limits: the lowest and highest value of a column that can be right.
-        suffix: kind of file.
+        table: declares the type and the limits of each value.
 
     Raises:
         DefectiveInputError: the table as a whole cannot be read.
     """
-    sheet = read_sheets(data, columns, suffix)[0]
+    sheet = read_sheets(data, columns)[0]
     places = find_columns(sheet.header, columns, sheet.line)
-    return _rows(sheet, Reading(places, reason_code, {}, "", "", limits))
+    return _rows(sheet, Reading(places, reason_code, {}, "", "", table))
 
 
-def read_list(
-    data: bytes,
-    columns: Sequence[Column],
-    reason_code: str,
-    path: str,
-    wording: Wording,
-    table: type[dy.Schema],
-) -> list[ListRow]:
+def read_list(root: Path, kind: ListKind, path: str, wording: Wording) -> list[ListRow]:
     """Return the rows of a list of the archive; empty ones are left out.
 
     Args:
-        data: content of the file.
-        columns: the columns to look for.
-        reason_code: what a bad value in this list is called.
+        root: folder of the archive.
+        kind: which list.
         path: the list, relative to the archive.
         wording: how the lists of this archive are worded.
-        table: declares the limits of each column.
 
     Raises:
         DefectiveInputError: the list as a whole cannot be read, or has a column that nobody knows:
             it can be a misspelt one, and left out in silence would change numbers.
     """
-    wanted = wording.with_names(columns)
+    data = read_bytes(path_inside(root, path), LIST_MAX_BYTES)
+    wanted = wording.with_names(kind.columns)
     file, sheet = split_sheet(path)
     suffix = file[file.rfind(".") :].casefold()
     sheets = [with_crews_apart(s, wanted) for s in read_sheets(data, wanted, suffix, sheet)]
@@ -456,17 +516,54 @@ def read_list(
         for row in _rows(
             sheet,
             Reading(
-                _columns_of(sheet, wanted, wording, table),
-                reason_code,
+                _columns_of(sheet, wanted, wording, kind.table),
+                kind.reason_code,
                 wording.words,
                 order,
                 told or _decimal_mark(cells),
-                partial(limits, table),
+                kind.table,
                 sheet.name,
                 bool(told),
             ),
         )
     ]
+
+
+def read_lists(
+    root: Path,
+    kind: ListKind,
+    wording: Wording,
+    read_row: Callable[[ListRow, int], Row],
+) -> tuple[pl.DataFrame, tuple[Fault, ...]]:
+    """Read the lists of a kind: rows of its table, and a fault for each that cannot be read.
+
+    Args:
+        root: folder of the archive.
+        kind: which lists; its table has `path` and `line` too.
+        wording: how the lists are worded.
+        read_row: from a row and the year in the file's name to the other values.
+    """
+    good: list[Row] = []
+    faults: list[Fault] = []
+    for file in list_files(root, kind, wording.files):
+        try:
+            rows = read_list(root, kind, file.path, wording)
+        except DefectiveInputError as error:
+            faults.append(fault_from(error, file.path))
+            continue
+        for row in rows:
+            try:
+                row.check_whole()
+                values = read_row(row, file.season)
+            except DefectiveInputError as error:
+                faults.append(fault_from(error, file.path))
+            else:
+                good.append({**values, "path": file.path, "line": row.line})
+    frame = frame_of(kind.table, good)
+    for misfit, why in misfits(kind.table, frame):
+        place, said = (misfit["path"], None, misfit["line"]), at_line(misfit["line"], why)
+        faults.append(Fault(*place, kind.reason_code, said))
+    return kind.table.filter(frame).result, tuple(faults)
 
 
 def _columns_of(

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from herijk.pipeline.channels import FEWEST_RUNS, MOST_RUNS, SAMPLE_SCHEMA, SECOND_FILE_OFFSET
 from herijk.pipeline.errors import DefectiveInputError
 from herijk.tables.row import Row
-from herijk.warehouse.archive.faults import DefectiveFileError
+from herijk.warehouse.archive.faults import DefectiveFileError, at_line
 from herijk.warehouse.archive.files import (
     PARTS,
     as_one_run,
@@ -67,6 +67,7 @@ _FOR_A_RATE: Final = 500
 """Samples from which the rate is seen."""
 PAUSE_S: Final = 10.0
 """After so long without a sample a new run begins, where nothing else says so."""
+_BINARY: Final = (".parquet", ".tdms")
 _BLANKS: Final = " \t"
 _ROW: Final = re.compile(rb"[^\r\n]")
 _BLANKS_OUTSIDE: Final = re.compile(rb"^[ \t]+|[ \t]+(?=\r?$)", re.MULTILINE)
@@ -142,11 +143,8 @@ def read_samples(
     Raises:
         DefectiveInputError: the first fault that costs the whole file, with its line.
     """
-    kind = kind_of(path)
-    if kind == ".parquet":
-        raw, line_of = _from_table(_read_parquet(path, profile, max_bytes), profile), _next_line
-    elif kind == ".tdms":
-        raw, line_of = _from_table(read_tdms(path, max_bytes), profile), _next_line
+    if kind_of(path) in _BINARY:
+        raw, line_of = _read_binary(path, profile, max_bytes), _next_line
     else:
         body = _split_header(read_bytes(path, max_bytes), profile)
         raw, line_of = _read_text(body), body.line
@@ -191,7 +189,7 @@ def place_in_file(
         begun = int(np.searchsorted(starts, max(row, 0), "right")) - 1
         file, row = files[begun], row - int(starts[begun])
     full = path_inside(root, file)
-    if kind_of(full) in {".parquet", ".tdms"}:
+    if kind_of(full) in _BINARY:
         return file, _next_line(row)
     return file, _split_header(read_bytes(full, SAMPLES_MAX_BYTES), profile).line(row)
 
@@ -221,12 +219,9 @@ def _header_of(path: Path, profile: SeasonProfile) -> Sequence[str]:
 
 def rate_in_times(path: Path, profile: SeasonProfile) -> float | None:
     """Return the samples per second at the start of a file; None where it has no times to say."""
-    kind = kind_of(path)
     try:
-        if kind == ".parquet":
-            frame = _from_table(_read_parquet(path, profile, SAMPLES_MAX_BYTES), profile)
-        elif kind == ".tdms":
-            frame = _from_table(read_tdms(path, SAMPLES_MAX_BYTES, _FOR_A_RATE), profile)
+        if kind_of(path) in _BINARY:
+            frame = _read_binary(path, profile, SAMPLES_MAX_BYTES, _FOR_A_RATE)
         else:
             body = _split_header(read_start(path, _HEAD_BYTES), profile)
             if "time" not in body.columns:
@@ -610,8 +605,14 @@ def _check_parquet_size(path: Path, file: pq.ParquetFile, width: int, max_bytes:
         raise too_large(path, max_bytes)
 
 
-def _from_table(frame: pl.DataFrame, profile: SeasonProfile) -> pl.DataFrame:
-    """Return the wanted columns of a table as Float64, as `_read_text` does."""
+def _read_binary(
+    path: Path, profile: SeasonProfile, max_bytes: int, most_rows: int | None = None
+) -> pl.DataFrame:
+    """Return the wanted columns of a Parquet or TDMS file as Float64, as `_read_text` does."""
+    if kind_of(path) == ".tdms":
+        frame = read_tdms(path, max_bytes, most_rows)
+    else:
+        frame = _read_parquet(path, profile, max_bytes)
     if frame.is_empty():
         raise DefectiveInputError("unreadable_file", say("There are no samples in the file."))
     columns = find_columns(frame.columns, profile.columns)
@@ -697,9 +698,11 @@ def _check_run_numbers(run: pl.Series, line_of: LineOf) -> None:
             run=run[row],
             last=MOST_RUNS,
         )
-        line = line_of(row)
-        said = say("Line {line}: {what}", line=line, what=what)
-        raise DefectiveInputError("unknown_run", said, line=line)
+        raise _at(line_of(row), "unknown_run", what)
+
+
+def _at(line: int, reason_code: str, what: str) -> DefectiveInputError:
+    return DefectiveInputError(reason_code, at_line(line, what), line)
 
 
 def _check_runs(run: pl.Series, line_of: LineOf) -> None:
@@ -708,10 +711,8 @@ def _check_runs(run: pl.Series, line_of: LineOf) -> None:
     numbers = run.to_numpy()[starts]
     for position, number in enumerate(numbers):
         if number in numbers[:position]:
-            line = line_of(int(starts[position]))
             what = say("run {run} begins again; its rows must stand together.", run=int(number))
-            said = say("Line {line}: {what}", line=line, what=what)
-            raise DefectiveInputError("split_run", said, line=line)
+            raise _at(line_of(int(starts[position])), "split_run", what)
 
 
 def run_starts(run: NDArray[np.int8]) -> NDArray[np.intp]:
@@ -753,10 +754,8 @@ def _check_time(
     step[starts[1:] - 1] = np.inf
     step[np.isin(run.to_numpy()[1:], turned)] = np.inf
     if (step <= 0).any():
-        line = line_of(int(np.argmax(step <= 0)) + 1)
         what = say("the time does not increase within the run.")
-        said = say("Line {line}: {what}", line=line, what=what)
-        raise DefectiveInputError("bad_time", said, line=line)
+        raise _at(line_of(int(np.argmax(step <= 0)) + 1), "bad_time", what)
     if rate_hz is None:
         return
     for start, end in zip(starts, ends, strict=True):
