@@ -96,7 +96,7 @@ def retow(choice: pl.DataFrame) -> Headline:
 
 def statuses(rows: pl.DataFrame) -> Headline:
     """How many curves are sound."""
-    counts = dict(rows.group_by("status").agg(pl.col("number").sum()).rows())
+    counts = dict(rows.group_by("status", maintain_order=True).agg(pl.col("number").sum()).rows())
     return lambda speech: speech.say("head_statuses").format(
         curves=sum(counts.values()),
         accepted=counts.get("accepted", 0),

@@ -200,7 +200,7 @@ class Book:
             with_choices(self.compared)
             .filter(pl.col("outside"), method=self.ends()[1])
             .explode("tows")
-            .group_by("boat_type", "tows")
+            .group_by("boat_type", "tows", maintain_order=True)
             .agg(pl.col("label").str.join(", "))
         )
         return {(boat_type, tows): label for boat_type, tows, label in names.iter_rows()}
@@ -310,7 +310,9 @@ class Book:
             return
         name = own["name"][0]
         common = own.select("method", "tow_id", "standard_speed_m_s")
-        rows = self.views.curve_points_of(fsn_no).join(common, on=["method", "tow_id"])
+        rows = self.views.curve_points_of(fsn_no).join(
+            common, on=["method", "tow_id"], maintain_order="left"
+        )
         title = self.say("slide.boat_years").format(name=name)
         yield Slide(f"years {name}", "slide_boat_years", rows, title, self._years(own))
         yield from self._ticks(own.sort("season", "tow_id"))
@@ -379,7 +381,7 @@ class Book:
         cw = pl.col("cw_standard_kg_m")
         crews = (
             own.drop_nulls("cw_standard_kg_m")
-            .group_by("method", crew=pl.format("{}{}", "rowers", "crew_class"))
+            .group_by("method", crew=pl.format("{}{}", "rowers", "crew_class"), maintain_order=True)
             .agg(pl.len().alias("n"), (cw.max() / cw.min()).log().alias("spread"))
             .filter(pl.col("n") > 1)
         )

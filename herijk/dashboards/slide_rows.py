@@ -47,7 +47,7 @@ def pair_of_types(compared: pl.DataFrame) -> list[str]:
 def by_tows(compared: pl.DataFrame) -> list[str]:
     """Types of boat, that with most tows first; without any, the boats of no type."""
     counts = (
-        compared.group_by("boat_type")
+        compared.group_by("boat_type", maintain_order=True)
         .len()
         .sort("len", "boat_type", descending=[True, False])["boat_type"]
     )
@@ -63,7 +63,7 @@ def boats_of_slides(views: Views, compared: pl.DataFrame, wanted: Sequence[str] 
     if wanted:
         return [the_boat(views.table("boats"), name) for name in wanted]
     seasons = (
-        compared.group_by("fsn_no", "name")
+        compared.group_by("fsn_no", "name", maintain_order=True)
         .agg(pl.col("season").n_unique().alias("seasons"))
         .sort("seasons", "fsn_no", descending=[True, False])
     )

@@ -139,7 +139,7 @@ def _types(lines: pl.DataFrame, speech: Speech) -> Part:
     by_type = (
         lines.drop_nulls("cw_ratio")
         .with_columns(pl.col("boat_type").fill_null("unknown").replace("", "unknown"))
-        .group_by("boat_type", "crew_class")
+        .group_by("boat_type", "crew_class", maintain_order=True)
         .agg(
             number=pl.len(),
             ratio=pl.col("cw_ratio").median(),

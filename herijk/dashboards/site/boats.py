@@ -166,14 +166,20 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
     boat_of = views.table("tows").select("tow_id", "fsn_no")
     points = views.run_points().with_columns(run_cw_kg_m="cw_kg_m")
     seconds = views.table("trace_seconds")
-    ends = seconds.group_by("tow_id", "run").agg(run_end_s=pl.col("second").max() + 1)
+    ends = seconds.group_by("tow_id", "run", maintain_order=True).agg(
+        run_end_s=pl.col("second").max() + 1
+    )
     register = views.register()
     curves = views.curves().with_columns(
         tow=pl.format("{} · {}{}", "tow_date", "rowers", "crew_class")
     )
     declared = curves.drop_nulls("cw_kg_m").with_columns(speed_m_s="declared_speed_m_s")
     intervals = views.table("methods").select("method", "interval")
-    lines = views.table("curve_points").join(boat_of, on="tow_id").join(intervals, on="method")
+    lines = (
+        views.table("curve_points")
+        .join(boat_of, on="tow_id", maintain_order="left")
+        .join(intervals, on="method", maintain_order="left")
+    )
     lineage = views.table("lineage").with_columns(
         pl.format("{}{}", "rowers", "crew_class").alias("crew")
     )
@@ -190,9 +196,13 @@ def _frames(views: Views) -> dict[str, pl.DataFrame]:
         "point": _kind(points.drop_nulls("cw_kg_m"), "point", "method", *POINT),
         "declared": _kind(declared, "declared", "method", *NUMBERS, "interval"),
         "stages": _stages(points),
-        "trace": _seconds(seconds.join(boat_of, on="tow_id")),
+        "trace": _seconds(seconds.join(boat_of, on="tow_id", maintain_order="left")),
         "window": _kind(
-            points.join(ends, on=["tow_id", "run"]), "window", "method", "run", *WINDOW
+            points.join(ends, on=["tow_id", "run"], maintain_order="left"),
+            "window",
+            "method",
+            "run",
+            *WINDOW,
         ),
         "lineage": lineage,
         "budget": views.table("uncertainty_budget")

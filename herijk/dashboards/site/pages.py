@@ -331,7 +331,7 @@ def _compare(views: Views, methods: Sequence[str]) -> Page:
     called = pl.format("{} · {} · {}{}", "name", "fsn_no", "rowers", "crew_class")
     curves = (
         lines.select("tow_id", crew=called)
-        .join(views.table("curve_points").filter(method=method), on="tow_id")
+        .join(views.table("curve_points").filter(method=method), on="tow_id", maintain_order="left")
         .select("crew", "speed_m_s", "cw_kg_m", "cw_lo_kg_m", "cw_hi_kg_m")
         .sort("crew", "speed_m_s")
     )

@@ -110,12 +110,12 @@ def with_status(
     ).with_columns(pl.lit(True).alias("rejects"))
     flagged = (
         assessments.filter("flagged")
-        .join(curves.select("tow_id", "season"), on="tow_id")
-        .join(pairs, on=["season", "check"], how="left")
+        .join(curves.select("tow_id", "season"), on="tow_id", maintain_order="left")
+        .join(pairs, on=["season", "check"], how="left", maintain_order="left")
         .with_columns(pl.col("rejects").fill_null(False) | (pl.col("severity") == "refuse"))
         .filter((pl.col("severity") == "look") | pl.col("rejects"))
         .sort(pl.col("check").replace_strict(CODES, range(len(CODES))))
-        .group_by("tow_id")
+        .group_by("tow_id", maintain_order=True)
         .agg(pl.col("check").alias("flags"), pl.col("rejects").any())
     )
     status = (
@@ -167,9 +167,13 @@ def _held_against_limits(observed: pl.DataFrame, curves: pl.DataFrame) -> pl.Dat
     nearer_lowest = highest.is_null() | nearer
     last = pl.col("check").replace_strict(_LAST_SEASON, return_dtype=pl.Int32)
     return (
-        observed.join(curves.select("method", "tow_id", "season", "crew_class"), on="tow_id")
+        observed.join(
+            curves.select("method", "tow_id", "season", "crew_class"),
+            on="tow_id",
+            maintain_order="left",
+        )
         .filter(last.is_null() | (pl.col("season") <= last))
-        .join(_limits(), on=["check", "crew_class"])
+        .join(_limits(), on=["check", "crew_class"], maintain_order="left")
         .select(
             "method",
             "tow_id",
@@ -218,8 +222,8 @@ def _of_runs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
             lowest_target=target.min().over("tow_id"), highest_target=target.max().over("tow_id")
         )
         .filter("used")
-        .join(curves.select("tow_id", "declared_speed_m_s"), on="tow_id")
-        .group_by("tow_id")
+        .join(curves.select("tow_id", "declared_speed_m_s"), on="tow_id", maintain_order="left")
+        .group_by("tow_id", maintain_order=True)
         .agg(
             unbalanced_runs=way.cast(pl.Int32).sum().abs(),
             out_and_back_differ=on_curve.filter(way > 0).mean() / on_curve.filter(way < 0).mean()
@@ -248,16 +252,18 @@ def _of_logs(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
     seasons = (
         run_points.filter("used", pl.col("gps_ratio") > 0)
         .select("tow_id", x=x - x.mean().over(ways), y=y - y.mean().over(ways))
-        .group_by("tow_id")
+        .group_by("tow_id", maintain_order=True)
         .agg(slope=(pl.col("x") * pl.col("y")).sum() / x2.sum(), spread=x2.sum())
         .filter(pl.col("spread") > LEAST_SPREAD)
-        .join(curves.select("tow_id", "season"), on="tow_id")
-        .group_by("season")
+        .join(curves.select("tow_id", "season"), on="tow_id", maintain_order="left")
+        .group_by("season", maintain_order=True)
         .agg(slope.mean(), sd=slope.std() / pl.len().sqrt(), n=pl.len())
         .filter(pl.col("n") >= FEWEST_SLOPES)
         .with_columns(log_not_linear=unless_chance(slope, pl.col("sd"), pl.col("n") - 1.0))
     )
-    return curves.join(seasons, on="season").select("tow_id", "log_not_linear")
+    return curves.join(seasons, on="season", maintain_order="left").select(
+        "tow_id", "log_not_linear"
+    )
 
 
 def _of_doubts(tows: pl.DataFrame) -> pl.DataFrame:
@@ -279,9 +285,13 @@ def _of_correction(run_points: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame
     if "speed_correction_ratio" not in tows.columns:
         return pl.DataFrame(schema={"tow_id": pl.String()})
     as_read = (pl.col("speed_factor") - 1.0).abs().max() < SAME_SHARE
-    speeds = run_points.filter("used").group_by("tow_id").agg(as_read.alias("as_read"))
+    speeds = (
+        run_points.filter("used")
+        .group_by("tow_id", maintain_order=True)
+        .agg(as_read.alias("as_read"))
+    )
     listed = pl.col("speed_correction_ratio")
-    return tows.join(speeds, on="tow_id").select(
+    return tows.join(speeds, on="tow_id", maintain_order="left").select(
         "tow_id", correction_not_used=pl.when("as_read").then(listed).otherwise(listed * 0.0)
     )
 
@@ -330,7 +340,7 @@ def _of_steps(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
         pl.col("gps_step_m_s") / speed  # half a step; speed counts twice
     )
     by_force = pl.col("force_step_n") / 2 / (pl.col("cw_kg_m") * speed**2)
-    return curves.join(tows.select("tow_id", *steps), on="tow_id").select(
+    return curves.join(tows.select("tow_id", *steps), on="tow_id", maintain_order="left").select(
         "tow_id", coarse_readings=pl.max_horizontal(by_gps, by_force)
     )
 
@@ -367,7 +377,7 @@ def _with_boats(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     ln_width = (pl.col("cw_hi_kg_m") / pl.col("cw_lo_kg_m")).log()
     return (
         curves.filter(pl.col("a_kg_m").is_not_null())
-        .join(tows.select("tow_id", *kept, *types), on="tow_id")
+        .join(tows.select("tow_id", *kept, *types), on="tow_id", maintain_order="left")
         .with_columns(
             size=(displacement * pl.col("waterline_length_m")).sqrt(),
             s_s2_m2=(1 - pl.col("a_kg_m") / pl.col("cw_kg_m")) / pl.col("declared_speed_m_s") ** 2,
@@ -391,7 +401,9 @@ def _of_season(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame
     on board, and nobody can say which of the two was right: all seasons are in doubt. Log factors
     do not rest on that.
     """
-    seasons = diagnosis.group_by("season").agg(season_in_doubt=pl.col("alarm").any())
+    seasons = diagnosis.group_by("season", maintain_order=True).agg(
+        season_in_doubt=pl.col("alarm").any()
+    )
     doubted = seasons.filter("season_in_doubt")["season"]
     anchors = {*_by_gps(curves)} & {*seasons["season"]}
     if anchors and anchors <= {*doubted}:
@@ -400,7 +412,9 @@ def _of_season(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame
         seasons = seasons.with_columns(pl.col("season_in_doubt") | rests)
     steps = diagnosis.filter(instrument=FLEET, verdict=FAULT)
     seasons = seasons.with_columns(pl.col("season_in_doubt") | pl.lit(not steps.is_empty()))
-    return tows.join(seasons, on="season").select("tow_id", "season_in_doubt")
+    return tows.join(seasons, on="season", maintain_order="left").select(
+        "tow_id", "season_in_doubt"
+    )
 
 
 def _pairs(curves: pl.DataFrame, tows: pl.DataFrame, diagnosis: pl.DataFrame) -> pl.DataFrame:

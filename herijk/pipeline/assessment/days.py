@@ -33,8 +33,8 @@ def days_apart(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
         curves.filter(pl.len().over(LINE) > 1)
         .select("tow_id", "season", "calibration_factor", ln=(_cw("cw") / _cw("cw_best")).log())
         .filter(ln.is_finite())
-        .join(tows.select("tow_id", "tow_date"), on="tow_id")
-        .group_by("season", "tow_date")
+        .join(tows.select("tow_id", "tow_date"), on="tow_id", maintain_order="left")
+        .group_by("season", "tow_date", maintain_order=True)
         .agg(
             pl.len().cast(pl.Float64).alias("n"),
             mean=ln.mean(),
@@ -44,7 +44,7 @@ def days_apart(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     )
     middle = (n * pl.col("mean")).sum() / n.sum()
     seasons = (
-        days.group_by("season")
+        days.group_by("season", maintain_order=True)
         .agg(
             pl.col("within").sum(),
             pl.col("calibrated").any(),
@@ -68,9 +68,9 @@ def days_apart(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     )
     shared = ((pl.col("mean_square") - pl.col("variance")) / pl.col("per_day")).clip(0.0).sqrt()
     sure = pl.when(pl.Series(chance) < CHANCE).then(shared).otherwise(0.0)
-    return curves.join(seasons.select("season", days_differ=sure), on="season").select(
-        "tow_id", "days_differ"
-    )
+    return curves.join(
+        seasons.select("season", days_differ=sure), on="season", maintain_order="left"
+    ).select("tow_id", "days_differ")
 
 
 def _cw(name: str) -> pl.Expr:

@@ -39,16 +39,16 @@ def ways_apart(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
     ln = pl.col("ln")
     seasons = (
         run_points.filter("used")
-        .group_by("tow_id")
+        .group_by("tow_id", maintain_order=True)
         .agg(ln=(on_curve.filter(way > 0).mean() / on_curve.filter(way < 0).mean()).log())
         .filter(ln.is_finite())
-        .join(curves.select("tow_id", "season"), on="tow_id")
-        .group_by("season")
+        .join(curves.select("tow_id", "season"), on="tow_id", maintain_order="left")
+        .group_by("season", maintain_order=True)
         .agg(ln.mean(), sd=ln.std() / pl.len().sqrt(), dof=pl.len() - 1.0)
         .filter(pl.col("dof") + 1 >= FEWEST)
         .with_columns(ways_differ=unless_chance(ln, pl.col("sd"), pl.col("dof")).exp() - 1)
     )
-    return curves.join(seasons, on="season").select("tow_id", "ways_differ")
+    return curves.join(seasons, on="season", maintain_order="left").select("tow_id", "ways_differ")
 
 
 def rising_with_wind(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFrame:
@@ -67,9 +67,9 @@ def rising_with_wind(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataF
     ln, wind2 = pl.col("ln"), pl.col("wind2")
     tows = (
         run_points.filter("used")
-        .group_by("tow_id")
+        .group_by("tow_id", maintain_order=True)
         .agg(wind2=both_ways.clip(0.0))
-        .join(curves, on="tow_id")
+        .join(curves, on="tow_id", maintain_order="left")
         .with_columns(ln=(pl.col("cw_kg_m") / pl.col("cw_best_kg_m")).log())
         .filter(ln.is_finite(), wind2.is_finite())
     )

@@ -58,8 +58,8 @@ def compared_tows(observed: Observed) -> pl.DataFrame:
     )
     return (
         beside_their_type(observed)
-        .join(last, on=["method", "tow_id"], how="left")
-        .join(outliers, on=["method", "tow_id"], how="left")
+        .join(last, on=["method", "tow_id"], how="left", maintain_order="left")
+        .join(outliers, on=["method", "tow_id"], how="left", maintain_order="left")
         .with_columns(pl.col("newest").fill_null(value=False))
         .sort("method", "tow_id")
     )
@@ -129,15 +129,19 @@ def hull_speed_statistics(compared: pl.DataFrame) -> pl.DataFrame:
         Rows of the table `hull_speed`, per method, choice of tows, and boat type or all.
     """
     stated = {ALL_TOWS.tows: compared, NEWEST.tows: compared.filter("newest")}
-    seasons = {str(season): tows for (season,), tows in compared.group_by("season")}
+    seasons = {
+        str(season): tows for (season,), tows in compared.group_by("season", maintain_order=True)
+    }
     for name, ends in season_ranges(compared["season"]).items():
         seasons[name] = compared.filter(pl.col("season").is_between(*ends))
     rows = []
     for choice, tows in (stated | seasons).items():
-        groups = [((m, ALL_TYPES), group) for (m,), group in tows.group_by("method")]
+        groups = [
+            ((m, ALL_TYPES), group) for (m,), group in tows.group_by("method", maintain_order=True)
+        ]
         if choice in stated:
             typed = tows.filter(pl.col("boat_type") != UNKNOWN_TYPE)
-            groups += typed.group_by("method", "boat_type")
+            groups += typed.group_by("method", "boat_type", maintain_order=True)
         rows += [
             {"method": m, "tows": choice, "boat_type": t} | _hull_row(group, t)
             for (m, t), group in groups
@@ -158,7 +162,7 @@ def _hull_row(tows: pl.DataFrame, boat_type: str) -> dict[str, object]:
         "tow_share_60_70": ratio.is_between(*ROWED_RATIO).mean(),
         "b_share_within_5pct": (with_b["b_hull_ratio"] - 1.0).abs().le(0.05).mean(),
     }
-    boats = with_b.group_by("fsn_no").agg(
+    boats = with_b.group_by("fsn_no", maintain_order=True).agg(
         pl.col("b_hull_ratio", "b_m_s", "waterline_length_m").median()
     )
     ratios = np.sort(boats["b_hull_ratio"].to_numpy())

@@ -74,6 +74,7 @@ def era_shifts(pairs: pl.DataFrame, boats: pl.DataFrame) -> dy.DataFrame[EraShif
         boats.select("fsn_no", pl.col("boat_type").fill_null(UNKNOWN_TYPE)),
         on="fsn_no",
         how="left",
+        maintain_order="left",
     )
     types = sorted(typed["boat_type"].drop_nulls().unique())
     rows = []

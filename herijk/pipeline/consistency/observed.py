@@ -89,8 +89,9 @@ def observe(
                 "beam_m",
             ),
             on="tow_id",
+            maintain_order="left",
         )
-        .join(boats.select("fsn_no", "boat_type"), on="fsn_no", how="left")
+        .join(boats.select("fsn_no", "boat_type"), on="fsn_no", how="left", maintain_order="left")
         .with_columns(
             pl.col("boat_type").fill_null(UNKNOWN_TYPE),
             (pl.col("weight_kg") + pl.col("crew_weight_kg")).alias("displacement_kg"),
@@ -127,7 +128,7 @@ def _with_standard_speed(table: pl.DataFrame) -> pl.DataFrame:
     """Adds the common speed at which boats of a type are compared."""
     speeds = (
         table.unique("tow_id")
-        .group_by("boat_type")
+        .group_by("boat_type", maintain_order=True)
         .agg(pl.col("declared_speed_m_s").median().alias("standard_speed_m_s"))
     )
     return table.join(speeds, on="boat_type", how="left", maintain_order="left")
@@ -143,7 +144,11 @@ def _points(table: pl.DataFrame, run_points: pl.DataFrame) -> curve.Points:
     """Used run points in one row per row of `table`; unused places hold 1 and do not count."""
     used = (
         run_points.filter(pl.col("used") & (pl.col("cw_kg_m") > 0) & (pl.col("speed_m_s") > 0))
-        .join(table.select("method", "tow_id").with_row_index("row"), on=["method", "tow_id"])
+        .join(
+            table.select("method", "tow_id").with_row_index("row"),
+            on=["method", "tow_id"],
+            maintain_order="left",
+        )
         .sort("row", "run")
         .with_columns(pl.int_range(pl.len()).over("row").alias("place"))
     )
@@ -159,7 +164,7 @@ def newest(observed: Observed) -> Observed:
     """The newest tow of every boat and crew: several tows of one are not several boats."""
     last = (
         observed.table.with_row_index("row")
-        .group_by("method", *LINE)
+        .group_by("method", *LINE, maintain_order=True)
         .agg(pl.col("row").sort_by("tow_date", "tow_id").last())
     )
     return observed.take(np.sort(last["row"].to_numpy()))

@@ -41,7 +41,7 @@ def repeat_pairs(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     line = ["method", *LINE]
     dated = (
         curves.filter((pl.col("status") != "rejected") & pl.col("cw_kg_m").is_not_null())
-        .join(tows.select("tow_id", "tow_date", "altered"), on="tow_id")
+        .join(tows.select("tow_id", "tow_date", "altered"), on="tow_id", maintain_order="left")
         .with_columns(
             (0.5 * (pl.col("cw_hi_kg_m") / pl.col("cw_lo_kg_m")).log()).alias("half"),
             (pl.col("cw_others_kg_m") / pl.col("cw_kg_m")).log().fill_null(0.0).alias("by_others"),

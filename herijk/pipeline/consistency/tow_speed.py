@@ -147,10 +147,10 @@ def raced(observed: Observed, results: pl.DataFrame) -> pl.DataFrame:
     after = pl.col("race_date") >= pl.col("tow_date")
     last = pl.col("tow_date") == pl.col("tow_date").max().over("method", *LINE, "race_date")
     return (
-        tows.join(races, on=LINE)
+        tows.join(races, on=LINE, maintain_order="left")
         .filter(after)
         .filter(last)
-        .group_by("method", "tow_id")
+        .group_by("method", "tow_id", maintain_order=True)
         .agg(pl.len().cast(pl.Int32).alias("races"), pl.col("raced_speed_m_s").max())
     )
 
@@ -240,7 +240,9 @@ def _raced_power(tows: Observed, speed_m_s: FloatArray) -> FloatArray:
 
 def _rowed_speed(crew_class: pl.Series, others: Observed) -> FloatArray:
     """Median declared speed of the others of the same crew class, NaN without any."""
-    median = others.table.group_by("crew_class").agg(pl.col("declared_speed_m_s").median())
+    median = others.table.group_by("crew_class", maintain_order=True).agg(
+        pl.col("declared_speed_m_s").median()
+    )
     by_class = dict(median.iter_rows())
     return np.array([by_class.get(c, np.nan) for c in crew_class], dtype=np.float64)
 

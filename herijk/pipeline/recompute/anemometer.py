@@ -65,7 +65,7 @@ def anemometer_diagnosis(outcomes: Sequence[Outcome]) -> pl.DataFrame:
     )
     seasons = (
         tows.filter(pl.col("sd").is_finite())
-        .group_by("season")
+        .group_by("season", maintain_order=True)
         .agg(pl.col("estimate", "sd").first(), pl.len().alias("tows"))
     )
     half = scipy.special.ndtri(0.975) * pl.col("sd")

@@ -50,13 +50,18 @@ def with_best(
         return curves.with_columns(pl.lit(None, pl.Float64).alias(n) for n in (*BEST, OTHERS))
     shared = (
         budget.filter(pl.col("component").is_in(NOT_SEEN_BY_REPEATS))
-        .group_by("tow_id")
+        .group_by("tow_id", maintain_order=True)
         .agg((pl.col("u_ratio") ** 2).sum().alias("shared"))
     )
     determined = estimated.instruments.drop_nulls("factor").select("tow_id", "others_ln_ratio")
-    known = estimated.best.join(determined, on="tow_id").join(_to_declared(estimated), on="tow_id")
+    known = estimated.best.join(determined, on="tow_id", maintain_order="left").join(
+        _to_declared(estimated), on="tow_id", maintain_order="left"
+    )
     joined = curves.join(known, on="tow_id", how="left", maintain_order="left").join(
-        shared.join(misfit, on="tow_id"), on="tow_id", how="left", maintain_order="left"
+        shared.join(misfit, on="tow_id", maintain_order="left"),
+        on="tow_id",
+        how="left",
+        maintain_order="left",
     )
     moved = pl.col("ln_cw") - pl.col("as_measured") + pl.col("by_bend") + pl.col("misfit").log1p()
     best = pl.col("cw_kg_m") * moved.exp()
@@ -90,7 +95,9 @@ def _to_declared(factors: SeasonFactors) -> pl.DataFrame:
         (1.0 - q * away).clip(lower_bound=LEAST_MARGIN) for q in (r / (1.0 - r), pl.col("bend"))
     )
     return factors.tows.join(
-        factors.instruments.select("tow_id", "factor", "bend").drop_nulls(), on="tow_id"
+        factors.instruments.select("tow_id", "factor", "bend").drop_nulls(),
+        on="tow_id",
+        maintain_order="left",
     ).select(
         "tow_id",
         (own.log() - boat.log()).alias("by_bend"),

@@ -7,7 +7,9 @@ from herijk.pipeline.steps.window import HAND_COLUMNS
 
 def with_boat_types(tows: pl.DataFrame, boats: pl.DataFrame) -> pl.DataFrame:
     """Rows of `tows` with the type of their boat."""
-    return tows.join(boats.select("fsn_no", "boat_type"), on="fsn_no", how="left")
+    return tows.join(
+        boats.select("fsn_no", "boat_type"), on="fsn_no", how="left", maintain_order="left"
+    )
 
 
 def with_boats(tows: pl.DataFrame, boats: pl.DataFrame) -> pl.DataFrame:
@@ -17,7 +19,7 @@ def with_boats(tows: pl.DataFrame, boats: pl.DataFrame) -> pl.DataFrame:
         listed_length_m=pl.col("waterline_length_m"),
         listed_beam_m=pl.col("beam_m"),
     )
-    return with_boat_types(tows, boats).join(listed, on="fsn_no", how="left")
+    return with_boat_types(tows, boats).join(listed, on="fsn_no", how="left", maintain_order="left")
 
 
 def with_expected_water(tows: pl.DataFrame) -> pl.DataFrame:
@@ -35,7 +37,7 @@ def with_expected_water(tows: pl.DataFrame) -> pl.DataFrame:
 def with_hand_windows(runs: pl.DataFrame, windows: pl.DataFrame) -> pl.DataFrame:
     """Rows of `tow_runs` with the windows that were given by hand (`hand_windows`)."""
     given = windows.select("tow_id", "run", *HAND_COLUMNS).rename(HAND_COLUMNS)
-    return runs.join(given, on=["tow_id", "run"], how="left")
+    return runs.join(given, on=["tow_id", "run"], how="left", maintain_order="left")
 
 
 def samples_files(tows: pl.DataFrame) -> pl.DataFrame:

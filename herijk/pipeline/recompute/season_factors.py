@@ -89,7 +89,9 @@ def find_season_factors(outcomes: Sequence[Outcome]) -> SeasonFactors:
 def _tow_rows(outcomes: Sequence[Outcome]) -> pl.DataFrame:
     """One row per tow with a sound curve, at one speed per line: its median declared speed."""
     declared = pl.concat([o.batch.tows.select(*LINE, "declared_speed_m_s") for o in outcomes])
-    reference = declared.group_by(LINE).agg(pl.col("declared_speed_m_s").median().alias("speed"))
+    reference = declared.group_by(LINE, maintain_order=True).agg(
+        pl.col("declared_speed_m_s").median().alias("speed")
+    )
     return pl.concat([_rows(o, reference) for o in outcomes]).drop_nulls("ln_cw")
 
 
@@ -141,7 +143,11 @@ def tow_instruments(estimated: SeasonFactors) -> pl.DataFrame:
     other = (
         estimated.tows.filter(~pl.col("anchored"))
         .select("tow_id", "season", part="other_part", log="other_log")
-        .join(other_log_factors(estimated).select(*GROUP, "factor", "ln_sd", "dof"), on=GROUP)
+        .join(
+            other_log_factors(estimated).select(*GROUP, "factor", "ln_sd", "dof"),
+            on=GROUP,
+            maintain_order="left",
+        )
     )
     shared = estimated.instruments.select(
         "tow_id", "force_factor", "force_zero_n", "bend", "askew_ratio"
@@ -149,7 +155,7 @@ def tow_instruments(estimated: SeasonFactors) -> pl.DataFrame:
     return pl.concat(
         [
             estimated.instruments.drop("others_ln_ratio"),
-            other.drop("season", "part").join(shared, on="tow_id"),
+            other.drop("season", "part").join(shared, on="tow_id", maintain_order="left"),
         ],
         how="diagonal",
     ).sort("tow_id", "log")
@@ -297,7 +303,9 @@ def _with_kappa(rows: pl.DataFrame) -> pl.DataFrame:
     """
     anchored = rows.filter("anchored")
     trusted = anchored if anchored.height else rows
-    by_type = trusted.group_by("boat_type").agg(pl.col("q").median().alias("q_type"), pl.len())
+    by_type = trusted.group_by("boat_type", maintain_order=True).agg(
+        pl.col("q").median().alias("q_type"), pl.len()
+    )
     usual = by_type.filter(pl.col("len") >= FEWEST_OF_TYPE).select("boat_type", "q_type")
     fleet = trusted["q"].median()
 
@@ -310,7 +318,7 @@ def _with_kappa(rows: pl.DataFrame) -> pl.DataFrame:
     seen = typed(anchored).with_columns(deviation)
     # The median of a squared standard normal number is 0.455.
     spread = seen.select((deviation**2).median() / 0.455 - (pl.col("q_sd") ** 2).median()).item()
-    own = seen.group_by(LINE).agg(
+    own = seen.group_by(LINE, maintain_order=True).agg(
         (pl.col("deviation") / pl.col("q_sd") ** 2).sum().alias("pull"),
         (pl.col("q_sd") ** -2.0).sum().alias("weight"),
     )

@@ -99,7 +99,11 @@ def steps_of_lines(register: pl.DataFrame, ladder: pl.DataFrame) -> pl.DataFrame
         register: lines with their `tow_id`.
         ladder: `tow_id`, `position`, `step`, `factor`.
     """
-    steps = register.select(*LINE, "tow_id").join(ladder, on="tow_id").sort(*LINE, "position")
+    steps = (
+        register.select(*LINE, "tow_id")
+        .join(ladder, on="tow_id", maintain_order="left")
+        .sort(*LINE, "position")
+    )
     return steps.select(
         *LINE, pl.lit("method").alias("cause"), "step", pl.col("factor").cast(pl.Float64)
     )
@@ -150,7 +154,12 @@ def side_by_side(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
 def _pairs(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
     """Lines with a curve in either edition, sorted; `both` where there is one in each."""
     pairs = _with_curve(old).join(
-        _with_curve(new), on=LINE, how="full", coalesce=True, suffix="_new"
+        _with_curve(new),
+        on=LINE,
+        how="full",
+        coalesce=True,
+        suffix="_new",
+        maintain_order="left_right",
     )
     both = (pl.col("cw_kg_m").is_not_null() & pl.col("cw_kg_m_new").is_not_null()).alias("both")
     return pairs.with_columns(both).sort(LINE)
@@ -207,7 +216,9 @@ def _causes(
 ) -> list[str]:
     """The causes of each change with their factors on Cw, as JSON."""
     moved = parts.filter((pl.col("factor") - 1.0).abs() > NO_FACTOR)
-    of_line = moved.group_by(LINE).agg(pl.struct("cause", "step", "factor").alias("parts"))
+    of_line = moved.group_by(LINE, maintain_order=True).agg(
+        pl.struct("cause", "step", "factor").alias("parts")
+    )
     known = pairs.select(LINE).join(of_line, on=LINE, how="left", maintain_order="left")["parts"]
     rests = _grounds(pairs, grounds)
     return [

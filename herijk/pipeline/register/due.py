@@ -62,8 +62,10 @@ def due_list(
         by line.
     """
     lines = (
-        register.join(boats.select("fsn_no", "boat_type"), on="fsn_no", how="left")
-        .join(_raced(results, as_of), on=CREW, how="left")
+        register.join(
+            boats.select("fsn_no", "boat_type"), on="fsn_no", how="left", maintain_order="left"
+        )
+        .join(_raced(results, as_of), on=CREW, how="left", maintain_order="left")
         .sort(LINE)
     )
     own = lines.filter(pl.col("a_kg_m").is_not_null())
@@ -91,7 +93,7 @@ def _raced(results: pl.DataFrame, as_of: dt.date) -> pl.DataFrame:
     through_water = lately["distance_m"] - lately["stream_m"].fill_null(0.0)
     speed = mean_speed_m_s(through_water, lately["rowing_time_s"])
     raced = lately.with_columns(pl.Series("raced_speed_m_s", speed))
-    return raced.group_by(CREW).agg(pl.col("raced_speed_m_s").max())
+    return raced.group_by(CREW, maintain_order=True).agg(pl.col("raced_speed_m_s").max())
 
 
 def _powers(lines: pl.DataFrame) -> list[pl.Series]:
@@ -128,9 +130,11 @@ def _of_like_boats(lines: pl.DataFrame, known: pl.DataFrame) -> pl.DataFrame:
     """Medians of boats of the same type and crew, for lines without a curve."""
     like = ["boat_type", "rowers", "crew_class"]
     ends = ("lowest_speed_m_s", "highest_speed_m_s")
-    typical = known.drop_nulls("boat_type").group_by(like).agg(pl.col(ends).median())
+    typical = (
+        known.drop_nulls("boat_type").group_by(like, maintain_order=True).agg(pl.col(ends).median())
+    )
     middle = pl.mean_horizontal(ends)
-    return lines.join(typical, on=like, how="left").with_columns(
+    return lines.join(typical, on=like, how="left", maintain_order="left").with_columns(
         pl.when(pl.col(ends[0]).is_not_null()).then(middle).alias("tow_speed_m_s"),
         pl.when(pl.col(ends[0]).is_not_null())
         .then(pl.lit(LIKE_BOATS))

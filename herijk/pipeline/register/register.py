@@ -142,7 +142,9 @@ def lines_of_all_days(
 def _towed(curves: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     """Curves with the day of their tow and the thwart that was left free."""
     thwart = pl.col("empty_thwart").fill_null(NO_EMPTY_THWART)
-    return curves.join(tows.select("tow_id", "tow_date", thwart), on="tow_id")
+    return curves.join(
+        tows.select("tow_id", "tow_date", thwart), on="tow_id", maintain_order="left"
+    )
 
 
 def _in_order(sound: pl.DataFrame, rule: RegisterRule, decisions: pl.DataFrame) -> pl.DataFrame:

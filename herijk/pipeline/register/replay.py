@@ -178,7 +178,10 @@ def race_changes(old: pl.DataFrame, new: pl.DataFrame) -> pl.DataFrame:
     columns = ["power_w", "rank", "remark"]
     before, after = _placed_under_both(old, new), _placed_under_both(new, old)
     pairs = before.select(*RESULT, *columns).join(
-        after.select(*RESULT, "empty_thwart", *columns), on=RESULT, suffix="_new"
+        after.select(*RESULT, "empty_thwart", *columns),
+        on=RESULT,
+        suffix="_new",
+        maintain_order="left",
     )
     podiums = (pl.col(name) <= PODIUM for name in ("rank", "rank_new"))
     return pairs.select(

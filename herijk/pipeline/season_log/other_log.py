@@ -32,9 +32,9 @@ def other_log_factors(estimated: SeasonFactors) -> pl.DataFrame:
     rows = (
         estimated.tows.filter(~pl.col("anchored"))
         .drop_nulls("other_ln_ratio")
-        .join(own, on=GROUP)
+        .join(own, on=GROUP, maintain_order="left")
         .with_columns((pl.col("ln_own") + pl.col("other_ln_ratio")).alias("ln_factor"))
-        .group_by("season", part="other_part", log="other_log")
+        .group_by("season", part="other_part", log="other_log", maintain_order=True)
         .agg(
             pl.len().alias("n_tows"),
             pl.col("component", "ln_sd", "dof").first(),

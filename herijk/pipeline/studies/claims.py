@@ -32,10 +32,12 @@ def promise(curves: pl.DataFrame, pairs: pl.DataFrame) -> pl.DataFrame:
         *key, "tow_id", half=(pl.col("cw_hi_kg_m") / pl.col("cw_lo_kg_m")).log() / 2.0
     )
     seen = pairs.select(*key, "tow_id", off=pl.col("ln_ratio").abs() / 2.0**0.5)
-    both = stated.join(seen.drop("season"), on=["method", "tow_id"], how="left")
+    both = stated.join(
+        seen.drop("season"), on=["method", "tow_id"], how="left", maintain_order="left"
+    )
     beyond = (pl.col("half") > PROMISED["2pct"]) | (pl.col("off") > PROMISED["2pct"])
     return (
-        both.group_by(key)
+        both.group_by(key, maintain_order=True)
         .agg(
             pl.len().cast(pl.Int32).alias("tows"),
             pl.col("half").median().alias("half_interval_ratio"),
@@ -66,7 +68,9 @@ def print_reproduction(
     of_tow = (
         printed.filter("has_valid_curve")
         .sort("season")
-        .join(tows.select("tow_id", "tow_date", *LINE), on=["tow_date", *LINE])
+        .join(
+            tows.select("tow_id", "tow_date", *LINE), on=["tow_date", *LINE], maintain_order="left"
+        )
         .unique("tow_id", keep="first", maintain_order=True)
         .select(
             "tow_id",
@@ -85,7 +89,7 @@ def print_reproduction(
         .select(
             "method", "tow_id", "season", *LINE, "a_kg_m", "b_m_s", "cw_kg_m", "declared_speed_m_s"
         )
-        .join(of_tow, on="tow_id")
+        .join(of_tow, on="tow_id", maintain_order="left")
         .with_columns(cw.alias("cw_kg_m"))
         .with_columns((pl.col("printed_cw_kg_m") / pl.col("cw_kg_m")).alias("cw_ratio"))
         .drop("declared_speed_m_s")
@@ -106,7 +110,7 @@ def print_summary(reproduced: pl.DataFrame) -> pl.DataFrame:
     ratio = pl.col("cw_ratio")
     return (
         reproduced.drop_nulls("cw_ratio")
-        .group_by("method", "season")
+        .group_by("method", "season", maintain_order=True)
         .agg(
             pl.len().cast(pl.Int32).alias("tows"),
             ratio.median().alias("median_ratio"),

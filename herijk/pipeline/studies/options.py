@@ -119,7 +119,9 @@ def beside_uncertainty(effects: pl.DataFrame, curves: pl.DataFrame) -> pl.DataFr
             ("b", "b_lo_m_s", "b_hi_m_s"),
         )
     }
-    return effects.join(curves.select("tow_id", **half), on="tow_id", how="left")
+    return effects.join(
+        curves.select("tow_id", **half), on="tow_id", how="left", maintain_order="left"
+    )
 
 
 def chosen(steps: Steps, sides: Mapping[Choice, object]) -> Steps:

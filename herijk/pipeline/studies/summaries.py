@@ -29,8 +29,8 @@ def season_changes(curves: pl.DataFrame, first: str) -> pl.DataFrame:
     ratio = pl.col("cw_kg_m") / pl.col("old")
     return (
         known.filter(pl.col("method") != first)
-        .join(old, on="tow_id")
-        .group_by("method", "season")
+        .join(old, on="tow_id", maintain_order="left")
+        .group_by("method", "season", maintain_order=True)
         .agg(
             pl.lit(first).alias("from_method"),
             pl.len().alias("tows"),
@@ -72,7 +72,7 @@ def option_summary(effects: pl.DataFrame) -> pl.DataFrame:
     lo, hi = (ratio.quantile(q, "linear") for q in MIDDLE)
     return (
         effects.drop_nulls("cw_effect_ratio")
-        .group_by("method", "study", "option")
+        .group_by("method", "study", "option", maintain_order=True)
         .agg(
             pl.len().alias("tows"),
             ratio.median().alias("median_ratio"),
@@ -94,7 +94,9 @@ def quality_counts(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFra
     key = ("method", "season")
     flags = curves.select(*key, code="flags").explode("code").drop_nulls("code")
     seasons = curves.select(*key, "tow_id")
-    unused = run_points.filter(~pl.col("used")).join(seasons, on=["method", "tow_id"])
+    unused = run_points.filter(~pl.col("used")).join(
+        seasons, on=["method", "tow_id"], maintain_order="left"
+    )
     kinds = {
         "status": curves.select(*key, code="status"),
         "flag": flags,
@@ -104,7 +106,9 @@ def quality_counts(curves: pl.DataFrame, run_points: pl.DataFrame) -> pl.DataFra
     of_season = events.with_columns(scope=pl.col("season").cast(pl.String))
     of_all = events.with_columns(scope=pl.lit(ALL_SEASONS))
     both = pl.concat([of_season, of_all])
-    return both.group_by("method", "kind", "code", "scope").agg(pl.len().alias("number"))
+    return both.group_by("method", "kind", "code", "scope", maintain_order=True).agg(
+        pl.len().alias("number")
+    )
 
 
 def check_counts(assessments: pl.DataFrame) -> pl.DataFrame:
@@ -116,7 +120,7 @@ def check_counts(assessments: pl.DataFrame) -> pl.DataFrame:
     Returns:
         `method, check, severity, tows, beyond`.
     """
-    return assessments.group_by("method", "check", "severity").agg(
+    return assessments.group_by("method", "check", "severity", maintain_order=True).agg(
         pl.len().alias("tows"), pl.col("flagged").sum().alias("beyond")
     )
 

@@ -128,7 +128,7 @@ def tick_effects(curves: pl.DataFrame) -> pl.DataFrame:
         _effect(whole.filter(pl.col("speed").is_in(pair)), name, pl.col("speed") == pair[1])
         for name, pair in SPEEDS.items()
     ]
-    spread = whole.group_by("tow_id").agg(
+    spread = whole.group_by("tow_id", maintain_order=True).agg(
         pl.lit(ALL_OPTIONS).alias("option"),
         *_of_both(lambda x: x.std(ddof=0), "sd_ratio"),
     )
@@ -138,7 +138,7 @@ def tick_effects(curves: pl.DataFrame) -> pl.DataFrame:
 
 def _effect(logs: pl.DataFrame, name: str, on: pl.Expr) -> pl.DataFrame:
     """Second value / first value of Cw and B; tows without both are left out."""
-    means = logs.group_by("tow_id").agg(
+    means = logs.group_by("tow_id", maintain_order=True).agg(
         pl.lit(name).alias("option"),
         *_of_both(lambda x: (x.filter(on).mean() - x.filter(~on).mean()).exp(), "effect_ratio"),
         both=on.any() & (~on).any(),

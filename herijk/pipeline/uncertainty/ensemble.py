@@ -140,7 +140,7 @@ def _members_of(members: pl.DataFrame, tow_ids: Sequence[str]) -> FloatArray:
     """Cw of the members of each tow, shape (tows, members)."""
     per_tow = (
         members.filter(pl.col("tow_id").is_in(tow_ids))
-        .group_by("tow_id")
+        .group_by("tow_id", maintain_order=True)
         .agg(pl.col("cw_kg_m").sort_by("member"))
     )
     known = dict(per_tow.rows())
@@ -172,7 +172,7 @@ def _errors(
     independent = [_independent(seed, key, members) for key in determined["key"]]
     if independent:
         joint = root @ np.stack(independent)
-        used = determined.with_row_index("row").join(keys, on="key")
+        used = determined.with_row_index("row").join(keys, on="key", maintain_order="left")
         errors[used["index"].to_numpy()] = joint[used["row"].to_numpy()]
     return keys, errors
 

@@ -319,7 +319,7 @@ def _other_rate(samples: pl.DataFrame, tow: Row, index: ArchiveIndex) -> Fault |
     planned = index.runs.filter(tow_id=tow["tow_id"])["planned_s"].max()
     assert isinstance(planned, float)  # noqa: S101 - a tow has runs
     rate = tow["sample_rate_hz"]
-    lasts = float(samples.group_by("run").len()["len"].max() or 0) / rate  # type: ignore[arg-type]
+    lasts = float(samples.group_by("run", maintain_order=True).len()["len"].max() or 0) / rate  # type: ignore[arg-type]
     if lasts >= planned / 2:
         return None
     said = say(
@@ -349,7 +349,11 @@ def _other_plan(samples: pl.DataFrame, tow: Row, index: ArchiveIndex) -> Fault |
 
 
 def _mean_speeds(samples: pl.DataFrame) -> pl.DataFrame:
-    return samples.group_by("run").agg(pl.col("log1_m_s").mean(), rows=pl.len()).sort("run")
+    return (
+        samples.group_by("run", maintain_order=True)
+        .agg(pl.col("log1_m_s").mean(), rows=pl.len())
+        .sort("run")
+    )
 
 
 def _not_planned(

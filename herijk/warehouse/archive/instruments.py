@@ -63,8 +63,8 @@ def load_cell_of(tow: Row, checks: pl.DataFrame) -> dict[str, float | None]:
 def lamp_seconds(lamps: pl.DataFrame) -> dict[str, float]:
     """How long a lamp burned in that run of each tow in which it burned longest."""
     burned = (pl.col("end_s") - pl.col("start_s")).sum().alias("burned")
-    of_run = lamps.group_by("tow_id", "run").agg(burned)
-    return dict(of_run.group_by("tow_id").agg(pl.col("burned").max()).rows())
+    of_run = lamps.group_by("tow_id", "run", maintain_order=True).agg(burned)
+    return dict(of_run.group_by("tow_id", maintain_order=True).agg(pl.col("burned").max()).rows())
 
 
 def _force_check(row: ListRow, season: int) -> Row:

@@ -43,7 +43,8 @@ def outside_run(windows: pl.DataFrame, seconds: pl.DataFrame) -> list[Fault]:
         windows: rows of `ListedWindows`.
         seconds: `tow_id`, `run` and the run's length in whole `seconds`.
     """
-    beyond = windows.join(seconds, on=["tow_id", "run"]).filter(pl.col("end_s") > pl.col("seconds"))
+    listed = windows.join(seconds, on=["tow_id", "run"], maintain_order="left")
+    beyond = listed.filter(pl.col("end_s") > pl.col("seconds"))
     message = "the window of run {run} of tow {tow} ends at {end} s, but the run lasts {seconds} s."
     return [
         _fault(

@@ -84,21 +84,31 @@ def _with_what_was_read(tows: pl.DataFrame, index: pl.DataFrame) -> pl.DataFrame
 
 def _present_runs(blocks: pl.DataFrame) -> pl.DataFrame:
     """The runs that the samples of sound tows hold, with their length in whole `seconds`."""
-    return blocks.group_by("tow_id", "run").agg((pl.col("second").max() + 1).alias("seconds"))
+    return blocks.group_by("tow_id", "run", maintain_order=True).agg(
+        (pl.col("second").max() + 1).alias("seconds")
+    )
 
 
 def _with_lost_runs(tows: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
     """Adds how many of the runs to be used are set aside."""
-    lost = losses.filter(lost="run").group_by("tow_id").agg(pl.len().alias("runs_set_aside"))
-    return tows.join(lost, on="tow_id", how="left").with_columns(
+    lost = (
+        losses.filter(lost="run")
+        .group_by("tow_id", maintain_order=True)
+        .agg(pl.len().alias("runs_set_aside"))
+    )
+    return tows.join(lost, on="tow_id", how="left", maintain_order="left").with_columns(
         pl.col("runs_set_aside").fill_null(0)
     )
 
 
 def _with_lost_seconds(runs: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
     """Adds the longest time that was left out of a channel of each run."""
-    lost = losses.filter(lost="seconds").group_by("tow_id", "run").agg(pl.col("lost_s").max())
-    return runs.join(lost, on=["tow_id", "run"], how="left").with_columns(
+    lost = (
+        losses.filter(lost="seconds")
+        .group_by("tow_id", "run", maintain_order=True)
+        .agg(pl.col("lost_s").max())
+    )
+    return runs.join(lost, on=["tow_id", "run"], how="left", maintain_order="left").with_columns(
         pl.col("lost_s").fill_null(0.0)
     )
 
@@ -123,14 +133,14 @@ def judged_tows(
 
 def _seasons(listed: pl.DataFrame, sound: pl.DataFrame, losses: pl.DataFrame) -> pl.DataFrame:
     """How many tows each season lists, how many can be used, and what is lost of those."""
-    lost = losses.group_by("tow_id").agg(
+    lost = losses.group_by("tow_id", maintain_order=True).agg(
         (pl.col("lost") == "run").sum().alias("runs_set_aside"),
         pl.col("lost_s").filter(pl.col("lost") == "seconds").sum(),
     )
     is_sound = pl.col("tow_id").is_in(sound["tow_id"].implode())
     return (
-        listed.join(lost, on="tow_id", how="left")
-        .group_by("season")
+        listed.join(lost, on="tow_id", how="left", maintain_order="left")
+        .group_by("season", maintain_order=True)
         .agg(
             pl.len().alias("listed"),
             is_sound.sum().alias("tows"),
@@ -168,10 +178,10 @@ def _dated(faults: pl.DataFrame, earlier: pl.DataFrame, today: dt.date) -> pl.Da
     whole = pl.col("line").is_null() | pl.col("reason_code").is_in(OF_A_HEADER)
     of_list = pl.when(whole).then(pl.lit("file")).otherwise(pl.lit("row"))
     lost = pl.when(pl.col("tow_id").is_not_null()).then(pl.lit("tow")).otherwise(of_list)
-    first = earlier.group_by(key).agg(pl.col("first_seen").min())
-    return faults.join(first, on=key, how="left", nulls_equal=True).with_columns(
-        pl.col("lost").fill_null(lost), pl.col("first_seen").fill_null(today)
-    )
+    first = earlier.group_by(key, maintain_order=True).agg(pl.col("first_seen").min())
+    return faults.join(
+        first, on=key, how="left", nulls_equal=True, maintain_order="left"
+    ).with_columns(pl.col("lost").fill_null(lost), pl.col("first_seen").fill_null(today))
 
 
 def unaccounted_tows(inputs: "Inputs", made: Mapping[str, pl.DataFrame]) -> list[str]:

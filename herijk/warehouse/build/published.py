@@ -100,7 +100,9 @@ def lineage_rows(edition: Edition) -> pl.DataFrame:
     if edition.about.kind == "as_printed":
         raise MissingKnowledgeError("a register as printed has no lineage")
     lines = edition.register.drop_nulls("tow_id").select("edition", *LINE, "tow_id", "method")
-    return lines.join(samples_files(edition.tables["tows"]), on="tow_id").with_columns(
+    return lines.join(
+        samples_files(edition.tables["tows"]), on="tow_id", maintain_order="left"
+    ).with_columns(
         pl.lit(edition.about.method_hash).alias("method_hash"),
         pl.lit(edition.about.code_version).alias("code_version"),
     )

@@ -61,7 +61,9 @@ def _draft(method: Method, inputs: "Inputs") -> pl.DataFrame:
     lines = draft_register(curves, tows, inputs["listed_boats"], on_date, method.validity)
     edition, name = pl.lit(draft_name(method.name)), pl.lit(method.name)
     code = pl.lit(None, pl.String).alias("verification_code")
-    measured = lines.join(tows.select("tow_id", *SIZES), on="tow_id", how="left")
+    measured = lines.join(
+        tows.select("tow_id", *SIZES), on="tow_id", how="left", maintain_order="left"
+    )
     return measured.select(edition.alias("edition"), name.alias("method"), pl.all(), code)
 
 
@@ -78,8 +80,8 @@ def _lineage(register: pl.DataFrame, tows: pl.DataFrame, methods: Sequence[Metho
     )
     lines = register.drop_nulls("tow_id").select("edition", *LINE, "tow_id", "method")
     return (
-        lines.join(samples_files(tows), on="tow_id")
-        .join(hashes, on="method")
+        lines.join(samples_files(tows), on="tow_id", maintain_order="left")
+        .join(hashes, on="method", maintain_order="left")
         .with_columns(pl.lit(code_version()).alias("code_version"))
     )
 

@@ -47,7 +47,7 @@ def same_samples(tows: pl.DataFrame, blocks: pl.DataFrame) -> pl.DataFrame:
         .agg(pl.col(CONTENT).sum())
         .pipe(_with_content)
         .filter(pl.col("content").is_duplicated())
-        .join(facts, on="tow_id")
+        .join(facts, on="tow_id", maintain_order="left")
         .sort("tow_date", "tow_id", "run")
     )
     faults = [

@@ -89,7 +89,7 @@ def ladders_that_do_not_multiply(_: "Inputs", made: Mapping[str, pl.DataFrame]) 
     ends = (
         made["correction_steps"]
         .sort("position")
-        .group_by("from_method", "to_method", "tow_id")
+        .group_by("from_method", "to_method", "tow_id", maintain_order=True)
         .agg(
             pl.col("factor").product(),
             (pl.col("cw_kg_m").last() / pl.col("cw_kg_m").first()).alias("total"),

@@ -93,10 +93,20 @@ def compare(store: Store, old: Edition, new: Edition) -> Comparison:
     changes = register_changes(old.register, new.register, parts, grounds)
     names = pl.concat([new.register.select(*LINE, "name"), old.register.select(*LINE, "name")])
     lines = (
-        changes.join(side_by_side(old.register, new.register), on=LINE)
-        .join(names.unique(LINE, keep="first"), on=LINE, how="left")
-        .join(old.register.select(*LINE, old_status="status"), on=LINE, how="left")
-        .join(new.register.select(*LINE, new_status="status"), on=LINE, how="left")
+        changes.join(side_by_side(old.register, new.register), on=LINE, maintain_order="left")
+        .join(names.unique(LINE, keep="first"), on=LINE, how="left", maintain_order="left")
+        .join(
+            old.register.select(*LINE, old_status="status"),
+            on=LINE,
+            how="left",
+            maintain_order="left",
+        )
+        .join(
+            new.register.select(*LINE, new_status="status"),
+            on=LINE,
+            how="left",
+            maintain_order="left",
+        )
         .sort(LINE)
     )
     return Comparison(old, new, lines)
@@ -167,7 +177,11 @@ def _printed_parts(old: Edition, new: Edition) -> pl.DataFrame:
         return NO_PARTS
     thwart = pl.col("empty_thwart").fill_null(NO_EMPTY_THWART)
     tows = new.tables["tows"].select("tow_id", "tow_date", thwart)
-    curves = new.tables["curves"].join(tows, on="tow_id").with_columns(edition=pl.lit("printed"))
+    curves = (
+        new.tables["curves"]
+        .join(tows, on="tow_id", maintain_order="left")
+        .with_columns(edition=pl.lit("printed"))
+    )
     day = [*LINE, "tow_date"]
     same_tow = curves.join(old.register, on=day, how="semi").unique(day, keep="none")
     moved = same_tow.join(new.register, on="tow_id", how="anti")
@@ -220,7 +234,7 @@ def _grounds(old: Edition, new: Edition, separated: set[object], code_known: boo
     """
     shared = [*LINE, "tow_id", "tow_date", INPUTS_HASH, "basis"]
     pairs = old.register.select(shared).join(
-        new.register.select(shared), on=LINE, suffix="_new", nulls_equal=True
+        new.register.select(shared), on=LINE, suffix="_new", nulls_equal=True, maintain_order="left"
     )
     code = not code_known and old.about.code_version != new.about.code_version
     same = None
@@ -418,7 +432,7 @@ def _causes(lines: pl.DataFrame) -> list[CauseSummary]:
     schema = {name: PART_SCHEMA[name] for name in ("cause", "step", "factor")}
     summed = (
         pl.DataFrame(moved, schema=schema)
-        .group_by("cause", "step")
+        .group_by("cause", "step", maintain_order=True)
         .agg(
             pl.len().alias("lines"),
             pl.col("factor").median().alias("median_factor"),

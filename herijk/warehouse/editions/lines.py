@@ -57,7 +57,10 @@ def method_lines(
     )
     valid = pl.col("status") == "valid"
     return draft.join(
-        of_method["tows"].select("tow_id", *TOW_FACTS), on="tow_id", how="left"
+        of_method["tows"].select("tow_id", *TOW_FACTS),
+        on="tow_id",
+        how="left",
+        maintain_order="left",
     ).with_columns(
         *(pl.when(valid).then(pl.col(name)).alias(name) for name in (*NUMBERS, "flags")),
         pl.when(valid).then(pl.lit(MEASURED)).alias("basis"),
@@ -95,7 +98,7 @@ def made_again(store: Store, edition: Edition) -> Again:
     known = [name for name in JUDGED if name in edition.tables["tows"].columns]
     judged = edition.tables["tows"].select("tow_id", *known)
     today = tows_of_today(store)
-    tows = today.drop(JUDGED, strict=False).join(judged, on="tow_id")
+    tows = today.drop(JUDGED, strict=False).join(judged, on="tow_id", maintain_order="left")
     runs = intake.runs_with_windows(store).join(judged, on="tow_id", how="semi")
     blocks = stack_blocks(intake.all_blocks(store), runs)
     recomputed = recompute(edition.method, tows, blocks)

@@ -32,7 +32,7 @@ def printed_path(store: Store, season: int) -> str:
             read: an edition is kept for ever and must not lack it.
     """
     registers, faults = _registers(store)
-    paths = registers.filter(pl.col("season") == season)["path"].unique()
+    paths = registers.filter(pl.col("season") == season)["path"].unique().sort()
     if paths.is_empty():
         known = ", ".join(str(s) for s in registers["season"].unique().sort()) or "none"
         raise MissingKnowledgeError(

@@ -184,7 +184,7 @@ def _check_made(store: Store, method: Method, curves: pl.DataFrame) -> None:
     """Refuses curves that are not those that the method makes of the blocks."""
     blocks = stack_blocks(all_blocks(store), runs_with_windows(store))
     made = recompute(method, typed_tows(store), blocks, with_bands=False).curves
-    pairs = curves.join(made, on="tow_id", how="full", suffix="_made")
+    pairs = curves.join(made, on="tow_id", how="full", suffix="_made", maintain_order="left_right")
     same = [
         (pl.col(name) / pl.col(f"{name}_made") - 1.0).abs().fill_null(0.0) < SAME_NUMBER
         for name in NUMBERS
@@ -295,7 +295,10 @@ def _complete(
 ) -> pl.DataFrame:
     """Lines with the facts of their boats and their verification codes, checked and sorted."""
     named = lines.join(
-        store.read("boats").select("fsn_no", *BOAT_FACTS), on="fsn_no", how="left"
+        store.read("boats").select("fsn_no", *BOAT_FACTS),
+        on="fsn_no",
+        how="left",
+        maintain_order="left",
     ).with_columns(
         pl.lit(terms.edition).alias("edition"),
         pl.lit(method).alias("method"),

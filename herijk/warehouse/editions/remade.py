@@ -72,13 +72,16 @@ def _differing(
     store: Store, edition: Edition, lines: pl.DataFrame, again: Again, reasons: "_Reasons"
 ) -> Iterator[Finding]:
     now = again.lines.drop(FLAGS, strict=False).join(
-        store.read("listed_boats").select("fsn_no", *BOAT_FACTS), on="fsn_no", how="left"
+        store.read("listed_boats").select("fsn_no", *BOAT_FACTS),
+        on="fsn_no",
+        how="left",
+        maintain_order="left",
     )
     said = [name for name in _recorded(lines) if name in now.columns]
     moved = () if reasons.same_inputs else (UNSEEN_ERROR,)
     known = [name for name in said if name not in (*LINE, "basis", *_OWN, *moved)]
     pairs = lines.select(*LINE, "basis", *known).join(
-        now.select(*LINE, *known), on=LINE, how="left", suffix="_now"
+        now.select(*LINE, *known), on=LINE, how="left", suffix="_now", maintain_order="left"
     )
     for row in now.join(edition.register, on=LINE, how="anti").iter_rows(named=True):
         why, wrong = reasons.why(row | {"basis": None})

@@ -369,7 +369,9 @@ def _changed_facts(
         for name in was.columns
         if name in now.columns and name not in (*key, *NOT_INPUT) and not name.endswith("_sha256")
     ]
-    pairs = was.select(*key, *facts).join(now.select(*key, *facts), on=key, suffix="_now")
+    pairs = was.select(*key, *facts).join(
+        now.select(*key, *facts), on=key, suffix="_now", maintain_order="left"
+    )
     for row in pairs.sort(key).iter_rows(named=True):
         name = "tow " + ", run ".join(str(row[k]) for k in key)
         for fact in facts:

@@ -79,7 +79,9 @@ def _named(views: Views, changes: pl.DataFrame) -> pl.DataFrame:
     names = views.table("boats").select("fsn_no", "name", "boat_type")
     named = changes.join(names, on="fsn_no", how="left", maintain_order="left")
     methods = views.table("register").select("edition", "method").unique()
-    known = methods.join(_log_known(views), on="method", how="left").drop("method")
+    known = methods.join(_log_known(views), on="method", how="left", maintain_order="left").drop(
+        "method"
+    )
     for side, edition in (("old", "from_edition"), ("new", "to_edition")):
         mine = known.rename({"edition": edition, "log_known": f"{side}_log_known"})
         named = named.join(mine, on=edition, how="left", maintain_order="left")
@@ -159,10 +161,10 @@ def _best_estimates(views: Views) -> pl.DataFrame:
     before = best.select("method", tow_id_before="tow_id", kept_before="kept")
     moved = pl.col("ln_ratio").exp()
     return (
-        best.join(own.select(*key, own_weight="weight"), on=key, how="left")
+        best.join(own.select(*key, own_weight="weight"), on=key, how="left", maintain_order="left")
         .with_columns(pl.col("own_weight").fill_null(0.0))  # shares of next to nothing are left out
-        .join(pairs, on=key, how="left")
-        .join(before, on=["method", "tow_id_before"], how="left")
+        .join(pairs, on=key, how="left", maintain_order="left")
+        .join(before, on=["method", "tow_id_before"], how="left", maintain_order="left")
         .with_columns(
             moved_ratio=moved,
             best_moved_ratio=moved * pl.col("kept") / pl.col("kept_before"),

@@ -70,8 +70,8 @@ def register_on(
         .with_columns(
             pl.when(over).then(pl.lit("expired")).otherwise(pl.lit("valid")).alias("status")
         )
-        .join(tows.select("tow_id", *SIZES), on="tow_id", how="left")
-        .join(codes, on=[*key, "tow_id"], how="left", nulls_equal=True)
+        .join(tows.select("tow_id", *SIZES), on="tow_id", how="left", maintain_order="left")
+        .join(codes, on=[*key, "tow_id"], how="left", nulls_equal=True, maintain_order="left")
     )
     later = pl.col("tow_date").is_not_null()
     rest = register.join(counted, on=key, how="anti").with_columns(

@@ -183,7 +183,13 @@ def _tows(was: Tables, now: Tables) -> pl.DataFrame:
     pairs = (
         was["tows"]
         .select(*facts, *files)
-        .join(now["tows"].select(*facts, *files), on="tow_id", how="full", coalesce=True)
+        .join(
+            now["tows"].select(*facts, *files),
+            on="tow_id",
+            how="full",
+            coalesce=True,
+            maintain_order="left_right",
+        )
         .filter(~pl.col("tow_id").is_in(list(same)))
     )
     same_files = pl.all_horizontal(pl.col(f).eq_missing(pl.col(f"{f}_right")) for f in files)
@@ -225,7 +231,7 @@ def _faults(was: pl.DataFrame, now: pl.DataFrame) -> pl.DataFrame:
 
 def _factors(was: pl.DataFrame, now: pl.DataFrame) -> pl.DataFrame:
     pairs = was.select(*FACTOR, old_factor="factor").join(
-        now.select(*FACTOR, new_factor="factor"), on=FACTOR
+        now.select(*FACTOR, new_factor="factor"), on=FACTOR, maintain_order="left"
     )
     ratio = pl.col("new_factor") / pl.col("old_factor")
     return (
@@ -255,13 +261,15 @@ def _draft_lines(was: Tables, now: Tables, method: str, inputs: Inputs) -> pl.Da
     old, new = (_draft(tables["register"], method) for tables in (was, now))
     if old.is_empty() or new.is_empty():
         return None
-    grounds = _grounds(was, now, method, inputs, old.join(new, on=LINE, suffix="_new"))
+    grounds = _grounds(
+        was, now, method, inputs, old.join(new, on=LINE, suffix="_new", maintain_order="left")
+    )
     names = now["boats"].select("fsn_no", "name")
     return (
         register_changes(old, new, NO_PARTS, grounds)
         .filter(pl.col("change") != "same")
-        .join(side_by_side(old, new), on=LINE)
-        .join(names, on="fsn_no", how="left")
+        .join(side_by_side(old, new), on=LINE, maintain_order="left")
+        .join(names, on="fsn_no", how="left", maintain_order="left")
         .sort(LINE)
     )
 
@@ -332,4 +340,4 @@ def summary_of(report: ChangeReport) -> ChangeSummary:
 
 
 def _counted(frame: pl.DataFrame, by: Sequence[str]) -> list[Row]:
-    return frame.group_by(by).agg(pl.len().alias("number")).sort(by).to_dicts()
+    return frame.group_by(by, maintain_order=True).agg(pl.len().alias("number")).sort(by).to_dicts()

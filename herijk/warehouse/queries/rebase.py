@@ -65,15 +65,19 @@ def rebase(store: Store, method: Method, against: Method) -> RebaseReport:
 
 def _by_season(rungs: pl.DataFrame, tows: pl.DataFrame) -> pl.DataFrame:
     """Median factor of each step, and of all together, per season."""
-    seasoned = rungs.join(tows.select("tow_id", "season"), on="tow_id")
+    seasoned = rungs.join(tows.select("tow_id", "season"), on="tow_id", maintain_order="left")
     steps = rungs.sort("position")["step"].unique(maintain_order=True).to_list()
-    totals = seasoned.group_by("season", "tow_id").agg(pl.col("factor").product())
-    total = totals.group_by("season").agg(
+    totals = seasoned.group_by("season", "tow_id", maintain_order=True).agg(
+        pl.col("factor").product()
+    )
+    total = totals.group_by("season", maintain_order=True).agg(
         pl.len().alias("tows"), pl.col("factor").median().alias("total")
     )
-    medians = seasoned.group_by("season", "step").agg(pl.col("factor").median())
+    medians = seasoned.group_by("season", "step", maintain_order=True).agg(
+        pl.col("factor").median()
+    )
     wide = medians.pivot("step", index="season", values="factor").select("season", *steps)
-    return wide.join(total, on="season").sort("season")
+    return wide.join(total, on="season", maintain_order="left").sort("season")
 
 
 def _most_affected(

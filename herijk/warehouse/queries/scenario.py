@@ -85,9 +85,9 @@ class Scenario:
         old = self.before.made.curves.select("tow_id", old="cw_kg_m")
         ratio = pl.col("cw_kg_m") / pl.col("old")
         return (
-            self.after.made.curves.join(old, on="tow_id")
+            self.after.made.curves.join(old, on="tow_id", maintain_order="left")
             .drop_nulls(["cw_kg_m", "old"])
-            .group_by("method", "season")
+            .group_by("method", "season", maintain_order=True)
             .agg(
                 pl.len().alias("tows"),
                 ratio.median().alias("median_ratio"),
