@@ -44,6 +44,10 @@ from herijk.words import say
 
 T = TypeVar("T")
 
+ROWS_ARE_EQUAL: Final = "the rows are equal and the first counts."
+ROWS_DIFFER: Final = "the rows differ, so neither counts."
+"""What becomes of rows that are about the same thing."""
+
 _ISO_DATE: Final = re.compile(r"([0-9]{4})[-/.]([0-9]{1,2})[-/.]([0-9]{1,2})")
 _DAY_FIRST: Final = re.compile(r"([0-9]{1,2})([-./ ])([0-9]{1,2})\2([0-9]{4}|[0-9]{2})")
 _MONTH_NAMED: Final = re.compile(r"([0-9]{1,2})[. -]+([a-zäé]{3,9})[. -]+'?([0-9]{4}|[0-9]{2})")
@@ -243,24 +247,22 @@ class ListRow:
         lowest, highest = limits(self.reading.table, key)
         if not lowest <= value <= highest:
             return False
-        mark = _THOUSAND.fullmatch(cell)
-        if mark and self.reading.decimal not in {"", mark[1]}:
-            if self.reading.is_told:
-                return False
-            other = self.reading.decimal.replace(mark[1], "")
-            raise self.fault(
-                say(
-                    "column '{column}' is {cell}, while other numbers of this list have their "
-                    "decimals behind a '{mark}'; write {whole} or {decimal}.",
-                    column=self.named(key),
-                    cell=cell,
-                    mark=other,
-                    whole=cell.replace(mark[1], ""),
-                    decimal=cell.replace(mark[1], other),
-                ),
-                "ambiguous_number",
-            )
-        return True
+        mark = "," if "," in cell else "."
+        if self.reading.decimal in {"", mark}:
+            return True
+        if self.reading.is_told:
+            return False
+        other = self.reading.decimal.replace(mark, "")
+        said = say(
+            "column '{column}' is {cell}, while other numbers of this list have their decimals "
+            "behind a '{mark}'; write {whole} or {decimal}.",
+            column=self.named(key),
+            cell=cell,
+            mark=other,
+            whole=cell.replace(mark, ""),
+            decimal=cell.replace(mark, other),
+        )
+        raise self.fault(said, "ambiguous_number")
 
     def number(self, key: str) -> float:
         """Return a number that must be there."""
@@ -274,10 +276,6 @@ class ListRow:
         if value != int(value):
             raise self.wrong("column '{column}' is {cell}; it must be a whole number.", key)
         return int(value)
-
-    def integer(self, key: str) -> int:
-        """Return a whole number that must be there."""
-        return self._there(key, self.optional_integer(key))
 
     def optional_date(self, key: str) -> dt.date | None:
         """Return a date, None when the cell is empty."""
@@ -316,10 +314,6 @@ class ListRow:
             raise self.wrong(message, key, expected="HD")
         return value
 
-    def crew_class(self, key: str) -> str:
-        """Return `H` or `D`, which must be there."""
-        return self._there(key, self.optional_crew_class(key))
-
     def yes_or_no(self, key: str) -> bool:
         """Return whether a cell says yes; an empty one says no."""
         cell = fold_word(self.optional_text(key) or "nee")
@@ -336,12 +330,14 @@ class ListRow:
     def value(self, column: Column) -> Any:
         """Return the value of a cell, of the type that the table of the list declares.
 
-        It is None where it may be empty, and is.
+        It is None where the cell is empty, which it may be if the table or the header can do
+        without the column.
         """
-        declared = self.reading.table.columns()[column.key].dtype
-        read = _READERS_BY_KEY.get(column.key) or _READERS[declared.base_type()]
+        declared = self.reading.table.columns()[column.key]
+        read = _READERS_BY_KEY.get(column.key) or _READERS[declared.dtype.base_type()]
         value = read(self, column.key)
-        return self._there(column.key, value) if column.required else value
+        may_be_empty = declared.nullable or not column.required
+        return value if may_be_empty else self._there(column.key, value)
 
     def values(self, columns: Iterable[Column]) -> dict[str, Any]:
         """Return the values of cells; one that cannot be read does not hide the others."""
@@ -579,11 +575,11 @@ def _columns_of(
         raise DefectiveInputError(
             "unknown_column", _strange(_meanings(strange, free, sheet, table)), sheet.line
         )
-    found = find_columns(sheet.header, wanted, sheet.line)
+    columns = find_columns(sheet.header, wanted, sheet.line)
     if not sheet.crews:
-        return found
-    of_crews = {key: replace(found[key], header=sheet.crews) for key in CREW if key in found}
-    return found | of_crews
+        return columns
+    of_crews = {key: replace(columns[key], header=sheet.crews) for key in CREW if key in columns}
+    return columns | of_crews
 
 
 def _check_named(sheet: Sheet, known: Collection[int]) -> None:
@@ -592,13 +588,13 @@ def _check_named(sheet: Sheet, known: Collection[int]) -> None:
         if place in known or fold(header):
             continue
         cells = (row.fields[place].strip() for row in sheet.rows if place < len(row.fields))
-        held = next((cell for cell in cells if cell and fold_word(cell) not in NOTHING), None)
-        if held is not None:
+        content = next((cell for cell in cells if cell and fold_word(cell) not in NOTHING), None)
+        if content is not None:
             said = say(
                 "Column {number} has no name and holds '{cell}'. Give it its name; one that is not "
                 "needed can be put under ignore in archief.toml.",
                 number=place + 1,
-                cell=shorten(held),
+                cell=shorten(content),
             )
             raise DefectiveInputError("unknown_column", said, sheet.line)
 
@@ -692,17 +688,17 @@ _LOOKS: Final[Mapping[str, Callable[[str], bool]]] = {
 """What cells of text look like, of columns that not every text can stand in."""
 
 
-def _strange(found: Sequence[Meaning]) -> str:
+def _strange(unknown: Sequence[Meaning]) -> str:
     """Return the sentence about columns that nobody knows, with the likely known ones."""
     return say(
-        "Nobody knows column {names}. Correct it, name it under [headers] in archief.toml, or put "
+        "Column {names} is not known. Correct it, name it under [headers] in archief.toml, or put "
         "it there under ignore.",
         names=", ".join(
             f"'{shorten(meaning.header)}'"
             + (f" ({meaning.column.named}?)" if meaning.column else "")
-            for meaning in found
+            for meaning in unknown
         ),
-        meant=tuple((m.header, m.column.header if m.column else "", m.is_sure) for m in found),
+        meant=tuple((m.header, m.column.header if m.column else "", m.is_sure) for m in unknown),
     )
 
 

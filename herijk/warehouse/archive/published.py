@@ -15,7 +15,13 @@ from herijk.tables.frames import limits
 from herijk.tables.row import Row
 from herijk.warehouse.archive.faults import Fault, at_line
 from herijk.warehouse.archive.kinds import RACES, REGISTERS
-from herijk.warehouse.archive.lists import ListRow, Wording, read_lists
+from herijk.warehouse.archive.lists import (
+    ROWS_ARE_EQUAL,
+    ROWS_DIFFER,
+    ListRow,
+    Wording,
+    read_lists,
+)
 from herijk.warehouse.archive.profile import read_profiles
 from herijk.words import say
 
@@ -63,9 +69,6 @@ def read_races(
 _RESULT: Final = ("race", "race_date", "fsn_no", "rowers", "crew_class")
 """What a crew has one result of."""
 
-_EQUAL: Final = "{boat} {crew} is listed twice for {race}; the rows are equal and the first counts."
-_DIFFER: Final = "{boat} {crew} is listed twice for {race}; the rows differ, so neither counts."
-
 
 def _once(results: pl.DataFrame) -> tuple[pl.DataFrame, list[Fault]]:
     """Return the results of crews that have one in a race; of equal rows the first counts."""
@@ -74,35 +77,31 @@ def _once(results: pl.DataFrame) -> tuple[pl.DataFrame, list[Fault]]:
     one = results.filter(is_again.not_())
     differ = one.filter(pl.struct(_RESULT).is_duplicated())
     faults = [
-        _again(row, message)
-        for rows, message in ((results.filter(is_again), _EQUAL), (differ, _DIFFER))
+        _again(row, ending)
+        for rows, ending in ((results.filter(is_again), ROWS_ARE_EQUAL), (differ, ROWS_DIFFER))
         for row in rows.iter_rows(named=True)
     ]
     return one.filter(pl.struct(_RESULT).is_unique()), faults
 
 
-def _again(row: Row, message: str) -> Fault:
-    crew = f"{row['rowers']}{row['crew_class']}"
-    what = say(message, boat=row["fsn_no"], crew=crew, race=row["race"])
+def _again(row: Row, ending: str) -> Fault:
+    what = say(
+        "{boat} {crew} is listed twice for {race}; {ending}",
+        boat=row["fsn_no"],
+        crew=f"{row['rowers']}{row['crew_class']}",
+        race=row["race"],
+        ending=ending,
+    )
     return Fault(row["path"], None, row["line"], "bad_race_row", at_line(row["line"], what))
 
 
 def _register_line(row: ListRow, season: int) -> Row:
     cw = row.number("cw_kg_m")
-    valid = not NEVER_TOWED_CW[0] <= cw <= NEVER_TOWED_CW[1]
-    return {
-        "season": season,
-        "fsn_no": row.boat("fsn_no"),
-        "rowers": row.integer("rowers"),
-        "crew_class": row.crew_class("crew_class"),
-        "has_valid_curve": valid,
-        "a_kg_m": row.number("a_kg_m") if valid else None,
-        "b_m_s": row.number("b_m_s") if valid else None,
-        "cw_kg_m": cw if valid else None,
-        "declared_speed_m_s": row.optional_number("declared_speed_m_s"),
-        "tow_date": row.optional_date("tow_date"),
-        "empty_thwart": row.optional_text("empty_thwart") or NO_EMPTY_THWART,
-    }
+    is_valid = not NEVER_TOWED_CW[0] <= cw <= NEVER_TOWED_CW[1]
+    curve = {key: row.number(key) if is_valid else None for key in ("a_kg_m", "b_m_s", "cw_kg_m")}
+    line = row.values(column for column in REGISTERS.columns if column.key not in curve)
+    thwart = line["empty_thwart"] or NO_EMPTY_THWART
+    return line | curve | {"season": season, "has_valid_curve": is_valid, "empty_thwart": thwart}
 
 
 def _fitting_line(row: ListRow, season: int) -> Row:

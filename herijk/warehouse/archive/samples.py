@@ -26,6 +26,7 @@ from herijk.warehouse.archive.files import (
     PARTS,
     as_one_run,
     kind_of,
+    not_whole,
     path_inside,
     read_bytes,
     read_start,
@@ -69,7 +70,6 @@ PAUSE_S: Final = 10.0
 """After so long without a sample a new run begins, where nothing else says so."""
 _BINARY: Final = (".parquet", ".tdms")
 _BLANKS: Final = " \t"
-_ROW: Final = re.compile(rb"[^\r\n]")
 _BLANKS_OUTSIDE: Final = re.compile(rb"^[ \t]+|[ \t]+(?=\r?$)", re.MULTILINE)
 _BLANKS_WITHIN: Final = re.compile(rb"[ \t]+")
 _CLOCK: Final = (
@@ -85,10 +85,9 @@ _QUOTED_DECIMAL_COMMA: Final = r'"([ \t]*[+-]?[0-9]*),([0-9][0-9eE+ \t-]*)"'
 
 @dataclass(frozen=True)
 class _Body:
-    """The text below the header, which ends at `start`; not copied, as it may be large.
+    """The text below the header, and what the header says of it.
 
     Attributes:
-        above: lines of the data above it.
         header_line: line in the file of the header.
         first_line: that of the first row.
         places: lines of the rows where they do not follow each other, else empty.
@@ -96,11 +95,9 @@ class _Body:
     """
 
     data: bytes
-    start: int
     delimiter: str
     header: Sequence[str]
     columns: Mapping[str, FoundColumn]
-    above: int
     header_line: int
     first_line: int
     places: Sequence[int] = ()
@@ -211,7 +208,7 @@ def _header_of(path: Path, profile: SeasonProfile) -> Sequence[str]:
             with pq.ParquetFile(path) as file:
                 return list(file.schema_arrow.names)
         except (OSError, pa.ArrowException) as error:
-            raise _not_parquet(path, error) from error
+            raise not_whole(path, "Parquet", error) from error
     if kind == ".tdms":
         return read_tdms(path, SAMPLES_MAX_BYTES, most_rows=0).columns
     return _split_header(read_start(path, _HEAD_BYTES), profile).header
@@ -352,34 +349,23 @@ def _split_header(data: bytes, profile: SeasonProfile) -> _Body:
     header = split_line(header_line, find_delimiter(header_line))
     if units := with_units(header, _cells_of_line(lines, below, delimiter)):
         header, below = units, below + 1
-    columns = find_columns(header, profile.columns, places[0] if places else place + 1)
+    line = places[0] if places else place + 1
+    columns = find_columns(header, profile.columns, line)
     _check_nothing_misspelt(header, columns, profile)
-    above, start = below, _start_of_line(data, below)
-    if not _ROW.search(data, start):
+    data = data[_start_of_line(data, below) :]
+    if not data.strip(b"\r\n"):
         said = say("There are no samples below the header.")
         raise DefectiveInputError("unreadable_file", said)
     if delimiter == " ":
-        data, delimiter = _tabs_for_blanks(data[start:]), "\t"
-        above = start = 0
+        data, delimiter = _BLANKS_WITHIN.sub(b"\t", _BLANKS_OUTSIDE.sub(b"", data)), "\t"
     first_line, rows = below + 1, places[1:]
     says_runs = rows or {"run", "time"} & columns.keys()
-    if not says_runs and (parted := _parted_by_blank_lines(data[start:], delimiter)):
+    if not says_runs and (parted := _parted_by_blank_lines(data, delimiter)):
         data, rows = parted[0], [first_line + row for row in parted[1]]
         header = [*header, "run"]
         columns = {**columns, "run": FoundColumn(len(header) - 1, "run", Scale())}
-        above = start = 0
-    return _Body(
-        data,
-        start,
-        delimiter,
-        header,
-        columns,
-        above,
-        places[0] if places else place + 1,
-        first_line,
-        rows,
-        _is_clock(data, start, delimiter, columns.get("time")),
-    )
+    clock = _is_clock(data, delimiter, columns.get("time"))
+    return _Body(data, delimiter, header, columns, line, first_line, rows, clock)
 
 
 def _parted_by_blank_lines(data: bytes, delimiter: str) -> tuple[bytes, list[int]] | None:
@@ -403,11 +389,6 @@ def _parted_by_blank_lines(data: bytes, delimiter: str) -> tuple[bytes, list[int
     return b"\n".join(rows) + b"\n", places.tolist()
 
 
-def _tabs_for_blanks(data: bytes) -> bytes:
-    """Return text in columns of blanks with a tab between the columns."""
-    return _BLANKS_WITHIN.sub(b"\t", _BLANKS_OUTSIDE.sub(b"", data))
-
-
 def _cells_of_line(lines: Sequence[str], number: int, delimiter: str) -> list[str]:
     """Return the cells of a line that may be no row of samples; none where there is no line."""
     if number >= len(lines) or any(map(str.isdigit, lines[number])):
@@ -423,27 +404,26 @@ def _start_of_line(data: bytes, number: int) -> int:
     return start
 
 
-def _is_clock(data: bytes, start: int, delimiter: str, time: FoundColumn | None) -> bool:
+def _is_clock(data: bytes, delimiter: str, time: FoundColumn | None) -> bool:
     if time is None:
         return False
-    end = data.find(b"\n", start)
-    cells = data[start : end if end >= 0 else len(data)].split(delimiter.encode())
+    cells = data.partition(b"\n")[0].split(delimiter.encode())
     return time.index < len(cells) and b":" in cells[time.index]
 
 
 def _check_nothing_misspelt(
-    header: Sequence[str], found: Mapping[str, FoundColumn], profile: SeasonProfile
+    header: Sequence[str], columns: Mapping[str, FoundColumn], profile: SeasonProfile
 ) -> None:
     """Raise where there is no GPS, but a column that can be one: left out, it changes numbers."""
     gps = [column for column in profile.columns if column.key == "gps"]
-    if "gps" in found or not gps:
+    if "gps" in columns or not gps:
         return
-    for cell in unknown_headers(header, found):
+    for cell in unknown_headers(header, columns):
         name, unit = split_header(cell)
         is_speed = unit is not None and find_scale("speed", unit) is not None
         if name not in map(fold, profile.ignore) and (is_speed or nearest_column(cell, gps)):
             said = say(
-                "Nobody knows column '{name}', and there is no 'gps'. Name it under columns of the "
+                "Column '{name}' is not known, and there is no 'gps'. Name it under columns of the "
                 "season's profile in archief.toml, or put it there under ignore.",
                 name=shorten(cell),
             )
@@ -456,11 +436,11 @@ def _read_fast(body: _Body) -> pl.DataFrame | None:
     That is also where a carriage return stands within a line: Polars takes it for a blank. And
     where there are commas and points: Polars takes either for the decimal mark.
     """
-    mixed = all(body.data.find(mark, body.start) >= 0 for mark in (b",", b"."))
+    mixed = b"," in body.data and b"." in body.data
     if _has_stray_return(body.data) or (mixed and body.delimiter != ","):
         return None
-    quoted = body.data.find(b'"', body.start) >= 0
-    wanted = {found.index: key for key, found in body.columns.items()}
+    quoted = b'"' in body.data
+    wanted = {column.index: key for key, column in body.columns.items()}
     number = pl.String() if quoted else pl.Float64()
     schema = {
         wanted.get(index, f"ignored {index}"): number
@@ -472,7 +452,6 @@ def _read_fast(body: _Body) -> pl.DataFrame | None:
         frame = pl.read_csv(
             body.data,
             has_header=False,
-            skip_lines=body.above,
             separator=body.delimiter,
             quote_char='"' if quoted else None,
             decimal_comma=body.delimiter != ",",
@@ -514,15 +493,15 @@ def _all_finite(numbers: pl.Series) -> bool:
 
 def _read_carefully(body: _Body) -> pl.DataFrame:
     """Return the same columns, NaN where a cell is no number or its row has not all its fields."""
-    text = body.data[body.start :].rstrip(b"\r\n").decode()
+    text = body.data.rstrip(b"\r\n").decode()
     lines = pl.Series("line", text.split("\n")).str.strip_suffix("\r")
     if body.delimiter == ",":
         lines = lines.str.replace_all(_QUOTED_DECIMAL_COMMA, '"$1.$2"')
     fields = lines.str.split(body.delimiter)
     whole = fields.list.len() == body.width
     columns: dict[str, pl.Series] = {}
-    for key, found in body.columns.items():
-        cells = fields.list.get(found.index, null_on_oob=True)
+    for key, column in body.columns.items():
+        cells = fields.list.get(column.index, null_on_oob=True)
         cells = cells.str.strip_chars(_BLANKS).str.replace(r'^"([^"]*)"$', "$1")
         cells = cells.str.strip_chars(_BLANKS)
         if key == "gps" and (cells == "").all():
@@ -568,19 +547,15 @@ def _read_parquet(path: Path, profile: SeasonProfile, max_bytes: int) -> pl.Data
             columns = find_columns(names, profile.columns)
             _check_nothing_misspelt(names, columns, profile)
             _check_parquet_size(path, file, len(columns), max_bytes)
-            wanted = [names[found.index] for found in columns.values()]
-            table = pa.Table.from_batches(_batches(file, wanted), _schema(file, wanted))
+            wanted = [names[column.index] for column in columns.values()]
+            schema = pa.schema([file.schema_arrow.field(name) for name in wanted])
+            table = pa.Table.from_batches(_batches(file, wanted), schema)
         return pl.DataFrame(pl.from_arrow(table))
     except FileNotFoundError as error:
         said = say("'{name}' is not there any more.", name=path.name)
         raise DefectiveInputError("samples_missing", said) from error
     except (OSError, ValueError, pa.ArrowException, pl.exceptions.PolarsError) as error:
-        raise _not_parquet(path, error) from error
-
-
-def _not_parquet(path: Path, error: Exception) -> DefectiveInputError:
-    said = say("'{name}' is not a whole Parquet file: {error}.", name=path.name, error=error)
-    return DefectiveInputError("unreadable_file", said)
+        raise not_whole(path, "Parquet", error) from error
 
 
 def _batches(file: pq.ParquetFile, names: list[str]) -> Iterator[pa.RecordBatch]:
@@ -591,10 +566,6 @@ def _batches(file: pq.ParquetFile, names: list[str]) -> Iterator[pa.RecordBatch]
         if rows > MOST_ROWS:
             raise too_many_rows(rows)
         yield batch
-
-
-def _schema(file: pq.ParquetFile, names: list[str]) -> pa.Schema:
-    return pa.schema([file.schema_arrow.field(name) for name in names])
 
 
 def _check_parquet_size(path: Path, file: pq.ParquetFile, width: int, max_bytes: int) -> None:
@@ -618,13 +589,13 @@ def _read_binary(
     columns = find_columns(frame.columns, profile.columns)
     _check_nothing_misspelt(frame.columns, columns, profile)
     numbers: dict[str, pl.Series] = {}
-    for key, found in columns.items():
-        cells = frame.to_series(found.index)
+    for key, column in columns.items():
+        cells = frame.to_series(column.index)
         if key == "gps" and cells.null_count() == len(cells):
             continue
         if key == "time" and not cells.dtype.is_numeric():
             cells = _as_seconds(cells)
-        numbers[key] = _only_numbers(cells, found)
+        numbers[key] = _only_numbers(cells, column)
     return _to_si(pl.DataFrame(numbers), columns)
 
 
@@ -636,10 +607,10 @@ def _as_seconds(cells: pl.Series) -> pl.Series:
     return _seconds_of_clock(cells) if cells.dtype == pl.String() else cells
 
 
-def _only_numbers(cells: pl.Series, found: FoundColumn) -> pl.Series:
+def _only_numbers(cells: pl.Series, column: FoundColumn) -> pl.Series:
     if not cells.dtype.is_numeric():
         said = say(
-            "Column '{column}' holds {kind}, not numbers.", column=found.header, kind=cells.dtype
+            "Column '{column}' holds {kind}, not numbers.", column=column.header, kind=cells.dtype
         )
         raise DefectiveInputError("bad_number", said)
     return cells.cast(pl.Float64()).fill_null(float("nan"))

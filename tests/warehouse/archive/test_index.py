@@ -299,14 +299,3 @@ def test_a_thousand_with_a_point_beside_decimal_commas_is_no_number(archive: Arc
     assert force[7:10].is_nan().all()
     assert not force[:7].is_nan().any()
     assert [(f.reason_code, f.lost, f.run) for f in scan.faults] == [("bad_number", "seconds", 2)]
-
-
-def test_of_a_list_of_races_that_cannot_be_read_only_its_reader_tells(archive):
-    (archive.root / "wedstrijden/kaag_2014.csv").write_text("wedstrijd;datum\n")
-
-    def hash_file(path):
-        if path.parent.name == "wedstrijden":
-            raise OSError(5, "Input/output error")
-        return FileHashes().hash_file(path)
-
-    assert index_archive(archive.root, hash_file).faults == ()
